@@ -1,0 +1,39 @@
+//! Linear models of the self-excited forces: all of them a transfer matrix `q̂(K) = G(K) r̂(K)`.
+//!
+//! `r` is the dimensionless motion (`y/B`, `x/B`, `θ`), `q` the dimensionless force (`F/(½ρV²B)`, `M/(½ρV²B²)`),
+//! `K = ωB/V` the reduced frequency. Models that are more than a table also have a realisation in
+//! dimensionless time `s = Vt/B`.
+
+pub mod derivatives;
+pub mod flat_plate;
+pub mod laguerre;
+pub mod rational;
+mod realization;
+
+pub use flat_plate::FlatPlate;
+pub use laguerre::{DiscreteLaguerre, FilterBank, LaguerreModel};
+pub use rational::RationalModel;
+pub use realization::{ContinuousRealization, DiscreteRealization, Realization};
+
+use crate::error::Result;
+use crate::section::Dof;
+use crate::units::ReducedFrequency;
+use nalgebra::{Complex, DMatrix};
+
+/// `G(K)`, n×n, dimensionless.
+pub type TransferMatrix = DMatrix<Complex<f64>>;
+
+/// A linear model of the self-excited forces.
+pub trait AerodynamicModel: Send + Sync {
+    /// Degrees of freedom, in the order of rows and columns of [`AerodynamicModel::transfer`].
+    fn dofs(&self) -> &[Dof];
+
+    /// The transfer matrix `G(K)`.
+    ///
+    /// # Errors
+    /// When the model does not say anything at this `K` (a table outside its range).
+    fn transfer(&self, k: ReducedFrequency) -> Result<TransferMatrix>;
+
+    /// State-space realisation in dimensionless time; `None` for models known only as a `G(K)`.
+    fn realize(&self) -> Option<Realization>;
+}

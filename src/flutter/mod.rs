@@ -1,0 +1,1 @@
+//! Flutter: tracked modes over wind speed, onset, divergence.

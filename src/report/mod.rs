@@ -1,0 +1,1 @@
+//! Figures and pages from result structs; nothing is computed here.

@@ -1,0 +1,1 @@
+//! Time response of the coupled section by exact steps.

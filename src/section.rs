@@ -1,0 +1,304 @@
+//! The elastically suspended deck section: what the user states, and its matrices.
+//!
+//! Degrees of freedom stand in the order vertical `y` (up), lateral `x` (downwind), rotation `θ` (nose-up);
+//! everything is per unit length of span.
+
+use crate::error::{Error, Result, non_negative, positive};
+use nalgebra::DMatrix;
+use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
+
+/// A degree of freedom of the section.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Dof {
+    /// Vertical displacement `y` and lift, positive up.
+    Vertical,
+    /// Lateral displacement `x` and drag, positive downwind.
+    Lateral,
+    /// Rotation `θ` and moment, positive nose-up (windward edge up).
+    Torsion,
+}
+
+impl Dof {
+    /// The two degrees of freedom of classical flutter.
+    pub const TWO: [Dof; 2] = [Dof::Vertical, Dof::Torsion];
+    /// All three.
+    pub const THREE: [Dof; 3] = [Dof::Vertical, Dof::Lateral, Dof::Torsion];
+
+    /// Factor from motion to dimensionless motion: `1/B` for displacements, 1 for rotation.
+    pub fn motion_scale(self, width_m: f64) -> f64 {
+        if self == Dof::Torsion {
+            1.0
+        } else {
+            1.0 / width_m
+        }
+    }
+    /// Factor from dimensionless force to force over `½ρV²`: `B` for forces, `B²` for the moment.
+    pub fn force_scale(self, width_m: f64) -> f64 {
+        if self == Dof::Torsion {
+            width_m * width_m
+        } else {
+            width_m
+        }
+    }
+    /// Symbol of the motion: `y`, `x`, `θ`.
+    pub fn symbol(self) -> &'static str {
+        match self {
+            Dof::Vertical => "y",
+            Dof::Lateral => "x",
+            Dof::Torsion => "θ",
+        }
+    }
+    /// Name of the motion in words.
+    pub fn name(self) -> &'static str {
+        match self {
+            Dof::Vertical => "vertical",
+            Dof::Lateral => "lateral",
+            Dof::Torsion => "torsion",
+        }
+    }
+}
+
+/// Spring support of a displacement: mass with either frequency or stiffness.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Translation {
+    /// Mass per length, kg/m.
+    pub mass_kg_m: f64,
+    /// Still-air natural frequency, Hz; give this or the stiffness.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub frequency_hz: Option<f64>,
+    /// Stiffness per length, N/m²; give this or the frequency.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stiffness_n_m2: Option<f64>,
+    /// Ratio to critical damping, dimensionless.
+    pub damping_ratio: f64,
+}
+
+/// Spring support of the rotation: mass moment of inertia with either frequency or stiffness.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Rotation {
+    /// Mass moment of inertia per length, kg·m²/m.
+    pub inertia_kg_m2_m: f64,
+    /// Still-air natural frequency, Hz; give this or the stiffness.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub frequency_hz: Option<f64>,
+    /// Rotational stiffness per length, N·m/(rad·m); give this or the frequency.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stiffness_n: Option<f64>,
+    /// Ratio to critical damping, dimensionless.
+    pub damping_ratio: f64,
+}
+
+/// An elastically suspended deck section in smooth flow.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SectionModel {
+    /// Full deck width `B`, m.
+    pub width_m: f64,
+    /// Air density `ρ`, kg/m³.
+    pub air_density_kg_m3: f64,
+    /// Vertical support.
+    pub vertical: Translation,
+    /// Lateral support; leaving it out gives a section of two degrees of freedom.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lateral: Option<Translation>,
+    /// Torsional support.
+    pub torsion: Rotation,
+}
+
+impl SectionModel {
+    /// The section of Table 4.1 of the thesis (B 0.5 m, m 15 kg/m, J 0.6 kg·m²/m, 2 Hz, 5 Hz, ζ 0.3 %, ρ 1.19 kg/m³).
+    pub fn table_4_1() -> Self {
+        Self::two_dof(0.5, 1.19, (15.0, 2.0, 0.003), (0.6, 5.0, 0.003))
+    }
+
+    /// The deck of IABSE Task Group 3.1, step 1.1a (B 31 m, m 22 740 kg/m, J 2.47e6 kg·m²/m, 0.100 and 0.278 Hz, ζ 0.3 %, ρ 1.22 kg/m³).
+    pub fn iabse_1_1a() -> Self {
+        Self::two_dof(31.0, 1.22, (22_740.0, 0.100, 0.003), (2.47e6, 0.278, 0.003))
+    }
+
+    /// Width (m), density (kg/m³) and, for heave and rotation, (inertia, frequency in Hz, damping ratio).
+    pub fn two_dof(
+        width_m: f64,
+        air_density_kg_m3: f64,
+        vertical: (f64, f64, f64),
+        torsion: (f64, f64, f64),
+    ) -> Self {
+        Self {
+            width_m,
+            air_density_kg_m3,
+            vertical: Translation {
+                mass_kg_m: vertical.0,
+                frequency_hz: Some(vertical.1),
+                stiffness_n_m2: None,
+                damping_ratio: vertical.2,
+            },
+            lateral: None,
+            torsion: Rotation {
+                inertia_kg_m2_m: torsion.0,
+                frequency_hz: Some(torsion.1),
+                stiffness_n: None,
+                damping_ratio: torsion.2,
+            },
+        }
+    }
+
+    /// Degrees of freedom in the order of every matrix of this crate.
+    pub fn dofs(&self) -> Vec<Dof> {
+        if self.lateral.is_some() {
+            Dof::THREE.to_vec()
+        } else {
+            Dof::TWO.to_vec()
+        }
+    }
+
+    /// Mass, damping and stiffness of the section, `R = 2ζ√(K M)` on the diagonal.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a value that is not finite, not positive where it must be, or for a support that states
+    /// both or neither of frequency and stiffness.
+    pub fn structure(&self) -> Result<Structure> {
+        positive("section.width_m", self.width_m)?;
+        positive("section.air_density_kg_m3", self.air_density_kg_m3)?;
+        let heave = translation_support("section.vertical", &self.vertical)?;
+        let sway = self
+            .lateral
+            .as_ref()
+            .map(|s| translation_support("section.lateral", s))
+            .transpose()?;
+        let rotation = &self.torsion;
+        let twist = support(
+            "section.torsion",
+            ("inertia_kg_m2_m", rotation.inertia_kg_m2_m),
+            rotation.frequency_hz,
+            ("stiffness_n", rotation.stiffness_n),
+            rotation.damping_ratio,
+        )?;
+        let supports: Vec<_> = std::iter::once(heave).chain(sway).chain([twist]).collect();
+        let diagonal = |pick: fn(&(f64, f64, f64)) -> f64| {
+            DMatrix::from_diagonal(&supports.iter().map(pick).collect::<Vec<_>>().into())
+        };
+        Ok(Structure {
+            dofs: self.dofs(),
+            width_m: self.width_m,
+            air_density_kg_m3: self.air_density_kg_m3,
+            mass: diagonal(|s| s.0),
+            damping: diagonal(|s| s.1),
+            stiffness: diagonal(|s| s.2),
+        })
+    }
+}
+
+fn translation_support(place: &str, s: &Translation) -> Result<(f64, f64, f64)> {
+    support(
+        place,
+        ("mass_kg_m", s.mass_kg_m),
+        s.frequency_hz,
+        ("stiffness_n_m2", s.stiffness_n_m2),
+        s.damping_ratio,
+    )
+}
+
+/// (mass, damping, stiffness) of one support.
+fn support(
+    place: &str,
+    (inertia_key, inertia): (&str, f64),
+    frequency_hz: Option<f64>,
+    (stiffness_key, stiffness): (&str, Option<f64>),
+    damping_ratio: f64,
+) -> Result<(f64, f64, f64)> {
+    let inertia = positive(&format!("{place}.{inertia_key}"), inertia)?;
+    let damping_ratio = non_negative(&format!("{place}.damping_ratio"), damping_ratio)?;
+    let stiffness = match (frequency_hz, stiffness) {
+        (Some(f), None) => {
+            let omega = TAU * positive(&format!("{place}.frequency_hz"), f)?;
+            inertia * omega * omega
+        }
+        (None, Some(k)) => non_negative(&format!("{place}.{stiffness_key}"), k)?,
+        (given, _) => {
+            return Err(Error::input(
+                place,
+                format!("either `frequency_hz` or `{stiffness_key}`"),
+                if given.is_some() { "both" } else { "neither" },
+            ));
+        }
+    };
+    Ok((
+        inertia,
+        2.0 * damping_ratio * (stiffness * inertia).sqrt(),
+        stiffness,
+    ))
+}
+
+/// Matrices of the suspended section, per unit length: `M q̈ + R q̇ + K q = F`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Structure {
+    /// Degrees of freedom, in the order of rows and columns.
+    pub dofs: Vec<Dof>,
+    /// Deck width `B`, m.
+    pub width_m: f64,
+    /// Air density `ρ`, kg/m³.
+    pub air_density_kg_m3: f64,
+    /// `M`, n×n: kg/m and kg·m²/m.
+    pub mass: DMatrix<f64>,
+    /// `R`, n×n: N·s/m² and N·m·s/(rad·m).
+    pub damping: DMatrix<f64>,
+    /// `K`, n×n: N/m² and N·m/(rad·m).
+    pub stiffness: DMatrix<f64>,
+}
+
+impl Structure {
+    /// Scales a dimensionless aerodynamic matrix to physical motion and force:
+    /// `diag(B, B, B²) G diag(1/B, 1/B, 1)`, still to be multiplied by `½ρV²`.
+    pub fn to_physical<T>(&self, dimensionless: &DMatrix<T>) -> DMatrix<T>
+    where
+        T: nalgebra::Scalar + std::ops::Mul<f64, Output = T> + Copy,
+    {
+        DMatrix::from_fn(dimensionless.nrows(), dimensionless.ncols(), |i, j| {
+            dimensionless[(i, j)]
+                * (self.dofs[i].force_scale(self.width_m) * self.dofs[j].motion_scale(self.width_m))
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frequency_and_stiffness_are_interchangeable() {
+        let by_frequency = SectionModel::table_4_1();
+        let mut by_stiffness = by_frequency.clone();
+        by_stiffness.vertical.frequency_hz = None;
+        by_stiffness.vertical.stiffness_n_m2 = Some(15.0 * (TAU * 2.0) * (TAU * 2.0));
+        let (a, b) = (
+            by_frequency.structure().unwrap(),
+            by_stiffness.structure().unwrap(),
+        );
+        assert!((a.stiffness - b.stiffness).amax() < 1e-9);
+        assert!((a.damping - b.damping).amax() < 1e-12);
+    }
+
+    #[test]
+    fn impossible_sections_are_refused_by_key() {
+        let mut section = SectionModel::table_4_1();
+        section.vertical.mass_kg_m = -3.0;
+        let message = section.structure().unwrap_err().to_string();
+        assert_eq!(
+            message,
+            "section.vertical.mass_kg_m: expected a positive number, found -3"
+        );
+        let mut section = SectionModel::table_4_1();
+        section.torsion.stiffness_n = Some(1.0);
+        assert!(
+            section
+                .structure()
+                .unwrap_err()
+                .to_string()
+                .contains("found both")
+        );
+    }
+}

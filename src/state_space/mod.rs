@@ -1,0 +1,111 @@
+//! Linear systems in state space, their poles, frequency responses and exact discretisation.
+
+mod discretize;
+mod poles;
+pub mod rows;
+
+pub use discretize::{StepMatrices, matrix_exponential, step_matrices};
+pub use poles::{balance, eigenvalues, eigenvector};
+
+use crate::error::{Error, Result};
+use nalgebra::{Complex, DMatrix};
+
+/// Time basis of a continuous system.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Continuous;
+
+/// Time basis of a sampled system.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Discrete {
+    /// Sampling step, in the time unit of the system (s, or dimensionless `Δs`).
+    pub step: f64,
+}
+
+/// `ẋ = A x + B u` or `x(k+1) = A x(k) + B u(k)`, with `y = C x + D u`.
+///
+/// The time basis is part of the type, so that a sampled system cannot be used as a continuous one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StateSpace<T> {
+    /// State matrix, n×n.
+    pub a: DMatrix<f64>,
+    /// Input matrix, n×m.
+    pub b: DMatrix<f64>,
+    /// Output matrix, p×n.
+    pub c: DMatrix<f64>,
+    /// Feed-through, p×m.
+    pub d: DMatrix<f64>,
+    /// Time basis.
+    pub time: T,
+}
+
+impl<T> StateSpace<T> {
+    /// Checks the shapes once; everything downstream relies on them.
+    ///
+    /// # Errors
+    /// [`Error::Numerical`] with the sizes that do not fit, or when an entry is not finite.
+    pub fn new(
+        a: DMatrix<f64>,
+        b: DMatrix<f64>,
+        c: DMatrix<f64>,
+        d: DMatrix<f64>,
+        time: T,
+    ) -> Result<Self> {
+        let n = a.nrows();
+        if a.ncols() != n || b.nrows() != n || c.ncols() != n || d.shape() != (c.nrows(), b.ncols())
+        {
+            return Err(Error::Numerical(format!(
+                "state space: A is {:?}, B {:?}, C {:?}, D {:?}; A must be square and B, C, D fit it",
+                a.shape(),
+                b.shape(),
+                c.shape(),
+                d.shape()
+            )));
+        }
+        if ![&a, &b, &c, &d]
+            .iter()
+            .all(|m| m.iter().all(|x| x.is_finite()))
+        {
+            return Err(Error::Numerical(
+                "state space: a matrix entry is not finite".into(),
+            ));
+        }
+        Ok(Self { a, b, c, d, time })
+    }
+
+    /// `C (λI − A)⁻¹ B + D` at the complex point `λ`.
+    fn response_at(&self, lambda: Complex<f64>) -> Result<DMatrix<Complex<f64>>> {
+        let resolvent = DMatrix::<Complex<f64>>::identity(self.a.nrows(), self.a.nrows()) * lambda
+            - complex(&self.a);
+        let x = resolvent.lu().solve(&complex(&self.b)).ok_or_else(|| {
+            Error::Numerical(format!(
+                "frequency response: {lambda} is a pole of the system"
+            ))
+        })?;
+        Ok(complex(&self.c) * x + complex(&self.d))
+    }
+}
+
+impl StateSpace<Continuous> {
+    /// `C (iωI − A)⁻¹ B + D`, p×m.
+    ///
+    /// # Errors
+    /// [`Error::Numerical`] when `iω` is a pole.
+    pub fn frequency_response(&self, omega: f64) -> Result<DMatrix<Complex<f64>>> {
+        self.response_at(Complex::new(0.0, omega))
+    }
+}
+
+impl StateSpace<Discrete> {
+    /// `C (e^{iωh}I − A)⁻¹ B + D`, p×m.
+    ///
+    /// # Errors
+    /// [`Error::Numerical`] when `e^{iωh}` is a pole.
+    pub fn frequency_response(&self, omega: f64) -> Result<DMatrix<Complex<f64>>> {
+        self.response_at(Complex::new(0.0, omega * self.time.step).exp())
+    }
+}
+
+/// A real matrix as a complex one.
+pub fn complex(real: &DMatrix<f64>) -> DMatrix<Complex<f64>> {
+    real.map(|x| Complex::new(x, 0.0))
+}

@@ -1,0 +1,278 @@
+//! What is saved after training: section, model, tested range, provenance, as JSON with a schema version.
+
+use crate::aerodynamics::{
+    AerodynamicModel, DiscreteLaguerre, LaguerreModel, RationalModel, Realization, TransferMatrix,
+};
+use crate::error::{Error, Result, positive};
+use crate::section::{Dof, SectionModel};
+use crate::units::{ReducedFrequency, ReducedFrequencyRange};
+use serde::{Deserialize, Serialize};
+
+/// Version of the file layout; raised when a field or a model kind is added or changed.
+pub const SCHEMA_VERSION: u32 = 1;
+
+/// The models that can be saved and exported.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case")]
+pub enum Model {
+    /// Continuous Laguerre or Takenaka–Malmquist filters with feed-through.
+    Laguerre(LaguerreModel),
+    /// The thesis's discrete Laguerre model.
+    DiscreteLaguerre(DiscreteLaguerre),
+    /// Rational functions in Roger's form.
+    Rational(RationalModel),
+}
+
+impl Model {
+    /// The kind in words.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::Laguerre(_) => "continuous Laguerre",
+            Self::DiscreteLaguerre(_) => "discrete Laguerre",
+            Self::Rational(_) => "rational functions",
+        }
+    }
+
+    fn inner(&self) -> &dyn AerodynamicModel {
+        match self {
+            Self::Laguerre(m) => m,
+            Self::DiscreteLaguerre(m) => m,
+            Self::Rational(m) => m,
+        }
+    }
+
+    fn validate(&self) -> Result<()> {
+        match self {
+            Self::Laguerre(m) => m.validate(),
+            Self::DiscreteLaguerre(m) => m.validate(),
+            Self::Rational(m) => m.validate(),
+        }
+    }
+}
+
+impl AerodynamicModel for Model {
+    fn dofs(&self) -> &[Dof] {
+        self.inner().dofs()
+    }
+    fn transfer(&self, k: ReducedFrequency) -> Result<TransferMatrix> {
+        self.inner().transfer(k)
+    }
+    fn realize(&self) -> Option<Realization> {
+        self.inner().realize()
+    }
+}
+
+/// Where a model comes from.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Provenance {
+    /// The data: deck, laboratory, publication.
+    pub source: String,
+    /// Licence of the data.
+    pub licence: String,
+    /// How the model was fitted, in words.
+    pub method: String,
+    /// Version of this program that fitted it.
+    pub aerodeck_version: String,
+    /// Remarks of the fit that a user of the model must know (bias, conditioning, range).
+    #[serde(default)]
+    pub notes: Vec<String>,
+}
+
+/// What an exported section does when an importer just runs it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Experiment {
+    /// Start value of the wind speed, m/s.
+    pub wind_speed_m_s: f64,
+    /// Release from this vertical displacement, m.
+    pub initial_vertical_m: f64,
+    /// Release from this rotation, rad.
+    pub initial_rotation_rad: f64,
+    /// Length of the run, s.
+    pub stop_time_s: f64,
+    /// Communication step, s.
+    pub step_size_s: f64,
+    /// Onset and divergence are searched up to this wind speed, m/s.
+    pub onset_search_limit_m_s: f64,
+}
+
+/// A trained model with the section it is coupled with.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TrainedModel {
+    /// [`SCHEMA_VERSION`] at writing.
+    pub schema_version: u32,
+    /// Name of the deck or study.
+    pub name: String,
+    /// The suspended section.
+    pub section: SectionModel,
+    /// The force model.
+    pub model: Model,
+    /// Reduced frequencies `K = ωB/V` at which the data were taken.
+    pub tested_range: ReducedFrequencyRange,
+    /// Where it comes from.
+    pub provenance: Provenance,
+    /// Default experiment of the exported section.
+    pub experiment: Experiment,
+}
+
+impl TrainedModel {
+    /// Reads and checks a model.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with line and column for text that is not such a file, and for every value that cannot be.
+    pub fn from_json(text: &str) -> Result<Self> {
+        let version: SchemaOnly = serde_json::from_str(text).map_err(|e| json_error(&e))?;
+        if version.schema_version != SCHEMA_VERSION {
+            return Err(Error::input(
+                "schema_version",
+                SCHEMA_VERSION.to_string(),
+                version.schema_version.to_string(),
+            ));
+        }
+        let model: Self = serde_json::from_str(text).map_err(|e| json_error(&e))?;
+        model.validate()?;
+        Ok(model)
+    }
+
+    /// Writes the model as indented JSON; numbers survive the round trip bit for bit.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when the model could not be read back.
+    pub fn to_json(&self) -> Result<String> {
+        self.validate()?;
+        let mut text =
+            serde_json::to_string_pretty(self).map_err(|e| Error::Numerical(e.to_string()))?;
+        text.push('\n');
+        Ok(text)
+    }
+
+    /// Checks every value.
+    ///
+    /// # Errors
+    /// [`Error::Input`] naming the key.
+    pub fn validate(&self) -> Result<()> {
+        self.section.structure()?;
+        self.model.validate()?;
+        if self.model.dofs() != self.section.dofs() {
+            return Err(Error::input(
+                "model.dofs",
+                format!("the section's degrees of freedom {:?}", self.section.dofs()),
+                format!("{:?}", self.model.dofs()),
+            ));
+        }
+        positive("tested_range.min", self.tested_range.min.full_width())?;
+        if self.tested_range.max < self.tested_range.min
+            || !self.tested_range.max.full_width().is_finite()
+        {
+            return Err(Error::input(
+                "tested_range.max",
+                "a finite number not below tested_range.min",
+                self.tested_range.max.full_width().to_string(),
+            ));
+        }
+        self.experiment.validate()
+    }
+}
+
+impl Experiment {
+    fn validate(&self) -> Result<()> {
+        positive("experiment.wind_speed_m_s", self.wind_speed_m_s)?;
+        positive("experiment.stop_time_s", self.stop_time_s)?;
+        positive("experiment.step_size_s", self.step_size_s)?;
+        positive(
+            "experiment.onset_search_limit_m_s",
+            self.onset_search_limit_m_s,
+        )?;
+        for (key, value) in [
+            ("experiment.initial_vertical_m", self.initial_vertical_m),
+            ("experiment.initial_rotation_rad", self.initial_rotation_rad),
+        ] {
+            if !value.is_finite() {
+                return Err(Error::input(key, "a finite number", value.to_string()));
+            }
+        }
+        Ok(())
+    }
+}
+
+#[derive(Deserialize)]
+struct SchemaOnly {
+    schema_version: u32,
+}
+
+fn json_error(e: &serde_json::Error) -> Error {
+    Error::input(
+        format!("line {}, column {}", e.line(), e.column()),
+        "a trained model as written by `aerodeck train`",
+        e.to_string(),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::units::ReducedFrequency as K;
+
+    fn jones() -> TrainedModel {
+        TrainedModel {
+            schema_version: SCHEMA_VERSION,
+            name: "flat plate".into(),
+            section: SectionModel::table_4_1(),
+            model: Model::Rational(RationalModel::jones_flat_plate()),
+            tested_range: ReducedFrequencyRange {
+                min: K::from_full_width(0.07),
+                max: K::from_full_width(1.5),
+            },
+            provenance: Provenance {
+                source: "R. T. Jones".into(),
+                licence: "public".into(),
+                method: "closed form".into(),
+                aerodeck_version: env!("CARGO_PKG_VERSION").into(),
+                notes: vec![],
+            },
+            experiment: Experiment {
+                wind_speed_m_s: 38.0,
+                initial_vertical_m: 0.01,
+                initial_rotation_rad: 0.0,
+                stop_time_s: 10.0,
+                step_size_s: 0.01,
+                onset_search_limit_m_s: 100.0,
+            },
+        }
+    }
+
+    #[test]
+    fn json_round_trip_is_bit_exact() {
+        let model = jones();
+        let text = model.to_json().unwrap();
+        let again = TrainedModel::from_json(&text).unwrap();
+        assert_eq!(model, again);
+        assert_eq!(text, again.to_json().unwrap());
+    }
+
+    #[test]
+    fn damaged_files_are_refused_with_their_place() {
+        let text = jones().to_json().unwrap();
+        let newer = text.replace("\"schema_version\": 1", "\"schema_version\": 99");
+        assert_eq!(
+            TrainedModel::from_json(&newer).unwrap_err().to_string(),
+            "schema_version: expected 1, found 99"
+        );
+        let cut = &text[..text.len() / 2];
+        assert!(
+            TrainedModel::from_json(cut)
+                .unwrap_err()
+                .to_string()
+                .contains("line")
+        );
+        let negative = text.replace("\"mass_kg_m\": 15.0", "\"mass_kg_m\": -15.0");
+        assert!(
+            TrainedModel::from_json(&negative)
+                .unwrap_err()
+                .to_string()
+                .contains("mass_kg_m")
+        );
+    }
+}
