@@ -249,6 +249,16 @@ impl CoupledSection {
         StateSpace::new(a, b, c, d, Discrete { step })
     }
 
+    /// Output matrices without wind: the sampled system has no step there, and no force either.
+    pub(crate) fn still_air_outputs(&self) -> (DMatrix<f64>, DMatrix<f64>) {
+        let n = self.structure.dofs.len();
+        let (a, _) = self.structure_alone();
+        let mut rows = DMatrix::zeros(n, self.states());
+        rows.view_mut((0, 0), (n, 2 * n))
+            .copy_from(&a.view((n, 0), (n, 2 * n)));
+        self.outputs(&rows)
+    }
+
     /// `[[0, I], [−M⁻¹K, −M⁻¹R]]` and `[0; M⁻¹]` of the section without aerodynamic force.
     pub fn structure_alone(&self) -> (DMatrix<f64>, DMatrix<f64>) {
         let s = &self.structure;

@@ -1,1 +1,266 @@
 //! Time response of the coupled section by exact steps.
+//!
+//! At constant wind speed a step of any size is exact for inputs that are held or run on a straight line over it
+//! (one matrix exponential, cached per wind speed and step). While the wind speed changes, the step is a
+//! fourth-order Magnus integration with sub-steps. With the discrete Laguerre model the force is sampled and held every
+//! `Δt = Δs B/V`; between samples the structure moves exactly under the held force.
+
+mod sampled;
+mod step_cache;
+mod varying_speed;
+
+use crate::aerodynamics::Realization;
+use crate::aeroelastic::{CoupledSection, CoupledSystem};
+use crate::error::{Error, Result, non_negative, positive};
+use nalgebra::{DMatrix, DVector};
+use step_cache::{StepCache, apply};
+
+/// Wind speed and external forces at the start of a step, and their constant rates over it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Inputs {
+    /// Wind speed, m/s.
+    pub wind_speed_m_s: f64,
+    /// Rate of the wind speed over the step, m/s².
+    pub wind_speed_rate_m_s2: f64,
+    /// External forces per unit length (n): N/m, N·m/m.
+    pub force: Vec<f64>,
+    /// Rates of the external forces over the step (n): per second.
+    pub force_rate: Vec<f64>,
+}
+
+impl Inputs {
+    /// Steady wind on a section of `dofs` degrees of freedom without external force.
+    pub fn steady(wind_speed_m_s: f64, dofs: usize) -> Self {
+        Self {
+            wind_speed_m_s,
+            wind_speed_rate_m_s2: 0.0,
+            force: vec![0.0; dofs],
+            force_rate: vec![0.0; dofs],
+        }
+    }
+
+    fn check(&self, dofs: usize) -> Result<()> {
+        non_negative("wind speed", self.wind_speed_m_s)?;
+        let finite = |values: &[f64]| values.len() == dofs && values.iter().all(|x| x.is_finite());
+        if finite(&self.force) && finite(&self.force_rate) && self.wind_speed_rate_m_s2.is_finite()
+        {
+            Ok(())
+        } else {
+            Err(Error::input(
+                "inputs",
+                format!("{dofs} finite forces and rates"),
+                format!("{self:?}"),
+            ))
+        }
+    }
+}
+
+/// State of the section in motion.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SectionState {
+    /// `[q, q̇, x]`: displacements (m, rad), rates, filter states (dimensionless).
+    pub values: Vec<f64>,
+    /// Part of `Δs` that has passed since the last sample of the discrete model, in `[0, 1)`; 0 for continuous models.
+    pub phase: f64,
+}
+
+/// What the section does at an instant; vectors in the order of the degrees of freedom.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Outputs {
+    /// Displacements: m, rad.
+    pub displacement: Vec<f64>,
+    /// Rates: m/s, rad/s.
+    pub rate: Vec<f64>,
+    /// Accelerations: m/s², rad/s².
+    pub acceleration: Vec<f64>,
+    /// Self-excited forces per unit length: N/m, N·m/m.
+    pub self_excited_force: Vec<f64>,
+}
+
+/// Steps a coupled section. A step is a pure function of state, inputs and step size: the cache only saves time.
+#[derive(Debug, Clone)]
+pub struct Stepper {
+    section: CoupledSection,
+    cache: StepCache,
+    /// `[z, w, ẇ]` of the step at hand.
+    operand: Vec<f64>,
+}
+
+impl Stepper {
+    /// A stepper with an empty cache.
+    pub fn new(section: CoupledSection) -> Self {
+        let operand = vec![0.0; section.states() + 2 * section.structure().dofs.len()];
+        Self {
+            section,
+            cache: StepCache::default(),
+            operand,
+        }
+    }
+
+    /// The section that is stepped.
+    pub fn section(&self) -> &CoupledSection {
+        &self.section
+    }
+
+    /// The section held at `displacement` until the flow has settled, then released with `rate`.
+    /// The filters hold the value that the constant displacement gives.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when the vectors have not n finite entries.
+    pub fn released(&self, displacement: &[f64], rate: &[f64]) -> Result<SectionState> {
+        let s = self.section.structure();
+        let n = s.dofs.len();
+        for (place, v) in [
+            ("initial displacement", displacement),
+            ("initial rate", rate),
+        ] {
+            if v.len() != n || !v.iter().all(|x| x.is_finite()) {
+                return Err(Error::input(
+                    place,
+                    format!("{n} finite numbers"),
+                    format!("{v:?}"),
+                ));
+            }
+        }
+        let motion = DVector::from_fn(n, |i, _| {
+            displacement[i] * s.dofs[i].motion_scale(s.width_m)
+        });
+        let (settle, drive) = match self.section.aerodynamics() {
+            Realization::Continuous(c) => (-&c.a, &c.b),
+            Realization::Discrete(d) => (DMatrix::identity(d.a.nrows(), d.a.nrows()) - &d.a, &d.b),
+        };
+        let mut values = [displacement, rate].concat();
+        if !settle.is_empty() {
+            let filters = settle.lu().solve(&(drive * motion)).ok_or_else(|| {
+                Error::Numerical("released section: a filter does not settle".into())
+            })?;
+            values.extend(filters.iter());
+        }
+        Ok(SectionState { values, phase: 0.0 })
+    }
+
+    /// Advances `state` by `step_s` seconds. On an error the state is as it was.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a step that is not positive or inputs that are not finite, a wind speed that becomes
+    /// negative; [`Error::Numerical`] when the motion has grown beyond what a number can hold.
+    pub fn advance(
+        &mut self,
+        state: &mut SectionState,
+        inputs: &Inputs,
+        step_s: f64,
+    ) -> Result<()> {
+        positive("step size", step_s)?;
+        inputs.check(self.section.structure().dofs.len())?;
+        if inputs.wind_speed_rate_m_s2 != 0.0 {
+            non_negative(
+                "wind speed at the end of the step",
+                inputs.wind_speed_m_s + inputs.wind_speed_rate_m_s2 * step_s,
+            )?;
+        }
+        if matches!(self.section.aerodynamics(), Realization::Discrete(_)) {
+            return self.advance_sampled(state, inputs, step_s);
+        }
+        if inputs.wind_speed_rate_m_s2 != 0.0 {
+            return self.advance_varying_speed(state, inputs, step_s);
+        }
+        let entry = self
+            .cache
+            .full_system(&self.section, inputs.wind_speed_m_s, step_s)?;
+        load(&mut self.operand, &state.values, inputs);
+        let columns = active_columns(inputs, state.values.len());
+        apply(&entry.step, &self.operand[..columns], &mut state.values);
+        if state.values.iter().all(|x| x.is_finite()) {
+            return Ok(());
+        }
+        let before = &self.operand[..state.values.len()];
+        state.values.copy_from_slice(before);
+        Err(overgrown())
+    }
+
+    /// Motion, accelerations and self-excited forces at the instant of `state`.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for inputs that are not finite.
+    pub fn outputs(
+        &mut self,
+        state: &SectionState,
+        inputs: &Inputs,
+        outputs: &mut Outputs,
+    ) -> Result<()> {
+        let n = self.section.structure().dofs.len();
+        inputs.check(n)?;
+        outputs.displacement.clear();
+        outputs.displacement.extend_from_slice(&state.values[..n]);
+        outputs.rate.clear();
+        outputs.rate.extend_from_slice(&state.values[n..2 * n]);
+        outputs.acceleration.resize(n, 0.0);
+        outputs.self_excited_force.resize(n, 0.0);
+        let entry = self
+            .cache
+            .output_rows(&self.section, inputs.wind_speed_m_s)?;
+        self.operand[..state.values.len()].copy_from_slice(&state.values);
+        self.operand[state.values.len()..][..n].copy_from_slice(&inputs.force);
+        let columns = state.values.len() + n;
+        apply(
+            &entry.acceleration,
+            &self.operand[..columns],
+            &mut outputs.acceleration,
+        );
+        apply(
+            &entry.force,
+            &self.operand[..columns],
+            &mut outputs.self_excited_force,
+        );
+        Ok(())
+    }
+
+    /// `d/dt` of the state values; filters of the discrete model stand still between samples.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for inputs that are not finite.
+    pub fn state_derivative(&self, state: &SectionState, inputs: &Inputs) -> Result<Vec<f64>> {
+        let n = self.section.structure().dofs.len();
+        inputs.check(n)?;
+        let z = DVector::from_column_slice(&state.values);
+        let w = DVector::from_column_slice(&inputs.force);
+        if let Realization::Discrete(d) = self.section.aerodynamics() {
+            let force = self.held_force(d, &state.values, inputs.wind_speed_m_s);
+            let (a, b) = self.section.structure_alone();
+            let motion = a * z.rows(0, 2 * n) + b * (w + force);
+            let mut derivative = vec![0.0; state.values.len()];
+            derivative[..2 * n].copy_from_slice(motion.as_slice());
+            return Ok(derivative);
+        }
+        match self.section.at(inputs.wind_speed_m_s)? {
+            CoupledSystem::Continuous(s) => Ok((&s.a * z + &s.b * w).as_slice().to_vec()),
+            CoupledSystem::Sampled(_) => Err(Error::Numerical(
+                "state derivative: a continuous model gave a sampled system".into(),
+            )),
+        }
+    }
+}
+
+/// Writes `[z, w, ẇ]`.
+fn load(operand: &mut [f64], values: &[f64], inputs: &Inputs) {
+    let (z, rest) = operand.split_at_mut(values.len());
+    let (w, rate) = rest.split_at_mut(inputs.force.len());
+    z.copy_from_slice(values);
+    w.copy_from_slice(&inputs.force);
+    rate.copy_from_slice(&inputs.force_rate);
+}
+
+/// Columns of `[Φ, Γ₀, Γ₁]` that meet something other than zero.
+fn active_columns(inputs: &Inputs, states: usize) -> usize {
+    let zero = |v: &[f64]| v.iter().all(|x| *x == 0.0);
+    let n = inputs.force.len();
+    match (zero(&inputs.force), zero(&inputs.force_rate)) {
+        (_, false) => states + 2 * n,
+        (false, true) => states + n,
+        (true, true) => states,
+    }
+}
+
+fn overgrown() -> Error {
+    Error::Numerical("step: the motion has grown beyond the range of numbers".into())
+}

@@ -251,6 +251,14 @@ pub struct Structure {
 }
 
 impl Structure {
+    /// Degrees of freedom from the lowest to the highest still-air frequency.
+    pub fn dofs_by_frequency(&self) -> Vec<Dof> {
+        let mut order: Vec<usize> = (0..self.dofs.len()).collect();
+        let square = |i: &usize| self.stiffness[(*i, *i)] / self.mass[(*i, *i)];
+        order.sort_by(|i, j| square(i).total_cmp(&square(j)));
+        order.into_iter().map(|i| self.dofs[i]).collect()
+    }
+
     /// Scales a dimensionless aerodynamic matrix to physical motion and force:
     /// `diag(B, B, B²) G diag(1/B, 1/B, 1)`, still to be multiplied by `½ρV²`.
     pub fn to_physical<T>(&self, dimensionless: &DMatrix<T>) -> DMatrix<T>

@@ -1,1 +1,17 @@
-//! Flutter: tracked modes over wind speed, onset, divergence.
+//! Flutter: modes tracked over wind speed, onset, divergence.
+//!
+//! Two independent routes: eigenvalues of the coupled state matrix (for models with a realisation), and the
+//! determinant in `(V, ω)` (for any `G(K)`, tables and the flat plate included).
+
+mod curves;
+mod determinant;
+mod divergence;
+mod onset;
+mod search;
+mod tracking;
+
+pub use curves::{FlutterCurves, ModeBranch, ModePoint, trace_modes};
+pub use determinant::{determinant_onset, impedance};
+pub use divergence::divergence_speed;
+pub use onset::{FlutterSearch, Onset, OnsetMethod};
+pub use search::{OnsetSearch, find_onset};

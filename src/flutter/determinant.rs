@@ -1,0 +1,187 @@
+//! Onset for any `G(K)`: the impedance is singular at a real `(V, ω)`.
+//!
+//! At a given `K` the speed follows from the frequency, `V = ωB/K`, and the impedance becomes a quadratic eigenvalue
+//! problem `ω² (M + ½ρB²/K² P(G)) − iωR − K_s = 0`. Its roots are followed over `K`; where one becomes real, the
+//! section flutters (Theodorsen's method with viscous damping).
+
+use super::onset::{FlutterSearch, Onset, OnsetMethod, choose};
+use super::search::root;
+use super::tracking::branch_name;
+use crate::aerodynamics::AerodynamicModel;
+use crate::error::{Error, Result, positive};
+use crate::section::Structure;
+use crate::state_space::complex;
+use crate::units::{ReducedFrequency, ReducedFrequencyRange};
+use nalgebra::{Complex, DMatrix, DVector, Schur};
+
+/// Reduced frequencies at which the roots are looked at, logarithmically spaced over the range.
+const GRID: usize = 600;
+const MAX_SCHUR_SWEEPS: usize = 600;
+
+/// Impedance `−ω²M + iωR + K − ½ρV² P(G(ωB/V))` at speed (m/s) and circular frequency (rad/s), n×n, per unit length.
+///
+/// # Errors
+/// Those of [`AerodynamicModel::transfer`].
+pub fn impedance(
+    structure: &Structure,
+    model: &dyn AerodynamicModel,
+    speed_m_s: f64,
+    omega: f64,
+) -> Result<DMatrix<Complex<f64>>> {
+    let k = ReducedFrequency::from_circular(omega, structure.width_m, speed_m_s);
+    let force = structure.to_physical(&model.transfer(k)?);
+    let pressure = 0.5 * structure.air_density_kg_m3 * speed_m_s * speed_m_s;
+    Ok(complex(&structure.mass) * Complex::new(-omega * omega, 0.0)
+        + complex(&structure.damping) * Complex::new(0.0, omega)
+        + complex(&structure.stiffness)
+        - force * Complex::new(pressure, 0.0))
+}
+
+/// Lowest speed up to `speed_max_m_s` at which the section flutters at a reduced frequency inside `range`.
+///
+/// Says nothing outside `range`: a table cannot be searched where it was not measured.
+///
+/// # Errors
+/// [`Error::Input`] for an empty range; those of the model; [`Error::Numerical`] when the roots cannot be computed.
+pub fn determinant_onset(
+    name: &str,
+    structure: &Structure,
+    model: &dyn AerodynamicModel,
+    range: ReducedFrequencyRange,
+    speed_max_m_s: f64,
+) -> Result<FlutterSearch> {
+    let k_min = positive("range of reduced frequencies", range.min.full_width())?;
+    let k_max = positive("range of reduced frequencies", range.max.full_width())?;
+    let problem = Problem { structure, model };
+    let at = |i: usize| {
+        // both ends exactly, so that a table is not asked beyond its last point
+        match i {
+            0 => k_max,
+            i if i == GRID => k_min,
+            i => k_max * (k_min / k_max).powf(i as f64 / GRID as f64),
+        }
+    };
+    let mut crossings = Vec::new();
+    // at the highest K the speeds are lowest: the roots are in the order of the natural frequencies
+    let mut roots = problem.frequencies(at(0))?;
+    roots.sort_by(|a, b| a.re.total_cmp(&b.re));
+    let branches = structure.dofs_by_frequency();
+    for i in 1..=GRID {
+        let current = problem.frequencies(at(i))?;
+        for (root, dof) in roots.iter_mut().zip(&branches) {
+            let Some(after) = nearest(*root, &current) else {
+                continue;
+            };
+            if root.im > 0.0 && after.im <= 0.0 {
+                let (from, to) = ((at(i - 1), *root), (at(i), after));
+                let onset = problem.refine(name, from, to, branch_name(*dof))?;
+                if onset.speed_m_s <= speed_max_m_s {
+                    crossings.push(onset);
+                }
+            }
+            *root = after;
+        }
+    }
+    Ok(choose(crossings, Some(range), speed_max_m_s))
+}
+
+fn nearest(target: Complex<f64>, among: &[Complex<f64>]) -> Option<Complex<f64>> {
+    among
+        .iter()
+        .copied()
+        .min_by(|a, b| (a - target).norm().total_cmp(&(b - target).norm()))
+}
+
+struct Problem<'a> {
+    structure: &'a Structure,
+    model: &'a dyn AerodynamicModel,
+}
+
+impl Problem<'_> {
+    /// Roots `ω` with positive real part at the reduced frequency `k`, rad/s.
+    fn frequencies(&self, k: f64) -> Result<Vec<Complex<f64>>> {
+        let s = self.structure;
+        let n = s.dofs.len();
+        let g = self.model.transfer(ReducedFrequency::from_full_width(k))?;
+        let air = 0.5 * s.air_density_kg_m3 * (s.width_m / k).powi(2);
+        let mass = complex(&s.mass) + s.to_physical(&g) * Complex::new(air, 0.0);
+        let inverse = mass
+            .try_inverse()
+            .ok_or_else(|| Error::Numerical(format!("determinant: singular at K = {k}")))?;
+        let mut companion = DMatrix::zeros(2 * n, 2 * n);
+        companion.view_mut((0, n), (n, n)).fill_with_identity();
+        companion
+            .view_mut((n, 0), (n, n))
+            .copy_from(&(&inverse * complex(&s.stiffness)));
+        companion
+            .view_mut((n, n), (n, n))
+            .copy_from(&(inverse * complex(&s.damping) * Complex::i()));
+        if !companion
+            .iter()
+            .all(|z| z.re.is_finite() && z.im.is_finite())
+        {
+            return Err(Error::Numerical(format!(
+                "determinant: the model is not finite at K = {k}"
+            )));
+        }
+        let (_, triangular) = Schur::try_new(companion, f64::EPSILON, MAX_SCHUR_SWEEPS)
+            .ok_or_else(|| Error::Numerical(format!("determinant: no roots at K = {k}")))?
+            .unpack();
+        Ok(triangular
+            .diagonal()
+            .iter()
+            .copied()
+            .filter(|omega| omega.re > 0.0)
+            .collect())
+    }
+
+    /// The reduced frequency at which the root becomes real, and the onset there.
+    fn refine(
+        &self,
+        name: &str,
+        before: (f64, Complex<f64>),
+        after: (f64, Complex<f64>),
+        branch: String,
+    ) -> Result<Onset> {
+        let root_at = |k: f64| -> Result<Complex<f64>> {
+            // the roots move little over one cell of the grid: nearest to the straight line between its ends
+            let share = (k - before.0) / (after.0 - before.0);
+            let guess = before.1 + (after.1 - before.1) * share;
+            nearest(guess, &self.frequencies(k)?)
+                .ok_or_else(|| Error::Numerical(format!("determinant: no root at K = {k}")))
+        };
+        let k = root((before.0, -before.1.im), (after.0, -after.1.im), |k| {
+            Ok(-root_at(k)?.im)
+        })?;
+        let omega = root_at(k)?.re;
+        let s = self.structure;
+        let speed = omega * s.width_m / k;
+        let shape = null_vector(&impedance(s, self.model, speed, omega)?)?;
+        Ok(Onset::new(
+            name,
+            OnsetMethod::Determinant,
+            s,
+            (speed, omega),
+            &shape,
+            branch,
+        ))
+    }
+}
+
+/// Right singular vector of the smallest singular value; rows are scaled first, forces and moments have different units.
+fn null_vector(m: &DMatrix<Complex<f64>>) -> Result<DVector<Complex<f64>>> {
+    let mut scaled = m.clone();
+    for mut row in scaled.row_iter_mut() {
+        let size = row.norm();
+        if size > 0.0 {
+            row.unscale_mut(size);
+        }
+    }
+    let singular = || Error::Numerical("determinant: no mode shape at the onset".into());
+    let svd = scaled
+        .try_svd(false, true, f64::EPSILON, MAX_SCHUR_SWEEPS)
+        .ok_or_else(singular)?;
+    let v_t = svd.v_t.ok_or_else(singular)?;
+    let smallest = svd.singular_values.imin();
+    Ok(v_t.row(smallest).adjoint())
+}

@@ -1,0 +1,180 @@
+//! Step and output matrices, kept per wind speed and step size.
+
+use crate::aerodynamics::Realization;
+use crate::aeroelastic::{CoupledSection, CoupledSystem};
+use crate::error::{Error, Result};
+use crate::state_space::{StepMatrices, step_matrices};
+use nalgebra::DMatrix;
+
+/// Pairs of wind speed and step size that are remembered. Importers whose step jitters in the last bits come back to a
+/// handful of values; a wind speed that never repeats needs no more.
+const CAPACITY: usize = 32;
+
+/// Rows are padded to whole groups of this many, so that the inner loop has a fixed length.
+const LANES: usize = 4;
+
+/// A matrix stored for `y = W v`, in groups of rows.
+#[derive(Debug, Clone)]
+pub(super) struct Packed {
+    rows: usize,
+    columns: usize,
+    /// For each group of `LANES` rows, the columns one after the other.
+    data: Vec<[f64; LANES]>,
+}
+
+impl Packed {
+    fn new(rows: usize, columns: usize, entry: impl Fn(usize, usize) -> f64) -> Self {
+        let data = (0..rows.div_ceil(LANES))
+            .flat_map(|group| (0..columns).map(move |j| (group, j)))
+            .map(|(group, j)| {
+                std::array::from_fn(|lane| {
+                    let i = group * LANES + lane;
+                    if i < rows { entry(i, j) } else { 0.0 }
+                })
+            })
+            .collect();
+        Self {
+            rows,
+            columns,
+            data,
+        }
+    }
+}
+
+/// `y = W v` over the first `v.len()` columns, which may be fewer than `W` has.
+pub(super) fn apply(w: &Packed, v: &[f64], y: &mut [f64]) {
+    let y = &mut y[..w.rows];
+    for (out, columns) in y.chunks_mut(LANES).zip(w.data.chunks_exact(w.columns)) {
+        let mut sum = [0.0; LANES];
+        for (column, x) in columns.iter().zip(v) {
+            for lane in 0..LANES {
+                sum[lane] += column[lane] * x;
+            }
+        }
+        out.copy_from_slice(&sum[..out.len()]);
+    }
+}
+
+/// `[Φ, Γ₀, Γ₁]` of one wind speed and step.
+#[derive(Debug, Clone)]
+pub(super) struct StepEntry {
+    pub(super) step: Packed,
+}
+
+/// Rows of accelerations and of self-excited forces over `[z, w]`, of one wind speed.
+#[derive(Debug, Clone)]
+pub(super) struct OutputEntry {
+    pub(super) acceleration: Packed,
+    pub(super) force: Packed,
+}
+
+/// Least recently used entries leave first; the one used last is found first.
+#[derive(Debug, Clone)]
+struct Recent<K, E> {
+    entries: Vec<(K, E)>,
+}
+
+impl<K: PartialEq + Copy, E> Recent<K, E> {
+    fn get(&mut self, key: K, make: impl FnOnce() -> Result<E>) -> Result<&E> {
+        match self.entries.iter().position(|(k, _)| *k == key) {
+            Some(0) => {}
+            Some(at) => self.entries[..=at].rotate_right(1),
+            None => {
+                let entry = make()?;
+                self.entries.truncate(CAPACITY - 1);
+                self.entries.insert(0, (key, entry));
+            }
+        }
+        Ok(&self.entries[0].1)
+    }
+}
+
+impl<K, E> Default for Recent<K, E> {
+    fn default() -> Self {
+        Self {
+            entries: Vec::new(),
+        }
+    }
+}
+
+#[derive(Debug, Clone, Default)]
+pub(super) struct StepCache {
+    steps: Recent<(u64, u64), StepEntry>,
+    outputs: Recent<u64, OutputEntry>,
+}
+
+impl StepCache {
+    /// Step of the whole continuous system.
+    pub(super) fn full_system(
+        &mut self,
+        section: &CoupledSection,
+        speed: f64,
+        step: f64,
+    ) -> Result<&StepEntry> {
+        self.steps.get((speed.to_bits(), step.to_bits()), || {
+            let CoupledSystem::Continuous(s) = section.at(speed)? else {
+                return Err(Error::Numerical("step: the model is sampled".into()));
+            };
+            Ok(pack(&step_matrices(&s.a, &s.b, step)?))
+        })
+    }
+
+    /// Step of the structure alone under a given force, for the sampled model.
+    pub(super) fn structure(&mut self, section: &CoupledSection, step: f64) -> Result<&StepEntry> {
+        self.steps.get((0, step.to_bits()), || {
+            let (a, b) = section.structure_alone();
+            Ok(pack(&step_matrices(&a, &b, step)?))
+        })
+    }
+
+    pub(super) fn output_rows(
+        &mut self,
+        section: &CoupledSection,
+        speed: f64,
+    ) -> Result<&OutputEntry> {
+        self.outputs.get(speed.to_bits(), || {
+            let (c, d) = output_matrices(section, speed)?;
+            let (n, states) = (section.structure().dofs.len(), section.states());
+            let rows = |from: usize| {
+                Packed::new(n, states + n, |i, j| {
+                    if j < states {
+                        c[(from + i, j)]
+                    } else {
+                        d[(from + i, j - states)]
+                    }
+                })
+            };
+            Ok(OutputEntry {
+                acceleration: rows(2 * n),
+                force: rows(3 * n),
+            })
+        })
+    }
+}
+
+fn pack(s: &StepMatrices) -> StepEntry {
+    let (n, m) = s.gamma_0.shape();
+    StepEntry {
+        step: Packed::new(n, n + 2 * m, |i, j| {
+            if j < n {
+                s.phi[(i, j)]
+            } else if j < n + m {
+                s.gamma_0[(i, j - n)]
+            } else {
+                s.gamma_1[(i, j - n - m)]
+            }
+        }),
+    }
+}
+
+/// Output matrices at a wind speed; at zero wind the sampled system has no step, but no force either.
+fn output_matrices(section: &CoupledSection, speed: f64) -> Result<(DMatrix<f64>, DMatrix<f64>)> {
+    let still_sampled = speed == 0.0 && matches!(section.aerodynamics(), Realization::Discrete(_));
+    if still_sampled {
+        return Ok(section.still_air_outputs());
+    }
+    Ok(match section.at(speed)? {
+        CoupledSystem::Continuous(s) => (s.c, s.d),
+        CoupledSystem::Sampled(s) => (s.c, s.d),
+    })
+}

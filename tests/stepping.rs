@@ -1,0 +1,217 @@
+//! Exact steps against an independent integration and against the sampled system's own matrices.
+
+use aerodeck::aerodynamics::{AerodynamicModel, DiscreteLaguerre, RationalModel};
+use aerodeck::aeroelastic::{CoupledSection, CoupledSystem};
+use aerodeck::response::{Inputs, Outputs, SectionState, Stepper};
+use aerodeck::section::{Dof, SectionModel};
+use nalgebra::{DMatrix, DVector};
+
+fn jones() -> Stepper {
+    let structure = SectionModel::table_4_1().structure().unwrap();
+    let aero = RationalModel::jones_flat_plate().realize().unwrap();
+    Stepper::new(CoupledSection::new(structure, aero).unwrap())
+}
+
+fn discrete() -> Stepper {
+    let structure = SectionModel::table_4_1().structure().unwrap();
+    let model = DiscreteLaguerre {
+        dofs: Dof::TWO.to_vec(),
+        alpha: 0.6,
+        delta_s: 0.08,
+        coefficients: vec![
+            DMatrix::from_row_slice(2, 3, &[-2.0, 0.5, 0.8, -0.4, 0.1, 0.1]),
+            DMatrix::from_row_slice(2, 3, &[4.0, 0.6, -0.3, 1.0, 0.2, -0.1]),
+        ],
+        static_term: vec![0.0; 2],
+    };
+    Stepper::new(CoupledSection::new(structure, model.realize().unwrap()).unwrap())
+}
+
+fn distance(a: &[f64], b: &[f64]) -> f64 {
+    let scale = a.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+    a.iter()
+        .zip(b)
+        .map(|(x, y)| (x - y).abs() / scale)
+        .fold(0.0, f64::max)
+}
+
+fn blown(speed: f64) -> Inputs {
+    Inputs {
+        wind_speed_m_s: speed,
+        wind_speed_rate_m_s2: 0.0,
+        force: vec![3.0, -0.2],
+        force_rate: vec![-5.0, 0.7],
+    }
+}
+
+/// Classical Runge–Kutta of fourth order on `Stepper::state_derivative`, small steps.
+fn runge_kutta(
+    stepper: &Stepper,
+    start: &SectionState,
+    inputs: &Inputs,
+    h: f64,
+    steps: usize,
+) -> Vec<f64> {
+    let tau = h / steps as f64;
+    let derivative = |z: &DVector<f64>, t: f64| {
+        let mut now = inputs.clone();
+        now.wind_speed_m_s += inputs.wind_speed_rate_m_s2 * t;
+        for (w, rate) in now.force.iter_mut().zip(&inputs.force_rate) {
+            *w += rate * t;
+        }
+        let state = SectionState {
+            values: z.as_slice().to_vec(),
+            phase: 0.0,
+        };
+        DVector::from_vec(stepper.state_derivative(&state, &now).unwrap())
+    };
+    let mut z = DVector::from_column_slice(&start.values);
+    for i in 0..steps {
+        let t = i as f64 * tau;
+        let k1 = derivative(&z, t);
+        let k2 = derivative(&(&z + &k1 * (tau / 2.0)), t + tau / 2.0);
+        let k3 = derivative(&(&z + &k2 * (tau / 2.0)), t + tau / 2.0);
+        let k4 = derivative(&(&z + &k3 * tau), t + tau);
+        z += (k1 + k2 * 2.0 + k3 * 2.0 + k4) * (tau / 6.0);
+    }
+    z.as_slice().to_vec()
+}
+
+#[test]
+fn a_step_is_the_solution_of_the_differential_equation() {
+    let mut stepper = jones();
+    let start = stepper.released(&[0.01, 0.02], &[0.1, 0.0]).unwrap();
+    for inputs in [Inputs::steady(35.0, 2), blown(35.0)] {
+        let mut state = start.clone();
+        stepper.advance(&mut state, &inputs, 0.3).unwrap();
+        let reference = runge_kutta(&stepper, &start, &inputs, 0.3, 4000);
+        // the reference's own error, (ωτ)⁴ ≈ 1e-11
+        assert!(distance(&reference, &state.values) < 1e-10);
+    }
+}
+
+#[test]
+fn one_step_is_two_halves() {
+    for mut stepper in [jones(), discrete()] {
+        let inputs = Inputs {
+            force_rate: vec![0.0; 2],
+            ..blown(30.0)
+        };
+        let mut whole = stepper.released(&[0.01, 0.02], &[0.0, 0.0]).unwrap();
+        let mut halves = whole.clone();
+        for _ in 0..50 {
+            stepper.advance(&mut whole, &inputs, 0.02).unwrap();
+            stepper.advance(&mut halves, &inputs, 0.01).unwrap();
+            stepper.advance(&mut halves, &inputs, 0.01).unwrap();
+        }
+        let off = distance(&whole.values, &halves.values);
+        assert!(off < 1e-12, "{off:e}");
+    }
+}
+
+#[test]
+fn changing_wind_is_fourth_order_or_better_and_restores_the_constant_case() {
+    let mut stepper = jones();
+    let start = stepper.released(&[0.01, 0.02], &[0.0, 0.0]).unwrap();
+    let gust = Inputs {
+        wind_speed_rate_m_s2: 20.0,
+        ..blown(25.0)
+    };
+    let mut state = start.clone();
+    stepper.advance(&mut state, &gust, 0.3).unwrap();
+    let reference = runge_kutta(&stepper, &start, &gust, 0.3, 4000);
+    let off = distance(&reference, &state.values);
+    assert!(off < 1e-6, "{off:e}");
+    // halving the step of a smooth ramp changes the result only within that error
+    let mut two = start.clone();
+    stepper.advance(&mut two, &gust, 0.15).unwrap();
+    let later = Inputs {
+        wind_speed_m_s: gust.wind_speed_m_s + 0.15 * gust.wind_speed_rate_m_s2,
+        force: gust
+            .force
+            .iter()
+            .zip(&gust.force_rate)
+            .map(|(w, r)| w + 0.15 * r)
+            .collect(),
+        ..gust.clone()
+    };
+    stepper.advance(&mut two, &later, 0.15).unwrap();
+    assert!(distance(&reference, &two.values) < 1e-6);
+}
+
+/// Steps of exactly Δt repeat `z(k+1) = A z(k)` of the corrected equation (B.4).
+#[test]
+fn the_discrete_model_follows_its_own_recursion() {
+    let mut stepper = discrete();
+    let CoupledSystem::Sampled(system) = stepper.section().at(20.0).unwrap() else {
+        panic!("not sampled");
+    };
+    let mut state = stepper.released(&[0.01, 0.02], &[0.0, 0.0]).unwrap();
+    let mut z = DVector::from_column_slice(&state.values);
+    let inputs = Inputs::steady(20.0, 2);
+    for _ in 0..500 {
+        stepper
+            .advance(&mut state, &inputs, system.time.step)
+            .unwrap();
+        z = &system.a * z;
+        assert!(distance(z.as_slice(), &state.values) < 1e-11);
+    }
+    // long steps that end between samples see the same samples
+    let mut long = stepper.released(&[0.01, 0.02], &[0.0, 0.0]).unwrap();
+    stepper
+        .advance(&mut long, &inputs, 499.4 * system.time.step)
+        .unwrap();
+    stepper
+        .advance(&mut long, &inputs, 0.6 * system.time.step)
+        .unwrap();
+    let off = distance(&state.values, &long.values);
+    assert!(off < 1e-10, "{off:e}");
+}
+
+#[test]
+fn outputs_balance_the_equation_of_motion() {
+    for mut stepper in [jones(), discrete()] {
+        let s = stepper.section().structure().clone();
+        let inputs = blown(30.0);
+        let mut state = stepper.released(&[0.01, 0.02], &[0.3, -0.5]).unwrap();
+        stepper.advance(&mut state, &inputs, 0.05).unwrap();
+        let mut out = Outputs::default();
+        stepper.outputs(&state, &inputs, &mut out).unwrap();
+        let derivative = stepper.state_derivative(&state, &inputs).unwrap();
+        for i in 0..2 {
+            let inertia = s.mass[(i, i)] * out.acceleration[i];
+            let balance = inertia
+                + s.damping[(i, i)] * out.rate[i]
+                + s.stiffness[(i, i)] * out.displacement[i]
+                - inputs.force[i]
+                - out.self_excited_force[i];
+            assert!(balance.abs() < 1e-9 * inertia.abs().max(1.0), "{balance:e}");
+            assert!(
+                (derivative[2 + i] - out.acceleration[i]).abs()
+                    < 1e-9 * out.acceleration[i].abs().max(1.0)
+            );
+        }
+    }
+}
+
+#[test]
+fn refusals_leave_the_state_untouched() {
+    let mut stepper = jones();
+    let mut state = stepper.released(&[0.01, 0.0], &[0.0, 0.0]).unwrap();
+    let before = state.clone();
+    let good = Inputs::steady(30.0, 2);
+    let mut bad = good.clone();
+    bad.force[0] = f64::NAN;
+    assert!(stepper.advance(&mut state, &bad, 0.01).is_err());
+    assert!(stepper.advance(&mut state, &good, -0.01).is_err());
+    assert!(
+        stepper
+            .advance(&mut state, &Inputs::steady(-1.0, 2), 0.01)
+            .is_err()
+    );
+    assert!(stepper.advance(&mut state, &good, f64::INFINITY).is_err());
+    // far above the onset the motion overflows sooner or later: an error, not an infinite number
+    let storm = Inputs::steady(90.0, 2);
+    assert!(stepper.advance(&mut state, &storm, 1e4).is_err());
+    assert_eq!(state, before);
+}
