@@ -161,7 +161,8 @@ fn curves_follow_the_branches() {
     let coupled = CoupledSection::new(structure, jones.realize().unwrap()).unwrap();
     let curves = trace_modes("Jones", &coupled, &[15.0, 30.0, 45.0, 60.0, 75.0]).unwrap();
     let torsion = [0.27591, 0.26910, 0.25602, 0.23381, 0.19969];
-    let heave = [0.09873, 0.09985, 0.10101, 0.10171];
+    // at 60 m/s heave is damped by 30 %: p-k and eigenvalues then mean different things by frequency
+    let heave = [0.09873, 0.09985, 0.10101];
     assert_eq!(curves.branches[0].name, "vertical");
     for (point, f) in curves.branches[1].points.iter().zip(torsion) {
         near(point.frequency_hz / f, 1.0, 0.02);
