@@ -1,4 +1,11 @@
 //! The coupled section as a co-simulation slave: version-neutral instance, variables, resources, packing, importer.
 
+#[cfg(feature = "packaging")]
+pub mod description;
 #[allow(unsafe_code)]
 pub mod fmi2;
+pub mod identity;
+pub mod lifecycle;
+pub mod resources;
+pub mod si;
+pub mod variables;

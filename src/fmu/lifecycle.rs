@@ -1,0 +1,274 @@
+//! Which call is legal when: the state machine of co-simulation as data (FMI 2.0.5, section 4.2.4).
+//!
+//! Two tables decide everything: [`LEGAL_CALLS`] for whole functions, and [`settable_in`] / [`gettable_in`] for single
+//! variables. Beyond the letter of the standard, inputs and parameters may be read while instantiated and everything
+//! may be read between setting and stepping, because importers do so.
+
+use super::variables::{Causality, Variability};
+
+/// Where an instance stands in its life.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u8)]
+pub enum State {
+    /// Created or reset.
+    Instantiated = 1,
+    /// Between entering and leaving the initialisation mode.
+    Initialization = 2,
+    /// Ready for the next communication step.
+    StepComplete = 4,
+    /// The last communication step was discarded.
+    StepFailed = 8,
+    /// The run has been ended.
+    Terminated = 16,
+    /// A call returned an error; only a reset or a restored state leads out.
+    Error = 32,
+}
+
+impl State {
+    /// Every state, in the order of a life.
+    pub const ALL: [State; 6] = [
+        Self::Instantiated,
+        Self::Initialization,
+        Self::StepComplete,
+        Self::StepFailed,
+        Self::Terminated,
+        Self::Error,
+    ];
+
+    /// The state in words, for messages.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Instantiated => "instantiated",
+            Self::Initialization => "initialisation mode",
+            Self::StepComplete => "step complete",
+            Self::StepFailed => "step failed",
+            Self::Terminated => "terminated",
+            Self::Error => "error",
+        }
+    }
+
+    /// The state with this code, as it stands in a serialised state.
+    pub fn from_code(code: u8) -> Option<Self> {
+        Self::ALL.into_iter().find(|s| *s as u8 == code)
+    }
+}
+
+/// A set of states.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct StateSet(u8);
+
+impl StateSet {
+    /// No state.
+    pub const NONE: Self = Self(0);
+    /// Every state.
+    pub const ANY: Self = Self::of(&State::ALL);
+    /// From the end of initialisation on, whatever has happened.
+    const STARTED: Self = Self::of(&[
+        State::StepComplete,
+        State::StepFailed,
+        State::Terminated,
+        State::Error,
+    ]);
+    /// From the initialisation mode on.
+    const INITIALIZED: Self = Self::STARTED.and(State::Initialization);
+    /// States in which values may be set.
+    const SETTING: Self = Self::of(&[
+        State::Instantiated,
+        State::Initialization,
+        State::StepComplete,
+    ]);
+
+    /// The set of these states.
+    pub const fn of(states: &[State]) -> Self {
+        let mut bits = 0;
+        let mut i = 0;
+        while i < states.len() {
+            bits |= states[i] as u8;
+            i += 1;
+        }
+        Self(bits)
+    }
+
+    const fn and(self, state: State) -> Self {
+        Self(self.0 | state as u8)
+    }
+
+    /// Whether `state` belongs to the set.
+    pub const fn contains(self, state: State) -> bool {
+        self.0 & state as u8 != 0
+    }
+
+    /// The states by name, for messages.
+    pub fn names(self) -> String {
+        let names: Vec<_> = State::ALL
+            .into_iter()
+            .filter(|s| self.contains(*s))
+            .map(State::name)
+            .collect();
+        if names.is_empty() {
+            "in no state".into()
+        } else {
+            format!("in: {}", names.join(", "))
+        }
+    }
+}
+
+/// What an importer may ask of an instance.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[allow(missing_docs)] // the names are those of the standard
+pub enum Call {
+    SetDebugLogging,
+    FreeInstance,
+    SetupExperiment,
+    EnterInitializationMode,
+    ExitInitializationMode,
+    Terminate,
+    Reset,
+    GetReal,
+    GetInteger,
+    GetBoolean,
+    GetString,
+    SetReal,
+    SetInteger,
+    SetBoolean,
+    SetString,
+    GetFMUstate,
+    SetFMUstate,
+    FreeFMUstate,
+    SerializedFMUstateSize,
+    SerializeFMUstate,
+    DeSerializeFMUstate,
+    GetDirectionalDerivative,
+    SetRealInputDerivatives,
+    GetRealOutputDerivatives,
+    DoStep,
+    CancelStep,
+    GetStatus,
+    GetRealStatus,
+    GetIntegerStatus,
+    GetBooleanStatus,
+    GetStringStatus,
+}
+
+/// The calls of [`Call`] in its order, their names without the prefix of the standard's version, and where each is
+/// legal. `CancelStep` never is: no step is ever left pending.
+pub const LEGAL_CALLS: [(Call, &str, StateSet); 31] = {
+    use Call as C;
+    use StateSet as S;
+    let stepping = S::of(&[State::StepComplete, State::StepFailed]);
+    let status = stepping.and(State::Terminated);
+    [
+        (C::SetDebugLogging, "SetDebugLogging", S::ANY),
+        (C::FreeInstance, "FreeInstance", S::ANY),
+        (
+            C::SetupExperiment,
+            "SetupExperiment",
+            S::of(&[State::Instantiated]),
+        ),
+        (
+            C::EnterInitializationMode,
+            "EnterInitializationMode",
+            S::of(&[State::Instantiated]),
+        ),
+        (
+            C::ExitInitializationMode,
+            "ExitInitializationMode",
+            S::of(&[State::Initialization]),
+        ),
+        (C::Terminate, "Terminate", stepping),
+        (C::Reset, "Reset", S::ANY),
+        (C::GetReal, "GetReal", S::ANY),
+        (C::GetInteger, "GetInteger", S::ANY),
+        (C::GetBoolean, "GetBoolean", S::ANY),
+        (C::GetString, "GetString", S::ANY),
+        (C::SetReal, "SetReal", S::SETTING),
+        (C::SetInteger, "SetInteger", S::SETTING),
+        (C::SetBoolean, "SetBoolean", S::SETTING),
+        (C::SetString, "SetString", S::SETTING),
+        (C::GetFMUstate, "GetFMUstate", S::ANY),
+        (C::SetFMUstate, "SetFMUstate", S::ANY),
+        (C::FreeFMUstate, "FreeFMUstate", S::ANY),
+        (C::SerializedFMUstateSize, "SerializedFMUstateSize", S::ANY),
+        (C::SerializeFMUstate, "SerializeFMUstate", S::ANY),
+        (C::DeSerializeFMUstate, "DeSerializeFMUstate", S::ANY),
+        (
+            C::GetDirectionalDerivative,
+            "GetDirectionalDerivative",
+            S::INITIALIZED,
+        ),
+        (
+            C::SetRealInputDerivatives,
+            "SetRealInputDerivatives",
+            S::SETTING,
+        ),
+        (
+            C::GetRealOutputDerivatives,
+            "GetRealOutputDerivatives",
+            S::STARTED,
+        ),
+        (C::DoStep, "DoStep", S::of(&[State::StepComplete])),
+        (C::CancelStep, "CancelStep", S::NONE),
+        (C::GetStatus, "GetStatus", status),
+        (C::GetRealStatus, "GetRealStatus", status),
+        (C::GetIntegerStatus, "GetIntegerStatus", status),
+        (C::GetBooleanStatus, "GetBooleanStatus", status),
+        (C::GetStringStatus, "GetStringStatus", status),
+    ]
+};
+
+impl Call {
+    /// Name without the prefix of the standard's version.
+    pub const fn name(self) -> &'static str {
+        LEGAL_CALLS[self as usize].1
+    }
+
+    /// States in which the call is legal.
+    pub const fn legal_in(self) -> StateSet {
+        LEGAL_CALLS[self as usize].2
+    }
+}
+
+/// States in which a variable may be set: inputs and tunable parameters until the run ends, fixed parameters until
+/// initialisation ends.
+pub fn settable_in(causality: Causality, variability: Variability) -> StateSet {
+    match (causality, variability) {
+        (Causality::Input, _) | (Causality::Parameter, Variability::Tunable) => StateSet::SETTING,
+        (Causality::Parameter, _) => StateSet::of(&[State::Instantiated, State::Initialization]),
+        _ => StateSet::NONE,
+    }
+}
+
+/// States in which a variable may be read: what is computed only from the initialisation mode on.
+pub fn gettable_in(causality: Causality) -> StateSet {
+    match causality {
+        Causality::Output | Causality::CalculatedParameter => StateSet::INITIALIZED,
+        _ => StateSet::ANY,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_table_stands_in_the_order_of_the_calls() {
+        for (i, (call, name, _)) in LEGAL_CALLS.into_iter().enumerate() {
+            assert_eq!(call as usize, i);
+            assert_eq!(format!("{call:?}"), name);
+        }
+    }
+
+    #[test]
+    fn codes_and_names_are_those_of_the_states() {
+        for state in State::ALL {
+            assert_eq!(State::from_code(state as u8), Some(state));
+            assert!(StateSet::ANY.contains(state));
+            assert!(!StateSet::NONE.contains(state));
+        }
+        assert_eq!(State::from_code(3), None);
+        assert_eq!(
+            Call::DoStep.legal_in().names(),
+            "in: step complete".to_owned()
+        );
+    }
+}

@@ -1,0 +1,114 @@
+//! Units of the variables, in SI base units and with display units.
+
+/// Exponents of the SI base units that occur here (radian counted as one, as FMI does).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct BaseExponents {
+    /// Kilogram.
+    pub kg: i8,
+    /// Metre.
+    pub m: i8,
+    /// Second.
+    pub s: i8,
+    /// Radian.
+    pub rad: i8,
+}
+
+/// Another unit in which a tool may show a value: `shown = factor · value`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DisplayUnit {
+    /// Name.
+    pub name: &'static str,
+    /// `shown = factor · value`.
+    pub factor: f64,
+}
+
+/// A unit: `value in base units = factor · value`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Unit {
+    /// Name.
+    pub name: &'static str,
+    /// Dimension.
+    pub base: BaseExponents,
+    /// Factor to base units.
+    pub factor: f64,
+    /// Units for showing.
+    pub display: &'static [DisplayUnit],
+}
+
+const fn coherent(
+    name: &'static str,
+    (kg, m, s, rad): (i8, i8, i8, i8),
+    display: &'static [DisplayUnit],
+) -> Unit {
+    Unit {
+        name,
+        base: BaseExponents { kg, m, s, rad },
+        factor: 1.0,
+        display,
+    }
+}
+
+const DEGREES_PER_RADIAN: f64 = 57.295_779_513_082_32;
+
+/// Length, m.
+pub static METRE: Unit = coherent("m", (0, 1, 0, 0), &[]);
+/// Speed, m/s, shown in km/h on request.
+pub static METRE_PER_SECOND: Unit = coherent(
+    "m/s",
+    (0, 1, -1, 0),
+    &[DisplayUnit {
+        name: "km/h",
+        factor: 3.6,
+    }],
+);
+/// Acceleration, m/s².
+pub static METRE_PER_SECOND2: Unit = coherent("m/s2", (0, 1, -2, 0), &[]);
+/// Angle, rad, shown in degrees on request.
+pub static RADIAN: Unit = coherent(
+    "rad",
+    (0, 0, 0, 1),
+    &[DisplayUnit {
+        name: "deg",
+        factor: DEGREES_PER_RADIAN,
+    }],
+);
+/// Angular rate, rad/s.
+pub static RADIAN_PER_SECOND: Unit = coherent(
+    "rad/s",
+    (0, 0, -1, 1),
+    &[DisplayUnit {
+        name: "deg/s",
+        factor: DEGREES_PER_RADIAN,
+    }],
+);
+/// Angular acceleration, rad/s².
+pub static RADIAN_PER_SECOND2: Unit = coherent(
+    "rad/s2",
+    (0, 0, -2, 1),
+    &[DisplayUnit {
+        name: "deg/s2",
+        factor: DEGREES_PER_RADIAN,
+    }],
+);
+/// Force per length, N/m.
+pub static NEWTON_PER_METRE: Unit = coherent("N/m", (1, 0, -2, 0), &[]);
+/// Moment per length, N·m/m.
+pub static NEWTON_METRE_PER_METRE: Unit = coherent("N.m/m", (1, 1, -2, 0), &[]);
+/// Density, kg/m³.
+pub static KILOGRAM_PER_METRE3: Unit = coherent("kg/m3", (1, -3, 0, 0), &[]);
+/// Mass per length, kg/m.
+pub static KILOGRAM_PER_METRE: Unit = coherent("kg/m", (1, -1, 0, 0), &[]);
+/// Mass moment of inertia per length, kg·m²/m.
+pub static KILOGRAM_METRE2_PER_METRE: Unit = coherent("kg.m2/m", (1, 1, 0, 0), &[]);
+/// Frequency, Hz: one cycle is 2π rad.
+pub static HERTZ: Unit = Unit {
+    name: "Hz",
+    base: BaseExponents {
+        kg: 0,
+        m: 0,
+        s: -1,
+        rad: 1,
+    },
+    factor: std::f64::consts::TAU,
+    display: &[],
+};

@@ -1,0 +1,266 @@
+//! The one variable table of an exported section.
+//!
+//! Value references, getters and setters, `modelDescription.xml`, the digest that ties binary and archive together and
+//! the documentation page are all made from it. The value reference of a variable is its place in the table, over all
+//! types.
+
+mod dependencies;
+mod section;
+
+pub use section::{SectionParameter, filters};
+
+use super::si::Unit;
+use crate::error::{Error, Result};
+use crate::section::Dof;
+use crate::trained_model::TrainedModel;
+
+/// What a variable is to the importer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Causality {
+    /// Set by the importer while running.
+    Input,
+    /// Computed.
+    Output,
+    /// Set by the importer.
+    Parameter,
+    /// Computed from parameters.
+    CalculatedParameter,
+    /// For information only.
+    Local,
+}
+
+/// When a value changes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Variability {
+    /// Never.
+    Constant,
+    /// Not after initialisation.
+    Fixed,
+    /// Between communication steps.
+    Tunable,
+    /// At any time.
+    Continuous,
+}
+
+/// How a value comes about at initialisation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Initial {
+    /// It is the start value.
+    Exact,
+    /// It is computed.
+    Calculated,
+}
+
+/// Type of a variable, with its start value where it has one.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Value {
+    /// A real number.
+    Real(Option<f64>),
+    /// An integer.
+    Integer(Option<i32>),
+    /// A truth value.
+    Boolean(Option<bool>),
+    /// A text.
+    String(String),
+}
+
+impl Value {
+    /// Name of the type.
+    pub fn type_name(&self) -> &'static str {
+        match self {
+            Self::Real(_) => "Real",
+            Self::Integer(_) => "Integer",
+            Self::Boolean(_) => "Boolean",
+            Self::String(_) => "String",
+        }
+    }
+}
+
+/// Motion and force of one degree of freedom.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Response {
+    /// Displacement or rotation.
+    Displacement,
+    /// Its first rate.
+    Rate,
+    /// Its second rate.
+    Acceleration,
+    /// Self-excited force or moment per unit length.
+    SelfExcitedForce,
+}
+
+impl Response {
+    /// All four, in the order of the outputs of a coupled system.
+    pub const ALL: [Response; 4] = [
+        Self::Displacement,
+        Self::Rate,
+        Self::Acceleration,
+        Self::SelfExcitedForce,
+    ];
+}
+
+/// What is computed from the parameters alone.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Calculated {
+    /// Wind speed of flutter onset.
+    OnsetSpeed,
+    /// Frequency there.
+    OnsetFrequency,
+    /// `V* = V/(fB)` there.
+    OnsetReducedVelocity,
+    /// Wind speed of static divergence.
+    DivergenceSpeed,
+    /// Whether an onset was found below the search limit.
+    OnsetFound,
+    /// Whether its reduced frequency lies in the tested range.
+    OnsetInTestedRange,
+    /// Whether divergence was found below the search limit.
+    DivergenceFound,
+}
+
+/// The quantity behind a variable: what getters and setters dispatch on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Role {
+    /// Wind speed `V`.
+    WindSpeed,
+    /// External force on a degree of freedom.
+    ExternalForce(Dof),
+    /// Motion or self-excited force of a degree of freedom.
+    Response(Response, Dof),
+    /// A property of the section.
+    Section(SectionParameter),
+    /// Displacement at release.
+    InitialDisplacement(Dof),
+    /// Rate at release.
+    InitialRate(Dof),
+    /// Upper end of the search for onset and divergence.
+    OnsetSearchLimit,
+    /// Computed from the parameters.
+    Calculated(Calculated),
+    /// Never changes.
+    Constant,
+}
+
+/// One known that an unknown of the initialisation depends on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct InitialDependency {
+    /// Place of the known in the table.
+    pub on: usize,
+    /// The dependence is multiplication by a constant.
+    pub constant: bool,
+}
+
+/// One variable.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Variable {
+    /// Name, unique in the table.
+    pub name: &'static str,
+    /// What it means, with sign and reference.
+    pub description: String,
+    /// What it stands for.
+    pub role: Role,
+    /// What it is to the importer.
+    pub causality: Causality,
+    /// When it changes.
+    pub variability: Variability,
+    /// How it is initialised; `None` for inputs.
+    pub initial: Option<Initial>,
+    /// Type and start value.
+    pub value: Value,
+    /// Unit of a dimensional number.
+    pub unit: Option<&'static Unit>,
+    /// Name of the unit it is best shown in, one of the display units of `unit`.
+    pub display_unit: Option<&'static str>,
+    /// Physical quantity in one word.
+    pub quantity: Option<&'static str>,
+    /// Smallest value that is accepted.
+    pub min: Option<f64>,
+    /// Largest value that is accepted.
+    pub max: Option<f64>,
+    /// Usual size.
+    pub nominal: Option<f64>,
+    /// Inputs that act on it without delay, by place in the table (outputs only).
+    pub direct_inputs: Vec<usize>,
+    /// What it depends on while initialising, by place in the table (unknowns only).
+    pub initial_dependencies: Vec<InitialDependency>,
+}
+
+impl Variable {
+    /// Whether it is one of the unknowns of the initialisation mode.
+    pub fn is_initial_unknown(&self) -> bool {
+        self.initial == Some(Initial::Calculated)
+    }
+}
+
+/// The variables of an exported section; see the module.
+#[derive(Debug, Clone, PartialEq)]
+pub struct VariableTable {
+    variables: Vec<Variable>,
+}
+
+impl VariableTable {
+    /// The table of a trained model.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when a start value is not finite or outside the limits of its variable.
+    pub fn new(model: &TrainedModel) -> Result<Self> {
+        let mut table = Self {
+            variables: section::variables(model)?,
+        };
+        dependencies::fill(&mut table.variables, model);
+        table.variables.iter().try_for_each(check_start)?;
+        Ok(table)
+    }
+
+    /// The variables; the place of each is its value reference.
+    pub fn variables(&self) -> &[Variable] {
+        &self.variables
+    }
+
+    /// Place of the variable with this role.
+    pub fn find(&self, role: Role) -> Option<usize> {
+        find(&self.variables, role)
+    }
+
+    /// Place of the variable with this name.
+    pub fn find_name(&self, name: &str) -> Option<usize> {
+        self.variables.iter().position(|v| v.name == name)
+    }
+
+    /// Degrees of freedom in the order of every matrix.
+    pub fn dofs(&self) -> Vec<Dof> {
+        self.variables
+            .iter()
+            .filter_map(|v| match v.role {
+                Role::ExternalForce(dof) => Some(dof),
+                _ => None,
+            })
+            .collect()
+    }
+}
+
+fn find(variables: &[Variable], role: Role) -> Option<usize> {
+    variables.iter().position(|v| v.role == role)
+}
+
+/// No checker looks whether a start value lies between minimum and maximum, so it is done here.
+fn check_start(variable: &Variable) -> Result<()> {
+    let Value::Real(Some(start)) = variable.value else {
+        return Ok(());
+    };
+    let above = variable.min.is_none_or(|min| start >= min);
+    let below = variable.max.is_none_or(|max| start <= max);
+    if start.is_finite() && above && below {
+        return Ok(());
+    }
+    let limit = |value: Option<f64>| value.map_or_else(|| "none".into(), |v| v.to_string());
+    Err(Error::input(
+        format!("start value of {}", variable.name),
+        format!(
+            "a finite number (minimum {}, maximum {})",
+            limit(variable.min),
+            limit(variable.max)
+        ),
+        start.to_string(),
+    ))
+}
