@@ -1,0 +1,197 @@
+//! The columns of a linear fit: feed-through and filters, in the frequency domain and as a linear system.
+//!
+//! Orthonormal filters and Roger's lag terms differ only in the filter column; everything else of the identification
+//! is common to them.
+
+use super::options::{FeedThrough, Form};
+use crate::aerodynamics::laguerre::FilterTerm;
+use crate::aerodynamics::{FilterBank, LaguerreModel, RationalModel};
+use crate::error::{Error, Result};
+use crate::section::Dof;
+use crate::trained_model::Model;
+use nalgebra::{Complex, DMatrix, DVector};
+
+/// Feed-through columns followed by filters with given poles.
+#[derive(Debug, Clone)]
+pub(crate) struct Basis {
+    feed: FeedThrough,
+    chain: Chain,
+}
+
+#[derive(Debug, Clone)]
+enum Chain {
+    /// `Λ_l(p)`.
+    Orthonormal(FilterBank),
+    /// `p/(p + d_l)`.
+    Lags(Vec<f64>),
+}
+
+/// Filters in dimensionless time, `x' = A x + b r + b₁ r'`; their outputs are their states.
+#[allow(dead_code)]
+pub(crate) struct Filters {
+    pub a: DMatrix<f64>,
+    pub on_motion: DVector<f64>,
+    pub on_rate: DVector<f64>,
+}
+
+impl Basis {
+    /// The basis of `form` with the poles `poles`, one a filter.
+    pub fn new(form: &Form, poles: &[f64]) -> Result<Self> {
+        let orthonormal = || FilterBank::new(poles.to_vec()).map(Chain::Orthonormal);
+        let chain = match form {
+            Form::Rational { .. } => Chain::Lags(FilterBank::new(poles.to_vec())?.poles().to_vec()),
+            Form::Laguerre { .. } | Form::TakenakaMalmquist { .. } => orthonormal()?,
+        };
+        Ok(Self {
+            feed: form.feed_through(),
+            chain,
+        })
+    }
+
+    /// Orthonormal filters that span the same space: for the search of poles, whose objective depends on the space
+    /// only.
+    pub fn orthonormal(form: &Form, poles: &[f64]) -> Result<Self> {
+        Ok(Self {
+            feed: form.feed_through(),
+            chain: Chain::Orthonormal(FilterBank::new(poles.to_vec())?),
+        })
+    }
+
+    /// Poles of the filters.
+    pub fn poles(&self) -> &[f64] {
+        match &self.chain {
+            Chain::Orthonormal(bank) => bank.poles(),
+            Chain::Lags(lags) => lags,
+        }
+    }
+
+    #[allow(dead_code)]
+    pub fn feed(&self) -> FeedThrough {
+        self.feed
+    }
+
+    /// Number of columns of one input.
+    pub fn len(&self) -> usize {
+        self.feed.count() + self.poles().len()
+    }
+
+    /// Values of all columns at the complex frequency `p = iK`.
+    pub fn columns(&self, p: Complex<f64>) -> Vec<Complex<f64>> {
+        let powers = [Complex::new(1.0, 0.0), p, p * p];
+        let mut columns: Vec<_> = self.feed.orders().map(|order| powers[order]).collect();
+        match &self.chain {
+            Chain::Orthonormal(bank) => columns.extend(bank.response(p)),
+            Chain::Lags(lags) => columns.extend(lags.iter().map(|d| p / (p + d))),
+        }
+        columns
+    }
+
+    /// Names of the columns as in the equations: `e0 … c0 …`, or `a1 … a4 …`.
+    pub fn names(&self) -> Vec<String> {
+        let (feed, shift, filter, first) = match self.chain {
+            Chain::Orthonormal(_) => ("e", 0, "c", 0),
+            Chain::Lags(_) => ("a", 1, "a", 4),
+        };
+        let filters = (0..self.poles().len()).map(|l| format!("{filter}{}", first + l));
+        self.feed
+            .orders()
+            .map(|order| format!("{feed}{}", order + shift))
+            .chain(filters)
+            .collect()
+    }
+
+    /// The filters as a linear system driven by the motion.
+    #[allow(dead_code)]
+    pub fn filters(&self) -> Filters {
+        match &self.chain {
+            Chain::Orthonormal(bank) => {
+                let (a, on_motion) = bank.matrices();
+                let on_rate = DVector::zeros(on_motion.len());
+                Filters {
+                    a,
+                    on_motion,
+                    on_rate,
+                }
+            }
+            // (1.28), corrected: δ' = r' − d δ
+            Chain::Lags(lags) => Filters {
+                a: DMatrix::from_diagonal(&DVector::from_vec(lags.iter().map(|d| -d).collect())),
+                on_motion: DVector::zeros(lags.len()),
+                on_rate: DVector::from_element(lags.len(), 1.0),
+            },
+        }
+    }
+}
+
+/// The model whose entry `(i, j)` has the poles `poles(i, j)` and the coefficients `coefficients[i][j]`, in the order
+/// of the columns of its basis.
+///
+/// # Errors
+/// Poles that are not positive, or a model that does not pass its own check.
+pub(crate) fn assemble(
+    form: &Form,
+    dofs: &[Dof],
+    poles: &[Vec<Vec<f64>>],
+    coefficients: &[Vec<Vec<f64>>],
+) -> Result<Model> {
+    let n = dofs.len();
+    let feed = form.feed_through();
+    let part = |order: usize| {
+        let column = feed.orders().position(|o| o == order);
+        DMatrix::from_fn(n, n, |i, j| column.map_or(0.0, |c| coefficients[i][j][c]))
+    };
+    let filter = |i: usize, j: usize, l: usize| coefficients[i][j][feed.count() + l];
+    if let Form::Rational { .. } = form {
+        let lags = poles[0][0].clone();
+        let model = RationalModel {
+            dofs: dofs.to_vec(),
+            a1: part(0),
+            a2: part(1),
+            a3: part(2),
+            lag_terms: (0..lags.len())
+                .map(|l| DMatrix::from_fn(n, n, |i, j| filter(i, j, l)))
+                .collect(),
+            lags,
+        };
+        model.validate()?;
+        return Ok(Model::Rational(model));
+    }
+    let mut terms = Vec::new();
+    for j in 0..n {
+        // one chain serves all forces that share its poles
+        let mut served = vec![false; n];
+        for i in 0..n {
+            if served[i] {
+                continue;
+            }
+            let shares: Vec<bool> = (0..n).map(|r| poles[r][j] == poles[i][j]).collect();
+            terms.push(FilterTerm {
+                input: j,
+                poles: FilterBank::new(poles[i][j].clone())?,
+                coefficients: DMatrix::from_fn(n, poles[i][j].len(), |r, l| {
+                    if shares[r] { filter(r, j, l) } else { 0.0 }
+                }),
+            });
+            for (done, share) in served.iter_mut().zip(shares) {
+                *done |= share;
+            }
+        }
+    }
+    let model = LaguerreModel {
+        dofs: dofs.to_vec(),
+        e0: part(0),
+        e1: part(1),
+        e2: part(2),
+        terms,
+    };
+    model.validate()?;
+    Ok(Model::Laguerre(model))
+}
+
+/// Index of a degree of freedom in `dofs`.
+pub(crate) fn index_of(dofs: &[Dof], dof: Dof, place: &str) -> Result<usize> {
+    dofs.iter().position(|d| *d == dof).ok_or_else(|| {
+        let known: Vec<_> = dofs.iter().map(|d| d.name()).collect();
+        Error::input(place, known.join(" or "), dof.name())
+    })
+}

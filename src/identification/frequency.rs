@@ -1,0 +1,173 @@
+//! Continuous models fitted to samples of a transfer matrix.
+
+use super::basis::{Basis, assemble};
+use super::options::{Form, FrequencyFit, FrequencyWeights};
+use super::report::{EntryReport, FitReport, SearchReport, variance};
+use super::samples::{Entry, sort_by_entry};
+use super::search::{Bounds, search_poles};
+use crate::aerodynamics::derivatives::TransferSample;
+use crate::error::{Error, Result};
+use crate::section::Dof;
+use crate::trained_model::Model;
+use crate::units::ReducedFrequencyRange;
+use nalgebra::DVector;
+
+/// Fits a continuous model to samples of `G`: real and imaginary parts, each at its own `K`.
+///
+/// For given poles every entry is a linear least-squares problem; the poles follow from a bounded search that
+/// minimises the weighted residual of all entries together, or of each entry where it has poles of its own.
+///
+/// # Errors
+/// [`Error::Input`] for impossible options, samples that are not finite, entries without samples or with too few.
+pub fn fit_table(
+    samples: &[TransferSample],
+    dofs: &[Dof],
+    fit: &FrequencyFit,
+) -> Result<(Model, FitReport)> {
+    fit.validate()?;
+    let (entries, notes) = sort_by_entry(samples, dofs, fit.weights)?;
+    let tested_range = ReducedFrequencyRange::spanning(samples.iter().map(|s| s.k))
+        .ok_or_else(|| Error::input("samples", "at least one", "none"))?;
+    let (poles, search) = choose_poles(&entries, fit, tested_range)?;
+    let mut reports = Vec::with_capacity(entries.len());
+    let mut coefficients = Vec::with_capacity(entries.len());
+    for (entry, poles) in entries.iter().zip(&poles) {
+        let (values, report) = fit_entry(entry, &fit.form, poles)?;
+        coefficients.push(values);
+        reports.push(report);
+    }
+    let by_row = |list: &[Vec<f64>]| {
+        list.chunks(dofs.len())
+            .map(<[_]>::to_vec)
+            .collect::<Vec<_>>()
+    };
+    let model = assemble(&fit.form, dofs, &by_row(&poles), &by_row(&coefficients))?;
+    let mut report = FitReport {
+        method: format!(
+            "{}, fitted to {} numbers of the transfer matrix",
+            fit.form.describe(),
+            samples.len()
+        ),
+        weights: describe(fit.weights).into(),
+        samples: samples.len(),
+        tested_range,
+        condition: reports.iter().map(|r| r.condition).fold(1.0, f64::max),
+        entries: reports,
+        search,
+        orders: Vec::new(),
+        alpha_guideline: None,
+        covariance_assumption:
+            "weighted residuals are independent and of one variance; the poles count as known"
+                .into(),
+        notes,
+    };
+    report.judge(&fit.poles);
+    Ok((model, report))
+}
+
+fn describe(weights: FrequencyWeights) -> &'static str {
+    match weights {
+        FrequencyWeights::None => "none: residuals of G",
+        FrequencyWeights::Derivatives => "1/K²: residuals of the aerodynamic derivatives",
+        FrequencyWeights::Relative => "1/|G| of the entry at its point: relative residuals",
+    }
+}
+
+/// Poles of every entry, one a filter, and how they were found.
+fn choose_poles(
+    entries: &[Entry],
+    fit: &FrequencyFit,
+    tested: ReducedFrequencyRange,
+) -> Result<(Vec<Vec<f64>>, Vec<SearchReport>)> {
+    let form = &fit.form;
+    if let Some(fixed) = &fit.poles.fixed {
+        return Ok((vec![form.expand(fixed); entries.len()], Vec::new()));
+    }
+    let count = form.free_poles();
+    let bounds = Bounds::resolve(&fit.poles, tested, count)?;
+    let groups: Vec<&[Entry]> = if form.pole_per_transfer_function() {
+        entries.chunks(1).collect()
+    } else {
+        vec![entries]
+    };
+    let mut poles = Vec::new();
+    let mut reports = Vec::new();
+    for group in groups {
+        let name = (group.len() == 1).then(|| (group[0].force, group[0].motion));
+        let total = group.iter().map(Entry::total).sum();
+        let residuals = |free: &[f64]| weighted_residuals(group, form, &form.expand(free));
+        let report = search_poles(count, (&fit.poles, bounds), name, total, &residuals)?;
+        poles.extend(vec![form.expand(&report.chosen.poles); group.len()]);
+        reports.push(report);
+    }
+    Ok((poles, reports))
+}
+
+/// Residuals of all entries with the best coefficients for these poles.
+fn weighted_residuals(entries: &[Entry], form: &Form, poles: &[f64]) -> Result<DVector<f64>> {
+    let basis = Basis::orthonormal(form, poles)?;
+    let mut all = Vec::new();
+    for entry in entries {
+        let fit = entry.fit(&basis)?;
+        let residuals = entry.residuals(&basis, &fit.coefficients);
+        all.extend(
+            residuals
+                .iter()
+                .zip(&entry.rows)
+                .map(|(r, row)| r * row.weight),
+        );
+    }
+    Ok(DVector::from_vec(all))
+}
+
+/// Coefficients of one entry in the columns of the model, and their account.
+fn fit_entry(entry: &Entry, form: &Form, poles: &[f64]) -> Result<(Vec<f64>, EntryReport)> {
+    let basis = Basis::new(form, poles)?;
+    let fit = entry.fit(&basis)?;
+    let residuals = entry.residuals(&basis, &fit.coefficients);
+    let unknowns = fit.fitted.len();
+    let covariance = variance(
+        fit.factor.residual_sum(unknowns, 0),
+        entry.rows.len(),
+        unknowns,
+    )
+    .map(|v| fit.inverse_gram().map(|gram| gram * v))
+    .transpose()?;
+    let solved: Vec<f64> = fit.fitted.iter().map(|&c| fit.coefficients[c]).collect();
+    let (relative_rms, worst) = sizes(entry, &residuals);
+    let report = EntryReport {
+        force: entry.force,
+        motion: entry.motion,
+        relative_rms: Some(relative_rms),
+        worst_relative: Some(worst),
+        poles: poles.to_vec(),
+        coefficients: Vec::new(),
+        covariance: Vec::new(),
+        condition: fit.factor.condition(unknowns),
+        cancellation: fit.factor.cancellation(&solved, 0),
+    }
+    .with_coefficients(basis.names(), &fit.coefficients, covariance);
+    Ok((fit.coefficients, report))
+}
+
+/// Relative root mean square and worst relative size of unweighted residuals.
+fn sizes(entry: &Entry, residuals: &[f64]) -> (f64, f64) {
+    let sum: f64 = residuals.iter().map(|r| r * r).sum();
+    let total: f64 = entry.rows.iter().map(|r| r.value * r.value).sum();
+    let relative = residuals
+        .iter()
+        .zip(&entry.rows)
+        .filter(|(_, row)| row.magnitude > 0.0);
+    let worst = relative
+        .map(|(r, row)| r.abs() / row.magnitude)
+        .fold(0.0, f64::max);
+    let rms = if total > 0.0 {
+        (sum / total).sqrt()
+    } else {
+        0.0
+    };
+    (rms, worst)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,404 @@
+//! What a fit is asked to do. The fields are keys of a study file; units are in their names, the rest is
+//! dimensionless.
+
+use crate::error::{Error, Result, positive};
+use serde::{Deserialize, Serialize};
+
+/// Feed-through of the motion (`e0`), its rate (`e1`) and its acceleration (`e2`), each on or off.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct FeedThrough {
+    /// Motion.
+    pub e0: bool,
+    /// Rate.
+    pub e1: bool,
+    /// Acceleration (added mass of the air).
+    pub e2: bool,
+}
+
+impl Default for FeedThrough {
+    fn default() -> Self {
+        Self {
+            e0: true,
+            e1: true,
+            e2: true,
+        }
+    }
+}
+
+impl FeedThrough {
+    /// Derivative orders that are on.
+    pub(crate) fn orders(self) -> impl Iterator<Item = usize> {
+        [self.e0, self.e1, self.e2]
+            .into_iter()
+            .enumerate()
+            .filter_map(|(order, on)| on.then_some(order))
+    }
+
+    pub(crate) fn count(self) -> usize {
+        self.orders().count()
+    }
+}
+
+/// Form of a continuous model.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+pub enum Form {
+    /// `e₀ + e₁ p + e₂ p² + Σ c_l Λ_l(p)` with one pole for all filters of a chain.
+    Laguerre {
+        /// Number of filters `L`.
+        #[serde(default = "three")]
+        filters: usize,
+        /// Feed-through terms.
+        #[serde(default)]
+        feed_through: FeedThrough,
+        /// A pole for each transfer function instead of one for all.
+        #[serde(default)]
+        pole_per_transfer_function: bool,
+    },
+    /// The same with a pole for each filter.
+    TakenakaMalmquist {
+        /// Number of filters `L`.
+        filters: usize,
+        /// Feed-through terms.
+        #[serde(default)]
+        feed_through: FeedThrough,
+        /// Poles for each transfer function instead of one set for all.
+        #[serde(default)]
+        pole_per_transfer_function: bool,
+    },
+    /// Roger's `a₁ + a₂ p + a₃ p² + Σ a_{l+3} p/(p + d_l)`.
+    Rational {
+        /// Number of lags.
+        #[serde(default = "one")]
+        lags: usize,
+        /// Whether there is an `a₃`.
+        #[serde(default)]
+        added_mass: bool,
+    },
+}
+
+fn one() -> usize {
+    1
+}
+
+fn three() -> usize {
+    3
+}
+
+impl Default for Form {
+    fn default() -> Self {
+        Self::Laguerre {
+            filters: three(),
+            feed_through: FeedThrough::default(),
+            pole_per_transfer_function: false,
+        }
+    }
+}
+
+impl Form {
+    /// Number of filters or lags.
+    pub fn filters(&self) -> usize {
+        match self {
+            Self::Laguerre { filters, .. } | Self::TakenakaMalmquist { filters, .. } => *filters,
+            Self::Rational { lags, .. } => *lags,
+        }
+    }
+
+    /// Feed-through terms.
+    pub fn feed_through(&self) -> FeedThrough {
+        match self {
+            Self::Laguerre { feed_through, .. } | Self::TakenakaMalmquist { feed_through, .. } => {
+                *feed_through
+            }
+            Self::Rational { added_mass, .. } => FeedThrough {
+                e2: *added_mass,
+                ..FeedThrough::default()
+            },
+        }
+    }
+
+    /// How many numbers a search of the poles has to find.
+    pub fn free_poles(&self) -> usize {
+        match self {
+            Self::Laguerre { .. } => 1,
+            _ => self.filters(),
+        }
+    }
+
+    /// Whether every transfer function has poles of its own.
+    pub fn pole_per_transfer_function(&self) -> bool {
+        match self {
+            Self::Laguerre {
+                pole_per_transfer_function,
+                ..
+            }
+            | Self::TakenakaMalmquist {
+                pole_per_transfer_function,
+                ..
+            } => *pole_per_transfer_function,
+            Self::Rational { .. } => false,
+        }
+    }
+
+    /// One pole a filter from the free ones.
+    pub(crate) fn expand(&self, free: &[f64]) -> Vec<f64> {
+        match self {
+            Self::Laguerre { filters, .. } => vec![free[0]; *filters],
+            _ => free.to_vec(),
+        }
+    }
+
+    /// The form in words.
+    pub fn describe(&self) -> String {
+        let feed = self.feed_through();
+        let own = if self.pole_per_transfer_function() {
+            ", poles per transfer function"
+        } else {
+            ""
+        };
+        let terms: Vec<_> = feed.orders().map(|o| format!("e{o}")).collect();
+        let with = if terms.is_empty() {
+            "no feed-through".into()
+        } else {
+            terms.join(" ")
+        };
+        match self {
+            Self::Laguerre { filters, .. } => {
+                format!("continuous Laguerre, L = {filters}, {with}{own}")
+            }
+            Self::TakenakaMalmquist { filters, .. } => {
+                format!("Takenaka–Malmquist, L = {filters}, {with}{own}")
+            }
+            Self::Rational { lags, added_mass } => format!(
+                "rational functions, {lags} lag{}, {} added mass",
+                if *lags == 1 { "" } else { "s" },
+                if *added_mass { "with" } else { "without" }
+            ),
+        }
+    }
+
+    fn validate(&self) -> Result<()> {
+        at_least_one("form.filters (or form.lags)", self.filters())
+    }
+}
+
+/// Where the poles (lags) come from: fixed, or searched for within bounds.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct PoleSearch {
+    /// Poles to be used as they are; one for Laguerre filters, else one a filter.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fixed: Option<Vec<f64>>,
+    /// Where the nonlinear step starts; left out, the best point of a grid.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub start: Option<Vec<f64>>,
+    /// Lower bound; left out, half the lowest tested `K`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub min: Option<f64>,
+    /// Upper bound; left out, twice the highest tested `K`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub max: Option<f64>,
+    /// Least ratio of neighbouring poles when there are several: closer ones have nearly equal columns, whose
+    /// coefficients grow and cancel.
+    pub min_ratio: f64,
+    /// Points of the first, logarithmic grid (one pole; fewer an axis for several).
+    pub grid_points: usize,
+}
+
+impl Default for PoleSearch {
+    fn default() -> Self {
+        Self {
+            fixed: None,
+            start: None,
+            min: None,
+            max: None,
+            min_ratio: 1.5,
+            grid_points: 41,
+        }
+    }
+}
+
+impl PoleSearch {
+    /// No search: these poles.
+    pub fn fixed(poles: &[f64]) -> Self {
+        Self {
+            fixed: Some(poles.to_vec()),
+            ..Self::default()
+        }
+    }
+
+    fn validate(&self, form: &Form) -> Result<()> {
+        for (key, list) in [("fixed", &self.fixed), ("start", &self.start)] {
+            let Some(list) = list else { continue };
+            let place = format!("poles.{key}");
+            if list.len() != form.free_poles() {
+                let expected = format!("{} number(s) for {}", form.free_poles(), form.describe());
+                return Err(Error::input(place, expected, list.len().to_string()));
+            }
+            for p in list {
+                positive(&place, *p)?;
+            }
+        }
+        for (key, bound) in [("poles.min", self.min), ("poles.max", self.max)] {
+            if let Some(bound) = bound {
+                positive(key, bound)?;
+            }
+        }
+        if let (Some(min), Some(max)) = (self.min, self.max)
+            && min >= max
+        {
+            return Err(Error::input(
+                "poles.max",
+                "more than poles.min",
+                max.to_string(),
+            ));
+        }
+        if !(self.min_ratio > 1.0 && self.min_ratio.is_finite()) {
+            return Err(Error::input(
+                "poles.min_ratio",
+                "more than 1",
+                self.min_ratio.to_string(),
+            ));
+        }
+        if self.grid_points < 5 {
+            return Err(Error::input(
+                "poles.grid_points",
+                "at least 5",
+                self.grid_points.to_string(),
+            ));
+        }
+        Ok(())
+    }
+}
+
+/// What the residuals of a fit to a transfer matrix are divided by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum FrequencyWeights {
+    /// Nothing: residuals of `G`; large entries at high `K` dominate.
+    None,
+    /// `K²`: residuals of the derivatives themselves; low `K` dominates.
+    Derivatives,
+    /// `|G|` of that entry at that point: relative errors.
+    #[default]
+    Relative,
+}
+
+/// Fit of a continuous model to a table or any other transfer matrix.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct FrequencyFit {
+    /// Form of the model.
+    pub form: Form,
+    /// Its poles.
+    pub poles: PoleSearch,
+    /// Weighting.
+    pub weights: FrequencyWeights,
+}
+
+impl FrequencyFit {
+    /// Checks every value.
+    ///
+    /// # Errors
+    /// [`Error::Input`] naming the key.
+    pub fn validate(&self) -> Result<()> {
+        self.form.validate()?;
+        self.poles.validate(&self.form)
+    }
+}
+
+/// What the residuals of a fit to records are divided by; plain least squares lets the largest record dominate.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum TimeWeights {
+    /// Nothing: residuals of the dimensionless forces.
+    None,
+    /// Root mean square of that force in that record.
+    #[default]
+    PerRecord,
+    /// Root mean square of that force from the beginning of one segment (one frequency) to that of the next.
+    PerSegment,
+}
+
+/// Fit of a continuous model to forced-vibration records.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct TimeFit {
+    /// Form of the model.
+    pub form: Form,
+    /// Its poles.
+    pub poles: PoleSearch,
+    /// Weighting.
+    pub weights: TimeWeights,
+    /// Cut-off of the low-pass filter that motion and force go through alike, Hz; left out, a twentieth of the
+    /// sampling frequency.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub low_pass_hz: Option<f64>,
+    /// Seconds at the start of each record that only settle the filters.
+    pub discard_s: f64,
+}
+
+impl TimeFit {
+    /// Checks every value.
+    ///
+    /// # Errors
+    /// [`Error::Input`] naming the key.
+    pub fn validate(&self) -> Result<()> {
+        self.form.validate()?;
+        self.poles.validate(&self.form)?;
+        if let Some(cutoff) = self.low_pass_hz {
+            positive("low_pass_hz", cutoff)?;
+        }
+        crate::error::non_negative("discard_s", self.discard_s).map(|_| ())
+    }
+}
+
+/// Fit of the thesis's discrete Laguerre model to records.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct DiscreteFit {
+    /// Number of filters `L`.
+    pub filters: usize,
+    /// Decay factor, `0 < α < 1`.
+    pub alpha: f64,
+    /// Weighting; the thesis has none.
+    pub weights: TimeWeights,
+}
+
+impl Default for DiscreteFit {
+    /// The thesis's choice: three filters, α = 0.6.
+    fn default() -> Self {
+        Self {
+            filters: 3,
+            alpha: 0.6,
+            weights: TimeWeights::None,
+        }
+    }
+}
+
+impl DiscreteFit {
+    /// Checks every value.
+    ///
+    /// # Errors
+    /// [`Error::Input`] naming the key.
+    pub fn validate(&self) -> Result<()> {
+        at_least_one("filters", self.filters)?;
+        if self.alpha > 0.0 && self.alpha < 1.0 {
+            Ok(())
+        } else {
+            Err(Error::input(
+                "alpha",
+                "0 < alpha < 1",
+                self.alpha.to_string(),
+            ))
+        }
+    }
+}
+
+fn at_least_one(place: &str, count: usize) -> Result<()> {
+    if count == 0 {
+        return Err(Error::input(place, "at least 1", "0"));
+    }
+    Ok(())
+}

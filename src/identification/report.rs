@@ -1,0 +1,223 @@
+//! What a fit tells about itself.
+
+use super::options::PoleSearch;
+use crate::error::{Error, Result};
+use crate::section::Dof;
+use crate::units::ReducedFrequencyRange;
+use nalgebra::DMatrix;
+use serde::Serialize;
+
+/// Terms this many times larger than their sum say that the fit lives on differences of large numbers.
+pub const CANCELLATION_LIMIT: f64 = 30.0;
+/// Scaled columns above this condition number leave fewer than half of the digits to the coefficients.
+pub const CONDITION_LIMIT: f64 = 1e8;
+
+/// Account of one fit.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FitReport {
+    /// What was fitted, in words.
+    pub method: String,
+    /// What the residuals were weighted with, in words.
+    pub weights: String,
+    /// Real numbers (parts of table entries, or rows of records) that entered the least squares.
+    pub samples: usize,
+    /// Reduced frequencies the data cover.
+    pub tested_range: ReducedFrequencyRange,
+    /// Largest condition number of the columns, each scaled to unit norm.
+    pub condition: f64,
+    /// One account a transfer function, row by row.
+    pub entries: Vec<EntryReport>,
+    /// Searches of the poles; empty when they were given.
+    pub search: Vec<SearchReport>,
+    /// Fit of every smaller number of filters with the same poles (time domain, from the same factorisation).
+    pub orders: Vec<OrderReport>,
+    /// The guideline for `α` (2.36), for the discrete model.
+    pub alpha_guideline: Option<AlphaGuideline>,
+    /// Under which assumption standard errors and covariances hold.
+    pub covariance_assumption: String,
+    /// What a user of the model should know.
+    pub notes: Vec<String>,
+}
+
+/// Account of one transfer function.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct EntryReport {
+    /// Force (row of `G`).
+    pub force: Dof,
+    /// Motion (column of `G`).
+    pub motion: Dof,
+    /// Root mean square of the unweighted residuals over that of the data; `None` when the records move several
+    /// degrees of freedom at once, so that the residual belongs to no single entry.
+    pub relative_rms: Option<f64>,
+    /// Largest residual over the magnitude of `G` at its point; only for fits to a transfer matrix.
+    pub worst_relative: Option<f64>,
+    /// Poles of its filters, dimensionless.
+    pub poles: Vec<f64>,
+    /// Coefficients by name.
+    pub coefficients: Vec<Coefficient>,
+    /// Covariance of the coefficients, in their order; empty when there are no residual degrees of freedom.
+    pub covariance: Vec<Vec<f64>>,
+    /// Condition number of the scaled columns.
+    pub condition: f64,
+    /// Largest single term over the norm of the whole fit.
+    pub cancellation: f64,
+}
+
+/// One coefficient.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Coefficient {
+    /// Name as in the equations.
+    pub name: String,
+    /// Value, dimensionless.
+    pub value: f64,
+    /// Standard error; `None` when there are no residual degrees of freedom.
+    pub standard_error: Option<f64>,
+}
+
+/// The search of one set of poles.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SearchReport {
+    /// Transfer function (force, motion) it belongs to; `None` when the poles are shared by all.
+    pub entry: Option<(Dof, Dof)>,
+    /// Lower bound.
+    pub min: f64,
+    /// Upper bound.
+    pub max: f64,
+    /// Points of the grid and of the refinement, in the order of evaluation.
+    pub points: Vec<SearchPoint>,
+    /// What was chosen.
+    pub chosen: SearchPoint,
+}
+
+/// One evaluated point.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SearchPoint {
+    /// Free poles, dimensionless.
+    pub poles: Vec<f64>,
+    /// Weighted root mean square residual over that of the weighted data.
+    pub objective: f64,
+}
+
+/// Fit with the first filters only.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct OrderReport {
+    /// Number of filters `L`.
+    pub filters: usize,
+    /// Weighted root mean square residual over that of the weighted data.
+    pub objective: f64,
+}
+
+/// Guideline (2.36) for the decay factor of the discrete model.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct AlphaGuideline {
+    /// `α` in use.
+    pub alpha: f64,
+    /// Lower bound of (2.36).
+    pub lower_bound: f64,
+    /// Highest frequency of the motion, Hz, at the highest speed.
+    pub highest_frequency_hz: f64,
+    /// Sampling frequency of the model, Hz, at that speed.
+    pub sampling_hz: f64,
+}
+
+impl EntryReport {
+    /// `values` named, with the covariance `variance · gram`.
+    pub(crate) fn with_coefficients(
+        mut self,
+        names: Vec<String>,
+        values: &[f64],
+        covariance: Option<DMatrix<f64>>,
+    ) -> Self {
+        self.coefficients = names
+            .into_iter()
+            .zip(values)
+            .enumerate()
+            .map(|(c, (name, value))| Coefficient {
+                name,
+                value: *value,
+                standard_error: covariance.as_ref().map(|m| m[(c, c)].max(0.0).sqrt()),
+            })
+            .collect();
+        self.covariance = covariance.map_or_else(Vec::new, |m| {
+            m.row_iter().map(|r| r.iter().copied().collect()).collect()
+        });
+        self
+    }
+}
+
+impl FitReport {
+    /// Adds the notes that follow from the numbers: poles at their bounds, cancelling terms, bad conditioning.
+    pub(crate) fn judge(&mut self, poles: &PoleSearch) {
+        let mut notes = Vec::new();
+        for search in &self.search {
+            search.judge(poles.min_ratio, &mut notes);
+        }
+        for entry in &self.entries {
+            let name = format!(
+                "{} force due to {} motion",
+                entry.force.name(),
+                entry.motion.name()
+            );
+            if entry.cancellation > CANCELLATION_LIMIT {
+                notes.push(format!(
+                    "{name}: coefficients cancel (the largest term is {:.0} times the fit): over-fitted, use fewer \
+                     filters or poles further apart",
+                    entry.cancellation
+                ));
+            }
+            if entry.condition > CONDITION_LIMIT {
+                notes.push(format!(
+                    "{name}: ill-conditioned columns (condition number {:.1e})",
+                    entry.condition
+                ));
+            }
+        }
+        self.notes.append(&mut notes);
+    }
+}
+
+impl SearchReport {
+    fn judge(&self, min_ratio: f64, notes: &mut Vec<String>) {
+        let whose = self.entry.map_or(String::new(), |(f, m)| {
+            format!("{} force due to {} motion: ", f.name(), m.name())
+        });
+        for (bound, value) in [("lower", self.min), ("upper", self.max)] {
+            if let Some(p) = self
+                .chosen
+                .poles
+                .iter()
+                .find(|p| (*p / value).ln().abs() < 0.01)
+            {
+                notes.push(format!(
+                    "{whose}the pole {p:.4} lies at its {bound} bound: the data do not determine it"
+                ));
+            }
+        }
+        for pair in self.chosen.poles.windows(2) {
+            if pair[1] / pair[0] < 1.01 * min_ratio {
+                notes.push(format!(
+                    "{whose}the poles {:.4} and {:.4} are held apart by the least ratio {min_ratio}: fewer of them \
+                     would fit as well",
+                    pair[0], pair[1]
+                ));
+            }
+        }
+    }
+}
+
+/// A degree-of-freedom count that leaves something to estimate the variance from.
+pub(crate) fn variance(residual_sum: f64, rows: usize, unknowns: usize) -> Option<f64> {
+    (rows > unknowns).then(|| residual_sum / (rows - unknowns) as f64)
+}
+
+/// Fewer equations than unknowns cannot be fitted.
+pub(crate) fn enough_rows(place: &str, rows: usize, unknowns: usize) -> Result<()> {
+    if rows < unknowns {
+        return Err(Error::input(
+            place,
+            format!("at least {unknowns} numbers for {unknowns} coefficients"),
+            rows.to_string(),
+        ));
+    }
+    Ok(())
+}

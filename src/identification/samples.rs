@@ -1,0 +1,304 @@
+//! Samples of a transfer matrix, sorted by entry and weighted, and the linear fit to them.
+
+use super::basis::{Basis, index_of};
+use super::least_squares::{Factor, StreamingQr};
+use super::options::FrequencyWeights;
+use super::report::enough_rows;
+use crate::aerodynamics::AerodynamicModel;
+use crate::aerodynamics::derivatives::{Part, TransferSample};
+use crate::error::{Error, Result};
+use crate::section::Dof;
+use crate::units::ReducedFrequency;
+use nalgebra::{Complex, DMatrix};
+
+/// Real and imaginary part belong to one test point when their `K` agree within this fraction: each derivative of a
+/// measured table has its own.
+const PAIRING_TOLERANCE: f64 = 0.05;
+
+/// Both parts of every entry of `model` at the reduced frequencies `ks`.
+///
+/// # Errors
+/// Those of [`AerodynamicModel::transfer`].
+pub fn sample_model(
+    model: &dyn AerodynamicModel,
+    ks: &[ReducedFrequency],
+) -> Result<Vec<TransferSample>> {
+    let dofs = model.dofs();
+    let mut samples = Vec::with_capacity(2 * ks.len() * dofs.len() * dofs.len());
+    for &k in ks {
+        let g = model.transfer(k)?;
+        for (i, &force) in dofs.iter().enumerate() {
+            for (j, &motion) in dofs.iter().enumerate() {
+                let z = g[(i, j)];
+                for (part, value) in [(Part::Real, z.re), (Part::Imaginary, z.im)] {
+                    samples.push(TransferSample {
+                        force,
+                        motion,
+                        part,
+                        k,
+                        value,
+                        mean_speed_m_s: None,
+                    });
+                }
+            }
+        }
+    }
+    Ok(samples)
+}
+
+/// All samples of one entry.
+#[derive(Debug, Clone)]
+pub(crate) struct Entry {
+    pub force: Dof,
+    pub motion: Dof,
+    pub rows: Vec<Row>,
+}
+
+/// One sample: value and weight, and the magnitude of `G` at its point.
+#[derive(Debug, Clone)]
+pub(crate) struct Row {
+    pub k: f64,
+    pub part: Part,
+    pub value: f64,
+    pub weight: f64,
+    pub magnitude: f64,
+}
+
+/// Linear fit of one entry.
+pub(crate) struct EntryFit {
+    pub factor: Factor,
+    /// Coefficients of all columns of the basis, zero for those the samples cannot see.
+    pub coefficients: Vec<f64>,
+    /// Columns that were fitted.
+    pub fitted: Vec<usize>,
+}
+
+impl Row {
+    fn of<'a>(&self, columns: &'a [Complex<f64>]) -> impl Iterator<Item = f64> + 'a {
+        let part = self.part;
+        columns.iter().map(move |z| match part {
+            Part::Real => z.re,
+            Part::Imaginary => z.im,
+        })
+    }
+}
+
+impl Entry {
+    /// Name for messages.
+    pub fn name(&self) -> String {
+        format!(
+            "samples of the {} force due to {} motion",
+            self.force.name(),
+            self.motion.name()
+        )
+    }
+
+    /// Weighted sum of squares of the samples.
+    pub fn total(&self) -> f64 {
+        self.rows.iter().map(|r| (r.weight * r.value).powi(2)).sum()
+    }
+
+    /// Weighted least squares for the coefficients of `basis`.
+    ///
+    /// # Errors
+    /// Fewer samples than columns, or columns they do not determine.
+    pub fn fit(&self, basis: &Basis) -> Result<EntryFit> {
+        let values: Vec<Vec<f64>> = self
+            .rows
+            .iter()
+            .map(|row| {
+                row.of(&basis.columns(Complex::new(0.0, row.k)))
+                    .map(|x| row.weight * x)
+                    .collect()
+            })
+            .collect();
+        // with one part only (say, no H4*), columns that have no such part are out of reach
+        let fitted: Vec<usize> = (0..basis.len())
+            .filter(|&c| values.iter().any(|row| row[c] != 0.0))
+            .collect();
+        enough_rows(&self.name(), self.rows.len(), fitted.len())?;
+        let mut qr = StreamingQr::new(fitted.len(), 1);
+        let mut line = vec![0.0; fitted.len() + 1];
+        for (row, values) in self.rows.iter().zip(&values) {
+            for (to, &c) in line.iter_mut().zip(&fitted) {
+                *to = values[c];
+            }
+            line[fitted.len()] = row.weight * row.value;
+            qr.push_row(&line);
+        }
+        let factor = qr.finish();
+        if let Some(c) = factor.undetermined(fitted.len()) {
+            return Err(Error::input(
+                self.name(),
+                "samples at enough different K for the number of filters",
+                format!("nothing that determines {}", basis.names()[fitted[c]]),
+            ));
+        }
+        let solution = factor.solve(fitted.len())?;
+        let mut coefficients = vec![0.0; basis.len()];
+        for (value, &c) in solution.iter().zip(&fitted) {
+            coefficients[c] = *value;
+        }
+        Ok(EntryFit {
+            factor,
+            coefficients,
+            fitted,
+        })
+    }
+
+    /// Residuals of given coefficients, unweighted, in the order of the rows.
+    pub fn residuals(&self, basis: &Basis, coefficients: &[f64]) -> Vec<f64> {
+        self.rows
+            .iter()
+            .map(|row| {
+                let columns = basis.columns(Complex::new(0.0, row.k));
+                let fit: f64 = row.of(&columns).zip(coefficients).map(|(x, c)| x * c).sum();
+                row.value - fit
+            })
+            .collect()
+    }
+}
+
+impl EntryFit {
+    /// `(RᵀR)⁻¹` spread over all columns of the basis (zero for those that were not fitted).
+    pub fn inverse_gram(&self) -> Result<DMatrix<f64>> {
+        let small = self.factor.inverse_gram(self.fitted.len())?;
+        let n = self.coefficients.len();
+        let mut full = DMatrix::zeros(n, n);
+        for (a, &i) in self.fitted.iter().enumerate() {
+            for (b, &j) in self.fitted.iter().enumerate() {
+                full[(i, j)] = small[(a, b)];
+            }
+        }
+        Ok(full)
+    }
+}
+
+/// Samples by entry, row by row of the matrix, with their weights; the second value says what had to be assumed.
+///
+/// # Errors
+/// [`Error::Input`] for a sample that is not finite, whose `K` is not positive, or an entry without any.
+pub(crate) fn sort_by_entry(
+    samples: &[TransferSample],
+    dofs: &[Dof],
+    weights: FrequencyWeights,
+) -> Result<(Vec<Entry>, Vec<String>)> {
+    let mut entries: Vec<Entry> = dofs
+        .iter()
+        .flat_map(|&force| dofs.iter().map(move |&motion| (force, motion)))
+        .map(|(force, motion)| Entry {
+            force,
+            motion,
+            rows: Vec::new(),
+        })
+        .collect();
+    for (at, s) in samples.iter().enumerate() {
+        let place = format!("sample {at}");
+        let i = index_of(dofs, s.force, &place)?;
+        let j = index_of(dofs, s.motion, &place)?;
+        let k = crate::error::positive(&format!("{place}: K"), s.k.full_width())?;
+        if !s.value.is_finite() {
+            return Err(Error::input(place, "a finite value", s.value.to_string()));
+        }
+        entries[i * dofs.len() + j].rows.push(Row {
+            k,
+            part: s.part,
+            value: s.value,
+            weight: 1.0,
+            magnitude: s.value.abs(),
+        });
+    }
+    let mut notes = Vec::new();
+    for entry in &mut entries {
+        if entry.rows.is_empty() {
+            return Err(Error::input(entry.name(), "at least one", "none"));
+        }
+        let unpaired = pair(&mut entry.rows);
+        if unpaired > 0 && weights == FrequencyWeights::Relative {
+            notes.push(format!(
+                "{}: {unpaired} have no other part at the same K; their weight is relative to their own size",
+                entry.name()
+            ));
+        }
+        weigh(&mut entry.rows, weights);
+    }
+    Ok((entries, notes))
+}
+
+/// Sets the magnitude of `G` from the nearest sample of the other part; returns how many have none.
+fn pair(rows: &mut [Row]) -> usize {
+    let others: Vec<Option<f64>> = rows
+        .iter()
+        .map(|row| {
+            rows.iter()
+                .filter(|other| other.part != row.part)
+                .map(|other| ((other.k / row.k).ln().abs(), other.value))
+                .min_by(|a, b| a.0.total_cmp(&b.0))
+                .filter(|(distance, _)| *distance < PAIRING_TOLERANCE)
+                .map(|(_, value)| value)
+        })
+        .collect();
+    let mut unpaired = 0;
+    for (row, other) in rows.iter_mut().zip(others) {
+        match other {
+            Some(other) => row.magnitude = row.value.hypot(other),
+            None => unpaired += 1,
+        }
+    }
+    unpaired
+}
+
+fn weigh(rows: &mut [Row], weights: FrequencyWeights) {
+    // a part that happens to pass through zero must not get an infinite weight
+    let floor = 1e-3 * rows.iter().map(|r| r.magnitude).fold(0.0, f64::max);
+    for row in rows {
+        row.weight = match weights {
+            FrequencyWeights::None => 1.0,
+            FrequencyWeights::Derivatives => row.k.powi(-2),
+            FrequencyWeights::Relative if floor > 0.0 => 1.0 / row.magnitude.max(floor),
+            FrequencyWeights::Relative => 1.0,
+        };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::aerodynamics::FlatPlate;
+
+    #[test]
+    fn weights_are_those_of_the_formulae() {
+        let ks = [0.1, 0.5].map(ReducedFrequency::from_full_width);
+        let samples = sample_model(&FlatPlate::default(), &ks).unwrap();
+        assert_eq!(samples.len(), 16);
+        let g = FlatPlate::default().transfer(ks[1]).unwrap();
+        for (weights, expected) in [
+            (FrequencyWeights::None, 1.0),
+            (FrequencyWeights::Derivatives, 4.0),
+            (FrequencyWeights::Relative, 1.0 / g[(0, 1)].norm()),
+        ] {
+            let (entries, notes) = sort_by_entry(&samples, &Dof::TWO, weights).unwrap();
+            assert!(notes.is_empty());
+            let row = entries[1].rows.iter().find(|r| r.k == 0.5).unwrap();
+            assert!((row.weight / expected - 1.0).abs() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn missing_entries_and_bad_numbers_are_named() {
+        let ks = [0.1, 0.5].map(ReducedFrequency::from_full_width);
+        let mut samples = sample_model(&FlatPlate::default(), &ks).unwrap();
+        let message = |s: &[TransferSample]| {
+            sort_by_entry(s, &Dof::TWO, FrequencyWeights::None)
+                .unwrap_err()
+                .to_string()
+        };
+        samples[3].value = f64::NAN;
+        assert_eq!(
+            message(&samples),
+            "sample 3: expected a finite value, found NaN"
+        );
+        samples.retain(|s| s.motion == Dof::Vertical);
+        assert!(message(&samples).contains("vertical force due to torsion motion"));
+    }
+}

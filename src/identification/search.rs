@@ -1,0 +1,348 @@
+//! Bounded search of poles by variable projection: for given poles the coefficients follow from linear least squares,
+//! so that only the poles are searched (Golub & Pereyra 1973).
+//!
+//! One pole: a logarithmic grid, then golden sections. Several: Levenberg–Marquardt on variables that make every point
+//! legal — the logarithmic gaps between lower bound, poles and upper bound are shares of what the least ratio of
+//! neighbours leaves, and the shares are a softmax of free numbers — from the best points of a grid.
+
+use super::options::PoleSearch;
+use super::report::{SearchPoint, SearchReport};
+use crate::error::{Error, Result};
+use crate::section::Dof;
+use crate::units::ReducedFrequencyRange;
+use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
+use nalgebra::{DMatrix, DVector, Dyn, Owned};
+
+/// Widest bracket left by golden sections, in `ln p`: the root of the rounding error of the objective.
+const GOLDEN_TOLERANCE: f64 = 1e-8;
+/// Step of the central differences of the residuals; error about its square.
+const DIFFERENCE_STEP: f64 = 1e-5;
+/// Grid points from which Levenberg–Marquardt starts.
+const STARTS: usize = 3;
+
+/// Bounds of a search.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Bounds {
+    pub min: f64,
+    pub max: f64,
+    pub min_ratio: f64,
+}
+
+impl Bounds {
+    /// Stated bounds, or half the lowest to twice the highest tested `K`.
+    ///
+    /// # Errors
+    /// Bounds without room for `count` poles.
+    pub fn resolve(
+        options: &PoleSearch,
+        tested: ReducedFrequencyRange,
+        count: usize,
+    ) -> Result<Self> {
+        let bounds = Self {
+            min: options.min.unwrap_or(0.5 * tested.min.full_width()),
+            max: options.max.unwrap_or(2.0 * tested.max.full_width()),
+            min_ratio: options.min_ratio,
+        };
+        if bounds.slack(count) <= 0.0 {
+            return Err(Error::input(
+                "poles.min, poles.max",
+                format!(
+                    "room for {count} pole(s) a factor {} apart",
+                    bounds.min_ratio
+                ),
+                format!("{} to {}", bounds.min, bounds.max),
+            ));
+        }
+        Ok(bounds)
+    }
+
+    /// Logarithmic room that the least ratios leave.
+    fn slack(&self, count: usize) -> f64 {
+        (self.max / self.min).ln() - (count as f64 - 1.0) * self.min_ratio.ln()
+    }
+
+    /// Ordered poles from free variables.
+    fn poles(&self, free: &[f64]) -> Vec<f64> {
+        let slack = self.slack(free.len());
+        let shares: Vec<f64> = free.iter().map(|x| x.exp()).collect();
+        let total: f64 = 1.0 + shares.iter().sum::<f64>();
+        let mut at = self.min.ln() - self.min_ratio.ln();
+        shares
+            .iter()
+            .map(|share| {
+                at += self.min_ratio.ln() + slack * share / total;
+                at.exp()
+            })
+            .collect()
+    }
+
+    /// Free variables of ordered poles; poles on or beyond a bound are taken a little inside.
+    fn free(&self, poles: &[f64]) -> Vec<f64> {
+        let slack = self.slack(poles.len());
+        let mut before = self.min.ln() - self.min_ratio.ln();
+        let mut shares: Vec<f64> = poles
+            .iter()
+            .map(|p| {
+                let share = (p.ln() - before - self.min_ratio.ln()) / slack;
+                before = p.ln();
+                share.max(1e-3)
+            })
+            .collect();
+        let used: f64 = shares.iter().sum();
+        let last = (1.0 - used).max(1e-3);
+        shares.iter_mut().for_each(|s| *s = (*s / last).ln());
+        shares
+    }
+
+    /// `points` values from bound to bound, logarithmic.
+    fn axis(&self, points: usize) -> Vec<f64> {
+        let step = (self.max / self.min).ln() / (points as f64 - 1.0);
+        (0..points)
+            .map(|i| self.min * (step * i as f64).exp())
+            .collect()
+    }
+
+    /// Ordered sets of `count` poles from a logarithmic grid that keep the least ratio.
+    pub fn grid(&self, count: usize, points: usize) -> Vec<Vec<f64>> {
+        // several axes share what one would have: about a hundred sets
+        let points = match count {
+            1 => points,
+            2 => 13,
+            3 => 9,
+            _ => count + 5,
+        };
+        let axis = self.axis(points);
+        let mut sets: Vec<Vec<f64>> = vec![Vec::new()];
+        for _ in 0..count {
+            sets = sets
+                .iter()
+                .flat_map(|set| {
+                    axis.iter()
+                        .filter(|p| set.last().is_none_or(|q| **p >= q * self.min_ratio))
+                        .map(|p| set.iter().copied().chain([*p]).collect())
+                })
+                .collect();
+        }
+        if sets.is_empty() {
+            let even = vec![0.0; count];
+            sets.push(self.poles(&even));
+        }
+        sets
+    }
+
+    /// Whether the poles are ordered, apart and inside.
+    pub fn admits(&self, poles: &[f64]) -> bool {
+        let inside = |p: &f64| *p >= self.min * (1.0 - 1e-12) && *p <= self.max * (1.0 + 1e-12);
+        poles.iter().all(inside)
+            && poles
+                .windows(2)
+                .all(|w| w[1] >= w[0] * self.min_ratio * (1.0 - 1e-12))
+    }
+}
+
+/// Searches `count` poles that minimise the norm of `residuals` (weighted, with the best coefficients), relative to
+/// `total`, the weighted sum of squares of the data.
+///
+/// # Errors
+/// When no point of the grid can be fitted (the first such error).
+pub(crate) fn search_poles(
+    count: usize,
+    (options, bounds): (&PoleSearch, Bounds),
+    entry: Option<(Dof, Dof)>,
+    total: f64,
+    residuals: &dyn Fn(&[f64]) -> Result<DVector<f64>>,
+) -> Result<SearchReport> {
+    let mut search = Search {
+        residuals,
+        total,
+        points: Vec::new(),
+    };
+    let starts = match &options.start {
+        Some(start) => vec![start.clone()],
+        None => bounds.grid(count, options.grid_points),
+    };
+    for poles in &starts {
+        search.evaluate(poles)?;
+    }
+    let chosen = if count == 1 {
+        search.golden(&bounds, options.grid_points)?
+    } else {
+        search.levenberg_marquardt(&bounds)?
+    };
+    Ok(SearchReport {
+        entry,
+        min: bounds.min,
+        max: bounds.max,
+        points: search.points,
+        chosen,
+    })
+}
+
+struct Search<'a> {
+    residuals: &'a dyn Fn(&[f64]) -> Result<DVector<f64>>,
+    total: f64,
+    points: Vec<SearchPoint>,
+}
+
+impl Search<'_> {
+    fn evaluate(&mut self, poles: &[f64]) -> Result<f64> {
+        let objective = ((self.residuals)(poles)?.norm_squared() / self.total).sqrt();
+        self.points.push(SearchPoint {
+            poles: poles.to_vec(),
+            objective,
+        });
+        Ok(objective)
+    }
+
+    fn best(&self) -> Result<SearchPoint> {
+        best_of(&self.points)
+    }
+
+    /// Golden sections between the neighbours of the best grid point (or around a stated start).
+    fn golden(&mut self, bounds: &Bounds, grid_points: usize) -> Result<SearchPoint> {
+        const RATIO: f64 = 0.618_033_988_749_894_9;
+        let centre = self.best()?.poles[0].ln();
+        let (low, high) = (bounds.min.ln(), bounds.max.ln());
+        let step = if self.points.len() == 1 {
+            high - low
+        } else {
+            (high - low) / (grid_points as f64 - 1.0)
+        };
+        let (mut a, mut b) = ((centre - step).max(low), (centre + step).min(high));
+        let (mut x, mut y) = (b - RATIO * (b - a), a + RATIO * (b - a));
+        let (mut fx, mut fy) = (self.evaluate(&[x.exp()])?, self.evaluate(&[y.exp()])?);
+        while b - a > GOLDEN_TOLERANCE {
+            if fx < fy {
+                (b, y, fy) = (y, x, fx);
+                x = b - RATIO * (b - a);
+                fx = self.evaluate(&[x.exp()])?;
+            } else {
+                (a, x, fx) = (x, y, fy);
+                y = a + RATIO * (b - a);
+                fy = self.evaluate(&[y.exp()])?;
+            }
+        }
+        self.best()
+    }
+
+    fn levenberg_marquardt(&mut self, bounds: &Bounds) -> Result<SearchPoint> {
+        let mut starts = self.points.clone();
+        starts.sort_by(|a, b| a.objective.total_cmp(&b.objective));
+        for start in starts.iter().take(STARTS) {
+            let problem = Projected {
+                free: DVector::from_vec(bounds.free(&start.poles)),
+                bounds: *bounds,
+                residuals: self.residuals,
+            };
+            // whatever the reason it stopped for, the point is judged by its objective
+            let (problem, _) = LevenbergMarquardt::new().minimize(problem);
+            if problem.free.iter().all(|x| x.is_finite()) {
+                self.evaluate(&bounds.poles(problem.free.as_slice()))?;
+            }
+        }
+        self.best()
+    }
+}
+
+/// The point with the smallest objective.
+pub(crate) fn best_of(points: &[SearchPoint]) -> Result<SearchPoint> {
+    points
+        .iter()
+        .filter(|p| p.objective.is_finite())
+        .min_by(|a, b| a.objective.total_cmp(&b.objective))
+        .cloned()
+        .ok_or_else(|| Error::Numerical("pole search: no point has a finite objective".into()))
+}
+
+/// Variable projection as a least-squares problem in the free variables.
+struct Projected<'a> {
+    free: DVector<f64>,
+    bounds: Bounds,
+    residuals: &'a dyn Fn(&[f64]) -> Result<DVector<f64>>,
+}
+
+impl Projected<'_> {
+    fn at(&self, free: &DVector<f64>) -> Option<DVector<f64>> {
+        (self.residuals)(&self.bounds.poles(free.as_slice())).ok()
+    }
+}
+
+impl LeastSquaresProblem<f64, Dyn, Dyn> for Projected<'_> {
+    type ResidualStorage = Owned<f64, Dyn>;
+    type JacobianStorage = Owned<f64, Dyn, Dyn>;
+    type ParameterStorage = Owned<f64, Dyn>;
+
+    fn set_params(&mut self, x: &DVector<f64>) {
+        self.free.copy_from(x);
+    }
+
+    fn params(&self) -> DVector<f64> {
+        self.free.clone()
+    }
+
+    fn residuals(&self) -> Option<DVector<f64>> {
+        self.at(&self.free)
+    }
+
+    fn jacobian(&self) -> Option<DMatrix<f64>> {
+        let columns: Option<Vec<_>> = (0..self.free.len())
+            .map(|c| {
+                let mut x = self.free.clone();
+                x[c] += DIFFERENCE_STEP;
+                let ahead = self.at(&x)?;
+                x[c] -= 2.0 * DIFFERENCE_STEP;
+                Some((ahead - self.at(&x)?) / (2.0 * DIFFERENCE_STEP))
+            })
+            .collect();
+        Some(DMatrix::from_columns(&columns?))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const BOUNDS: Bounds = Bounds {
+        min: 0.05,
+        max: 2.0,
+        min_ratio: 1.5,
+    };
+
+    #[test]
+    fn free_variables_and_poles_are_inverse_and_legal() {
+        for poles in [vec![0.3], vec![0.1, 0.2], vec![0.06, 0.4, 1.3]] {
+            let again = BOUNDS.poles(&BOUNDS.free(&poles));
+            for (a, b) in again.iter().zip(&poles) {
+                assert!((a / b - 1.0).abs() < 1e-12);
+            }
+        }
+        for free in [[-40.0, 40.0, 0.0], [9.0, -9.0, -30.0]] {
+            assert!(BOUNDS.admits(&BOUNDS.poles(&free)));
+        }
+        for count in 1..4 {
+            assert!(BOUNDS.grid(count, 41).iter().all(|set| BOUNDS.admits(set)));
+        }
+    }
+
+    /// A minimum at known poles is found to the root of rounding.
+    #[test]
+    fn minima_inside_and_at_bounds_are_found() {
+        let options = PoleSearch::default();
+        for target in [vec![0.31], vec![0.149, 0.538], vec![0.1, 0.3, 1.1]] {
+            let residuals = |p: &[f64]| {
+                let misfit = p.iter().zip(&target).map(|(p, t)| (p / t).ln());
+                Ok(DVector::from_iterator(
+                    target.len() + 1,
+                    misfit.chain([0.1]),
+                ))
+            };
+            let found = search_poles(target.len(), (&options, BOUNDS), None, 1.0, &residuals);
+            for (p, t) in found.unwrap().chosen.poles.iter().zip(&target) {
+                assert!((p / t - 1.0).abs() < 1e-5, "{p} {t}");
+            }
+        }
+        let outside = |p: &[f64]| Ok(DVector::from_element(1, p[0] + 1.0));
+        let found = search_poles(1, (&options, BOUNDS), None, 1.0, &outside).unwrap();
+        assert!((found.chosen.poles[0] / BOUNDS.min - 1.0).abs() < 1e-6);
+    }
+}
