@@ -157,24 +157,24 @@ pub(crate) fn assemble(
         return Ok(Model::Rational(model));
     }
     let mut terms = Vec::new();
-    for j in 0..n {
-        // one chain serves all forces that share its poles
-        let mut served = vec![false; n];
-        for i in 0..n {
-            if served[i] {
+    for input in 0..n {
+        let of_force: Vec<&Vec<f64>> = poles.iter().map(|row| &row[input]).collect();
+        for (i, chain) in of_force.iter().enumerate() {
+            // one chain serves all forces that share its poles
+            if of_force[..i].contains(chain) {
                 continue;
             }
-            let shares: Vec<bool> = (0..n).map(|r| poles[r][j] == poles[i][j]).collect();
             terms.push(FilterTerm {
-                input: j,
-                poles: FilterBank::new(poles[i][j].clone())?,
-                coefficients: DMatrix::from_fn(n, poles[i][j].len(), |r, l| {
-                    if shares[r] { filter(r, j, l) } else { 0.0 }
+                input,
+                poles: FilterBank::new(chain.to_vec())?,
+                coefficients: DMatrix::from_fn(n, chain.len(), |r, l| {
+                    if of_force[r] == *chain {
+                        filter(r, input, l)
+                    } else {
+                        0.0
+                    }
                 }),
             });
-            for (done, share) in served.iter_mut().zip(shares) {
-                *done |= share;
-            }
         }
     }
     let model = LaguerreModel {
