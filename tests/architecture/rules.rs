@@ -1,0 +1,197 @@
+//! The rules of the house: who may import whom, where `unsafe` may stand, what library code never does.
+
+use crate::source::Source;
+
+/// One module and what it may import besides itself and `error`.
+pub struct Row {
+    /// The module, from the crate root.
+    pub module: &'static str,
+    /// Modules with a row of their own, `module+` for one and all that it may use, or longer paths
+    /// (`module::Name`, with `*` for any ending).
+    pub may_use: &'static [&'static str],
+    /// Only types may be imported, no functions.
+    pub types_only: bool,
+}
+
+const fn row(module: &'static str, may_use: &'static [&'static str]) -> Row {
+    Row {
+        module,
+        may_use,
+        types_only: false,
+    }
+}
+
+/// Direction of all imports. A module without a row is refused: write down what it may use.
+pub const ARROWS: &[Row] = &[
+    row("error", &[]),
+    row("units", &[]),
+    row("state_space", &[]),
+    row("comparison", &[]),
+    row("section", &["units"]),
+    row("aerodynamics", &["units", "section", "state_space"]),
+    row("wind_tunnel", &["units", "section", "aerodynamics"]),
+    row(
+        "identification",
+        &[
+            "units",
+            "section",
+            "state_space",
+            "aerodynamics",
+            "wind_tunnel::Record*",
+            "wind_tunnel::Segment",
+        ],
+    ),
+    row("aeroelastic", &["aerodynamics+"]),
+    row("flutter", &["aeroelastic+"]),
+    row("response", &["aeroelastic+"]),
+    row("trained_model", &["units", "section", "aerodynamics"]),
+    row("fmu", &["flutter+", "response+", "trained_model+"]),
+    row("fmu::fmi2", &["fmu"]),
+    row("benchmarks", BELOW_STUDY),
+    row("study", BELOW_STUDY),
+    Row {
+        module: "report",
+        may_use: &["study+", "benchmarks+"],
+        types_only: true,
+    },
+    row("cli", &["report", "study+", "benchmarks+"]),
+    row("main", &["cli+"]),
+];
+
+const BELOW_STUDY: &[&str] = &["fmu+", "identification+", "wind_tunnel+", "comparison"];
+
+/// Every module may use these.
+const FOR_ALL: &[&str] = &["error"];
+
+/// Directories whose code may be `unsafe`.
+const UNSAFE_DIRECTORIES: &[&str] = &["src/fmu/fmi2", "src/fmu/importer"];
+
+/// Ways to end the caller's process.
+const ABRUPT: &[&str] = &[
+    ".unwrap()",
+    ".expect(",
+    "panic!(",
+    "todo!(",
+    "unimplemented!(",
+    "unreachable!(",
+];
+
+/// Ways to write to the terminal.
+const PRINTING: &[&str] = &["println!(", "eprintln!(", "print!(", "eprint!(", "dbg!("];
+
+/// Places that may write to the terminal.
+const PRINTERS: &[&str] = &["src/cli", "src/main.rs"];
+
+/// Files are written for about 400 lines; this is where they must be split.
+pub const LINES_AT_MOST: usize = 420;
+
+/// All breaches in one file of `src` that is not test code. `path` is relative to the package, with `/`.
+pub fn breaches(path: &str, source: &Source) -> Vec<String> {
+    let mut found = arrow_breaches(path, source);
+    let mut forbid = |words: &[&str], places: &[&str]| {
+        if places.iter().any(|p| inside(path, p)) {
+            return;
+        }
+        for word in words {
+            for at in source.find(word) {
+                found.push(format!("{path}:{}: `{word}`", source.line(at)));
+            }
+        }
+    };
+    forbid(ABRUPT, &[]);
+    forbid(PRINTING, PRINTERS);
+    forbid(&["unsafe"], UNSAFE_DIRECTORIES);
+    found
+}
+
+/// `path` is `place`, or lies in it, or is the file `place.rs` of that module.
+fn inside(path: &str, place: &str) -> bool {
+    path == place
+        || path
+            .strip_prefix(place)
+            .is_some_and(|rest| rest.starts_with('/') || rest == ".rs")
+}
+
+/// Module path of a file of `src`: `src/a/mod.rs` is `a`, `src/a/b.rs` is `a::b`, `src/lib.rs` the root.
+pub fn module_of(path: &str) -> Vec<String> {
+    let inner = path.trim_start_matches("src/").trim_end_matches(".rs");
+    let inner = inner.trim_end_matches("/mod");
+    if inner == "lib" {
+        return Vec::new();
+    }
+    inner.split('/').map(str::to_owned).collect()
+}
+
+fn arrow_breaches(path: &str, source: &Source) -> Vec<String> {
+    let module = module_of(path);
+    // the root declares the modules and re-exports; it is no module of the house
+    if module.is_empty() {
+        return Vec::new();
+    }
+    let Some(own) = row_of(&module) else {
+        return vec![format!(
+            "{path}: no row for this module in tests/architecture/rules.rs"
+        )];
+    };
+    source
+        .mentions(&module)
+        .into_iter()
+        .filter_map(|mention| {
+            let reason = refusal(own, &mention.path)?;
+            let target = mention.path.join("::");
+            Some(format!("{path}:{}: `{target}` {reason}", mention.line))
+        })
+        .collect()
+}
+
+/// Why a module may not use a path; `None` when it may.
+fn refusal(own: &Row, target: &[String]) -> Option<String> {
+    // `crate::Error`, `crate::Result`: re-exports of `error` at the root
+    let at_root = target
+        .first()
+        .is_none_or(|name| name.starts_with(char::is_uppercase));
+    if at_root {
+        return None;
+    }
+    let Some(theirs) = row_of(target) else {
+        return Some("is a module without a row in tests/architecture/rules.rs".into());
+    };
+    if theirs.module == own.module || FOR_ALL.contains(&theirs.module) {
+        return None;
+    }
+    let allowed = permits(own, theirs, &target.join("::"));
+    if !allowed {
+        return Some(format!("may not be used by `{}`", own.module));
+    }
+    let is_type = target
+        .iter()
+        .any(|name| name.starts_with(char::is_uppercase));
+    (own.types_only && !is_type).then(|| format!("is no type: `{}` may use only types", own.module))
+}
+
+/// Whether the list of `own` names the module `theirs`, or the path in it.
+fn permits(own: &Row, theirs: &Row, path: &str) -> bool {
+    own.may_use.iter().any(|entry| {
+        if let Some(start) = entry.strip_suffix('*') {
+            return path.starts_with(start);
+        }
+        let Some(module) = entry.strip_suffix('+') else {
+            return *entry == theirs.module || *entry == path;
+        };
+        let row = ARROWS.iter().find(|row| row.module == module);
+        module == theirs.module || row.is_some_and(|row| permits(row, theirs, path))
+    })
+}
+
+/// The row with the longest module path that holds `path`.
+fn row_of(path: &[String]) -> Option<&'static Row> {
+    let path = path.join("::");
+    let holds = |module: &str| {
+        path.strip_prefix(module)
+            .is_some_and(|rest| rest.is_empty() || rest.starts_with("::"))
+    };
+    ARROWS
+        .iter()
+        .filter(|row| holds(row.module))
+        .max_by_key(|row| row.module.len())
+}
