@@ -11,7 +11,7 @@ pub mod rational;
 mod realization;
 
 pub use flat_plate::FlatPlate;
-pub use laguerre::{DiscreteLaguerre, FilterBank, LaguerreModel};
+pub use laguerre::{DiscreteLaguerre, FilterBank, FilterTerm, LaguerreModel};
 pub use rational::RationalModel;
 pub use realization::{ContinuousRealization, DiscreteRealization, Realization};
 

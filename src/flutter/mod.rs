@@ -3,6 +3,7 @@
 //! Two independent routes: eigenvalues of the coupled state matrix (for models with a realisation), and the
 //! determinant in `(V, ω)` (for any `G(K)`, tables and the flat plate included).
 
+mod characteristic;
 mod curves;
 mod determinant;
 mod divergence;

@@ -15,6 +15,9 @@ const ROOT_TOLERANCE: f64 = 1e-13;
 /// The secant steps converge in about ten; bisection alone in fifty.
 const MAX_ROOT_STEPS: usize = 80;
 
+/// Speeds at which all eigenvalues are looked at, not only those of the structure.
+const FILTER_CHECKS: usize = 24;
+
 /// Where and how densely to look.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
@@ -68,9 +71,9 @@ pub fn find_onset(
                 crossings.push(structural_crossing(model, section, &tracker, &next, mode)?);
             }
         }
-        crossings.extend(filter_crossing(model, section, &tracker, &next)?);
         tracker = next;
     }
+    crossings.extend(filter_crossings(model, section, speed_max)?);
     Ok(choose(crossings, tested, speed_max))
 }
 
@@ -119,27 +122,55 @@ fn single_dof(dof: Dof, mode_ratio: f64) -> bool {
     }
 }
 
-/// An oscillating eigenvalue of the filters that becomes unstable: no structural mode, hence a defect of the model.
-/// Real eigenvalues are divergence and are found in closed form elsewhere.
+/// The least damped oscillating eigenvalue that is none of the tracked modes.
+fn least_damped_filter(section: &CoupledSection, at: &Tracker<'_>) -> Result<Option<Complex<f64>>> {
+    let tracked = |z: &Complex<f64>| {
+        let near = |m: &super::tracking::TrackedMode| (m.lambda - z).norm() < 1e-6 * z.norm();
+        at.modes.iter().any(near)
+    };
+    Ok(section
+        .at(at.speed)?
+        .eigenvalues()?
+        .into_iter()
+        .filter(|z| z.im > 1e-6 * z.norm() && !tracked(z))
+        .max_by(|a, b| a.re.total_cmp(&b.re)))
+}
+
+/// Filter instabilities on a coarse grid of speeds: they belong to broken fits and set in over a wide range.
+fn filter_crossings(model: &str, section: &CoupledSection, speed_max: f64) -> Result<Vec<Onset>> {
+    let mut found = Vec::new();
+    let mut tracker = Tracker::start(section)?;
+    for i in 1..=FILTER_CHECKS {
+        let speed = speed_max * i as f64 / FILTER_CHECKS as f64;
+        if speed <= tracker.speed {
+            continue;
+        }
+        let next = tracker.advance(speed)?;
+        found.extend(filter_crossing(model, section, &tracker, &next)?);
+        tracker = next;
+    }
+    Ok(found)
+}
+
+/// An oscillating eigenvalue of the filters that has become unstable between two speeds: no structural mode, hence a
+/// defect of the model. Real eigenvalues are divergence and are found in closed form elsewhere.
 fn filter_crossing(
     model: &str,
     section: &CoupledSection,
     low: &Tracker<'_>,
     high: &Tracker<'_>,
 ) -> Result<Option<Onset>> {
-    let oscillating = |z: &Complex<f64>| z.im > 1e-6 * z.norm();
-    let (Some(before), Some(after)) = (low.rest, high.rest.filter(oscillating)) else {
-        return Ok(None);
+    let growth = |at: &Tracker<'_>| -> Result<f64> {
+        Ok(least_damped_filter(section, at)?.map_or(f64::NEG_INFINITY, |z| z.re))
     };
-    if before.re >= 0.0 || after.re < 0.0 {
+    let (before, after) = (growth(low)?, growth(high)?);
+    if before >= 0.0 || after < 0.0 {
         return Ok(None);
     }
-    let speed = root((low.speed, before.re), (high.speed, after.re), |speed| {
-        let at = low.advance(speed)?;
-        Ok(at.rest.map_or(f64::NEG_INFINITY, |z| z.re))
+    let speed = root((low.speed, before.max(-after)), (high.speed, after), |speed| {
+        growth(&low.advance(speed)?)
     })?;
-    let at = high.advance(speed)?;
-    let Some(lambda) = at.rest else {
+    let Some(lambda) = least_damped_filter(section, &low.advance(speed)?)? else {
         return Ok(None);
     };
     let shape = mode_shape(section, &section.at(speed)?, lambda)?;

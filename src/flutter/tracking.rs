@@ -1,5 +1,9 @@
-//! Modes followed over wind speed by continuation: prediction, nearest eigenvalue, shape agreement, step halving.
+//! Modes followed over wind speed by continuation: prediction, correction, shape agreement, step halving.
+//!
+//! The correction is Newton's method on the small nonlinear eigenvalue problem where there is one (continuous models),
+//! else the nearest eigenvalue of the whole state matrix.
 
+use super::characteristic::Characteristic;
 use crate::aeroelastic::{CoupledSection, CoupledSystem};
 use crate::error::{Error, Result};
 use crate::section::Dof;
@@ -12,6 +16,8 @@ const MAX_HALVINGS: usize = 14;
 const DISTANCE_RATIO: f64 = 3.0;
 /// Modal assurance between neighbouring speeds below which a step is halved.
 const MIN_ASSURANCE: f64 = 0.9;
+/// Two modes closer than this, relatively, are one root found twice.
+const SEPARATION: f64 = 1e-9;
 /// Sampled systems start where this many samples fall into one period, below which frequencies would alias.
 const SAMPLES_PER_PERIOD: f64 = 5.0;
 
@@ -28,12 +34,11 @@ pub(super) struct TrackedMode {
 #[derive(Debug, Clone)]
 pub(super) struct Tracker<'a> {
     section: &'a CoupledSection,
+    characteristic: Option<std::rc::Rc<Characteristic>>,
     pub(super) speed: f64,
     pub(super) modes: Vec<TrackedMode>,
     /// `dλ/dV` of each mode from the last step.
     slopes: Vec<Complex<f64>>,
-    /// Eigenvalue with the largest real part among all that are not tracked.
-    pub(super) rest: Option<Complex<f64>>,
 }
 
 impl<'a> Tracker<'a> {
@@ -45,10 +50,10 @@ impl<'a> Tracker<'a> {
         let slopes = vec![Complex::new(0.0, 0.0); natural.len()];
         let still = Self {
             section,
+            characteristic: Characteristic::new(section).map(std::rc::Rc::new),
             speed,
             modes: natural,
             slopes,
-            rest: None,
         };
         still.matched(speed)?.ok_or_else(|| {
             Error::Numerical(format!(
@@ -85,52 +90,90 @@ impl<'a> Tracker<'a> {
 
     /// Modes at `speed` if each is clearly the continuation of one here.
     fn matched(&self, speed: f64) -> Result<Option<Self>> {
-        let system = self.section.at(speed)?;
-        let all = eigenvalues_in_time(&system)?;
-        let candidates: Vec<usize> = (0..all.len()).filter(|i| all[*i].im >= 0.0).collect();
-        let mut taken = vec![false; all.len()];
-        let mut modes = Vec::with_capacity(self.modes.len());
-        let mut slopes = Vec::with_capacity(self.modes.len());
-        for (mode, slope) in self.modes.iter().zip(&self.slopes) {
-            let predicted = mode.lambda + slope * (speed - self.speed);
-            let Some(i) = clearly_nearest(predicted, &candidates, &all) else {
-                return Ok(None);
-            };
-            if taken[i] {
-                return Ok(None);
-            }
-            taken[i] = true;
-            let shape = mode_shape(self.section, &system, all[i])?;
-            if assurance(&shape, &mode.shape) < MIN_ASSURANCE {
-                return Ok(None);
-            }
-            slopes.push(if speed == self.speed {
-                *slope
-            } else {
-                (all[i] - mode.lambda) / (speed - self.speed)
-            });
-            modes.push(TrackedMode {
-                lambda: all[i],
-                shape,
-            });
-        }
-        let rest = candidates
+        let predicted: Vec<_> = self
+            .modes
             .iter()
-            .filter(|i| !taken[**i])
-            .map(|i| all[*i])
-            .max_by(|a, b| a.re.total_cmp(&b.re));
+            .zip(&self.slopes)
+            .map(|(mode, slope)| mode.lambda + slope * (speed - self.speed))
+            .collect();
+        let corrected = match &self.characteristic {
+            Some(problem) => newton(self.section, problem, &predicted, speed),
+            None => nearest(self.section, &predicted, speed)?,
+        };
+        let Some(modes) = corrected else {
+            return Ok(None);
+        };
+        let continuous = modes
+            .iter()
+            .zip(&self.modes)
+            .all(|(new, old)| assurance(&new.shape, &old.shape) >= MIN_ASSURANCE);
+        if !continuous {
+            return Ok(None);
+        }
+        let slopes = if speed == self.speed {
+            self.slopes.clone()
+        } else {
+            let rise = |(new, old): (&TrackedMode, &TrackedMode)| {
+                (new.lambda - old.lambda) / (speed - self.speed)
+            };
+            modes.iter().zip(&self.modes).map(rise).collect()
+        };
         Ok(Some(Self {
             section: self.section,
+            characteristic: self.characteristic.clone(),
             speed,
             modes,
             slopes,
-            rest,
         }))
     }
 }
 
-fn eigenvalues_in_time(system: &CoupledSystem) -> Result<Vec<Complex<f64>>> {
-    system.eigenvalues()
+/// Corrects every prediction by Newton's method; `None` when one fails, turns real, or two meet.
+fn newton(
+    section: &CoupledSection,
+    problem: &Characteristic,
+    predicted: &[Complex<f64>],
+    speed: f64,
+) -> Option<Vec<TrackedMode>> {
+    let mut work = Vec::new();
+    let mut modes: Vec<TrackedMode> = Vec::with_capacity(predicted.len());
+    for start in predicted {
+        let (lambda, shape) = problem.solve(*start, speed, &mut work)?;
+        let distinct = |m: &TrackedMode| (m.lambda - lambda).norm() > SEPARATION * lambda.norm();
+        if lambda.im < 0.0 || !modes.iter().all(distinct) {
+            return None;
+        }
+        let size = dimensionless(section, &shape).norm();
+        modes.push(TrackedMode {
+            lambda,
+            shape: shape.unscale(size),
+        });
+    }
+    Some(modes)
+}
+
+/// Takes for every prediction the eigenvalue of the state matrix that is clearly nearest; `None` when one is not.
+fn nearest(
+    section: &CoupledSection,
+    predicted: &[Complex<f64>],
+    speed: f64,
+) -> Result<Option<Vec<TrackedMode>>> {
+    let system = section.at(speed)?;
+    let all = system.eigenvalues()?;
+    let candidates: Vec<usize> = (0..all.len()).filter(|i| all[*i].im >= 0.0).collect();
+    let mut taken = vec![false; all.len()];
+    let mut modes = Vec::with_capacity(predicted.len());
+    for start in predicted {
+        let Some(i) = clearly_nearest(*start, &candidates, &all).filter(|i| !taken[*i]) else {
+            return Ok(None);
+        };
+        taken[i] = true;
+        modes.push(TrackedMode {
+            lambda: all[i],
+            shape: mode_shape(section, &system, all[i])?,
+        });
+    }
+    Ok(Some(modes))
 }
 
 /// Index of the candidate nearest to `predicted`, unless another is nearly as near.

@@ -1,0 +1,226 @@
+//! The nonlinear eigenvalue problem of a continuous model: `D(λ) v = 0` with as many rows as degrees of freedom.
+//!
+//! `D(λ) = λ²M + λR + K − ½ρ diag(B, B, B²) [V²e₀ + VBλe₁ + B²λ²e₂ + V³ C (λB I − V A)⁻¹ b] diag(1/B, 1/B, 1)`,
+//! written so that still air is no special case. The filter matrices of this crate are lower triangular, so one
+//! evaluation is a forward substitution: much cheaper than the eigenvalues of the whole state matrix.
+
+use crate::aerodynamics::{ContinuousRealization, Realization};
+use crate::aeroelastic::CoupledSection;
+use nalgebra::{Complex, DVector};
+
+/// Degrees of freedom at most.
+const MAX_DOFS: usize = 3;
+/// Newton steps before a start is given up as too far away.
+const MAX_NEWTON_STEPS: usize = 15;
+/// Relative size of the last Newton step; the next would be its square.
+const NEWTON_TOLERANCE: f64 = 1e-13;
+
+type Complex64 = Complex<f64>;
+type Small = [[Complex64; MAX_DOFS]; MAX_DOFS];
+
+const ZERO: Complex64 = Complex64::new(0.0, 0.0);
+
+/// Matrices of the problem, scaled to physical motion and force once.
+#[derive(Debug, Clone)]
+pub(super) struct Characteristic {
+    n: usize,
+    width: f64,
+    mass: [[f64; MAX_DOFS]; MAX_DOFS],
+    damping: [[f64; MAX_DOFS]; MAX_DOFS],
+    stiffness: [[f64; MAX_DOFS]; MAX_DOFS],
+    feed_through: [[[f64; MAX_DOFS]; MAX_DOFS]; 3],
+    filters: usize,
+    /// Filter matrix, row by row.
+    a: Vec<f64>,
+    /// Input matrix, column by column.
+    b: Vec<f64>,
+    /// Scaled output matrix, row by row.
+    c: Vec<f64>,
+}
+
+/// Value and derivative of `D` at one `λ`.
+struct Evaluation {
+    value: Small,
+    derivative: Small,
+}
+
+impl Characteristic {
+    /// The problem of `section`; `None` for sampled models and for filter matrices that are not lower triangular.
+    pub(super) fn new(section: &CoupledSection) -> Option<Self> {
+        let Realization::Continuous(aero) = section.aerodynamics() else {
+            return None;
+        };
+        let triangular = (0..aero.a.nrows()).all(|i| (i + 1..aero.a.ncols()).all(|j| aero.a[(i, j)] == 0.0));
+        let s = section.structure();
+        let n = s.dofs.len();
+        if n > MAX_DOFS || !triangular {
+            return None;
+        }
+        let half_rho = 0.5 * s.air_density_kg_m3;
+        let small = |m: &nalgebra::DMatrix<f64>| {
+            let mut out = [[0.0; MAX_DOFS]; MAX_DOFS];
+            for (i, row) in out.iter_mut().enumerate().take(n) {
+                for (j, x) in row.iter_mut().enumerate().take(n) {
+                    *x = m[(i, j)];
+                }
+            }
+            out
+        };
+        let air = |m: &nalgebra::DMatrix<f64>| small(&(s.to_physical(m) * half_rho));
+        let filters = aero.a.nrows();
+        Some(Self {
+            n,
+            width: s.width_m,
+            mass: small(&s.mass),
+            damping: small(&s.damping),
+            stiffness: small(&s.stiffness),
+            feed_through: [air(&aero.e0), air(&aero.e1), air(&aero.e2)],
+            filters,
+            a: aero.a.transpose().as_slice().to_vec(),
+            b: scaled_input(aero, |j| s.dofs[j].motion_scale(s.width_m)),
+            c: (0..n)
+                .flat_map(|i| {
+                    let scale = half_rho * s.dofs[i].force_scale(s.width_m);
+                    aero.c.row(i).iter().map(|x| scale * x).collect::<Vec<_>>()
+                })
+                .collect(),
+        })
+    }
+
+    fn evaluate(&self, lambda: Complex64, speed: f64, work: &mut Vec<Complex64>) -> Evaluation {
+        let (n, b) = (self.n, self.width);
+        let mut value = [[ZERO; MAX_DOFS]; MAX_DOFS];
+        let mut derivative = value;
+        let [e0, e1, e2] = &self.feed_through;
+        for i in 0..n {
+            for j in 0..n {
+                let mass = self.mass[i][j] - b * b * e2[i][j];
+                let damping = self.damping[i][j] - speed * b * e1[i][j];
+                let stiffness = self.stiffness[i][j] - speed * speed * e0[i][j];
+                value[i][j] = (lambda * mass + damping) * lambda + stiffness;
+                derivative[i][j] = lambda * (2.0 * mass) + damping;
+            }
+        }
+        let l = self.filters;
+        work.resize(2 * l, ZERO);
+        let (x, dx) = work.split_at_mut(l);
+        let cube = speed * speed * speed;
+        for j in 0..n {
+            self.solve_filters(lambda, speed, &self.b[j * l..][..l], x, dx);
+            for i in 0..n {
+                let c = &self.c[i * l..][..l];
+                for ((c, x), dx) in c.iter().zip(&*x).zip(&*dx) {
+                    value[i][j] -= x * (c * cube);
+                    derivative[i][j] -= dx * (c * cube);
+                }
+            }
+        }
+        Evaluation { value, derivative }
+    }
+
+    /// `x = (λB I − V A)⁻¹ b` and `dx/dλ` by forward substitution.
+    fn solve_filters(
+        &self,
+        lambda: Complex64,
+        speed: f64,
+        b: &[f64],
+        x: &mut [Complex64],
+        dx: &mut [Complex64],
+    ) {
+        let l = self.filters;
+        for i in 0..l {
+            let row = &self.a[i * l..][..l];
+            let (mut sum, mut dsum) = (Complex64::new(b[i], 0.0), ZERO);
+            for (m, a) in row[..i].iter().enumerate() {
+                if *a != 0.0 {
+                    sum += x[m] * (a * speed);
+                    dsum += dx[m] * (a * speed);
+                }
+            }
+            let pivot = (lambda * self.width - row[i] * speed).inv();
+            x[i] = sum * pivot;
+            dx[i] = (dsum - x[i] * self.width) * pivot;
+        }
+    }
+
+    /// The eigenvalue next to `start` at the wind speed, with its displacements; `None` when Newton's method does not
+    /// settle.
+    pub(super) fn solve(
+        &self,
+        start: Complex64,
+        speed: f64,
+        work: &mut Vec<Complex64>,
+    ) -> Option<(Complex64, DVector<Complex64>)> {
+        let mut lambda = start;
+        for _ in 0..MAX_NEWTON_STEPS {
+            let at = self.evaluate(lambda, speed, work);
+            let adjugate = adjugate(&at.value, self.n);
+            // (det D)' = tr(adj(D) D')
+            let determinant = product_entry(&at.value, &adjugate, self.n);
+            let slope = trace_of_product(&adjugate, &at.derivative, self.n);
+            let step = determinant / slope;
+            if !(step.re.is_finite() && step.im.is_finite()) {
+                return None;
+            }
+            lambda -= step;
+            if step.norm() <= NEWTON_TOLERANCE * lambda.norm() {
+                return Some((lambda, largest_column(&adjugate, self.n)));
+            }
+        }
+        None
+    }
+}
+
+fn scaled_input(aero: &ContinuousRealization, scale: impl Fn(usize) -> f64) -> Vec<f64> {
+    (0..aero.b.ncols())
+        .flat_map(|j| {
+            let s = scale(j);
+            aero.b.column(j).iter().map(|x| s * x).collect::<Vec<_>>()
+        })
+        .collect()
+}
+
+/// `adj(D)`: `D adj(D) = det(D) I`, so at a root its columns are the null vector.
+fn adjugate(d: &Small, n: usize) -> Small {
+    let mut out = [[ZERO; MAX_DOFS]; MAX_DOFS];
+    match n {
+        1 => out[0][0] = Complex64::new(1.0, 0.0),
+        2 => {
+            out[0][0] = d[1][1];
+            out[0][1] = -d[0][1];
+            out[1][0] = -d[1][0];
+            out[1][1] = d[0][0];
+        }
+        _ => {
+            for (i, row) in out.iter_mut().enumerate() {
+                for (j, x) in row.iter_mut().enumerate() {
+                    // cofactor of entry (j, i), indices cyclic so that the sign comes by itself
+                    let (r1, r2) = ((j + 1) % 3, (j + 2) % 3);
+                    let (c1, c2) = ((i + 1) % 3, (i + 2) % 3);
+                    *x = d[r1][c1] * d[r2][c2] - d[r1][c2] * d[r2][c1];
+                }
+            }
+        }
+    }
+    out
+}
+
+/// First diagonal entry of `D adj(D)`, the determinant.
+fn product_entry(d: &Small, adjugate: &Small, n: usize) -> Complex64 {
+    (0..n).map(|k| d[0][k] * adjugate[k][0]).sum()
+}
+
+fn trace_of_product(a: &Small, b: &Small, n: usize) -> Complex64 {
+    (0..n)
+        .flat_map(|i| (0..n).map(move |k| (i, k)))
+        .map(|(i, k)| a[i][k] * b[k][i])
+        .sum()
+}
+
+fn largest_column(m: &Small, n: usize) -> DVector<Complex64> {
+    let size = |j: &usize| (0..n).map(|i| m[i][*j].norm_sqr()).sum::<f64>();
+    let j = (0..n)
+        .max_by(|a, b| size(a).total_cmp(&size(b)))
+        .unwrap_or(0);
+    DVector::from_fn(n, |i, _| m[i][j])
+}
