@@ -3,41 +3,26 @@
 //! `G_yy = K²(H4* + iH1*)`, `G_yθ = K²(H3* + iH2*)`, `G_θy = K²(A4* + iA1*)`, `G_θθ = K²(A3* + iA2*)`, likewise
 //! `P*` and the pairs 5, 6 of `H*`, `A*` for sway (equation 1.17).
 
+mod derivative;
+mod interpolated;
+mod table;
+
+#[cfg(feature = "identification")]
+mod csv_file;
+#[cfg(feature = "identification")]
+pub mod embedded;
+#[cfg(feature = "identification")]
+mod workbook;
+
+#[cfg(feature = "identification")]
+pub use csv_file::{CSV_COLUMNS, parse_csv, read_csv, write_csv};
+pub use derivative::{Derivative, Part};
+pub use interpolated::{Extrapolation, InterpolatedTable};
+pub use table::{DerivativePoint, DerivativeTable, SIGN_CONVENTION, TableHeader, UNITS};
+#[cfg(feature = "identification")]
+pub use workbook::{TABLE_3_2_FREQUENCIES_HZ, WorkbookOptions, read_workbook};
+
 use crate::section::Dof;
-use serde::{Deserialize, Serialize};
-
-/// One of the 18 aerodynamic derivatives.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-#[allow(missing_docs)] // the names are the documentation
-pub enum Derivative {
-    P1,
-    P2,
-    P3,
-    P4,
-    P5,
-    P6,
-    H1,
-    H2,
-    H3,
-    H4,
-    H5,
-    H6,
-    A1,
-    A2,
-    A3,
-    A4,
-    A5,
-    A6,
-}
-
-/// Which part of `G/K²` a derivative is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Part {
-    /// In phase with the displacement.
-    Real,
-    /// In phase with the velocity.
-    Imaginary,
-}
 
 /// One measured number of the transfer matrix: the real or imaginary part of one entry at its own `K`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -54,4 +39,21 @@ pub struct TransferSample {
     pub value: f64,
     /// Mean wind speed of the test point, m/s; `None` for a source without speeds.
     pub mean_speed_m_s: Option<f64>,
+}
+
+/// Reads a table from `path`: an NTNU workbook when the name ends in `.xlsx`, else this project's CSV.
+///
+/// # Errors
+/// Those of [`read_workbook`] and [`read_csv`].
+#[cfg(feature = "identification")]
+pub fn read_table(path: impl AsRef<std::path::Path>) -> crate::Result<DerivativeTable> {
+    let path = path.as_ref();
+    let is_workbook = path
+        .extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case("xlsx"));
+    if is_workbook {
+        read_workbook(path, &WorkbookOptions::default())
+    } else {
+        read_csv(path)
+    }
 }

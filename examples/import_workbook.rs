@@ -1,0 +1,34 @@
+//! Turns an NTNU workbook of aerodynamic derivatives into this project's CSV, at full precision.
+//!
+//! `cargo run --example import_workbook -- WORKBOOK.xlsx OUT.csv SOURCE LICENCE [MODEL_LENGTH_M]`
+//!
+//! The tables in `src/aerodynamics/derivatives/data` were made with it. An existing file is not overwritten.
+
+use aerodeck::aerodynamics::derivatives::{TableHeader, WorkbookOptions, read_workbook, write_csv};
+use std::error::Error;
+use std::fs::File;
+use std::io::{BufWriter, Write};
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let [workbook, out, source, licence, length @ ..] = arguments.as_slice() else {
+        return Err(
+            "usage: import_workbook WORKBOOK.xlsx OUT.csv SOURCE LICENCE [MODEL_LENGTH_M]".into(),
+        );
+    };
+    let header = TableHeader {
+        source: source.clone(),
+        licence: licence.clone(),
+        generator: "examples/import_workbook.rs of aerodeck".to_owned(),
+        model_length_m: length.first().map(|text| text.parse()).transpose()?,
+    };
+    let options = WorkbookOptions {
+        header,
+        ..WorkbookOptions::default()
+    };
+    let table = read_workbook(workbook, &options)?;
+    let mut file = BufWriter::new(File::create_new(out)?);
+    write_csv(&table, &mut file)?;
+    file.flush()?;
+    Ok(())
+}

@@ -1,0 +1,231 @@
+//! Workbooks of derivatives as NTNU keeps them (.xlsx).
+//!
+//! Three sheets, `Mean wind velocity`, `Reduced Velocities`, `Aerodynamic Derivatives`, in any order; in each a
+//! row of names and below it one row a test point; one column a derivative, named `MeanWind_H1`, `Vred_H1`, `H1`.
+//! Every derivative has its own `V̂ = V/(ωB)`. The width is not written down; it follows from the frequencies,
+//! `B = V/(2πf V̂)`. The sign convention is that of this project ([`super::SIGN_CONVENTION`]).
+
+use super::{Derivative, DerivativePoint, DerivativeTable, TableHeader};
+use crate::error::{Error, Result, positive};
+use calamine::{Data, Range, Reader, Xlsx, open_workbook};
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+use std::path::Path;
+
+/// Frequencies of the tests, Hz, in test order at each speed (Table 3.2 of the thesis).
+pub const TABLE_3_2_FREQUENCIES_HZ: [f64; 8] = [0.25, 0.5, 0.8, 1.1, 1.4, 1.7, 2.0, 2.5];
+
+/// The same width must follow from every point to within this fraction.
+const WIDTH_TOLERANCE: f64 = 0.01;
+
+/// Kind of sheet: its name and what its column names begin with.
+const SPEEDS: (&str, &str) = ("Mean wind velocity", "MeanWind_");
+const REDUCED_VELOCITIES: (&str, &str) = ("Reduced Velocities", "Vred_");
+const DERIVATIVES: (&str, &str) = ("Aerodynamic Derivatives", "");
+
+/// What a workbook does not say of itself.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WorkbookOptions {
+    /// Name of the deck; `None` takes the file name without `AerodynamicDerivatives_` and extension.
+    pub name: Option<String>,
+    /// Width of the section model, m; `None` derives it from `frequencies_hz`.
+    pub width_m: Option<f64>,
+    /// Frequencies of motion, Hz, in test order; repeated for every further speed.
+    pub frequencies_hz: Vec<f64>,
+    /// Provenance; an empty `source` is filled with the file name, an empty `generator` with this program.
+    pub header: TableHeader,
+}
+
+impl Default for WorkbookOptions {
+    fn default() -> Self {
+        Self {
+            name: None,
+            width_m: None,
+            frequencies_hz: TABLE_3_2_FREQUENCIES_HZ.to_vec(),
+            header: TableHeader::default(),
+        }
+    }
+}
+
+/// Reads an NTNU workbook of derivatives.
+///
+/// # Errors
+/// [`Error::Input`] with file, sheet and cell: not a workbook, a missing sheet or column, an empty cell or text in
+/// place of a number, sheets of unequal length, no common width, and those of [`DerivativeTable::new`].
+pub fn read_workbook(path: impl AsRef<Path>, options: &WorkbookOptions) -> Result<DerivativeTable> {
+    let path = path.as_ref();
+    // Asked for first, because the reader reports a missing file like a damaged one.
+    std::fs::metadata(path).map_err(|e| Error::io(path, e))?;
+    read_sheets(path)
+        .and_then(|points| table_from(path, options, points))
+        .map_err(|e| e.in_file(path))
+}
+
+type Points = BTreeMap<Derivative, Vec<DerivativePoint>>;
+
+fn read_sheets(path: &Path) -> Result<Points> {
+    let mut book: Xlsx<_> = open_workbook(path)
+        .map_err(|e: calamine::XlsxError| Error::input("", "an .xlsx workbook", e.to_string()))?;
+    let mut sheet = |kind: (&str, &str)| -> Result<BTreeMap<Derivative, Vec<f64>>> {
+        let names = book.sheet_names();
+        let wanted = names.iter().find(|n| n.trim().eq_ignore_ascii_case(kind.0));
+        let name = wanted.cloned().ok_or_else(|| {
+            let expected = format!("a sheet `{}`", kind.0);
+            Error::input("workbook", expected, format!("`{}`", names.join("`, `")))
+        })?;
+        let range = book
+            .worksheet_range(&name)
+            .map_err(|e| Error::input(format!("sheet {name}"), "readable cells", e.to_string()))?;
+        read_columns(&range, kind)
+    };
+    let (speeds, v_hats, values) = (
+        sheet(SPEEDS)?,
+        sheet(REDUCED_VELOCITIES)?,
+        sheet(DERIVATIVES)?,
+    );
+    let point = |((speed, v_hat), value): ((&f64, &f64), &f64)| DerivativePoint {
+        mean_speed_m_s: Some(*speed),
+        v_hat: *v_hat,
+        value: *value,
+    };
+    let points = Derivative::ALL.map(|d| {
+        let (speeds, v_hats, values) = (&speeds[&d], &v_hats[&d], &values[&d]);
+        for (sheet, column) in [(REDUCED_VELOCITIES, v_hats), (DERIVATIVES, values)] {
+            if column.len() != speeds.len() {
+                let expected = format!("{} test points as in sheet {}", speeds.len(), SPEEDS.0);
+                let found = column.len().to_string();
+                return Err(Error::input(format!("sheet {}", sheet.0), expected, found));
+            }
+        }
+        Ok((
+            d,
+            speeds.iter().zip(v_hats).zip(values).map(point).collect(),
+        ))
+    });
+    points.into_iter().collect()
+}
+
+/// The 18 columns of one sheet.
+fn read_columns(
+    range: &Range<Data>,
+    (sheet, prefix): (&str, &str),
+) -> Result<BTreeMap<Derivative, Vec<f64>>> {
+    let title = |column: usize| {
+        range
+            .get((0, column))
+            .map(ToString::to_string)
+            .unwrap_or_default()
+    };
+    let titles: Vec<String> = (0..range.width()).map(title).collect();
+    let column = |d: Derivative| {
+        let wanted = format!("{prefix}{d}");
+        let is_it = |t: &String| t.trim().trim_end_matches('*').eq_ignore_ascii_case(&wanted);
+        let at = titles.iter().position(is_it).ok_or_else(|| {
+            let place = format!("sheet {sheet}, first row");
+            Error::input(
+                place,
+                format!("a column `{wanted}`"),
+                format!("`{}`", titles.join("`, `")),
+            )
+        })?;
+        (1..range.height())
+            .map(|row| number(range, sheet, row, at))
+            .collect::<Result<Vec<f64>>>()
+            .map(|numbers| (d, numbers))
+    };
+    Derivative::ALL.into_iter().map(column).collect()
+}
+
+fn number(range: &Range<Data>, sheet: &str, row: usize, column: usize) -> Result<f64> {
+    let found = match range.get((row, column)) {
+        Some(Data::Float(x)) => return Ok(*x),
+        #[expect(
+            clippy::cast_precision_loss,
+            reason = "no measured figure has 16 digits before the point"
+        )]
+        Some(Data::Int(x)) => return Ok(*x as f64),
+        None | Some(Data::Empty) => "an empty cell".to_owned(),
+        Some(other) => format!("`{other}`"),
+    };
+    let (first_row, first_column) = range.start().unwrap_or_default();
+    let letter = column_letters(first_column as usize + column);
+    let place = format!(
+        "sheet {sheet}, cell {letter}{}",
+        first_row as usize + row + 1
+    );
+    Err(Error::input(place, "a number", found))
+}
+
+/// `A` … `Z`, `AA` … for a column counted from 0.
+fn column_letters(mut column: usize) -> String {
+    let mut letters = Vec::new();
+    loop {
+        letters.insert(0, char::from(b'A' + (column % 26) as u8));
+        if column < 26 {
+            return letters.into_iter().collect();
+        }
+        column = column / 26 - 1;
+    }
+}
+
+fn table_from(path: &Path, options: &WorkbookOptions, points: Points) -> Result<DerivativeTable> {
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let name = options.name.clone().unwrap_or_else(|| {
+        let bare = stem.trim_start_matches("AerodynamicDerivatives_");
+        bare.replace('_', "-")
+    });
+    let mut header = options.header.clone();
+    if header.source.is_empty() {
+        header.source = format!("workbook {stem}.xlsx");
+    }
+    if header.generator.is_empty() {
+        header.generator = concat!("aerodeck ", env!("CARGO_PKG_VERSION")).to_owned();
+    }
+    // Impossible points are found by the table's own check; the width is asked of possible ones only.
+    let mut table = DerivativeTable::new(name, 1.0, header, points)?;
+    table.width_m = match options.width_m {
+        Some(width) => positive("width_m", width)?,
+        None => width_from_frequencies(&table, &options.frequencies_hz)?,
+    };
+    Ok(table)
+}
+
+/// `B = V/(2πf V̂)`: the median over all points, all of which must agree.
+fn width_from_frequencies(table: &DerivativeTable, frequencies_hz: &[f64]) -> Result<f64> {
+    let mut widths = Vec::new();
+    for derivative in table.derivatives() {
+        let points = table.points(derivative);
+        if frequencies_hz.is_empty() || !points.len().is_multiple_of(frequencies_hz.len()) {
+            let expected = format!(
+                "{} test points a speed, one a frequency (or the width stated)",
+                frequencies_hz.len()
+            );
+            return Err(Error::input(
+                derivative.name(),
+                expected,
+                points.len().to_string(),
+            ));
+        }
+        for (p, f) in points.iter().zip(frequencies_hz.iter().cycle()) {
+            let speed = p.mean_speed_m_s.unwrap_or(f64::NAN);
+            widths.push(speed / (TAU * f * p.v_hat));
+        }
+    }
+    widths.sort_by(f64::total_cmp);
+    let median = widths[widths.len() / 2];
+    let (low, high) = (widths[0], widths[widths.len() - 1]);
+    if low > median * (1.0 - WIDTH_TOLERANCE) && high < median * (1.0 + WIDTH_TOLERANCE) {
+        return Ok(median);
+    }
+    Err(Error::input(
+        "width B = V/(2πf V̂)",
+        format!(
+            "one width from all points at the frequencies {frequencies_hz:?} Hz (or the width or other frequencies stated)"
+        ),
+        format!("{low:.4} m to {high:.4} m"),
+    ))
+}
+
+#[cfg(test)]
+#[path = "workbook_tests.rs"]
+mod tests;

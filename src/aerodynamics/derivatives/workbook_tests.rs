@@ -1,0 +1,135 @@
+//! Tests on the workbooks of `tests/data/make_workbook.py`.
+
+use super::super::{parse_csv, write_csv};
+use super::*;
+use std::path::PathBuf;
+
+fn fixture(name: &str) -> PathBuf {
+    [env!("CARGO_MANIFEST_DIR"), "tests", "data", name]
+        .iter()
+        .collect()
+}
+
+fn three_frequencies() -> WorkbookOptions {
+    WorkbookOptions {
+        frequencies_hz: vec![0.5, 1.0, 2.0],
+        ..WorkbookOptions::default()
+    }
+}
+
+fn refused(name: &str, options: &WorkbookOptions) -> String {
+    let path = fixture(name);
+    let message = read_workbook(&path, options).unwrap_err().to_string();
+    let place = message.strip_prefix(&format!("{}: ", path.display()));
+    place.expect("the file stands first").to_owned()
+}
+
+#[test]
+fn figures_and_width_are_those_that_were_written() {
+    let table = read_workbook(fixture("workbook.xlsx"), &three_frequencies()).unwrap();
+    assert_eq!(table.name, "workbook");
+    assert_eq!(table.header.source, "workbook workbook.xlsx");
+    // The width comes back from V/(2πf V̂) to rounding.
+    assert!((table.width_m - 0.5).abs() < 1e-15);
+    for (c, d) in Derivative::ALL.into_iter().enumerate() {
+        for (r, p) in table.points(d).iter().enumerate() {
+            let sign = if c % 2 == 0 { 1.0 } else { -1.0 };
+            let value = sign * (c as f64 + 1.0 + (r as f64 + 1.0) / 100.0);
+            assert!((p.value - value).abs() < 1e-15 * value.abs(), "{d}");
+            let speed = [4.0, 4.01, 4.02, 8.0, 8.01, 8.02][r] + c as f64 / 1000.0;
+            // openpyxl writes 16 digits, one short of bit exactness.
+            let written = p.mean_speed_m_s.unwrap();
+            assert!((written - speed).abs() < 1e-15 * speed, "{d}");
+            let v_hat = speed / (TAU * [0.5, 1.0, 2.0][r % 3] * 0.5);
+            assert!((p.v_hat - v_hat).abs() < 1e-15 * v_hat, "{d}");
+        }
+    }
+}
+
+#[test]
+fn workbook_to_csv_and_back_is_bit_exact() {
+    let table = read_workbook(fixture("workbook.xlsx"), &three_frequencies()).unwrap();
+    let mut text = Vec::new();
+    write_csv(&table, &mut text).unwrap();
+    let again = parse_csv(std::str::from_utf8(&text).unwrap()).unwrap();
+    assert_eq!(again, table);
+    let bits = |t: &DerivativeTable| {
+        let all = t.derivatives().flat_map(|d| t.points(d).to_vec());
+        all.flat_map(|p| [p.v_hat.to_bits(), p.value.to_bits()])
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(bits(&again), bits(&table));
+}
+
+#[test]
+fn a_stated_width_is_taken() {
+    let options = WorkbookOptions {
+        width_m: Some(0.51),
+        name: Some("deck".to_owned()),
+        ..WorkbookOptions::default()
+    };
+    let table = read_workbook(fixture("workbook.xlsx"), &options).unwrap();
+    assert_eq!((table.width_m, table.name.as_str()), (0.51, "deck"));
+}
+
+#[test]
+fn bad_cells_are_named() {
+    let options = three_frequencies();
+    assert_eq!(
+        refused("workbook_text.xlsx", &options),
+        "sheet Reduced Velocities, cell I4: expected a number, found `n/a`"
+    );
+    assert_eq!(
+        refused("workbook_empty.xlsx", &options),
+        "sheet Reduced Velocities, cell I4: expected a number, found an empty cell"
+    );
+    let message = refused("workbook_negative.xlsx", &options);
+    assert!(
+        message.starts_with("H3, point 3: expected a positive reduced velocity V̂, found -0.6"),
+        "{message}"
+    );
+}
+
+#[test]
+fn missing_sheets_and_columns_are_named() {
+    let options = three_frequencies();
+    let message = refused("workbook_no_column.xlsx", &options);
+    let expected = "sheet Reduced Velocities, first row: expected a column `Vred_H3`, found `Vred_P1`, `Vred_P2`";
+    assert!(message.starts_with(expected), "{message}");
+    assert_eq!(
+        refused("workbook_no_sheet.xlsx", &options),
+        "workbook: expected a sheet `Mean wind velocity`, found `Aerodynamic Derivatives`, `Wind`, `Reduced Velocities`"
+    );
+}
+
+#[test]
+fn frequencies_that_do_not_fit_are_refused() {
+    let message = refused("workbook.xlsx", &WorkbookOptions::default());
+    assert!(
+        message.contains("expected 8 test points a speed"),
+        "{message}"
+    );
+    let options = WorkbookOptions {
+        frequencies_hz: vec![0.5, 1.0, 1.5],
+        ..WorkbookOptions::default()
+    };
+    let message = refused("workbook.xlsx", &options);
+    assert!(message.ends_with("found 0.5000 m to 0.6667 m"), "{message}");
+}
+
+#[test]
+fn files_that_are_no_workbooks_are_refused() {
+    let message = refused("make_workbook.py", &three_frequencies());
+    assert!(
+        message.starts_with("expected an .xlsx workbook, found"),
+        "{message}"
+    );
+    let missing = read_workbook("no/such.xlsx", &three_frequencies());
+    assert!(matches!(missing, Err(Error::Io { .. })));
+}
+
+#[test]
+fn columns_are_lettered_as_in_a_spreadsheet() {
+    let names: Vec<_> = [0, 25, 26, 701, 702].map(column_letters).to_vec();
+    assert_eq!(names, ["A", "Z", "AA", "ZZ", "AAA"]);
+}
