@@ -5,6 +5,7 @@ pub mod aerodynamics;
 pub mod aeroelastic;
 #[cfg(feature = "cli")]
 pub mod cli;
+#[cfg(feature = "identification")]
 pub mod comparison;
 pub mod error;
 pub mod flutter;

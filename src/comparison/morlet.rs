@@ -1,0 +1,292 @@
+//! Continuous Morlet transform on chosen frequencies.
+
+use crate::error::{Error, Result, positive};
+use rayon::prelude::*;
+use rustfft::num_complex::Complex64;
+use rustfft::{Fft, FftPlanner};
+use serde::Serialize;
+use std::f64::consts::{PI, SQRT_2, TAU};
+use std::ops::Range;
+use std::sync::Arc;
+
+/// Parameters of the wavelet transform.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct WaveletParameters {
+    /// Number of frequencies, equally spaced from lowest to highest; default 1200.
+    pub level_count: usize,
+    /// Lowest frequency, Hz; default 0.2.
+    pub frequency_min_hz: f64,
+    /// Highest frequency, Hz; default 12.
+    pub frequency_max_hz: f64,
+    /// Central frequency `f₀` of the mother wavelet, cycles per unit of its time; default 6.
+    pub central_frequency: f64,
+    /// Half width `β` of the wavelet in units of `a/√2`; default 3.
+    pub truncation: f64,
+    /// Width of the cone of influence in units of `a/√2`; default 1.
+    pub cone: f64,
+}
+
+impl Default for WaveletParameters {
+    fn default() -> Self {
+        Self {
+            level_count: 1200,
+            frequency_min_hz: 0.2,
+            frequency_max_hz: 12.0,
+            central_frequency: 6.0,
+            truncation: 3.0,
+            cone: 1.0,
+        }
+    }
+}
+
+/// Transform of signals of one length and time step.
+///
+/// At frequency `f` the scale is `a = f₀/f` (s) and
+/// `W(f, t) = Δt/√a Σ_s x(t − s) ψ(s)`, `ψ(s) = π^(−1/4) exp(2πi f₀ s/a) exp(−(s/a)²/2)`, `|s| ≤ β a/√2`,
+/// zeros beyond the ends of the record. Coefficients within `cone · a/√2` of an end are left out
+/// (time counted from the first sample).
+pub(super) struct Morlet {
+    parameters: WaveletParameters,
+    sample_count: usize,
+    time_step_s: f64,
+    size: usize,
+    forward: Arc<dyn Fft<f64>>,
+    inverse: Arc<dyn Fft<f64>>,
+}
+
+impl Morlet {
+    /// For signals of `sample_count` samples.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for parameters that are not positive, a highest frequency beyond Nyquist, or a record too
+    /// short to hold any coefficient outside the cone.
+    pub(super) fn new(
+        parameters: &WaveletParameters,
+        sample_count: usize,
+        time_step_s: f64,
+    ) -> Result<Self> {
+        check(parameters, time_step_s)?;
+        let longest = half_width(parameters, parameters.frequency_min_hz, time_step_s);
+        // Kernels beyond the record multiply nothing; with this size the ends do not wrap into it.
+        let size = (sample_count + longest.min(sample_count - 1)).next_power_of_two();
+        let mut planner = FftPlanner::new();
+        let plan = Self {
+            parameters: *parameters,
+            sample_count,
+            time_step_s,
+            size,
+            forward: planner.plan_fft_forward(size),
+            inverse: planner.plan_fft_inverse(size),
+        };
+        if plan.inside(plan.level_count() - 1).is_empty() {
+            return Err(Error::input(
+                "signals for the wavelet transform",
+                format!(
+                    "a record longer than twice the cone at {} Hz",
+                    parameters.frequency_max_hz
+                ),
+                format!("{} s", sample_count as f64 * time_step_s),
+            ));
+        }
+        Ok(plan)
+    }
+
+    /// Number of frequencies.
+    pub(super) fn level_count(&self) -> usize {
+        self.parameters.level_count
+    }
+
+    /// Number of samples of a signal.
+    pub(super) fn sample_count(&self) -> usize {
+        self.sample_count
+    }
+
+    /// Frequency of a level, Hz.
+    pub(super) fn frequency_hz(&self, level: usize) -> f64 {
+        let p = &self.parameters;
+        if p.level_count == 1 {
+            return p.frequency_min_hz;
+        }
+        let step = (p.frequency_max_hz - p.frequency_min_hz) / (p.level_count - 1) as f64;
+        p.frequency_min_hz + level as f64 * step
+    }
+
+    /// Samples outside the cone of influence at a level, possibly none.
+    pub(super) fn inside(&self, level: usize) -> Range<usize> {
+        let scale = self.parameters.central_frequency / self.frequency_hz(level);
+        let edge = scale / SQRT_2 * self.parameters.cone;
+        let last = (self.sample_count - 1) as f64 * self.time_step_s;
+        let time = |k: usize| self.time_step_s * k as f64;
+        // First candidates by division, then the condition itself, so that rounding cannot shift the edge.
+        let mut start = (edge / self.time_step_s) as usize;
+        while start < self.sample_count && time(start) <= edge {
+            start += 1;
+        }
+        let mut end = self.sample_count;
+        while end > start && time(end - 1) >= last - edge {
+            end -= 1;
+        }
+        start.min(end)..end
+    }
+
+    /// Spectrum of a signal, as [`Self::rows`] wants it.
+    pub(super) fn spectrum(&self, signal: &[f64]) -> Vec<Complex64> {
+        let mut buffer = vec![Complex64::default(); self.size];
+        for (z, &value) in buffer.iter_mut().zip(signal) {
+            z.re = value;
+        }
+        self.forward.process(&mut buffer);
+        buffer
+    }
+
+    /// Coefficients of several signals at one level: one row of `sample_count` values per spectrum.
+    pub(super) fn rows<const N: usize>(
+        &self,
+        level: usize,
+        spectra: [&[Complex64]; N],
+    ) -> [Vec<Complex64>; N] {
+        let mut kernel = self.kernel(level);
+        self.forward.process(&mut kernel);
+        spectra.map(|spectrum| {
+            let mut row: Vec<Complex64> = kernel.iter().zip(spectrum).map(|(k, x)| k * x).collect();
+            self.inverse.process(&mut row);
+            row.truncate(self.sample_count);
+            row
+        })
+    }
+
+    /// Wavelet of a level, its time 0 at index 0 and negative times at the end, scaled by `Δt/(√a M)`
+    /// (M for the transform back).
+    fn kernel(&self, level: usize) -> Vec<Complex64> {
+        let f = self.frequency_hz(level);
+        let scale = self.parameters.central_frequency / f;
+        let half = half_width(&self.parameters, f, self.time_step_s).min(self.sample_count - 1);
+        let factor = PI.powf(-0.25) * self.time_step_s / scale.sqrt() / self.size as f64;
+        let mut kernel = vec![Complex64::default(); self.size];
+        for k in 0..=half {
+            let time = k as f64 * self.time_step_s;
+            let envelope = factor * (-0.5 * (time / scale).powi(2)).exp();
+            let value = Complex64::from_polar(envelope, TAU * f * time);
+            kernel[k] = value;
+            if k > 0 {
+                kernel[self.size - k] = value.conj();
+            }
+        }
+        kernel
+    }
+
+    /// `work` on groups of levels, in parallel; results in the order of the levels, so that sums over them do
+    /// not depend on the number of threads.
+    pub(super) fn by_groups<T: Send>(&self, work: impl Fn(Range<usize>) -> T + Sync) -> Vec<T> {
+        const GROUP: usize = 16;
+        let count = self.level_count();
+        (0..count.div_ceil(GROUP))
+            .into_par_iter()
+            .map(|g| work(g * GROUP..((g + 1) * GROUP).min(count)))
+            .collect()
+    }
+}
+
+/// Samples of the wavelet on each side of its centre.
+fn half_width(parameters: &WaveletParameters, frequency_hz: f64, time_step_s: f64) -> usize {
+    let scale = parameters.central_frequency / frequency_hz;
+    (parameters.truncation * scale / SQRT_2 / time_step_s) as usize
+}
+
+fn check(parameters: &WaveletParameters, time_step_s: f64) -> Result<()> {
+    let p = parameters;
+    if p.level_count == 0 {
+        return Err(Error::input("number of wavelet levels", "at least 1", "0"));
+    }
+    positive("lowest wavelet frequency, Hz", p.frequency_min_hz)?;
+    positive("central frequency of the wavelet", p.central_frequency)?;
+    positive("truncation of the wavelet", p.truncation)?;
+    crate::error::non_negative("cone of influence of the wavelet", p.cone)?;
+    let nyquist = 0.5 / time_step_s;
+    if !(p.frequency_max_hz >= p.frequency_min_hz && p.frequency_max_hz <= nyquist) {
+        return Err(Error::input(
+            "highest wavelet frequency, Hz",
+            format!(
+                "a number from {} Hz to the Nyquist frequency {nyquist} Hz",
+                p.frequency_min_hz
+            ),
+            p.frequency_max_hz.to_string(),
+        ));
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_abs_diff_eq;
+
+    fn parameters(level_count: usize) -> WaveletParameters {
+        WaveletParameters {
+            level_count,
+            frequency_min_hz: 0.5,
+            frequency_max_hz: 5.0,
+            ..WaveletParameters::default()
+        }
+    }
+
+    #[test]
+    fn rows_are_the_sums_of_the_definition() {
+        let dt = 0.05;
+        let x: Vec<f64> = (0..150)
+            .map(|k| (0.3 * k as f64).sin() + 0.01 * k as f64)
+            .collect();
+        let plan = Morlet::new(&parameters(4), x.len(), dt).unwrap();
+        let spectrum = plan.spectrum(&x);
+        // Level 0 has a wavelet longer than the record, level 3 a short one.
+        for level in [0, 3] {
+            let a = 6.0 / plan.frequency_hz(level);
+            let [row] = plan.rows(level, [&spectrum]);
+            for t in [0_usize, 1, 70, 149] {
+                let mut sum = Complex64::default();
+                for (k, value) in x.iter().enumerate() {
+                    let s = (t as f64 - k as f64) * dt;
+                    if s.abs() <= 3.0 * a / SQRT_2 {
+                        let envelope = PI.powf(-0.25) * (-0.5 * (s / a).powi(2)).exp();
+                        sum += Complex64::from_polar(envelope * value, TAU * 6.0 * s / a);
+                    }
+                }
+                let expected = sum * dt / a.sqrt();
+                assert_abs_diff_eq!(row[t].re, expected.re, epsilon = 1e-13);
+                assert_abs_diff_eq!(row[t].im, expected.im, epsilon = 1e-13);
+            }
+        }
+    }
+
+    #[test]
+    fn amplitude_of_a_harmonic_is_the_closed_form() {
+        // |W| = A/2 · √(2π) π^(−1/4) √a at the frequency itself, for an untruncated wavelet.
+        let dt = 0.01;
+        let x: Vec<f64> = (0..6000)
+            .map(|k| 0.8 * (TAU * 2.0 * dt * k as f64).cos())
+            .collect();
+        let p = WaveletParameters {
+            level_count: 1,
+            frequency_min_hz: 2.0,
+            frequency_max_hz: 2.0,
+            truncation: 9.0,
+            ..WaveletParameters::default()
+        };
+        let plan = Morlet::new(&p, x.len(), dt).unwrap();
+        let [row] = plan.rows(0, [&plan.spectrum(&x)]);
+        let expected = 0.4 * TAU.sqrt() * PI.powf(-0.25) * 3.0_f64.sqrt();
+        // The tail left out beyond 9/√2 standard widths is erfc(4.5) = 2e-10 of the whole.
+        assert_abs_diff_eq!(row[3000].norm(), expected, epsilon = 1e-8);
+    }
+
+    #[test]
+    fn cone_and_limits() {
+        let plan = Morlet::new(&parameters(10), 1000, 0.01).unwrap();
+        // a/√2 = 12/√2 = 8.49 s at 0.5 Hz: nothing is left of 10 s; 1.2/√2 = 0.8485 s at 5 Hz.
+        assert!(plan.inside(0).is_empty());
+        assert_eq!(plan.inside(9), 85..915);
+        assert!(Morlet::new(&parameters(10), 100, 0.01).is_err());
+        assert!(Morlet::new(&parameters(10), 1000, 0.2).is_err());
+        assert!(Morlet::new(&parameters(0), 1000, 0.01).is_err());
+    }
+}
