@@ -3,6 +3,8 @@
 
 pub mod aerodynamics;
 pub mod aeroelastic;
+#[cfg(feature = "identification")]
+pub mod benchmarks;
 #[cfg(feature = "cli")]
 pub mod cli;
 #[cfg(feature = "identification")]

@@ -1,32 +1,19 @@
-//! Onsets of cases with known answers, by eigenvalues and by the determinant.
+//! Eigenvalues and determinant agree; stable sections say so; curves stay on their branches. The reference figures
+//! themselves stand in `benchmarks.rs`.
 
-use aerodeck::aerodynamics::{AerodynamicModel, FlatPlate, RationalModel};
+use aerodeck::aerodynamics::{AerodynamicModel, RationalModel};
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::flutter::{
-    FlutterSearch, Onset, OnsetSearch, determinant_onset, divergence_speed, find_onset, impedance,
-    trace_modes,
+    FlutterSearch, Onset, OnsetSearch, determinant_onset, find_onset, trace_modes,
 };
 use aerodeck::section::SectionModel;
 use aerodeck::units::{ReducedFrequency, ReducedFrequencyRange};
-use std::f64::consts::TAU;
 
 fn wide_range() -> ReducedFrequencyRange {
     ReducedFrequencyRange {
         min: ReducedFrequency::from_full_width(0.02),
         max: ReducedFrequency::from_full_width(10.0),
     }
-}
-
-fn flat_plate_onset(section: &SectionModel, rotary_inertia: bool) -> Onset {
-    let search = determinant_onset(
-        "flat plate",
-        &section.structure().unwrap(),
-        &FlatPlate { rotary_inertia },
-        wide_range(),
-        200.0,
-    )
-    .unwrap();
-    search.onset().unwrap().clone()
 }
 
 fn jones_onset(section: &SectionModel) -> Onset {
@@ -55,67 +42,9 @@ fn near(found: f64, expected: f64, tolerance: f64) {
 }
 
 #[test]
-fn flat_plate_on_table_4_1() {
-    let onset = flat_plate_onset(&SectionModel::table_4_1(), true);
-    near(onset.speed_m_s, 39.468, 0.001);
-    near(onset.frequency_hz, 3.5496, 0.001);
-    assert_eq!(onset.branch, "torsion");
-}
-
-#[test]
-fn iabse_1_1a_flat_plate() {
-    let onset = flat_plate_onset(&SectionModel::iabse_1_1a(), false);
-    near(onset.speed_m_s, 77.480, 5e-4);
-    near(onset.frequency_hz, 0.19400, 5e-6);
-    near(onset.mode_ratio, 0.6526, 5e-5);
-    near(onset.phase_deg, -160.1, 0.05);
-    near(onset.reduced_velocity.v_star(), 12.883, 5e-4);
-    let with_inertia = flat_plate_onset(&SectionModel::iabse_1_1a(), true);
-    near(with_inertia.speed_m_s, 77.242, 5e-4);
-    near(with_inertia.frequency_hz, 0.19358, 5e-6);
-}
-
-#[test]
-fn iabse_1_1a_divergence() {
-    let g0 = FlatPlate::default()
-        .transfer(ReducedFrequency::from_full_width(0.0))
-        .unwrap();
-    let structure = SectionModel::iabse_1_1a().structure().unwrap();
-    near(
-        divergence_speed(&structure, &g0).unwrap().unwrap(),
-        90.466,
-        5e-4,
-    );
-}
-
-#[test]
-fn iabse_1_1a_impedance() {
-    let structure = SectionModel::iabse_1_1a().structure().unwrap();
-    let plate = FlatPlate {
-        rotary_inertia: false,
-    };
-    let z = impedance(&structure, &plate, 45.0, TAU * 0.278).unwrap()
-        / nalgebra::Complex::new(1e6, 0.0);
-    let printed = [
-        (-0.0619, 0.0056),
-        (-0.1492, -0.0811),
-        (0.0100, 0.0419),
-        (-1.1559, 0.5382),
-    ];
-    for (i, (re, im)) in printed.into_iter().enumerate() {
-        near(z[(i / 2, i % 2)].re, re, 5.1e-5);
-        near(z[(i / 2, i % 2)].im, im, 5.1e-5);
-    }
-}
-
-#[test]
 fn jones_by_eigenvalues_and_by_determinant() {
-    let mut section = SectionModel::iabse_1_1a();
+    let section = SectionModel::iabse_1_1a();
     let onset = jones_onset(&section);
-    near(onset.speed_m_s, 76.6790, 5e-5);
-    near(onset.frequency_hz, 0.19319, 5e-6);
-    near(onset.mode_ratio, 0.65745, 5e-6);
-    near(onset.phase_deg, -160.343, 5e-4);
     let second = determinant_onset(
         "Jones",
         &section.structure().unwrap(),
@@ -129,10 +58,6 @@ fn jones_by_eigenvalues_and_by_determinant() {
     near(second.frequency_hz / onset.frequency_hz, 1.0, 1e-10);
     near(second.mode_ratio, onset.mode_ratio, 1e-8);
     near(second.phase_deg, onset.phase_deg, 1e-6);
-    for (density, speed) in [(1.20, 77.2838), (1.25, 75.8002)] {
-        section.air_density_kg_m3 = density;
-        near(jones_onset(&section).speed_m_s, speed, 5e-5);
-    }
 }
 
 #[test]

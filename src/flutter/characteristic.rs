@@ -50,7 +50,8 @@ impl Characteristic {
         let Realization::Continuous(aero) = section.aerodynamics() else {
             return None;
         };
-        let triangular = (0..aero.a.nrows()).all(|i| (i + 1..aero.a.ncols()).all(|j| aero.a[(i, j)] == 0.0));
+        let triangular =
+            (0..aero.a.nrows()).all(|i| (i + 1..aero.a.ncols()).all(|j| aero.a[(i, j)] == 0.0));
         let s = section.structure();
         let n = s.dofs.len();
         if n > MAX_DOFS || !triangular {

@@ -8,6 +8,7 @@ mod curves;
 mod determinant;
 mod divergence;
 mod onset;
+mod quasi_pk;
 mod search;
 mod tracking;
 
@@ -15,4 +16,5 @@ pub use curves::{FlutterCurves, ModeBranch, ModePoint, trace_modes};
 pub use determinant::{determinant_onset, impedance};
 pub use divergence::divergence_speed;
 pub use onset::{FlutterSearch, Onset, OnsetMethod};
+pub use quasi_pk::quasi_pk_mode;
 pub use search::{OnsetSearch, find_onset};

@@ -167,9 +167,11 @@ fn filter_crossing(
     if before >= 0.0 || after < 0.0 {
         return Ok(None);
     }
-    let speed = root((low.speed, before.max(-after)), (high.speed, after), |speed| {
-        growth(&low.advance(speed)?)
-    })?;
+    let speed = root(
+        (low.speed, before.max(-after)),
+        (high.speed, after),
+        |speed| growth(&low.advance(speed)?),
+    )?;
     let Some(lambda) = least_damped_filter(section, &low.advance(speed)?)? else {
         return Ok(None);
     };

@@ -256,7 +256,7 @@ fn natural_modes(section: &CoupledSection) -> Result<Vec<TrackedMode>> {
 }
 
 /// Puts the modes into the order of the degrees of freedom they move most.
-fn order_by_dof(section: &CoupledSection, modes: &mut Vec<TrackedMode>) {
+fn order_by_dof(section: &CoupledSection, modes: &mut [TrackedMode]) {
     let n = modes.len();
     for dof in 0..n {
         let strongest = (dof..n)

@@ -30,6 +30,7 @@ pub const ARROWS: &[Row] = &[
     row("section", &["units"]),
     row("aerodynamics", &["units", "section", "state_space"]),
     row("wind_tunnel", &["units", "section", "aerodynamics"]),
+    row("trained_model", &["units", "section", "aerodynamics"]),
     row(
         "identification",
         &[
@@ -39,12 +40,13 @@ pub const ARROWS: &[Row] = &[
             "aerodynamics",
             "wind_tunnel::Record*",
             "wind_tunnel::Segment",
+            // what a fit returns
+            "trained_model::Model",
         ],
     ),
     row("aeroelastic", &["aerodynamics+"]),
     row("flutter", &["aeroelastic+"]),
     row("response", &["aeroelastic+"]),
-    row("trained_model", &["units", "section", "aerodynamics"]),
     row("fmu", &["flutter+", "response+", "trained_model+"]),
     row("fmu::fmi2", &["fmu"]),
     row("benchmarks", BELOW_STUDY),
