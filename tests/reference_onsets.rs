@@ -60,6 +60,36 @@ fn jones_by_eigenvalues_and_by_determinant() {
     near(second.phase_deg, onset.phase_deg, 1e-6);
 }
 
+/// On the section of Table 4.1 the heave mode stops oscillating at 61 m/s: the onset below is found all the same.
+#[test]
+fn an_overdamped_mode_hides_no_onset() {
+    let section = SectionModel::table_4_1();
+    let onset = jones_onset(&section);
+    let second = determinant_onset(
+        "Jones",
+        &section.structure().unwrap(),
+        &RationalModel::jones_flat_plate(),
+        wide_range(),
+        200.0,
+    )
+    .unwrap();
+    let second = second.onset().unwrap();
+    near(second.speed_m_s / onset.speed_m_s, 1.0, 1e-10);
+    near(second.frequency_hz / onset.frequency_hz, 1.0, 1e-10);
+    let structure = section.structure().unwrap();
+    let aero = RationalModel::jones_flat_plate().realize().unwrap();
+    let coupled = CoupledSection::new(structure, aero).unwrap();
+    let curves = trace_modes("Jones", &coupled, &[20.0, 60.0, 63.0, 90.0]).unwrap();
+    assert_eq!(
+        curves
+            .branches
+            .iter()
+            .map(|b| b.points.len())
+            .collect::<Vec<_>>(),
+        [2, 4]
+    );
+}
+
 #[test]
 fn stable_sections_say_so() {
     let mut stiff = SectionModel::iabse_1_1a();

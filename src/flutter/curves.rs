@@ -42,7 +42,7 @@ impl From<Complex<f64>> for Complex64 {
 pub struct ModeBranch {
     /// Degree of freedom the mode moves in still air.
     pub name: String,
-    /// One point a wind speed.
+    /// One point a wind speed, up to where the mode stops oscillating.
     pub points: Vec<ModePoint>,
 }
 
@@ -89,8 +89,8 @@ pub fn trace_modes(
             continue;
         }
         tracker = tracker.advance(speed)?;
-        for (branch, mode) in branches.iter_mut().zip(&tracker.modes) {
-            branch.points.push(ModePoint {
+        for mode in &tracker.modes {
+            branches[mode.branch].points.push(ModePoint {
                 speed_m_s: speed,
                 eigenvalue: mode.lambda.into(),
                 frequency_hz: mode.lambda.im.abs() / TAU,

@@ -2,7 +2,7 @@
 
 use super::curves::damping_ratio;
 use super::onset::{FlutterSearch, Onset, OnsetMethod, choose};
-use super::tracking::{Tracker, branch_name, mode_shape};
+use super::tracking::{TrackedMode, Tracker, branch_name, mode_shape};
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, positive};
 use crate::section::Dof;
@@ -66,9 +66,11 @@ pub fn find_onset(
             continue;
         }
         let next = tracker.advance(speed)?;
-        for mode in 0..tracker.modes.len() {
-            if tracker.modes[mode].lambda.re < 0.0 && next.modes[mode].lambda.re >= 0.0 {
-                crossings.push(structural_crossing(model, section, &tracker, &next, mode)?);
+        for after in next.modes.iter().filter(|m| m.lambda.re >= 0.0) {
+            if let Some(before) = tracker.mode(after.branch).filter(|m| m.lambda.re < 0.0) {
+                let ends = (before.lambda.re, after.lambda.re);
+                let branch = after.branch;
+                crossings.push(structural_crossing(model, &tracker, &next, branch, ends)?);
             }
         }
         tracker = next;
@@ -80,34 +82,36 @@ pub fn find_onset(
 /// Refines the zero of `Re λ` of one structural mode.
 fn structural_crossing(
     model: &str,
-    section: &CoupledSection,
     low: &Tracker<'_>,
     high: &Tracker<'_>,
-    mode: usize,
+    branch: usize,
+    (before, after): (f64, f64),
 ) -> Result<Onset> {
-    let structure = section.structure();
-    let speed = root(
-        (low.speed, low.modes[mode].lambda.re),
-        (high.speed, high.modes[mode].lambda.re),
-        |speed| Ok(low.advance(speed)?.modes[mode].lambda.re),
-    )?;
-    let at = low.advance(speed)?;
-    let nearby = low.advance(speed * (1.0 - 1e-5))?;
-    let slope = (damping_ratio(at.modes[mode].lambda) - damping_ratio(nearby.modes[mode].lambda))
-        / (speed * 1e-5);
+    let structure = low.section.structure();
+    let mode_at = |speed: f64| -> Result<TrackedMode> {
+        low.advance(speed)?.mode(branch).cloned().ok_or_else(|| {
+            Error::Numerical(format!("onset: the mode does not oscillate at {speed} m/s"))
+        })
+    };
+    let speed = root((low.speed, before), (high.speed, after), |speed| {
+        Ok(mode_at(speed)?.lambda.re)
+    })?;
+    let at = mode_at(speed)?;
+    let nearby = mode_at(speed * (1.0 - 1e-5))?;
+    let slope = (damping_ratio(at.lambda) - damping_ratio(nearby.lambda)) / (speed * 1e-5);
     let mut onset = Onset::new(
         model,
         OnsetMethod::Eigenvalues,
         structure,
-        (speed, at.modes[mode].lambda.im),
-        &at.modes[mode].shape,
-        branch_name(structure.dofs[mode]),
+        (speed, at.lambda.im),
+        &at.shape,
+        branch_name(structure.dofs[branch]),
     );
     onset.damping_slope_s_m = Some(slope);
-    if single_dof(structure.dofs[mode], onset.mode_ratio) {
+    if single_dof(structure.dofs[branch], onset.mode_ratio) {
         onset.warnings.push(format!(
             "the mode is almost purely {}: a one-degree-of-freedom instability",
-            structure.dofs[mode].name()
+            structure.dofs[branch].name()
         ));
     }
     Ok(onset)
@@ -125,7 +129,7 @@ fn single_dof(dof: Dof, mode_ratio: f64) -> bool {
 /// The least damped oscillating eigenvalue that is none of the tracked modes.
 fn least_damped_filter(section: &CoupledSection, at: &Tracker<'_>) -> Result<Option<Complex<f64>>> {
     let tracked = |z: &Complex<f64>| {
-        let near = |m: &super::tracking::TrackedMode| (m.lambda - z).norm() < 1e-6 * z.norm();
+        let near = |m: &TrackedMode| (m.lambda - z).norm() < 1e-6 * z.norm();
         at.modes.iter().any(near)
     };
     Ok(section

@@ -21,24 +21,33 @@ const SEPARATION: f64 = 1e-9;
 /// Sampled systems start where this many samples fall into one period, below which frequencies would alias.
 const SAMPLES_PER_PERIOD: f64 = 5.0;
 
+/// A mode with more damping than this, as a ratio to critical, may stop oscillating.
+const NEARLY_CRITICAL: f64 = 0.8;
+
 /// One mode at one wind speed.
 #[derive(Debug, Clone)]
 pub(super) struct TrackedMode {
+    /// Place of the degree of freedom that the mode moves in still air.
+    pub(super) branch: usize,
     /// Eigenvalue, rad/s.
     pub(super) lambda: Complex<f64>,
     /// Displacements of the mode (n): m, rad; unit norm in `(y/B, x/B, θ)`.
     pub(super) shape: DVector<Complex<f64>>,
+    /// `dλ/dV` from the last step.
+    slope: Complex<f64>,
 }
 
 /// The structural modes at one wind speed, with what is needed to predict the next.
+///
+/// A mode that stops oscillating (its pair of eigenvalues meets on the negative real axis) is not followed any further:
+/// it can diverge, which is found in closed form elsewhere, but not flutter.
 #[derive(Debug, Clone)]
 pub(super) struct Tracker<'a> {
-    section: &'a CoupledSection,
+    pub(super) section: &'a CoupledSection,
     characteristic: Option<std::rc::Rc<Characteristic>>,
     pub(super) speed: f64,
+    /// Those that oscillate, in the order of the degrees of freedom.
     pub(super) modes: Vec<TrackedMode>,
-    /// `dλ/dV` of each mode from the last step.
-    slopes: Vec<Complex<f64>>,
 }
 
 impl<'a> Tracker<'a> {
@@ -47,13 +56,11 @@ impl<'a> Tracker<'a> {
     pub(super) fn start(section: &'a CoupledSection) -> Result<Self> {
         let natural = natural_modes(section)?;
         let speed = start_speed(section, &natural);
-        let slopes = vec![Complex::new(0.0, 0.0); natural.len()];
         let still = Self {
             section,
             characteristic: Characteristic::new(section).map(std::rc::Rc::new),
             speed,
             modes: natural,
-            slopes,
         };
         still.matched(speed)?.ok_or_else(|| {
             Error::Numerical(format!(
@@ -77,15 +84,35 @@ impl<'a> Tracker<'a> {
                 at = next;
                 continue;
             }
-            if halvings == MAX_HALVINGS {
+            if halvings < MAX_HALVINGS {
+                halvings += 1;
+                step *= 0.5;
+            } else if at.drop_overdamped() {
+                halvings = 0;
+                step = speed - at.speed;
+            } else {
                 return Err(Error::Numerical(format!(
                     "mode tracking: two modes cannot be told apart near {target:.4} m/s"
                 )));
             }
-            halvings += 1;
-            step *= 0.5;
         }
         Ok(at)
+    }
+
+    /// The mode of a branch, unless it has stopped oscillating.
+    pub(super) fn mode(&self, branch: usize) -> Option<&TrackedMode> {
+        self.modes.iter().find(|m| m.branch == branch)
+    }
+
+    /// Stops following the mode with the most damping if that is close to critical; whether there was one.
+    fn drop_overdamped(&mut self) -> bool {
+        let damping = |m: &TrackedMode| -m.lambda.re / m.lambda.norm();
+        let most = self.modes.iter().map(damping).fold(f64::MIN, f64::max);
+        let before = self.modes.len();
+        if most > NEARLY_CRITICAL {
+            self.modes.retain(|m| damping(m) < most);
+        }
+        self.modes.len() < before
     }
 
     /// Modes at `speed` if each is clearly the continuation of one here.
@@ -93,40 +120,43 @@ impl<'a> Tracker<'a> {
         let predicted: Vec<_> = self
             .modes
             .iter()
-            .zip(&self.slopes)
-            .map(|(mode, slope)| mode.lambda + slope * (speed - self.speed))
+            .map(|mode| mode.lambda + mode.slope * (speed - self.speed))
             .collect();
         let corrected = match &self.characteristic {
             Some(problem) => newton(self.section, problem, &predicted, speed),
             None => nearest(self.section, &predicted, speed)?,
         };
-        let Some(modes) = corrected else {
+        let Some(roots) = corrected else {
             return Ok(None);
         };
-        let continuous = modes
-            .iter()
-            .zip(&self.modes)
-            .all(|(new, old)| assurance(&new.shape, &old.shape) >= MIN_ASSURANCE);
-        if !continuous {
-            return Ok(None);
-        }
-        let slopes = if speed == self.speed {
-            self.slopes.clone()
-        } else {
-            let rise = |(new, old): (&TrackedMode, &TrackedMode)| {
-                (new.lambda - old.lambda) / (speed - self.speed)
+        let mut modes = Vec::with_capacity(roots.len());
+        for ((lambda, shape), old) in roots.into_iter().zip(&self.modes) {
+            if assurance(&shape, &old.shape) < MIN_ASSURANCE {
+                return Ok(None);
+            }
+            let slope = if speed == self.speed {
+                old.slope
+            } else {
+                (lambda - old.lambda) / (speed - self.speed)
             };
-            modes.iter().zip(&self.modes).map(rise).collect()
-        };
+            modes.push(TrackedMode {
+                branch: old.branch,
+                lambda,
+                shape,
+                slope,
+            });
+        }
         Ok(Some(Self {
             section: self.section,
             characteristic: self.characteristic.clone(),
             speed,
             modes,
-            slopes,
         }))
     }
 }
+
+/// An eigenvalue and its shape, scaled as in [`TrackedMode`].
+type Root = (Complex<f64>, DVector<Complex<f64>>);
 
 /// Corrects every prediction by Newton's method; `None` when one fails, turns real, or two meet.
 fn newton(
@@ -134,22 +164,19 @@ fn newton(
     problem: &Characteristic,
     predicted: &[Complex<f64>],
     speed: f64,
-) -> Option<Vec<TrackedMode>> {
+) -> Option<Vec<Root>> {
     let mut work = Vec::new();
-    let mut modes: Vec<TrackedMode> = Vec::with_capacity(predicted.len());
+    let mut roots: Vec<Root> = Vec::with_capacity(predicted.len());
     for start in predicted {
         let (lambda, shape) = problem.solve(*start, speed, &mut work)?;
-        let distinct = |m: &TrackedMode| (m.lambda - lambda).norm() > SEPARATION * lambda.norm();
-        if lambda.im < 0.0 || !modes.iter().all(distinct) {
+        let distinct = |(other, _): &Root| (other - lambda).norm() > SEPARATION * lambda.norm();
+        if lambda.im < 0.0 || !roots.iter().all(distinct) {
             return None;
         }
         let size = dimensionless(section, &shape).norm();
-        modes.push(TrackedMode {
-            lambda,
-            shape: shape.unscale(size),
-        });
+        roots.push((lambda, shape.unscale(size)));
     }
-    Some(modes)
+    Some(roots)
 }
 
 /// Takes for every prediction the eigenvalue of the state matrix that is clearly nearest; `None` when one is not.
@@ -157,23 +184,20 @@ fn nearest(
     section: &CoupledSection,
     predicted: &[Complex<f64>],
     speed: f64,
-) -> Result<Option<Vec<TrackedMode>>> {
+) -> Result<Option<Vec<Root>>> {
     let system = section.at(speed)?;
     let all = system.eigenvalues()?;
     let candidates: Vec<usize> = (0..all.len()).filter(|i| all[*i].im >= 0.0).collect();
     let mut taken = vec![false; all.len()];
-    let mut modes = Vec::with_capacity(predicted.len());
+    let mut roots = Vec::with_capacity(predicted.len());
     for start in predicted {
         let Some(i) = clearly_nearest(*start, &candidates, &all).filter(|i| !taken[*i]) else {
             return Ok(None);
         };
         taken[i] = true;
-        modes.push(TrackedMode {
-            lambda: all[i],
-            shape: mode_shape(section, &system, all[i])?,
-        });
+        roots.push((all[i], mode_shape(section, &system, all[i])?));
     }
-    Ok(Some(modes))
+    Ok(Some(roots))
 }
 
 /// Index of the candidate nearest to `predicted`, unless another is nearly as near.
@@ -242,8 +266,10 @@ fn natural_modes(section: &CoupledSection) -> Result<Vec<TrackedMode>> {
         let shape = vector.rows(0, n).into_owned();
         let size = dimensionless(section, &shape).norm();
         modes.push(TrackedMode {
+            branch: 0,
             lambda,
             shape: shape.unscale(size),
+            slope: Complex::new(0.0, 0.0),
         });
     }
     if modes.len() != n {
@@ -266,6 +292,7 @@ fn order_by_dof(section: &CoupledSection, modes: &mut [TrackedMode]) {
             })
             .unwrap_or(dof);
         modes.swap(dof, strongest);
+        modes[dof].branch = dof;
     }
 }
 
