@@ -63,7 +63,6 @@ pub(crate) struct Plan {
 
 /// Systems of one candidate, one a set of inputs that moved together and force.
 pub(crate) struct Totals {
-    layout: Layout,
     sets: BTreeMap<Vec<usize>, Vec<StreamingQr>>,
 }
 
@@ -123,7 +122,6 @@ fn one_record<C: Columns>(record: &Scaled<'_>, plan: &Plan, make: &mut C) -> Res
     let discard = (plan.discard_s / step).ceil() as usize;
     let mut totals: Vec<Totals> = (0..make.candidates())
         .map(|_| Totals {
-            layout: plan.layout,
             sets: BTreeMap::new(),
         })
         .collect();
@@ -181,13 +179,7 @@ impl Chunk {
         }
     }
 
-    fn take<C: Columns>(
-        &mut self,
-        slice: &Slice<'_>,
-        plan: &Plan,
-        active: &[usize],
-        make: &mut C,
-    ) {
+    fn take<C: Columns>(&mut self, slice: &Slice<'_>, plan: &Plan, active: &[usize], make: &mut C) {
         let forces = plan.layout.inputs;
         if self.sets.last().is_none_or(|(set, _)| set != active) {
             let empty = StreamingQr::new(plan.layout.width(active.len()), forces);
@@ -262,9 +254,9 @@ impl Factored {
         for part in parts {
             for (set, systems) in part.sets {
                 let own: Vec<usize> = (0..layout.width(set.len())).collect();
-                let into = sets.entry(set).or_insert_with(|| {
-                    vec![StreamingQr::new(own.len(), 1); layout.inputs]
-                });
+                let into = sets
+                    .entry(set)
+                    .or_insert_with(|| vec![StreamingQr::new(own.len(), 1); layout.inputs]);
                 for (into, system) in into.iter_mut().zip(systems) {
                     into.absorb(&system.finish(), &own, 0, 1.0);
                 }

@@ -189,11 +189,19 @@ impl<'a> ContinuousColumns<'a> {
     ///
     /// # Errors
     /// [`Error::Input`] for a cut-off at or above half the sampling frequency.
-    pub fn new(record: &Scaled<'_>, inputs: usize, bases: &'a [Basis], cutoff_hz: f64) -> Result<Self> {
+    pub fn new(
+        record: &Scaled<'_>,
+        inputs: usize,
+        bases: &'a [Basis],
+        cutoff_hz: f64,
+    ) -> Result<Self> {
         if cutoff_hz * record.step_s >= 0.5 {
             return Err(Error::input(
                 "low_pass_hz",
-                format!("less than half the sampling frequency of record {}", record.name()),
+                format!(
+                    "less than half the sampling frequency of record {}",
+                    record.name()
+                ),
                 cutoff_hz.to_string(),
             ));
         }
@@ -240,7 +248,11 @@ fn filter_step(basis: &Basis, a: &DMatrix<f64>, b: &DVector<f64>, step: f64) -> 
     joint
         .view_mut((ORDER, ORDER), (count, count))
         .copy_from(&filters.a);
-    let hold = Hold::new(&joint, &b.clone().resize_vertically(ORDER + count, 0.0), step)?;
+    let hold = Hold::new(
+        &joint,
+        &b.clone().resize_vertically(ORDER + count, 0.0),
+        step,
+    )?;
     let rest = filters
         .a
         .lu()

@@ -3,4 +3,5 @@
 pub(crate) mod accumulate;
 pub(crate) mod filters;
 pub(crate) mod resample;
+pub(crate) mod search;
 pub(crate) mod slices;

@@ -122,9 +122,8 @@ impl<'a> Scaled<'a> {
     pub fn tested_range(&self) -> Result<Option<ReducedFrequencyRange>> {
         let segments = &self.record.header().segments;
         if !segments.is_empty() {
-            let k = |f: f64| {
-                ReducedFrequency::from_full_width(std::f64::consts::TAU * f / self.rate)
-            };
+            let k =
+                |f: f64| ReducedFrequency::from_full_width(std::f64::consts::TAU * f / self.rate);
             return Ok(ReducedFrequencyRange::spanning(
                 segments.iter().map(|s| k(s.frequency_hz)),
             ));
@@ -203,10 +202,7 @@ impl<'a> Scaled<'a> {
         let n = self.channels.len();
         let rows = block.motion.first().map_or(0, Vec::len);
         let mut channels = block.motion.iter().chain(block.force);
-        if block.motion.len() != n
-            || block.force.len() != n
-            || channels.any(|c| c.len() != rows)
-        {
+        if block.motion.len() != n || block.force.len() != n || channels.any(|c| c.len() != rows) {
             return Err(Error::input(
                 format!("record {}, from sample {read}", self.name()),
                 format!("{n} motions and {n} forces of one length"),
