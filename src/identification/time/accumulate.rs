@@ -132,15 +132,10 @@ fn one_record<C: Columns>(record: &Scaled<'_>, plan: &Plan, make: &mut C) -> Res
         match event {
             Event::Boundary => chunk.close(plan, &mut totals),
             Event::Samples(slice) => {
-                for (j, motion) in slice.motion.iter().enumerate() {
-                    if !active.contains(&j) && motion.iter().any(|x| *x != 0.0) {
-                        active.push(j);
-                        active.sort_unstable();
-                    }
-                }
+                let moving = activate(&slice, &mut active);
                 make.advance(&slice, &active);
                 if slice.first >= discard {
-                    chunk.take(&slice, plan, &active, make);
+                    chunk.take(&slice, moving, plan, &active, make);
                     rows += slice.rows();
                 }
             }
@@ -157,6 +152,22 @@ fn one_record<C: Columns>(record: &Scaled<'_>, plan: &Plan, make: &mut C) -> Res
         ));
     }
     Ok(totals)
+}
+
+/// Adds the inputs that begin to move in this slice to `active`; returns from which row on something has moved.
+fn activate(slice: &Slice<'_>, active: &mut Vec<usize>) -> usize {
+    let at_rest = active.is_empty();
+    let mut first = slice.rows();
+    for (j, motion) in slice.motion.iter().enumerate() {
+        if let Some(row) = motion.iter().position(|x| *x != 0.0) {
+            first = first.min(row);
+            if !active.contains(&j) {
+                active.push(j);
+            }
+        }
+    }
+    active.sort_unstable();
+    if at_rest { first } else { 0 }
 }
 
 /// Rows of one record that share their weights.
@@ -179,7 +190,14 @@ impl Chunk {
         }
     }
 
-    fn take<C: Columns>(&mut self, slice: &Slice<'_>, plan: &Plan, active: &[usize], make: &mut C) {
+    fn take<C: Columns>(
+        &mut self,
+        slice: &Slice<'_>,
+        moving: usize,
+        plan: &Plan,
+        active: &[usize],
+        make: &mut C,
+    ) {
         let forces = plan.layout.inputs;
         if self.sets.last().is_none_or(|(set, _)| set != active) {
             let empty = StreamingQr::new(plan.layout.width(active.len()), forces);
@@ -191,12 +209,12 @@ impl Chunk {
         };
         for (candidate, system) in systems.iter_mut().enumerate() {
             let columns = make.columns(candidate, active);
-            if candidate == 0 && !active.is_empty() {
+            if candidate == 0 {
                 let filtered = &columns[columns.len() - forces..];
                 for (sum, force) in self.squares.iter_mut().zip(filtered) {
-                    *sum += force.iter().map(|x| x * x).sum::<f64>();
+                    *sum += force[moving..].iter().map(|x| x * x).sum::<f64>();
                 }
-                self.rows += slice.rows();
+                self.rows += slice.rows() - moving;
             }
             if plan.stride == 1 {
                 system.push_columns(&columns);
