@@ -27,7 +27,6 @@ enum Chain {
 }
 
 /// Filters in dimensionless time, `x' = A x + b r + b₁ r'`; their outputs are their states.
-#[allow(dead_code)]
 pub(crate) struct Filters {
     pub a: DMatrix<f64>,
     pub on_motion: DVector<f64>,
@@ -65,7 +64,6 @@ impl Basis {
         }
     }
 
-    #[allow(dead_code)]
     pub fn feed(&self) -> FeedThrough {
         self.feed
     }
@@ -101,7 +99,6 @@ impl Basis {
     }
 
     /// The filters as a linear system driven by the motion.
-    #[allow(dead_code)]
     pub fn filters(&self) -> Filters {
         match &self.chain {
             Chain::Orthonormal(bank) => {

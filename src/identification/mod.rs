@@ -1,21 +1,26 @@
 //! From records and tables to models: regressors, fits, reports.
 
 mod basis;
+mod discrete;
 mod frequency;
 mod least_squares;
 mod options;
+mod records;
 mod report;
 mod samples;
 mod search;
 #[cfg(test)]
 mod testing;
+mod time;
 
+pub use discrete::fit_discrete;
 pub use frequency::fit_table;
 pub use least_squares::{Factor, StreamingQr};
 pub use options::{
     DiscreteFit, FeedThrough, Form, FrequencyFit, FrequencyWeights, PoleSearch, TimeFit,
     TimeWeights,
 };
+pub use records::{OnProgress, Progress, fit_records};
 pub use report::{
     AlphaGuideline, CANCELLATION_LIMIT, CONDITION_LIMIT, Coefficient, EntryReport, FitReport,
     OrderReport, SearchPoint, SearchReport,

@@ -315,9 +315,10 @@ pub enum TimeWeights {
     /// Nothing: residuals of the dimensionless forces.
     None,
     /// Root mean square of that force in that record.
-    #[default]
     PerRecord,
-    /// Root mean square of that force from the beginning of one segment (one frequency) to that of the next.
+    /// Root mean square of that force from the beginning of one segment (one frequency) to that of the next: relative
+    /// errors. A record without segments is one.
+    #[default]
     PerSegment,
 }
 

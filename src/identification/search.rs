@@ -131,7 +131,6 @@ impl Bounds {
     }
 
     /// Whether the poles are ordered, apart and inside.
-    #[allow(dead_code)]
     pub fn admits(&self, poles: &[f64]) -> bool {
         let inside = |p: &f64| *p >= self.min * (1.0 - 1e-12) && *p <= self.max * (1.0 + 1e-12);
         poles.iter().all(inside)

@@ -1,0 +1,238 @@
+use super::*;
+use crate::aerodynamics::{AerodynamicModel, FlatPlate, RationalModel};
+use crate::identification::options::{FeedThrough, PoleSearch};
+use crate::identification::testing::{onset_m_s, records};
+use crate::units::ReducedFrequency;
+use crate::wind_tunnel::{Record, RecordBlock, RecordHeader};
+
+fn sources(records: &[Record]) -> Vec<&dyn RecordSource> {
+    records.iter().map(|r| r as &dyn RecordSource).collect()
+}
+
+fn quiet(_: Progress) {}
+
+fn jones_fit(weights: TimeWeights) -> TimeFit {
+    TimeFit {
+        form: Form::Rational {
+            lags: 2,
+            added_mass: true,
+        },
+        poles: PoleSearch::fixed(&RationalModel::jones_flat_plate().lags),
+        weights,
+        ..TimeFit::default()
+    }
+}
+
+fn assert_jones(model: &Model, tolerance: f64) {
+    let jones = RationalModel::jones_flat_plate();
+    let Model::Rational(found) = model else {
+        panic!("not rational");
+    };
+    for (a, b) in [
+        (&found.a1, &jones.a1),
+        (&found.a2, &jones.a2),
+        (&found.a3, &jones.a3),
+        (&found.lag_terms[1], &jones.lag_terms[1]),
+    ] {
+        assert!((a - b).amax() < tolerance, "{a} {b}");
+    }
+}
+
+/// Records of a rational function give back its coefficients, from two speeds without resampling. What remains is the
+/// force of the ramps beyond the second order that the records contain (relative residual 2e-4 to 2e-3).
+#[test]
+fn rational_function_is_recovered_from_its_records() {
+    let jones = RationalModel::jones_flat_plate();
+    let mut all = records(&jones, 8.17, 0.0, 1);
+    all.extend(records(&jones, 4.0, 0.0, 1));
+    for weights in [
+        TimeWeights::None,
+        TimeWeights::PerRecord,
+        TimeWeights::PerSegment,
+    ] {
+        let (model, report) = fit_records(&sources(&all), &jones_fit(weights), &quiet).unwrap();
+        assert_jones(&model, 1e-3);
+        assert!(
+            report
+                .entries
+                .iter()
+                .all(|e| e.relative_rms.unwrap() < 2e-3)
+        );
+        let range = report.tested_range;
+        let k = |f, v| ReducedFrequency::from_hertz(f, 0.5, v).full_width();
+        assert!((range.min.full_width() / k(0.25, 8.17) - 1.0).abs() < 1e-12);
+        assert!((range.max.full_width() / k(2.5, 4.0) - 1.0).abs() < 1e-12);
+    }
+}
+
+/// The sum of the records of the single motions, moving at once, carries the same coefficients.
+#[test]
+fn simultaneous_motions_are_told_apart() {
+    let parts = records(&RationalModel::jones_flat_plate(), 8.17, 0.0, 1);
+    let shift = 700;
+    let samples = parts[0].motion[0].len();
+    let mut both = parts[0].clone();
+    // one motion later than the other, so that they are not in phase all the time
+    for i in 0..2 {
+        for k in shift..samples {
+            both.motion[i][k] += parts[1].motion[i][k - shift];
+            both.force[i][k] += parts[1].force[i][k - shift];
+        }
+    }
+    both.header.segments.clear();
+    let (model, report) =
+        fit_records(&[&both], &jones_fit(TimeWeights::PerRecord), &quiet).unwrap();
+    assert_jones(&model, 4e-3);
+    assert!(report.entries.iter().all(|e| e.relative_rms.is_none()));
+    // without segments the range is the characteristic K of the motion
+    let k = report.tested_range.min.full_width();
+    assert!(0.1 < k && k < 0.96, "{k}");
+    let own = TimeFit {
+        form: Form::Laguerre {
+            filters: 1,
+            feed_through: FeedThrough::default(),
+            pole_per_transfer_function: true,
+        },
+        ..TimeFit::default()
+    };
+    let message = fit_records(&[&both], &own, &quiet).unwrap_err().to_string();
+    assert!(
+        message.contains("move one degree of freedom each"),
+        "{message}"
+    );
+}
+
+/// The default model on clean records agrees with the same fit to the transfer matrix, and the onset with the exact
+/// 39.468 m/s of the flat plate within 0.1 %.
+#[test]
+fn flat_plate_from_records() {
+    let all = records(&FlatPlate::default(), 8.17, 0.0, 1);
+    let calls = std::sync::atomic::AtomicUsize::new(0);
+    let count = |p: Progress| {
+        assert!(p.pass <= p.passes && p.records_done <= p.records);
+        calls.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+    };
+    let (model, report) = fit_records(&sources(&all), &TimeFit::default(), &count).unwrap();
+    assert_eq!(calls.into_inner(), 5 * 2);
+    assert!((onset_m_s(&model) / 39.468 - 1.0).abs() < 1e-3);
+    assert_eq!(report.orders.len(), 3);
+    assert!(report.orders[2].objective < report.orders[0].objective);
+    let pole = report.search[0].chosen.poles[0];
+    assert!((pole / 0.299 - 1.0).abs() < 0.05, "{pole}");
+    for k in [0.1, 0.3, 0.9].map(ReducedFrequency::from_full_width) {
+        let exact = FlatPlate::default().transfer(k).unwrap();
+        for (g, e) in model.transfer(k).unwrap().iter().zip(&exact) {
+            assert!((g - e).norm() < 0.01 * e.norm(), "{g} {e}");
+        }
+    }
+}
+
+/// Two speeds, force noise of 5 % of its RMS, ten seeds: the onset stays within 0.5 % of the exact one.
+#[test]
+fn noise_of_five_per_cent() {
+    for seed in 0..10 {
+        let mut all = records(&FlatPlate::default(), 8.17, 0.05, seed);
+        all.extend(records(&FlatPlate::default(), 4.0, 0.05, 100 + seed));
+        let (model, _) = fit_records(&sources(&all), &TimeFit::default(), &quiet).unwrap();
+        assert!(
+            (onset_m_s(&model) / 39.468 - 1.0).abs() < 5e-3,
+            "seed {seed}"
+        );
+    }
+}
+
+/// A pole for each transfer function, found in the same passes.
+#[test]
+fn own_poles_from_records() {
+    let all = records(&FlatPlate::default(), 8.17, 0.0, 1);
+    let fit = TimeFit {
+        form: Form::Laguerre {
+            filters: 2,
+            feed_through: FeedThrough::default(),
+            pole_per_transfer_function: true,
+        },
+        ..TimeFit::default()
+    };
+    let (model, report) = fit_records(&sources(&all), &fit, &quiet).unwrap();
+    assert_eq!(report.search.len(), 4);
+    assert!((onset_m_s(&model) / 39.468 - 1.0).abs() < 5e-3);
+}
+
+/// Samples cut into uneven blocks, as a file reader would hand them over.
+struct Pieces(Record);
+
+impl RecordSource for Pieces {
+    fn header(&self) -> &RecordHeader {
+        &self.0.header
+    }
+
+    fn for_each_block(&self, f: &mut dyn FnMut(RecordBlock<'_>) -> Result<()>) -> Result<()> {
+        let mut at = 0;
+        let samples = self.0.motion[0].len();
+        while at < samples {
+            let end = (at + 999).min(samples);
+            let cut = |c: &[Vec<f64>]| c.iter().map(|v| v[at..end].to_vec()).collect::<Vec<_>>();
+            let (motion, force) = (cut(&self.0.motion), cut(&self.0.force));
+            f(RecordBlock {
+                motion: &motion,
+                force: &force,
+            })?;
+            at = end;
+        }
+        Ok(())
+    }
+}
+
+/// Streaming in blocks changes nothing but the order of the roundings.
+#[test]
+fn blocks_do_not_matter() {
+    let whole = records(&FlatPlate::default(), 8.17, 0.05, 3);
+    let pieces: Vec<Pieces> = whole.iter().cloned().map(Pieces).collect();
+    let streams: Vec<&dyn RecordSource> = pieces.iter().map(|p| p as _).collect();
+    let fit = TimeFit {
+        poles: PoleSearch::fixed(&[0.3]),
+        weights: TimeWeights::PerSegment,
+        ..TimeFit::default()
+    };
+    let (a, _) = fit_records(&sources(&whole), &fit, &quiet).unwrap();
+    let (b, _) = fit_records(&streams, &fit, &quiet).unwrap();
+    let k = ReducedFrequency::from_full_width(0.4);
+    assert!((a.transfer(k).unwrap() - b.transfer(k).unwrap()).camax() < 1e-10);
+}
+
+#[test]
+fn bad_records_are_refused_with_their_place() {
+    let good = records(&FlatPlate::default(), 8.17, 0.0, 1);
+    let message = |all: &[Record], fit: &TimeFit| {
+        fit_records(&sources(all), fit, &quiet)
+            .unwrap_err()
+            .to_string()
+    };
+    let default = TimeFit::default();
+    assert_eq!(
+        message(&[], &default),
+        "records: expected at least one, found none"
+    );
+    let mut bad = good.clone();
+    bad[1].force[0][1234] = f64::NAN;
+    assert_eq!(
+        message(&bad, &default),
+        "record torsion at 8.17 m/s, force, sample 1234: expected a finite number, found NaN"
+    );
+    let mut short = good.clone();
+    let Record { motion, force, .. } = &mut short[0];
+    for channel in motion.iter_mut().chain(force) {
+        channel.truncate(20);
+    }
+    assert!(message(&short, &default).contains("record vertical at 8.17 m/s: expected at least"));
+    let one = message(&good[..1], &default);
+    assert!(one.contains("a torsion motion rich enough"), "{one}");
+    let cutoff = TimeFit {
+        low_pass_hz: Some(150.0),
+        ..TimeFit::default()
+    };
+    assert!(message(&good, &cutoff).starts_with("low_pass_hz: expected less than half"));
+    let mut other = good.clone();
+    other[1].header.mean_speed_m_s = 0.0;
+    assert!(message(&other, &default).contains("record torsion at 8.17 m/s: mean_speed_m_s"));
+}

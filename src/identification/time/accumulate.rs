@@ -1,0 +1,322 @@
+//! Accumulation of regressor rows over records: only the inputs that move take columns, weights are applied to whole
+//! chunks after they have been factored, and one pass serves many candidate models.
+
+use super::slices::{Event, Scaled, Slice};
+use crate::error::{Error, Result};
+use crate::identification::least_squares::{Factor, StreamingQr};
+use crate::identification::options::TimeWeights;
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+
+/// Columns of the whole system: an optional constant, then every column of one input for all inputs, interleaved so
+/// that fewer filters are a leading subset.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Layout {
+    pub inputs: usize,
+    pub per_input: usize,
+    pub constant: bool,
+}
+
+impl Layout {
+    /// Number of columns with `active` inputs.
+    pub fn width(&self, active: usize) -> usize {
+        usize::from(self.constant) + self.per_input * active
+    }
+
+    /// Column `c` of input `j` in the whole system.
+    pub fn index(&self, c: usize, j: usize) -> usize {
+        usize::from(self.constant) + c * self.inputs + j
+    }
+
+    /// Columns of the whole system that a set of inputs takes, in the order of its own system.
+    fn map(&self, active: &[usize]) -> Vec<usize> {
+        let constant = self.constant.then_some(0);
+        let columns =
+            (0..self.per_input).flat_map(|c| active.iter().map(move |&j| self.index(c, j)));
+        constant.into_iter().chain(columns).collect()
+    }
+}
+
+/// Makes the columns of one record, slice after slice.
+pub(crate) trait Columns {
+    /// Number of candidate models.
+    fn candidates(&self) -> usize;
+    /// Takes the next slice; inputs that are not `active` have been zero so far.
+    fn advance(&mut self, slice: &Slice<'_>, active: &[usize]);
+    /// Columns of a candidate for the active inputs, in the order of [`Layout`], followed by one a force. Called once a
+    /// slice and candidate, with the candidates in order.
+    fn columns(&mut self, candidate: usize, active: &[usize]) -> Vec<&[f64]>;
+}
+
+/// How to accumulate.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Plan {
+    pub layout: Layout,
+    pub weights: TimeWeights,
+    /// Resample to this dimensionless step.
+    pub delta_s: Option<f64>,
+    /// Seconds at the start that only settle the filters.
+    pub discard_s: f64,
+    /// Every how many samples a row is taken.
+    pub stride: usize,
+}
+
+/// Systems of one candidate, one a set of inputs that moved together and force.
+pub(crate) struct Totals {
+    sets: BTreeMap<Vec<usize>, Vec<StreamingQr>>,
+}
+
+/// The same, factored.
+pub(crate) struct Factored {
+    pub layout: Layout,
+    /// Inputs that moved together, and the system of their columns for each force.
+    pub sets: Vec<(Vec<usize>, Vec<Factor>)>,
+    /// The whole system for each force.
+    pub whole: Vec<Factor>,
+}
+
+/// One pass over all records; one result a candidate. `make` builds the columns of a record, `done` is called after
+/// each record with the number of those that are through.
+///
+/// # Errors
+/// Those of reading, and records without samples.
+pub(crate) fn accumulate<'a, C: Columns>(
+    records: &[Scaled<'a>],
+    plan: &Plan,
+    make: &(dyn Fn(&Scaled<'a>) -> Result<C> + Sync),
+    done: &(dyn Fn(usize) + Sync),
+) -> Result<Vec<Factored>> {
+    let finished = std::sync::atomic::AtomicUsize::new(0);
+    let parts: Vec<Result<Vec<Totals>>> = records
+        .par_iter()
+        .map(|record| {
+            let totals = one_record(record, plan, &mut make(record)?);
+            done(1 + finished.fetch_add(1, std::sync::atomic::Ordering::Relaxed));
+            totals
+        })
+        .collect();
+    // merged in the order of the records, whatever the order in which they were done
+    let mut by_candidate: Vec<Vec<Totals>> = Vec::new();
+    for part in parts {
+        for (c, totals) in part?.into_iter().enumerate() {
+            if by_candidate.len() <= c {
+                by_candidate.push(Vec::new());
+            }
+            by_candidate[c].push(totals);
+        }
+    }
+    Ok(by_candidate
+        .into_iter()
+        .map(|parts| Factored::merge(plan.layout, parts))
+        .collect())
+}
+
+fn one_record<C: Columns>(record: &Scaled<'_>, plan: &Plan, make: &mut C) -> Result<Vec<Totals>> {
+    let mut boundaries = match plan.weights {
+        TimeWeights::PerSegment => record.segment_starts(),
+        _ => Vec::new(),
+    };
+    boundaries.push(plan.discard_s);
+    boundaries.sort_by(f64::total_cmp);
+    let step = plan.delta_s.map_or(record.step_s, |d| d / record.rate);
+    let discard = (plan.discard_s / step).ceil() as usize;
+    let mut totals: Vec<Totals> = (0..make.candidates())
+        .map(|_| Totals {
+            sets: BTreeMap::new(),
+        })
+        .collect();
+    let mut chunk = Chunk::new(plan.layout.inputs);
+    let mut active: Vec<usize> = Vec::new();
+    let mut rows = 0;
+    record.stream(plan.delta_s, &boundaries, &mut |event| {
+        match event {
+            Event::Boundary => chunk.close(plan, &mut totals),
+            Event::Samples(slice) => {
+                let moving = activate(&slice, &mut active);
+                make.advance(&slice, &active);
+                if slice.first >= discard {
+                    chunk.take(&slice, moving, plan, &active, make);
+                    rows += slice.rows();
+                }
+            }
+        }
+        Ok(())
+    })?;
+    chunk.close(plan, &mut totals);
+    let least = plan.layout.width(1).max(16) * plan.stride;
+    if rows < least {
+        return Err(Error::input(
+            format!("record {}", record.name()),
+            format!("at least {least} samples after discard_s"),
+            rows.to_string(),
+        ));
+    }
+    Ok(totals)
+}
+
+/// Adds the inputs that begin to move in this slice to `active`; returns from which row on something has moved.
+fn activate(slice: &Slice<'_>, active: &mut Vec<usize>) -> usize {
+    let at_rest = active.is_empty();
+    let mut first = slice.rows();
+    for (j, motion) in slice.motion.iter().enumerate() {
+        if let Some(row) = motion.iter().position(|x| *x != 0.0) {
+            first = first.min(row);
+            if !active.contains(&j) {
+                active.push(j);
+            }
+        }
+    }
+    active.sort_unstable();
+    if at_rest { first } else { 0 }
+}
+
+/// Rows of one record that share their weights.
+struct Chunk {
+    /// Inputs, and one system a candidate with all forces as right-hand sides.
+    sets: Vec<(Vec<usize>, Vec<StreamingQr>)>,
+    /// Sum of squares of each force while something moved.
+    squares: Vec<f64>,
+    rows: usize,
+    strided: Vec<Vec<f64>>,
+}
+
+impl Chunk {
+    fn new(forces: usize) -> Self {
+        Self {
+            sets: Vec::new(),
+            squares: vec![0.0; forces],
+            rows: 0,
+            strided: Vec::new(),
+        }
+    }
+
+    fn take<C: Columns>(
+        &mut self,
+        slice: &Slice<'_>,
+        moving: usize,
+        plan: &Plan,
+        active: &[usize],
+        make: &mut C,
+    ) {
+        let forces = plan.layout.inputs;
+        if self.sets.last().is_none_or(|(set, _)| set != active) {
+            let empty = StreamingQr::new(plan.layout.width(active.len()), forces);
+            self.sets
+                .push((active.to_vec(), vec![empty; make.candidates()]));
+        }
+        let Some((_, systems)) = self.sets.last_mut() else {
+            return;
+        };
+        for (candidate, system) in systems.iter_mut().enumerate() {
+            let columns = make.columns(candidate, active);
+            if candidate == 0 {
+                let filtered = &columns[columns.len() - forces..];
+                for (sum, force) in self.squares.iter_mut().zip(filtered) {
+                    *sum += force[moving..].iter().map(|x| x * x).sum::<f64>();
+                }
+                self.rows += slice.rows() - moving;
+            }
+            if plan.stride == 1 {
+                system.push_columns(&columns);
+            } else {
+                let skip = (plan.stride - slice.first % plan.stride) % plan.stride;
+                self.strided.resize(columns.len(), Vec::new());
+                for (to, from) in self.strided.iter_mut().zip(&columns) {
+                    to.clear();
+                    to.extend(from.iter().skip(skip).step_by(plan.stride));
+                }
+                let rows: Vec<&[f64]> = self.strided.iter().map(Vec::as_slice).collect();
+                system.push_columns(&rows);
+            }
+        }
+    }
+
+    /// Hands the rows over with the weight of each force, and starts anew.
+    fn close(&mut self, plan: &Plan, totals: &mut [Totals]) {
+        let weights: Vec<f64> = self
+            .squares
+            .iter()
+            .map(|sum| match plan.weights {
+                TimeWeights::None => 1.0,
+                // a force that is zero throughout cannot be scaled by its size
+                _ if *sum == 0.0 => 1.0,
+                _ => (self.rows as f64 / sum).sqrt(),
+            })
+            .collect();
+        for (set, systems) in self.sets.drain(..) {
+            for (system, totals) in systems.into_iter().zip(totals.iter_mut()) {
+                totals.add(&set, &system.finish(), &weights);
+            }
+        }
+        *self = Self::new(plan.layout.inputs);
+    }
+}
+
+impl Totals {
+    fn add(&mut self, set: &[usize], factor: &Factor, weights: &[f64]) {
+        let columns = factor.columns();
+        let own: Vec<usize> = (0..columns).collect();
+        let systems = self
+            .sets
+            .entry(set.to_vec())
+            .or_insert_with(|| vec![StreamingQr::new(columns, 1); weights.len()]);
+        for (i, (system, weight)) in systems.iter_mut().zip(weights).enumerate() {
+            system.absorb(factor, &own, i, *weight);
+        }
+    }
+}
+
+impl Factored {
+    fn merge(layout: Layout, parts: Vec<Totals>) -> Self {
+        let mut sets: BTreeMap<Vec<usize>, Vec<StreamingQr>> = BTreeMap::new();
+        for part in parts {
+            for (set, systems) in part.sets {
+                let own: Vec<usize> = (0..layout.width(set.len())).collect();
+                let into = sets
+                    .entry(set)
+                    .or_insert_with(|| vec![StreamingQr::new(own.len(), 1); layout.inputs]);
+                for (into, system) in into.iter_mut().zip(systems) {
+                    into.absorb(&system.finish(), &own, 0, 1.0);
+                }
+            }
+        }
+        let sets: Vec<(Vec<usize>, Vec<Factor>)> = sets
+            .into_iter()
+            .map(|(set, systems)| (set, systems.into_iter().map(StreamingQr::finish).collect()))
+            .collect();
+        let whole = (0..layout.inputs)
+            .map(|i| {
+                let mut all = StreamingQr::new(layout.width(layout.inputs), 1);
+                for (set, factors) in &sets {
+                    all.absorb(&factors[i], &layout.map(set), 0, 1.0);
+                }
+                all.finish()
+            })
+            .collect();
+        Self {
+            layout,
+            sets,
+            whole,
+        }
+    }
+
+    /// Whether no record moves two degrees of freedom at once, so that every transfer function has its own rows.
+    pub fn single_motions(&self) -> bool {
+        self.sets.iter().all(|(set, _)| set.len() < 2)
+    }
+
+    /// The rows in which only input `j` moves, for force `i`.
+    pub fn alone(&self, i: usize, j: usize) -> Option<&Factor> {
+        self.sets
+            .iter()
+            .find(|(set, _)| set == &[j])
+            .map(|(_, factors)| &factors[i])
+    }
+
+    /// Weighted residual over weighted data of all forces with the first `filters` filters after `feed` columns.
+    pub fn objective(&self, leading_per_input: usize) -> f64 {
+        let leading = self.layout.index(leading_per_input, 0);
+        let sum = |columns| -> f64 { self.whole.iter().map(|f| f.residual_sum(columns, 0)).sum() };
+        (sum(leading) / sum(0)).sqrt()
+    }
+}

@@ -1,0 +1,7 @@
+//! Time domain: records as dimensionless slices, regressors, and their accumulation.
+
+pub(crate) mod accumulate;
+pub(crate) mod filters;
+pub(crate) mod resample;
+pub(crate) mod search;
+pub(crate) mod slices;
