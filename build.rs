@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
 /// Parts of `src/` that never reach the runtime; every other file there leads to a new build of it.
-const NOT_IN_RUNTIME: [&str; 9] = [
+const NOT_IN_RUNTIME: [&str; 10] = [
     "main.rs",
     "benchmarks.rs",
     "cli",
@@ -19,6 +19,7 @@ const NOT_IN_RUNTIME: [&str; 9] = [
     "identification",
     "report",
     "wind_tunnel",
+    "fmu/description",
     "fmu/importer",
     "fmu/package",
 ];
