@@ -49,7 +49,10 @@ fn embed_runtime() -> Result<(), String> {
     watch(&source)?;
     let platform = platform()?;
     println!("cargo::rustc-env=AERODECK_RUNTIME_PLATFORM={platform}");
-    println!("cargo::rustc-env=AERODECK_RUNTIME_EXTENSION={}", extension());
+    println!(
+        "cargo::rustc-env=AERODECK_RUNTIME_EXTENSION={}",
+        extension()
+    );
     let embedded = out.join(EMBEDDED);
     let copied = if env::var_os("CARGO_CFG_MIRI").is_some() {
         // an interpreter of Rust code has no use for a shared library, and cannot build one
@@ -68,8 +71,8 @@ fn watch(source: &Path) -> Result<(), String> {
     println!("cargo::rerun-if-changed=Cargo.lock");
     let mut folders = vec![PathBuf::from("src")];
     while let Some(folder) = folders.pop() {
-        let entries = fs::read_dir(source.join(&folder))
-            .map_err(|e| format!("{}: {e}", folder.display()))?;
+        let entries =
+            fs::read_dir(source.join(&folder)).map_err(|e| format!("{}: {e}", folder.display()))?;
         for entry in entries.flatten() {
             let path = folder.join(entry.file_name());
             let below_src = path.strip_prefix("src").unwrap_or(&path).with_extension("");
@@ -174,9 +177,14 @@ fn nested_cargo(source: &Path, target_dir: &Path, triple: &str) -> Result<Comman
     // what cargo tells a build script is about the outer build
     for (name, _) in env::vars_os() {
         let name = name.to_string_lossy().into_owned();
-        if ["CARGO_FEATURE_", "CARGO_CFG_", "CARGO_PKG_", "CARGO_MANIFEST_"]
-            .iter()
-            .any(|p| name.starts_with(p))
+        if [
+            "CARGO_FEATURE_",
+            "CARGO_CFG_",
+            "CARGO_PKG_",
+            "CARGO_MANIFEST_",
+        ]
+        .iter()
+        .any(|p| name.starts_with(p))
         {
             cargo.env_remove(name);
         }

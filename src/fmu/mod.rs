@@ -5,6 +5,9 @@ pub mod description;
 #[allow(unsafe_code)]
 pub mod fmi2;
 pub mod identity;
+#[cfg(feature = "packaging")]
+#[allow(unsafe_code)]
+pub mod importer;
 pub mod lifecycle;
 pub mod resources;
 pub mod si;

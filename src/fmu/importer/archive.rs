@@ -78,7 +78,10 @@ fn safe_path(name: &str, findings: &mut Findings) -> Result<PathBuf> {
             "one that leads outside",
         ));
     }
-    Ok(name.split('/').filter(|p| !p.is_empty() && *p != ".").collect())
+    Ok(name
+        .split('/')
+        .filter(|p| !p.is_empty() && *p != ".")
+        .collect())
 }
 
 fn method(name: &str, method: CompressionMethod, findings: &mut Findings) {

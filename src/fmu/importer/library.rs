@@ -18,8 +18,14 @@ pub(super) type Int = c_int;
 pub(super) type Text = *const c_char;
 
 /// The logger with its variable arguments, which a C importer would read.
-pub(super) type LoggerPointer =
-    unsafe extern "C" fn(env: *mut c_void, name: Text, status: Int, category: Text, message: Text, ...);
+pub(super) type LoggerPointer = unsafe extern "C" fn(
+    env: *mut c_void,
+    name: Text,
+    status: Int,
+    category: Text,
+    message: Text,
+    ...
+);
 
 /// `fmi2CallbackFunctions`.
 #[repr(C)]
@@ -36,6 +42,7 @@ macro_rules! functions {
     ($($field:ident = $symbol:literal : fn($($argument:ty),*) -> $answer:ty;)*) => {
         /// The functions; pointers are valid as long as the [`Library`] they came from.
         #[derive(Clone, Copy)]
+        #[allow(dead_code, reason = "all must be there, also those that this importer has no use for")]
         pub(super) struct Functions {
             $(pub $field: unsafe extern "C" fn($($argument),*) -> $answer,)*
         }

@@ -39,7 +39,9 @@ impl LogBook {
     }
 
     fn lock(&self) -> std::sync::MutexGuard<'_, Vec<LogMessage>> {
-        self.0.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+        self.0
+            .lock()
+            .unwrap_or_else(|poisoned| poisoned.into_inner())
     }
 }
 
@@ -113,7 +115,13 @@ mod tests {
                 c"x".as_ptr(),
                 1.5_f64,
             );
-            logger()(environment, std::ptr::null(), 0, std::ptr::null(), std::ptr::null());
+            logger()(
+                environment,
+                std::ptr::null(),
+                0,
+                std::ptr::null(),
+                std::ptr::null(),
+            );
         }
         let messages = book.take();
         assert_eq!(messages[0].status, Status::Error);

@@ -285,7 +285,12 @@ impl Fmu {
             ("model.png", "an icon"),
         ] {
             if !self.entries.iter().any(|e| e == file) {
-                findings.add(Severity::Note, "archive", format!("{what} ({file})"), "none");
+                findings.add(
+                    Severity::Note,
+                    "archive",
+                    format!("{what} ({file})"),
+                    "none",
+                );
             }
         }
     }

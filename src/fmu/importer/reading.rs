@@ -239,8 +239,11 @@ impl Reading {
     fn simple_type(&mut self, e: &Element) -> Option<SimpleType> {
         let name = self.required(e, "name");
         let Some((kind, child)) = typed_child(e) else {
-            self.0
-                .error(place(e), "one of Real, Integer, Boolean, String, Enumeration", "none");
+            self.0.error(
+                place(e),
+                "one of Real, Integer, Boolean, String, Enumeration",
+                "none",
+            );
             return None;
         };
         Some(SimpleType {
@@ -264,8 +267,11 @@ impl Reading {
 
     fn variable(&mut self, e: &Element) -> ScalarVariable {
         let (kind, child) = typed_child(e).unwrap_or_else(|| {
-            self.0
-                .error(place(e), "one of Real, Integer, Boolean, String, Enumeration", "none");
+            self.0.error(
+                place(e),
+                "one of Real, Integer, Boolean, String, Enumeration",
+                "none",
+            );
             (Kind::Real, e)
         });
         let stated = self.choice(e, "variability", &VARIABILITIES);

@@ -1,8 +1,8 @@
 //! Running an FMU from start to stop: a table of its variables.
 
+use super::Fmu;
 use super::description::{Causality, Kind, ModelDescription, Value};
 use super::slave::{Slave, Status, find};
-use super::Fmu;
 use crate::error::{Error, Result};
 use serde::Serialize;
 

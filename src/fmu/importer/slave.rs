@@ -290,7 +290,12 @@ impl Slave {
     pub fn read_real(&self, references: &[u32], values: &mut [f64]) -> Result<()> {
         same_length(references, values.len())?;
         self.good("fmi2GetReal", |f, c| unsafe {
-            (f.get_real)(c, references.as_ptr(), references.len(), values.as_mut_ptr())
+            (f.get_real)(
+                c,
+                references.as_ptr(),
+                references.len(),
+                values.as_mut_ptr(),
+            )
         })
     }
 
@@ -301,7 +306,12 @@ impl Slave {
     pub fn get_integer(&self, references: &[u32]) -> Result<Vec<i32>> {
         let mut values = vec![0; references.len()];
         self.good("fmi2GetInteger", |f, c| unsafe {
-            (f.get_integer)(c, references.as_ptr(), references.len(), values.as_mut_ptr())
+            (f.get_integer)(
+                c,
+                references.as_ptr(),
+                references.len(),
+                values.as_mut_ptr(),
+            )
         })?;
         Ok(values)
     }
@@ -313,7 +323,12 @@ impl Slave {
     pub fn get_boolean(&self, references: &[u32]) -> Result<Vec<bool>> {
         let mut values: Vec<Int> = vec![0; references.len()];
         self.good("fmi2GetBoolean", |f, c| unsafe {
-            (f.get_boolean)(c, references.as_ptr(), references.len(), values.as_mut_ptr())
+            (f.get_boolean)(
+                c,
+                references.as_ptr(),
+                references.len(),
+                values.as_mut_ptr(),
+            )
         })?;
         Ok(values.into_iter().map(|v| v != 0).collect())
     }
@@ -325,7 +340,12 @@ impl Slave {
     pub fn get_string(&self, references: &[u32]) -> Result<Vec<String>> {
         let mut values: Vec<Text> = vec![std::ptr::null(); references.len()];
         self.good("fmi2GetString", |f, c| unsafe {
-            (f.get_string)(c, references.as_ptr(), references.len(), values.as_mut_ptr())
+            (f.get_string)(
+                c,
+                references.as_ptr(),
+                references.len(),
+                values.as_mut_ptr(),
+            )
         })?;
         // SAFETY: strings of the FMU, copied before the next call, which may free them
         Ok(values.into_iter().map(|v| unsafe { text(v) }).collect())
@@ -574,7 +594,12 @@ impl Slave {
 /// [`Error::Input`] naming a few that are there.
 pub(super) fn find<'a>(d: &'a ModelDescription, name: &str) -> Result<&'a ScalarVariable> {
     d.variable(name).ok_or_else(|| {
-        let some: Vec<_> = d.variables.iter().take(40).map(|v| v.name.as_str()).collect();
+        let some: Vec<_> = d
+            .variables
+            .iter()
+            .take(40)
+            .map(|v| v.name.as_str())
+            .collect();
         Error::input(
             "variable",
             format!("one of {}", some.join(", ")),

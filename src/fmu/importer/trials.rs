@@ -310,7 +310,10 @@ fn changing_steps(plan: &Plan<'_>) -> Result<String> {
             ));
         }
     }
-    Ok(format!("{steps} steps of 0.1 to 1.7 times {} s", plan.times.step))
+    Ok(format!(
+        "{steps} steps of 0.1 to 1.7 times {} s",
+        plan.times.step
+    ))
 }
 
 fn directional_derivatives(plan: &Plan<'_>) -> Result<String> {
@@ -318,7 +321,11 @@ fn directional_derivatives(plan: &Plan<'_>) -> Result<String> {
     let d = plan.fmu.model_description();
     let mut tried = 0;
     for unknown in &d.outputs {
-        let Some(v) = unknown.index.checked_sub(1).and_then(|i| d.variables.get(i)) else {
+        let Some(v) = unknown
+            .index
+            .checked_sub(1)
+            .and_then(|i| d.variables.get(i))
+        else {
             continue;
         };
         for on in unknown.dependencies.iter().flatten() {
@@ -328,8 +335,11 @@ fn directional_derivatives(plan: &Plan<'_>) -> Result<String> {
             if v.kind != Kind::Real || known.kind != Kind::Real {
                 continue;
             }
-            let answer =
-                slave.directional_derivative(&[v.value_reference], &[known.value_reference], &[1.0])?;
+            let answer = slave.directional_derivative(
+                &[v.value_reference],
+                &[known.value_reference],
+                &[1.0],
+            )?;
             if !answer[0].is_finite() {
                 return Err(Error::input(
                     format!("derivative of `{}` along `{}`", v.name, known.name),

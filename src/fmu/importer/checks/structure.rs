@@ -1,8 +1,6 @@
 //! `ModelStructure`: what is listed, in which order, and on what it depends.
 
-use super::super::description::{
-    Causality, Initial, ModelDescription, ScalarVariable, Unknown,
-};
+use super::super::description::{Causality, Initial, ModelDescription, ScalarVariable, Unknown};
 use super::super::findings::Findings;
 use super::FILE;
 use std::collections::BTreeSet;
@@ -69,7 +67,13 @@ fn indices(
 
 pub(super) fn outputs(d: &ModelDescription, f: &mut Findings) {
     let expected = indices(d, |_, v| v.causality == Causality::Output);
-    same_members(d, f, ("Outputs", &d.outputs), &expected, "causality is output");
+    same_members(
+        d,
+        f,
+        ("Outputs", &d.outputs),
+        &expected,
+        "causality is output",
+    );
 }
 
 pub(super) fn initial_unknowns(d: &ModelDescription, f: &mut Findings) {

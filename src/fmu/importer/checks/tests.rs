@@ -61,51 +61,191 @@ fn a_flawless_description_gives_no_finding() {
 /// (what stands, what is put there, words of the one error).
 const DEFECTS: [(&str, &str, &[&str]); 41] = [
     // the rows of the table of what other checkers find and miss
-    (r#"unit="m" start="0"/>"#, r#"unit="m"/>"#, &["`u`", "a start value", "none"]),
+    (
+        r#"unit="m" start="0"/>"#,
+        r#"unit="m"/>"#,
+        &["`u`", "a start value", "none"],
+    ),
     (r#"name="w""#, r#"name="y""#, &["unique names", "`y` twice"]),
-    (r#"<Unknown index="7"/>"#, "", &["`n`", "listed in <Outputs>"]),
-    (r#"<Unknown index="6" dependencies="2"/>"#, "", &["`w`", "listed in <InitialUnknowns>"]),
-    (r#"causality="input">"#, r#"causality="input" initial="exact">"#, &["`u`", "no `initial` on an input"]),
-    (r#"unit="m" start"#, r#"unit="mm" start"#, &["`u`", "`mm`, which is not defined"]),
-    (r#"name="u" valueReference="2""#, r#"name="u" valueReference="3""#, &["one settable variable for value reference 3", "`u`, `x`"]),
-    (r#"dependencies="3 4" dep"#, r#"dependencies="3 40" dep"#, &["dependencies in 1 .. 8", "40"]),
+    (
+        r#"<Unknown index="7"/>"#,
+        "",
+        &["`n`", "listed in <Outputs>"],
+    ),
+    (
+        r#"<Unknown index="6" dependencies="2"/>"#,
+        "",
+        &["`w`", "listed in <InitialUnknowns>"],
+    ),
+    (
+        r#"causality="input">"#,
+        r#"causality="input" initial="exact">"#,
+        &["`u`", "no `initial` on an input"],
+    ),
+    (
+        r#"unit="m" start"#,
+        r#"unit="mm" start"#,
+        &["`u`", "`mm`, which is not defined"],
+    ),
+    (
+        r#"name="u" valueReference="2""#,
+        r#"name="u" valueReference="3""#,
+        &["one settable variable for value reference 3", "`u`, `x`"],
+    ),
+    (
+        r#"dependencies="3 4" dep"#,
+        r#"dependencies="3 40" dep"#,
+        &["dependencies in 1 .. 8", "40"],
+    ),
     (r#"guid="{1}""#, r#"guid=" ""#, &["guid", "empty"]),
-    (r#"start="0.5""#, r#"start="1.5""#, &["`x`", "a start value in -1 .. 1", "1.5"]),
+    (
+        r#"start="0.5""#,
+        r#"start="1.5""#,
+        &["`x`", "a start value in -1 .. 1", "1.5"],
+    ),
     // heads and lists
-    (r#"fmiVersion="2.0""#, r#"fmiVersion="3.0""#, &["fmiVersion", "`3.0`"]),
+    (
+        r#"fmiVersion="2.0""#,
+        r#"fmiVersion="3.0""#,
+        &["fmiVersion", "`3.0`"],
+    ),
     (r#" modelName="Sdof""#, "", &["the attribute `modelName`"]),
-    (r#"modelIdentifier="sdof""#, r#"modelIdentifier="s-dof""#, &["C identifier", "`s-dof`"]),
-    (r#"StepSize="true""#, r#"StepSize="yes""#, &["true or false", "`yes`"]),
-    (r#"StepSize="true""#, r#"StepSize="true" canSerializeFMUstate="true""#, &["canGetAndSetFMUstate along with it"]),
+    (
+        r#"modelIdentifier="sdof""#,
+        r#"modelIdentifier="s-dof""#,
+        &["C identifier", "`s-dof`"],
+    ),
+    (
+        r#"StepSize="true""#,
+        r#"StepSize="yes""#,
+        &["true or false", "`yes`"],
+    ),
+    (
+        r#"StepSize="true""#,
+        r#"StepSize="true" canSerializeFMUstate="true""#,
+        &["canGetAndSetFMUstate along with it"],
+    ),
     (r#"<Category name="logAll"/>"#, "", &["an empty list"]),
     (r#"stopTime="1""#, r#"stopTime="-1""#, &["stopTime", "-1"]),
-    (r#"stepSize="0.01""#, r#"stepSize="0""#, &["stepSize", "positive"]),
+    (
+        r#"stepSize="0.01""#,
+        r#"stepSize="0""#,
+        &["stepSize", "positive"],
+    ),
     (r#"stopTime="1""#, r#"stopTime="INF""#, &["finite", "`INF`"]),
-    ("<LogCategories>", "<Odd/><LogCategories>", &["FMI 2.0 schema", "<Odd>"]),
-    (r#"<DefaultExperiment startTime="0" stopTime="1" stepSize="0.01"/>"#, "<TypeDefinitions><x/></TypeDefinitions>", &["<TypeDefinitions> before <LogCategories>"]),
+    (
+        "<LogCategories>",
+        "<Odd/><LogCategories>",
+        &["FMI 2.0 schema", "<Odd>"],
+    ),
+    (
+        r#"<DefaultExperiment startTime="0" stopTime="1" stepSize="0.01"/>"#,
+        "<TypeDefinitions><x/></TypeDefinitions>",
+        &["<TypeDefinitions> before <LogCategories>"],
+    ),
     // units and types
-    (r#"displayUnit="deg""#, r#"displayUnit="grad""#, &["a display unit of `rad`", "`grad`"]),
-    (r#"<Unit name="m">"#, r#"<Unit name="rad">"#, &["each unit once"]),
-    (r#"factor="57.29577951308232""#, r#"factor="0""#, &["`deg`", "other than 0"]),
-    (r#"<Real start="2""#, r#"<Real displayUnit="deg" start="2""#, &["`k`", "a unit for the display unit"]),
-    (r#"declaredType="Angle""#, r#"declaredType="Angel""#, &["`x`", "`Angel`, which is not defined"]),
+    (
+        r#"displayUnit="deg""#,
+        r#"displayUnit="grad""#,
+        &["a display unit of `rad`", "`grad`"],
+    ),
+    (
+        r#"<Unit name="m">"#,
+        r#"<Unit name="rad">"#,
+        &["each unit once"],
+    ),
+    (
+        r#"factor="57.29577951308232""#,
+        r#"factor="0""#,
+        &["`deg`", "other than 0"],
+    ),
+    (
+        r#"<Real start="2""#,
+        r#"<Real displayUnit="deg" start="2""#,
+        &["`k`", "a unit for the display unit"],
+    ),
+    (
+        r#"declaredType="Angle""#,
+        r#"declaredType="Angel""#,
+        &["`x`", "`Angel`, which is not defined"],
+    ),
     // variables
-    (r#"causality="input""#, r#"causality="entry""#, &["one of parameter", "`entry`"]),
-    (r#"causality="input""#, r#"causality="input" variability="fixed""#, &["`u`", "legal combination", "input and fixed"]),
-    (r#"causality="output" variability="constant""#, r#"causality="output""#, &["`n`", "not Real", "means continuous"]),
-    (r#"variability="tunable"><Real/>"#, r#"variability="tunable" initial="exact"><Real start="1"/>"#, &["`w`", "approx, calculated", "exact"]),
-    (r#"<Real derivative="4"/>"#, r#"<Real derivative="4" start="1"/>"#, &["`der(x)`", "no start value"]),
-    (r#"<Real derivative="4"/>"#, r#"<Real derivative="14"/>"#, &["`der(x)`", "1 .. 8", "14"]),
-    (r#"<Real start="2" min="0"/>"#, r#"<Real start="2" min="0" max="-1"/>"#, &["max not below min"]),
-    (r#"<Integer start="3"/>"#, r#"<Integer start="3.5"/>"#, &["whole number", "`3.5`"]),
-    (r#"name="u""#, r#"name="u v""#, &["structured name", "`u v`"]),
-    (r#"name="w" valueReference="5""#, r#"name="w" valueReference="-5""#, &["valueReference", "`-5`"]),
+    (
+        r#"causality="input""#,
+        r#"causality="entry""#,
+        &["one of parameter", "`entry`"],
+    ),
+    (
+        r#"causality="input""#,
+        r#"causality="input" variability="fixed""#,
+        &["`u`", "legal combination", "input and fixed"],
+    ),
+    (
+        r#"causality="output" variability="constant""#,
+        r#"causality="output""#,
+        &["`n`", "not Real", "means continuous"],
+    ),
+    (
+        r#"variability="tunable"><Real/>"#,
+        r#"variability="tunable" initial="exact"><Real start="1"/>"#,
+        &["`w`", "approx, calculated", "exact"],
+    ),
+    (
+        r#"<Real derivative="4"/>"#,
+        r#"<Real derivative="4" start="1"/>"#,
+        &["`der(x)`", "no start value"],
+    ),
+    (
+        r#"<Real derivative="4"/>"#,
+        r#"<Real derivative="14"/>"#,
+        &["`der(x)`", "1 .. 8", "14"],
+    ),
+    (
+        r#"<Real start="2" min="0"/>"#,
+        r#"<Real start="2" min="0" max="-1"/>"#,
+        &["max not below min"],
+    ),
+    (
+        r#"<Integer start="3"/>"#,
+        r#"<Integer start="3.5"/>"#,
+        &["whole number", "`3.5`"],
+    ),
+    (
+        r#"name="u""#,
+        r#"name="u v""#,
+        &["structured name", "`u v`"],
+    ),
+    (
+        r#"name="w" valueReference="5""#,
+        r#"name="w" valueReference="-5""#,
+        &["valueReference", "`-5`"],
+    ),
     // structure
-    (r#"<Unknown index="5"/>"#, r#"<Unknown index="5"/><Unknown index="3"/>"#, &["InitialUnknowns, index 3", "`u`"]),
-    (r#"dependenciesKind="dependent constant""#, r#"dependenciesKind="dependent""#, &["2 words", "1"]),
-    (r#"dependenciesKind="dependent constant""#, r#"dependenciesKind="dependent linear""#, &["`linear`"]),
-    (r#"<Unknown index="8"/></Init"#, r#"<Unknown index="8"/><Unknown index="80"/></Init"#, &["an index in 1 .. 8", "80"]),
-    (r#"<Unknown index="5" dependencies="3 4"/>"#, r#"<Unknown index="8" dependencies="3 4"/>"#, &["`derivative`", "`y` without"]),
+    (
+        r#"<Unknown index="5"/>"#,
+        r#"<Unknown index="5"/><Unknown index="3"/>"#,
+        &["InitialUnknowns, index 3", "`u`"],
+    ),
+    (
+        r#"dependenciesKind="dependent constant""#,
+        r#"dependenciesKind="dependent""#,
+        &["2 words", "1"],
+    ),
+    (
+        r#"dependenciesKind="dependent constant""#,
+        r#"dependenciesKind="dependent linear""#,
+        &["`linear`"],
+    ),
+    (
+        r#"<Unknown index="8"/></Init"#,
+        r#"<Unknown index="8"/><Unknown index="80"/></Init"#,
+        &["an index in 1 .. 8", "80"],
+    ),
+    (
+        r#"<Unknown index="5" dependencies="3 4"/>"#,
+        r#"<Unknown index="8" dependencies="3 4"/>"#,
+        &["`derivative`", "`y` without"],
+    ),
 ];
 
 #[test]
@@ -121,5 +261,9 @@ fn every_defect_is_found_with_place_and_reason() {
 #[test]
 fn an_fmu_for_model_exchange_only_is_named_as_such() {
     let text = GOOD.replace("<CoSimulation", "<ModelExchange");
-    assert!(errors(&text).iter().any(|e| e.contains("no <CoSimulation>")));
+    assert!(
+        errors(&text)
+            .iter()
+            .any(|e| e.contains("no <CoSimulation>"))
+    );
 }

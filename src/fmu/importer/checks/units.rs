@@ -20,11 +20,7 @@ pub(super) fn definitions(d: &ModelDescription, f: &mut Findings) {
             f.error(&place, "a factor to the base unit other than 0", "0");
         }
         for name in duplicates(unit.display_units.iter().map(|u| u.name.as_str())) {
-            f.error(
-                &place,
-                "each display unit once",
-                format!("`{name}` twice"),
-            );
+            f.error(&place, "each display unit once", format!("`{name}` twice"));
         }
         for display in unit.display_units.iter().filter(|u| u.factor == 0.0) {
             f.error(

@@ -40,19 +40,16 @@ fn structured(name: &str) -> bool {
     }
     name.split('.').all(|part| {
         let (identifier, indices) = part.find('[').map_or((part, ""), |at| part.split_at(at));
-        let quoted = identifier.len() > 2
-            && identifier.starts_with('\'')
-            && identifier.ends_with('\'');
-        let plain = identifier
-            .starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')
+        let quoted =
+            identifier.len() > 2 && identifier.starts_with('\'') && identifier.ends_with('\'');
+        let plain = identifier.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')
             && identifier
                 .chars()
                 .all(|c| c.is_ascii_alphanumeric() || c == '_');
         let inside = indices.strip_prefix('[').and_then(|i| i.strip_suffix(']'));
         (quoted || plain)
             && (indices.is_empty()
-                || inside
-                    .is_some_and(|i| i.split(',').all(|n| n.trim().parse::<u32>().is_ok())))
+                || inside.is_some_and(|i| i.split(',').all(|n| n.trim().parse::<u32>().is_ok())))
     })
 }
 
@@ -147,7 +144,11 @@ pub(super) fn ranges(d: &ModelDescription, f: &mut Findings) {
         if let (Some(min), Some(max)) = (min, max)
             && max < min
         {
-            f.error(v.place(), format!("max not below min = {min}"), max.to_string());
+            f.error(
+                v.place(),
+                format!("max not below min = {min}"),
+                max.to_string(),
+            );
         }
         let start = match &v.start {
             Some(Value::Real(x)) => *x,
@@ -191,7 +192,9 @@ pub(super) fn aliases(d: &ModelDescription, f: &mut Findings) {
                 names.join(", "),
             );
         }
-        let constants = set.iter().filter(|v| v.variability == Variability::Constant);
+        let constants = set
+            .iter()
+            .filter(|v| v.variability == Variability::Constant);
         let constants = constants.count();
         if constants != 0 && constants != set.len() {
             f.error(
