@@ -49,10 +49,6 @@ fn embed_runtime() -> Result<(), String> {
     watch(&source)?;
     let platform = platform()?;
     println!("cargo::rustc-env=AERODECK_RUNTIME_PLATFORM={platform}");
-    println!(
-        "cargo::rustc-env=AERODECK_RUNTIME_EXTENSION={}",
-        extension()
-    );
     let embedded = out.join(EMBEDDED);
     let copied = if env::var_os("CARGO_CFG_MIRI").is_some() {
         // an interpreter of Rust code has no use for a shared library, and cannot build one

@@ -9,6 +9,8 @@ pub mod identity;
 #[allow(unsafe_code)]
 pub mod importer;
 pub mod lifecycle;
+#[cfg(feature = "packaging")]
+pub mod package;
 pub mod resources;
 pub mod si;
 pub mod variables;
