@@ -314,3 +314,6 @@ fn decoded(bytes: Vec<u8>) -> Result<String> {
         )
     })
 }
+
+#[cfg(test)]
+mod tests;

@@ -4,7 +4,7 @@ use super::runtime::Runtime;
 use crate::aerodynamics::AerodynamicModel;
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
-use crate::flutter::{FlutterSearch, OnsetSearch, divergence_speed, find_onset};
+use crate::flutter::{FlutterSearch, Onset, OnsetSearch, divergence_speed, find_onset};
 use crate::fmu::resources::Resources;
 use crate::fmu::variables::{Causality, SectionParameter, Value, Variability, Variable, filters};
 use crate::section::Dof;
@@ -191,30 +191,13 @@ fn stability(model: &TrainedModel) -> Result<Vec<String>> {
         ..OnsetSearch::default()
     };
     let section = CoupledSection::new(structure.clone(), realization)?;
-    let found = find_onset(&model.name, &section, &search, Some(model.tested_range))?;
-    let mut sentences = match &found {
-        FlutterSearch::StableUpTo(speed) => {
-            vec![format!("No flutter up to {} m/s.", digits(*speed))]
+    let mut sentences = match find_onset(&model.name, &section, &search, Some(model.tested_range)) {
+        Ok(FlutterSearch::StableUpTo(speed)) => {
+            vec![format!("No flutter up to {} m/s.", digits(speed))]
         }
-        FlutterSearch::Onset(onset) => {
-            let mut sentences = vec![format!(
-                "Flutter onset at {} m/s with {} Hz, V* = {}, K = {}; |y|/(B|θ|) = {}, y leads θ by {}°. \
-                 Its reduced frequency lies {} the tested range.",
-                digits(onset.speed_m_s),
-                digits(onset.frequency_hz),
-                digits(onset.reduced_velocity.v_star()),
-                digits(onset.reduced_frequency.full_width()),
-                digits(onset.mode_ratio),
-                digits(onset.phase_deg),
-                if onset.in_tested_range == Some(false) {
-                    "outside"
-                } else {
-                    "inside"
-                }
-            )];
-            sentences.extend(onset.warnings.iter().map(|w| format!("Warning: {w}.")));
-            sentences
-        }
+        Ok(FlutterSearch::Onset(onset)) => onset_sentences(&onset),
+        // a page that says so is better than no FMU
+        Err(e) => vec![format!("Flutter onset could not be determined: {e}.")],
     };
     let at_rest = model
         .model
@@ -224,6 +207,26 @@ fn stability(model: &TrainedModel) -> Result<Vec<String>> {
         _ => format!("No static divergence up to {} m/s.", digits(limit)),
     });
     Ok(sentences)
+}
+
+fn onset_sentences(onset: &Onset) -> Vec<String> {
+    let mut sentences = vec![format!(
+        "Flutter onset at {} m/s with {} Hz, V* = {}, K = {}; |y|/(B|θ|) = {}, y leads θ by {}°. \
+         Its reduced frequency lies {} the tested range.",
+        digits(onset.speed_m_s),
+        digits(onset.frequency_hz),
+        digits(onset.reduced_velocity.v_star()),
+        digits(onset.reduced_frequency.full_width()),
+        digits(onset.mode_ratio),
+        digits(onset.phase_deg),
+        if onset.in_tested_range == Some(false) {
+            "outside"
+        } else {
+            "inside"
+        }
+    )];
+    sentences.extend(onset.warnings.iter().map(|w| format!("Warning: {w}.")));
+    sentences
 }
 
 /// What the discrete model does between its samples.

@@ -60,7 +60,7 @@ fn the_page_names_everything_and_loads_nothing() {
         for foreign in ["http:", "https:", "src=", "href=", "@import"] {
             assert!(!page.contains(foreign), "{foreign} in the page of {kind}");
         }
-        assert!(page.contains("Flutter onset at "));
+        assert!(page.contains("Flutter onset "));
         assert_eq!(page.contains("is held</b>"), kind == "discrete_laguerre");
     }
 }
