@@ -1,3 +1,213 @@
-fn main() {
+//! Builds the FMU runtime, the shared library that every exported FMU holds, and hands it to `src/fmu/package.rs`.
+//!
+//! With the feature `packaging` (part of `cli`) this script calls cargo once more on the same package without any
+//! feature, in the profile `fmu` and a target directory of its own, and copies the library to `OUT_DIR`, from where
+//! it is embedded: an installed `aerodeck` exports FMUs without source tree or Rust toolchain. Without that feature,
+//! and so in the nested call itself, there is nothing to do.
+
+use std::env;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode};
+
+/// Parts of `src/` that never reach the runtime; every other file there leads to a new build of it.
+const NOT_IN_RUNTIME: [&str; 10] = [
+    "main.rs",
+    "benchmarks.rs",
+    "cli",
+    "comparison",
+    "identification",
+    "report",
+    "wind_tunnel",
+    "fmu/description",
+    "fmu/importer",
+    "fmu/package",
+];
+
+/// Name of the library in OUT_DIR.
+const EMBEDDED: &str = "aerodeck_section";
+
+fn main() -> ExitCode {
     println!("cargo::rerun-if-changed=build.rs");
+    if env::var_os("CARGO_FEATURE_PACKAGING").is_none() {
+        return ExitCode::SUCCESS;
+    }
+    match embed_runtime() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(message) => {
+            for line in message.lines() {
+                println!("cargo::error={line}");
+            }
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn embed_runtime() -> Result<(), String> {
+    let source = PathBuf::from(variable("CARGO_MANIFEST_DIR")?);
+    let out = PathBuf::from(variable("OUT_DIR")?);
+    watch(&source)?;
+    let platform = platform()?;
+    println!("cargo::rustc-env=AERODECK_RUNTIME_PLATFORM={platform}");
+    let embedded = out.join(EMBEDDED);
+    let copied = if env::var_os("CARGO_CFG_MIRI").is_some() {
+        // an interpreter of Rust code has no use for a shared library, and cannot build one
+        fs::write(&embedded, []).map(|()| 0)
+    } else {
+        fs::copy(build_runtime(&source, &out)?, &embedded)
+    };
+    copied.map_err(|e| format!("{}: {e}", embedded.display()))?;
+    Ok(())
+}
+
+/// Asks cargo to call this script again when a source of the runtime changes. Files are named one by one: a new
+/// file changes the `mod` line of one that is watched.
+fn watch(source: &Path) -> Result<(), String> {
+    println!("cargo::rerun-if-changed=Cargo.toml");
+    println!("cargo::rerun-if-changed=Cargo.lock");
+    let mut folders = vec![PathBuf::from("src")];
+    while let Some(folder) = folders.pop() {
+        let entries =
+            fs::read_dir(source.join(&folder)).map_err(|e| format!("{}: {e}", folder.display()))?;
+        for entry in entries.flatten() {
+            let path = folder.join(entry.file_name());
+            let below_src = path.strip_prefix("src").unwrap_or(&path).with_extension("");
+            let named = path.strip_prefix("src").unwrap_or(&path);
+            if NOT_IN_RUNTIME
+                .iter()
+                .any(|n| Path::new(n) == below_src || Path::new(n) == named)
+            {
+                continue;
+            }
+            if source.join(&path).is_dir() {
+                folders.push(path);
+            } else {
+                println!("cargo::rerun-if-changed={}", path.display());
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Folder below `binaries/` of the platform that is compiled for: FMI 2.0 names, FMI 3.0 tuples where 2.0 has none.
+fn platform() -> Result<&'static str, String> {
+    let (system, processor) = (
+        variable("CARGO_CFG_TARGET_OS")?,
+        variable("CARGO_CFG_TARGET_ARCH")?,
+    );
+    match (system.as_str(), processor.as_str()) {
+        ("linux", "x86_64") => Ok("linux64"),
+        ("linux", "x86") => Ok("linux32"),
+        ("linux", "aarch64") => Ok("aarch64-linux"),
+        ("windows", "x86_64") => Ok("win64"),
+        ("windows", "x86") => Ok("win32"),
+        ("macos", "x86_64") => Ok("darwin64"),
+        ("macos", "aarch64") => Ok("aarch64-darwin"),
+        _ => Err(format!(
+            "FMI names no platform for {system} on {processor}: build without the features `cli` and `packaging`"
+        )),
+    }
+}
+
+fn extension() -> &'static str {
+    match env::var("CARGO_CFG_TARGET_OS").as_deref() {
+        Ok("windows") => "dll",
+        Ok("macos") => "dylib",
+        _ => "so",
+    }
+}
+
+/// Builds the shared library and says where it is.
+fn build_runtime(source: &Path, out: &Path) -> Result<PathBuf, String> {
+    let target_dir = runtime_target_dir(out);
+    let triple = variable("TARGET")?;
+    let mut said = String::new();
+    // what the outer build has fetched and locked is enough; the rest is for lock files that do not travel along
+    for network in [&["--offline", "--locked"][..], &["--locked"], &[]] {
+        let output = nested_cargo(source, &target_dir, &triple)?
+            .args(network)
+            .output()
+            .map_err(|e| format!("cargo cannot be started to build the FMU runtime: {e}"))?;
+        if output.status.success() {
+            let prefix = if extension() == "dll" { "" } else { "lib" };
+            let library = format!("{prefix}aerodeck.{}", extension());
+            return Ok(target_dir.join(triple).join("fmu").join(library));
+        }
+        said = String::from_utf8_lossy(&output.stderr).into_owned();
+        if said.contains("could not compile") {
+            break;
+        }
+    }
+    Err(format!(
+        "the FMU runtime (this package without features, profile `fmu`, target {triple}) could not be built in {}; \
+         cargo said:\n{said}",
+        target_dir.display()
+    ))
+}
+
+/// A target directory that the calling cargo has not locked, shared by its profiles: `<target>/fmu-runtime`.
+fn runtime_target_dir(out: &Path) -> PathBuf {
+    // OUT_DIR is <target>[/<triple>]/<profile>/build/<package>/out
+    out.ancestors()
+        .find(|a| a.file_name().is_some_and(|n| n == "build"))
+        .and_then(|build| build.parent()?.parent())
+        .unwrap_or(out)
+        .join("fmu-runtime")
+}
+
+fn nested_cargo(source: &Path, target_dir: &Path, triple: &str) -> Result<Command, String> {
+    let mut cargo = Command::new(variable("CARGO")?);
+    cargo
+        .args(["rustc", "--lib", "--crate-type", "cdylib"])
+        .args(["--no-default-features", "--profile", "fmu"])
+        .args(["--target", triple])
+        .arg("--manifest-path")
+        .arg(source.join("Cargo.toml"))
+        .arg("--target-dir")
+        .arg(target_dir)
+        .current_dir(source)
+        .env("CARGO_BUILD_BUILD_DIR", target_dir)
+        .env("CARGO_ENCODED_RUSTFLAGS", flags(source))
+        .env_remove("RUSTC_WORKSPACE_WRAPPER")
+        .env_remove("RUSTFLAGS");
+    // what cargo tells a build script is about the outer build
+    for (name, _) in env::vars_os() {
+        let name = name.to_string_lossy().into_owned();
+        if [
+            "CARGO_FEATURE_",
+            "CARGO_CFG_",
+            "CARGO_PKG_",
+            "CARGO_MANIFEST_",
+        ]
+        .iter()
+        .any(|p| name.starts_with(p))
+        {
+            cargo.env_remove(name);
+        }
+    }
+    Ok(cargo)
+}
+
+/// Compiler flags of the runtime. They replace those of the outer build, which may be for this machine's processor
+/// only or instrumented, and take the paths of this machine out of panic messages.
+fn flags(source: &Path) -> String {
+    let home = env::var_os("CARGO_HOME").map(PathBuf::from).or_else(|| {
+        let user = env::var_os("HOME").or_else(|| env::var_os("USERPROFILE"))?;
+        Some(Path::new(&user).join(".cargo"))
+    });
+    let remap = |from: &Path, to: &str| format!("--remap-path-prefix={}={to}", from.display());
+    let mut flags = vec![remap(source, "aerodeck")];
+    if let Some(home) = home {
+        flags.push(remap(&home, "cargo"));
+        // the last match wins: crates lose the name of the registry they came from
+        let registries = fs::read_dir(home.join("registry").join("src"));
+        for registry in registries.into_iter().flatten().flatten() {
+            flags.push(remap(&registry.path(), "crates"));
+        }
+    }
+    flags.join("\u{1f}")
+}
+
+fn variable(name: &str) -> Result<String, String> {
+    env::var(name).map_err(|e| format!("{name}: {e}"))
 }

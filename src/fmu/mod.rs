@@ -5,7 +5,12 @@ pub mod description;
 #[allow(unsafe_code)]
 pub mod fmi2;
 pub mod identity;
+#[cfg(feature = "packaging")]
+#[allow(unsafe_code)]
+pub mod importer;
 pub mod lifecycle;
+#[cfg(feature = "packaging")]
+pub mod package;
 pub mod resources;
 pub mod si;
 pub mod variables;

@@ -1,0 +1,115 @@
+//! Unpacking an FMU into a temporary directory: nothing outside it, nothing without a limit.
+
+use super::findings::Findings;
+use crate::error::{Error, Result};
+use std::fs::File;
+use std::io::{BufReader, Read};
+use std::path::{Path, PathBuf};
+use tempfile::TempDir;
+use zip::{CompressionMethod, ZipArchive};
+
+/// Most bytes that an FMU may unpack to, 4 GiB.
+const MAX_BYTES: u64 = 4 << 30;
+/// Most entries.
+const MAX_ENTRIES: usize = 100_000;
+
+/// Unpacks the archive, with findings for what is legal for ZIP and not for an FMU.
+///
+/// # Errors
+/// [`Error::Io`] when it cannot be read or written, [`Error::Input`] when it is no ZIP archive, holds entries that
+/// would land outside, links or encrypted entries, or is too large.
+pub(super) fn unpack(path: &Path) -> Result<(TempDir, Vec<String>, Findings)> {
+    let file = File::open(path).map_err(|e| Error::io(path, e))?;
+    let mut zip = ZipArchive::new(BufReader::new(file))
+        .map_err(|e| refused("", "a ZIP archive", e.to_string()))?;
+    if zip.len() > MAX_ENTRIES {
+        let expected = format!("at most {MAX_ENTRIES} entries");
+        return Err(refused("", expected, zip.len().to_string()));
+    }
+    let folder = tempfile::Builder::new()
+        .prefix("aerodeck-fmu-")
+        .tempdir()
+        .map_err(|e| Error::io(std::env::temp_dir(), e))?;
+    let (mut names, mut findings, mut left) = (Vec::new(), Findings::default(), MAX_BYTES);
+    for index in 0..zip.len() {
+        let mut entry = zip
+            .by_index(index)
+            .map_err(|e| refused(&format!("entry {index}"), "a readable entry", e.to_string()))?;
+        let name = entry
+            .name()
+            .map_err(|e| refused(&format!("entry {index}"), "a name in UTF-8", e.to_string()))?
+            .into_owned();
+        let inside = safe_path(&name, &mut findings)?;
+        if entry.is_symlink() {
+            return Err(refused(&name, "a file or a folder", "a link"));
+        }
+        method(&name, entry.compression(), &mut findings);
+        let target = folder.path().join(inside);
+        if entry.is_dir() {
+            std::fs::create_dir_all(&target).map_err(|e| Error::io(&target, e))?;
+            continue;
+        }
+        left = write(&mut entry, &name, &target, left)?;
+        names.push(name.replace('\\', "/"));
+    }
+    Ok((folder, names, findings))
+}
+
+fn refused(place: &str, expected: impl Into<String>, found: impl Into<String>) -> Error {
+    Error::input(place, expected, found)
+}
+
+fn safe_path(name: &str, findings: &mut Findings) -> Result<PathBuf> {
+    if name.contains('\\') {
+        findings.error(
+            format!("archive, entry {name:?}"),
+            "forward slashes",
+            "backslashes",
+        );
+    }
+    let name = name.replace('\\', "/");
+    let harmless = !name.starts_with('/')
+        && !name.contains(['\0', ':'])
+        && !name.split('/').any(|part| part == "..");
+    if !harmless || name.is_empty() {
+        return Err(refused(
+            &format!("entry {name:?}"),
+            "a path inside the archive",
+            "one that leads outside",
+        ));
+    }
+    Ok(name
+        .split('/')
+        .filter(|p| !p.is_empty() && *p != ".")
+        .collect())
+}
+
+fn method(name: &str, method: CompressionMethod, findings: &mut Findings) {
+    if !matches!(
+        method,
+        CompressionMethod::Stored | CompressionMethod::Deflated
+    ) {
+        findings.error(
+            format!("archive, entry {name:?}"),
+            "compression by deflate or none",
+            format!("{method}"),
+        );
+    }
+}
+
+fn write(entry: &mut impl Read, name: &str, target: &Path, left: u64) -> Result<u64> {
+    if let Some(parent) = target.parent() {
+        std::fs::create_dir_all(parent).map_err(|e| Error::io(parent, e))?;
+    }
+    let mut file = File::create_new(target).map_err(|e| Error::io(target, e))?;
+    // the size in the header is only a claim
+    let written = std::io::copy(&mut entry.take(left + 1), &mut file)
+        .map_err(|e| refused(name, "an entry that unpacks", e.to_string()))?;
+    left.checked_sub(written).ok_or_else(|| {
+        refused(
+            name,
+            format!("at most {MAX_BYTES} bytes unpacked in all"),
+            "more",
+        )
+    })
+}

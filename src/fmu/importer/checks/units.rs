@@ -1,0 +1,70 @@
+//! Units: defined once, with a meaning, and every one that is used is defined.
+
+use super::super::description::ModelDescription;
+use super::super::findings::Findings;
+use super::{FILE, duplicates};
+
+pub(super) fn definitions(d: &ModelDescription, f: &mut Findings) {
+    for name in duplicates(d.units.iter().map(|u| u.name.as_str())) {
+        f.error(
+            format!("{FILE}, UnitDefinitions"),
+            "each unit once",
+            format!("`{name}` twice"),
+        );
+    }
+    for unit in &d.units {
+        let place = format!("{FILE}, line {}, unit `{}`", unit.line, unit.name);
+        if let Some((_, factor, _)) = unit.base
+            && factor == 0.0
+        {
+            f.error(&place, "a factor to the base unit other than 0", "0");
+        }
+        for name in duplicates(unit.display_units.iter().map(|u| u.name.as_str())) {
+            f.error(&place, "each display unit once", format!("`{name}` twice"));
+        }
+        for display in unit.display_units.iter().filter(|u| u.factor == 0.0) {
+            f.error(
+                format!("{place}, display unit `{}`", display.name),
+                "a factor other than 0",
+                "0",
+            );
+        }
+    }
+}
+
+pub(super) fn uses(d: &ModelDescription, f: &mut Findings) {
+    let variables = d.variables.iter().map(|v| (v.place(), &v.attributes));
+    let types = d.types.iter().map(|t| {
+        let place = format!("{FILE}, line {}, type `{}`", t.line, t.name);
+        (place, &t.attributes)
+    });
+    for (place, attributes) in variables.chain(types) {
+        let Some(name) = &attributes.unit else {
+            if let Some(display) = &attributes.display_unit {
+                f.error(
+                    place,
+                    format!("a unit for the display unit `{display}`"),
+                    "none",
+                );
+            }
+            continue;
+        };
+        let Some(unit) = d.units.iter().find(|u| u.name == *name) else {
+            f.error(
+                place,
+                "a unit of <UnitDefinitions>",
+                format!("`{name}`, which is not defined"),
+            );
+            continue;
+        };
+        if let Some(display) = &attributes.display_unit
+            && !unit.display_units.iter().any(|u| u.name == *display)
+        {
+            f.error(
+                place,
+                format!("a display unit of `{name}`"),
+                format!("`{display}`, which is not defined"),
+            );
+        }
+    }
+}

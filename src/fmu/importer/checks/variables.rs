@@ -1,0 +1,245 @@
+//! Rules about single variables and about variables that share a value reference.
+
+use super::super::description::{
+    Causality, Initial, Kind, ModelDescription, ScalarVariable, Value, Variability, initial_choices,
+};
+use super::super::findings::Findings;
+use super::{FILE, duplicates};
+use std::collections::BTreeMap;
+
+pub(super) fn names(d: &ModelDescription, f: &mut Findings) {
+    for name in duplicates(d.variables.iter().map(|v| v.name.as_str())) {
+        f.error(
+            format!("{FILE}, ModelVariables"),
+            "unique names",
+            format!("`{name}` twice"),
+        );
+    }
+    for v in &d.variables {
+        if v.name.is_empty() || v.name.contains(['\r', '\n', '\t']) {
+            f.error(
+                v.place(),
+                "a name without line breaks and tabs",
+                format!("{:?}", v.name),
+            );
+        } else if d.variable_naming_convention == "structured" && !structured(&v.name) {
+            f.error(
+                v.place(),
+                "a structured name such as `a.b[1]` or `der(x)`",
+                format!("`{}`", v.name),
+            );
+        }
+    }
+}
+
+/// Names of the convention `structured` (section 2.2.9): dotted identifiers with indices, `der(name)`, `der(name, n)`.
+fn structured(name: &str) -> bool {
+    if let Some(inner) = name.strip_prefix("der(").and_then(|n| n.strip_suffix(')')) {
+        let (inner, order) = inner.split_once(',').unwrap_or((inner, "1"));
+        return structured(inner.trim()) && order.trim().parse::<u32>().is_ok();
+    }
+    name.split('.').all(|part| {
+        let (identifier, indices) = part.find('[').map_or((part, ""), |at| part.split_at(at));
+        let quoted =
+            identifier.len() > 2 && identifier.starts_with('\'') && identifier.ends_with('\'');
+        let plain = identifier.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')
+            && identifier
+                .chars()
+                .all(|c| c.is_ascii_alphanumeric() || c == '_');
+        let inside = indices.strip_prefix('[').and_then(|i| i.strip_suffix(']'));
+        (quoted || plain)
+            && (indices.is_empty()
+                || inside.is_some_and(|i| i.split(',').all(|n| n.trim().parse::<u32>().is_ok())))
+    })
+}
+
+pub(super) fn types(d: &ModelDescription, f: &mut Findings) {
+    for v in &d.variables {
+        if v.kind == Kind::Enumeration && v.declared_type.is_none() {
+            f.error(v.place(), "the declared type of an enumeration", "none");
+        }
+        let Some(name) = &v.declared_type else {
+            continue;
+        };
+        match d.types.iter().find(|t| t.name == *name) {
+            None => f.error(
+                v.place(),
+                "a type of <TypeDefinitions>",
+                format!("`{name}`, which is not defined"),
+            ),
+            Some(t) if t.kind != v.kind => f.error(
+                v.place(),
+                format!("a declared type of kind {:?}", v.kind),
+                format!("`{name}` of kind {:?}", t.kind),
+            ),
+            Some(_) => {}
+        }
+    }
+}
+
+pub(super) fn combinations(d: &ModelDescription, f: &mut Findings) {
+    for v in &d.variables {
+        if v.kind != Kind::Real && v.variability == Variability::Continuous {
+            let found = if v.variability_stated {
+                "continuous"
+            } else {
+                "none stated, which means continuous"
+            };
+            f.error(
+                v.place(),
+                "a variability other than continuous, since it is not Real",
+                found,
+            );
+        } else if initial_choices(v.causality, v.variability).is_none() {
+            f.error(
+                v.place(),
+                "a legal combination of causality and variability",
+                format!("{:?} and {:?}", v.causality, v.variability).to_lowercase(),
+            );
+        }
+    }
+}
+
+pub(super) fn initial(d: &ModelDescription, f: &mut Findings) {
+    for v in &d.variables {
+        let (Some(stated), Some((_, allowed))) =
+            (v.initial, initial_choices(v.causality, v.variability))
+        else {
+            continue;
+        };
+        if !allowed.contains(&stated) {
+            let expected = if allowed.is_empty() {
+                "no `initial` on an input or on time".to_owned()
+            } else {
+                format!("initial to be one of {allowed:?}").to_lowercase()
+            };
+            f.error(v.place(), expected, format!("{stated:?}").to_lowercase());
+        }
+    }
+}
+
+pub(super) fn start_presence(d: &ModelDescription, f: &mut Findings) {
+    for v in &d.variables {
+        let initial = v.effective_initial();
+        let needed = v.causality == Causality::Input
+            || matches!(initial, Some(Initial::Exact | Initial::Approx));
+        let forbidden =
+            v.causality == Causality::Independent || initial == Some(Initial::Calculated);
+        if needed && v.start.is_none() {
+            f.error(v.place(), "a start value", "none");
+        } else if forbidden && v.start.is_some() {
+            f.error(
+                v.place(),
+                "no start value, since it is calculated or time",
+                "one",
+            );
+        }
+    }
+}
+
+pub(super) fn ranges(d: &ModelDescription, f: &mut Findings) {
+    for v in &d.variables {
+        let min = d.attribute_of(v, |a| a.min);
+        let max = d.attribute_of(v, |a| a.max);
+        if let (Some(min), Some(max)) = (min, max)
+            && max < min
+        {
+            f.error(
+                v.place(),
+                format!("max not below min = {min}"),
+                max.to_string(),
+            );
+        }
+        let start = match &v.start {
+            Some(Value::Real(x)) => *x,
+            Some(Value::Integer(i)) => f64::from(*i),
+            _ => continue,
+        };
+        let range = format!(
+            "a start value in {} .. {}",
+            min.map_or("-∞".into(), |m| m.to_string()),
+            max.map_or("∞".into(), |m| m.to_string())
+        );
+        if min.is_some_and(|m| start < m) || max.is_some_and(|m| start > m) {
+            f.error(v.place(), range, start.to_string());
+        }
+        if d.attribute_of(v, |a| a.nominal) == Some(0.0) {
+            f.error(v.place(), "a nominal value other than 0", "0");
+        }
+    }
+}
+
+/// Section 2.2.7 on alias sets: at most one member can be set, constants stand apart, units agree.
+pub(super) fn aliases(d: &ModelDescription, f: &mut Findings) {
+    let mut sets: BTreeMap<(Kind, u32), Vec<&ScalarVariable>> = BTreeMap::new();
+    for v in &d.variables {
+        // the two are the same C type
+        let kind = if v.kind == Kind::Enumeration {
+            Kind::Integer
+        } else {
+            v.kind
+        };
+        sets.entry((kind, v.value_reference)).or_default().push(v);
+    }
+    for ((_, reference), set) in sets.iter().filter(|(_, set)| set.len() > 1) {
+        let name = |v: &&&ScalarVariable| format!("`{}`", v.name);
+        let settable: Vec<_> = set.iter().filter(|v| v.settable()).collect();
+        if settable.len() > 1 {
+            let names: Vec<_> = settable.iter().map(name).collect();
+            f.error(
+                settable[1].place(),
+                format!("one settable variable for value reference {reference}"),
+                names.join(", "),
+            );
+        }
+        let constants = set
+            .iter()
+            .filter(|v| v.variability == Variability::Constant);
+        let constants = constants.count();
+        if constants != 0 && constants != set.len() {
+            f.error(
+                set[1].place(),
+                format!("only constants or none with value reference {reference}"),
+                "both",
+            );
+        }
+        let unit = |v: &ScalarVariable| d.attribute_of(v, |a| a.unit.clone());
+        if let Some(other) = set.iter().find(|v| unit(v) != unit(set[0])) {
+            f.error(
+                other.place(),
+                format!("the unit of its alias `{}`", set[0].name),
+                unit(other).unwrap_or_else(|| "none".into()),
+            );
+        }
+    }
+}
+
+pub(super) fn derivatives(d: &ModelDescription, f: &mut Findings) {
+    for v in &d.variables {
+        let Some(of) = v.derivative else { continue };
+        let state = of.checked_sub(1).and_then(|i| d.variables.get(i));
+        match state {
+            None => f.error(
+                v.place(),
+                format!("`derivative` in 1 .. {}", d.variables.len()),
+                of.to_string(),
+            ),
+            Some(state) if state.kind != Kind::Real || v.kind != Kind::Real => f.error(
+                v.place(),
+                "the derivative of a Real, itself a Real",
+                format!("derivative of `{}`", state.name),
+            ),
+            Some(_) => {}
+        }
+    }
+}
+
+pub(super) fn independent(d: &ModelDescription, f: &mut Findings) {
+    let mut times = d
+        .variables
+        .iter()
+        .filter(|v| v.causality == Causality::Independent);
+    if let Some(second) = times.by_ref().nth(1) {
+        f.error(second.place(), "at most one independent variable", "two");
+    }
+}

@@ -1,0 +1,338 @@
+//! What `modelDescription.xml` of an FMI 2.0 co-simulation FMU says, as plain values.
+
+use serde::Serialize;
+
+/// Role of a variable.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "camelCase")]
+pub enum Causality {
+    /// Set by the user, constant during a run unless tunable.
+    Parameter,
+    /// Computed from parameters.
+    CalculatedParameter,
+    /// Comes from outside.
+    Input,
+    /// Goes outside.
+    Output,
+    /// Inside only.
+    Local,
+    /// Time.
+    Independent,
+}
+
+/// When a variable may change.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "camelCase")]
+pub enum Variability {
+    /// Never.
+    Constant,
+    /// Not after initialisation.
+    Fixed,
+    /// Between communication points, by the user.
+    Tunable,
+    /// At events or communication points.
+    Discrete,
+    /// Always.
+    Continuous,
+}
+
+/// How a variable gets its first value.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "camelCase")]
+pub enum Initial {
+    /// It is the start value.
+    Exact,
+    /// An iteration begins at the start value.
+    Approx,
+    /// From other variables.
+    Calculated,
+}
+
+/// Type of a variable.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
+pub enum Kind {
+    /// `fmi2Real`.
+    Real,
+    /// `fmi2Integer`.
+    Integer,
+    /// `fmi2Boolean`.
+    Boolean,
+    /// `fmi2String`.
+    String,
+    /// `fmi2Integer` with named values.
+    Enumeration,
+}
+
+/// A value of a variable.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum Value {
+    /// Real.
+    Real(f64),
+    /// Integer or enumeration.
+    Integer(i32),
+    /// Boolean.
+    Boolean(bool),
+    /// String.
+    String(String),
+}
+
+impl std::fmt::Display for Value {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Real(v) => write!(f, "{v}"),
+            Self::Integer(v) => write!(f, "{v}"),
+            Self::Boolean(v) => write!(f, "{v}"),
+            Self::String(v) => write!(f, "{v}"),
+        }
+    }
+}
+
+/// Attributes that a variable may take over from its declared type.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct TypeAttributes {
+    /// Physical quantity.
+    pub quantity: Option<String>,
+    /// Unit.
+    pub unit: Option<String>,
+    /// Unit for display.
+    pub display_unit: Option<String>,
+    /// Smallest value.
+    pub min: Option<f64>,
+    /// Largest value.
+    pub max: Option<f64>,
+    /// Usual size.
+    pub nominal: Option<f64>,
+}
+
+/// A variable of the FMU.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ScalarVariable {
+    /// Name.
+    pub name: String,
+    /// Handle, unique within its type except for aliases.
+    pub value_reference: u32,
+    /// What it is.
+    pub description: Option<String>,
+    /// Role; `local` when not stated.
+    pub causality: Causality,
+    /// Variability; `continuous` when not stated.
+    pub variability: Variability,
+    /// Whether the variability is stated.
+    pub variability_stated: bool,
+    /// `initial` as stated.
+    pub initial: Option<Initial>,
+    /// Type.
+    pub kind: Kind,
+    /// Start value.
+    pub start: Option<Value>,
+    /// Name of the declared type.
+    pub declared_type: Option<String>,
+    /// Unit, range and the like.
+    pub attributes: TypeAttributes,
+    /// Index (from 1) of the variable whose derivative this is.
+    pub derivative: Option<usize>,
+    /// Line in the file.
+    pub line: usize,
+}
+
+impl ScalarVariable {
+    /// `initial` as stated, or its default; `None` for inputs and time, which have none, and for combinations of
+    /// causality and variability that are not legal (table in section 2.2.7 of the standard).
+    pub fn effective_initial(&self) -> Option<Initial> {
+        self.initial.or_else(|| {
+            initial_choices(self.causality, self.variability).and_then(|(default, _)| default)
+        })
+    }
+
+    /// Whether an importer may set it before initialisation ends or during the run.
+    pub fn settable(&self) -> bool {
+        self.causality == Causality::Input
+            || (self.variability != Variability::Constant
+                && matches!(
+                    self.effective_initial(),
+                    Some(Initial::Exact | Initial::Approx)
+                ))
+    }
+
+    /// Place for findings.
+    pub(super) fn place(&self) -> String {
+        format!(
+            "modelDescription.xml, line {}, variable `{}`",
+            self.line, self.name
+        )
+    }
+}
+
+/// Default `initial` and the values that may be stated; outer `None`: this combination is not legal.
+pub(super) fn initial_choices(
+    causality: Causality,
+    variability: Variability,
+) -> Option<(Option<Initial>, &'static [Initial])> {
+    use Initial::{Approx, Calculated, Exact};
+    let exact: &[Initial] = &[Exact];
+    let computed: &[Initial] = &[Approx, Calculated];
+    let any: &[Initial] = &[Exact, Approx, Calculated];
+    match (causality, variability) {
+        (Causality::Parameter, Variability::Fixed | Variability::Tunable)
+        | (Causality::Output | Causality::Local, Variability::Constant) => {
+            Some((Some(Exact), exact))
+        }
+        (
+            Causality::CalculatedParameter | Causality::Local,
+            Variability::Fixed | Variability::Tunable,
+        ) => Some((Some(Calculated), computed)),
+        (Causality::Input, Variability::Discrete | Variability::Continuous)
+        | (Causality::Independent, Variability::Continuous) => Some((None, &[])),
+        (Causality::Output | Causality::Local, Variability::Discrete | Variability::Continuous) => {
+            Some((Some(Calculated), any))
+        }
+        _ => None,
+    }
+}
+
+/// A unit for display: `value in display unit = factor · value + offset`.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct DisplayUnit {
+    /// Name.
+    pub name: String,
+    /// Factor.
+    pub factor: f64,
+    /// Offset.
+    pub offset: f64,
+}
+
+/// A unit.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Unit {
+    /// Name.
+    pub name: String,
+    /// Exponents of kg, m, s, A, K, mol, cd, rad, then factor and offset to the SI unit; `None` when not stated.
+    pub base: Option<([i32; 8], f64, f64)>,
+    /// Display units.
+    pub display_units: Vec<DisplayUnit>,
+    /// Line in the file.
+    pub line: usize,
+}
+
+/// A declared type.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SimpleType {
+    /// Name.
+    pub name: String,
+    /// Type.
+    pub kind: Kind,
+    /// Unit, range and the like.
+    pub attributes: TypeAttributes,
+    /// Line in the file.
+    pub line: usize,
+}
+
+/// An entry of `ModelStructure`.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Unknown {
+    /// Index of the variable, from 1.
+    pub index: usize,
+    /// Indices of the variables it depends on; `None`: on all.
+    pub dependencies: Option<Vec<usize>>,
+    /// How it depends on each.
+    pub kinds: Option<Vec<String>>,
+    /// Line in the file.
+    pub line: usize,
+}
+
+/// Capabilities of the slave.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct CoSimulation {
+    /// Name of the library in `binaries/` and prefix of its C code.
+    pub model_identifier: String,
+    /// Another program must run too.
+    pub needs_execution_tool: bool,
+    /// The step may change.
+    pub can_handle_variable_communication_step_size: bool,
+    /// Input derivatives are used.
+    pub can_interpolate_inputs: bool,
+    /// Highest derivative of outputs.
+    pub max_output_derivative_order: u32,
+    /// `fmi2DoStep` may return before it is done.
+    pub can_run_asynchronously: bool,
+    /// One instance per process.
+    pub can_be_instantiated_only_once_per_process: bool,
+    /// The memory callbacks are not used.
+    pub can_not_use_memory_management_functions: bool,
+    /// States can be saved and restored.
+    pub can_get_and_set_fmu_state: bool,
+    /// States can be turned into bytes and back.
+    pub can_serialize_fmu_state: bool,
+    /// Directional derivatives.
+    pub provides_directional_derivative: bool,
+}
+
+/// What to run when nothing else is said.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct DefaultExperiment {
+    /// Start, s.
+    pub start_time: Option<f64>,
+    /// End, s.
+    pub stop_time: Option<f64>,
+    /// Relative tolerance.
+    pub tolerance: Option<f64>,
+    /// Communication step, s.
+    pub step_size: Option<f64>,
+}
+
+/// The model description.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct ModelDescription {
+    /// Version of the standard.
+    pub fmi_version: String,
+    /// Name of the model.
+    pub model_name: String,
+    /// Fingerprint that must be handed to the binary.
+    pub guid: String,
+    /// What it is.
+    pub description: Option<String>,
+    /// Program that made it.
+    pub generation_tool: Option<String>,
+    /// `flat` or `structured`.
+    pub variable_naming_convention: String,
+    /// Capabilities; `None` when it is not for co-simulation.
+    pub co_simulation: Option<CoSimulation>,
+    /// Whether it offers model exchange.
+    pub model_exchange: bool,
+    /// Units.
+    pub units: Vec<Unit>,
+    /// Declared types.
+    pub types: Vec<SimpleType>,
+    /// Names of log categories.
+    pub log_categories: Vec<String>,
+    /// Default experiment.
+    pub default_experiment: DefaultExperiment,
+    /// Variables; their index in `ModelStructure` is one more than the position here.
+    pub variables: Vec<ScalarVariable>,
+    /// Outputs.
+    pub outputs: Vec<Unknown>,
+    /// State derivatives.
+    pub derivatives: Vec<Unknown>,
+    /// Unknowns of the initialisation.
+    pub initial_unknowns: Vec<Unknown>,
+}
+
+impl ModelDescription {
+    /// The variable of that name.
+    pub fn variable(&self, name: &str) -> Option<&ScalarVariable> {
+        self.variables.iter().find(|v| v.name == name)
+    }
+
+    /// The attribute of the variable or, when it states none, of its declared type.
+    pub fn attribute_of<T>(
+        &self,
+        variable: &ScalarVariable,
+        pick: impl Fn(&TypeAttributes) -> Option<T>,
+    ) -> Option<T> {
+        pick(&variable.attributes).or_else(|| {
+            let name = variable.declared_type.as_deref()?;
+            pick(&self.types.iter().find(|t| t.name == name)?.attributes)
+        })
+    }
+}

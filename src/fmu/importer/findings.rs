@@ -1,0 +1,138 @@
+//! What a check has found: a list that can be printed, counted and saved.
+
+use serde::Serialize;
+
+/// How much a finding matters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Severity {
+    /// Worth knowing; nothing is wrong.
+    Note,
+    /// Legal or tolerated, but some importer will stumble.
+    Warning,
+    /// Against the standard, or it does not run.
+    Error,
+}
+
+impl Severity {
+    /// The word for it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Note => "note",
+            Self::Warning => "warning",
+            Self::Error => "error",
+        }
+    }
+}
+
+/// One finding.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Finding {
+    /// How much it matters.
+    pub severity: Severity,
+    /// Where: file with line, variable, or function.
+    pub place: String,
+    /// What the standard or common sense asks for.
+    pub expected: String,
+    /// What was there.
+    pub found: String,
+}
+
+impl std::fmt::Display for Finding {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(
+            f,
+            "{}: {}: expected {}, found {}",
+            self.severity.name(),
+            self.place,
+            self.expected,
+            self.found
+        )
+    }
+}
+
+/// Findings in the order in which they were made.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub(super) struct Findings(pub Vec<Finding>);
+
+impl Findings {
+    pub fn add(
+        &mut self,
+        severity: Severity,
+        place: impl Into<String>,
+        expected: impl Into<String>,
+        found: impl Into<String>,
+    ) {
+        self.0.push(Finding {
+            severity,
+            place: place.into(),
+            expected: expected.into(),
+            found: found.into(),
+        });
+    }
+
+    pub fn error(
+        &mut self,
+        place: impl Into<String>,
+        expected: impl Into<String>,
+        found: impl Into<String>,
+    ) {
+        self.add(Severity::Error, place, expected, found);
+    }
+
+    pub fn warning(
+        &mut self,
+        place: impl Into<String>,
+        expected: impl Into<String>,
+        found: impl Into<String>,
+    ) {
+        self.add(Severity::Warning, place, expected, found);
+    }
+}
+
+/// One thing that was tried with the running FMU.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Trial {
+    /// What was tried, in words.
+    pub name: String,
+    /// Whether it went as the standard says.
+    pub passed: bool,
+    /// Numbers of the trial, or why it was left out.
+    pub detail: String,
+}
+
+/// Result of checking an FMU.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct CheckReport {
+    /// The file.
+    pub file: String,
+    /// Name of the model.
+    pub model_name: String,
+    /// Program that made it, as it says.
+    pub generation_tool: String,
+    /// Platforms with a binary, folder names below `binaries/`.
+    pub platforms: Vec<String>,
+    /// Number of variables.
+    pub variables: usize,
+    /// Everything that was found.
+    pub findings: Vec<Finding>,
+    /// What was tried by running it; empty when it could not be loaded.
+    pub trials: Vec<Trial>,
+    /// Messages the FMU logged during the trials, at most a few hundred.
+    pub messages: Vec<String>,
+}
+
+impl CheckReport {
+    /// Whether there is no finding of [`Severity::Error`] and no trial failed.
+    pub fn passed(&self) -> bool {
+        self.count(Severity::Error) == 0 && self.trials.iter().all(|t| t.passed)
+    }
+
+    /// Number of findings of one severity.
+    pub fn count(&self, severity: Severity) -> usize {
+        self.findings
+            .iter()
+            .filter(|f| f.severity == severity)
+            .count()
+    }
+}

@@ -1,0 +1,132 @@
+//! Messages of a running FMU, collected.
+
+use super::library::{Int, LoggerPointer, Text};
+use super::slave::Status;
+use std::ffi::{CStr, c_void};
+use std::sync::Mutex;
+
+/// Messages kept; a chatty FMU must not fill the memory.
+const KEPT: usize = 1000;
+
+/// A message of the FMU.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct LogMessage {
+    /// Status it was logged with.
+    pub status: Status,
+    /// Category.
+    pub category: String,
+    /// Text. Where the FMU passed arguments for its format string, the format itself stands here.
+    pub text: String,
+}
+
+impl std::fmt::Display for LogMessage {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "[{}] {}", self.category, self.text)
+    }
+}
+
+/// The book of one instance. FMUs may log from any thread.
+#[derive(Debug, Default)]
+pub(super) struct LogBook(Mutex<Vec<LogMessage>>);
+
+impl LogBook {
+    pub fn messages(&self) -> Vec<LogMessage> {
+        self.lock().clone()
+    }
+
+    pub fn take(&self) -> Vec<LogMessage> {
+        std::mem::take(&mut *self.lock())
+    }
+
+    fn lock(&self) -> std::sync::MutexGuard<'_, Vec<LogMessage>> {
+        self.0
+            .lock()
+            .unwrap_or_else(|poisoned| poisoned.into_inner())
+    }
+}
+
+/// The logger as the FMU calls it.
+///
+/// A function that takes variable arguments cannot be written in stable Rust. One with the five named parameters alone
+/// can stand in for it: under the calling conventions of x86_64 and aarch64 (System V, AAPCS64, Apple, Windows) named
+/// arguments come in the same registers either way, and the caller clears away the rest.
+pub(super) fn logger() -> LoggerPointer {
+    // SAFETY: see above; the arguments that are not named are never read
+    unsafe { std::mem::transmute::<*const (), LoggerPointer>(collect as *const ()) }
+}
+
+unsafe extern "C" fn collect(
+    environment: *mut c_void,
+    _instance: Text,
+    status: Int,
+    category: Text,
+    message: Text,
+) {
+    // SAFETY: the environment is the book that was passed at instantiation and outlives the instance
+    let Some(book) = (unsafe { environment.cast::<LogBook>().as_ref() }) else {
+        return;
+    };
+    let mut messages = book.lock();
+    if messages.len() < KEPT {
+        messages.push(LogMessage {
+            status: Status::from_code(status),
+            // SAFETY: C strings or null, as the standard has it
+            category: unsafe { text(category) },
+            text: plain(&unsafe { text(message) }),
+        });
+    }
+}
+
+/// A C string as text; null gives nothing.
+///
+/// # Safety
+/// `pointer` is null or a C string.
+pub(super) unsafe fn text(pointer: Text) -> String {
+    if pointer.is_null() {
+        return String::new();
+    }
+    // SAFETY: promised by the caller
+    unsafe { CStr::from_ptr(pointer) }
+        .to_string_lossy()
+        .into_owned()
+}
+
+/// The message without the doubled signs of the format (`%%`) and of variable references (`##`).
+fn plain(format: &str) -> String {
+    format.replace("%%", "%").replace("##", "#")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn messages_arrive_through_the_variadic_pointer() {
+        let book = LogBook::default();
+        let environment = std::ptr::from_ref(&book).cast_mut().cast();
+        // SAFETY: arguments as the signature asks, with two that are not named
+        unsafe {
+            logger()(
+                environment,
+                c"a".as_ptr(),
+                3,
+                c"logStatusError".as_ptr(),
+                c"100 %% of %s, ##".as_ptr(),
+                c"x".as_ptr(),
+                1.5_f64,
+            );
+            logger()(
+                environment,
+                std::ptr::null(),
+                0,
+                std::ptr::null(),
+                std::ptr::null(),
+            );
+        }
+        let messages = book.take();
+        assert_eq!(messages[0].status, Status::Error);
+        assert_eq!(messages[0].to_string(), "[logStatusError] 100 % of %s, #");
+        assert_eq!(messages[1].to_string(), "[] ");
+        assert_eq!(book.messages(), []);
+    }
+}

@@ -1,0 +1,319 @@
+//! An importer for FMUs of FMI 2.0 co-simulation, of whatever origin: unpack, read, check, run.
+//!
+//! [`Fmu::open`] unpacks into a temporary directory and reads the description; [`Fmu::check`] looks for everything
+//! that some importer would stumble over and then runs the FMU; [`Fmu::instantiate`] gives a [`Slave`] to be driven
+//! call by call; [`simulate`] gives a table.
+//!
+//! The code of an FMU runs in this process: one that crashes takes it along.
+
+mod archive;
+mod checks;
+mod description;
+mod findings;
+mod library;
+mod log;
+mod reading;
+mod simulation;
+mod slave;
+mod trials;
+mod xml;
+
+pub use description::{
+    Causality, CoSimulation, DefaultExperiment, DisplayUnit, Initial, Kind, ModelDescription,
+    ScalarVariable, SimpleType, TypeAttributes, Unit, Unknown, Value, Variability,
+};
+pub use findings::{CheckReport, Finding, Severity, Trial};
+pub use log::LogMessage;
+pub use simulation::{Simulation, Table, simulate};
+pub use slave::{FmuState, Slave, Status};
+
+use crate::error::{Error, Result};
+use crate::fmu::resources::location_of;
+use findings::Findings;
+use library::Binary;
+use slave::Loaded;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex};
+use tempfile::TempDir;
+
+/// Name of the description in the archive.
+const DESCRIPTION_FILE: &str = "modelDescription.xml";
+
+/// Folders below `binaries/` that may serve this machine, the one of FMI 2.0 first; and the ending of libraries.
+const fn native() -> (&'static [&'static str], &'static str) {
+    if cfg!(all(target_os = "linux", target_arch = "x86_64")) {
+        (&["linux64", "x86_64-linux"], "so")
+    } else if cfg!(all(target_os = "linux", target_arch = "x86")) {
+        (&["linux32", "x86-linux"], "so")
+    } else if cfg!(all(target_os = "linux", target_arch = "aarch64")) {
+        (&["aarch64-linux"], "so")
+    } else if cfg!(all(target_os = "windows", target_arch = "x86_64")) {
+        (&["win64", "x86_64-windows"], "dll")
+    } else if cfg!(all(target_os = "windows", target_arch = "x86")) {
+        (&["win32", "x86-windows"], "dll")
+    } else if cfg!(all(target_os = "macos", target_arch = "x86_64")) {
+        (&["darwin64", "x86_64-darwin"], "dylib")
+    } else if cfg!(all(target_os = "macos", target_arch = "aarch64")) {
+        (&["aarch64-darwin", "darwin64"], "dylib")
+    } else {
+        (&[], "so")
+    }
+}
+
+/// An unpacked FMU.
+pub struct Fmu {
+    path: PathBuf,
+    folder: Arc<TempDir>,
+    entries: Vec<String>,
+    description: Arc<ModelDescription>,
+    /// Found while unpacking and reading.
+    findings: Findings,
+    loaded: Mutex<Option<Arc<Loaded>>>,
+}
+
+impl Fmu {
+    /// Unpacks the FMU and reads its description. Defects of the description do not stop it; [`Fmu::check`] tells them.
+    ///
+    /// # Errors
+    /// [`Error::Io`] when the file cannot be read, [`Error::Input`] naming it when it is no archive, unsafe to unpack, or
+    /// holds no well-formed `modelDescription.xml`.
+    pub fn open(path: impl AsRef<Path>) -> Result<Self> {
+        let path = path.as_ref();
+        Self::read(path).map_err(|e| e.in_file(path))
+    }
+
+    fn read(path: &Path) -> Result<Self> {
+        let (folder, entries, mut findings) = archive::unpack(path)?;
+        let file = folder.path().join(DESCRIPTION_FILE);
+        if !file.is_file() {
+            let found = entries.iter().take(5).cloned().collect::<Vec<_>>();
+            return Err(Error::input(
+                "archive",
+                format!("{DESCRIPTION_FILE} at its root"),
+                found.join(", "),
+            ));
+        }
+        let bytes = std::fs::read(&file).map_err(|e| Error::io(&file, e))?;
+        let root = decoded(bytes)
+            .and_then(|text| xml::Element::parse(&text))
+            .map_err(|e| e.in_file(DESCRIPTION_FILE))
+            .map_err(|e| Error::input("archive", "a readable description", e.to_string()))?;
+        let (description, reading) = reading::read(&root);
+        findings.0.extend(reading.0);
+        Ok(Self {
+            path: path.to_path_buf(),
+            folder: Arc::new(folder),
+            entries,
+            description: Arc::new(description),
+            findings,
+            loaded: Mutex::new(None),
+        })
+    }
+
+    /// The file.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// What `modelDescription.xml` says.
+    pub fn model_description(&self) -> &ModelDescription {
+        &self.description
+    }
+
+    /// Files of the archive.
+    pub fn entries(&self) -> &[String] {
+        &self.entries
+    }
+
+    /// Where the archive is unpacked, until this value and all its instances are gone.
+    pub fn folder(&self) -> &Path {
+        self.folder.path()
+    }
+
+    /// Folders below `binaries/` that hold anything, in alphabetical order.
+    pub fn platforms(&self) -> Vec<String> {
+        let mut platforms: Vec<_> = self
+            .entries
+            .iter()
+            .filter_map(|e| Some(e.strip_prefix("binaries/")?.split_once('/')?.0.to_owned()))
+            .collect();
+        platforms.sort();
+        platforms.dedup();
+        platforms
+    }
+
+    /// The shared library for this machine.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when there is none, with the platforms that there are.
+    pub fn binary(&self) -> Result<PathBuf> {
+        let (folders, ending) = native();
+        let identifier = self
+            .description
+            .co_simulation
+            .as_ref()
+            .map(|c| c.model_identifier.as_str())
+            .unwrap_or_default();
+        folders
+            .iter()
+            .map(|f| self.folder.path().join("binaries").join(f))
+            .map(|f| f.join(format!("{identifier}.{ending}")))
+            .find(|file| file.is_file())
+            .ok_or_else(|| {
+                Error::input(
+                    "archive",
+                    format!(
+                        "binaries/{}/{identifier}.{ending}",
+                        folders.first().unwrap_or(&"(this platform)")
+                    ),
+                    match self.platforms() {
+                        none if none.is_empty() => "no binary at all".into(),
+                        others => format!("binaries for {}", others.join(", ")),
+                    },
+                )
+                .in_file(&self.path)
+            })
+    }
+
+    /// A new instance; errors are logged by the FMU, nothing else.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when there is no binary for this machine or it does not load, [`Error::Numerical`] with the log
+    /// when the FMU refuses.
+    pub fn instantiate(&self, name: &str) -> Result<Slave> {
+        Slave::new(&self.load()?, name, &self.description.guid, false)
+    }
+
+    /// A new instance that logs all it has to say.
+    ///
+    /// # Errors
+    /// As [`Fmu::instantiate`].
+    pub fn instantiate_logging(&self, name: &str) -> Result<Slave> {
+        Slave::new(&self.load()?, name, &self.description.guid, true)
+    }
+
+    /// A new instance with another fingerprint than the one in the description, which a careful FMU refuses.
+    ///
+    /// # Errors
+    /// As [`Fmu::instantiate`].
+    pub fn instantiate_with_guid(&self, name: &str, guid: &str) -> Result<Slave> {
+        Slave::new(&self.load()?, name, guid, false)
+    }
+
+    /// What the binary says of itself: types platform and version.
+    ///
+    /// # Errors
+    /// As [`Fmu::instantiate`], as far as loading goes.
+    pub fn versions(&self) -> Result<(String, String)> {
+        let loaded = self.load()?;
+        let functions = &loaded.binary.functions;
+        // SAFETY: both take nothing and answer with a constant C string
+        Ok(unsafe {
+            (
+                log::text((functions.get_types_platform)()),
+                log::text((functions.get_version)()),
+            )
+        })
+    }
+
+    /// The binary, loaded once.
+    fn load(&self) -> Result<Arc<Loaded>> {
+        let mut slot = self
+            .loaded
+            .lock()
+            .unwrap_or_else(|poisoned| poisoned.into_inner());
+        if let Some(loaded) = &*slot {
+            return Ok(Arc::clone(loaded));
+        }
+        let loaded = Arc::new(Loaded {
+            binary: Binary::load(&self.binary()?).map_err(|e| e.in_file(&self.path))?,
+            resources: location_of(&self.folder.path().join("resources"))?,
+            _folder: Arc::clone(&self.folder),
+            description: Arc::clone(&self.description),
+        });
+        *slot = Some(Arc::clone(&loaded));
+        Ok(loaded)
+    }
+
+    /// Checks archive, description and binary, then runs the FMU if nothing stands against it.
+    pub fn check(&self) -> CheckReport {
+        let mut findings = self.findings.clone();
+        findings.0.extend(checks::check(&self.description).0);
+        self.check_files(&mut findings);
+        let mut trials = Vec::new();
+        let mut messages = Vec::new();
+        match self.binary() {
+            Err(e) => findings.error("archive", "a binary for this machine", e.to_string()),
+            Ok(binary) => {
+                let place = binary
+                    .strip_prefix(self.folder.path())
+                    .unwrap_or(&binary)
+                    .display()
+                    .to_string();
+                let before = findings.0.len();
+                library::check_symbols(&binary, &place, &mut findings);
+                if findings.0.len() == before {
+                    (trials, messages) = trials::run(self, &mut findings);
+                }
+            }
+        }
+        CheckReport {
+            file: self.path.display().to_string(),
+            model_name: self.description.model_name.clone(),
+            generation_tool: self.description.generation_tool.clone().unwrap_or_default(),
+            platforms: self.platforms(),
+            variables: self.description.variables.len(),
+            findings: findings.0,
+            trials,
+            messages,
+        }
+    }
+
+    fn check_files(&self, findings: &mut Findings) {
+        let mut seen = std::collections::HashSet::new();
+        for entry in &self.entries {
+            if !seen.insert(entry.to_lowercase()) {
+                findings.warning(
+                    format!("archive, entry `{entry}`"),
+                    "names that differ in more than case",
+                    "the same twice",
+                );
+            }
+        }
+        for (file, what) in [
+            ("documentation/index.html", "documentation"),
+            ("model.png", "an icon"),
+        ] {
+            if !self.entries.iter().any(|e| e == file) {
+                findings.add(
+                    Severity::Note,
+                    "archive",
+                    format!("{what} ({file})"),
+                    "none",
+                );
+            }
+        }
+    }
+}
+
+/// Text of the description: UTF-8, or Latin-1 where the file says so.
+fn decoded(bytes: Vec<u8>) -> Result<String> {
+    let bytes = match bytes.strip_prefix(b"\xEF\xBB\xBF") {
+        Some(rest) => rest.to_vec(),
+        None => bytes,
+    };
+    let head = String::from_utf8_lossy(&bytes[..bytes.len().min(100)]).to_lowercase();
+    if head.contains("encoding=\"iso-8859-1\"") || head.contains("encoding='iso-8859-1'") {
+        return Ok(bytes.into_iter().map(char::from).collect());
+    }
+    String::from_utf8(bytes).map_err(|e| {
+        Error::input(
+            format!("byte {}", e.utf8_error().valid_up_to()),
+            "UTF-8 text",
+            "other bytes",
+        )
+    })
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,382 @@
+//! From the XML tree to a [`ModelDescription`]. What is legal is taken; what is not becomes a finding and a default.
+
+use super::description::{
+    Causality, CoSimulation, DefaultExperiment, DisplayUnit, Initial, Kind, ModelDescription,
+    ScalarVariable, SimpleType, TypeAttributes, Unit, Unknown, Value, Variability,
+};
+use super::findings::Findings;
+use super::xml::Element;
+use std::str::FromStr;
+
+const FILE: &str = "modelDescription.xml";
+
+/// Children of the root in the order of the schema.
+const ROOT_CHILDREN: [&str; 9] = [
+    "ModelExchange",
+    "CoSimulation",
+    "UnitDefinitions",
+    "TypeDefinitions",
+    "LogCategories",
+    "DefaultExperiment",
+    "VendorAnnotations",
+    "ModelVariables",
+    "ModelStructure",
+];
+
+/// Reads the description, with findings for everything that could not be read as the standard has it.
+pub(super) fn read(root: &Element) -> (ModelDescription, Findings) {
+    let mut r = Reading(Findings::default());
+    r.root(root);
+    let below = |outer: &str, inner: &'static str| -> Vec<&Element> {
+        root.child(outer)
+            .map(|e| e.children_named(inner).collect())
+            .unwrap_or_default()
+    };
+    let structure = root.child("ModelStructure");
+    let mut unknowns = |list: &str| -> Vec<Unknown> {
+        structure
+            .and_then(|s| s.child(list))
+            .into_iter()
+            .flat_map(|l| l.children_named("Unknown"))
+            .map(|e| r.unknown(e))
+            .collect()
+    };
+    let (outputs, derivatives, initial_unknowns) = (
+        unknowns("Outputs"),
+        unknowns("Derivatives"),
+        unknowns("InitialUnknowns"),
+    );
+    let description = ModelDescription {
+        fmi_version: r.required(root, "fmiVersion"),
+        model_name: r.required(root, "modelName"),
+        guid: r.required(root, "guid"),
+        description: text(root, "description"),
+        generation_tool: text(root, "generationTool"),
+        variable_naming_convention: text(root, "variableNamingConvention")
+            .unwrap_or_else(|| "flat".into()),
+        co_simulation: root.child("CoSimulation").map(|e| r.co_simulation(e)),
+        model_exchange: root.child("ModelExchange").is_some(),
+        units: below("UnitDefinitions", "Unit")
+            .into_iter()
+            .map(|e| r.unit(e))
+            .collect(),
+        types: below("TypeDefinitions", "SimpleType")
+            .into_iter()
+            .filter_map(|e| r.simple_type(e))
+            .collect(),
+        log_categories: below("LogCategories", "Category")
+            .into_iter()
+            .map(|e| r.required(e, "name"))
+            .collect(),
+        default_experiment: root
+            .child("DefaultExperiment")
+            .map(|e| r.default_experiment(e))
+            .unwrap_or_default(),
+        variables: below("ModelVariables", "ScalarVariable")
+            .into_iter()
+            .map(|e| r.variable(e))
+            .collect(),
+        outputs,
+        derivatives,
+        initial_unknowns,
+    };
+    (description, r.0)
+}
+
+struct Reading(Findings);
+
+impl Reading {
+    fn root(&mut self, root: &Element) {
+        if root.name != "fmiModelDescription" {
+            self.0
+                .error(place(root), "<fmiModelDescription>", tag(&root.name));
+        }
+        let mut last = 0;
+        for child in &root.children {
+            match ROOT_CHILDREN.iter().position(|n| *n == child.name) {
+                None => self.0.error(
+                    place(child),
+                    "an element of the FMI 2.0 schema",
+                    tag(&child.name),
+                ),
+                Some(position) if position < last => self.0.error(
+                    place(child),
+                    format!("{} before {}", tag(&child.name), tag(ROOT_CHILDREN[last])),
+                    "it after that",
+                ),
+                Some(position) => last = position,
+            }
+        }
+        for needed in ["ModelVariables", "ModelStructure"] {
+            if root.child(needed).is_none() {
+                self.0.error(FILE, tag(needed), "none");
+            }
+        }
+        for list in [
+            "UnitDefinitions",
+            "TypeDefinitions",
+            "LogCategories",
+            "ModelVariables",
+        ] {
+            if let Some(empty) = root.child(list).filter(|l| l.children.is_empty()) {
+                self.0
+                    .error(place(empty), "at least one entry", "an empty list");
+            }
+        }
+    }
+
+    fn required(&mut self, e: &Element, name: &str) -> String {
+        text(e, name).unwrap_or_else(|| {
+            self.0
+                .error(place(e), format!("the attribute `{name}`"), "none");
+            String::new()
+        })
+    }
+
+    fn parsed<T: FromStr>(&mut self, e: &Element, name: &str, what: &str) -> Option<T> {
+        let value = e.attribute(name)?.trim();
+        value
+            .parse()
+            .map_err(|_| self.not_a(e, name, what, value))
+            .ok()
+    }
+
+    fn not_a(&mut self, e: &Element, name: &str, what: &str, found: &str) {
+        self.0.error(
+            format!("{}, attribute `{name}`", place(e)),
+            what,
+            format!("`{found}`"),
+        );
+    }
+
+    /// A finite number. `INF` and `NaN` are spellings of XML Schema; the standard forbids both.
+    fn real(&mut self, e: &Element, name: &str) -> Option<f64> {
+        let value: f64 = self.parsed(e, name, "a number")?;
+        if !value.is_finite() {
+            self.not_a(e, name, "a finite number", e.attribute(name).unwrap_or(""));
+            return None;
+        }
+        Some(value)
+    }
+
+    fn boolean(&mut self, e: &Element, name: &str) -> Option<bool> {
+        match e.attribute(name)?.trim() {
+            "true" | "1" => Some(true),
+            "false" | "0" => Some(false),
+            other => {
+                self.not_a(e, name, "true or false", other);
+                None
+            }
+        }
+    }
+
+    fn choice<T: Copy>(&mut self, e: &Element, name: &str, choices: &[(&str, T)]) -> Option<T> {
+        let value = e.attribute(name)?;
+        let found = choices.iter().find(|(n, _)| *n == value).map(|(_, t)| *t);
+        if found.is_none() {
+            let names: Vec<_> = choices.iter().map(|(n, _)| *n).collect();
+            self.not_a(e, name, &format!("one of {}", names.join(", ")), value);
+        }
+        found
+    }
+
+    fn co_simulation(&mut self, e: &Element) -> CoSimulation {
+        let mut flag = |name: &str| self.boolean(e, name).unwrap_or(false);
+        CoSimulation {
+            needs_execution_tool: flag("needsExecutionTool"),
+            can_handle_variable_communication_step_size: flag(
+                "canHandleVariableCommunicationStepSize",
+            ),
+            can_interpolate_inputs: flag("canInterpolateInputs"),
+            // spelt so in the standard
+            can_run_asynchronously: flag("canRunAsynchronuously"),
+            can_be_instantiated_only_once_per_process: flag("canBeInstantiatedOnlyOncePerProcess"),
+            can_not_use_memory_management_functions: flag("canNotUseMemoryManagementFunctions"),
+            can_get_and_set_fmu_state: flag("canGetAndSetFMUstate"),
+            can_serialize_fmu_state: flag("canSerializeFMUstate"),
+            provides_directional_derivative: flag("providesDirectionalDerivative"),
+            max_output_derivative_order: self
+                .parsed(e, "maxOutputDerivativeOrder", "a whole number")
+                .unwrap_or(0),
+            model_identifier: self.required(e, "modelIdentifier"),
+        }
+    }
+
+    fn default_experiment(&mut self, e: &Element) -> DefaultExperiment {
+        DefaultExperiment {
+            start_time: self.real(e, "startTime"),
+            stop_time: self.real(e, "stopTime"),
+            tolerance: self.real(e, "tolerance"),
+            step_size: self.real(e, "stepSize"),
+        }
+    }
+
+    fn unit(&mut self, e: &Element) -> Unit {
+        let base = e.child("BaseUnit").map(|b| {
+            let exponents = ["kg", "m", "s", "A", "K", "mol", "cd", "rad"]
+                .map(|n| self.parsed(b, n, "a whole number").unwrap_or(0));
+            (
+                exponents,
+                self.real(b, "factor").unwrap_or(1.0),
+                self.real(b, "offset").unwrap_or(0.0),
+            )
+        });
+        Unit {
+            name: self.required(e, "name"),
+            base,
+            display_units: e
+                .children_named("DisplayUnit")
+                .map(|d| DisplayUnit {
+                    name: self.required(d, "name"),
+                    factor: self.real(d, "factor").unwrap_or(1.0),
+                    offset: self.real(d, "offset").unwrap_or(0.0),
+                })
+                .collect(),
+            line: e.line,
+        }
+    }
+
+    fn simple_type(&mut self, e: &Element) -> Option<SimpleType> {
+        let name = self.required(e, "name");
+        let Some((kind, child)) = typed_child(e) else {
+            self.0.error(
+                place(e),
+                "one of Real, Integer, Boolean, String, Enumeration",
+                "none",
+            );
+            return None;
+        };
+        Some(SimpleType {
+            name,
+            kind,
+            attributes: self.type_attributes(child),
+            line: e.line,
+        })
+    }
+
+    fn type_attributes(&mut self, e: &Element) -> TypeAttributes {
+        TypeAttributes {
+            quantity: text(e, "quantity"),
+            unit: text(e, "unit"),
+            display_unit: text(e, "displayUnit"),
+            min: self.real(e, "min"),
+            max: self.real(e, "max"),
+            nominal: self.real(e, "nominal"),
+        }
+    }
+
+    fn variable(&mut self, e: &Element) -> ScalarVariable {
+        let (kind, child) = typed_child(e).unwrap_or_else(|| {
+            self.0.error(
+                place(e),
+                "one of Real, Integer, Boolean, String, Enumeration",
+                "none",
+            );
+            (Kind::Real, e)
+        });
+        let stated = self.choice(e, "variability", &VARIABILITIES);
+        self.required(e, "valueReference");
+        ScalarVariable {
+            name: self.required(e, "name"),
+            value_reference: self
+                .parsed(e, "valueReference", "a whole number below 2³²")
+                .unwrap_or(u32::MAX),
+            description: text(e, "description"),
+            causality: self
+                .choice(e, "causality", &CAUSALITIES)
+                .unwrap_or(Causality::Local),
+            variability: stated.unwrap_or(Variability::Continuous),
+            variability_stated: stated.is_some(),
+            initial: self.choice(e, "initial", &INITIALS),
+            start: self.start(child, kind),
+            declared_type: text(child, "declaredType"),
+            attributes: self.type_attributes(child),
+            derivative: self.parsed(child, "derivative", "an index"),
+            kind,
+            line: e.line,
+        }
+    }
+
+    fn start(&mut self, e: &Element, kind: Kind) -> Option<Value> {
+        match kind {
+            Kind::Real => self.real(e, "start").map(Value::Real),
+            Kind::Integer | Kind::Enumeration => self
+                .parsed(e, "start", "a whole number")
+                .map(Value::Integer),
+            Kind::Boolean => self.boolean(e, "start").map(Value::Boolean),
+            Kind::String => text(e, "start").map(Value::String),
+        }
+    }
+
+    fn unknown(&mut self, e: &Element) -> Unknown {
+        self.required(e, "index");
+        let dependencies = e.attribute("dependencies").map(|list| {
+            list.split_whitespace()
+                .filter_map(|word| {
+                    word.parse()
+                        .map_err(|_| self.not_a(e, "dependencies", "indices", word))
+                        .ok()
+                })
+                .collect()
+        });
+        Unknown {
+            index: self.parsed(e, "index", "an index").unwrap_or(0),
+            dependencies,
+            kinds: e
+                .attribute("dependenciesKind")
+                .map(|list| list.split_whitespace().map(str::to_owned).collect()),
+            line: e.line,
+        }
+    }
+}
+
+const CAUSALITIES: [(&str, Causality); 6] = [
+    ("parameter", Causality::Parameter),
+    ("calculatedParameter", Causality::CalculatedParameter),
+    ("input", Causality::Input),
+    ("output", Causality::Output),
+    ("local", Causality::Local),
+    ("independent", Causality::Independent),
+];
+
+const VARIABILITIES: [(&str, Variability); 5] = [
+    ("constant", Variability::Constant),
+    ("fixed", Variability::Fixed),
+    ("tunable", Variability::Tunable),
+    ("discrete", Variability::Discrete),
+    ("continuous", Variability::Continuous),
+];
+
+const INITIALS: [(&str, Initial); 3] = [
+    ("exact", Initial::Exact),
+    ("approx", Initial::Approx),
+    ("calculated", Initial::Calculated),
+];
+
+fn typed_child(e: &Element) -> Option<(Kind, &Element)> {
+    [
+        ("Real", Kind::Real),
+        ("Integer", Kind::Integer),
+        ("Boolean", Kind::Boolean),
+        ("String", Kind::String),
+        ("Enumeration", Kind::Enumeration),
+    ]
+    .into_iter()
+    .find_map(|(name, kind)| e.child(name).map(|c| (kind, c)))
+}
+
+fn text(e: &Element, name: &str) -> Option<String> {
+    e.attribute(name).map(str::to_owned)
+}
+
+fn tag(name: &str) -> String {
+    format!("<{name}>")
+}
+
+fn place(e: &Element) -> String {
+    let name = e
+        .attribute("name")
+        .map(|n| format!(" `{n}`"))
+        .unwrap_or_default();
+    format!("{FILE}, line {}, {}{name}", e.line, e.name)
+}

@@ -1,0 +1,342 @@
+//! A running instance of an FMU, driven through its C interface.
+
+mod states;
+mod values;
+
+pub use states::FmuState;
+
+use super::description::{Kind, ModelDescription, ScalarVariable, Value};
+use super::library::{Binary, CallbackFunctions, Component, Functions, Int};
+use super::log::{LogBook, LogMessage, logger};
+use crate::error::{Error, Result};
+use std::cell::Cell;
+use std::ffi::{CString, c_void};
+use std::rc::Rc;
+use std::sync::Arc;
+use tempfile::TempDir;
+
+/// Answer of a function of FMI.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Status {
+    /// Done.
+    Ok,
+    /// Done, with a remark in the log.
+    Warning,
+    /// Not done; the instance is as before.
+    Discard,
+    /// Not done; the instance is of no further use.
+    Error,
+    /// As error, for all instances.
+    Fatal,
+    /// Not finished yet.
+    Pending,
+    /// A number that is no status.
+    Unknown(i32),
+}
+
+impl Status {
+    pub(super) fn from_code(code: Int) -> Self {
+        match code {
+            0 => Self::Ok,
+            1 => Self::Warning,
+            2 => Self::Discard,
+            3 => Self::Error,
+            4 => Self::Fatal,
+            5 => Self::Pending,
+            other => Self::Unknown(other),
+        }
+    }
+
+    /// Whether the call did what it should.
+    pub fn is_good(self) -> bool {
+        matches!(self, Self::Ok | Self::Warning)
+    }
+}
+
+/// What an instance needs for as long as it lives.
+pub(super) struct Loaded {
+    pub binary: Binary,
+    /// The unpacked archive; removed with the last user.
+    pub _folder: Arc<TempDir>,
+    pub resources: String,
+    pub description: Arc<ModelDescription>,
+}
+
+/// The C side of an instance; freed with the last handle, so that saved states never outlive it.
+struct Core {
+    component: Component,
+    fatal: Cell<bool>,
+    loaded: Arc<Loaded>,
+    // the FMU keeps the addresses of both
+    _callbacks: Box<CallbackFunctions>,
+    log: Box<LogBook>,
+}
+
+impl Core {
+    fn functions(&self) -> &Functions {
+        &self.loaded.binary.functions
+    }
+}
+
+impl Drop for Core {
+    fn drop(&mut self) {
+        if !self.fatal.get() {
+            // SAFETY: a live component of this library, freed once
+            unsafe { (self.functions().free_instance)(self.component) }
+        }
+    }
+}
+
+/// A running instance.
+pub struct Slave {
+    core: Rc<Core>,
+}
+
+impl Slave {
+    pub(super) fn new(loaded: &Arc<Loaded>, name: &str, guid: &str, logging: bool) -> Result<Self> {
+        let c_text = |what: &str, text: &str| {
+            CString::new(text).map_err(|_| Error::input(what, "text without a zero byte", text))
+        };
+        let (c_name, c_guid) = (c_text("instance name", name)?, c_text("guid", guid)?);
+        let c_resources = c_text("resource location", &loaded.resources)?;
+        let log = Box::new(LogBook::default());
+        let callbacks = Box::new(CallbackFunctions {
+            logger: logger(),
+            allocate_memory: calloc,
+            free_memory: free,
+            step_finished: None,
+            environment: std::ptr::from_ref(&*log).cast_mut().cast::<c_void>(),
+        });
+        const CO_SIMULATION: Int = 1;
+        // SAFETY: C strings and callbacks live through the call, callbacks and log as long as the instance
+        let component = unsafe {
+            (loaded.binary.functions.instantiate)(
+                c_name.as_ptr(),
+                CO_SIMULATION,
+                c_guid.as_ptr(),
+                c_resources.as_ptr(),
+                &raw const *callbacks,
+                0,
+                Int::from(logging),
+            )
+        };
+        if component.is_null() {
+            return Err(Error::Numerical(with_log(
+                format!("`{name}` was not instantiated"),
+                &log.messages(),
+            )));
+        }
+        Ok(Self {
+            core: Rc::new(Core {
+                component,
+                fatal: Cell::new(false),
+                loaded: Arc::clone(loaded),
+                _callbacks: callbacks,
+                log,
+            }),
+        })
+    }
+
+    /// The description of the FMU.
+    pub fn model_description(&self) -> &ModelDescription {
+        &self.core.loaded.description
+    }
+
+    /// Messages logged so far.
+    pub fn log(&self) -> Vec<LogMessage> {
+        self.core.log.messages()
+    }
+
+    /// Messages logged so far, which are then forgotten.
+    pub fn take_log(&self) -> Vec<LogMessage> {
+        self.core.log.take()
+    }
+
+    fn functions(&self) -> &Functions {
+        self.core.functions()
+    }
+
+    /// Turns an answer into a status; calls after a fatal one are refused here.
+    fn status(&self, call: impl FnOnce(&Functions, Component) -> Int) -> Status {
+        if self.core.fatal.get() {
+            return Status::Fatal;
+        }
+        let status = Status::from_code(call(self.functions(), self.core.component));
+        if status == Status::Fatal {
+            self.core.fatal.set(true);
+        }
+        status
+    }
+
+    fn good(&self, name: &str, call: impl FnOnce(&Functions, Component) -> Int) -> Result<()> {
+        let status = self.status(call);
+        if status.is_good() {
+            Ok(())
+        } else {
+            Err(self.failed(name, status))
+        }
+    }
+
+    fn failed(&self, name: &str, status: Status) -> Error {
+        Error::Numerical(with_log(
+            format!("{name} answered {status:?}"),
+            &self.core.log.messages(),
+        ))
+    }
+
+    /// `fmi2SetupExperiment`: times in s.
+    ///
+    /// # Errors
+    /// [`Error::Numerical`] with status and log when the answer is neither OK nor a warning; so for all functions here.
+    pub fn setup(
+        &mut self,
+        start_s: f64,
+        stop_s: Option<f64>,
+        tolerance: Option<f64>,
+    ) -> Result<()> {
+        // SAFETY: plain values; so for every call below, with slices of the stated length
+        self.good("fmi2SetupExperiment", |f, c| unsafe {
+            (f.setup_experiment)(
+                c,
+                Int::from(tolerance.is_some()),
+                tolerance.unwrap_or(0.0),
+                start_s,
+                Int::from(stop_s.is_some()),
+                stop_s.unwrap_or(0.0),
+            )
+        })
+    }
+
+    /// `fmi2EnterInitializationMode`.
+    ///
+    /// # Errors
+    /// As [`Slave::setup`].
+    pub fn enter_initialization(&mut self) -> Result<()> {
+        self.good("fmi2EnterInitializationMode", |f, c| unsafe {
+            (f.enter_initialization_mode)(c)
+        })
+    }
+
+    /// `fmi2ExitInitializationMode`.
+    ///
+    /// # Errors
+    /// As [`Slave::setup`].
+    pub fn exit_initialization(&mut self) -> Result<()> {
+        self.good("fmi2ExitInitializationMode", |f, c| unsafe {
+            (f.exit_initialization_mode)(c)
+        })
+    }
+
+    /// `fmi2DoStep` from `time_s` over `step_s`; a discarded step is an answer, not an error.
+    ///
+    /// # Errors
+    /// As [`Slave::setup`], for error and fatal.
+    pub fn do_step(&mut self, time_s: f64, step_s: f64) -> Result<Status> {
+        let status = self.try_step(time_s, step_s);
+        if status.is_good() || status == Status::Discard {
+            Ok(status)
+        } else {
+            Err(self.failed("fmi2DoStep", status))
+        }
+    }
+
+    /// As [`Slave::do_step`], whatever the answer.
+    pub fn try_step(&mut self, time_s: f64, step_s: f64) -> Status {
+        self.status(|f, c| unsafe { (f.do_step)(c, time_s, step_s, 1) })
+    }
+
+    /// `fmi2Terminate`.
+    ///
+    /// # Errors
+    /// As [`Slave::setup`].
+    pub fn terminate(&mut self) -> Result<()> {
+        self.good("fmi2Terminate", |f, c| unsafe { (f.terminate)(c) })
+    }
+
+    /// `fmi2Reset`.
+    ///
+    /// # Errors
+    /// As [`Slave::setup`].
+    pub fn reset(&mut self) -> Result<()> {
+        self.good("fmi2Reset", |f, c| unsafe { (f.reset)(c) })
+    }
+
+    /// Value of the variable of that name, whatever its type.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a name that is not there; as [`Slave::setup`].
+    pub fn get(&self, name: &str) -> Result<Value> {
+        let (kind, reference) = self.lookup(name)?;
+        self.get_by_reference(kind, reference)
+    }
+
+    pub(super) fn get_by_reference(&self, kind: Kind, reference: u32) -> Result<Value> {
+        let one = &[reference];
+        Ok(match kind {
+            Kind::Real => Value::Real(self.get_real(one)?[0]),
+            Kind::Integer | Kind::Enumeration => Value::Integer(self.get_integer(one)?[0]),
+            Kind::Boolean => Value::Boolean(self.get_boolean(one)?[0]),
+            Kind::String => Value::String(self.get_string(one)?.swap_remove(0)),
+        })
+    }
+
+    /// Sets the variable of that name; a whole number also sets a Real.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a name that is not there or a value of another type; as [`Slave::setup`].
+    pub fn set(&mut self, name: &str, value: &Value) -> Result<()> {
+        let (kind, reference) = self.lookup(name)?;
+        let one = &[reference];
+        match (kind, value) {
+            (Kind::Real, Value::Real(v)) => self.set_real(one, &[*v]),
+            (Kind::Real, Value::Integer(v)) => self.set_real(one, &[f64::from(*v)]),
+            (Kind::Integer | Kind::Enumeration, Value::Integer(v)) => self.set_integer(one, &[*v]),
+            (Kind::Boolean, Value::Boolean(v)) => self.set_boolean(one, &[*v]),
+            (Kind::String, Value::String(v)) => self.set_string(one, &[v]),
+            _ => Err(Error::input(
+                format!("variable `{name}`"),
+                format!("a value of type {kind:?}"),
+                format!("{value:?}"),
+            )),
+        }
+    }
+
+    fn lookup(&self, name: &str) -> Result<(Kind, u32)> {
+        find(self.model_description(), name).map(|v| (v.kind, v.value_reference))
+    }
+}
+
+/// The variable of that name.
+///
+/// # Errors
+/// [`Error::Input`] naming a few that are there.
+pub(super) fn find<'a>(d: &'a ModelDescription, name: &str) -> Result<&'a ScalarVariable> {
+    d.variable(name).ok_or_else(|| {
+        let some: Vec<_> = d
+            .variables
+            .iter()
+            .take(40)
+            .map(|v| v.name.as_str())
+            .collect();
+        Error::input(
+            "variable",
+            format!("one of {}", some.join(", ")),
+            format!("`{name}`"),
+        )
+    })
+}
+
+fn with_log(mut text: String, messages: &[LogMessage]) -> String {
+    let last = messages.len().saturating_sub(3);
+    for message in &messages[last..] {
+        text.push_str("; it logged: ");
+        text.push_str(&message.to_string());
+    }
+    text
+}
+
+// of the C library that Rust's standard library links
+unsafe extern "C" {
+    fn calloc(count: usize, size: usize) -> *mut c_void;
+    fn free(memory: *mut c_void);
+}

@@ -1,0 +1,97 @@
+//! Saving, restoring and serialising the state of an instance.
+
+use super::{Core, Slave};
+use crate::error::{Error, Result};
+use crate::fmu::importer::library::StatePointer;
+use std::rc::Rc;
+
+/// A saved state of an instance.
+pub struct FmuState {
+    pointer: StatePointer,
+    core: Rc<Core>,
+}
+
+impl Drop for FmuState {
+    fn drop(&mut self) {
+        if !self.core.fatal.get() {
+            // SAFETY: a state of this component, which still lives
+            unsafe {
+                (self.core.functions().free_fmu_state)(self.core.component, &mut self.pointer);
+            }
+        }
+    }
+}
+
+// SAFETY of every call below: the component lives, and states are its own
+impl Slave {
+    /// `fmi2GetFMUstate`.
+    ///
+    /// # Errors
+    /// As [`Slave::setup`].
+    pub fn get_state(&self) -> Result<FmuState> {
+        let mut pointer: StatePointer = std::ptr::null_mut();
+        self.good("fmi2GetFMUstate", |f, c| unsafe {
+            (f.get_fmu_state)(c, &mut pointer)
+        })?;
+        Ok(self.state(pointer))
+    }
+
+    fn state(&self, pointer: StatePointer) -> FmuState {
+        FmuState {
+            pointer,
+            core: Rc::clone(&self.core),
+        }
+    }
+
+    /// `fmi2SetFMUstate`, for a state of this instance.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a state of another instance; as [`Slave::setup`].
+    pub fn set_state(&mut self, state: &FmuState) -> Result<()> {
+        self.own(state)?;
+        self.good("fmi2SetFMUstate", |f, c| unsafe {
+            (f.set_fmu_state)(c, state.pointer)
+        })
+    }
+
+    fn own(&self, state: &FmuState) -> Result<()> {
+        if Rc::ptr_eq(&self.core, &state.core) {
+            Ok(())
+        } else {
+            Err(Error::input(
+                "FMU state",
+                "a state of this instance",
+                "one of another",
+            ))
+        }
+    }
+
+    /// `fmi2SerializeFMUstate`: the state as bytes.
+    ///
+    /// # Errors
+    /// As [`Slave::set_state`].
+    pub fn serialize_state(&self, state: &FmuState) -> Result<Vec<u8>> {
+        self.own(state)?;
+        let mut size = 0;
+        self.good("fmi2SerializedFMUstateSize", |f, c| unsafe {
+            (f.serialized_fmu_state_size)(c, state.pointer, &mut size)
+        })?;
+        let mut bytes = vec![0; size];
+        self.good("fmi2SerializeFMUstate", |f, c| unsafe {
+            (f.serialize_fmu_state)(c, state.pointer, bytes.as_mut_ptr(), size)
+        })?;
+        Ok(bytes)
+    }
+
+    /// `fmi2DeSerializeFMUstate`: bytes of an instance of the same FMU as a state of this one.
+    ///
+    /// # Errors
+    /// As [`Slave::setup`].
+    pub fn deserialize_state(&self, bytes: &[u8]) -> Result<FmuState> {
+        let mut pointer: StatePointer = std::ptr::null_mut();
+        self.good("fmi2DeSerializeFMUstate", |f, c| unsafe {
+            (f.de_serialize_fmu_state)(c, bytes.as_ptr(), bytes.len(), &mut pointer)
+        })?;
+        Ok(self.state(pointer))
+    }
+}

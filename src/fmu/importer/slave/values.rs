@@ -1,0 +1,221 @@
+//! Values and derivatives of variables by value reference.
+
+use super::Slave;
+use crate::error::{Error, Result};
+use crate::fmu::importer::library::{Int, Text};
+use crate::fmu::importer::log::text;
+use std::ffi::CString;
+
+// SAFETY of every call below: the component lives, and the slices have the length that is passed
+impl Slave {
+    /// `fmi2GetReal`.
+    ///
+    /// # Errors
+    /// As [`Slave::setup`].
+    pub fn get_real(&self, references: &[u32]) -> Result<Vec<f64>> {
+        let mut values = vec![0.0; references.len()];
+        self.read_real(references, &mut values)?;
+        Ok(values)
+    }
+
+    /// As [`Slave::get_real`] into a slice of the same length.
+    ///
+    /// # Errors
+    /// As [`Slave::setup`]; [`Error::Input`] when the lengths differ.
+    pub fn read_real(&self, references: &[u32], values: &mut [f64]) -> Result<()> {
+        same_length(references, values.len())?;
+        self.good("fmi2GetReal", |f, c| unsafe {
+            (f.get_real)(
+                c,
+                references.as_ptr(),
+                references.len(),
+                values.as_mut_ptr(),
+            )
+        })
+    }
+
+    /// `fmi2GetInteger`.
+    ///
+    /// # Errors
+    /// As [`Slave::setup`].
+    pub fn get_integer(&self, references: &[u32]) -> Result<Vec<i32>> {
+        let mut values = vec![0; references.len()];
+        self.good("fmi2GetInteger", |f, c| unsafe {
+            (f.get_integer)(
+                c,
+                references.as_ptr(),
+                references.len(),
+                values.as_mut_ptr(),
+            )
+        })?;
+        Ok(values)
+    }
+
+    /// `fmi2GetBoolean`.
+    ///
+    /// # Errors
+    /// As [`Slave::setup`].
+    pub fn get_boolean(&self, references: &[u32]) -> Result<Vec<bool>> {
+        let mut values: Vec<Int> = vec![0; references.len()];
+        self.good("fmi2GetBoolean", |f, c| unsafe {
+            (f.get_boolean)(
+                c,
+                references.as_ptr(),
+                references.len(),
+                values.as_mut_ptr(),
+            )
+        })?;
+        Ok(values.into_iter().map(|v| v != 0).collect())
+    }
+
+    /// `fmi2GetString`.
+    ///
+    /// # Errors
+    /// As [`Slave::setup`].
+    pub fn get_string(&self, references: &[u32]) -> Result<Vec<String>> {
+        let mut values: Vec<Text> = vec![std::ptr::null(); references.len()];
+        self.good("fmi2GetString", |f, c| unsafe {
+            (f.get_string)(
+                c,
+                references.as_ptr(),
+                references.len(),
+                values.as_mut_ptr(),
+            )
+        })?;
+        // SAFETY: strings of the FMU, copied before the next call, which may free them
+        Ok(values.into_iter().map(|v| unsafe { text(v) }).collect())
+    }
+
+    /// `fmi2SetReal`.
+    ///
+    /// # Errors
+    /// As [`Slave::setup`]; [`Error::Input`] when the lengths differ.
+    pub fn set_real(&mut self, references: &[u32], values: &[f64]) -> Result<()> {
+        same_length(references, values.len())?;
+        self.good("fmi2SetReal", |f, c| unsafe {
+            (f.set_real)(c, references.as_ptr(), references.len(), values.as_ptr())
+        })
+    }
+
+    /// `fmi2SetInteger`.
+    ///
+    /// # Errors
+    /// As [`Slave::set_real`].
+    pub fn set_integer(&mut self, references: &[u32], values: &[i32]) -> Result<()> {
+        same_length(references, values.len())?;
+        self.good("fmi2SetInteger", |f, c| unsafe {
+            (f.set_integer)(c, references.as_ptr(), references.len(), values.as_ptr())
+        })
+    }
+
+    /// `fmi2SetBoolean`.
+    ///
+    /// # Errors
+    /// As [`Slave::set_real`].
+    pub fn set_boolean(&mut self, references: &[u32], values: &[bool]) -> Result<()> {
+        same_length(references, values.len())?;
+        let values: Vec<Int> = values.iter().map(|v| Int::from(*v)).collect();
+        self.good("fmi2SetBoolean", |f, c| unsafe {
+            (f.set_boolean)(c, references.as_ptr(), references.len(), values.as_ptr())
+        })
+    }
+
+    /// `fmi2SetString`.
+    ///
+    /// # Errors
+    /// As [`Slave::set_real`]; [`Error::Input`] for a text with a zero byte.
+    pub fn set_string(&mut self, references: &[u32], values: &[&str]) -> Result<()> {
+        same_length(references, values.len())?;
+        let owned: Vec<CString> = values
+            .iter()
+            .map(|v| {
+                CString::new(*v)
+                    .map_err(|_| Error::input("fmi2SetString", "text without a zero byte", *v))
+            })
+            .collect::<Result<_>>()?;
+        let values: Vec<Text> = owned.iter().map(|v| v.as_ptr()).collect();
+        self.good("fmi2SetString", |f, c| unsafe {
+            (f.set_string)(c, references.as_ptr(), references.len(), values.as_ptr())
+        })
+    }
+
+    /// `fmi2GetDirectionalDerivative`: change of the unknowns along `seed`, the changes of the knowns.
+    ///
+    /// # Errors
+    /// As [`Slave::set_real`].
+    pub fn directional_derivative(
+        &self,
+        unknowns: &[u32],
+        knowns: &[u32],
+        seed: &[f64],
+    ) -> Result<Vec<f64>> {
+        same_length(knowns, seed.len())?;
+        let mut values = vec![0.0; unknowns.len()];
+        self.good("fmi2GetDirectionalDerivative", |f, c| unsafe {
+            (f.get_directional_derivative)(
+                c,
+                unknowns.as_ptr(),
+                unknowns.len(),
+                knowns.as_ptr(),
+                knowns.len(),
+                seed.as_ptr(),
+                values.as_mut_ptr(),
+            )
+        })?;
+        Ok(values)
+    }
+
+    /// `fmi2SetRealInputDerivatives` of the given orders (1 is the first derivative).
+    ///
+    /// # Errors
+    /// As [`Slave::set_real`].
+    pub fn set_input_derivatives(
+        &mut self,
+        references: &[u32],
+        orders: &[i32],
+        values: &[f64],
+    ) -> Result<()> {
+        same_length(references, orders.len())?;
+        same_length(references, values.len())?;
+        self.good("fmi2SetRealInputDerivatives", |f, c| unsafe {
+            (f.set_real_input_derivatives)(
+                c,
+                references.as_ptr(),
+                references.len(),
+                orders.as_ptr(),
+                values.as_ptr(),
+            )
+        })
+    }
+
+    /// `fmi2GetRealOutputDerivatives` of the given orders.
+    ///
+    /// # Errors
+    /// As [`Slave::set_real`].
+    pub fn output_derivatives(&self, references: &[u32], orders: &[i32]) -> Result<Vec<f64>> {
+        same_length(references, orders.len())?;
+        let mut values = vec![0.0; references.len()];
+        self.good("fmi2GetRealOutputDerivatives", |f, c| unsafe {
+            (f.get_real_output_derivatives)(
+                c,
+                references.as_ptr(),
+                references.len(),
+                orders.as_ptr(),
+                values.as_mut_ptr(),
+            )
+        })?;
+        Ok(values)
+    }
+}
+
+fn same_length(references: &[u32], values: usize) -> Result<()> {
+    if references.len() == values {
+        Ok(())
+    } else {
+        Err(Error::input(
+            "values",
+            format!("{} of them, one for each reference", references.len()),
+            values.to_string(),
+        ))
+    }
+}

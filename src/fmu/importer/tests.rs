@@ -1,0 +1,154 @@
+//! Opening archives that are wrong, and one of our own.
+
+use super::*;
+use std::io::Write;
+use zip::write::SimpleFileOptions;
+
+const DESCRIPTION: &str = r#"<fmiModelDescription fmiVersion="2.0" modelName="m" guid="g">
+  <CoSimulation modelIdentifier="m"/>
+  <ModelVariables>
+    <ScalarVariable name="y" valueReference="0" causality="output"><Real/></ScalarVariable>
+  </ModelVariables>
+  <ModelStructure><Outputs><Unknown index="1"/></Outputs><InitialUnknowns><Unknown index="1"/></InitialUnknowns></ModelStructure>
+</fmiModelDescription>"#;
+
+fn archive_of(entries: &[(&str, &[u8])]) -> tempfile::NamedTempFile {
+    let mut file = tempfile::NamedTempFile::new().unwrap();
+    let mut zip = zip::ZipWriter::new(file.as_file_mut());
+    for (name, bytes) in entries {
+        let options = SimpleFileOptions::default();
+        zip.start_file(*name, options).unwrap();
+        zip.write_all(bytes).unwrap();
+    }
+    zip.finish().unwrap();
+    file
+}
+
+fn refusal(file: &Path) -> String {
+    match Fmu::open(file) {
+        Ok(_) => panic!("{} was opened", file.display()),
+        Err(e) => e.to_string(),
+    }
+}
+
+#[test]
+fn what_is_no_fmu_is_refused_with_its_name() {
+    let text = tempfile::NamedTempFile::new().unwrap();
+    std::fs::write(text.path(), "not an archive").unwrap();
+    let message = refusal(text.path());
+    assert!(message.starts_with(&text.path().display().to_string()));
+    assert!(message.contains("expected a ZIP archive"), "{message}");
+
+    assert!(refusal(Path::new("/nowhere/a.fmu")).starts_with("/nowhere/a.fmu: "));
+
+    let empty = archive_of(&[("readme.txt", b"hello")]);
+    let message = refusal(empty.path());
+    assert!(message.contains("modelDescription.xml at its root, found readme.txt"));
+
+    let broken = archive_of(&[("modelDescription.xml", b"<a>\n<b>\n</a>")]);
+    let message = refusal(broken.path());
+    assert!(
+        message.contains("modelDescription.xml: line 3"),
+        "{message}"
+    );
+}
+
+#[test]
+fn entries_that_lead_outside_are_refused() {
+    for name in [
+        "../evil.txt",
+        "a/../../evil.txt",
+        "/evil.txt",
+        "C:/evil.txt",
+    ] {
+        let file = archive_of(&[
+            (name, b"x"),
+            ("modelDescription.xml", DESCRIPTION.as_bytes()),
+        ]);
+        let message = refusal(file.path());
+        assert!(message.contains("a path inside the archive"), "{message}");
+        assert!(message.contains(name), "{message}");
+    }
+}
+
+#[test]
+fn links_are_refused() {
+    let mut file = tempfile::NamedTempFile::new().unwrap();
+    let mut zip = zip::ZipWriter::new(file.as_file_mut());
+    zip.add_symlink("resources", "/etc", SimpleFileOptions::default())
+        .unwrap();
+    zip.finish().unwrap();
+    assert!(refusal(file.path()).contains("found a link"));
+}
+
+#[test]
+fn an_fmu_without_a_binary_for_this_machine_says_which_it_has() {
+    let file = archive_of(&[
+        ("modelDescription.xml", DESCRIPTION.as_bytes()),
+        ("binaries/vax/m.so", b"x"),
+        ("documentation/index.html", b"x"),
+        ("model.png", b"x"),
+    ]);
+    let fmu = Fmu::open(file.path()).unwrap();
+    assert_eq!(fmu.platforms(), ["vax"]);
+    let report = fmu.check();
+    assert_eq!(report.findings.len(), 1, "{:#?}", report.findings);
+    assert!(report.findings[0].found.contains("binaries for vax"));
+    assert!(!report.passed());
+    assert!(fmu.instantiate("a").is_err());
+    let folder = fmu.folder().to_path_buf();
+    drop(fmu);
+    assert!(!folder.exists());
+}
+
+#[test]
+fn a_binary_that_is_none_is_a_finding() {
+    let (folders, ending) = native();
+    let binary = format!("binaries/{}/m.{ending}", folders[0]);
+    let file = archive_of(&[
+        ("modelDescription.xml", DESCRIPTION.as_bytes()),
+        (&binary, b"no library"),
+    ]);
+    let report = Fmu::open(file.path()).unwrap().check();
+    let errors: Vec<_> = report
+        .findings
+        .iter()
+        .filter(|f| f.severity == Severity::Error)
+        .collect();
+    assert_eq!(errors.len(), 1, "{errors:#?}");
+    assert!(errors[0].expected.contains("a library that loads"));
+    assert_eq!(report.count(Severity::Note), 2);
+}
+
+#[test]
+fn descriptions_in_latin_1_are_read() {
+    let text = "<?xml version=\"1.0\" encoding=\"ISO-8859-1\"?>".to_owned()
+        + &DESCRIPTION.replace("modelName=\"m\"", "modelName=\"Br\u{fc}cke\"");
+    let latin: Vec<u8> = text.chars().map(|c| c as u8).collect();
+    let file = archive_of(&[("modelDescription.xml", &latin)]);
+    let fmu = Fmu::open(file.path()).unwrap();
+    assert_eq!(fmu.model_description().model_name, "Brücke");
+}
+
+#[test]
+fn a_package_of_our_own_has_no_static_finding() {
+    for kind in ["rational", "continuous_laguerre", "discrete_laguerre"] {
+        let json = Path::new(env!("CARGO_MANIFEST_DIR"))
+            .join("tests/data/models")
+            .join(format!("{kind}.json"));
+        let model =
+            crate::trained_model::TrainedModel::from_json(&std::fs::read_to_string(json).unwrap())
+                .unwrap();
+        let runtimes = [crate::fmu::package::Runtime::embedded().unwrap()];
+        let bytes = crate::fmu::package::package(&model, &runtimes).unwrap();
+        let mut file = tempfile::NamedTempFile::new().unwrap();
+        file.write_all(&bytes).unwrap();
+        let fmu = Fmu::open(file.path()).unwrap();
+        let mut findings = fmu.findings.clone();
+        findings.0.extend(checks::check(&fmu.description).0);
+        fmu.check_files(&mut findings);
+        assert_eq!(findings.0, [], "{kind}");
+        assert_eq!(fmu.platforms().len(), 1);
+        assert!(fmu.binary().unwrap().is_file());
+    }
+}

@@ -1,0 +1,378 @@
+//! Running an FMU to see whether it keeps what it promises.
+
+use super::description::{Causality, CoSimulation, Initial, Kind, Value};
+use super::findings::{Findings, Trial};
+use super::simulation::{Simulation, Table, Times, recorded, run as step_through, start};
+use super::slave::{Slave, Status};
+use super::{Fmu, LogMessage};
+use crate::error::{Error, Result};
+
+/// Most communication steps of a trial.
+const MAX_STEPS: usize = 1000;
+/// Relative difference up to which a replay counts as the same: solvers of other tools may keep a warm start.
+const SAME: f64 = 1e-9;
+
+type TrialFunction = fn(&Plan<'_>) -> Result<String>;
+
+/// Runs every trial that the capability flags allow.
+pub(super) fn run(fmu: &Fmu, findings: &mut Findings) -> (Vec<Trial>, Vec<String>) {
+    let capabilities = fmu.description.co_simulation.clone().unwrap_or_default();
+    let plan = match Plan::new(fmu, &capabilities) {
+        Ok(plan) => plan,
+        Err(e) => {
+            findings.error("modelDescription.xml", "something to run", e.to_string());
+            return (Vec::new(), Vec::new());
+        }
+    };
+    let once = capabilities.can_be_instantiated_only_once_per_process;
+    let state = capabilities.can_get_and_set_fmu_state;
+    let list: [(&str, bool, TrialFunction); 8] = [
+        ("default experiment", true, default_experiment),
+        ("reset and replay", !once, reset_and_replay),
+        ("two instances side by side", !once, side_by_side),
+        ("state saved and restored", state && !once, restored_state),
+        (
+            "state serialised and read by another instance",
+            capabilities.can_serialize_fmu_state && !once,
+            serialised_state,
+        ),
+        (
+            "changing communication steps",
+            capabilities.can_handle_variable_communication_step_size && !once,
+            changing_steps,
+        ),
+        (
+            "directional derivatives",
+            capabilities.provides_directional_derivative && !once,
+            directional_derivatives,
+        ),
+        (
+            "output derivatives",
+            capabilities.max_output_derivative_order > 0 && !once,
+            output_derivatives,
+        ),
+    ];
+    if !once {
+        wrong_guid(fmu, findings);
+    }
+    let mut trials = vec![trial("platform and version", versions(fmu))];
+    for (name, wanted, function) in list {
+        if wanted {
+            trials.push(trial(name, function(&plan)));
+        }
+    }
+    let messages = plan.messages.take();
+    (trials, messages.iter().map(ToString::to_string).collect())
+}
+
+fn trial(name: &str, outcome: Result<String>) -> Trial {
+    let (passed, detail) = match outcome {
+        Ok(detail) => (true, detail),
+        Err(e) => (false, e.to_string()),
+    };
+    Trial {
+        name: name.to_owned(),
+        passed,
+        detail,
+    }
+}
+
+fn wrong_guid(fmu: &Fmu, findings: &mut Findings) {
+    if fmu
+        .instantiate_with_guid("wrong", "{not the guid of this FMU}")
+        .is_ok()
+    {
+        findings.warning(
+            "fmi2Instantiate",
+            "another guid to be refused",
+            "an instance",
+        );
+    }
+}
+
+fn versions(fmu: &Fmu) -> Result<String> {
+    let (platform, version) = fmu.versions()?;
+    if platform == "default" && version == "2.0" {
+        Ok(format!("platform {platform}, version {version}"))
+    } else {
+        Err(Error::input(
+            "fmi2GetTypesPlatform, fmi2GetVersion",
+            "`default`, `2.0`",
+            format!("`{platform}`, `{version}`"),
+        ))
+    }
+}
+
+/// What all trials share.
+struct Plan<'a> {
+    fmu: &'a Fmu,
+    capabilities: &'a CoSimulation,
+    times: Times,
+    record: Vec<(String, Kind, u32)>,
+    messages: std::cell::RefCell<Vec<LogMessage>>,
+}
+
+impl<'a> Plan<'a> {
+    fn new(fmu: &'a Fmu, capabilities: &'a CoSimulation) -> Result<Self> {
+        let d = fmu.model_description();
+        let mut times = Times::new(d, &Simulation::default())?;
+        if times.steps() > MAX_STEPS {
+            times.stop = times.at(MAX_STEPS);
+        }
+        Ok(Self {
+            fmu,
+            capabilities,
+            times,
+            record: recorded(d, &Simulation::default())?,
+            messages: std::cell::RefCell::default(),
+        })
+    }
+
+    fn instance(&self) -> Result<Slave> {
+        self.fmu.instantiate_logging("trial")
+    }
+
+    fn initialised(&self) -> Result<Slave> {
+        let mut slave = self.instance()?;
+        start(&mut slave, &self.times, &[])?;
+        Ok(slave)
+    }
+
+    fn run(&self, slave: &mut Slave) -> Result<Table> {
+        let table = step_through(slave, &self.times, &self.record, |_, _| Ok(()));
+        self.messages.borrow_mut().extend(slave.take_log());
+        table
+    }
+
+    /// The second half of the run, from `half` on.
+    fn half(&self) -> (Times, Times) {
+        let half = self.times.steps() / 2;
+        let (mut first, mut second) = (self.times, self.times);
+        first.stop = self.times.at(half);
+        second.start = first.stop;
+        (first, second)
+    }
+}
+
+fn default_experiment(plan: &Plan<'_>) -> Result<String> {
+    let mut slave = plan.instance()?;
+    let d = plan.fmu.model_description();
+    let e = &d.default_experiment;
+    slave.setup(plan.times.start, Some(plan.times.stop), e.tolerance)?;
+    slave.enter_initialization()?;
+    for v in &d.variables {
+        if v.causality == Causality::Independent {
+            continue;
+        }
+        let value = slave.get_by_reference(v.kind, v.value_reference)?;
+        if v.effective_initial() == Some(Initial::Exact)
+            && let Some(stated) = &v.start
+            && !same_start(stated, &value)
+        {
+            return Err(Error::input(
+                format!("variable `{}` in the initialisation mode", v.name),
+                format!("its start value {stated}"),
+                value.to_string(),
+            ));
+        }
+    }
+    slave.exit_initialization()?;
+    let table = plan.run(&mut slave)?;
+    finite(&table)?;
+    slave.terminate()?;
+    Ok(format!(
+        "{} steps of {} s from {} s, {} outputs finite",
+        table.rows.len() - 1,
+        plan.times.step,
+        plan.times.start,
+        plan.record.len()
+    ))
+}
+
+/// Start values pass through decimal text.
+fn same_start(stated: &Value, found: &Value) -> bool {
+    match (stated, found) {
+        (Value::Real(a), Value::Real(b)) => (a - b).abs() <= 1e-12 * a.abs().max(b.abs()),
+        (a, b) => a == b,
+    }
+}
+
+fn finite(table: &Table) -> Result<()> {
+    for row in &table.rows {
+        if let Some(at) = row.iter().position(|v| !v.is_finite()) {
+            return Err(Error::input(
+                format!("output `{}` at {} s", table.names[at], row[0]),
+                "a finite number",
+                row[at].to_string(),
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// Says how far two runs agree, or refuses. Times are not compared: the second may start later.
+fn compared(what: &str, names: &[String], a: &[Vec<f64>], b: &[Vec<f64>]) -> Result<String> {
+    let mut identical = true;
+    for (x, y) in a.iter().zip(b) {
+        for at in 1..names.len() {
+            let (p, q) = (x[at], y[at]);
+            identical &= p.to_bits() == q.to_bits();
+            let scale = p.abs().max(q.abs()).max(f64::MIN_POSITIVE);
+            if (p - q).abs() > SAME * scale {
+                return Err(Error::input(
+                    format!("{what}, output `{}` at {} s", names[at], x[0]),
+                    format!("{p} as before"),
+                    q.to_string(),
+                ));
+            }
+        }
+    }
+    let steps = a.len().min(b.len()).saturating_sub(1);
+    Ok(if identical {
+        format!("{steps} steps identical to the last bit")
+    } else {
+        format!("{steps} steps equal within {SAME:e}")
+    })
+}
+
+fn reset_and_replay(plan: &Plan<'_>) -> Result<String> {
+    let mut slave = plan.initialised()?;
+    let first = plan.run(&mut slave)?;
+    slave.reset()?;
+    start(&mut slave, &plan.times, &[])?;
+    let second = plan.run(&mut slave)?;
+    compared("after fmi2Reset", &first.names, &first.rows, &second.rows)
+}
+
+fn side_by_side(plan: &Plan<'_>) -> Result<String> {
+    let alone = plan.run(&mut plan.initialised()?)?;
+    let (mut a, mut b) = (plan.initialised()?, plan.initialised()?);
+    let (first, second) = plan.half();
+    // in turns: halves of one between halves of the other
+    let mut rows = step_through(&mut a, &first, &plan.record, |_, _| Ok(()))?.rows;
+    let other = plan.run(&mut b)?;
+    rows.pop();
+    rows.extend(step_through(&mut a, &second, &plan.record, |_, _| Ok(()))?.rows);
+    compared("beside another instance", &alone.names, &alone.rows, &rows)?;
+    compared("another instance", &alone.names, &alone.rows, &other.rows)
+}
+
+fn restored_state(plan: &Plan<'_>) -> Result<String> {
+    let mut slave = plan.initialised()?;
+    let (first, second) = plan.half();
+    step_through(&mut slave, &first, &plan.record, |_, _| Ok(()))?;
+    let state = slave.get_state()?;
+    let before = step_through(&mut slave, &second, &plan.record, |_, _| Ok(()))?;
+    slave.set_state(&state)?;
+    let after = step_through(&mut slave, &second, &plan.record, |_, _| Ok(()))?;
+    compared("restored state", &before.names, &before.rows, &after.rows)
+}
+
+fn serialised_state(plan: &Plan<'_>) -> Result<String> {
+    let mut slave = plan.initialised()?;
+    let (first, second) = plan.half();
+    step_through(&mut slave, &first, &plan.record, |_, _| Ok(()))?;
+    let bytes = slave.serialize_state(&slave.get_state()?)?;
+    let before = step_through(&mut slave, &second, &plan.record, |_, _| Ok(()))?;
+    let mut other = plan.initialised()?;
+    let state = other.deserialize_state(&bytes)?;
+    other.set_state(&state)?;
+    let after = step_through(&mut other, &second, &plan.record, |_, _| Ok(()))?;
+    let agreement = compared("serialised state", &before.names, &before.rows, &after.rows)?;
+    Ok(format!("{} bytes, {agreement}", bytes.len()))
+}
+
+fn changing_steps(plan: &Plan<'_>) -> Result<String> {
+    let mut slave = plan.initialised()?;
+    let mut time = plan.times.start;
+    let mut steps = 0;
+    for factor in [1.0, 0.5, 0.1, 1.7, 1.0 + 1e-13, 0.3].into_iter().cycle() {
+        let step = factor * plan.times.step;
+        if time + step > plan.times.stop || steps == MAX_STEPS {
+            break;
+        }
+        if slave.do_step(time, step)? == Status::Discard {
+            return Err(Error::Numerical(format!(
+                "fmi2DoStep discarded the step from {time} s over {step} s"
+            )));
+        }
+        time += step;
+        steps += 1;
+    }
+    for (name, kind, reference) in &plan.record {
+        if let Value::Real(v) = slave.get_by_reference(*kind, *reference)?
+            && !v.is_finite()
+        {
+            return Err(Error::input(
+                format!("output `{name}`"),
+                "a finite number",
+                v.to_string(),
+            ));
+        }
+    }
+    Ok(format!(
+        "{steps} steps of 0.1 to 1.7 times {} s",
+        plan.times.step
+    ))
+}
+
+fn directional_derivatives(plan: &Plan<'_>) -> Result<String> {
+    let slave = plan.initialised()?;
+    let d = plan.fmu.model_description();
+    let mut tried = 0;
+    for unknown in &d.outputs {
+        let Some(v) = unknown
+            .index
+            .checked_sub(1)
+            .and_then(|i| d.variables.get(i))
+        else {
+            continue;
+        };
+        for on in unknown.dependencies.iter().flatten() {
+            let Some(known) = on.checked_sub(1).and_then(|i| d.variables.get(i)) else {
+                continue;
+            };
+            if v.kind != Kind::Real || known.kind != Kind::Real {
+                continue;
+            }
+            let answer = slave.directional_derivative(
+                &[v.value_reference],
+                &[known.value_reference],
+                &[1.0],
+            )?;
+            if !answer[0].is_finite() {
+                return Err(Error::input(
+                    format!("derivative of `{}` along `{}`", v.name, known.name),
+                    "a finite number",
+                    answer[0].to_string(),
+                ));
+            }
+            tried += 1;
+        }
+    }
+    Ok(format!("{tried} of them finite"))
+}
+
+fn output_derivatives(plan: &Plan<'_>) -> Result<String> {
+    let mut slave = plan.initialised()?;
+    slave.do_step(plan.times.start, plan.times.step)?;
+    let references: Vec<u32> = plan
+        .record
+        .iter()
+        .filter(|(_, kind, _)| *kind == Kind::Real)
+        .map(|(.., r)| *r)
+        .collect();
+    let derivatives = slave.output_derivatives(&references, &vec![1; references.len()])?;
+    match derivatives.iter().position(|v| !v.is_finite()) {
+        None => Ok(format!(
+            "{} outputs, highest order {}",
+            references.len(),
+            plan.capabilities.max_output_derivative_order
+        )),
+        Some(at) => Err(Error::input(
+            "fmi2GetRealOutputDerivatives",
+            "finite numbers",
+            derivatives[at].to_string(),
+        )),
+    }
+}

@@ -1,0 +1,165 @@
+//! A small tree of XML elements with line numbers, so that every finding can name its place.
+
+use crate::error::{Error, Result};
+use quick_xml::XmlVersion;
+use quick_xml::events::{BytesStart, Event};
+use quick_xml::reader::Reader;
+
+/// Elements nested deeper than this are refused; a model description needs five levels, annotations a few more.
+const MAX_DEPTH: usize = 100;
+
+/// One element: text between children is dropped, since a model description holds none.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Element {
+    /// Name, with its prefix if it has one.
+    pub name: String,
+    /// Line of the opening tag, counted from 1.
+    pub line: usize,
+    /// Names and unescaped values, in the order of the text.
+    pub attributes: Vec<(String, String)>,
+    /// Child elements, in the order of the text.
+    pub children: Vec<Element>,
+}
+
+impl Element {
+    /// Reads a document.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with the line where the text stops being XML.
+    pub fn parse(text: &str) -> Result<Self> {
+        let mut reader = Reader::from_str(text);
+        let mut lines = Lines::new(text);
+        let mut open: Vec<Element> = Vec::new();
+        loop {
+            let event = reader.read_event();
+            let line = lines.at(reader.buffer_position());
+            let closed = match event.map_err(|e| malformed(line, &e))? {
+                Event::Start(tag) => {
+                    if open.len() == MAX_DEPTH {
+                        return Err(malformed(line, &"elements nested more than 100 deep"));
+                    }
+                    open.push(element(&tag, line)?);
+                    None
+                }
+                Event::Empty(tag) => Some(element(&tag, line)?),
+                Event::End(_) => open.pop(),
+                Event::Eof => {
+                    let missing = open.pop().map_or_else(
+                        || "no element at all".to_owned(),
+                        |e| format!("the end of the file before </{}>", e.name),
+                    );
+                    return Err(malformed(line, &missing));
+                }
+                _ => None,
+            };
+            if let Some(closed) = closed {
+                match open.last_mut() {
+                    Some(parent) => parent.children.push(closed),
+                    None => return Ok(closed),
+                }
+            }
+        }
+    }
+
+    /// Value of an attribute, if it is there.
+    pub fn attribute(&self, name: &str) -> Option<&str> {
+        self.attributes
+            .iter()
+            .find(|(n, _)| n == name)
+            .map(|(_, v)| v.as_str())
+    }
+
+    /// The first child of that name.
+    pub fn child(&self, name: &str) -> Option<&Element> {
+        self.children.iter().find(|c| c.name == name)
+    }
+
+    /// All children of that name.
+    pub fn children_named<'a>(&'a self, name: &'a str) -> impl Iterator<Item = &'a Element> {
+        self.children.iter().filter(move |c| c.name == name)
+    }
+}
+
+fn element(tag: &BytesStart<'_>, line: usize) -> Result<Element> {
+    let mut attributes = Vec::new();
+    for attribute in tag.attributes() {
+        let attribute = attribute.map_err(|e| malformed(line, &e))?;
+        let value = attribute
+            .normalized_value(XmlVersion::Implicit1_0)
+            .map_err(|e| malformed(line, &e))?;
+        attributes.push((attribute.key.as_ref().to_owned(), value.into_owned()));
+    }
+    Ok(Element {
+        name: tag.name().as_ref().to_owned(),
+        line,
+        attributes,
+        children: Vec::new(),
+    })
+}
+
+fn malformed(line: usize, found: &dyn std::fmt::Display) -> Error {
+    Error::input(format!("line {line}"), "well-formed XML", found.to_string())
+}
+
+/// Line numbers of positions that only grow.
+struct Lines<'a> {
+    text: &'a [u8],
+    position: usize,
+    line: usize,
+}
+
+impl<'a> Lines<'a> {
+    fn new(text: &'a str) -> Self {
+        Self {
+            text: text.as_bytes(),
+            position: 0,
+            line: 1,
+        }
+    }
+
+    fn at(&mut self, position: u64) -> usize {
+        let end = usize::try_from(position)
+            .unwrap_or(usize::MAX)
+            .min(self.text.len());
+        let passed = self.text.get(self.position..end).unwrap_or_default();
+        self.line += passed.iter().filter(|b| **b == b'\n').count();
+        self.position = end.max(self.position);
+        self.line
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn elements_keep_order_line_and_empty_attributes() {
+        let text = "<?xml version=\"1.0\"?>\n<!-- c -->\n<a x='1 &lt; &quot;2&quot;'>\n <b d=\"\"/>text<c/>\n</a>";
+        let root = Element::parse(text).unwrap();
+        assert_eq!((root.name.as_str(), root.line), ("a", 3));
+        assert_eq!(root.attribute("x"), Some("1 < \"2\""));
+        assert_eq!(root.child("b").unwrap().attribute("d"), Some(""));
+        assert_eq!(root.child("b").unwrap().attribute("e"), None);
+        assert_eq!(root.child("c").unwrap().line, 4);
+    }
+
+    #[test]
+    fn broken_text_is_refused_with_its_line() {
+        for (text, line) in [
+            ("", 1),
+            ("<a>\n<b>", 2),
+            ("<a>\n<b></c></a>", 2),
+            ("<a x=1/>", 1),
+            ("<a>\n\n&unknown;<b y='&no;'/></a>", 3),
+            ("not xml at all", 1),
+        ] {
+            let message = Element::parse(text).unwrap_err().to_string();
+            assert!(
+                message.starts_with(&format!("line {line}: expected well-formed XML")),
+                "{text}: {message}"
+            );
+        }
+        let deep = "<a>".repeat(200_000);
+        assert!(Element::parse(&deep).is_err());
+    }
+}

@@ -1,0 +1,279 @@
+//! `documentation/index.html` of an exported section, made from the variable table and the trained model.
+
+use super::runtime::Runtime;
+use crate::aerodynamics::AerodynamicModel;
+use crate::aeroelastic::CoupledSection;
+use crate::error::{Error, Result};
+use crate::flutter::{FlutterSearch, Onset, OnsetSearch, divergence_speed, find_onset};
+use crate::fmu::resources::Resources;
+use crate::fmu::variables::{Causality, SectionParameter, Value, Variability, Variable, filters};
+use crate::section::Dof;
+use crate::trained_model::{Model, TrainedModel};
+use crate::units::{ReducedFrequency, ReducedVelocity};
+use askama::Template;
+
+/// The page: one file, nothing loaded from elsewhere.
+///
+/// # Errors
+/// [`Error::Input`] and [`Error::Numerical`] when the onset of the default section cannot be computed.
+pub fn documentation(resources: &Resources, runtimes: &[Runtime]) -> Result<String> {
+    let model = &resources.model;
+    let page = Page {
+        model,
+        kind: model.model.kind(),
+        guid: resources.guid.to_string(),
+        version: env!("CARGO_PKG_VERSION"),
+        filters: filters(model)?,
+        lateral: model.section.lateral.is_some(),
+        platforms: runtimes
+            .iter()
+            .map(|r| (r.path_in_archive(), r.platform_words()))
+            .collect(),
+        groups: groups(resources.table.variables()),
+        range: Range::of(model),
+        speeds: speeds(model),
+        stability: stability(model)?,
+        sampling: Sampling::of(model),
+    };
+    page.render()
+        .map_err(|e| Error::Numerical(format!("documentation page: {e}")))
+}
+
+#[derive(Template)]
+#[template(path = "fmu_documentation.html")]
+struct Page<'a> {
+    model: &'a TrainedModel,
+    kind: &'static str,
+    guid: String,
+    version: &'static str,
+    filters: usize,
+    lateral: bool,
+    platforms: Vec<(String, &'static str)>,
+    groups: Vec<Group>,
+    range: Range,
+    speeds: Vec<Speeds>,
+    stability: Vec<String>,
+    sampling: Option<Sampling>,
+}
+
+/// Variables of one role.
+struct Group {
+    title: &'static str,
+    note: &'static str,
+    rows: Vec<Row>,
+}
+
+struct Row {
+    name: &'static str,
+    kind: &'static str,
+    unit: String,
+    start: String,
+    limits: String,
+    description: String,
+}
+
+fn groups(variables: &[Variable]) -> Vec<Group> {
+    let group = |title, note, belongs: &dyn Fn(&Variable) -> bool| Group {
+        title,
+        note,
+        rows: variables.iter().filter(|v| belongs(v)).map(row).collect(),
+    };
+    vec![
+        group(
+            "Inputs",
+            "Continuous: held over a communication step, or on a straight line when the importer sets input derivatives.",
+            &|v| v.causality == Causality::Input,
+        ),
+        group("Outputs", "At the communication points.", &|v| {
+            v.causality == Causality::Output
+        }),
+        group(
+            "Parameters that may be changed while running",
+            "A change holds from the next communication step on and updates the calculated parameters.",
+            &|v| v.causality == Causality::Parameter && v.variability == Variability::Tunable,
+        ),
+        group("Parameters that are fixed once initialised", "", &|v| {
+            v.causality == Causality::Parameter && v.variability == Variability::Fixed
+        }),
+        group(
+            "Calculated parameters",
+            "From the current parameters; available from the initialisation mode on.",
+            &|v| v.causality == Causality::CalculatedParameter,
+        ),
+        group("Constants", "", &|v| v.causality == Causality::Local),
+    ]
+}
+
+fn row(v: &Variable) -> Row {
+    let unit = v.unit.map_or("–", |u| u.name);
+    let limit = |sign: &str, value: Option<f64>| value.map(|x| format!("{sign} {x}"));
+    let limits: Vec<_> = limit("≥", v.min)
+        .into_iter()
+        .chain(limit("≤", v.max))
+        .collect();
+    Row {
+        name: v.name,
+        kind: v.value.type_name(),
+        unit: v.display_unit.map_or_else(
+            || unit.to_owned(),
+            |shown| format!("{unit} (shown in {shown})"),
+        ),
+        start: match &v.value {
+            Value::Real(start) => start.map(|x| x.to_string()),
+            Value::Integer(start) => start.map(|x| x.to_string()),
+            Value::Boolean(start) => start.map(|x| x.to_string()),
+            Value::String(text) => Some(text.clone()),
+        }
+        .unwrap_or_default(),
+        limits: limits.join(", "),
+        description: v.description.clone(),
+    }
+}
+
+/// The tested range in the three ways of writing it.
+struct Range {
+    k: [String; 2],
+    v_star: [String; 2],
+    v_hat: [String; 2],
+}
+
+impl Range {
+    fn of(model: &TrainedModel) -> Self {
+        let (low, high) = (model.tested_range.min, model.tested_range.max);
+        let v_star = |k: ReducedFrequency| ReducedVelocity::from(k).v_star();
+        Self {
+            k: [low.full_width(), high.full_width()].map(digits),
+            v_star: [v_star(high), v_star(low)].map(digits),
+            v_hat: [high.v_hat(), low.v_hat()].map(digits),
+        }
+    }
+}
+
+/// Wind speeds of the tested range for a mode that vibrates at its frequency in still air.
+struct Speeds {
+    motion: &'static str,
+    frequency_hz: String,
+    from_m_s: String,
+    to_m_s: String,
+}
+
+fn speeds(model: &TrainedModel) -> Vec<Speeds> {
+    let section = &model.section;
+    let speed = |frequency_hz: f64, k: ReducedFrequency| {
+        let v_star = ReducedVelocity::from(k).v_star();
+        digits(v_star * frequency_hz * section.width_m)
+    };
+    section
+        .dofs()
+        .into_iter()
+        .map(|dof: Dof| {
+            let frequency_hz = SectionParameter::Frequency(dof).value_in(section);
+            Speeds {
+                motion: dof.name(),
+                frequency_hz: digits(frequency_hz),
+                from_m_s: speed(frequency_hz, model.tested_range.max),
+                to_m_s: speed(frequency_hz, model.tested_range.min),
+            }
+        })
+        .collect()
+}
+
+/// Sentences on onset and divergence of the section as exported.
+fn stability(model: &TrainedModel) -> Result<Vec<String>> {
+    let structure = model.section.structure()?;
+    let realization = model
+        .model
+        .realize()
+        .ok_or_else(|| Error::input("model", "a model with a realisation", model.model.kind()))?;
+    let limit = model.experiment.onset_search_limit_m_s;
+    let search = OnsetSearch {
+        speed_max_m_s: limit,
+        ..OnsetSearch::default()
+    };
+    let section = CoupledSection::new(structure.clone(), realization)?;
+    let mut sentences = match find_onset(&model.name, &section, &search, Some(model.tested_range)) {
+        Ok(FlutterSearch::StableUpTo(speed)) => {
+            vec![format!("No flutter up to {} m/s.", digits(speed))]
+        }
+        Ok(FlutterSearch::Onset(onset)) => onset_sentences(&onset),
+        // a page that says so is better than no FMU
+        Err(e) => vec![format!("Flutter onset could not be determined: {e}.")],
+    };
+    let at_rest = model
+        .model
+        .transfer(ReducedFrequency::from_full_width(0.0))?;
+    sentences.push(match divergence_speed(&structure, &at_rest)? {
+        Some(speed) if speed <= limit => format!("Static divergence at {} m/s.", digits(speed)),
+        _ => format!("No static divergence up to {} m/s.", digits(limit)),
+    });
+    Ok(sentences)
+}
+
+fn onset_sentences(onset: &Onset) -> Vec<String> {
+    let mut sentences = vec![format!(
+        "Flutter onset at {} m/s with {} Hz, V* = {}, K = {}; |y|/(B|θ|) = {}, y leads θ by {}°. \
+         Its reduced frequency lies {} the tested range.",
+        digits(onset.speed_m_s),
+        digits(onset.frequency_hz),
+        digits(onset.reduced_velocity.v_star()),
+        digits(onset.reduced_frequency.full_width()),
+        digits(onset.mode_ratio),
+        digits(onset.phase_deg),
+        if onset.in_tested_range == Some(false) {
+            "outside"
+        } else {
+            "inside"
+        }
+    )];
+    sentences.extend(onset.warnings.iter().map(|w| format!("Warning: {w}.")));
+    sentences
+}
+
+/// What the discrete model does between its samples.
+struct Sampling {
+    delta_s: String,
+    speed_m_s: String,
+    step_s: String,
+}
+
+impl Sampling {
+    fn of(model: &TrainedModel) -> Option<Self> {
+        let Model::DiscreteLaguerre(discrete) = &model.model else {
+            return None;
+        };
+        let speed = model.experiment.wind_speed_m_s;
+        Some(Self {
+            delta_s: digits(discrete.delta_s),
+            speed_m_s: digits(speed),
+            step_s: digits(discrete.delta_s * model.section.width_m / speed),
+        })
+    }
+}
+
+/// Four significant digits.
+fn digits(x: f64) -> String {
+    if x == 0.0 || !x.is_finite() {
+        return x.to_string();
+    }
+    let before = x.abs().log10().floor() as i32 + 1;
+    let decimals = usize::try_from(4 - before).unwrap_or(0);
+    format!("{x:.decimals$}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::digits;
+
+    #[test]
+    fn four_digits_whatever_the_size() {
+        for (x, text) in [
+            (39.468_2, "39.47"),
+            (0.091_234_5, "0.09123"),
+            (-123.456, "-123.5"),
+            (12_345.6, "12346"),
+            (0.0, "0"),
+        ] {
+            assert_eq!(digits(x), text);
+        }
+    }
+}

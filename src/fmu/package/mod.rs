@@ -1,0 +1,159 @@
+//! Packing a trained model as an FMU: the same model and binaries always give the same bytes.
+//!
+//! The archive holds the description, one runtime binary per platform, the model, a page that documents it, licences and
+//! an icon. The runtime for the platform of this program is embedded in it; further ones come from a folder.
+
+mod documentation;
+mod runtime;
+
+pub use documentation::documentation;
+pub use runtime::{RUNTIME_DIR_VARIABLE, Runtime};
+
+use super::description::model_description;
+use super::resources::{MODEL_FILE, Resources};
+use crate::error::{Error, Result};
+use crate::trained_model::TrainedModel;
+use std::collections::BTreeMap;
+use std::io::{Cursor, Write};
+use std::path::Path;
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, DateTime, ZipWriter};
+
+/// Licence texts: file below `documentation/licenses/` and contents.
+const LICENCES: [(&str, &str); 3] = [
+    (
+        "LICENSE-APACHE.txt",
+        include_str!("../../../LICENSE-APACHE"),
+    ),
+    ("LICENSE-MIT.txt", include_str!("../../../LICENSE-MIT")),
+    ("THIRD-PARTY.txt", include_str!("THIRD-PARTY.txt")),
+];
+
+const ICON: &[u8] = include_bytes!("model.png");
+
+/// What to do with a file that is already there.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Overwrite {
+    /// Leave it and say so.
+    Refuse,
+    /// Replace it.
+    Replace,
+}
+
+/// The FMU of a trained model as the bytes of its archive, with these runtimes in it.
+///
+/// # Errors
+/// [`Error::Input`] for a model that cannot be exported, for no runtime at all, and for two of one platform.
+pub fn package(model: &TrainedModel, runtimes: &[Runtime]) -> Result<Vec<u8>> {
+    if runtimes.is_empty() {
+        let expected = "a runtime for at least one platform";
+        return Err(Error::input("FMU", expected, "none"));
+    }
+    let json = model.to_json()?;
+    let resources = Resources::from_bytes(json.as_bytes())?;
+    let xml = model_description(&resources.model, &resources.table, &resources.guid)?;
+    let page = documentation(&resources, runtimes)?;
+    let mut files: BTreeMap<String, Vec<u8>> = BTreeMap::new();
+    files.insert("modelDescription.xml".into(), xml.into_bytes());
+    files.insert("model.png".into(), ICON.to_vec());
+    files.insert(format!("resources/{MODEL_FILE}"), json.into_bytes());
+    files.insert("documentation/index.html".into(), page.into_bytes());
+    let licences = "documentation/licenses";
+    files.insert(
+        format!("{licences}/license.txt"),
+        licence(model).into_bytes(),
+    );
+    for (name, text) in LICENCES {
+        files.insert(format!("{licences}/{name}"), text.into());
+    }
+    for runtime in runtimes {
+        if files
+            .insert(runtime.path_in_archive(), runtime.bytes.to_vec())
+            .is_some()
+        {
+            return Err(Error::input(
+                "FMU",
+                "one runtime for each platform",
+                format!("two for {}", runtime.platform),
+            ));
+        }
+    }
+    archive(&files).map_err(|e| Error::Numerical(format!("packing the FMU: {e}")))
+}
+
+/// Packs the model and writes the archive: first beside its place, then moved there, so that no half a file is ever
+/// seen.
+///
+/// # Errors
+/// Those of [`package`]; [`Error::Input`] when the file is there and is not to be replaced; [`Error::Io`].
+pub fn write_fmu(
+    path: &Path,
+    model: &TrainedModel,
+    runtimes: &[Runtime],
+    overwrite: Overwrite,
+) -> Result<()> {
+    let bytes = package(model, runtimes)?;
+    let folder = match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    };
+    let failed = |e| Error::io(path, e);
+    let mut file = tempfile::Builder::new()
+        .prefix(".aerodeck-")
+        .suffix(".fmu")
+        .tempfile_in(folder)
+        .map_err(failed)?;
+    file.write_all(&bytes).map_err(failed)?;
+    readable_by_all(file.as_file()).map_err(failed)?;
+    match overwrite {
+        Overwrite::Replace => file.persist(path).map_err(|e| failed(e.error))?,
+        Overwrite::Refuse => file.persist_noclobber(path).map_err(|e| {
+            if e.error.kind() == std::io::ErrorKind::AlreadyExists {
+                Error::input("FMU", "no file there yet", "one, which was left as it is")
+                    .in_file(path)
+            } else {
+                failed(e.error)
+            }
+        })?,
+    };
+    Ok(())
+}
+
+/// Temporary files are for their owner alone; an FMU is not.
+#[cfg(unix)]
+fn readable_by_all(file: &std::fs::File) -> std::io::Result<()> {
+    use std::os::unix::fs::PermissionsExt;
+    file.set_permissions(std::fs::Permissions::from_mode(0o644))
+}
+
+#[cfg(not(unix))]
+fn readable_by_all(_: &std::fs::File) -> std::io::Result<()> {
+    Ok(())
+}
+
+/// Entries in alphabetical order without dates, owners or other traces of the machine.
+fn archive(files: &BTreeMap<String, Vec<u8>>) -> zip::result::ZipResult<Vec<u8>> {
+    let options = SimpleFileOptions::default()
+        .compression_method(CompressionMethod::Deflated)
+        .compression_level(Some(9))
+        .last_modified_time(DateTime::default())
+        .unix_permissions(0o644);
+    let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
+    for (name, bytes) in files {
+        zip.start_file(name.as_str(), options)?;
+        zip.write_all(bytes)?;
+    }
+    Ok(zip.finish()?.into_inner())
+}
+
+fn licence(model: &TrainedModel) -> String {
+    format!(
+        "The program in binaries/ is part of aerodeck and is licensed under MIT (LICENSE-MIT.txt) or Apache-2.0\n\
+         (LICENSE-APACHE.txt), at your choice. It contains software of others: THIRD-PARTY.txt.\n\n\
+         The model in resources/ was made from data of this source:\n    {}\nunder this licence:\n    {}\n",
+        model.provenance.source, model.provenance.licence
+    )
+}
+
+#[cfg(test)]
+mod tests;
