@@ -1,1 +1,18 @@
 //! Figures and pages from result structs; nothing is computed here.
+//!
+//! A [`Figure`] is SVG text; its PNG is drawn with the font that is part of the program, so it looks the same on every
+//! machine. The same data always give the same bytes. Colours are those of Okabe and Ito, told apart by colour-blind
+//! readers; what differs in colour only also differs in a line style or a marker where two kinds of thing meet.
+
+mod axis;
+mod figure;
+mod flutter_figures;
+mod font;
+mod labels;
+mod legend;
+mod panel;
+mod sheet;
+mod style;
+
+pub use figure::{Figure, PNG_SCALE};
+pub use flutter_figures::{VfVgOptions, vf_vg_figure};

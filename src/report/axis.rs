@@ -1,0 +1,215 @@
+//! Range, ticks and tick labels of one axis.
+
+use std::sync::Arc;
+
+/// What an axis shows and how.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Axis {
+    /// Name, symbol and unit.
+    pub(super) label: String,
+    /// Fixed ends instead of those of the data.
+    pub(super) range: Option<(f64, f64)>,
+    /// Shows of the data what lies in this window; all of it when nothing does.
+    pub(super) within: Option<(f64, f64)>,
+    /// Ends exactly at the data.
+    pub(super) tight: bool,
+    /// Starts at zero when nothing is negative.
+    pub(super) from_zero: bool,
+    /// Logarithmic, when all values are positive.
+    pub(super) logarithmic: bool,
+}
+
+impl Axis {
+    pub(super) fn new(label: impl Into<String>) -> Self {
+        Self {
+            label: label.into(),
+            range: None,
+            within: None,
+            tight: false,
+            from_zero: false,
+            logarithmic: false,
+        }
+    }
+    pub(super) fn tight(mut self) -> Self {
+        self.tight = true;
+        self
+    }
+    pub(super) fn from_zero(mut self) -> Self {
+        self.from_zero = true;
+        self
+    }
+
+    /// The scale for finite `values` with about `ticks` ticks.
+    pub(super) fn scale(&self, values: impl IntoIterator<Item = f64>, ticks: usize) -> Scale {
+        let (low, high) = self.range.unwrap_or_else(|| ends(values));
+        if self.logarithmic && low > 0.0 {
+            return Scale::logarithmic(low, high);
+        }
+        let window = self.within.unwrap_or((f64::MIN, f64::MAX));
+        let (inner_low, inner_high) = (low.max(window.0), high.min(window.1));
+        let (mut low, mut high) = if inner_high - inner_low > 1e-9 * low.abs().max(high.abs()) {
+            (inner_low, inner_high)
+        } else {
+            widened(low, high)
+        };
+        if self.range.is_none() && !self.tight {
+            let margin = 0.05 * (high - low);
+            let bounded = self.from_zero && low >= 0.0;
+            low = if bounded { 0.0 } else { low - margin };
+            high += margin;
+        }
+        Scale {
+            min: low,
+            max: high,
+            step: nice_step((high - low) / ticks as f64),
+            logarithmic: false,
+        }
+    }
+}
+
+/// Lowest and highest of `values`.
+fn ends(values: impl IntoIterator<Item = f64>) -> (f64, f64) {
+    let nothing = (f64::INFINITY, f64::NEG_INFINITY);
+    let wider = |(low, high): (f64, f64), v: f64| (low.min(v), high.max(v));
+    values.into_iter().fold(nothing, wider)
+}
+
+/// A range of some size around values that are all the same.
+fn widened(low: f64, high: f64) -> (f64, f64) {
+    let size = low.abs().max(high.abs());
+    if high - low > 1e-9 * size {
+        return (low, high);
+    }
+    let half = if size > 0.0 { 0.1 * size } else { 1.0 };
+    (low - half, high + half)
+}
+
+/// 1, 2 or 5 times a power of ten: the first that is not much below `step`.
+fn nice_step(step: f64) -> f64 {
+    let power = 10f64.powf(step.log10().floor());
+    let lead = step / power;
+    let nice = [1.0, 2.0, 5.0]
+        .into_iter()
+        .find(|n| lead <= n * 1.2)
+        .unwrap_or(10.0);
+    nice * power
+}
+
+/// Ends and ticks of an axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Scale {
+    pub(super) min: f64,
+    pub(super) max: f64,
+    /// Distance of the ticks on a linear axis.
+    pub(super) step: f64,
+    pub(super) logarithmic: bool,
+}
+
+impl Scale {
+    fn logarithmic(low: f64, high: f64) -> Self {
+        let margin = (high / low).powf(0.05).max(1.1);
+        Self {
+            min: low / margin,
+            max: high * margin,
+            step: 1.0,
+            logarithmic: true,
+        }
+    }
+
+    /// How ticks are written: as many decimals as the step has, powers of ten on a logarithmic axis.
+    pub(super) fn tick_label(&self) -> Arc<dyn Fn(f64) -> String + Send + Sync> {
+        if self.logarithmic {
+            return Arc::new(|v| power_of_ten(v).unwrap_or_else(|| signed(format!("{v}"))));
+        }
+        let largest = self.min.abs().max(self.max.abs());
+        let exponent = largest.log10().floor() as i32;
+        if (-3..6).contains(&exponent) {
+            let decimals = (-self.step.log10().floor()).max(0.0) as usize;
+            return Arc::new(move |v| signed(format!("{v:.decimals$}")));
+        }
+        let step_exponent = self.step.log10().floor() as i32;
+        let decimals = (exponent - step_exponent).max(0) as usize;
+        Arc::new(move |v| {
+            if v == 0.0 {
+                return "0".to_owned();
+            }
+            let lead = v / 10f64.powi(exponent);
+            signed(format!("{lead:.decimals$}·10{}", superscript(exponent)))
+        })
+    }
+
+    /// Ticks of a linear axis, for the width of their labels.
+    pub(super) fn ticks(&self) -> Vec<f64> {
+        if self.logarithmic {
+            return vec![self.min, self.max];
+        }
+        let first = (self.min / self.step).ceil() as i64;
+        let last = (self.max / self.step).floor() as i64;
+        (first..=last).map(|i| i as f64 * self.step).collect()
+    }
+}
+
+/// `10ⁿ` when `v` is one.
+fn power_of_ten(v: f64) -> Option<String> {
+    let exponent = v.log10();
+    ((exponent - exponent.round()).abs() < 1e-9 && !(-2.0..=3.0).contains(&exponent.round()))
+        .then(|| format!("10{}", superscript(exponent.round() as i32)))
+}
+
+fn superscript(n: i32) -> String {
+    n.to_string()
+        .chars()
+        .map(|c| match c {
+            '-' => '⁻',
+            digit => ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹']
+                [digit.to_digit(10).unwrap_or(0) as usize],
+        })
+        .collect()
+}
+
+/// With a true minus sign, and no sign at a rounded zero.
+pub(super) fn signed(number: String) -> String {
+    match number.strip_prefix('-') {
+        Some(digits) if digits.chars().all(|c| "0.".contains(c)) => digits.to_owned(),
+        Some(digits) => format!("−{digits}"),
+        None => number,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ticks_are_round_numbers_inside_the_range() {
+        let scale = Axis::new("x").scale([-0.03, 0.29], 5);
+        assert_eq!(scale.step, 0.1);
+        let label = scale.tick_label();
+        let labels: Vec<String> = scale.ticks().into_iter().map(|t| label(t)).collect();
+        assert_eq!(labels, ["0.0", "0.1", "0.2", "0.3"]);
+        let speed = Axis::new("V").tight().scale([0.0, 120.0], 6);
+        assert_eq!((speed.min, speed.max, speed.step), (0.0, 120.0, 20.0));
+    }
+
+    #[test]
+    fn equal_values_still_make_an_axis() {
+        for value in [0.0, -4.0, 1e-9] {
+            let scale = Axis::new("x").scale([value, value], 5);
+            assert!(scale.min < value && value < scale.max);
+            assert!(scale.ticks().len() >= 2);
+        }
+    }
+
+    #[test]
+    fn very_small_and_large_numbers_are_written_with_powers() {
+        let scale = Axis::new("x").scale([-2e-7, 4e-7], 3);
+        assert_eq!(scale.tick_label()(-2e-7), "−2·10⁻⁷");
+        assert_eq!(signed("-0.00".into()), "0.00");
+        let log = Axis {
+            logarithmic: true,
+            ..Axis::new("x")
+        };
+        assert_eq!(log.scale([1e-6, 1.0], 5).tick_label()(1e-5), "10⁻⁵");
+        assert_eq!(log.scale([1e-6, 1.0], 5).tick_label()(0.1), "0.1");
+    }
+}

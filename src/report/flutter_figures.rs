@@ -1,0 +1,224 @@
+//! Frequencies and damping ratios over wind speed, with the onsets.
+
+use super::axis::Axis;
+use super::figure::Figure;
+use super::legend::Entry;
+use super::panel::{Note, Panel};
+use super::sheet::Sheet;
+use super::style::{GREY, Ink, Shape, colour, dash};
+use crate::error::{Error, Result};
+use crate::flutter::{FlutterCurves, ModePoint, Onset, OnsetMethod};
+
+/// What may be added to the V-f and V-g diagrams.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct VfVgOptions {
+    /// Line above the figure.
+    pub title: Option<String>,
+    /// Wind speeds between which the models rest on tests, m/s; outside, the panels are shaded.
+    pub tested_speeds_m_s: Option<(f64, f64)>,
+    /// Ends of the axis of the damping ratio, per cent; without them the data between −10 and 20, because beyond, the
+    /// heavily damped heaving branch would hide the crossing.
+    pub damping_range_percent: Option<(f64, f64)>,
+}
+
+/// Frequencies (Hz) and damping ratios (per cent of critical) of all modes over wind speed (m/s).
+///
+/// A colour a model, a line style a branch; onsets are marked on both panels and stated in the legend. An onset is
+/// drawn in the colour of the curves of the same model, hollow when it lies outside the tested range; crossings
+/// suspected to be spurious are crosses on the zero line.
+///
+/// # Errors
+/// [`Error::Input`] for no curves, empty or non-finite ones, and for more models than colours.
+pub fn vf_vg_figure(
+    curves: &[FlutterCurves],
+    onsets: &[Onset],
+    options: &VfVgOptions,
+) -> Result<Figure> {
+    let branches = branch_names(curves)?;
+    let speed = || Axis::new("Wind speed V (m/s)").tight();
+    let mut upright = Vec::new();
+    let mut frequency = Panel::new(
+        Axis {
+            label: String::new(),
+            ..speed()
+        },
+        Axis::new("Frequency f (Hz)").from_zero(),
+    );
+    let mut damping = Panel::new(speed(), Axis::new("Damping ratio ζ (%)"));
+    damping.level = Some(0.0);
+    damping.y.within = Some(DAMPING_WINDOW_PERCENT);
+    damping.y.range = options.damping_range_percent;
+    let mut models = Vec::new();
+    for (i, model) in curves.iter().enumerate() {
+        let colour = colour(PLACE, i)?;
+        models.push(Entry::new(&model.model, Ink::line(colour, None)));
+        for branch in &model.branches {
+            let ink = Ink::line(colour, dash(index_of(&branches, &branch.name)));
+            let name = format!("{}, {} branch", model.model, branch.name);
+            frequency.add(&name, points(&branch.points, |p| p.frequency_hz), ink);
+            damping.add(
+                &name,
+                points(&branch.points, |p| 100.0 * p.damping_ratio),
+                ink,
+            );
+        }
+    }
+    let mut stated = Vec::new();
+    for onset in onsets {
+        let colour = colour_of(&onset.model, curves)?;
+        upright.push((onset.speed_m_s, colour));
+        mark_onset(&mut frequency, &mut damping, onset, colour);
+        stated.push(Entry::new(statement(onset), onset_ink(onset, colour)));
+    }
+    frequency.uprights.clone_from(&upright);
+    damping.uprights = upright;
+    let mut kinds: Vec<Entry> = branches
+        .iter()
+        .enumerate()
+        .map(|(i, name)| Entry::new(format!("{name} branch"), Ink::line(GREY, dash(i))))
+        .collect();
+    if onsets.iter().any(|o| !o.spurious_speeds_m_s.is_empty()) {
+        kinds.push(Entry::new(
+            "probably spurious crossing",
+            Ink::dots(GREY, Shape::Cross),
+        ));
+    }
+    if onsets.iter().any(|o| o.in_tested_range == Some(false)) {
+        kinds.push(Entry::new(
+            "onset outside the tested range",
+            Ink::Dots {
+                colour: GREY,
+                shape: Shape::Circle,
+                radius: 4.5,
+                hollow: true,
+            },
+        ));
+    }
+    if let Some(tested) = options.tested_speeds_m_s {
+        shade_untested(&mut [&mut frequency, &mut damping], tested)?;
+        kinds.push(Entry::new("wind speed outside the tests", Ink::Shade));
+    }
+    Sheet {
+        name: PLACE,
+        title: options.title.clone(),
+        panels: vec![frequency, damping],
+        columns: 1,
+        axes: (640.0, 230.0),
+        legend: vec![models, kinds, stated],
+    }
+    .draw()
+}
+
+const PLACE: &str = "V-f and V-g diagram";
+const DAMPING_WINDOW_PERCENT: (f64, f64) = (-10.0, 20.0);
+
+/// Names of the branches of all models, each once, in the order of their first appearance.
+pub(super) fn branch_names(curves: &[FlutterCurves]) -> Result<Vec<String>> {
+    let mut names: Vec<String> = Vec::new();
+    for branch in curves.iter().flat_map(|c| &c.branches) {
+        if !names.contains(&branch.name) {
+            names.push(branch.name.clone());
+        }
+    }
+    if names.is_empty() {
+        return Err(Error::input("flutter curves", "at least one mode", "none"));
+    }
+    Ok(names)
+}
+
+pub(super) fn index_of(names: &[String], name: &str) -> usize {
+    names.iter().position(|n| n == name).unwrap_or(0)
+}
+
+fn points(modes: &[ModePoint], value: impl Fn(&ModePoint) -> f64) -> Vec<(f64, f64)> {
+    modes.iter().map(|p| (p.speed_m_s, value(p))).collect()
+}
+
+/// Colour of the curves of a model; grey when it has none.
+fn colour_of(model: &str, curves: &[FlutterCurves]) -> Result<&'static str> {
+    match curves.iter().position(|c| c.model == model) {
+        Some(i) => colour(PLACE, i),
+        None => Ok(GREY),
+    }
+}
+
+fn onset_ink(onset: &Onset, colour: &'static str) -> Ink {
+    Ink::Dots {
+        colour,
+        shape: match onset.method {
+            OnsetMethod::Eigenvalues => Shape::Circle,
+            OnsetMethod::Determinant => Shape::Diamond,
+            OnsetMethod::FmuStepping => Shape::Square,
+        },
+        radius: 4.5,
+        hollow: onset.in_tested_range == Some(false),
+    }
+}
+
+fn mark_onset(frequency: &mut Panel, damping: &mut Panel, onset: &Onset, colour: &'static str) {
+    let name = format!("onset of {}", onset.model);
+    let at_frequency = (onset.speed_m_s, onset.frequency_hz);
+    let at_zero = (onset.speed_m_s, 0.0);
+    frequency.add(&name, vec![at_frequency], onset_ink(onset, colour));
+    damping.add(&name, vec![at_zero], onset_ink(onset, colour));
+    let note = |panel: &mut Panel, at, text| panel.notes.push(Note { at, text, colour });
+    note(
+        frequency,
+        at_frequency,
+        format!("{} Hz", significant(onset.frequency_hz)),
+    );
+    note(
+        damping,
+        at_zero,
+        format!("{} m/s", significant(onset.speed_m_s)),
+    );
+    if !onset.spurious_speeds_m_s.is_empty() {
+        let crosses = onset.spurious_speeds_m_s.iter().map(|v| (*v, 0.0));
+        damping.add(
+            format!("spurious crossings of {}", onset.model),
+            crosses.collect(),
+            Ink::dots(colour, Shape::Cross),
+        );
+    }
+}
+
+/// The onset in words, for the legend.
+fn statement(onset: &Onset) -> String {
+    let method = match onset.method {
+        OnsetMethod::Eigenvalues => "eigenvalues",
+        OnsetMethod::Determinant => "determinant",
+        OnsetMethod::FmuStepping => "FMU stepped",
+    };
+    format!(
+        "Onset {}: V = {} m/s, f = {} Hz, V/(fB) = {}, {} branch ({method})",
+        onset.model,
+        significant(onset.speed_m_s),
+        significant(onset.frequency_hz),
+        significant(onset.reduced_velocity.v_star()),
+        onset.branch,
+    )
+}
+
+/// Four significant digits without an exponent.
+fn significant(value: f64) -> String {
+    let decimals = if value.abs() > 0.0 {
+        (3.0 - value.abs().log10().floor()).clamp(0.0, 9.0) as usize
+    } else {
+        0
+    };
+    format!("{value:.decimals$}")
+}
+
+fn shade_untested(panels: &mut [&mut Panel], (low, high): (f64, f64)) -> Result<()> {
+    if !(low.is_finite() && high.is_finite() && low < high) {
+        return Err(Error::input(
+            "tested wind speeds",
+            "a lower and a higher one",
+            format!("{low} to {high}"),
+        ));
+    }
+    for panel in panels {
+        panel.shaded = vec![(f64::MIN, low), (high, f64::MAX)];
+    }
+    Ok(())
+}

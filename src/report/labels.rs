@@ -1,0 +1,132 @@
+//! Where the labels of points go, so that they cover neither each other nor the curves.
+
+use super::font::text_width;
+
+/// A rectangle of the panel, px, y down.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Area {
+    pub(super) left: f64,
+    pub(super) top: f64,
+    pub(super) right: f64,
+    pub(super) bottom: f64,
+}
+
+impl Area {
+    fn overlap(&self, other: &Self) -> f64 {
+        let width = self.right.min(other.right) - self.left.max(other.left);
+        let height = self.bottom.min(other.bottom) - self.top.max(other.top);
+        width.max(0.0) * height.max(0.0)
+    }
+    fn size(&self) -> f64 {
+        (self.right - self.left) * (self.bottom - self.top)
+    }
+    fn contains(&self, (x, y): (f64, f64)) -> bool {
+        self.left <= x && x <= self.right && self.top <= y && y <= self.bottom
+    }
+}
+
+/// Places for one label after the other.
+#[derive(Debug)]
+pub(super) struct Labels {
+    frame: Area,
+    /// Points to keep free: curves, sampled every few px, and markers.
+    drawn: Vec<(f64, f64)>,
+    taken: Vec<Area>,
+}
+
+impl Labels {
+    pub(super) fn new(frame: Area) -> Self {
+        Self {
+            frame,
+            drawn: Vec::new(),
+            taken: Vec::new(),
+        }
+    }
+
+    /// Keeps a polyline (px) free of labels.
+    pub(super) fn avoid(&mut self, points: &[(f64, f64)]) {
+        self.drawn.extend(points.first());
+        for pair in points.windows(2) {
+            let ((x0, y0), (x1, y1)) = (pair[0], pair[1]);
+            // far outside the frame nothing can be covered
+            let reach = (self.frame.right - self.frame.left) + (self.frame.bottom - self.frame.top);
+            let steps = ((x1 - x0).hypot(y1 - y0).min(reach) / 3.0).ceil().max(1.0);
+            for i in 1..=steps as usize {
+                let t = i as f64 / steps;
+                self.drawn.push((x0 + t * (x1 - x0), y0 + t * (y1 - y0)));
+            }
+        }
+    }
+
+    /// The best area for `text` of `size` px near the point, now taken.
+    pub(super) fn place(&mut self, (x, y): (f64, f64), text: &str, size: f64) -> Area {
+        let (width, height) = (text_width(text, size) + 6.0, 1.35 * size);
+        let mut best: Option<(f64, Area)> = None;
+        for (ring, gap) in [7.0, 16.0, 28.0, 44.0, 64.0].into_iter().enumerate() {
+            for (i, (dx, dy)) in DIRECTIONS.into_iter().enumerate() {
+                let left = x + dx * gap + 0.5 * (dx.signum() * dx.abs().ceil() - 1.0) * width;
+                let top = y + dy * gap + 0.5 * (dy.signum() * dy.abs().ceil() - 1.0) * height;
+                let area = Area {
+                    left,
+                    top,
+                    right: left + width,
+                    bottom: top + height,
+                };
+                let cost = self.cost(&area) + 0.4 * ring as f64 + 0.01 * i as f64;
+                if best.is_none_or(|(lowest, _)| cost < lowest) {
+                    best = Some((cost, area));
+                }
+            }
+        }
+        let area = best.map_or(self.frame, |(_, area)| area);
+        self.taken.push(area);
+        area
+    }
+
+    fn cost(&self, area: &Area) -> f64 {
+        let outside = 1.0 - area.overlap(&self.frame) / area.size();
+        let covered: f64 = self.taken.iter().map(|t| area.overlap(t)).sum();
+        let hidden = self.drawn.iter().filter(|p| area.contains(**p)).count();
+        100.0 * outside + 50.0 * covered / area.size() + 0.5 * hidden as f64
+    }
+}
+
+/// Right above first, then the other sides; a zero centres the label.
+const DIRECTIONS: [(f64, f64); 8] = [
+    (0.8, -0.8),
+    (-0.8, -0.8),
+    (0.8, 0.8),
+    (-0.8, 0.8),
+    (1.0, 0.0),
+    (-1.0, 0.0),
+    (0.0, -1.0),
+    (0.0, 1.0),
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const FRAME: Area = Area {
+        left: 0.0,
+        top: 0.0,
+        right: 400.0,
+        bottom: 200.0,
+    };
+
+    #[test]
+    fn labels_of_one_point_do_not_overlap_and_stay_inside() {
+        let mut labels = Labels::new(FRAME);
+        labels.avoid(&[(0.0, 100.0), (400.0, 100.0)]);
+        let areas: Vec<Area> = (0..4)
+            .map(|_| labels.place((395.0, 100.0), "76.92 m/s", 11.0))
+            .collect();
+        for (i, a) in areas.iter().enumerate() {
+            assert!((a.overlap(&FRAME) - a.size()).abs() < 1e-9);
+            assert!(a.bottom <= 100.0 || a.top >= 100.0, "the line is covered");
+            for b in &areas[..i] {
+                assert_eq!(a.overlap(b), 0.0);
+            }
+        }
+    }
+}

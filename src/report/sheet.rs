@@ -1,0 +1,173 @@
+//! Panels in a grid with a title above and a legend below, put together into one figure.
+
+use super::figure::Figure;
+use super::font::{FAMILIES, text_width};
+use super::legend::{Entry, LegendLayout, lay_out};
+use super::panel::{Frame, LABEL_SIZE, Margins, Panel};
+use super::style::BLACK;
+use crate::error::Result;
+use kuva::backend::svg::SvgBackend;
+use kuva::render::color::Color;
+use kuva::render::render::{Primitive, Scene, TextAnchor};
+use uuid::Uuid;
+
+const TITLE_SIZE: u32 = 14;
+const TITLE_HEIGHT: f64 = 30.0;
+const EDGE: f64 = 12.0;
+const RIGHT: f64 = 16.0;
+
+/// A whole figure before it is drawn.
+#[derive(Debug)]
+pub(super) struct Sheet {
+    /// Kind of figure, for messages.
+    pub(super) name: &'static str,
+    pub(super) title: Option<String>,
+    /// Row by row.
+    pub(super) panels: Vec<Panel>,
+    pub(super) columns: usize,
+    /// Size of the axes of one panel, px.
+    pub(super) axes: (f64, f64),
+    /// Groups of entries; each starts a new row.
+    pub(super) legend: Vec<Vec<Entry>>,
+}
+
+impl Sheet {
+    /// Draws everything.
+    ///
+    /// # Errors
+    /// [`crate::Error::Input`] for panels without data and for numbers that are not finite.
+    pub(super) fn draw(&self) -> Result<Figure> {
+        for panel in &self.panels {
+            panel.check(self.name)?;
+        }
+        let (frames, legend) = self.frames();
+        let grid_width = self.columns as f64 * frames[0].width;
+        let grid_height: f64 = frames.iter().map(|f| f.height).sum();
+        let left = frames[0].margins.left;
+        let head = self.title.as_ref().map_or(EDGE, |_| TITLE_HEIGHT + EDGE);
+        let foot = if legend.height > 0.0 {
+            legend.height + 2.0 * EDGE
+        } else {
+            EDGE
+        };
+        let mut scene = Scene::new(grid_width.ceil(), (head + grid_height + foot).ceil());
+        scene.font_family = Some(FAMILIES.to_owned());
+        scene.text_color = Some(BLACK.to_owned());
+        if let Some(title) = &self.title {
+            scene.add(text((left, EDGE + 16.0), title, TITLE_SIZE, BLACK));
+        }
+        let mut top = head;
+        for (row, frame) in self.panels.chunks(self.columns).zip(&frames) {
+            for (column, panel) in row.iter().enumerate() {
+                let corner = (column as f64 * frame.width, top);
+                insert(&mut scene, panel.draw(*frame), corner);
+            }
+            top += frame.height;
+        }
+        legend.draw(&mut scene, (left, top + EDGE));
+        Ok(Figure::from_svg(finished(&scene)))
+    }
+
+    /// A frame for each row, of one width and with axes in line, and the legend. When the legend or the title is wider
+    /// than the panels, the panels grow.
+    fn frames(&self) -> (Vec<Frame>, LegendLayout<'_>) {
+        let line = f64::from(LABEL_SIZE);
+        let widest = |p: &[Panel]| p.iter().map(Panel::tick_width).fold(0.0, f64::max);
+        let any = |row: &[Panel], has: fn(&Panel) -> bool| row.iter().any(has);
+        let y_label = any(&self.panels, |p| !p.y.label.is_empty());
+        let left = widest(&self.panels) + line + if y_label { line + 16.0 } else { 4.0 };
+        let columns = self.columns as f64;
+        let outside = left + EDGE;
+        let wanted = columns * (self.axes.0 + left + RIGHT);
+        let legend = lay_out(&self.legend, wanted - outside);
+        let title = self
+            .title
+            .as_ref()
+            .map_or(0.0, |t| text_width(t, f64::from(TITLE_SIZE)));
+        let width = wanted.max(outside + legend.width.max(title)) / columns;
+        let legend = lay_out(&self.legend, columns * width - outside);
+        let frame = |row: &[Panel]| {
+            let titled = any(row, |p| p.title.is_some());
+            let named = any(row, |p| !p.x.label.is_empty());
+            let margins = Margins {
+                left,
+                right: RIGHT,
+                top: if titled { 26.0 } else { 8.0 },
+                bottom: if named { 46.0 } else { 28.0 },
+            };
+            Frame {
+                width,
+                height: self.axes.1 + margins.top + margins.bottom,
+                margins,
+            }
+        };
+        (
+            self.panels.chunks(self.columns).map(frame).collect(),
+            legend,
+        )
+    }
+}
+
+/// Puts the scene of a panel into that of the sheet. Clip paths are numbered anew: the library counts them over the
+/// life of the process, which would make every drawing differ.
+fn insert(scene: &mut Scene, panel: Scene, (x, y): (f64, f64)) {
+    let name = format!("{CLIP}{}", scene.defs.len());
+    let mut old = None;
+    scene.add(Primitive::GroupStart {
+        transform: Some(format!("translate({x:.2},{y:.2})")),
+        title: None,
+        extra_attrs: None,
+    });
+    for mut element in panel.elements {
+        if let Primitive::ClipStart { id, .. } = &mut element {
+            old = Some(std::mem::replace(id, name.clone()));
+        }
+        scene.add(element);
+    }
+    scene.add(Primitive::GroupEnd);
+    for definition in panel.defs {
+        scene.defs.push(match &old {
+            Some(old) => definition.replace(&format!("\"{old}\""), &format!("\"{name}\"")),
+            None => definition,
+        });
+    }
+}
+
+/// Name of a clip path before the figure has a name of its own.
+const CLIP: &str = "panel-clip-";
+
+/// The SVG text with a `viewBox`, so that pages can scale it, and with identifiers made from the content, so that
+/// several figures in one page do not share any.
+fn finished(scene: &Scene) -> String {
+    let svg = SvgBackend::new().with_pretty(true).render_scene(scene);
+    let own = Uuid::new_v5(&Uuid::NAMESPACE_OID, svg.as_bytes()).simple();
+    let head = format!(
+        "<svg viewBox=\"0 0 {} {}\" role=\"img\" ",
+        scene.width, scene.height
+    );
+    let mark = format!("fig-{own}-");
+    svg.replacen("<svg ", &head, 1).replace(CLIP, &mark)
+}
+
+/// A text that starts at a point.
+pub(super) fn text((x, y): (f64, f64), content: &str, size: u32, colour: &str) -> Primitive {
+    Primitive::Text {
+        x,
+        y,
+        content: literal(content),
+        size,
+        anchor: TextAnchor::Start,
+        rotate: None,
+        bold: false,
+        color: Some(Color::from(colour)),
+    }
+}
+
+/// `content` as it stands: dollars are no mathematics, and what XML cannot hold becomes a space.
+fn literal(content: &str) -> String {
+    content
+        .chars()
+        .map(|c| if c.is_control() { ' ' } else { c })
+        .collect::<String>()
+        .replace('$', "\\$")
+}

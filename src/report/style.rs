@@ -1,0 +1,149 @@
+//! Colours, dashes and markers.
+
+use crate::error::{Error, Result};
+use kuva::render::color::Color;
+use kuva::render::render::{PathData, Primitive, Scene, build_path};
+
+/// Text, axes, zero lines.
+pub(super) const BLACK: &str = "#222222";
+/// Samples in the legend that stand for a line style of any colour.
+pub(super) const GREY: &str = "#666666";
+pub(super) const GRID: &str = "#e4e4e4";
+pub(super) const SHADE: &str = "#8c8c8c";
+pub(super) const SHADE_OPACITY: f64 = 0.18;
+
+/// Okabe and Ito's colours without yellow, which is too light for lines on white.
+const COLOURS: [&str; 7] = [
+    "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000",
+];
+const DASHES: [Option<&str>; 5] = [
+    None,
+    Some("7 3"),
+    Some("2 3"),
+    Some("8 3 2 3"),
+    Some("12 4"),
+];
+
+/// Colour of the i-th model, table or series.
+///
+/// # Errors
+/// [`Error::Input`] when more are wanted than can be told apart.
+pub(super) fn colour(place: &str, i: usize) -> Result<&'static str> {
+    COLOURS.get(i).copied().ok_or_else(|| {
+        Error::input(
+            place,
+            format!("at most {} to compare in one figure", COLOURS.len()),
+            format!("at least {}", i + 1),
+        )
+    })
+}
+
+/// Dash pattern of the i-th kind of line; they come round again.
+pub(super) fn dash(i: usize) -> Option<&'static str> {
+    DASHES[i % DASHES.len()]
+}
+
+/// Outline of a marker.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Shape {
+    Circle,
+    Square,
+    Diamond,
+    Cross,
+}
+
+/// How something is drawn, in the panel and in the legend alike.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Ink {
+    /// A line of a width in px.
+    Line {
+        colour: &'static str,
+        dash: Option<&'static str>,
+        width: f64,
+    },
+    /// Separate markers; a hollow one says "with reservation".
+    Dots {
+        colour: &'static str,
+        shape: Shape,
+        radius: f64,
+        hollow: bool,
+    },
+    /// A shaded region.
+    Shade,
+}
+
+impl Ink {
+    pub(super) fn line(colour: &'static str, dash: Option<&'static str>) -> Self {
+        Self::Line {
+            colour,
+            dash,
+            width: 1.8,
+        }
+    }
+    pub(super) fn dots(colour: &'static str, shape: Shape) -> Self {
+        Self::Dots {
+            colour,
+            shape,
+            radius: 3.2,
+            hollow: false,
+        }
+    }
+}
+
+/// Draws a marker at a point of the scene, px; filled ones get a white rim that keeps neighbours apart.
+pub(super) fn draw_marker(
+    scene: &mut Scene,
+    (x, y): (f64, f64),
+    (colour, shape, radius, hollow): (&str, Shape, f64, bool),
+) {
+    let ink = Color::from(colour);
+    let white = Color::from("#ffffff");
+    let (fill, stroke, stroke_width) = if hollow {
+        (white, ink, 1.6)
+    } else {
+        (ink, white, 0.8)
+    };
+    let r = radius;
+    let corners: &[(f64, f64)] = match shape {
+        Shape::Circle => {
+            scene.add(Primitive::Circle {
+                cx: x,
+                cy: y,
+                r,
+                fill,
+                fill_opacity: None,
+                stroke: Some(stroke),
+                stroke_width: Some(stroke_width),
+            });
+            return;
+        }
+        Shape::Cross => {
+            for s in [-1.0, 1.0] {
+                scene.add(Primitive::Line {
+                    x1: x - r,
+                    y1: y - s * r,
+                    x2: x + r,
+                    y2: y + s * r,
+                    stroke: Color::from(colour),
+                    stroke_width: 1.8,
+                    stroke_dasharray: None,
+                });
+            }
+            return;
+        }
+        Shape::Square => &[(-0.9, -0.9), (0.9, -0.9), (0.9, 0.9), (-0.9, 0.9)],
+        Shape::Diamond => &[(0.0, -1.3), (1.3, 0.0), (0.0, 1.3), (-1.3, 0.0)],
+    };
+    let outline: Vec<(f64, f64)> = corners
+        .iter()
+        .map(|(dx, dy)| (x + dx * r, y + dy * r))
+        .collect();
+    scene.add(Primitive::Path(Box::new(PathData {
+        d: build_path(&outline) + "Z",
+        fill: Some(fill),
+        stroke,
+        stroke_width,
+        opacity: None,
+        stroke_dasharray: None,
+    })));
+}
