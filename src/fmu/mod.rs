@@ -5,7 +5,9 @@ pub mod description;
 #[allow(unsafe_code)]
 pub mod fmi2;
 pub mod identity;
+pub mod instance;
 pub mod lifecycle;
+pub mod refusal;
 pub mod resources;
 pub mod si;
 pub mod variables;
