@@ -142,7 +142,6 @@ pub enum Call {
     SetRealInputDerivatives,
     GetRealOutputDerivatives,
     DoStep,
-    CancelStep,
     GetStatus,
     GetRealStatus,
     GetIntegerStatus,
@@ -151,8 +150,8 @@ pub enum Call {
 }
 
 /// The calls of [`Call`] in its order, their names without the prefix of the standard's version, and where each is
-/// legal. `CancelStep` never is: no step is ever left pending.
-pub const LEGAL_CALLS: [(Call, &str, StateSet); 31] = {
+/// legal. Cancelling a step is missing: no step is ever left pending.
+pub const LEGAL_CALLS: [(Call, &str, StateSet); 30] = {
     use Call as C;
     use StateSet as S;
     let stepping = S::of(&[State::StepComplete, State::StepFailed]);
@@ -207,7 +206,6 @@ pub const LEGAL_CALLS: [(Call, &str, StateSet); 31] = {
             S::STARTED,
         ),
         (C::DoStep, "DoStep", S::of(&[State::StepComplete])),
-        (C::CancelStep, "CancelStep", S::NONE),
         (C::GetStatus, "GetStatus", status),
         (C::GetRealStatus, "GetRealStatus", status),
         (C::GetIntegerStatus, "GetIntegerStatus", status),

@@ -8,9 +8,11 @@ pub mod identity;
 #[cfg(feature = "packaging")]
 #[allow(unsafe_code)]
 pub mod importer;
+pub mod instance;
 pub mod lifecycle;
 #[cfg(feature = "packaging")]
 pub mod package;
+pub mod refusal;
 pub mod resources;
 pub mod si;
 pub mod variables;

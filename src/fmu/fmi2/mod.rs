@@ -1,26 +1,29 @@
 //! The FMI 2.0 shell around the neutral instance: C types, exports, guard, logger.
+//!
+//! # The contract of the C interface
+//! - Every function may be called with a NULL instance and answers `fmi2Error`.
+//! - Arrays of no elements may be NULL; any other NULL is an error with a logged reason, never a crash.
+//! - A handle belongs to the library that made it, is used by one thread at a time and not after `fmi2FreeInstance`.
+//!   Different instances may be used by different threads at the same time.
+//! - No panic crosses the boundary, see `guard`.
+//! - `fmi2Error` ends the run: a reset or a saved state leads out. Functions that are not offered answer it without
+//!   touching the run. `fmi2Discard` means that everything is as it was.
+//! - Texts that are returned live as long as the instance.
 
-/// Categories of log messages with their descriptions, under the names of the standard.
-pub const LOG_CATEGORIES: [(&str, &str); 6] = [
-    (
-        "logEvents",
-        "Instantiation, initialisation, changed parameters, onset search",
-    ),
-    (
-        "logStatusWarning",
-        "Something unexpected that does not stop the run",
-    ),
-    (
-        "logStatusDiscard",
-        "A value or a step that was refused; everything is as it was before",
-    ),
-    (
-        "logStatusError",
-        "A call that failed; the instance has to be reset or set back to a saved state",
-    ),
-    (
-        "logStatusFatal",
-        "A defect of the program; the instance cannot be used any more",
-    ),
-    ("logAll", "Everything"),
-];
+mod exports_common;
+mod exports_model_exchange;
+mod exports_state;
+mod exports_stepping;
+mod exports_variables;
+mod guard;
+mod logger;
+#[cfg(test)]
+mod tests;
+pub mod types;
+
+pub use exports_common::*;
+pub use exports_model_exchange::*;
+pub use exports_state::*;
+pub use exports_stepping::*;
+pub use exports_variables::*;
+pub use logger::LOG_CATEGORIES;

@@ -1,0 +1,224 @@
+//! The one boundary between C and Rust: every call on an instance goes through [`guarded`].
+//!
+//! A panic never crosses it. It poisons its instance, which from then on answers `fmi2Error` to everything; others live
+//! on. Pointers of the importer are turned into references here and nowhere else.
+
+use super::logger::{Category, Logger, c_text};
+use super::types::{fmi2Component, fmi2Status};
+use crate::fmu::instance::Instance;
+use crate::fmu::lifecycle::Call;
+use crate::fmu::refusal::{Answer, Refusal, Severity};
+use crate::fmu::variables::Value;
+use std::any::Any;
+use std::cell::Cell;
+use std::ffi::CString;
+use std::panic::{AssertUnwindSafe, PanicHookInfo, catch_unwind};
+use std::sync::OnceLock;
+
+/// What a component handle points to.
+#[derive(Debug)]
+pub(super) struct Component {
+    pub instance: Instance,
+    pub logger: Logger,
+    /// Texts of the variables, by value reference; those of other types are empty.
+    pub texts: Vec<CString>,
+    poisoned: bool,
+}
+
+impl Component {
+    pub fn new(instance: Instance, logger: Logger) -> Self {
+        let variables = instance.table().variables().iter();
+        let texts = variables.map(|v| match &v.value {
+            Value::String(text) => c_text(text),
+            _ => CString::default(),
+        });
+        Self {
+            texts: texts.collect(),
+            instance,
+            logger,
+            poisoned: false,
+        }
+    }
+
+    /// Writes a refusal to the log and takes its consequence.
+    #[cold]
+    fn refuse(&mut self, function: &str, refusal: &Refusal) -> fmi2Status {
+        self.instance.note(refusal);
+        let (status, category) = match refusal.severity {
+            Severity::Discard => (fmi2Status::fmi2Discard, Category::Discard),
+            Severity::Error => (fmi2Status::fmi2Error, Category::Error),
+        };
+        let message = format!("fmi2{function}: {refusal}");
+        self.logger.log(status, category, &message);
+        status
+    }
+
+    #[cold]
+    fn poison(&mut self, function: &str, panic: &(dyn Any + Send)) -> fmi2Status {
+        self.poisoned = true;
+        let message = format!(
+            "fmi2{function}: internal error ({}); this instance cannot be used any more",
+            panic_text(panic)
+        );
+        let status = fmi2Status::fmi2Error;
+        self.logger.log(status, Category::Fatal, &message);
+        status
+    }
+
+    #[cold]
+    fn report_notices(&mut self) {
+        for notice in self.instance.take_notices() {
+            self.logger
+                .log(fmi2Status::fmi2OK, Category::Warning, &notice);
+        }
+    }
+}
+
+/// What a panic says.
+pub(super) fn panic_text(panic: &(dyn Any + Send)) -> &str {
+    let text = panic.downcast_ref::<&str>().copied();
+    text.or_else(|| panic.downcast_ref::<String>().map(String::as_str))
+        .unwrap_or("without a message")
+}
+
+/// Carries out `body` on the instance behind `handle`, if `call` is legal there.
+///
+/// # Safety
+/// `handle` is NULL or was returned by `fmi2Instantiate`, has not been freed, and is not in use by another thread.
+pub(super) unsafe fn guarded(
+    handle: fmi2Component,
+    call: Call,
+    body: impl FnOnce(&mut Component) -> Answer<()>,
+) -> fmi2Status {
+    // SAFETY: by the contract of this function
+    let Some(component) = (unsafe { handle.cast::<Component>().as_mut() }) else {
+        return fmi2Status::fmi2Error;
+    };
+    if component.poisoned {
+        return poisoned(component, call.name());
+    }
+    let outcome = shielded(|| {
+        component.instance.admit(call)?;
+        body(component)
+    });
+    match outcome {
+        Ok(Ok(())) => {
+            if component.instance.has_notices() {
+                component.report_notices();
+            }
+            fmi2Status::fmi2OK
+        }
+        Ok(Err(refusal)) => component.refuse(call.name(), &refusal),
+        Err(panic) => component.poison(call.name(), &*panic),
+    }
+}
+
+#[cold]
+fn poisoned(component: &Component, function: &str) -> fmi2Status {
+    let message = format!(
+        "fmi2{function}: an earlier internal error has made this instance unusable; free it"
+    );
+    let status = fmi2Status::fmi2Error;
+    component.logger.log(status, Category::Fatal, &message);
+    status
+}
+
+/// Answers a function that is not offered: an error with a reason, the run is not touched.
+///
+/// # Safety
+/// As [`guarded`].
+pub(super) unsafe fn not_offered(handle: fmi2Component, function: &str, why: &str) -> fmi2Status {
+    // SAFETY: by the contract of this function
+    if let Some(component) = unsafe { handle.cast::<Component>().as_ref() } {
+        let message = format!("fmi2{function}: {why}");
+        component
+            .logger
+            .log(fmi2Status::fmi2Error, Category::Error, &message);
+    }
+    fmi2Status::fmi2Error
+}
+
+thread_local! {
+    // a plain cell: a thread-local value with a destructor would keep the library loaded for ever
+    static SHIELDED: Cell<bool> = const { Cell::new(false) };
+}
+
+/// The panic hook that was there before ours.
+static PREVIOUS_HOOK: OnceLock<Box<dyn Fn(&PanicHookInfo<'_>) + Send + Sync>> = OnceLock::new();
+
+/// Keeps panics inside [`shielded`] silent: they are reported through the importer's logger, and collecting a backtrace
+/// would cost tens of megabytes. Others are reported as before. The hook owns nothing, so that nothing leaks when the
+/// library is unloaded.
+pub(super) fn install_panic_hook() {
+    static INSTALLED: std::sync::Once = std::sync::Once::new();
+    INSTALLED.call_once(|| {
+        let _ = PREVIOUS_HOOK.set(std::panic::take_hook());
+        std::panic::set_hook(Box::new(|info| {
+            if let (false, Some(previous)) = (SHIELDED.get(), PREVIOUS_HOOK.get()) {
+                previous(info);
+            }
+        }));
+    });
+}
+
+/// Runs `body`; a panic in it is returned, not passed on.
+pub(super) fn shielded<T>(body: impl FnOnce() -> T) -> Result<T, Box<dyn Any + Send>> {
+    let outer = SHIELDED.replace(true);
+    let outcome = catch_unwind(AssertUnwindSafe(body));
+    SHIELDED.set(outer);
+    outcome
+}
+
+/// An array of the importer; no elements may come with NULL.
+///
+/// # Safety
+/// `pointer` is NULL or points to `count` values that nobody changes while the result is in use.
+pub(super) unsafe fn array<'a, T>(pointer: *const T, count: usize, name: &str) -> Answer<&'a [T]> {
+    if count == 0 {
+        return Ok(&[]);
+    }
+    check_array(pointer, count, name)?;
+    // SAFETY: not NULL, not longer than an object can be, and otherwise by the contract of this function
+    Ok(unsafe { std::slice::from_raw_parts(pointer, count) })
+}
+
+/// An array of the importer to be filled.
+///
+/// # Safety
+/// `pointer` is NULL or points to room for `count` values that nobody else uses while the result is in use.
+pub(super) unsafe fn array_mut<'a, T>(
+    pointer: *mut T,
+    count: usize,
+    name: &str,
+) -> Answer<&'a mut [T]> {
+    if count == 0 {
+        return Ok(&mut []);
+    }
+    check_array(pointer, count, name)?;
+    // SAFETY: not NULL, not longer than an object can be, and otherwise by the contract of this function
+    Ok(unsafe { std::slice::from_raw_parts_mut(pointer, count) })
+}
+
+fn check_array<T>(pointer: *const T, count: usize, name: &str) -> Answer<()> {
+    if pointer.is_null() {
+        return Err(Refusal::error(format!(
+            "{name}: expected {count} elements, found NULL"
+        )));
+    }
+    if count > isize::MAX as usize / size_of::<T>().max(1) {
+        return Err(Refusal::error(format!(
+            "{name}: {count} elements do not fit into memory"
+        )));
+    }
+    Ok(())
+}
+
+/// One place of the importer to be filled.
+///
+/// # Safety
+/// `pointer` is NULL or points to a value that nobody else uses while the result is in use.
+pub(super) unsafe fn place<'a, T>(pointer: *mut T, name: &str) -> Answer<&'a mut T> {
+    // SAFETY: by the contract of this function
+    unsafe { pointer.as_mut() }
+        .ok_or_else(|| Refusal::error(format!("{name}: expected a pointer, found NULL")))
+}

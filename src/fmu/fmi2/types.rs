@@ -1,0 +1,87 @@
+//! C types of FMI 2.0 under the names of the standard. `fmi2Boolean` is a C `int`.
+//!
+//! What comes in as an enumeration is taken as an integer: any number may arrive.
+#![allow(non_camel_case_types, non_upper_case_globals, non_snake_case)]
+
+use std::ffi::{c_char, c_int, c_uint, c_void};
+
+/// Handle of an instance.
+pub type fmi2Component = *mut c_void;
+/// Handle of the importer, passed back to its callbacks.
+pub type fmi2ComponentEnvironment = *mut c_void;
+/// Handle of a saved state.
+pub type fmi2FMUstate = *mut c_void;
+/// Place in the variable table.
+pub type fmi2ValueReference = c_uint;
+/// Real number.
+pub type fmi2Real = f64;
+/// Integer.
+pub type fmi2Integer = c_int;
+/// Truth value: 0 is false, everything else true.
+pub type fmi2Boolean = c_int;
+/// Text, UTF-8, ended by a zero byte.
+pub type fmi2String = *const c_char;
+/// Byte of a serialised state.
+pub type fmi2Byte = c_char;
+/// Kind of unit asked for: [`fmi2ModelExchange`] or [`fmi2CoSimulation`].
+pub type fmi2Type = c_int;
+/// What status is asked for.
+pub type fmi2StatusKind = c_int;
+
+/// The other kind of unit, not offered here.
+pub const fmi2ModelExchange: fmi2Type = 0;
+/// The kind of unit offered here.
+pub const fmi2CoSimulation: fmi2Type = 1;
+
+/// Status of a pending step.
+pub const fmi2DoStepStatus: fmi2StatusKind = 0;
+/// Description of a pending step.
+pub const fmi2PendingStatus: fmi2StatusKind = 1;
+/// End of the last successful step.
+pub const fmi2LastSuccessfulTime: fmi2StatusKind = 2;
+/// Whether the unit wants to end the run.
+pub const fmi2Terminated: fmi2StatusKind = 3;
+
+/// Result of a call.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(C)]
+pub enum fmi2Status {
+    /// All well.
+    fmi2OK,
+    /// Done, but something is unexpected.
+    fmi2Warning,
+    /// Refused; everything is as it was.
+    fmi2Discard,
+    /// Failed; the run cannot go on.
+    fmi2Error,
+    /// Failed; nothing can go on.
+    fmi2Fatal,
+    /// Not finished yet.
+    fmi2Pending,
+}
+
+/// Writes a message: a `printf` format, arguments variadic.
+pub type fmi2CallbackLogger = unsafe extern "C" fn(
+    fmi2ComponentEnvironment,
+    fmi2String,
+    fmi2Status,
+    fmi2String,
+    fmi2String,
+    ...
+);
+
+/// Functions of the importer. Only the logger is used: memory is our own, and no step is left pending.
+#[derive(Debug, Clone, Copy)]
+#[repr(C)]
+pub struct fmi2CallbackFunctions {
+    /// Writes a message.
+    pub logger: Option<fmi2CallbackLogger>,
+    /// Allocates memory.
+    pub allocateMemory: Option<unsafe extern "C" fn(usize, usize) -> *mut c_void>,
+    /// Frees memory.
+    pub freeMemory: Option<unsafe extern "C" fn(*mut c_void)>,
+    /// Is called at the end of a pending step.
+    pub stepFinished: Option<unsafe extern "C" fn(fmi2ComponentEnvironment, fmi2Status)>,
+    /// Handle for the callbacks.
+    pub componentEnvironment: fmi2ComponentEnvironment,
+}

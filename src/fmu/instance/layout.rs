@@ -1,0 +1,249 @@
+//! The variable table in the form that the calls of every step use: by value reference, without text.
+
+use crate::error::{Error, Result};
+use crate::fmu::lifecycle::{State, StateSet, gettable_in, settable_in};
+use crate::fmu::refusal::{Answer, Refusal};
+use crate::fmu::variables::{Causality, Response, Role, Value, Variable, VariableTable};
+use crate::section::Dof;
+
+/// Type of a variable.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum DataType {
+    /// Real number.
+    Real,
+    /// Integer.
+    Integer,
+    /// Truth value.
+    Boolean,
+    /// Text.
+    String,
+}
+
+/// Where a value comes from, and what follows when it is set.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Source {
+    /// Stored; an input.
+    Input,
+    /// Stored; a property of the section.
+    Section,
+    /// Stored; displacement or rate at release.
+    Release,
+    /// Stored; upper end of the onset search.
+    Limit,
+    /// Stored; never changes.
+    Constant,
+    /// Computed from state and inputs.
+    Response,
+    /// Computed from the parameters.
+    Calculated,
+}
+
+/// All that a getter or setter needs to know of a variable.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Access {
+    pub data_type: DataType,
+    pub source: Source,
+    gettable: StateSet,
+    settable: StateSet,
+    min: f64,
+    max: f64,
+}
+
+impl Access {
+    fn of(v: &Variable) -> Self {
+        Self {
+            data_type: match v.value {
+                Value::Real(_) => DataType::Real,
+                Value::Integer(_) => DataType::Integer,
+                Value::Boolean(_) => DataType::Boolean,
+                Value::String(_) => DataType::String,
+            },
+            source: match v.role {
+                Role::WindSpeed | Role::ExternalForce(_) => Source::Input,
+                Role::Section(_) => Source::Section,
+                Role::InitialDisplacement(_) | Role::InitialRate(_) => Source::Release,
+                Role::OnsetSearchLimit => Source::Limit,
+                Role::Constant => Source::Constant,
+                Role::Response(..) => Source::Response,
+                Role::Calculated(_) => Source::Calculated,
+            },
+            gettable: gettable_in(v.causality),
+            settable: settable_in(v.causality, v.variability),
+            min: v.min.unwrap_or(f64::NEG_INFINITY),
+            max: v.max.unwrap_or(f64::INFINITY),
+        }
+    }
+}
+
+/// Places of the variables by what they stand for; a place is the index into the table and into the stored values.
+#[derive(Debug, Clone)]
+pub(super) struct Layout {
+    access: Vec<Access>,
+    /// Wind speed.
+    pub wind_speed: usize,
+    /// External force of each degree of freedom.
+    pub force: Vec<usize>,
+    /// Displacement, rate, acceleration and self-excited force of each degree of freedom.
+    pub responses: Vec<[usize; 4]>,
+    /// Displacement at release of each degree of freedom.
+    pub initial_displacement: Vec<usize>,
+    /// Rate at release of each degree of freedom.
+    pub initial_rate: Vec<usize>,
+    /// Upper end of the onset search.
+    pub search_limit: usize,
+}
+
+impl Layout {
+    pub fn new(table: &VariableTable) -> Result<Self> {
+        let dofs = table.dofs();
+        let place = |role: Role| {
+            table.find(role).ok_or_else(|| {
+                Error::Numerical(format!("variable table: nothing stands for {role:?}"))
+            })
+        };
+        let each = |role: fn(Dof) -> Role| -> Result<Vec<usize>> {
+            dofs.iter().map(|&dof| place(role(dof))).collect()
+        };
+        let mut responses = vec![[0; 4]; dofs.len()];
+        for (places, &dof) in responses.iter_mut().zip(&dofs) {
+            for (slot, response) in places.iter_mut().zip(Response::ALL) {
+                *slot = place(Role::Response(response, dof))?;
+            }
+        }
+        Ok(Self {
+            access: table.variables().iter().map(Access::of).collect(),
+            wind_speed: place(Role::WindSpeed)?,
+            force: each(Role::ExternalForce)?,
+            responses,
+            initial_displacement: each(Role::InitialDisplacement)?,
+            initial_rate: each(Role::InitialRate)?,
+            search_limit: place(Role::OnsetSearchLimit)?,
+        })
+    }
+
+    /// Access to `reference`, known by the table to be of this type.
+    pub fn typed(
+        &self,
+        reference: u32,
+        wanted: DataType,
+        table: &VariableTable,
+    ) -> Answer<(usize, Access)> {
+        let place = reference as usize;
+        match self.access.get(place) {
+            Some(access) if access.data_type == wanted => Ok((place, *access)),
+            _ => Err(wrong_reference(place, wanted, table)),
+        }
+    }
+
+    /// Access to a variable that may be read in `state`.
+    pub fn readable(
+        &self,
+        reference: u32,
+        wanted: DataType,
+        state: State,
+        table: &VariableTable,
+    ) -> Answer<(usize, Access)> {
+        let (place, access) = self.typed(reference, wanted, table)?;
+        if access.gettable.contains(state) {
+            Ok((place, access))
+        } else {
+            Err(not_in_state(
+                &table.variables()[place],
+                ("read", access.gettable),
+                state,
+            ))
+        }
+    }
+
+    /// Access to a variable that may be set in `state`.
+    pub fn writable(
+        &self,
+        reference: u32,
+        wanted: DataType,
+        state: State,
+        table: &VariableTable,
+    ) -> Answer<(usize, Access)> {
+        let (place, access) = self.typed(reference, wanted, table)?;
+        if access.settable.contains(state) {
+            Ok((place, access))
+        } else {
+            let variable = &table.variables()[place];
+            Err(not_in_state(variable, ("set", access.settable), state))
+        }
+    }
+
+    /// Where the value at `place` comes from.
+    pub fn source(&self, place: usize) -> Source {
+        self.access[place].source
+    }
+
+    /// Whether `value` may stand at `place` in a state read from a file.
+    pub fn check_stored(&self, place: usize, value: f64, table: &VariableTable) -> Answer<()> {
+        self.check_value((place, self.access[place]), value, table)
+            .map_err(|refusal| Refusal::error(format!("serialised state: {}", refusal.message)))
+    }
+
+    /// Whether `value` may be stored at `place`: finite, and within the limits of the variable.
+    pub fn check_value(
+        &self,
+        (place, access): (usize, Access),
+        value: f64,
+        table: &VariableTable,
+    ) -> Answer<()> {
+        if value.is_finite() && value >= access.min && value <= access.max {
+            Ok(())
+        } else {
+            Err(wrong_value(&table.variables()[place], value))
+        }
+    }
+}
+
+#[cold]
+fn wrong_reference(place: usize, wanted: DataType, table: &VariableTable) -> Refusal {
+    Refusal::error(match table.variables().get(place) {
+        Some(v) => format!(
+            "value reference {place}: `{}` is of type {}, not {wanted:?}",
+            v.name,
+            v.value.type_name()
+        ),
+        None => format!(
+            "value reference {place}: there is no such variable, the last one is {}",
+            table.variables().len() - 1
+        ),
+    })
+}
+
+#[cold]
+fn not_in_state(v: &Variable, (verb, allowed): (&str, StateSet), state: State) -> Refusal {
+    let what = match v.causality {
+        Causality::Input => "an input",
+        Causality::Output => "an output",
+        Causality::Parameter => "a parameter",
+        Causality::CalculatedParameter => "a calculated parameter",
+        Causality::Local => "a constant",
+    };
+    Refusal::error(format!(
+        "`{}` ({what}, {:?}) cannot be {verb} in the state `{}`, only {}",
+        v.name,
+        v.variability,
+        state.name(),
+        allowed.names()
+    ))
+}
+
+#[cold]
+fn wrong_value(v: &Variable, value: f64) -> Refusal {
+    if !value.is_finite() {
+        return Refusal::error(format!(
+            "`{}`: expected a finite number, found {value}",
+            v.name
+        ));
+    }
+    let limit = |x: Option<f64>| x.map_or_else(|| "none".into(), |x| x.to_string());
+    Refusal::discard(format!(
+        "`{}` = {value} lies outside its limits (minimum {}, maximum {})",
+        v.name,
+        limit(v.min),
+        limit(v.max)
+    ))
+}

@@ -1,0 +1,57 @@
+//! Why a call was not carried out, and what that means for the run.
+
+use crate::error::Error;
+use std::fmt;
+
+/// What a refusal does to the run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Severity {
+    /// Nothing has changed; other values, or a saved state, lead on.
+    Discard,
+    /// The run cannot go on; a reset or a saved state leads out.
+    Error,
+}
+
+/// A call that was not carried out.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Refusal {
+    /// What it does to the run.
+    pub severity: Severity,
+    /// What was wrong, for the log.
+    pub message: String,
+}
+
+/// Result of what an importer asks.
+pub type Answer<T> = Result<T, Refusal>;
+
+impl Refusal {
+    /// The run cannot go on.
+    #[cold]
+    pub fn error(message: impl Into<String>) -> Self {
+        Self {
+            severity: Severity::Error,
+            message: message.into(),
+        }
+    }
+
+    /// Nothing has changed.
+    #[cold]
+    pub fn discard(message: impl Into<String>) -> Self {
+        Self {
+            severity: Severity::Discard,
+            message: message.into(),
+        }
+    }
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
+impl From<Error> for Refusal {
+    fn from(error: Error) -> Self {
+        Self::error(error.to_string())
+    }
+}
