@@ -2,7 +2,7 @@
 
 use super::curves::damping_ratio;
 use super::onset::{FlutterSearch, Onset, OnsetMethod, choose};
-use super::tracking::{TrackedMode, Tracker, branch_name, mode_shape};
+use super::tracking::{TrackedMode, Tracker, branch_name, mode_shape, oscillates};
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, positive};
 use crate::section::Dof;
@@ -136,7 +136,7 @@ fn least_damped_filter(section: &CoupledSection, at: &Tracker<'_>) -> Result<Opt
         .at(at.speed)?
         .eigenvalues()?
         .into_iter()
-        .filter(|z| z.im > 1e-6 * z.norm() && !tracked(z))
+        .filter(|z| oscillates(z) && !tracked(z))
         .max_by(|a, b| a.re.total_cmp(&b.re)))
 }
 

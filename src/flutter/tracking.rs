@@ -158,6 +158,11 @@ impl<'a> Tracker<'a> {
 /// An eigenvalue and its shape, scaled as in [`TrackedMode`].
 type Root = (Complex<f64>, DVector<Complex<f64>>);
 
+/// Whether an eigenvalue has an imaginary part above rounding; of a pair the one in the upper half plane.
+pub(super) fn oscillates(lambda: &Complex<f64>) -> bool {
+    lambda.im > 1e-6 * lambda.norm()
+}
+
 /// Corrects every prediction by Newton's method; `None` when one fails, turns real, or two meet.
 fn newton(
     section: &CoupledSection,
@@ -170,7 +175,7 @@ fn newton(
     for start in predicted {
         let (lambda, shape) = problem.solve(*start, speed, &mut work)?;
         let distinct = |(other, _): &Root| (other - lambda).norm() > SEPARATION * lambda.norm();
-        if lambda.im < 0.0 || !roots.iter().all(distinct) {
+        if !oscillates(&lambda) || !roots.iter().all(distinct) {
             return None;
         }
         let size = dimensionless(section, &shape).norm();
@@ -187,7 +192,7 @@ fn nearest(
 ) -> Result<Option<Vec<Root>>> {
     let system = section.at(speed)?;
     let all = system.eigenvalues()?;
-    let candidates: Vec<usize> = (0..all.len()).filter(|i| all[*i].im >= 0.0).collect();
+    let candidates: Vec<usize> = (0..all.len()).filter(|i| oscillates(&all[*i])).collect();
     let mut taken = vec![false; all.len()];
     let mut roots = Vec::with_capacity(predicted.len());
     for start in predicted {
