@@ -4,7 +4,7 @@ use crate::error::Result;
 use crate::section::Dof;
 use serde::{Deserialize, Serialize};
 
-/// A stretch of a record with one frequency of motion.
+/// A stretch of a record with one frequency of motion, from rest to rest: with the ramps at its ends.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Segment {

@@ -17,6 +17,7 @@
 //! One row is one test point of one derivative, numbered from 1 in test order. Numbers are written with as many
 //! digits as it takes to read the same double back. The mean speed may be left empty throughout.
 
+use super::comment_header::{CommentHeader, Entry};
 use super::table::check_points;
 use super::{Derivative, DerivativePoint, DerivativeTable, SIGN_CONVENTION, TableHeader, UNITS};
 use crate::error::{Error, Result};
@@ -61,37 +62,40 @@ pub fn read_csv(path: impl AsRef<Path>) -> Result<DerivativeTable> {
 /// [`Error::Input`] naming line, expectation and finding: missing or unknown header keys and columns, text in
 /// numbers, points out of order or twice, `V̂` not positive or not monotone in a speed group, missing derivatives.
 pub fn parse_csv(text: &str) -> Result<DerivativeTable> {
-    let header = read_header(text)?;
-    let rows = read_rows(text)?;
+    let mut header = CommentHeader::new(FORMAT, &KEYS, &[]);
+    for line in text.lines() {
+        if !header.take(line)? {
+            break;
+        }
+    }
+    let rows = read_rows(text, header.lines() + 1)?;
     for (derivative, (points, lines)) in &rows {
         if let Some(problem) = check_points(points) {
             let place = format!("line {} ({derivative})", lines[problem.index]);
             return Err(Error::input(place, problem.expected, problem.found));
         }
     }
-    let get = |key: &str| header.get(key).map_or("", |(_, value)| value);
-    let (name, _) = required(&header, "name")?;
-    let (width, place) = required(&header, "width_m")?;
-    let (convention, convention_place) = required(&header, "sign_convention")?;
-    must_equal(&convention_place, convention, SIGN_CONVENTION)?;
-    if let Some((line, units)) = header.get("units") {
-        must_equal(&format!("line {line} (units)"), units, UNITS)?;
+    header.must_say("sign_convention", SIGN_CONVENTION)?;
+    if header.optional("units").is_some() {
+        header.must_say("units", UNITS)?;
     }
-    let model_length_m = match header.get("model_length_m") {
-        None | Some((_, "")) => None,
-        Some((line, text)) => Some(number(&format!("line {line} (model_length_m)"), text)?),
-    };
+    let length = header.optional("model_length_m");
     let provenance = TableHeader {
-        source: get("source").to_owned(),
-        licence: get("licence").to_owned(),
-        generator: get("generator").to_owned(),
-        model_length_m,
+        source: header.text("source"),
+        licence: header.text("licence"),
+        generator: header.text("generator"),
+        model_length_m: length
+            .filter(|e| !e.value.is_empty())
+            .map(Entry::positive)
+            .transpose()?,
     };
+    let name = header.required("name")?.value.clone();
+    let width_m = header.required("width_m")?.positive()?;
     let points = rows
         .into_iter()
         .map(|(d, (points, _))| (d, points))
         .collect();
-    DerivativeTable::new(name, number(&place, width)?, provenance, points)
+    DerivativeTable::new(name, width_m, provenance, points)
 }
 
 /// Writes a table in this project's CSV; [`parse_csv`] gives the same table back, bit for bit.
@@ -100,7 +104,7 @@ pub fn parse_csv(text: &str) -> Result<DerivativeTable> {
 /// Those of `out`.
 pub fn write_csv(table: &DerivativeTable, out: &mut dyn Write) -> std::io::Result<()> {
     let header = &table.header;
-    writeln!(out, "# {FORMAT}")?;
+    CommentHeader::write_format(out, FORMAT)?;
     let entries = [
         table.name.clone(),
         header.source.clone(),
@@ -114,8 +118,7 @@ pub fn write_csv(table: &DerivativeTable, out: &mut dyn Write) -> std::io::Resul
             .map_or_else(String::new, |l| l.to_string()),
     ];
     for (key, value) in KEYS.iter().zip(entries) {
-        // A line break inside a value would end the comment.
-        writeln!(out, "# {key}: {}", value.replace(['\n', '\r'], " ").trim())?;
+        CommentHeader::write_line(out, key, value)?;
     }
     writeln!(out, "{}", CSV_COLUMNS.join(","))?;
     for derivative in table.derivatives() {
@@ -133,62 +136,13 @@ pub fn write_csv(table: &DerivativeTable, out: &mut dyn Write) -> std::io::Resul
     Ok(())
 }
 
-fn read_header(text: &str) -> Result<BTreeMap<&str, (usize, &str)>> {
-    let mut header = BTreeMap::new();
-    for (i, line) in text.lines().enumerate() {
-        let Some(comment) = line.strip_prefix('#').map(str::trim) else {
-            break;
-        };
-        if comment.is_empty() || comment == FORMAT {
-            continue;
-        }
-        let place = format!("line {}", i + 1);
-        let (key, value) = comment.split_once(':').ok_or_else(|| {
-            Error::input(&place, "a header line `# key: value`", format!("`{line}`"))
-        })?;
-        let key = key.trim();
-        if !KEYS.contains(&key) {
-            let expected = format!("one of the header keys {}", KEYS.join(", "));
-            return Err(Error::input(place, expected, format!("`{key}`")));
-        }
-        if header.insert(key, (i + 1, value.trim())).is_some() {
-            return Err(Error::input(place, format!("`{key}` once"), "it twice"));
-        }
-    }
-    Ok(header)
-}
-
-/// Value and place of a header line that must be there and not be empty.
-fn required<'a>(header: &BTreeMap<&str, (usize, &'a str)>, key: &str) -> Result<(&'a str, String)> {
-    match header.get(key) {
-        Some((line, value)) if !value.is_empty() => Ok((value, format!("line {line} ({key})"))),
-        _ => Err(Error::input(
-            "header",
-            format!("a line `# {key}: …`"),
-            "none",
-        )),
-    }
-}
-
-fn must_equal(place: &str, found: &str, expected: &str) -> Result<()> {
-    if found == expected {
-        return Ok(());
-    }
-    Err(Error::input(
-        place,
-        format!("`{expected}`"),
-        format!("`{found}`"),
-    ))
-}
-
-fn read_rows(text: &str) -> Result<Rows> {
+fn read_rows(text: &str, names_line: usize) -> Result<Rows> {
     let mut reader = csv::ReaderBuilder::new()
         .comment(Some(b'#'))
         .trim(csv::Trim::All)
         .from_reader(text.as_bytes());
     let names = reader.headers().map_err(csv_error)?.clone();
-    let header_lines = text.lines().take_while(|l| l.starts_with('#')).count();
-    let columns = find_columns(&names, header_lines + 1)?;
+    let columns = find_columns(&names, names_line)?;
     let mut rows = Rows::new();
     for record in reader.records() {
         let record = record.map_err(csv_error)?;
@@ -329,7 +283,7 @@ mod tests {
             (
                 "# width_m: 0",
                 "# width_m: -0",
-                "width_m: expected a positive number, found -0.50",
+                "line 8 (width_m): expected a positive number, found -0.50",
             ),
         ];
         for (old, new, expected) in cases {

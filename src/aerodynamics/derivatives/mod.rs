@@ -8,6 +8,8 @@ mod interpolated;
 mod table;
 
 #[cfg(feature = "identification")]
+pub(crate) mod comment_header;
+#[cfg(feature = "identification")]
 mod csv_file;
 #[cfg(feature = "identification")]
 pub mod embedded;

@@ -1,6 +1,7 @@
 //! A table of measured derivatives, each with its own reduced velocities.
 
 use super::{Derivative, Part, TransferSample};
+use crate::aerodynamics::AerodynamicModel;
 use crate::error::{Error, Result, positive};
 use crate::section::Dof;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
@@ -95,6 +96,39 @@ impl DerivativeTable {
             header,
             points,
         })
+    }
+
+    /// The derivatives of a model at every pair of speed and frequency, as a test of a deck of `width_m` would find them.
+    ///
+    /// # Errors
+    /// Those of [`DerivativeTable::new`] and of the model.
+    pub fn sampled(
+        name: impl Into<String>,
+        model: &dyn AerodynamicModel,
+        width_m: f64,
+        speeds_m_s: &[f64],
+        frequencies_hz: &[f64],
+    ) -> Result<Self> {
+        let dofs = model.dofs();
+        let mut points = BTreeMap::<_, Vec<_>>::new();
+        let tests = speeds_m_s
+            .iter()
+            .flat_map(|v| frequencies_hz.iter().map(move |f| (*v, *f)));
+        for (speed, frequency) in tests {
+            let k = ReducedFrequency::from_hertz(frequency, width_m, speed);
+            let g = model.transfer(k)?;
+            for (i, j) in (0..dofs.len()).flat_map(|i| (0..dofs.len()).map(move |j| (i, j))) {
+                for (part, value) in [(Part::Real, g[(i, j)].re), (Part::Imaginary, g[(i, j)].im)] {
+                    let of_one = points.entry(Derivative::of(dofs[i], dofs[j], part));
+                    of_one.or_default().push(DerivativePoint {
+                        mean_speed_m_s: Some(speed),
+                        v_hat: k.v_hat(),
+                        value: value * k.v_hat() * k.v_hat(),
+                    });
+                }
+            }
+        }
+        Self::new(name, width_m, TableHeader::default(), points)
     }
 
     /// The derivatives in the table, in the order of [`Derivative::ALL`].

@@ -1,7 +1,7 @@
 //! Tests of the table type on a table made from the flat plate.
 
 use super::*;
-use crate::aerodynamics::{AerodynamicModel, FlatPlate};
+use crate::aerodynamics::FlatPlate;
 
 /// The eight derivatives of the flat plate at `v_hats` for each speed.
 pub(crate) fn flat_plate_table(speeds_m_s: &[f64], v_hats: &[f64]) -> DerivativeTable {

@@ -1,0 +1,146 @@
+//! The `# key: value` lines at the head of this project's CSV files, read and written in one place.
+
+use crate::error::{Error, Result};
+use std::io::Write;
+
+/// One header line.
+#[derive(Debug, Clone)]
+pub(crate) struct Entry {
+    line: usize,
+    key: &'static str,
+    pub value: String,
+}
+
+/// The header of one file.
+#[derive(Debug)]
+pub(crate) struct CommentHeader {
+    format: &'static str,
+    keys: &'static [&'static str],
+    repeated: &'static [&'static str],
+    entries: Vec<Entry>,
+    lines: usize,
+}
+
+impl CommentHeader {
+    /// A header that allows `keys`, those in `repeated` more than once; `format` is what the first line says.
+    pub fn new(
+        format: &'static str,
+        keys: &'static [&'static str],
+        repeated: &'static [&'static str],
+    ) -> Self {
+        Self {
+            format,
+            keys,
+            repeated,
+            entries: Vec::new(),
+            lines: 0,
+        }
+    }
+
+    /// Takes the next line of the file; `false` when it is no comment, so the header is over.
+    pub fn take(&mut self, line: &str) -> Result<bool> {
+        let Some(comment) = line.strip_prefix('#').map(str::trim) else {
+            return Ok(false);
+        };
+        self.lines += 1;
+        if comment.is_empty() || comment == self.format {
+            return Ok(true);
+        }
+        let place = format!("line {}", self.lines);
+        let (key, value) = comment.split_once(':').ok_or_else(|| {
+            Error::input(
+                &place,
+                "a header line `# key: value`",
+                format!("`{}`", line.trim()),
+            )
+        })?;
+        let known = self.keys.iter().find(|k| **k == key.trim());
+        let key = *known.ok_or_else(|| {
+            let expected = format!("one of the header keys {}", self.keys.join(", "));
+            Error::input(&place, expected, format!("`{}`", key.trim()))
+        })?;
+        if self.optional(key).is_some() && !self.repeated.contains(&key) {
+            return Err(Error::input(place, format!("`{key}` once"), "it twice"));
+        }
+        self.entries.push(Entry {
+            line: self.lines,
+            key,
+            value: value.trim().to_owned(),
+        });
+        Ok(true)
+    }
+
+    /// Number of lines taken.
+    pub fn lines(&self) -> usize {
+        self.lines
+    }
+
+    /// All lines with this key, in order.
+    pub fn all(&self, key: &str) -> impl Iterator<Item = &Entry> {
+        self.entries.iter().filter(move |e| e.key == key)
+    }
+
+    /// The line with this key.
+    pub fn optional(&self, key: &str) -> Option<&Entry> {
+        self.all(key).next()
+    }
+
+    /// The text behind this key, empty when there is no such line.
+    pub fn text(&self, key: &str) -> String {
+        self.optional(key)
+            .map_or_else(String::new, |e| e.value.clone())
+    }
+
+    /// The line with this key, which must be there and not be empty.
+    pub fn required(&self, key: &str) -> Result<&Entry> {
+        self.optional(key)
+            .filter(|e| !e.value.is_empty())
+            .ok_or_else(|| Error::input("header", format!("a line `# {key}: …`"), "none"))
+    }
+
+    /// Checks that the line with this key, which must be there, says `expected`.
+    pub fn must_say(&self, key: &str, expected: &str) -> Result<()> {
+        let entry = self.required(key)?;
+        if entry.value == expected {
+            return Ok(());
+        }
+        Err(entry.wrong(&format!("`{expected}`")))
+    }
+
+    /// Writes the first line of a file.
+    pub fn write_format(out: &mut dyn Write, format: &str) -> std::io::Result<()> {
+        writeln!(out, "# {format}")
+    }
+
+    /// Writes one line; a line break inside `value` would end the comment and becomes a blank.
+    pub fn write_line(
+        out: &mut dyn Write,
+        key: &str,
+        value: impl std::fmt::Display,
+    ) -> std::io::Result<()> {
+        let value = value.to_string().replace(['\n', '\r'], " ");
+        writeln!(out, "# {key}: {}", value.trim())
+    }
+}
+
+impl Entry {
+    /// Where it stands: `line 8 (width_m)`.
+    pub fn place(&self) -> String {
+        format!("line {} ({})", self.line, self.key)
+    }
+
+    /// The error that something else was `expected` here.
+    pub fn wrong(&self, expected: &str) -> Error {
+        Error::input(self.place(), expected, format!("`{}`", self.value))
+    }
+
+    /// The value as a number.
+    pub fn number(&self) -> Result<f64> {
+        self.value.parse().map_err(|_| self.wrong("a number"))
+    }
+
+    /// The value as a positive number.
+    pub fn positive(&self) -> Result<f64> {
+        crate::error::positive(&self.place(), self.number()?)
+    }
+}

@@ -1,0 +1,217 @@
+//! Records as CSV: a header of `# key: value` lines, a line of column names, one row a sample.
+//!
+//! ```text
+//! # aerodeck record 1
+//! # name: …
+//! # dofs: vertical, torsion
+//! # width_m: 0.5
+//! # air_density_kg_m3: 1.19
+//! # mean_speed_m_s: 8.17
+//! # sampling_hz: 200
+//! # sign_convention: …
+//! # source: …
+//! # licence: …
+//! # segment: 0.25 Hz from 8 s to 34 s      one line a stretch of harmonic motion
+//! time_s,vertical_m,torsion_rad,lift_n_m,moment_n_m_m
+//! 0,0,0,0,0
+//! ```
+
+use super::records::{RecordHeader, Segment};
+use crate::aerodynamics::derivatives::comment_header::{CommentHeader, Entry};
+use crate::error::{Error, Result};
+use crate::section::Dof;
+use std::io::{BufRead, Write};
+use std::path::Path;
+
+/// First line of the file.
+const FORMAT: &str = "aerodeck record 1";
+
+/// Signs of all channels.
+const SIGN_CONVENTION: &str = "y and lift up, theta and moment nose-up, x and drag downwind; self-excited forces per unit length";
+
+/// Keys of the header; `segment` may stand several times.
+const KEYS: [&str; 10] = [
+    "name",
+    "dofs",
+    "width_m",
+    "air_density_kg_m3",
+    "mean_speed_m_s",
+    "sampling_hz",
+    "sign_convention",
+    "source",
+    "licence",
+    "segment",
+];
+
+/// Where the samples stand.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Layout {
+    /// Byte at which the first row begins.
+    pub start: u64,
+    /// Line of the column names, from 1.
+    pub names_line: usize,
+    /// Names of the columns.
+    pub names: Vec<String>,
+    /// Channel of each column: `None` for the time, else motions and then forces in the order of the header.
+    pub channels: Vec<Option<usize>>,
+}
+
+/// Writes everything above the samples.
+pub(super) fn write_head(header: &RecordHeader, out: &mut dyn Write) -> std::io::Result<()> {
+    CommentHeader::write_format(out, FORMAT)?;
+    let dofs: Vec<&str> = header.dofs.iter().map(|d| d.name()).collect();
+    let values = [
+        header.name.clone(),
+        dofs.join(", "),
+        header.width_m.to_string(),
+        header.air_density_kg_m3.to_string(),
+        header.mean_speed_m_s.to_string(),
+        header.sampling_hz.to_string(),
+        SIGN_CONVENTION.to_owned(),
+        header.source.clone(),
+        header.licence.clone(),
+    ];
+    for (key, value) in KEYS.iter().zip(values) {
+        CommentHeader::write_line(out, key, value)?;
+    }
+    for s in &header.segments {
+        let text = format!(
+            "{} Hz from {} s to {} s",
+            s.frequency_hz, s.start_s, s.end_s
+        );
+        CommentHeader::write_line(out, "segment", text)?;
+    }
+    writeln!(out, "{}", column_names(&header.dofs).join(","))
+}
+
+/// `time_s`, then the motions, then the forces.
+fn column_names(dofs: &[Dof]) -> Vec<&'static str> {
+    let motion = |d: &Dof| match d {
+        Dof::Vertical => "vertical_m",
+        Dof::Lateral => "lateral_m",
+        Dof::Torsion => "torsion_rad",
+    };
+    let force = |d: &Dof| match d {
+        Dof::Vertical => "lift_n_m",
+        Dof::Lateral => "drag_n_m",
+        Dof::Torsion => "moment_n_m_m",
+    };
+    let motions = dofs.iter().map(motion);
+    std::iter::once("time_s")
+        .chain(motions)
+        .chain(dofs.iter().map(force))
+        .collect()
+}
+
+/// Reads everything above the samples.
+///
+/// # Errors
+/// [`Error::Input`] with the line that is wrong; [`Error::Io`].
+pub(super) fn read_head(path: &Path, reader: &mut dyn BufRead) -> Result<(RecordHeader, Layout)> {
+    let mut head = CommentHeader::new(FORMAT, &KEYS, &["segment"]);
+    let (mut start, mut line) = (0, Vec::new());
+    let names = loop {
+        line.clear();
+        let read = reader
+            .read_until(b'\n', &mut line)
+            .map_err(|e| Error::io(path, e))?;
+        start += read as u64;
+        let place = || format!("line {}", head.lines() + 1);
+        let text = text(&line).map_err(|found| Error::input(place(), "a line of text", found))?;
+        if read == 0 {
+            return Err(Error::input(
+                place(),
+                "a line of column names",
+                "the end of the file",
+            ));
+        }
+        if !head.take(text)? {
+            break text
+                .split(',')
+                .map(|n| n.trim().to_owned())
+                .collect::<Vec<_>>();
+        }
+    };
+    let header = record_header(&head)?;
+    let names_line = head.lines() + 1;
+    let channels = find_channels(&names, &header.dofs, names_line)?;
+    let layout = Layout {
+        start,
+        names_line,
+        names,
+        channels,
+    };
+    Ok((header, layout))
+}
+
+fn record_header(head: &CommentHeader) -> Result<RecordHeader> {
+    head.must_say("sign_convention", SIGN_CONVENTION)?;
+    let positive = |key: &str| head.required(key)?.positive();
+    Ok(RecordHeader {
+        name: head.required("name")?.value.clone(),
+        dofs: dofs(head.required("dofs")?)?,
+        width_m: positive("width_m")?,
+        air_density_kg_m3: positive("air_density_kg_m3")?,
+        mean_speed_m_s: positive("mean_speed_m_s")?,
+        sampling_hz: positive("sampling_hz")?,
+        segments: head.all("segment").map(segment).collect::<Result<_>>()?,
+        source: head.text("source"),
+        licence: head.text("licence"),
+    })
+}
+
+fn dofs(entry: &Entry) -> Result<Vec<Dof>> {
+    let one = |name: &str| Dof::THREE.into_iter().find(|d| d.name() == name.trim());
+    let dofs: Option<Vec<Dof>> = entry.value.split(',').map(one).collect();
+    let is_new = |dofs: &[Dof], i: usize| !dofs[..i].contains(&dofs[i]);
+    dofs.filter(|dofs| (0..dofs.len()).all(|i| is_new(dofs, i)))
+        .ok_or_else(|| entry.wrong("each once of vertical, lateral, torsion, with commas between"))
+}
+
+fn segment(entry: &Entry) -> Result<Segment> {
+    let words: Vec<&str> = entry.value.split_whitespace().collect();
+    let numbers = match words[..] {
+        [f, "Hz", "from", start, "s", "to", end, "s"] => {
+            [f, start, end].map(|word| word.parse().unwrap_or(f64::NAN))
+        }
+        _ => [f64::NAN; 3],
+    };
+    let [frequency_hz, start_s, end_s] = numbers;
+    if frequency_hz > 0.0 && start_s >= 0.0 && end_s > start_s && end_s.is_finite() {
+        return Ok(Segment {
+            frequency_hz,
+            start_s,
+            end_s,
+        });
+    }
+    Err(entry.wrong("a stretch like `0.25 Hz from 8 s to 34 s`"))
+}
+
+fn find_channels(names: &[String], dofs: &[Dof], line: usize) -> Result<Vec<Option<usize>>> {
+    let expected = column_names(dofs);
+    let place = format!("line {line}");
+    let wrong = |found: String| {
+        let columns = format!("the columns {}, each once", expected.join(","));
+        Error::input(&place, columns, found)
+    };
+    if let Some(missing) = expected.iter().find(|e| !names.iter().any(|n| n == *e)) {
+        return Err(wrong(format!("no column `{missing}`")));
+    }
+    if names.len() > expected.len() {
+        let unknown = names.iter().find(|n| !expected.contains(&n.as_str()));
+        return Err(wrong(match unknown {
+            Some(name) => format!("a column `{name}`"),
+            None => "a column twice".to_owned(),
+        }));
+    }
+    // Every expected name is there and there are no more, so each has one position.
+    let channel = |name: &String| expected.iter().position(|e| e == name).unwrap_or(0);
+    Ok(names.iter().map(|n| channel(n).checked_sub(1)).collect())
+}
+
+/// A line without its end.
+pub(super) fn text(line: &[u8]) -> std::result::Result<&str, &'static str> {
+    std::str::from_utf8(line)
+        .map(|text| text.trim_end_matches(['\n', '\r']))
+        .map_err(|_| "bytes that are no UTF-8")
+}

@@ -1,0 +1,315 @@
+//! A virtual wind tunnel: forced-vibration records as in Table 3.2 of the thesis.
+//!
+//! A run is one motion (heave, sway or rotation) at one speed: rest, then every frequency in turn with smooth
+//! ramps from and to rest. The forces come either
+//!
+//! - from a table of derivatives exactly at its test points: in each segment equation (1.14) with the numbers of
+//!   that point, `q = Re(G) r + Im(G) r'/K`, with the actual ramped motion and its analytic rate; or
+//! - from any transfer matrix `G(K)`: the exact linear response to the whole ramped motion, by Fourier transform
+//!   of the motion padded with zeros.
+//!
+//! A table has a slightly different mean speed at each point, a record has one: that of the speed group. The
+//! frequency of the segment is therefore `f = K V/(2πB)` with the point's own `K` and the record's `V`, within a
+//! per cent of the frequency that was driven, and the dimensionless force is exactly `G` at the point's own `K`.
+
+use super::motion::{Timing, UnitMotion};
+use super::records::{Record, RecordHeader};
+use super::virtual_forces::{TestPoints, unit_response};
+use crate::aerodynamics::AerodynamicModel;
+use crate::aerodynamics::derivatives::{DerivativeTable, TABLE_3_2_FREQUENCIES_HZ};
+use crate::error::{Error, Result, non_negative, positive};
+use crate::section::Dof;
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
+use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
+
+/// A series of forced-vibration tests; the default is Table 3.2 of the thesis.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct TunnelPlan {
+    /// Frequencies of motion in test order, Hz. Records from a table take the frequencies of its points instead.
+    pub frequencies_hz: Vec<f64>,
+    /// Mean wind speeds, m/s. Records from a table take its speeds instead.
+    pub speeds_m_s: Vec<f64>,
+    /// Amplitude of heave, m.
+    pub vertical_amplitude_m: f64,
+    /// Amplitude of sway, m.
+    pub lateral_amplitude_m: f64,
+    /// Amplitude of rotation, degrees.
+    pub torsion_amplitude_deg: f64,
+    /// Sampling frequency, Hz.
+    pub sampling_hz: f64,
+    /// Rest before the first frequency, s.
+    pub still_s: f64,
+    /// Time at each frequency, ramps included, s.
+    pub segment_s: f64,
+    /// Ramp at either end of a segment, s.
+    pub ramp_s: f64,
+    /// Air density, kg/m³.
+    pub air_density_kg_m3: f64,
+    /// Standard deviation of the white noise added to each force, as a fraction of the RMS of that force over the
+    /// record; 0 for none.
+    pub noise_fraction: f64,
+    /// Seed of the noise.
+    pub seed: u64,
+}
+
+impl Default for TunnelPlan {
+    fn default() -> Self {
+        Self {
+            frequencies_hz: TABLE_3_2_FREQUENCIES_HZ.to_vec(),
+            speeds_m_s: vec![8.17, 4.0],
+            vertical_amplitude_m: 0.010,
+            lateral_amplitude_m: 0.020,
+            torsion_amplitude_deg: 1.0,
+            sampling_hz: 200.0,
+            still_s: 8.0,
+            segment_s: 26.0,
+            ramp_s: 4.0,
+            air_density_kg_m3: 1.19,
+            noise_fraction: 0.0,
+            seed: 1,
+        }
+    }
+}
+
+impl TunnelPlan {
+    /// Checks that the plan can be carried out.
+    ///
+    /// # Errors
+    /// [`Error::Input`] naming the key.
+    pub fn validate(&self) -> Result<()> {
+        for (key, list) in [
+            ("frequencies_hz", &self.frequencies_hz),
+            ("speeds_m_s", &self.speeds_m_s),
+        ] {
+            if list.is_empty() {
+                return Err(Error::input(key, "at least one number", "none"));
+            }
+            list.iter().try_for_each(|x| positive(key, *x).map(drop))?;
+        }
+        positive("vertical_amplitude_m", self.vertical_amplitude_m)?;
+        positive("lateral_amplitude_m", self.lateral_amplitude_m)?;
+        positive("torsion_amplitude_deg", self.torsion_amplitude_deg)?;
+        positive("sampling_hz", self.sampling_hz)?;
+        non_negative("still_s", self.still_s)?;
+        positive("segment_s", self.segment_s)?;
+        positive("ramp_s", self.ramp_s)?;
+        positive("air_density_kg_m3", self.air_density_kg_m3)?;
+        non_negative("noise_fraction", self.noise_fraction)?;
+        if 2.0 * self.ramp_s > self.segment_s {
+            let expected = format!("at most half of segment_s ({} s)", self.segment_s);
+            return Err(Error::input("ramp_s", expected, self.ramp_s.to_string()));
+        }
+        self.check_sampling(&self.frequencies_hz)
+    }
+
+    /// One record a motion and speed group of `table`, forces from its derivatives at its own test points.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for an impossible plan, or a table that lacks a derivative of `dofs`, has no mean speeds, or
+    /// has other test points for other derivatives of the same motion.
+    pub fn records_from_table(&self, table: &DerivativeTable, dofs: &[Dof]) -> Result<Vec<Record>> {
+        self.validate()?;
+        table.require(dofs)?;
+        let speeds = table.speed_groups();
+        if speeds.is_empty() {
+            let place = format!("table {}", table.name);
+            return Err(Error::input(
+                place,
+                "the mean speed of every test point",
+                "none",
+            ));
+        }
+        let mut records = Vec::new();
+        for (i, speed) in speeds.iter().enumerate() {
+            let group = table.at_speed_group(i)?;
+            for motion in 0..dofs.len() {
+                let mut record = self.record_at_points(&group, dofs, motion, *speed)?;
+                self.add_noise(&mut record, records.len());
+                records.push(record);
+            }
+        }
+        Ok(records)
+    }
+
+    /// One record a motion and speed of the plan, forces from the transfer matrix of `model` for a deck of `width_m`.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for an impossible plan or width; those of the model, which is asked at every `K` from zero to
+    /// that of half the sampling frequency.
+    pub fn records_from_model(
+        &self,
+        model: &dyn AerodynamicModel,
+        name: &str,
+        width_m: f64,
+    ) -> Result<Vec<Record>> {
+        self.validate()?;
+        positive("width_m", width_m)?;
+        let unit = UnitMotion::new(&self.frequencies_hz, self.timing());
+        let mut records = Vec::new();
+        for speed in &self.speeds_m_s {
+            let response = unit_response(model, &unit, self.sampling_hz, width_m / speed)?;
+            for (j, motion) in model.dofs().iter().enumerate() {
+                let header = RecordHeader {
+                    source: format!("virtual tunnel: linear response of {name}"),
+                    licence: String::new(),
+                    ..self.header(name, model.dofs(), *motion, width_m, *speed, &unit)
+                };
+                let mut record = self.record(header, *motion, &unit, |i, k| response[i][j][k]);
+                self.add_noise(&mut record, records.len());
+                records.push(record);
+            }
+        }
+        Ok(records)
+    }
+
+    fn timing(&self) -> Timing {
+        Timing {
+            still_s: self.still_s,
+            segment_s: self.segment_s,
+            ramp_s: self.ramp_s,
+            sampling_hz: self.sampling_hz,
+        }
+    }
+
+    /// A fifth of the sampling frequency leaves room for the ramps' side bands.
+    fn check_sampling(&self, frequencies_hz: &[f64]) -> Result<()> {
+        let limit = 0.2 * self.sampling_hz;
+        match frequencies_hz.iter().find(|f| **f > limit) {
+            None => Ok(()),
+            Some(f) => {
+                let expected = format!("at most a fifth of sampling_hz ({limit} Hz)");
+                Err(Error::input("frequencies_hz", expected, f.to_string()))
+            }
+        }
+    }
+
+    /// Amplitude of a motion: m, rad.
+    fn amplitude(&self, motion: Dof) -> f64 {
+        match motion {
+            Dof::Vertical => self.vertical_amplitude_m,
+            Dof::Lateral => self.lateral_amplitude_m,
+            Dof::Torsion => self.torsion_amplitude_deg.to_radians(),
+        }
+    }
+
+    fn header(
+        &self,
+        name: &str,
+        dofs: &[Dof],
+        motion: Dof,
+        width_m: f64,
+        speed_m_s: f64,
+        unit: &UnitMotion,
+    ) -> RecordHeader {
+        RecordHeader {
+            name: format!("{name}-{}-{speed_m_s:.2}", motion.name()),
+            dofs: dofs.to_vec(),
+            width_m,
+            air_density_kg_m3: self.air_density_kg_m3,
+            mean_speed_m_s: speed_m_s,
+            sampling_hz: self.sampling_hz,
+            segments: unit.segments.clone(),
+            source: String::new(),
+            licence: String::new(),
+        }
+    }
+
+    /// The record of one motion, given the dimensionless force `unit_force(row, sample)` due to a dimensionless
+    /// motion that is `unit`.
+    fn record(
+        &self,
+        header: RecordHeader,
+        motion: Dof,
+        unit: &UnitMotion,
+        unit_force: impl Fn(usize, usize) -> f64,
+    ) -> Record {
+        let amplitude = self.amplitude(motion);
+        let still = vec![0.0; unit.displacement.len()];
+        let moving = || unit.displacement.iter().map(|x| amplitude * x).collect();
+        let channel = |d: &Dof| {
+            if *d == motion {
+                moving()
+            } else {
+                still.clone()
+            }
+        };
+        let pressure = 0.5 * header.air_density_kg_m3 * header.mean_speed_m_s.powi(2);
+        let dimensionless = amplitude * motion.motion_scale(header.width_m);
+        let force = |(i, d): (usize, &Dof)| {
+            let factor = pressure * d.force_scale(header.width_m) * dimensionless;
+            (0..still.len())
+                .map(|k| factor * unit_force(i, k))
+                .collect()
+        };
+        Record {
+            motion: header.dofs.iter().map(channel).collect(),
+            force: header.dofs.iter().enumerate().map(force).collect(),
+            header,
+        }
+    }
+
+    fn record_at_points(
+        &self,
+        group: &DerivativeTable,
+        dofs: &[Dof],
+        motion: usize,
+        speed_m_s: f64,
+    ) -> Result<Record> {
+        let points = TestPoints::new(group, dofs, dofs[motion])?;
+        let frequencies: Vec<f64> = points
+            .k
+            .iter()
+            .map(|k| k.circular(group.width_m, speed_m_s) / TAU)
+            .collect();
+        self.check_sampling(&frequencies)?;
+        let unit = UnitMotion::new(&frequencies, self.timing());
+        let header = RecordHeader {
+            source: format!(
+                "virtual tunnel: derivatives of {} at their test points ({})",
+                group.name, group.header.source
+            ),
+            licence: group.header.licence.clone(),
+            ..self.header(
+                &group.name,
+                dofs,
+                dofs[motion],
+                group.width_m,
+                speed_m_s,
+                &unit,
+            )
+        };
+        let force = |row: usize, sample: usize| {
+            unit.segment_of[sample].map_or(0.0, |segment| {
+                let g = points.g[row][segment];
+                let in_quadrature = unit.velocity[sample] / (TAU * frequencies[segment]);
+                g.re * unit.displacement[sample] + g.im * in_quadrature
+            })
+        };
+        Ok(self.record(header, dofs[motion], &unit, force))
+    }
+
+    /// White noise on every force; each record draws from a stream of its own.
+    fn add_noise(&self, record: &mut Record, index: usize) {
+        if self.noise_fraction == 0.0 {
+            return;
+        }
+        let mut random = ChaCha8Rng::seed_from_u64(self.seed);
+        random.set_stream(index as u64);
+        for force in &mut record.force {
+            let mean_square = force.iter().map(|f| f * f).sum::<f64>() / force.len() as f64;
+            let deviation = self.noise_fraction * mean_square.sqrt();
+            for f in force {
+                let normal: f64 = StandardNormal.sample(&mut random);
+                *f += deviation * normal;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+#[path = "virtual_tunnel_tests.rs"]
+mod tests;
