@@ -106,14 +106,13 @@ impl Filtered {
         let mut w = self.state;
         let [s0, s1, s2, s3] = &mut self.states;
         for (k, pair) in self.input.windows(2).enumerate() {
-            let mut next = [0.0; ORDER];
-            for m in 0..ORDER {
-                let mut sum = step.g0[m] * pair[0] + step.g1[m] * pair[1];
-                for n in 0..ORDER {
-                    sum += step.phi[n][m] * w[n];
-                }
-                next[m] = sum;
-            }
+            let next: [f64; ORDER] = std::array::from_fn(|m| {
+                let held = step.g0[m] * pair[0] + step.g1[m] * pair[1];
+                step.phi[m]
+                    .iter()
+                    .zip(&w)
+                    .fold(held, |sum, (p, x)| sum + p * x)
+            });
             w = next;
             (s0[k + 1], s1[k + 1], s2[k + 1], s3[k + 1]) = (w[0], w[1], w[2], w[3]);
         }
@@ -121,7 +120,7 @@ impl Filtered {
     }
 }
 
-/// Step of the low-pass; `phi[n]` is column `n`.
+/// Step of the low-pass.
 struct LowPassStep {
     phi: [[f64; ORDER]; ORDER],
     g0: [f64; ORDER],
@@ -216,7 +215,7 @@ impl<'a> ContinuousColumns<'a> {
         Ok(Self {
             bases,
             low_pass: LowPassStep {
-                phi: std::array::from_fn(|n| std::array::from_fn(|m| hold.phi[(m, n)])),
+                phi: std::array::from_fn(|m| std::array::from_fn(|n| hold.phi[(m, n)])),
                 g0: std::array::from_fn(|m| hold.g0[m]),
                 g1: std::array::from_fn(|m| hold.g1[m]),
             },
