@@ -1,16 +1,23 @@
 //! Figures of cases with known answers: well-formed, complete, the same bytes every time.
 #![cfg(feature = "cli")]
 
+use aerodeck::aerodynamics::derivatives::{Derivative, Part, embedded};
 use aerodeck::aerodynamics::{AerodynamicModel, FlatPlate, RationalModel};
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::flutter::{
     FlutterCurves, Onset, OnsetSearch, determinant_onset, find_onset, trace_modes,
 };
-use aerodeck::report::{Figure, PNG_SCALE, VfVgOptions, vf_vg_figure};
-use aerodeck::section::SectionModel;
+use aerodeck::report::{
+    DerivativePlot, DerivativesPlot, Figure, PNG_SCALE, PlottedSeries, PoleSearchPlot, TimePanel,
+    VfVgOptions, derivatives_figure, pole_search_figure, root_locus_figure, time_history_figure,
+    vf_vg_figure,
+};
+use aerodeck::response::{Inputs, Outputs, Stepper};
+use aerodeck::section::{Dof, SectionModel};
 use aerodeck::units::{ReducedFrequency, ReducedFrequencyRange};
 use quick_xml::events::Event;
 use resvg::tiny_skia::Pixmap;
+use std::f64::consts::TAU;
 use std::path::Path;
 
 fn jones(section: &SectionModel) -> CoupledSection {
@@ -200,4 +207,182 @@ fn what_cannot_be_drawn_is_refused() {
         assert!(figure.png(scale).is_err());
     }
     assert!(figure.write("no/such/directory", "x").is_err());
+}
+
+/// A derivative of a two-degree-of-freedom model over V* = V/(fB): G/K².
+fn line(
+    label: &str,
+    model: &dyn AerodynamicModel,
+    derivative: Derivative,
+    v_max: f64,
+) -> PlottedSeries {
+    let index = |dof: Dof| usize::from(dof == Dof::Torsion);
+    let points = (1..=60).map(|i| {
+        let v_star = v_max * f64::from(i) / 60.0;
+        let k = TAU / v_star;
+        let g = model
+            .transfer(ReducedFrequency::from_full_width(k))
+            .unwrap();
+        let entry = g[(index(derivative.force()), index(derivative.motion()))];
+        let value = match derivative.part() {
+            Part::Real => entry.re,
+            Part::Imaginary => entry.im,
+        };
+        (v_star, value / (k * k))
+    });
+    PlottedSeries::new(label, points.collect())
+}
+
+#[test]
+fn derivatives_of_two_and_three_degrees_of_freedom() {
+    let table = embedded::deck("LN21-5200").unwrap();
+    let measured = |d: Derivative| {
+        let points = table.points(d).iter();
+        PlottedSeries::new(
+            "wind tunnel, LN21-5200",
+            points.map(|p| (TAU * p.v_hat, p.value)).collect(),
+        )
+    };
+    let plate = FlatPlate {
+        rotary_inertia: false,
+    };
+    let jones = RationalModel::jones_flat_plate();
+    let two = |d: &Derivative| d.force() != Dof::Lateral && d.motion() != Dof::Lateral;
+    let plot = |derivatives: Vec<Derivative>, lines: bool| DerivativesPlot {
+        title: "Aerodynamic derivatives of the Langenuen deck & flat plate".into(),
+        velocity_label: "V* = V/(fB)".into(),
+        derivatives: derivatives
+            .into_iter()
+            .map(|d| DerivativePlot {
+                name: d.name().to_owned(),
+                measured: vec![measured(d)],
+                fitted: if lines {
+                    vec![line("Jones, rational function", &jones, d, 25.0)]
+                } else {
+                    Vec::new()
+                },
+                reference: if lines {
+                    vec![line("flat plate (Theodorsen)", &plate, d, 25.0)]
+                } else {
+                    Vec::new()
+                },
+            })
+            .collect(),
+    };
+    let eight = plot(table.derivatives().filter(two).collect(), true);
+    assert_eq!(eight.derivatives.len(), 8);
+    let draw = || derivatives_figure(&eight).unwrap();
+    let labels = [
+        "Aerodynamic derivatives of the Langenuen deck & flat plate",
+        "V* = V/(fB)",
+        "wind tunnel, LN21-5200",
+        "Jones, rational function",
+        "flat plate (Theodorsen)",
+        "H₁*",
+        "A₄*",
+    ];
+    check(&draw(), &draw(), "derivatives_8", &labels);
+    let eighteen = plot(table.derivatives().collect(), false);
+    assert_eq!(eighteen.derivatives.len(), 18);
+    let draw = || derivatives_figure(&eighteen).unwrap();
+    check(&draw(), &draw(), "derivatives_18", &["P₁*", "H₆*", "A₆*"]);
+
+    let mut broken = eight.clone();
+    broken.derivatives[3].measured.clear();
+    broken.derivatives[3].fitted.clear();
+    broken.derivatives[3].reference.clear();
+    assert!(derivatives_figure(&broken).is_err());
+    broken.derivatives.clear();
+    assert!(derivatives_figure(&broken).is_err());
+    let mut broken = eight;
+    broken.derivatives[7].measured[0].points[1].1 = f64::INFINITY;
+    assert!(derivatives_figure(&broken).is_err());
+}
+
+#[test]
+fn root_locus_of_table_4_1() {
+    let section = SectionModel::table_4_1();
+    let mut damped = section.clone();
+    damped.torsion.damping_ratio = 0.02;
+    let curves = [
+        jones_curves("flat plate, Jones", &section, 45.0),
+        jones_curves("the same, 2 % torsional damping", &damped, 45.0),
+    ];
+    let draw = || root_locus_figure("Table 4.1", &curves).unwrap();
+    let labels = [
+        "Re λ (1/s)",
+        "Im λ (rad/s)",
+        "0 m/s",
+        "9 m/s",
+        "45 m/s",
+        "lowest wind speed",
+        "the same, 2 % torsional damping",
+    ];
+    check(&draw(), &draw(), "root_locus", &labels);
+    assert!(root_locus_figure("", &[]).is_err());
+}
+
+#[test]
+fn time_history_of_table_4_1() {
+    let mut stepper = Stepper::new(jones(&SectionModel::table_4_1()));
+    let mut panels = [("Heave y (m)", 0), ("Rotation θ (rad)", 1)].map(|(label, dof)| {
+        let panel = TimePanel {
+            y_label: label.into(),
+            series: Vec::new(),
+        };
+        (panel, dof)
+    });
+    for (label, speed) in [("30 m/s", 30.0), ("40 m/s", 40.0)] {
+        let inputs = Inputs::steady(speed, 2);
+        let mut state = stepper.released(&[0.02, 0.05], &[0.0, 0.0]).unwrap();
+        let mut histories = [Vec::new(), Vec::new()];
+        for i in 0..=6000 {
+            let mut out = Outputs::default();
+            stepper.outputs(&state, &inputs, &mut out).unwrap();
+            for (history, y) in histories.iter_mut().zip(&out.displacement) {
+                history.push((0.001 * f64::from(i), *y));
+            }
+            stepper.advance(&mut state, &inputs, 0.001).unwrap();
+        }
+        for (panel, dof) in &mut panels {
+            let points = std::mem::take(&mut histories[*dof]);
+            panel.series.push(PlottedSeries::new(label, points));
+        }
+    }
+    let panels = panels.map(|(panel, _)| panel);
+    let draw = || time_history_figure("Release from 20 mm and 0.05 rad", &panels, "Time t (s)");
+    let labels = ["Heave y (m)", "Rotation θ (rad)", "Time t (s)", "30 m/s"];
+    check(&draw().unwrap(), &draw().unwrap(), "time_history", &labels);
+    assert!(time_history_figure("", &[], "t").is_err());
+    let mut broken = panels;
+    broken[0].series[1].points[100].0 = f64::NAN;
+    assert!(time_history_figure("", &broken, "t").is_err());
+}
+
+#[test]
+fn pole_search_with_a_chosen_pole() {
+    // any smooth objective with a minimum will do
+    let curve = |filters: i32| {
+        let points = (1..=40).map(|i| {
+            let p = 0.05 * f64::from(i);
+            let objective = (1e-4 + (p.ln() + 0.5).powi(2)) * 10f64.powi(-filters);
+            (p, objective)
+        });
+        PlottedSeries::new(format!("N = {filters}"), points.collect())
+    };
+    let search = PoleSearchPlot {
+        title: "Search for the pole of the Laguerre filters".into(),
+        pole_label: "Pole p (–)".into(),
+        objective_label: "Objective (–)".into(),
+        curves: vec![curve(1), curve(2), curve(3)],
+        chosen: Some(curve(3).points[11]),
+    };
+    let draw = || pole_search_figure(&search).unwrap();
+    let labels = ["Pole p (–)", "N = 2", "0.6000", "10⁻⁶", "chosen"];
+    check(&draw(), &draw(), "pole_search", &labels);
+    let mut broken = search;
+    broken.chosen = Some((f64::NAN, 1.0));
+    assert!(pole_search_figure(&broken).is_err());
+    (broken.chosen, broken.curves) = (None, Vec::new());
+    assert!(pole_search_figure(&broken).is_err());
 }

@@ -15,7 +15,7 @@ pub(super) struct Axis {
     pub(super) tight: bool,
     /// Starts at zero when nothing is negative.
     pub(super) from_zero: bool,
-    /// Logarithmic, when all values are positive.
+    /// Logarithmic, when all values are positive; for values over more than a decade.
     pub(super) logarithmic: bool,
 }
 
@@ -43,7 +43,7 @@ impl Axis {
     pub(super) fn scale(&self, values: impl IntoIterator<Item = f64>, ticks: usize) -> Scale {
         let (low, high) = self.range.unwrap_or_else(|| ends(values));
         if self.logarithmic && low > 0.0 {
-            return Scale::logarithmic(low, high);
+            return Scale::logarithmic(low, high, ticks);
         }
         let window = self.within.unwrap_or((f64::MIN, f64::MAX));
         let (inner_low, inner_high) = (low.max(window.0), high.min(window.1));
@@ -95,31 +95,42 @@ fn nice_step(step: f64) -> f64 {
     nice * power
 }
 
-/// Ends and ticks of an axis.
+/// Ends and ticks of an axis; on a logarithmic one all numbers are decimal logarithms.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Scale {
     pub(super) min: f64,
     pub(super) max: f64,
-    /// Distance of the ticks on a linear axis.
+    /// Distance of the ticks.
     pub(super) step: f64,
     pub(super) logarithmic: bool,
 }
 
 impl Scale {
-    fn logarithmic(low: f64, high: f64) -> Self {
-        let margin = (high / low).powf(0.05).max(1.1);
+    /// A whole number of decades between ticks.
+    fn logarithmic(low: f64, high: f64, ticks: usize) -> Self {
+        let (low, high) = widened(low.log10(), high.log10());
+        let margin = 0.05 * (high - low);
         Self {
-            min: low / margin,
-            max: high * margin,
-            step: 1.0,
+            min: low - margin,
+            max: high + margin,
+            step: ((high - low) / ticks as f64).ceil(),
             logarithmic: true,
+        }
+    }
+
+    /// Where a value stands between the ends: the value itself or its decimal logarithm.
+    pub(super) fn place(&self, value: f64) -> f64 {
+        if self.logarithmic {
+            value.log10()
+        } else {
+            value
         }
     }
 
     /// How ticks are written: as many decimals as the step has, powers of ten on a logarithmic axis.
     pub(super) fn tick_label(&self) -> Arc<dyn Fn(f64) -> String + Send + Sync> {
         if self.logarithmic {
-            return Arc::new(|v| power_of_ten(v).unwrap_or_else(|| signed(format!("{v}"))));
+            return Arc::new(|exponent| format!("10{}", superscript(exponent.round() as i32)));
         }
         let largest = self.min.abs().max(self.max.abs());
         let exponent = largest.log10().floor() as i32;
@@ -138,22 +149,12 @@ impl Scale {
         })
     }
 
-    /// Ticks of a linear axis, for the width of their labels.
+    /// The ticks, between the ends.
     pub(super) fn ticks(&self) -> Vec<f64> {
-        if self.logarithmic {
-            return vec![self.min, self.max];
-        }
         let first = (self.min / self.step).ceil() as i64;
         let last = (self.max / self.step).floor() as i64;
         (first..=last).map(|i| i as f64 * self.step).collect()
     }
-}
-
-/// `10ⁿ` when `v` is one.
-fn power_of_ten(v: f64) -> Option<String> {
-    let exponent = v.log10();
-    ((exponent - exponent.round()).abs() < 1e-9 && !(-2.0..=3.0).contains(&exponent.round()))
-        .then(|| format!("10{}", superscript(exponent.round() as i32)))
 }
 
 fn superscript(n: i32) -> String {
@@ -174,6 +175,16 @@ pub(super) fn signed(number: String) -> String {
         Some(digits) => format!("−{digits}"),
         None => number,
     }
+}
+
+/// Four significant digits without an exponent.
+pub(super) fn significant(value: f64) -> String {
+    let decimals = if value.abs() > 0.0 {
+        (3.0 - value.abs().log10().floor()).clamp(0.0, 9.0) as usize
+    } else {
+        0
+    };
+    signed(format!("{value:.decimals$}"))
 }
 
 #[cfg(test)]
@@ -209,7 +220,14 @@ mod tests {
             logarithmic: true,
             ..Axis::new("x")
         };
-        assert_eq!(log.scale([1e-6, 1.0], 5).tick_label()(1e-5), "10⁻⁵");
-        assert_eq!(log.scale([1e-6, 1.0], 5).tick_label()(0.1), "0.1");
+        let scale = log.scale([1e-14, 1.0], 5);
+        let labels: Vec<String> = scale
+            .ticks()
+            .into_iter()
+            .map(scale.tick_label().as_ref())
+            .collect();
+        assert_eq!(labels, ["10⁻¹²", "10⁻⁹", "10⁻⁶", "10⁻³", "10⁰"]);
+        assert_eq!(scale.place(1e-6), -6.0);
+        assert!(!log.scale([0.0, 1.0], 5).logarithmic);
     }
 }

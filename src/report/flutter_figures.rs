@@ -1,9 +1,10 @@
 //! Frequencies and damping ratios over wind speed, with the onsets.
 
-use super::axis::Axis;
+use super::axis::{Axis, significant};
 use super::figure::Figure;
 use super::legend::Entry;
 use super::panel::{Note, Panel};
+use super::series::index_of;
 use super::sheet::Sheet;
 use super::style::{GREY, Ink, Shape, colour, dash};
 use crate::error::{Error, Result};
@@ -126,10 +127,6 @@ pub(super) fn branch_names(curves: &[FlutterCurves]) -> Result<Vec<String>> {
     Ok(names)
 }
 
-pub(super) fn index_of(names: &[String], name: &str) -> usize {
-    names.iter().position(|n| n == name).unwrap_or(0)
-}
-
 fn points(modes: &[ModePoint], value: impl Fn(&ModePoint) -> f64) -> Vec<(f64, f64)> {
     modes.iter().map(|p| (p.speed_m_s, value(p))).collect()
 }
@@ -197,16 +194,6 @@ fn statement(onset: &Onset) -> String {
         significant(onset.reduced_velocity.v_star()),
         onset.branch,
     )
-}
-
-/// Four significant digits without an exponent.
-fn significant(value: f64) -> String {
-    let decimals = if value.abs() > 0.0 {
-        (3.0 - value.abs().log10().floor()).clamp(0.0, 9.0) as usize
-    } else {
-        0
-    };
-    format!("{value:.decimals$}")
 }
 
 fn shade_untested(panels: &mut [&mut Panel], (low, high): (f64, f64)) -> Result<()> {

@@ -20,6 +20,13 @@ impl Area {
     fn size(&self) -> f64 {
         (self.right - self.left) * (self.bottom - self.top)
     }
+    /// The point of the area that is nearest to another.
+    pub(super) fn nearest(&self, (x, y): (f64, f64)) -> (f64, f64) {
+        (
+            x.clamp(self.left, self.right),
+            y.clamp(self.top, self.bottom),
+        )
+    }
     fn contains(&self, (x, y): (f64, f64)) -> bool {
         self.left <= x && x <= self.right && self.top <= y && y <= self.bottom
     }
@@ -72,7 +79,7 @@ impl Labels {
                     right: left + width,
                     bottom: top + height,
                 };
-                let cost = self.cost(&area) + 0.4 * ring as f64 + 0.01 * i as f64;
+                let cost = self.cost(&area) + ring as f64 + 0.01 * i as f64;
                 if best.is_none_or(|(lowest, _)| cost < lowest) {
                     best = Some((cost, area));
                 }

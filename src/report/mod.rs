@@ -5,14 +5,22 @@
 //! readers; what differs in colour only also differs in a line style or a marker where two kinds of thing meet.
 
 mod axis;
+mod derivatives_figure;
 mod figure;
 mod flutter_figures;
 mod font;
 mod labels;
 mod legend;
 mod panel;
+mod response_figures;
+mod root_locus;
+mod series;
 mod sheet;
 mod style;
 
+pub use derivatives_figure::{DerivativePlot, DerivativesPlot, derivatives_figure};
 pub use figure::{Figure, PNG_SCALE};
 pub use flutter_figures::{VfVgOptions, vf_vg_figure};
+pub use response_figures::{PoleSearchPlot, TimePanel, pole_search_figure, time_history_figure};
+pub use root_locus::root_locus_figure;
+pub use series::PlottedSeries;

@@ -9,6 +9,7 @@ use crate::error::{Error, Result};
 use kuva::TickFormat;
 use kuva::plot::annotations::{ReferenceLine, ShadedRegion};
 use kuva::plot::line::{LinePlot, LineStyle};
+use kuva::render::color::Color;
 use kuva::render::layout::{ComputedLayout, Layout};
 use kuva::render::plots::Plot;
 use kuva::render::render::{Primitive, Scene, TextAnchor, render_multiple};
@@ -19,6 +20,8 @@ pub(super) const LABEL_SIZE: u32 = 12;
 const NOTE_SIZE: u32 = 11;
 /// Curves are drawn with at most this many points per px of the panel's width.
 const POINTS_PER_PX: usize = 4;
+/// Distance of a label from its point from which on a line leads to it, px.
+const LEADERLESS: f64 = 12.0;
 const RIM: &str =
     r##"stroke="#ffffff" stroke-width="3" stroke-linejoin="round" paint-order="stroke""##;
 
@@ -153,7 +156,10 @@ impl Panel {
         let map = ComputedLayout::from_layout(&layout);
         let layout = self.with_regions(layout, x);
         let inner = frame.width - frame.margins.left - frame.margins.right;
-        let plots = self.series.iter().filter_map(|s| curve(s, inner)).collect();
+        // without any plot the library would leave out the axes
+        let axes_only = Plot::Line(LinePlot::new());
+        let curves = self.series.iter().filter_map(|s| curve(s, (x, y), inner));
+        let plots = std::iter::once(axes_only).chain(curves).collect();
         let mut scene = render_multiple(plots, layout);
         let mut labels = Labels::new(Area {
             left: frame.margins.left,
@@ -161,7 +167,7 @@ impl Panel {
             right: frame.width - frame.margins.right,
             bottom: frame.height - frame.margins.bottom,
         });
-        let px = |p: &(f64, f64)| (map.map_x(p.0), map.map_y(p.1));
+        let px = |p: &(f64, f64)| (map.map_x(x.place(p.0)), map.map_y(y.place(p.1)));
         for series in &self.series {
             let points: Vec<(f64, f64)> = series.points.iter().map(px).collect();
             if let Ink::Dots {
@@ -278,25 +284,18 @@ fn layout(frame: Frame, x: Scale, y: Scale) -> Layout {
         .with_x_axis_max(x.max)
         .with_y_axis_min(y.min)
         .with_y_axis_max(y.max)
+        .with_x_tick_step(x.step)
+        .with_y_tick_step(y.step)
         .with_x_tick_format(TickFormat::Custom(x.tick_label()))
         .with_y_tick_format(TickFormat::Custom(y.tick_label()))
         .with_force_margins(m.left, m.right)
         .with_force_margins_y(m.top, m.bottom);
     layout.show_legend = false;
-    layout = if x.logarithmic {
-        layout.with_log_x()
-    } else {
-        layout.with_x_tick_step(x.step)
-    };
-    if y.logarithmic {
-        layout.with_log_y()
-    } else {
-        layout.with_y_tick_step(y.step)
-    }
+    layout
 }
 
 /// The line of a series; `None` for markers, which are drawn on top later.
-fn curve(series: &Series, width_px: f64) -> Option<Plot> {
+fn curve(series: &Series, (x, y): (Scale, Scale), width_px: f64) -> Option<Plot> {
     let Ink::Line {
         colour,
         dash,
@@ -305,8 +304,9 @@ fn curve(series: &Series, width_px: f64) -> Option<Plot> {
     else {
         return None;
     };
+    let points = thinned(&series.points, width_px as usize);
     let mut line = LinePlot::new()
-        .with_data(thinned(&series.points, width_px as usize))
+        .with_data(points.into_iter().map(|p| (x.place(p.0), y.place(p.1))))
         .with_color(colour)
         .with_stroke_width(width);
     if let Some(dash) = dash {
@@ -336,9 +336,22 @@ fn thinned(points: &[(f64, f64)], width_px: usize) -> Vec<(f64, f64)> {
     kept
 }
 
-/// A label with a white rim, so that it stays readable on grid lines and curves.
+/// A label with a white rim, so that it stays readable on grid lines and curves; far from its point a thin line leads
+/// to it.
 fn draw_note(scene: &mut Scene, labels: &mut Labels, at: (f64, f64), note: &Note) {
     let area = labels.place(at, &note.text, f64::from(NOTE_SIZE));
+    let end = area.nearest(at);
+    if (end.0 - at.0).hypot(end.1 - at.1) > LEADERLESS {
+        scene.add(Primitive::Line {
+            x1: at.0,
+            y1: at.1,
+            x2: end.0,
+            y2: end.1,
+            stroke: Color::from(note.colour),
+            stroke_width: 0.7,
+            stroke_dasharray: None,
+        });
+    }
     let baseline = area.bottom - 0.34 * f64::from(NOTE_SIZE);
     scene.add(Primitive::GroupStart {
         transform: None,

@@ -5,7 +5,7 @@ use super::font::{FAMILIES, text_width};
 use super::legend::{Entry, LegendLayout, lay_out};
 use super::panel::{Frame, LABEL_SIZE, Margins, Panel};
 use super::style::BLACK;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use kuva::backend::svg::SvgBackend;
 use kuva::render::color::Color;
 use kuva::render::render::{Primitive, Scene, TextAnchor};
@@ -35,15 +35,18 @@ impl Sheet {
     /// Draws everything.
     ///
     /// # Errors
-    /// [`crate::Error::Input`] for panels without data and for numbers that are not finite.
+    /// [`Error::Input`] for no panels, for panels without data and for numbers that are not finite.
     pub(super) fn draw(&self) -> Result<Figure> {
         for panel in &self.panels {
             panel.check(self.name)?;
         }
         let (frames, legend) = self.frames();
-        let grid_width = self.columns as f64 * frames[0].width;
+        let Some(Frame { width, margins, .. }) = frames.first() else {
+            return Err(Error::input(self.name, "data", "none"));
+        };
+        let grid_width = self.columns as f64 * width;
         let grid_height: f64 = frames.iter().map(|f| f.height).sum();
-        let left = frames[0].margins.left;
+        let left = margins.left;
         let head = self.title.as_ref().map_or(EDGE, |_| TITLE_HEIGHT + EDGE);
         let foot = if legend.height > 0.0 {
             legend.height + 2.0 * EDGE

@@ -1,0 +1,167 @@
+//! Aerodynamic derivatives over the reduced velocity: measured points and fitted lines.
+
+use super::axis::Axis;
+use super::figure::Figure;
+use super::legend::Entry;
+use super::panel::Panel;
+use super::series::{PlottedSeries, index_of, labels_of};
+use super::sheet::Sheet;
+use super::style::{BLACK, Ink, Shape, colour, dash};
+use crate::error::{Error, Result};
+
+/// One derivative (or any other quantity that is measured and fitted).
+#[derive(Debug, Clone, PartialEq)]
+pub struct DerivativePlot {
+    /// Name, e.g. `H1`: written as H₁*. Any other name stands as it is.
+    pub name: String,
+    /// Test points, drawn as dots; several series e.g. for several wind speeds or tests.
+    pub measured: Vec<PlottedSeries>,
+    /// Fitted or computed lines, one a model.
+    pub fitted: Vec<PlottedSeries>,
+    /// Theory to compare with (flat plate, quasi-steady), drawn thin and black.
+    pub reference: Vec<PlottedSeries>,
+}
+
+/// Derivatives of a deck, for the figure.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DerivativesPlot {
+    /// Line above the figure; empty for none.
+    pub title: String,
+    /// Name of the abscissa with its definition, e.g. `V* = V/(fB)` or `V̂ = V/(ωB)`.
+    pub velocity_label: String,
+    /// Row by row.
+    pub derivatives: Vec<DerivativePlot>,
+}
+
+/// A grid of the derivatives over reduced velocity: four columns for up to eight, six for the eighteen.
+///
+/// Series of the same label share ink and legend entry over all panels. All panels have the same abscissa.
+///
+/// # Errors
+/// [`Error::Input`] for no derivatives, one without any data, numbers that are not finite, and more labels than
+/// colours.
+pub fn derivatives_figure(plot: &DerivativesPlot) -> Result<Figure> {
+    let all = &plot.derivatives;
+    if all.is_empty() {
+        return Err(Error::input(PLACE, "at least one derivative", "none"));
+    }
+    let measured = labels_of(all.iter().flat_map(|d| &d.measured));
+    let fitted = labels_of(all.iter().flat_map(|d| &d.fitted));
+    let reference = labels_of(all.iter().flat_map(|d| &d.reference));
+    let columns = if all.len() <= 8 { 4 } else { 6 }.min(all.len());
+    let range = velocity_range(all);
+    let mut panels = Vec::with_capacity(all.len());
+    for (i, derivative) in all.iter().enumerate() {
+        let lowest = i + columns >= all.len();
+        let velocity = Axis::new(if lowest { &plot.velocity_label } else { "" });
+        let mut panel = Panel::new(Axis { range, ..velocity }, Axis::new(""));
+        panel.title = Some(starred(&derivative.name));
+        panel.level = Some(0.0);
+        for series in &derivative.reference {
+            let ink = reference_ink(index_of(&reference, &series.label));
+            panel.add(&series.label, series.points.clone(), ink);
+        }
+        for series in &derivative.fitted {
+            let ink = fitted_ink(index_of(&fitted, &series.label))?;
+            panel.add(&series.label, series.points.clone(), ink);
+        }
+        for series in &derivative.measured {
+            let ink = measured_ink(index_of(&measured, &series.label), measured.len())?;
+            panel.add(&series.label, series.points.clone(), ink);
+        }
+        panels.push(panel);
+    }
+    Sheet {
+        name: PLACE,
+        title: Some(plot.title.clone()).filter(|t| !t.is_empty()),
+        panels,
+        columns,
+        axes: if columns == 6 {
+            (150.0, 140.0)
+        } else {
+            (190.0, 160.0)
+        },
+        legend: vec![legend(&measured, &fitted, &reference)?],
+    }
+    .draw()
+}
+
+fn legend(measured: &[String], fitted: &[String], reference: &[String]) -> Result<Vec<Entry>> {
+    let mut entries = Vec::new();
+    for (i, label) in measured.iter().enumerate() {
+        entries.push(Entry::new(label, measured_ink(i, measured.len())?));
+    }
+    for (i, label) in fitted.iter().enumerate() {
+        entries.push(Entry::new(label, fitted_ink(i)?));
+    }
+    for (i, label) in reference.iter().enumerate() {
+        entries.push(Entry::new(label, reference_ink(i)));
+    }
+    Ok(entries)
+}
+
+const PLACE: &str = "aerodynamic derivatives";
+
+fn fitted_ink(i: usize) -> Result<Ink> {
+    Ok(Ink::line(colour(PLACE, i)?, dash(i)))
+}
+
+fn reference_ink(i: usize) -> Ink {
+    Ink::Line {
+        colour: BLACK,
+        dash: dash(i + 1),
+        width: 1.1,
+    }
+}
+
+/// Black dots for one series; several in colours and shapes, from the far end of the palette, where no line is.
+fn measured_ink(i: usize, count: usize) -> Result<Ink> {
+    const SHAPES: [Shape; 3] = [Shape::Circle, Shape::Square, Shape::Diamond];
+    let colour = if count == 1 {
+        BLACK
+    } else {
+        colour(PLACE, (i + 3) % 7)?
+    };
+    Ok(Ink::Dots {
+        colour,
+        shape: SHAPES[i % SHAPES.len()],
+        radius: 2.7,
+        hollow: false,
+    })
+}
+
+/// The reduced velocities of all panels, from zero.
+fn velocity_range(all: &[DerivativePlot]) -> Option<(f64, f64)> {
+    let largest = all
+        .iter()
+        .flat_map(|d| d.measured.iter().chain(&d.fitted).chain(&d.reference))
+        .flat_map(|s| &s.points)
+        .map(|p| p.0)
+        .fold(0.0, f64::max);
+    (largest > 0.0 && largest.is_finite()).then_some((0.0, 1.04 * largest))
+}
+
+/// `H1` and `H1*` as H₁*; everything else as it is.
+fn starred(name: &str) -> String {
+    let mut characters = name.chars();
+    let parts = (characters.next(), characters.next(), characters.as_str());
+    if let (Some(letter @ ('P' | 'H' | 'A')), Some(digit @ '1'..='6'), "" | "*") = parts {
+        let subscript = ['₁', '₂', '₃', '₄', '₅', '₆'][digit as usize - '1' as usize];
+        return format!("{letter}{subscript}*");
+    }
+    name.to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::starred;
+
+    #[test]
+    fn only_names_of_derivatives_get_subscripts() {
+        assert_eq!(starred("H1"), "H₁*");
+        assert_eq!(starred("A6*"), "A₆*");
+        for name in ["H7", "c_L", "", "P", "H1 at 6 m/s", "A10"] {
+            assert_eq!(starred(name), name);
+        }
+    }
+}
