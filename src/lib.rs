@@ -19,6 +19,8 @@ pub mod report;
 pub mod response;
 pub mod section;
 pub mod state_space;
+#[cfg(feature = "cli")]
+pub mod study;
 pub mod trained_model;
 pub mod units;
 #[cfg(feature = "identification")]

@@ -1,1 +1,5 @@
-fn main() {}
+//! The `aerodeck` command.
+
+fn main() -> std::process::ExitCode {
+    aerodeck::cli::main()
+}

@@ -82,7 +82,12 @@ pub fn determinant_onset(
             *root = after;
         }
     }
-    Ok(choose(crossings, Some(range), speed_max_m_s))
+    // at the lowest K each root has come to a speed of its own; beyond the slowest nothing was looked at
+    let searched = roots
+        .iter()
+        .map(|root| root.re * structure.width_m / k_min)
+        .fold(speed_max_m_s, f64::min);
+    Ok(choose(crossings, Some(range), searched))
 }
 
 fn nearest(target: Complex<f64>, among: &[Complex<f64>]) -> Option<Complex<f64>> {

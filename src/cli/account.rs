@@ -1,0 +1,170 @@
+//! Results in words and tables, for people.
+
+use super::study::Summary;
+use crate::flutter::{Onset, OnsetMethod};
+use crate::identification::FitReport;
+use crate::study::{Deck, Deviation, Divergence, OnsetSummary, Study};
+use std::fmt::Write as _;
+
+/// The whole chain.
+pub fn chain(study: &Study, deck: &Deck, summary: &Summary, files: &str) -> String {
+    let mut text = format!("{}\n\n", study.name);
+    let s = &study.section;
+    let _ = writeln!(text, "Deck      {}", deck.description());
+    let _ = writeln!(
+        text,
+        "Section   B {} m, m {} kg/m, J {} kg·m²/m, ρ {} kg/m³; y and lift up, θ and moment nose-up, per metre of span",
+        s.width_m, s.vertical.mass_kg_m, s.torsion.inertia_kg_m2_m, s.air_density_kg_m3
+    );
+    text.push('\n');
+    for fit_summary in &summary.fits {
+        text.push_str(&fit(&fit_summary.model, &fit_summary.report));
+    }
+    text.push('\n');
+    text.push_str(&onsets(&summary.onsets, &summary.stable));
+    text.push_str(&divergence(&summary.divergence));
+    text.push_str(&deviations(&summary.deviations));
+    if let Some(stepped) = &summary.stepped {
+        let _ = writeln!(text, "{}", stepped.explain());
+    }
+    let _ = writeln!(text, "\nFiles");
+    text.push_str(files);
+    text
+}
+
+/// One fit.
+pub fn fit(name: &str, report: &FitReport) -> String {
+    let mut text = format!("Fit       {name}: {}\n", report.method);
+    let residuals: Vec<String> = report
+        .entries
+        .iter()
+        .filter_map(|e| {
+            let rms = e.relative_rms?;
+            Some(format!(
+                "{}{} {:.1} %",
+                force_symbol(e.force),
+                e.motion.symbol(),
+                100.0 * rms
+            ))
+        })
+        .collect();
+    let poles: Vec<String> = distinct_poles(report);
+    let _ = writeln!(
+        text,
+        "          residual rms {}; condition {:.0}{}",
+        residuals.join(", "),
+        report.condition,
+        if poles.is_empty() {
+            String::new()
+        } else {
+            format!("; poles {}", poles.join(", "))
+        }
+    );
+    let _ = writeln!(
+        text,
+        "          tested K {:.3} to {:.3} (V* {:.2} to {:.2})",
+        report.tested_range.min.full_width(),
+        report.tested_range.max.full_width(),
+        std::f64::consts::TAU / report.tested_range.max.full_width(),
+        std::f64::consts::TAU / report.tested_range.min.full_width(),
+    );
+    for note in &report.notes {
+        let _ = writeln!(text, "          note: {note}");
+    }
+    text
+}
+
+fn distinct_poles(report: &FitReport) -> Vec<String> {
+    let mut poles: Vec<f64> = report
+        .entries
+        .iter()
+        .flat_map(|e| e.poles.clone())
+        .collect();
+    poles.sort_by(f64::total_cmp);
+    poles.dedup();
+    poles.iter().map(|p| format!("{p:.3}")).collect()
+}
+
+fn force_symbol(dof: crate::section::Dof) -> &'static str {
+    match dof {
+        crate::section::Dof::Vertical => "L",
+        crate::section::Dof::Lateral => "D",
+        crate::section::Dof::Torsion => "M",
+    }
+}
+
+/// The onsets side by side.
+pub fn onsets(onsets: &[Onset], stable: &[OnsetSummary]) -> String {
+    let mut text = format!(
+        "{:<22} {:<12} {:>9} {:>8} {:>8} {:>8} {:>8}  {:<9} {}\n",
+        "Flutter onset",
+        "method",
+        "V m/s",
+        "f Hz",
+        "V*",
+        "|y|/B|θ|",
+        "phase °",
+        "branch",
+        "in tested range"
+    );
+    for o in onsets {
+        let _ = writeln!(
+            text,
+            "{:<22} {:<12} {:>9.3} {:>8.4} {:>8.3} {:>8.4} {:>8.1}  {:<9} {}",
+            o.model,
+            method(o.method),
+            o.speed_m_s,
+            o.frequency_hz,
+            o.reduced_velocity.v_star(),
+            o.mode_ratio,
+            o.phase_deg,
+            o.branch,
+            match o.in_tested_range {
+                Some(true) => "yes",
+                Some(false) => "NO",
+                None => "exact",
+            }
+        );
+    }
+    for s in stable {
+        let _ = writeln!(
+            text,
+            "{:<22} {:<12} no flutter up to {} m/s",
+            s.model,
+            method(s.method),
+            s.stable_up_to_m_s
+        );
+    }
+    for o in onsets {
+        for warning in &o.warnings {
+            let _ = writeln!(text, "warning: {}: {warning}", o.model);
+        }
+    }
+    text
+}
+
+/// Divergence of each model.
+pub fn divergence(all: &[Divergence]) -> String {
+    let speeds: Vec<String> = all
+        .iter()
+        .map(|d| match d.speed_m_s {
+            Some(v) => format!("{} {v:.2} m/s", d.model),
+            None => format!("{} none", d.model),
+        })
+        .collect();
+    format!("Divergence: {}\n", speeds.join(", "))
+}
+
+/// Deviations from the deck's own onset.
+pub fn deviations(all: &[Deviation]) -> String {
+    all.iter().map(|d| d.explain() + "\n").collect()
+}
+
+/// The method in a word.
+pub fn method(method: OnsetMethod) -> &'static str {
+    match method {
+        OnsetMethod::Eigenvalues => "eigenvalues",
+        OnsetMethod::Determinant => "determinant",
+        OnsetMethod::FmuStepping => "FMU stepped",
+    }
+}

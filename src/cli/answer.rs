@@ -1,0 +1,49 @@
+//! What a command has to say, for people and for machines.
+
+use crate::error::{Error, Result};
+use serde::Serialize;
+
+/// Result of a command.
+#[derive(Debug)]
+pub struct Answer {
+    text: String,
+    json: serde_json::Value,
+    passed: bool,
+}
+
+impl Answer {
+    /// `text` for people, `value` for machines.
+    ///
+    /// # Errors
+    /// [`Error::Numerical`] when the value cannot be written as JSON.
+    pub fn new(text: String, value: &impl Serialize) -> Result<Self> {
+        let json = serde_json::to_value(value).map_err(|e| Error::Numerical(e.to_string()))?;
+        Ok(Self {
+            text,
+            json,
+            passed: true,
+        })
+    }
+
+    /// The same answer of a check that did or did not pass.
+    #[must_use]
+    pub fn with_verdict(mut self, passed: bool) -> Self {
+        self.passed = passed;
+        self
+    }
+
+    /// Readable account, ending in a new line.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// The same as indented JSON.
+    pub fn json(&self) -> String {
+        format!("{:#}", self.json)
+    }
+
+    /// Whether every check passed.
+    pub fn passed(&self) -> bool {
+        self.passed
+    }
+}

@@ -1,0 +1,59 @@
+//! `aerodeck fmu check`: static checks and a run of any FMI 2.0 co-simulation FMU.
+
+use crate::cli::answer::Answer;
+use crate::cli::progress::Progress;
+use crate::error::Result;
+use crate::fmu::importer::{CheckReport, Fmu};
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+/// Check any FMI 2.0 co-simulation FMU and step it; fails when something is wrong
+///
+/// Example: aerodeck fmu check deck_section.fmu
+#[derive(clap::Args)]
+#[command(verbatim_doc_comment)]
+pub struct Args {
+    /// The FMU.
+    fmu: PathBuf,
+}
+
+/// Runs the command.
+pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+    let stage = progress.stage("checking the FMU");
+    let report = Fmu::open(&args.fmu)?.check();
+    drop(stage);
+    let passed = report.passed();
+    Ok(Answer::new(text(&report), &report)?.with_verdict(passed))
+}
+
+fn text(report: &CheckReport) -> String {
+    let mut text = format!(
+        "{}\n{} by {}, {} variables, binaries for {}\n",
+        report.file,
+        report.model_name,
+        report.generation_tool,
+        report.variables,
+        report.platforms.join(", ")
+    );
+    for f in &report.findings {
+        let _ = writeln!(
+            text,
+            "  {}: {}: expected {}, found {}",
+            f.severity.name(),
+            f.place,
+            f.expected,
+            f.found
+        );
+    }
+    for t in &report.trials {
+        let verdict = if t.passed { "ok    " } else { "FAILED" };
+        let _ = writeln!(text, "  {verdict} {}: {}", t.name, t.detail);
+    }
+    let verdict = if report.passed() {
+        "passed"
+    } else {
+        "did not pass"
+    };
+    let _ = writeln!(text, "{verdict}");
+    text
+}

@@ -1,0 +1,58 @@
+//! Progress on standard error, only where somebody watches.
+
+use indicatif::{ProgressBar, ProgressStyle};
+use std::time::Duration;
+
+/// Shows what is being done.
+pub struct Progress {
+    shown: bool,
+}
+
+impl Progress {
+    /// Progress that is shown or not (and never when standard error is not a terminal).
+    pub fn new(shown: bool) -> Self {
+        Self { shown }
+    }
+
+    /// A stage of unknown length; ends when the returned bar is dropped.
+    pub fn stage(&self, what: &str) -> Stage {
+        let bar = self.bar(ProgressBar::new_spinner(), "{spinner} {msg} {elapsed}");
+        bar.set_message(what.to_owned());
+        bar.enable_steady_tick(Duration::from_millis(100));
+        Stage(bar)
+    }
+
+    /// A stage that counts; see [`Stage::at`].
+    pub fn steps(&self, what: &str) -> Stage {
+        let bar = self.bar(ProgressBar::new(1), "{msg} [{bar:30}] {pos}/{len} {eta}");
+        bar.set_message(what.to_owned());
+        Stage(bar)
+    }
+
+    fn bar(&self, bar: ProgressBar, template: &str) -> ProgressBar {
+        if !self.shown {
+            return ProgressBar::hidden();
+        }
+        match ProgressStyle::with_template(template) {
+            Ok(style) => bar.with_style(style),
+            Err(_) => bar,
+        }
+    }
+}
+
+/// A stage under way.
+pub struct Stage(ProgressBar);
+
+impl Stage {
+    /// `done` of `total` steps are done.
+    pub fn at(&self, done: u64, total: u64) {
+        self.0.set_length(total);
+        self.0.set_position(done);
+    }
+}
+
+impl Drop for Stage {
+    fn drop(&mut self) {
+        self.0.finish_and_clear();
+    }
+}

@@ -1,0 +1,150 @@
+//! `aerodeck simulate`: a released section in steady wind, in this process.
+
+use super::answer::Answer;
+use super::output::{OutputDir, list};
+use super::stages;
+use crate::aerodynamics::AerodynamicModel;
+use crate::aeroelastic::CoupledSection;
+use crate::error::{Error, Result, positive};
+
+use crate::response::{Inputs, Outputs, Stepper};
+use crate::trained_model::TrainedModel;
+use serde::Serialize;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+/// Longest run that is kept in memory, in steps.
+const MAX_STEPS: f64 = 1e7;
+
+/// Release a section in steady wind and write its motion (`simulation.csv`) and a figure
+///
+/// Example: aerodeck simulate model.json --wind-speed 35 --stop-time 20
+#[derive(clap::Args)]
+#[command(verbatim_doc_comment)]
+pub struct Args {
+    /// The trained model (see `train`).
+    model: PathBuf,
+    /// Wind speed, m/s; by default that of the model's experiment, just below the onset.
+    #[arg(long)]
+    wind_speed: Option<f64>,
+    /// Length of the run, s.
+    #[arg(long)]
+    stop_time: Option<f64>,
+    /// Step, s.
+    #[arg(long)]
+    step: Option<f64>,
+    /// Where the results go; by default the folder of the model.
+    #[arg(long)]
+    out: Option<PathBuf>,
+}
+
+/// The motion of one run.
+#[derive(Debug, Serialize)]
+struct Trajectory {
+    /// Column names with units.
+    columns: Vec<String>,
+    /// One row a step.
+    rows: Vec<Vec<f64>>,
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> Result<Answer> {
+    let model = stages::read_model(&args.model)?;
+    let e = &model.experiment;
+    let speed = positive("--wind-speed", args.wind_speed.unwrap_or(e.wind_speed_m_s))?;
+    let stop = positive("--stop-time", args.stop_time.unwrap_or(e.stop_time_s))?;
+    let step = positive("--step", args.step.unwrap_or(e.step_size_s))?;
+    if stop / step > MAX_STEPS {
+        return Err(Error::input(
+            "--step",
+            format!("at most {MAX_STEPS:.0e} steps"),
+            format!("{:.1e}", stop / step),
+        ));
+    }
+    let trajectory = simulate(&model, speed, stop, step)?;
+    let beside = args.model.parent().unwrap_or(Path::new("."));
+    let directory = args.out.as_deref().unwrap_or(beside);
+    let directory = if directory.as_os_str().is_empty() {
+        Path::new(".")
+    } else {
+        directory
+    };
+    let mut out = OutputDir::new(directory)?;
+    out.write("simulation.csv", csv(&model, speed, &trajectory))?;
+    let title = format!("{} at {speed} m/s", model.name);
+    let written = out.commit()?;
+    let text = format!(
+        "{title}: {} steps of {step} s\n{}",
+        trajectory.rows.len() - 1,
+        list(&written)
+    );
+    Answer::new(text, &trajectory)
+}
+
+fn simulate(model: &TrainedModel, speed: f64, stop: f64, step: f64) -> Result<Trajectory> {
+    let realization = model
+        .model
+        .realize()
+        .ok_or_else(|| Error::Numerical("the model has no realisation".into()))?;
+    let section = CoupledSection::new(model.section.structure()?, realization)?;
+    let dofs = section.structure().dofs.clone();
+    let n = dofs.len();
+    let mut stepper = Stepper::new(section);
+    let mut released = vec![0.0; n];
+    released[0] = model.experiment.initial_vertical_m;
+    released[n - 1] = model.experiment.initial_rotation_rad;
+    let mut state = stepper.released(&released, &vec![0.0; n])?;
+    let inputs = Inputs::steady(speed, n);
+    let mut outputs = Outputs::default();
+    let steps = (stop / step).round() as usize;
+    let mut rows = Vec::with_capacity(steps + 1);
+    for i in 0..=steps {
+        if i > 0 {
+            stepper.advance(&mut state, &inputs, step)?;
+        }
+        stepper.outputs(&state, &inputs, &mut outputs)?;
+        let mut row = vec![i as f64 * step];
+        for values in [
+            &outputs.displacement,
+            &outputs.rate,
+            &outputs.acceleration,
+            &outputs.self_excited_force,
+        ] {
+            row.extend_from_slice(values);
+        }
+        rows.push(row);
+    }
+    let mut columns = vec!["time_s".to_owned()];
+    for (name, linear, angular) in [
+        ("", "m", "rad"),
+        ("_rate", "m_s", "rad_s"),
+        ("_acceleration", "m_s2", "rad_s2"),
+        ("_force", "n_m", "n_m_m"),
+    ] {
+        columns.extend(dofs.iter().map(|d| {
+            let unit = if *d == crate::section::Dof::Torsion {
+                angular
+            } else {
+                linear
+            };
+            format!("{}{name}_{unit}", d.name())
+        }));
+    }
+    Ok(Trajectory { columns, rows })
+}
+
+fn csv(model: &TrainedModel, speed: f64, trajectory: &Trajectory) -> String {
+    let mut text = format!(
+        "# {}; {} at {speed} m/s\n# source: {}\n# licence: {}\n# per unit length of span; y and lift up, theta and moment nose-up\n",
+        model.name,
+        model.model.kind(),
+        model.provenance.source,
+        model.provenance.licence.replace('\n', " "),
+    );
+    let _ = writeln!(text, "{}", trajectory.columns.join(","));
+    for row in &trajectory.rows {
+        let values: Vec<String> = row.iter().map(f64::to_string).collect();
+        let _ = writeln!(text, "{}", values.join(","));
+    }
+    text
+}

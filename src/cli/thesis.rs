@@ -1,0 +1,44 @@
+//! `aerodeck thesis`: the headline of the source document, repeated.
+
+use super::answer::Answer;
+use super::output::OutputDir;
+use super::progress::Progress;
+use super::{account, stages};
+use crate::error::{Error, Result};
+use crate::study::{Deck, RecordSet, Study, thesis_study_text};
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+/// Onset printed in the thesis (Figures 4.2 and 4.3) for both models, m/s.
+const PRINTED_M_S: f64 = 37.6;
+
+/// Repeat the thesis's headline: discrete Laguerre and rational functions on its own deck, 37.6 m/s
+///
+/// Example: aerodeck thesis
+#[derive(clap::Args)]
+#[command(verbatim_doc_comment)]
+pub struct Args {}
+
+/// Runs the command.
+pub fn run(_: &Args, progress: &Progress) -> Result<Answer> {
+    let aside = tempfile::tempdir().map_err(|e| Error::io(std::env::temp_dir(), e))?;
+    let study = Study::from_toml(thesis_study_text(), PathBuf::new())?;
+    let deck = Deck::load(&study)?;
+    let mut out = OutputDir::new(aside.path())?;
+    let records = RecordSet::staged(stages::tunnel(&study, &deck, &mut out, progress)?)?;
+    let trained = stages::train(&study, &deck, &records, &mut out, progress)?;
+    let models: Vec<_> = trained.iter().map(|t| t.model.clone()).collect();
+    let results = stages::flutter(&study, &deck, &models, progress)?;
+    let mut text = format!("{}\n\n", study.name);
+    for result in &trained {
+        text.push_str(&account::fit(&result.model.name, &result.report));
+    }
+    text.push('\n');
+    text.push_str(&account::onsets(&results.onsets, &results.stable));
+    text.push_str(&account::deviations(&results.deviations));
+    let _ = writeln!(text, "thesis: {PRINTED_M_S} m/s for both models");
+    Answer::new(
+        text,
+        &serde_json::json!({ "printed_m_s": PRINTED_M_S, "flutter": results }),
+    )
+}

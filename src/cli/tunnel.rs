@@ -1,0 +1,48 @@
+//! `aerodeck tunnel`: records of the virtual wind tunnel.
+
+use super::answer::Answer;
+use super::common::StudyArgs;
+use super::output::{OutputDir, list};
+use super::progress::Progress;
+use super::stages;
+use crate::error::Result;
+use crate::study::Deck;
+use std::fmt::Write as _;
+
+/// Rebuild the forced-vibration records of a study's deck and write them as CSV
+///
+/// Example: aerodeck tunnel study.toml
+#[derive(clap::Args)]
+#[command(verbatim_doc_comment)]
+pub struct Args {
+    #[command(flatten)]
+    study: StudyArgs,
+}
+
+/// Runs the command.
+pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+    let study = args.study.read()?;
+    let deck = Deck::load(&study)?;
+    let mut out = OutputDir::new(&args.study.directory())?;
+    let records = stages::tunnel(&study, &deck, &mut out, progress)?;
+    let mut text = format!("{}\n{}\n", study.name, deck.description());
+    for (_, record) in &records {
+        let h = &record.header;
+        let samples = record.motion.first().map_or(0, Vec::len);
+        let _ = writeln!(
+            text,
+            "  {}: {:.2} m/s, {} frequencies, {samples} samples at {} Hz",
+            h.name,
+            h.mean_speed_m_s,
+            h.segments.len(),
+            h.sampling_hz,
+        );
+    }
+    let headers: Vec<_> = records.iter().map(|(_, r)| r.header.clone()).collect();
+    let written = out.commit()?;
+    text.push_str(&list(&written));
+    Answer::new(
+        text,
+        &serde_json::json!({ "records": headers, "files": written }),
+    )
+}

@@ -1,0 +1,77 @@
+//! `aerodeck validate`: the reference cases, expected against found.
+
+use super::answer::Answer;
+use super::progress::Progress;
+use crate::benchmarks::{CaseResult, Source, run as run_case, run_all, validation_table};
+use crate::error::Result;
+use std::fmt::Write as _;
+
+/// Compute the reference cases and compare them with published or independently computed figures
+///
+/// Example: aerodeck validate
+#[derive(clap::Args)]
+#[command(verbatim_doc_comment)]
+pub struct Args {
+    /// One case by name; by default, all.
+    case: Option<String>,
+    /// The table in Markdown, as it stands in the README.
+    #[arg(long)]
+    markdown: bool,
+}
+
+/// Runs the command.
+pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+    let stage = progress.stage("reference cases");
+    let results = match &args.case {
+        Some(name) => run_case(name)?,
+        None => run_all(),
+    };
+    drop(stage);
+    let passed = results.iter().all(|r| r.passed);
+    let text = if args.markdown {
+        validation_table(&results)
+    } else {
+        table(&results)
+    };
+    Ok(Answer::new(text, &results)?.with_verdict(passed))
+}
+
+fn table(results: &[CaseResult]) -> String {
+    let mut text = String::new();
+    let mut case = "";
+    for r in results {
+        if r.name != case {
+            case = r.name;
+            let _ = writeln!(text, "{case}: {}", r.what);
+        }
+        let _ = writeln!(text, "  {}", line(r));
+    }
+    let failed = results.iter().filter(|r| !r.passed).count();
+    let _ = writeln!(
+        text,
+        "{} figures, {failed} outside their tolerance",
+        results.len()
+    );
+    text
+}
+
+fn line(r: &CaseResult) -> String {
+    let verdict = if r.passed { "ok    " } else { "FAILED" };
+    let decimals = r.decimals;
+    let found = match (r.found, &r.problem) {
+        (Some(found), _) => format!("{found:.*}", decimals + 1),
+        (None, Some(problem)) => problem.clone(),
+        (None, None) => "nothing".to_owned(),
+    };
+    let deviation = r
+        .deviation
+        .map_or(String::new(), |d| format!(" ({d:+.1e})"));
+    let source = match r.source {
+        Source::Published(citation) => format!("published, {citation}"),
+        Source::Computed(method) => format!("computed, {method}"),
+    };
+    format!(
+        "{verdict} {}: expected {:.decimals$} {}, found {found}{deviation}, allowed ±{:.1e}: {}; {source}",
+        r.quantity, r.expected, r.unit, r.tolerance, r.reason
+    )
+}

@@ -1,0 +1,306 @@
+//! A study: one TOML file that says which deck, which section, which models, and what to do with them.
+//!
+//! Every stage of the chain is a function from values to values, so that each command of the program, the demo and a
+//! script of somebody else run the same code.
+
+mod deck;
+mod defaults;
+mod locate;
+mod models;
+mod onsets;
+mod stepped;
+
+pub use deck::{Deck, RecordSet};
+pub use defaults::{demo_study_text, thesis_study_text};
+pub use models::{TrainedWithReport, train_all, train_one};
+pub use onsets::{Deviation, Divergence, FlutterStudy, OnsetSummary, flutter_study};
+pub use stepped::{SteppedOnset, stepped_onset};
+
+use crate::error::{Error, Result, positive};
+use crate::flutter::OnsetSearch;
+use crate::identification::{DiscreteFit, FrequencyFit, TimeFit};
+use crate::section::SectionModel;
+use crate::wind_tunnel::TunnelPlan;
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+
+/// Version of the study file.
+pub const STUDY_SCHEMA: u32 = 1;
+
+/// Contents of a study file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Study {
+    /// [`STUDY_SCHEMA`].
+    pub schema: u32,
+    /// Name of the study.
+    pub name: String,
+    /// The suspended section.
+    pub section: SectionModel,
+    /// Where the aerodynamics come from.
+    pub deck: DeckSource,
+    /// Virtual wind tunnel; not used when the deck states records of its own.
+    #[serde(default)]
+    pub tunnel: TunnelPlan,
+    /// The models to train.
+    #[serde(rename = "model")]
+    pub models: Vec<ModelBlock>,
+    /// Where to look for the onset.
+    #[serde(default)]
+    pub flutter: FlutterBlock,
+    /// What to export.
+    #[serde(default)]
+    pub export: ExportBlock,
+    /// Directory of the file, against which paths in it are read.
+    #[serde(skip)]
+    pub directory: PathBuf,
+}
+
+/// Source of the aerodynamics.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DeckSource {
+    /// Name of an embedded deck, `flat plate`, or the path of a derivative table (`.csv`, `.xlsx`).
+    pub source: String,
+    /// Mean speeds of the table to be used, by their number from 1; left out, all.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub speed_groups: Option<Vec<usize>>,
+    /// Measured records (`.csv`) to be used instead of the virtual tunnel.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub records: Vec<PathBuf>,
+}
+
+/// One model and how it is fitted: exactly one of `records`, `table`, `discrete`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ModelBlock {
+    /// Name in tables and figures.
+    pub name: String,
+    /// Mean speeds used for this model, by their number from 1; left out, all of the deck.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub speed_groups: Option<Vec<usize>>,
+    /// Continuous model fitted to records in the time domain.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub records: Option<TimeFit>,
+    /// Continuous model fitted to the derivatives in the frequency domain.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub table: Option<FrequencyFit>,
+    /// The thesis's discrete Laguerre model, fitted to records.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub discrete: Option<DiscreteFit>,
+}
+
+/// Wind speeds of curves and search.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct FlutterBlock {
+    /// Highest wind speed of curves and search, m/s.
+    pub speed_max_m_s: f64,
+    /// Lowest wind speed of the curves, m/s.
+    pub speed_min_m_s: f64,
+    /// Number of wind speeds.
+    pub speeds: usize,
+}
+
+impl Default for FlutterBlock {
+    fn default() -> Self {
+        Self {
+            speed_max_m_s: 60.0,
+            speed_min_m_s: 5.0,
+            speeds: 120,
+        }
+    }
+}
+
+impl FlutterBlock {
+    /// The same as a search range.
+    pub fn search(&self) -> OnsetSearch {
+        OnsetSearch {
+            speed_max_m_s: self.speed_max_m_s,
+            speeds: self.speeds,
+        }
+    }
+
+    /// Wind speeds of the curves, m/s.
+    pub fn curve_speeds_m_s(&self) -> Vec<f64> {
+        let last = (self.speeds - 1) as f64;
+        (0..self.speeds)
+            .map(|i| {
+                self.speed_min_m_s + (self.speed_max_m_s - self.speed_min_m_s) * i as f64 / last
+            })
+            .collect()
+    }
+}
+
+/// Which model goes into the FMU, and its default experiment.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct ExportBlock {
+    /// Name of the model; left out, the first.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub model: Option<String>,
+    /// Wind speed of the default experiment as a part of the onset speed.
+    pub part_of_onset: f64,
+    /// Release from this vertical displacement, m.
+    pub initial_vertical_m: f64,
+    /// Release from this rotation, deg.
+    pub initial_rotation_deg: f64,
+    /// Length of the run, s.
+    pub stop_time_s: f64,
+    /// Communication step, s.
+    pub step_size_s: f64,
+}
+
+impl Default for ExportBlock {
+    fn default() -> Self {
+        Self {
+            model: None,
+            part_of_onset: 0.98,
+            initial_vertical_m: 0.01,
+            initial_rotation_deg: 1.0,
+            stop_time_s: 10.0,
+            step_size_s: 0.01,
+        }
+    }
+}
+
+impl Study {
+    /// Reads and checks a study file.
+    ///
+    /// # Errors
+    /// [`Error::Io`] when it cannot be read; [`Error::Input`] with file and line for everything that is wrong in it.
+    pub fn read(path: &Path) -> Result<Self> {
+        let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, e))?;
+        let directory = path.parent().unwrap_or(Path::new("")).to_path_buf();
+        Self::from_toml(&text, directory).map_err(|e| e.in_file(path))
+    }
+
+    /// Reads and checks the text of a study file; paths in it are read against `directory`.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with line and key for everything that is wrong in it.
+    pub fn from_toml(text: &str, directory: PathBuf) -> Result<Self> {
+        let mut study: Self = toml::from_str(text).map_err(|e| locate::syntax_error(text, &e))?;
+        study.directory = directory;
+        study.validate().map_err(|e| locate::with_line(text, e))?;
+        Ok(study)
+    }
+
+    fn validate(&self) -> Result<()> {
+        if self.schema != STUDY_SCHEMA {
+            return Err(Error::input(
+                "schema",
+                STUDY_SCHEMA.to_string(),
+                self.schema.to_string(),
+            ));
+        }
+        self.section.structure()?;
+        self.tunnel.validate()?;
+        if self.models.is_empty() {
+            return Err(Error::input("model", "at least one [[model]]", "none"));
+        }
+        for (i, model) in self.models.iter().enumerate() {
+            model.validate(&format!("model[{i}]"))?;
+            if self.models[..i].iter().any(|m| m.slug() == model.slug()) {
+                return Err(Error::input(
+                    format!("model[{i}].name"),
+                    "a name of its own for every model",
+                    format!("`{}` a second time", model.name),
+                ));
+            }
+        }
+        positive("flutter.speed_max_m_s", self.flutter.speed_max_m_s)?;
+        positive("flutter.speed_min_m_s", self.flutter.speed_min_m_s)?;
+        if self.flutter.speed_min_m_s >= self.flutter.speed_max_m_s || self.flutter.speeds < 2 {
+            return Err(Error::input(
+                "flutter",
+                "speed_min_m_s below speed_max_m_s and at least 2 speeds",
+                format!("{:?}", self.flutter),
+            ));
+        }
+        self.export.validate()?;
+        self.exported().map(|_| ())
+    }
+
+    /// The model that goes into the FMU.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when `export.model` names none of the models.
+    pub fn exported(&self) -> Result<&ModelBlock> {
+        let Some(name) = &self.export.model else {
+            return self
+                .models
+                .first()
+                .ok_or_else(|| Error::input("model", "at least one [[model]]", "none"));
+        };
+        self.models.iter().find(|m| m.name == *name).ok_or_else(|| {
+            let names: Vec<_> = self.models.iter().map(|m| m.name.as_str()).collect();
+            Error::input(
+                "export.model",
+                format!("one of {}", names.join(", ")),
+                format!("`{name}`"),
+            )
+        })
+    }
+}
+
+impl ModelBlock {
+    /// The name as part of a file name.
+    pub fn slug(&self) -> String {
+        let mut slug = String::new();
+        for c in self.name.chars() {
+            if c.is_alphanumeric() {
+                slug.extend(c.to_lowercase());
+            } else if !slug.ends_with('_') && !slug.is_empty() {
+                slug.push('_');
+            }
+        }
+        slug.trim_end_matches('_').to_owned()
+    }
+
+    fn validate(&self, place: &str) -> Result<()> {
+        if self.slug().is_empty() {
+            return Err(Error::input(
+                format!("{place}.name"),
+                "a name with letters or digits",
+                format!("`{}`", self.name),
+            ));
+        }
+        let below = |key: &str, result: Result<()>| {
+            result.map_err(|e| match e {
+                Error::Input(mut input) => {
+                    input.place = format!("{place}.{key}.{}", input.place);
+                    Error::Input(input)
+                }
+                other => other,
+            })
+        };
+        match (&self.records, &self.table, &self.discrete) {
+            (Some(fit), None, None) => below("records", fit.validate()),
+            (None, Some(fit), None) => below("table", fit.validate()),
+            (None, None, Some(fit)) => below("discrete", fit.validate()),
+            _ => Err(Error::input(
+                place,
+                "exactly one of `records`, `table`, `discrete`",
+                "none or several",
+            )),
+        }
+    }
+}
+
+impl ExportBlock {
+    fn validate(&self) -> Result<()> {
+        positive("export.part_of_onset", self.part_of_onset)?;
+        positive("export.stop_time_s", self.stop_time_s)?;
+        positive("export.step_size_s", self.step_size_s)?;
+        for (key, value) in [
+            ("export.initial_vertical_m", self.initial_vertical_m),
+            ("export.initial_rotation_deg", self.initial_rotation_deg),
+        ] {
+            if !value.is_finite() {
+                return Err(Error::input(key, "a finite number", value.to_string()));
+            }
+        }
+        Ok(())
+    }
+}
