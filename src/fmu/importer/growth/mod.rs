@@ -7,10 +7,10 @@ mod estimate;
 
 pub use estimate::{Growth, growth_of_samples};
 
+use super::Fmu;
 use super::description::{Kind, Value};
 use super::simulation::{Times, start};
 use super::slave::{Slave, Status, find};
-use super::Fmu;
 use crate::error::{Error, Result, positive};
 use serde::Serialize;
 
@@ -149,7 +149,10 @@ pub fn onset_by_stepping(fmu: &Fmu, search: &SteppingSearch) -> Result<SteppedSe
         let above = run.growth(speed)?;
         if above.1.rate_per_s >= 0.0 {
             let (speed, growth) = run.refine(below, above, search.tolerance)?;
-            return run.onset(speed, &growth).map(Box::new).map(SteppedSearch::Onset);
+            return run
+                .onset(speed, &growth)
+                .map(Box::new)
+                .map(SteppedSearch::Onset);
         }
         below = above;
     }
