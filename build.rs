@@ -10,7 +10,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
-/// Parts of `src/` that never reach the runtime; every other file there leads to a new build of it.
+/// Parts of `src/` that never reach the runtime, beside tests; every other file there leads to a new build of it.
 const NOT_IN_RUNTIME: [&str; 10] = [
     "main.rs",
     "benchmarks.rs",
@@ -24,11 +24,16 @@ const NOT_IN_RUNTIME: [&str; 10] = [
     "fmu/package",
 ];
 
+/// Environment variable that names a ready-made runtime to embed instead of building one, such as one for an older C
+/// library.
+const READY_MADE: &str = "AERODECK_RUNTIME";
+
 /// Name of the library in OUT_DIR.
 const EMBEDDED: &str = "aerodeck_section";
 
 fn main() -> ExitCode {
     println!("cargo::rerun-if-changed=build.rs");
+    println!("cargo::rerun-if-env-changed={READY_MADE}");
     if env::var_os("CARGO_FEATURE_PACKAGING").is_none() {
         return ExitCode::SUCCESS;
     }
@@ -46,14 +51,17 @@ fn main() -> ExitCode {
 fn embed_runtime() -> Result<(), String> {
     let source = PathBuf::from(variable("CARGO_MANIFEST_DIR")?);
     let out = PathBuf::from(variable("OUT_DIR")?);
-    watch(&source)?;
     let platform = platform()?;
     println!("cargo::rustc-env=AERODECK_RUNTIME_PLATFORM={platform}");
     let embedded = out.join(EMBEDDED);
     let copied = if env::var_os("CARGO_CFG_MIRI").is_some() {
         // an interpreter of Rust code has no use for a shared library, and cannot build one
         fs::write(&embedded, []).map(|()| 0)
+    } else if let Some(ready) = env::var_os(READY_MADE) {
+        println!("cargo::rerun-if-changed={}", Path::new(&ready).display());
+        fs::copy(ready, &embedded)
     } else {
+        watch(&source)?;
         fs::copy(build_runtime(&source, &out)?, &embedded)
     };
     copied.map_err(|e| format!("{}: {e}", embedded.display()))?;
@@ -71,11 +79,10 @@ fn watch(source: &Path) -> Result<(), String> {
             fs::read_dir(source.join(&folder)).map_err(|e| format!("{}: {e}", folder.display()))?;
         for entry in entries.flatten() {
             let path = folder.join(entry.file_name());
-            let below_src = path.strip_prefix("src").unwrap_or(&path).with_extension("");
-            let named = path.strip_prefix("src").unwrap_or(&path);
-            if NOT_IN_RUNTIME
-                .iter()
-                .any(|n| Path::new(n) == below_src || Path::new(n) == named)
+            let below_src = path.strip_prefix("src").unwrap_or(&path);
+            let stem = below_src.with_extension("");
+            let left_out = NOT_IN_RUNTIME.iter().map(Path::new);
+            if stem.ends_with("tests") || left_out.into_iter().any(|n| n == below_src || n == stem)
             {
                 continue;
             }

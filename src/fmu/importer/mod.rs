@@ -10,6 +10,7 @@ mod archive;
 mod checks;
 mod description;
 mod findings;
+mod growth;
 mod library;
 mod log;
 mod reading;
@@ -23,6 +24,10 @@ pub use description::{
     ScalarVariable, SimpleType, TypeAttributes, Unit, Unknown, Value, Variability,
 };
 pub use findings::{CheckReport, Finding, Severity, Trial};
+pub use growth::{
+    Growth, GrowthPoint, SteppedOnset, SteppedSearch, SteppingSearch, growth_of_samples,
+    onset_by_stepping,
+};
 pub use log::LogMessage;
 pub use simulation::{Simulation, Table, simulate};
 pub use slave::{FmuState, Slave, Status};

@@ -1,0 +1,211 @@
+//! Growth rate and frequency of the dominant mode of sampled free motion.
+//!
+//! The samples `z = [q₁, q̇₁, q₂, q̇₂, …]` of a linear section move as `z(t+T) = Φ z(t)` once the filters have decayed.
+//! `Φ` is fitted by least squares over the later half of the samples, in the directions in which there is motion
+//! (Schmid 2010, dynamic mode decomposition). `T` is about two periods: the longer it is, the less a disturbance of
+//! the samples biases `|μ|`. Of the eigenvalues `μ` the one with the most energy at the end counts:
+//! growth rate `ln|μ|/T`. Its frequency is known up to multiples of `2π/T` from `arg μ`, and the multiple from the
+//! eigenvector, in which rate and displacement stand in the ratio `λ`.
+
+use crate::error::{Error, Result};
+use crate::state_space::{eigenvalues, eigenvector};
+use nalgebra::{Complex, DMatrix, DVector, SVD};
+use std::f64::consts::TAU;
+
+/// Directions with less motion than this part of the largest are left out: rounding.
+const RANK_TOLERANCE: f64 = 1e-9;
+/// `T` in periods.
+const LAG_PERIODS: f64 = 2.0;
+
+/// The dominant mode of a motion.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Growth {
+    /// Real part of its eigenvalue, 1/s.
+    pub rate_per_s: f64,
+    /// Imaginary part, rad/s; 0 when it does not oscillate.
+    pub frequency_rad_s: f64,
+    /// Complex amplitudes of the displacements, one for each motion.
+    pub shape: Vec<Complex<f64>>,
+}
+
+/// Period in s from the size of rates against displacements, by the slowest motion.
+pub(super) fn rough_period(samples: &[f64], width: usize) -> f64 {
+    let mut sums = vec![0.0; width];
+    for row in samples.chunks_exact(width) {
+        for (sum, x) in sums.iter_mut().zip(row) {
+            *sum += x * x;
+        }
+    }
+    let slowest = sums
+        .chunks_exact(2)
+        .map(|pair| (pair[1] / pair[0]).sqrt())
+        .filter(|w| w.is_finite())
+        .fold(f64::INFINITY, f64::min);
+    TAU / slowest
+}
+
+/// Growth of the dominant mode in samples a step of `step_s` apart: rows of `width` values, displacement and rate of each
+/// motion in turn.
+///
+/// # Errors
+/// [`Error::Numerical`] when there are too few samples for two periods, or they are not finite or all zero.
+pub fn growth_of_samples(samples: &[f64], width: usize, step_s: f64) -> Result<Growth> {
+    let unclear = |why: &str| Error::Numerical(format!("growth rate: {why}"));
+    if width == 0 || width % 2 != 0 || samples.len() % width != 0 {
+        return Err(unclear("rows must hold pairs of displacement and rate"));
+    }
+    if !samples.iter().all(|x| x.is_finite()) {
+        return Err(unclear("the samples are not finite"));
+    }
+    let count = samples.len() / width;
+    let half = &samples[count / 2 * width..];
+    let rows = half.len() / width;
+    let period = rough_period(half, width);
+    let lag = ((LAG_PERIODS * period / step_s).round() as usize).max(1);
+    if !period.is_finite() || rows < lag + 2 * width {
+        return Err(unclear("too few samples, or no motion"));
+    }
+    // each signal in units of its own size, so that metres and radians count alike
+    let scale = sizes(half, width);
+    let scaled = DMatrix::from_fn(width, rows, |i, j| half[j * width + i] / scale[i]);
+    let early = scaled.columns(0, rows - lag);
+    let late = scaled.columns(lag, rows - lag);
+    let (phi, basis) = transition(&early.into_owned(), &late.into_owned())
+        .ok_or_else(|| unclear("no decomposition of the samples"))?;
+    let end = basis.transpose() * scaled.column(rows - 1);
+    let (mu, vector) = dominant(&phi, &end)?;
+    let vector = basis.map(|x| Complex::new(x, 0.0)) * vector;
+    let physical: Vec<_> = vector.iter().zip(&scale).map(|(v, s)| v * *s).collect();
+    let time = lag as f64 * step_s;
+    Ok(Growth {
+        rate_per_s: mu.norm().ln() / time,
+        frequency_rad_s: frequency(mu, &physical, time),
+        shape: physical.chunks_exact(2).map(|pair| pair[0]).collect(),
+    })
+}
+
+fn sizes(samples: &[f64], width: usize) -> Vec<f64> {
+    (0..width)
+        .map(|i| {
+            let squares: f64 = samples.iter().skip(i).step_by(width).map(|x| x * x).sum();
+            squares.sqrt().max(f64::MIN_POSITIVE)
+        })
+        .collect()
+}
+
+/// `Φ` on the directions of `early` that matter, and these directions as columns.
+fn transition(early: &DMatrix<f64>, late: &DMatrix<f64>) -> Option<(DMatrix<f64>, DMatrix<f64>)> {
+    let svd = SVD::try_new(early.transpose(), true, true, f64::EPSILON, 1000)?;
+    let (u, v_t) = (svd.u?, svd.v_t?);
+    let s = svd.singular_values;
+    let rank = s.iter().filter(|x| **x > RANK_TOLERANCE * s[0]).count();
+    if rank == 0 {
+        return None;
+    }
+    let basis = v_t.rows(0, rank).transpose();
+    let mut weights = u.columns(0, rank).into_owned();
+    for (mut column, value) in weights.column_iter_mut().zip(s.iter()) {
+        column /= *value;
+    }
+    Some((basis.transpose() * late * weights, basis))
+}
+
+/// Eigenvalue and eigenvector of `Φ` with the most energy in the state `end`.
+fn dominant(
+    phi: &DMatrix<f64>,
+    end: &DVector<f64>,
+) -> Result<(Complex<f64>, DVector<Complex<f64>>)> {
+    let values = eigenvalues(phi)?;
+    let vectors = values
+        .iter()
+        .map(|mu| eigenvector(phi, *mu))
+        .collect::<Result<Vec<_>>>()?;
+    let matrix = DMatrix::from_columns(&vectors);
+    let amplitudes = matrix
+        .lu()
+        .solve(&end.map(|x| Complex::new(x, 0.0)))
+        .ok_or_else(|| Error::Numerical("growth rate: modes coincide".into()))?;
+    let energy = |i: usize| amplitudes[i].norm() * vectors[i].norm();
+    let strongest = (0..values.len())
+        .max_by(|a, b| energy(*a).total_cmp(&energy(*b)))
+        .unwrap_or(0);
+    Ok((values[strongest], vectors[strongest].clone()))
+}
+
+/// `|Im λ|`: the multiple of `2π/T` that `arg μ` leaves open is taken from rate over displacement.
+fn frequency(mu: Complex<f64>, vector: &[Complex<f64>], time: f64) -> f64 {
+    if mu.im == 0.0 && mu.re > 0.0 {
+        return 0.0;
+    }
+    let largest = vector
+        .chunks_exact(2)
+        .max_by(|a, b| a[0].norm().total_cmp(&b[0].norm()));
+    let Some(pair) = largest else { return 0.0 };
+    let ratio = (pair[1] / pair[0]).im;
+    let turns = ((ratio * time - mu.arg()) / TAU).round();
+    ((mu.arg() + TAU * turns) / time).abs()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two modes and a filter transient with known eigenvalues, sampled at `step`.
+    fn motion(modes: &[(Complex<f64>, [Complex<f64>; 2])], step: f64, seconds: f64) -> Vec<f64> {
+        let mut samples = Vec::new();
+        for k in 0..(seconds / step) as usize {
+            let t = k as f64 * step;
+            let mut row = [0.0; 4];
+            for (lambda, shape) in modes {
+                for (i, amplitude) in shape.iter().enumerate() {
+                    let z = amplitude * (lambda * t).exp();
+                    row[2 * i] += z.re;
+                    row[2 * i + 1] += (z * lambda).re;
+                }
+            }
+            samples.extend(row);
+        }
+        samples
+    }
+
+    fn c(re: f64, im: f64) -> Complex<f64> {
+        Complex::new(re, im)
+    }
+
+    #[test]
+    fn growth_and_frequency_at_steps_ten_apart() {
+        // torsion branch near onset, strongly damped heave, a filter as slow as the heave
+        let modes = [
+            (c(0.013, 22.3), [c(0.3, 0.2), c(1.0, 0.0)]),
+            (c(-1.7, 14.0), [c(2.0, 0.0), c(0.1, 0.3)]),
+            (c(-1.5, 0.0), [c(0.5, 0.0), c(0.2, 0.0)]),
+        ];
+        for step in [0.005, 0.05] {
+            let found = growth_of_samples(&motion(&modes, step, 30.0), 4, step).unwrap();
+            assert!((found.rate_per_s - 0.013).abs() < 1e-8, "{found:?}");
+            assert!((found.frequency_rad_s - 22.3).abs() < 1e-7, "{found:?}");
+            let ratio = found.shape[0] / found.shape[1];
+            // the conjugate mode is the same one
+            assert!((ratio.re - 0.3).abs() < 1e-7 && (ratio.im.abs() - 0.2).abs() < 1e-7);
+        }
+    }
+
+    #[test]
+    fn two_lightly_damped_modes_are_told_apart() {
+        let modes = [
+            (c(-0.040, 12.6), [c(1.0, 0.0), c(0.02, 0.0)]),
+            (c(-0.095, 31.4), [c(0.01, 0.0), c(1.0, 0.0)]),
+        ];
+        let found = growth_of_samples(&motion(&modes, 0.02, 10.0), 4, 0.02).unwrap();
+        assert!((found.rate_per_s + 0.040).abs() < 1e-10, "{found:?}");
+        assert!((found.frequency_rad_s - 12.6).abs() < 1e-9);
+    }
+
+    #[test]
+    fn samples_that_tell_nothing_are_refused() {
+        for samples in [vec![0.0; 400], vec![f64::NAN; 400], vec![1.0; 8]] {
+            assert!(growth_of_samples(&samples, 4, 0.01).is_err());
+        }
+        assert!(growth_of_samples(&[1.0; 9], 3, 0.01).is_err());
+    }
+}
