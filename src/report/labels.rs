@@ -36,8 +36,9 @@ impl Area {
 #[derive(Debug)]
 pub(super) struct Labels {
     frame: Area,
-    /// Points to keep free: curves, sampled every few px, and markers.
+    /// Points to keep free: curves, sampled every few px.
     drawn: Vec<(f64, f64)>,
+    /// Markers and the labels so far.
     taken: Vec<Area>,
 }
 
@@ -50,18 +51,23 @@ impl Labels {
         }
     }
 
+    /// Keeps a marker free of labels.
+    pub(super) fn occupy(&mut self, (x, y): (f64, f64), radius: f64) {
+        self.taken.push(Area {
+            left: x - radius,
+            top: y - radius,
+            right: x + radius,
+            bottom: y + radius,
+        });
+    }
+
     /// Keeps a polyline (px) free of labels.
     pub(super) fn avoid(&mut self, points: &[(f64, f64)]) {
+        // far outside the frame nothing can be covered
+        let reach = (self.frame.right - self.frame.left) + (self.frame.bottom - self.frame.top);
         self.drawn.extend(points.first());
         for pair in points.windows(2) {
-            let ((x0, y0), (x1, y1)) = (pair[0], pair[1]);
-            // far outside the frame nothing can be covered
-            let reach = (self.frame.right - self.frame.left) + (self.frame.bottom - self.frame.top);
-            let steps = ((x1 - x0).hypot(y1 - y0).min(reach) / 3.0).ceil().max(1.0);
-            for i in 1..=steps as usize {
-                let t = i as f64 / steps;
-                self.drawn.push((x0 + t * (x1 - x0), y0 + t * (y1 - y0)));
-            }
+            self.drawn.extend(sampled(pair[0], pair[1], reach));
         }
     }
 
@@ -79,15 +85,30 @@ impl Labels {
                     right: left + width,
                     bottom: top + height,
                 };
-                let cost = self.cost(&area) + ring as f64 + 0.01 * i as f64;
+                let cost = self.cost(&area)
+                    + self.leader_cost((x, y), &area)
+                    + ring as f64
+                    + 0.01 * i as f64;
                 if best.is_none_or(|(lowest, _)| cost < lowest) {
                     best = Some((cost, area));
                 }
             }
         }
         let area = best.map_or(self.frame, |(_, area)| area);
+        self.avoid(&[(x, y), area.nearest((x, y))]);
         self.taken.push(area);
         area
+    }
+
+    /// A line from the point to the area must not cross labels and markers other than its own, which holds the point.
+    fn leader_cost(&self, at: (f64, f64), area: &Area) -> f64 {
+        let crossed = |p: &(f64, f64)| {
+            let foreign = |t: &&Area| t.contains(*p) && !t.contains(at);
+            self.taken.iter().filter(foreign).count()
+        };
+        sampled(at, area.nearest(at), f64::MAX)
+            .map(|p| 0.5 * crossed(&p) as f64)
+            .sum()
     }
 
     fn cost(&self, area: &Area) -> f64 {
@@ -96,6 +117,19 @@ impl Labels {
         let hidden = self.drawn.iter().filter(|p| area.contains(**p)).count();
         100.0 * outside + 50.0 * covered / area.size() + 0.5 * hidden as f64
     }
+}
+
+/// Points every 3 px from one end to the other, the first left out; at most as many as `reach` px hold.
+fn sampled(
+    (x0, y0): (f64, f64),
+    (x1, y1): (f64, f64),
+    reach: f64,
+) -> impl Iterator<Item = (f64, f64)> {
+    let steps = ((x1 - x0).hypot(y1 - y0).min(reach) / 3.0).ceil().max(1.0);
+    (1..=steps as usize).map(move |i| {
+        let t = i as f64 / steps;
+        (x0 + t * (x1 - x0), y0 + t * (y1 - y0))
+    })
 }
 
 /// Right above first, then the other sides; a zero centres the label.

@@ -179,7 +179,7 @@ impl Panel {
             {
                 for at in points {
                     draw_marker(&mut scene, at, (colour, shape, radius, hollow));
-                    labels.avoid(&[(at.0 - radius, at.1), (at.0 + radius, at.1)]);
+                    labels.occupy(at, radius + 1.5);
                 }
             } else if !self.notes.is_empty() {
                 labels.avoid(&points);
@@ -341,10 +341,12 @@ fn thinned(points: &[(f64, f64)], width_px: usize) -> Vec<(f64, f64)> {
 fn draw_note(scene: &mut Scene, labels: &mut Labels, at: (f64, f64), note: &Note) {
     let area = labels.place(at, &note.text, f64::from(NOTE_SIZE));
     let end = area.nearest(at);
-    if (end.0 - at.0).hypot(end.1 - at.1) > LEADERLESS {
+    let distance = (end.0 - at.0).hypot(end.1 - at.1);
+    if distance > LEADERLESS {
+        let outside = 0.5 * LEADERLESS / distance;
         scene.add(Primitive::Line {
-            x1: at.0,
-            y1: at.1,
+            x1: at.0 + outside * (end.0 - at.0),
+            y1: at.1 + outside * (end.1 - at.1),
             x2: end.0,
             y2: end.1,
             stroke: Color::from(note.colour),
