@@ -89,7 +89,7 @@ fn flat_plate_fits() -> Result<Vec<f64>> {
 
 fn onset(model: &Model) -> Result<f64> {
     let section = couple(&SectionModel::table_4_1(), model)?;
-    Ok(by_eigenvalues(&section, 80.0)?.speed_m_s)
+    Ok(by_eigenvalues(&section, 80.0, None)?.speed_m_s)
 }
 
 fn lags(model: &Model) -> Vec<f64> {

@@ -7,6 +7,7 @@ use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
 use crate::flutter::{Onset, OnsetSearch, find_onset};
 use crate::section::SectionModel;
+use crate::units::ReducedFrequencyRange;
 
 const CLOSED_FORM: &str = "closed form from R. T. Jones, NACA Report 681 (1940)";
 
@@ -99,13 +100,17 @@ pub(super) fn couple(
     CoupledSection::new(section.structure()?, realization)
 }
 
-/// The onset by eigenvalues; a section that does not flutter is a failure here.
-pub(super) fn by_eigenvalues(section: &CoupledSection, speed_max_m_s: f64) -> Result<Onset> {
+/// The onset by eigenvalues, inside the tested range if there is one; a section that does not flutter is a failure here.
+pub(super) fn by_eigenvalues(
+    section: &CoupledSection,
+    speed_max_m_s: f64,
+    tested: Option<ReducedFrequencyRange>,
+) -> Result<Onset> {
     let search = OnsetSearch {
         speed_max_m_s,
         ..OnsetSearch::default()
     };
-    find_onset("", section, &search, None)?
+    find_onset("", section, &search, tested)?
         .onset()
         .cloned()
         .ok_or_else(|| Error::Numerical(format!("no onset up to {speed_max_m_s} m/s")))
@@ -113,7 +118,7 @@ pub(super) fn by_eigenvalues(section: &CoupledSection, speed_max_m_s: f64) -> Re
 
 fn onset() -> Result<Vec<f64>> {
     let mut section = SectionModel::iabse_1_1a();
-    let onset = by_eigenvalues(&coupled(&section)?, 120.0)?;
+    let onset = by_eigenvalues(&coupled(&section)?, 120.0, None)?;
     let second = by_determinant(&section, &RationalModel::jones_flat_plate(), WIDE)?;
     let mut figures = vec![
         onset.speed_m_s,
@@ -124,7 +129,7 @@ fn onset() -> Result<Vec<f64>> {
     ];
     for density in [1.20, 1.25] {
         section.air_density_kg_m3 = density;
-        figures.push(by_eigenvalues(&coupled(&section)?, 120.0)?.speed_m_s);
+        figures.push(by_eigenvalues(&coupled(&section)?, 120.0, None)?.speed_m_s);
     }
     Ok(figures)
 }

@@ -94,7 +94,7 @@ fn choose_poles(
     let mut reports = Vec::new();
     for group in groups {
         let name = (group.len() == 1).then(|| (group[0].force, group[0].motion));
-        let total = group.iter().map(Entry::total).sum();
+        let total = group.len() as f64;
         let residuals = |free: &[f64]| weighted_residuals(group, form, &form.expand(free));
         let report = search_poles(count, (&fit.poles, bounds), name, total, &residuals)?;
         poles.extend(vec![form.expand(&report.chosen.poles); group.len()]);
@@ -103,18 +103,21 @@ fn choose_poles(
     Ok((poles, reports))
 }
 
-/// Residuals of all entries with the best coefficients for these poles.
+/// Residuals of all entries with the best coefficients for these poles, each entry in proportion to its own size: a
+/// pole that entries share is not chosen for the largest of them.
 fn weighted_residuals(entries: &[Entry], form: &Form, poles: &[f64]) -> Result<DVector<f64>> {
     let basis = Basis::orthonormal(form, poles)?;
     let mut all = Vec::new();
     for entry in entries {
         let fit = entry.fit(&basis)?;
         let residuals = entry.residuals(&basis, &fit.coefficients);
+        let total = entry.total();
+        let size = if total > 0.0 { total.sqrt() } else { 1.0 };
         all.extend(
             residuals
                 .iter()
                 .zip(&entry.rows)
-                .map(|(r, row)| r * row.weight),
+                .map(|(r, row)| r * row.weight / size),
         );
     }
     Ok(DVector::from_vec(all))

@@ -272,7 +272,8 @@ impl PoleSearch {
     }
 }
 
-/// What the residuals of a fit to a transfer matrix are divided by.
+/// What the residuals of a fit to a transfer matrix are divided by. In the search of poles that several entries share,
+/// each entry counts in proportion to its own weighted size besides.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum FrequencyWeights {
