@@ -7,7 +7,9 @@ use crate::aerodynamics::AerodynamicModel;
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, positive};
 
+use crate::report::{PNG_SCALE, PlottedSeries, TimePanel, time_history_figure};
 use crate::response::{Inputs, Outputs, Stepper};
+use crate::section::Dof;
 use crate::trained_model::TrainedModel;
 use serde::Serialize;
 use std::fmt::Write as _;
@@ -72,6 +74,9 @@ pub fn run(args: &Args) -> Result<Answer> {
     let mut out = OutputDir::new(directory)?;
     out.write("simulation.csv", csv(&model, speed, &trajectory))?;
     let title = format!("{} at {speed} m/s", model.name);
+    let figure = time_history_figure(&title, &panels(&model, &trajectory), "Time t (s)")?;
+    out.write("simulation.svg", figure.svg())?;
+    out.write("simulation.png", figure.png(PNG_SCALE)?)?;
     let written = out.commit()?;
     let text = format!(
         "{title}: {} steps of {step} s\n{}",
@@ -122,11 +127,7 @@ fn simulate(model: &TrainedModel, speed: f64, stop: f64, step: f64) -> Result<Tr
         ("_force", "n_m", "n_m_m"),
     ] {
         columns.extend(dofs.iter().map(|d| {
-            let unit = if *d == crate::section::Dof::Torsion {
-                angular
-            } else {
-                linear
-            };
+            let unit = if *d == Dof::Torsion { angular } else { linear };
             format!("{}{name}_{unit}", d.name())
         }));
     }
@@ -147,4 +148,26 @@ fn csv(model: &TrainedModel, speed: f64, trajectory: &Trajectory) -> String {
         let _ = writeln!(text, "{}", values.join(","));
     }
     text
+}
+
+/// Displacements over time, one panel a degree of freedom; rotations in degrees.
+fn panels(model: &TrainedModel, trajectory: &Trajectory) -> Vec<TimePanel> {
+    let dofs = model.section.dofs();
+    let panel = |(i, dof): (usize, &Dof)| {
+        let (unit, scale) = if *dof == Dof::Torsion {
+            ("deg", 1f64.to_degrees())
+        } else {
+            ("mm", 1e3)
+        };
+        let points = trajectory
+            .rows
+            .iter()
+            .map(|row| (row[0], scale * row[1 + i]))
+            .collect();
+        TimePanel {
+            y_label: format!("{} {} ({unit})", dof.name(), dof.symbol()),
+            series: vec![PlottedSeries::new(dof.name(), points)],
+        }
+    };
+    dofs.iter().enumerate().map(panel).collect()
 }

@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use crate::flutter::Onset;
 use crate::fmu::package::{Runtime, package};
 use crate::identification::{self, FitReport};
-use crate::report::{VfVgOptions, vf_vg_figure};
+use crate::report::{PNG_SCALE, VfVgOptions, vf_vg_figure};
 use crate::study::{
     Deck, FlutterStudy, RecordSet, Study, TrainedWithReport, flutter_study, train_one,
 };
@@ -146,7 +146,7 @@ pub fn flutter_figure(
     };
     let figure = vf_vg_figure(&results.curves, &onsets, &options)?;
     out.write(format!("{FIGURE}.svg"), figure.svg())?;
-    out.write(format!("{FIGURE}.png"), figure.png(2.0)?)
+    out.write(format!("{FIGURE}.png"), figure.png(PNG_SCALE)?)
 }
 
 /// Packs a model with all runtimes that are there.
