@@ -102,7 +102,7 @@ fn as_onset(model: &TrainedModel, found: &Found) -> Onset {
         mode_ratio: found.mode_ratio.unwrap_or(f64::NAN),
         phase_deg: found.phase_deg,
         damping_slope_s_m: None,
-        branch: "(stepped)".to_owned(),
+        branch: "dominant".to_owned(),
         in_tested_range: Some(model.tested_range.contains(k)),
         spurious_speeds_m_s: Vec::new(),
         warnings: Vec::new(),
