@@ -14,7 +14,7 @@ pub(super) struct Axis {
     /// Ends exactly at the data.
     pub(super) tight: bool,
     /// Starts at zero when nothing is negative.
-    pub(super) from_zero: bool,
+    pub(super) zero_based: bool,
     /// Logarithmic, when all values are positive; for values over more than a decade.
     pub(super) logarithmic: bool,
 }
@@ -26,7 +26,7 @@ impl Axis {
             range: None,
             within: None,
             tight: false,
-            from_zero: false,
+            zero_based: false,
             logarithmic: false,
         }
     }
@@ -34,8 +34,8 @@ impl Axis {
         self.tight = true;
         self
     }
-    pub(super) fn from_zero(mut self) -> Self {
-        self.from_zero = true;
+    pub(super) fn zero_based(mut self) -> Self {
+        self.zero_based = true;
         self
     }
 
@@ -54,7 +54,7 @@ impl Axis {
         };
         if self.range.is_none() && !self.tight {
             let margin = 0.05 * (high - low);
-            let bounded = self.from_zero && low >= 0.0;
+            let bounded = self.zero_based && low >= 0.0;
             low = if bounded { 0.0 } else { low - margin };
             high += margin;
         }

@@ -43,7 +43,7 @@ pub fn vf_vg_figure(
             label: String::new(),
             ..speed()
         },
-        Axis::new("Frequency f (Hz)").from_zero(),
+        Axis::new("Frequency f (Hz)").zero_based(),
     );
     let mut damping = Panel::new(speed(), Axis::new("Damping ratio ζ (%)"));
     damping.level = Some(0.0);

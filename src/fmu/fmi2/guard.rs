@@ -144,7 +144,9 @@ thread_local! {
 }
 
 /// The panic hook that was there before ours.
-static PREVIOUS_HOOK: OnceLock<Box<dyn Fn(&PanicHookInfo<'_>) + Send + Sync>> = OnceLock::new();
+type PanicHook = Box<dyn Fn(&PanicHookInfo<'_>) + Send + Sync>;
+
+static PREVIOUS_HOOK: OnceLock<PanicHook> = OnceLock::new();
 
 /// Keeps panics inside [`shielded`] silent: they are reported through the importer's logger, and collecting a backtrace
 /// would cost tens of megabytes. Others are reported as before. The hook owns nothing, so that nothing leaks when the

@@ -51,7 +51,7 @@ pub(super) fn rough_period(samples: &[f64], width: usize) -> f64 {
 /// [`Error::Numerical`] when there are too few samples for two periods, or they are not finite or all zero.
 pub fn growth_of_samples(samples: &[f64], width: usize, step_s: f64) -> Result<Growth> {
     let unclear = |why: &str| Error::Numerical(format!("growth rate: {why}"));
-    if width == 0 || width % 2 != 0 || samples.len() % width != 0 {
+    if width == 0 || !width.is_multiple_of(2) || !samples.len().is_multiple_of(width) {
         return Err(unclear("rows must hold pairs of displacement and rate"));
     }
     if !samples.iter().all(|x| x.is_finite()) {
