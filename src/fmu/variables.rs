@@ -5,9 +5,14 @@
 //! types.
 
 mod dependencies;
+mod parameters;
 mod section;
+#[cfg(test)]
+mod tests;
+mod words;
 
-pub use section::{SectionParameter, filters};
+pub use parameters::SectionParameter;
+pub use section::filters;
 
 use super::si::Unit;
 use crate::error::{Error, Result};

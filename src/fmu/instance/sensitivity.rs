@@ -3,8 +3,9 @@
 //! Outputs are linear in state and forces, `y = C(V) z + D w`, so their derivatives are products with the same
 //! matrices; the derivative with respect to the wind speed is closed too. Only section properties are differenced.
 
+use super::Instance;
 use super::layout::{DataType, Source};
-use super::{Instance, check_order};
+use super::values::check_order;
 use crate::aerodynamics::Realization;
 use crate::aeroelastic::CoupledSection;
 use crate::error::Result;

@@ -1,5 +1,7 @@
 //! The variables of the coupled section, in the order of the table.
 
+use super::parameters::SectionParameter;
+use super::words::{Words, motion, words};
 use super::{Calculated, Causality, Initial, Response, Role, Value, Variability, Variable};
 use crate::aerodynamics::AerodynamicModel;
 use crate::error::{Error, Result};
@@ -8,169 +10,10 @@ use crate::section::{Dof, SectionModel};
 use crate::trained_model::{Model, TrainedModel};
 use std::f64::consts::TAU;
 
-/// A tunable property of the section.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum SectionParameter {
-    /// Deck width `B`.
-    Width,
-    /// Air density `ρ`.
-    AirDensity,
-    /// Mass or mass moment of inertia per length.
-    Inertia(Dof),
-    /// Still-air natural frequency.
-    Frequency(Dof),
-    /// Ratio to critical damping.
-    DampingRatio(Dof),
-}
-
 /// Smallest width, density and mass: positive, and small enough for any model deck.
 const SMALLEST: f64 = 1e-6;
 /// Smallest inertia per length, kg·m²/m.
 const SMALLEST_INERTIA: f64 = 1e-9;
-
-/// Names, units and words of one degree of freedom.
-struct Words {
-    /// Displacement, rate, acceleration, force.
-    responses: [&'static str; 4],
-    /// Units of the same.
-    units: [&'static Unit; 4],
-    /// External force.
-    external: &'static str,
-    /// Displacement and rate at release.
-    initial: [&'static str; 2],
-    /// Inertia, frequency, damping ratio.
-    support: [&'static str; 3],
-    inertia_unit: &'static Unit,
-    inertia_quantity: &'static str,
-    /// The motion and its sign.
-    motion: &'static str,
-    /// The force and its sign.
-    force: &'static str,
-    force_quantity: &'static str,
-    /// Quantities of displacement, rate, acceleration.
-    quantities: [&'static str; 3],
-}
-
-const TRANSLATION_UNITS: [&Unit; 4] = [
-    &si::METRE,
-    &si::METRE_PER_SECOND,
-    &si::METRE_PER_SECOND2,
-    &si::NEWTON_PER_METRE,
-];
-const TRANSLATION_QUANTITIES: [&str; 3] = ["Length", "Velocity", "Acceleration"];
-
-static HEAVE: Words = Words {
-    responses: ["heave", "heave_rate", "heave_acceleration", "lift"],
-    units: TRANSLATION_UNITS,
-    external: "external_lift",
-    initial: ["initial_heave", "initial_heave_rate"],
-    support: ["mass", "heave_frequency", "heave_damping_ratio"],
-    inertia_unit: &si::KILOGRAM_PER_METRE,
-    inertia_quantity: "MassPerLength",
-    motion: "vertical displacement, positive up",
-    force: "vertical force per unit length of span, positive up",
-    force_quantity: "ForcePerLength",
-    quantities: TRANSLATION_QUANTITIES,
-};
-
-static SWAY: Words = Words {
-    responses: ["sway", "sway_rate", "sway_acceleration", "drag"],
-    units: TRANSLATION_UNITS,
-    external: "external_drag",
-    initial: ["initial_sway", "initial_sway_rate"],
-    support: ["sway_mass", "sway_frequency", "sway_damping_ratio"],
-    inertia_unit: &si::KILOGRAM_PER_METRE,
-    inertia_quantity: "MassPerLength",
-    motion: "lateral displacement, positive downwind",
-    force: "lateral force per unit length of span, positive downwind",
-    force_quantity: "ForcePerLength",
-    quantities: TRANSLATION_QUANTITIES,
-};
-
-static ROTATION: Words = Words {
-    responses: [
-        "rotation",
-        "rotation_rate",
-        "rotation_acceleration",
-        "moment",
-    ],
-    units: [
-        &si::RADIAN,
-        &si::RADIAN_PER_SECOND,
-        &si::RADIAN_PER_SECOND2,
-        &si::NEWTON_METRE_PER_METRE,
-    ],
-    external: "external_moment",
-    initial: ["initial_rotation", "initial_rotation_rate"],
-    support: ["inertia", "torsion_frequency", "torsion_damping_ratio"],
-    inertia_unit: &si::KILOGRAM_METRE2_PER_METRE,
-    inertia_quantity: "MomentOfInertiaPerLength",
-    motion: "rotation, positive nose-up",
-    force: "moment per unit length of span about the reference point, positive nose-up",
-    force_quantity: "MomentPerLength",
-    quantities: ["Angle", "AngularVelocity", "AngularAcceleration"],
-};
-
-fn words(dof: Dof) -> &'static Words {
-    match dof {
-        Dof::Vertical => &HEAVE,
-        Dof::Lateral => &SWAY,
-        Dof::Torsion => &ROTATION,
-    }
-}
-
-impl SectionParameter {
-    /// The properties of a section with these degrees of freedom, in the order of the table.
-    pub fn all(dofs: &[Dof]) -> Vec<Self> {
-        let supports = dofs
-            .iter()
-            .flat_map(|&d| [Self::Inertia(d), Self::Frequency(d), Self::DampingRatio(d)]);
-        [Self::Width, Self::AirDensity]
-            .into_iter()
-            .chain(supports)
-            .collect()
-    }
-
-    /// The value in a section, in the unit of the variable; a stiffness is turned into `f = √(K/m)/2π`. NaN for a
-    /// degree of freedom that the section does not have.
-    pub fn value_in(self, section: &SectionModel) -> f64 {
-        let support = |dof: Dof| match dof {
-            Dof::Torsion => {
-                let s = &section.torsion;
-                (
-                    s.inertia_kg_m2_m,
-                    s.frequency_hz,
-                    s.stiffness_n,
-                    s.damping_ratio,
-                )
-            }
-            _ => {
-                let s = match dof {
-                    Dof::Vertical => Some(&section.vertical),
-                    _ => section.lateral.as_ref(),
-                };
-                s.map_or((f64::NAN, None, None, f64::NAN), |s| {
-                    (
-                        s.mass_kg_m,
-                        s.frequency_hz,
-                        s.stiffness_n_m2,
-                        s.damping_ratio,
-                    )
-                })
-            }
-        };
-        match self {
-            Self::Width => section.width_m,
-            Self::AirDensity => section.air_density_kg_m3,
-            Self::Inertia(dof) => support(dof).0,
-            Self::DampingRatio(dof) => support(dof).3,
-            Self::Frequency(dof) => {
-                let (inertia, frequency, stiffness, _) = support(dof);
-                frequency.unwrap_or_else(|| (stiffness.unwrap_or(f64::NAN) / inertia).sqrt() / TAU)
-            }
-        }
-    }
-}
 
 /// Number of filter states of a model.
 ///
@@ -372,13 +215,6 @@ fn section_parameter(parameter: SectionParameter, section: &SectionModel) -> Var
         quantity: Some(quantity),
         min: Some(min),
         ..real(name, Role::Section(parameter), TUNABLE, description)
-    }
-}
-
-fn motion(dof: Dof) -> &'static str {
-    match dof {
-        Dof::Torsion => "torsional",
-        other => other.name(),
     }
 }
 

@@ -1,0 +1,85 @@
+//! Communication steps.
+
+use super::Instance;
+use crate::fmu::lifecycle::State;
+use crate::fmu::refusal::{Answer, Refusal};
+
+/// How far an importer's clock may have drifted from ours, relative to the time: sums of some 10⁶ steps.
+const CLOCK_TOLERANCE: f64 = 1e-9;
+/// The same relative to the step, for times near zero.
+const CLOCK_TOLERANCE_OF_STEP: f64 = 1e-6;
+
+impl Instance {
+    /// One communication step of `step` seconds from the point of time `point`.
+    ///
+    /// # Errors
+    /// An error for a step that is not positive, a point that is not ours, or an end behind the stop time; a discard,
+    /// with everything as it was, when the step cannot be computed.
+    pub fn do_step(&mut self, point: f64, step: f64) -> Answer<()> {
+        self.check_step(point, step)?;
+        if let Err(refusal) = self.advance(step) {
+            self.memory.state = State::StepFailed;
+            return Err(Refusal::discard(refusal.message));
+        }
+        self.run_inputs_on(step);
+        self.memory.time = point + step;
+        self.outputs_current = false;
+        Ok(())
+    }
+
+    pub(super) fn advance(&mut self, step: f64) -> Answer<()> {
+        self.prepare()?;
+        self.load_inputs();
+        if let Some(stepper) = &mut self.stepper {
+            stepper.advance(&mut self.memory.section, &self.inputs, step)?;
+        }
+        Ok(())
+    }
+
+    pub(super) fn check_step(&self, point: f64, step: f64) -> Answer<()> {
+        let time = self.memory.time;
+        if !(step.is_finite() && step > 0.0) {
+            return Err(Refusal::error(format!(
+                "communication step: expected a positive number, found {step}"
+            )));
+        }
+        let tolerance =
+            CLOCK_TOLERANCE * time.abs().max(point.abs()) + CLOCK_TOLERANCE_OF_STEP * step;
+        // written so that a NaN is refused
+        if !((point - time).abs() <= tolerance) {
+            return Err(Refusal::error(format!(
+                "communication point: expected {time} s, where the last step ended, found {point}"
+            )));
+        }
+        match self.memory.experiment.and_then(|e| e.stop) {
+            Some(stop) if point + step > stop + tolerance + CLOCK_TOLERANCE * stop.abs() => {
+                Err(Refusal::error(format!(
+                    "communication step: expected an end not after the stop time {stop} s, found {}",
+                    point + step
+                )))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    pub(super) fn load_inputs(&mut self) {
+        let (values, rates) = (&self.memory.values, &self.memory.input_rates);
+        self.inputs.wind_speed_m_s = values[self.layout.wind_speed];
+        self.inputs.wind_speed_rate_m_s2 = rates[0];
+        for (i, place) in self.layout.force.iter().enumerate() {
+            self.inputs.force[i] = values[*place];
+            self.inputs.force_rate[i] = rates[i + 1];
+        }
+    }
+
+    pub(super) fn run_inputs_on(&mut self, step: f64) {
+        let values = &mut self.memory.values;
+        let inputs =
+            std::iter::once(self.layout.wind_speed).chain(self.layout.force.iter().copied());
+        for (place, rate) in inputs.zip(&self.memory.input_rates) {
+            if *rate != 0.0 {
+                values[place] += rate * step;
+            }
+        }
+    }
+}

@@ -1,0 +1,97 @@
+//! Facts of the table that importers rely on.
+
+use super::*;
+use crate::section::Translation;
+
+fn fixture(kind: &str) -> TrainedModel {
+    let path = format!(
+        "{}/tests/data/models/{kind}.json",
+        env!("CARGO_MANIFEST_DIR")
+    );
+    TrainedModel::from_json(&std::fs::read_to_string(path).unwrap()).unwrap()
+}
+
+fn names(table: &VariableTable, places: &[usize]) -> Vec<&'static str> {
+    places.iter().map(|i| table.variables()[*i].name).collect()
+}
+
+fn direct(table: &VariableTable, output: &str) -> Vec<&'static str> {
+    let place = table.find_name(output).unwrap();
+    names(table, &table.variables()[place].direct_inputs)
+}
+
+#[test]
+fn names_are_unique_and_numbers_carry_units() {
+    for kind in ["continuous_laguerre", "rational", "discrete_laguerre"] {
+        let table = VariableTable::new(&fixture(kind)).unwrap();
+        for (i, v) in table.variables().iter().enumerate() {
+            assert_eq!(table.find_name(v.name), Some(i));
+            let ratio = v.name.ends_with("ratio") || v.name.ends_with("reduced_velocity");
+            let real = matches!(v.value, Value::Real(_));
+            assert_eq!(v.unit.is_some(), real && !ratio, "{}", v.name);
+            let shown = v
+                .display_unit
+                .map(|d| v.unit.unwrap().display.iter().any(|u| u.name == d));
+            assert_ne!(shown, Some(false), "{}", v.name);
+        }
+        assert_eq!(table.find(Role::ExternalForce(Dof::Lateral)), None);
+        assert_eq!(table.dofs(), Dof::TWO);
+    }
+}
+
+#[test]
+fn added_mass_couples_every_force_into_every_acceleration() {
+    let with = VariableTable::new(&fixture("rational")).unwrap();
+    let all = ["wind_speed", "external_lift", "external_moment"];
+    assert_eq!(direct(&with, "heave_acceleration"), all);
+    assert_eq!(direct(&with, "moment"), all);
+    let without = VariableTable::new(&fixture("discrete_laguerre")).unwrap();
+    assert_eq!(direct(&without, "heave_acceleration"), all[..2]);
+    assert_eq!(direct(&without, "moment"), all[..1]);
+    for table in [&with, &without] {
+        assert!(direct(table, "heave").is_empty() && direct(table, "rotation_rate").is_empty());
+        let heave = &table.variables()[table.find_name("heave").unwrap()];
+        let on: Vec<_> = heave.initial_dependencies.iter().map(|d| d.on).collect();
+        assert_eq!(names(table, &on), ["initial_heave"]);
+        assert!(heave.initial_dependencies[0].constant);
+    }
+}
+
+#[test]
+fn a_lateral_support_brings_its_variables() {
+    let mut model = fixture("discrete_laguerre");
+    model.section.lateral = Some(Translation {
+        mass_kg_m: 15.0,
+        frequency_hz: Some(1.5),
+        stiffness_n_m2: None,
+        damping_ratio: 0.003,
+    });
+    let table = VariableTable::new(&model).unwrap();
+    assert_eq!(table.dofs(), Dof::THREE);
+    for name in [
+        "external_drag",
+        "sway",
+        "sway_rate",
+        "sway_acceleration",
+        "drag",
+        "sway_mass",
+        "sway_frequency",
+        "sway_damping_ratio",
+        "initial_sway",
+        "initial_sway_rate",
+    ] {
+        assert!(table.find_name(name).is_some(), "{name}");
+    }
+    assert_eq!(table.variables().len(), 35 + 1 + 4 + 3 + 2);
+}
+
+#[test]
+fn start_values_outside_their_limits_are_refused() {
+    let mut model = fixture("rational");
+    model.section.vertical.mass_kg_m = 1e-9;
+    let message = VariableTable::new(&model).unwrap_err().to_string();
+    assert_eq!(
+        message,
+        "start value of mass: expected a finite number (minimum 0.000001, maximum none), found 0.000000001"
+    );
+}
