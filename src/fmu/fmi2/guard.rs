@@ -143,9 +143,9 @@ thread_local! {
     static SHIELDED: Cell<bool> = const { Cell::new(false) };
 }
 
-/// The panic hook that was there before ours.
 type PanicHook = Box<dyn Fn(&PanicHookInfo<'_>) + Send + Sync>;
 
+/// The panic hook that was there before ours.
 static PREVIOUS_HOOK: OnceLock<PanicHook> = OnceLock::new();
 
 /// Keeps panics inside [`shielded`] silent: they are reported through the importer's logger, and collecting a backtrace
