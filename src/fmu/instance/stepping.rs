@@ -45,8 +45,8 @@ impl Instance {
         }
         let tolerance =
             CLOCK_TOLERANCE * time.abs().max(point.abs()) + CLOCK_TOLERANCE_OF_STEP * step;
-        // written so that a NaN is refused
-        if !((point - time).abs() <= tolerance) {
+        let drift = (point - time).abs();
+        if drift.is_nan() || drift > tolerance {
             return Err(Refusal::error(format!(
                 "communication point: expected {time} s, where the last step ended, found {point}"
             )));
