@@ -52,10 +52,17 @@ def host():
     return re.search(r"^host: (\S+)", text_of("rustc", "-vV"), re.M).group(1)
 
 
+def zig_works():
+    """cargo-zigbuild takes `zig` or the Python package ziglang."""
+    if not shutil.which("cargo-zigbuild"):
+        return False
+    return bool(shutil.which("zig") or text_of("python3", "-m", "ziglang", "version").strip())
+
+
 def buildable():
     """(platform, target, file, ending, zig?) of all that can be built here."""
     targets, here = installed_targets(), host()
-    zig = shutil.which("cargo-zigbuild") is not None
+    zig = zig_works()
     for platform, target, file, ending, linker in PLATFORMS:
         if target not in targets:
             continue

@@ -140,5 +140,5 @@ fn another_fingerprint_is_refused_with_a_reason() {
         Err(e) => e.to_string(),
     };
     assert!(message.contains("it logged: [logStatusError]"), "{message}");
-    assert!(message.contains("guid"), "{message}");
+    assert!(message.contains("GUID"), "{message}");
 }
