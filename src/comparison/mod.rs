@@ -11,24 +11,38 @@
 //! | [`magnitude`] | `M_muw` | sample by sample difference |
 //! | [`magnitude_warped`] | `M_m` | the same after dynamic time warping |
 //! | [`wavelet`], [`wavelet_normalised`] | `M_w`, `M_wf` | amplitude over time and frequency |
+//! | [`probability_density`] | `M_pdf` | distribution of values |
+//! | [`stationarity`] | `M_s` | non-stationary content |
+//! | [`bicoherence`] | `M_b` | quadratic coupling of frequencies |
 //!
 //! Metrics are functions of a [`SignalPair`] and of a parameter struct with documented defaults; they return
 //! the value with the quantities it was made from ([`Metric`]). They know nothing of bridges.
 
 mod amplitude;
+mod bicoherence;
 mod correlation;
+mod density;
 mod dtw;
+mod gamma;
+mod kde;
 mod morlet;
 mod pair;
 mod phase;
+mod stationarity;
+mod surrogates;
 mod warping;
 mod wavelet;
 
 pub use amplitude::{DistanceDetails, LevelDetails, magnitude, peak, rms};
+pub use bicoherence::{BicoherenceDetails, BicoherenceParameters, Coupling, bicoherence};
+pub use density::{DensityDetails, DensityParameters, probability_density};
 pub use dtw::{WarpingPath, warping_path};
 pub use morlet::WaveletParameters;
 pub use pair::SignalPair;
 pub use phase::{LagEstimate, PhaseDetails, PhaseParameters, phase};
+pub use stationarity::{
+    StationarityDetails, StationarityParameters, StationarityTest, stationarity,
+};
 pub use warping::{WarpingDetails, WarpingParameters, magnitude_warped};
 pub use wavelet::{NormalisedWaveletDetails, WaveletDetails, wavelet, wavelet_normalised};
 

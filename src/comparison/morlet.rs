@@ -104,11 +104,13 @@ impl Morlet {
     /// Frequency of a level, Hz.
     pub(super) fn frequency_hz(&self, level: usize) -> f64 {
         let p = &self.parameters;
-        if p.level_count == 1 {
-            return p.frequency_min_hz;
-        }
-        let step = (p.frequency_max_hz - p.frequency_min_hz) / (p.level_count - 1) as f64;
-        p.frequency_min_hz + level as f64 * step
+        p.frequency_min_hz + level as f64 * self.frequency_step_hz()
+    }
+
+    /// Distance of the frequencies, Hz.
+    pub(super) fn frequency_step_hz(&self) -> f64 {
+        let p = &self.parameters;
+        (p.frequency_max_hz - p.frequency_min_hz) / (p.level_count.max(2) - 1) as f64
     }
 
     /// Samples outside the cone of influence at a level, possibly none.

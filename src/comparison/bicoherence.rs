@@ -1,0 +1,377 @@
+//! Metric of quadratic phase coupling.
+
+use super::amplitude::distance_metric;
+use super::morlet::{Morlet, WaveletParameters};
+use super::surrogates::random_stream;
+use super::{Metric, SignalPair};
+use crate::error::{Error, Result, non_negative, positive};
+use rand::Rng;
+use rayon::prelude::*;
+use rustfft::num_complex::Complex64;
+use serde::Serialize;
+use std::f64::consts::PI;
+
+/// Parameters of [`bicoherence`].
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct BicoherenceParameters {
+    /// Transform; default [`WaveletParameters::default`] with 120 levels. Time grows with the square of the levels.
+    pub wavelet: WaveletParameters,
+    /// Half width of the random factor `R` of the biphase, rad per rad; default 10π.
+    pub randomisation: f64,
+    /// Smallest constant biphase of the surrogates, rad; default 0.2.
+    pub smallest_biphase_rad: f64,
+    /// Number of surrogates; default 100.
+    pub surrogate_count: usize,
+    /// Standard deviations above the mean of the surrogates that coupling has to reach; default 2.
+    pub threshold_deviations: f64,
+    /// Seed of the random factors, default 1; both signals use the same ones.
+    pub seed: u64,
+}
+
+impl Default for BicoherenceParameters {
+    fn default() -> Self {
+        Self {
+            wavelet: WaveletParameters {
+                level_count: 120,
+                ..WaveletParameters::default()
+            },
+            randomisation: 10.0 * PI,
+            smallest_biphase_rad: 0.2,
+            surrogate_count: 100,
+            threshold_deviations: 2.0,
+            seed: 1,
+        }
+    }
+}
+
+/// A pair of frequencies coupled in one signal or both.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Coupling {
+    /// Lower frequency, Hz.
+    pub first_hz: f64,
+    /// Higher frequency, Hz; the third is the sum.
+    pub second_hz: f64,
+    /// Autobispectrum `B` of the reference, 0 if below its threshold (unit of the signals to the sixth).
+    pub reference: f64,
+    /// The same of the compared signal.
+    pub compared: f64,
+}
+
+/// What [`bicoherence`] found.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct BicoherenceDetails {
+    /// Coupled pairs of frequencies.
+    pub couplings: Vec<Coupling>,
+    /// Thresholds of `B` in reference and compared signal.
+    pub thresholds: [f64; 2],
+}
+
+/// Bicoherence metric `M_b = exp(−‖√B₁ − √B₂‖₂/‖√B₁‖₂)` of the phase-randomised wavelet autobispectra
+/// `B(f₁,f₂) = |Σ_t W(f₁,t) W(f₂,t) W*(f₁+f₂,t) e^{iR(t)β(t)} Δt|²`, β the biphase (argument of the triple product).
+///
+/// `R` is uniform in ±10π at every sample: only products whose biphase stays at zero, coupled quadratically, add
+/// up. Surrogates have the moduli of the products and one biphase each, uniform in ±(0.2, π); `B` counts where it
+/// exceeds the largest over the plane of `(mean + g · standard deviation)²` of the surrogates' `√B`. The plane is
+/// `f₁ ≤ f₂ ≤ f_max/2`; all pairs share the random factors of a surrogate. Samples inside the cone of influence of
+/// `f₁` count. No coupling in either signal gives 1, in one of them 0.
+///
+/// Memory: `W` at all levels up to `f_max/2` and their sums, 24 bytes per level and sample, and 16 bytes per
+/// surrogate and sample.
+///
+/// # Errors
+/// [`Error::Input`] for unusable parameters or a record too short for the cone at `f_max/2`.
+pub fn bicoherence(
+    pair: &SignalPair<'_>,
+    parameters: &BicoherenceParameters,
+) -> Result<Metric<BicoherenceDetails>> {
+    let plane = Plane::new(pair, parameters)?;
+    let [first, second] =
+        [pair.reference(), pair.compared()].map(|signal| plane.thresholded(signal, parameters));
+    let couplings: Vec<Coupling> = plane
+        .cells()
+        .zip(first.0.iter().zip(&second.0))
+        .filter(|(_, (a, b))| **a > 0.0 || **b > 0.0)
+        .map(|((i, j), (&reference, &compared))| Coupling {
+            first_hz: plane.single.frequency_hz(i),
+            second_hz: plane.single.frequency_hz(j),
+            reference,
+            compared,
+        })
+        .collect();
+    let exists = |level: fn(&Coupling) -> f64| couplings.iter().any(|c| level(c) > 0.0);
+    let value = match (exists(|c| c.reference), exists(|c| c.compared)) {
+        (false, false) => 1.0,
+        (true, true) => {
+            let roots = couplings
+                .iter()
+                .map(|c| (c.reference.sqrt(), c.compared.sqrt()));
+            distance_metric(roots)?.value
+        }
+        _ => 0.0,
+    };
+    Ok(Metric {
+        value,
+        details: BicoherenceDetails {
+            couplings,
+            thresholds: [first.1, second.1],
+        },
+    })
+}
+
+fn check(parameters: &BicoherenceParameters) -> Result<()> {
+    non_negative("randomisation of the biphase", parameters.randomisation)?;
+    non_negative("threshold of coupling", parameters.threshold_deviations)?;
+    let smallest = positive("smallest biphase, rad", parameters.smallest_biphase_rad)?;
+    if smallest >= PI {
+        return Err(Error::input(
+            "smallest biphase, rad",
+            "a number below π",
+            smallest.to_string(),
+        ));
+    }
+    if parameters.surrogate_count < 2 {
+        return Err(Error::input(
+            "number of surrogates",
+            "at least 2",
+            parameters.surrogate_count.to_string(),
+        ));
+    }
+    Ok(())
+}
+
+/// The plane of frequency pairs and what all pairs share.
+struct Plane {
+    /// Transform at the frequencies themselves, up to `f_max/2`.
+    single: Morlet,
+    /// Transform at their sums: twice the lowest frequency on, same distance, level i + j.
+    sums: Morlet,
+    time_step_s: f64,
+    /// `R(t)`.
+    factors: Vec<f64>,
+    /// `e^{iφ(1 + R(t))}` of each surrogate.
+    surrogates: Vec<Vec<Complex64>>,
+}
+
+impl Plane {
+    fn new(pair: &SignalPair<'_>, parameters: &BicoherenceParameters) -> Result<Self> {
+        check(parameters)?;
+        let (count, step) = (pair.sample_count(), pair.time_step_s());
+        // Also checks the parameters as given.
+        let whole = Morlet::new(&parameters.wavelet, count, step)?;
+        let half_hz = 0.5 * parameters.wavelet.frequency_max_hz;
+        let level_count = (0..whole.level_count())
+            .take_while(|&level| whole.frequency_hz(level) <= half_hz)
+            .count();
+        if level_count == 0 {
+            return Err(Error::input(
+                "highest wavelet frequency, Hz",
+                "at least twice the lowest",
+                parameters.wavelet.frequency_max_hz.to_string(),
+            ));
+        }
+        let lowest = parameters.wavelet.frequency_min_hz;
+        let grid = |level_count: usize, first_hz: f64| WaveletParameters {
+            level_count,
+            frequency_min_hz: first_hz,
+            frequency_max_hz: first_hz + (level_count - 1) as f64 * whole.frequency_step_hz(),
+            ..parameters.wavelet
+        };
+        Ok(Self {
+            single: Morlet::new(&grid(level_count, lowest), count, step)?,
+            sums: Morlet::new(&grid(2 * level_count - 1, 2.0 * lowest), count, step)?,
+            time_step_s: step,
+            factors: factors(parameters, 0, count).0,
+            surrogates: (1..=parameters.surrogate_count as u64)
+                .map(|stream| surrogate(parameters, stream, count))
+                .collect(),
+        })
+    }
+
+    /// Levels of all pairs, the lower one first.
+    fn cells(&self) -> impl Iterator<Item = (usize, usize)> + Clone {
+        let count = self.single.level_count();
+        (0..count).flat_map(move |i| (i..count).map(move |j| (i, j)))
+    }
+
+    /// `B` of all pairs, zero where it is not above the threshold, and the threshold.
+    fn thresholded(&self, signal: &[f64], parameters: &BicoherenceParameters) -> (Vec<f64>, f64) {
+        let rows = |plan: &Morlet| -> Vec<Vec<Complex64>> {
+            let spectrum = plan.spectrum(signal);
+            plan.by_groups(|levels| {
+                levels
+                    .map(|level| {
+                        let [row] = plan.rows(level, [&spectrum]);
+                        row
+                    })
+                    .collect::<Vec<_>>()
+            })
+            .concat()
+        };
+        let (single, sums) = (rows(&self.single), rows(&self.sums));
+        let cells: Vec<(usize, usize)> = self.cells().collect();
+        let values: Vec<[f64; 2]> = cells
+            .into_par_iter()
+            .map(|(i, j)| {
+                let inside = self.single.inside(i);
+                let products = inside
+                    .clone()
+                    .map(|t| single[i][t] * single[j][t] * sums[i + j][t].conj());
+                self.bispectrum(inside.start, products, parameters)
+            })
+            .collect();
+        let threshold = values.iter().fold(0.0_f64, |m, v| m.max(v[1]));
+        let kept = values
+            .iter()
+            .map(|v| if v[0] > threshold { v[0] } else { 0.0 })
+            .collect();
+        (kept, threshold)
+    }
+
+    /// `B` of one pair and the level its surrogates reach; the triple products start at sample `first`.
+    fn bispectrum(
+        &self,
+        first: usize,
+        products: impl Iterator<Item = Complex64>,
+        parameters: &BicoherenceParameters,
+    ) -> [f64; 2] {
+        let mut sum = Complex64::default();
+        let mut moduli = Vec::new();
+        for (product, factor) in products.zip(&self.factors[first..]) {
+            let (modulus, biphase) = product.to_polar();
+            sum += Complex64::from_polar(modulus, biphase * (1.0 + factor));
+            moduli.push(modulus);
+        }
+        let (mut mean, mut squares) = (0.0, 0.0);
+        for (index, surrogate) in self.surrogates.iter().enumerate() {
+            let sum: Complex64 = moduli
+                .iter()
+                .zip(&surrogate[first..])
+                .map(|(m, z)| z * m)
+                .sum();
+            let root = sum.norm() * self.time_step_s;
+            // Welford's recurrence.
+            let step = root - mean;
+            mean += step / (index + 1) as f64;
+            squares += step * (root - mean);
+        }
+        let deviation = (squares / (self.surrogates.len() - 1) as f64).sqrt();
+        let level = mean + parameters.threshold_deviations * deviation;
+        [(sum.norm() * self.time_step_s).powi(2), level * level]
+    }
+}
+
+/// Random factors `R(t)` of a stream, and a constant biphase of random sign.
+fn factors(parameters: &BicoherenceParameters, stream: u64, count: usize) -> (Vec<f64>, f64) {
+    let mut random = random_stream(parameters.seed, stream);
+    let modulus = random.random_range(parameters.smallest_biphase_rad..PI);
+    let biphase = if random.random() { modulus } else { -modulus };
+    let factors = (0..count)
+        .map(|_| parameters.randomisation * random.random_range(-1.0..=1.0))
+        .collect();
+    (factors, biphase)
+}
+
+fn surrogate(parameters: &BicoherenceParameters, stream: u64, count: usize) -> Vec<Complex64> {
+    let (factors, biphase) = factors(parameters, stream, count);
+    factors
+        .into_iter()
+        .map(|factor| Complex64::from_polar(1.0, biphase * (1.0 + factor)))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+    use std::f64::consts::TAU;
+
+    fn parameters() -> BicoherenceParameters {
+        BicoherenceParameters {
+            wavelet: WaveletParameters {
+                level_count: 33,
+                frequency_min_hz: 1.0,
+                frequency_max_hz: 9.0,
+                ..WaveletParameters::default()
+            },
+            surrogate_count: 40,
+            ..BicoherenceParameters::default()
+        }
+    }
+
+    /// Harmonics of 1.5 and 2.5 Hz, and one at their sum with a phase that wanders unless `coupled`.
+    fn triad(amplitude: f64, coupled: bool) -> Vec<f64> {
+        (0..2000)
+            .map(|k| {
+                let t = 0.02 * k as f64;
+                let wander = if coupled {
+                    0.0
+                } else {
+                    2.0 * (0.7 * t).sin() + t
+                };
+                (TAU * 1.5 * t).cos()
+                    + (TAU * 2.5 * t).cos()
+                    + amplitude * (TAU * 4.0 * t + wander).cos()
+            })
+            .collect()
+    }
+
+    fn metric(x1: &[f64], x2: &[f64]) -> Metric<BicoherenceDetails> {
+        let pair = SignalPair::new(x1, x2, 0.02).unwrap();
+        bicoherence(&pair, &parameters()).unwrap()
+    }
+
+    #[test]
+    fn coupling_is_found_at_its_frequencies_and_scales_with_the_product() {
+        let metric = metric(&triad(0.8, true), &triad(0.4, true));
+        let strongest = metric
+            .details
+            .couplings
+            .iter()
+            .max_by(|a, b| a.reference.total_cmp(&b.reference))
+            .unwrap();
+        assert_relative_eq!(strongest.first_hz, 1.5, max_relative = 1e-12);
+        assert_relative_eq!(strongest.second_hz, 2.5, max_relative = 1e-12);
+        // √B is the product of the three moduli, nearly proportional to the amplitude of the sum: the side lobes
+        // of the truncated wavelets let the other two harmonics into the third level.
+        assert_relative_eq!(
+            strongest.compared / strongest.reference,
+            0.25,
+            max_relative = 5e-2
+        );
+        // So where both are coupled the relative distance is a half; fewer cells pass in the weaker signal.
+        assert!((0.5..0.65).contains(&metric.value), "{}", metric.value);
+    }
+
+    #[test]
+    fn equal_signals_give_one_and_lost_coupling_nothing() {
+        let coupled = triad(0.8, true);
+        assert_eq!(metric(&coupled, &coupled).value, 1.0);
+        let uncoupled = triad(0.8, false);
+        let lost = metric(&coupled, &uncoupled);
+        assert!(
+            lost.details.couplings.iter().all(|c| c.compared == 0.0),
+            "{:?}",
+            lost.details.couplings
+        );
+        assert_eq!(lost.value, 0.0);
+    }
+
+    #[test]
+    fn unusable_parameters_are_refused() {
+        let x = triad(0.8, true);
+        let pair = SignalPair::new(&x, &x, 0.02).unwrap();
+        let narrow = BicoherenceParameters {
+            wavelet: WaveletParameters {
+                frequency_max_hz: 1.5,
+                ..parameters().wavelet
+            },
+            ..parameters()
+        };
+        assert!(bicoherence(&pair, &narrow).is_err());
+        let one = BicoherenceParameters {
+            surrogate_count: 1,
+            ..parameters()
+        };
+        assert!(bicoherence(&pair, &one).is_err());
+    }
+}

@@ -1,0 +1,387 @@
+//! Metric of non-stationary content.
+
+use super::amplitude::{DistanceDetails, distance_metric};
+use super::gamma::Gamma;
+use super::morlet::{Morlet, WaveletParameters};
+use super::surrogates::phase_randomised;
+use super::{Metric, SignalPair};
+use crate::error::{Error, Result, non_negative};
+use rayon::prelude::*;
+use rustfft::num_complex::Complex64;
+use serde::Serialize;
+
+/// Parameters of [`stationarity`].
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct StationarityParameters {
+    /// Transform; default [`WaveletParameters::default`]. Time grows with levels times surrogates.
+    pub wavelet: WaveletParameters,
+    /// Number of surrogates of each signal; default 200.
+    pub surrogate_count: usize,
+    /// Level of the test: a signal is stationary if its statistic lies below this quantile; default 0.95.
+    pub confidence: f64,
+    /// Standard deviations above the mean of the surrogates' scalograms that non-stationary content has to reach,
+    /// `g`; default 2.
+    pub threshold_deviations: f64,
+    /// Seed of the surrogates, default 1; both signals use it, so that equal signals pass the same test.
+    pub seed: u64,
+}
+
+impl Default for StationarityParameters {
+    fn default() -> Self {
+        Self {
+            wavelet: WaveletParameters::default(),
+            surrogate_count: 200,
+            confidence: 0.95,
+            threshold_deviations: 2.0,
+            seed: 1,
+        }
+    }
+}
+
+/// Test of one signal.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct StationarityTest {
+    /// Statistic Θ of the signal over the standard deviation of those of its surrogates.
+    pub statistic: f64,
+    /// Its probability under the gamma distribution fitted to the surrogates.
+    pub probability: f64,
+    /// Whether the probability is below the level of the test.
+    pub stationary: bool,
+}
+
+/// What [`stationarity`] found.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct StationarityDetails {
+    /// Test of the reference.
+    pub reference: StationarityTest,
+    /// Test of the compared signal.
+    pub compared: StationarityTest,
+    /// Norms of the non-stationary content, if both signals have some.
+    pub content: Option<DistanceDetails>,
+}
+
+/// Stationarity metric `M_s`: 1 if both signals are stationary, 0 if one is; if neither is, the wavelet metric of
+/// their non-stationary content, `exp(−‖F₁ − F₂‖_F/‖F₁‖_F)` inside the cone of influence.
+///
+/// Test (after Borgnat et al. 2010, IEEE Trans. Signal Process. 58(7)): with the scalogram `S = |W|²`, its local
+/// spectra `G(f, t)` and global spectrum `H(f)` of unit area, `Θ = var_t[Σ (G − H) log₁₀(G/H) Δf] ·
+/// (1 + var_t[Σ |log₁₀(S/S̄)| Δf])`, compared with the Θ of phase-randomised surrogates through a gamma
+/// distribution. All samples enter Θ, the ends of the record weigh alike on signal and surrogates.
+/// Content `F`: `|W|` where `S` exceeds, at its frequency, the largest over time of mean + g standard deviations of
+/// the surrogates' scalograms; both 0 gives 1, one 0 gives 0.
+///
+/// Memory: the spectra of the surrogates, about 32 bytes per sample and surrogate (up to twice that).
+///
+/// # Errors
+/// [`Error::Input`] for unusable parameters, a record too short for the cone, or a signal whose surrogates do not
+/// scatter (a constant, or all power at one Fourier frequency).
+pub fn stationarity(
+    pair: &SignalPair<'_>,
+    parameters: &StationarityParameters,
+) -> Result<Metric<StationarityDetails>> {
+    check(parameters)?;
+    let plan = Morlet::new(&parameters.wavelet, pair.sample_count(), pair.time_step_s())?;
+    let signals = [
+        Ensemble::new(&plan, pair.reference(), parameters),
+        Ensemble::new(&plan, pair.compared(), parameters),
+    ];
+    let reference = signals[0].test("reference signal", parameters)?;
+    let compared = signals[1].test("compared signal", parameters)?;
+    let mut content = None;
+    let value = match (reference.stationary, compared.stationary) {
+        (true, true) => 1.0,
+        (false, false) => {
+            let metric = content_metric(&plan, &signals, parameters.threshold_deviations)?;
+            content = Some(metric.details);
+            metric.value
+        }
+        _ => 0.0,
+    };
+    Ok(Metric {
+        value,
+        details: StationarityDetails {
+            reference,
+            compared,
+            content,
+        },
+    })
+}
+
+fn check(parameters: &StationarityParameters) -> Result<()> {
+    if parameters.surrogate_count < 2 {
+        return Err(Error::input(
+            "number of surrogates",
+            "at least 2",
+            parameters.surrogate_count.to_string(),
+        ));
+    }
+    if !(parameters.confidence > 0.0 && parameters.confidence < 1.0) {
+        return Err(Error::input(
+            "confidence of the stationarity test",
+            "a number between 0 and 1",
+            parameters.confidence.to_string(),
+        ));
+    }
+    non_negative(
+        "threshold of non-stationary content",
+        parameters.threshold_deviations,
+    )?;
+    Ok(())
+}
+
+/// Spectra of a signal and of its surrogates.
+struct Ensemble<'a> {
+    plan: &'a Morlet,
+    signal: Vec<Complex64>,
+    surrogates: Vec<Vec<Complex64>>,
+}
+
+impl<'a> Ensemble<'a> {
+    fn new(plan: &'a Morlet, signal: &[f64], parameters: &StationarityParameters) -> Self {
+        let surrogates = phase_randomised(signal, parameters.surrogate_count, parameters.seed);
+        Self {
+            plan,
+            signal: plan.spectrum(signal),
+            surrogates: surrogates.iter().map(|x| plan.spectrum(x)).collect(),
+        }
+    }
+
+    fn test(&self, place: &str, parameters: &StationarityParameters) -> Result<StationarityTest> {
+        let own = spread(self.plan, &self.signal);
+        let others: Vec<f64> = self
+            .surrogates
+            .par_iter()
+            .map(|spectrum| spread(self.plan, spectrum))
+            .collect();
+        let (_, deviation) = mean_and_deviation(others.iter().copied());
+        let scaled: Vec<f64> = others.iter().map(|x| x / deviation).collect();
+        let Some(gamma) = Gamma::fit(&scaled) else {
+            return Err(Error::input(
+                place,
+                "a signal with power at several frequencies",
+                "one whose phase-randomised surrogates are all alike",
+            ));
+        };
+        let statistic = own / deviation;
+        let probability = gamma.cumulative(statistic);
+        Ok(StationarityTest {
+            statistic,
+            probability,
+            stationary: probability < parameters.confidence,
+        })
+    }
+
+    /// Largest over time of mean + g standard deviations of the surrogates' scalograms at a level.
+    fn threshold(&self, level: usize, deviations: f64) -> f64 {
+        let count = self.plan.sample_count();
+        let (mut mean, mut squares) = (vec![0.0; count], vec![0.0; count]);
+        for (index, spectrum) in self.surrogates.iter().enumerate() {
+            let [row] = self.plan.rows(level, [spectrum]);
+            for ((w, m), s) in row.iter().zip(&mut mean).zip(&mut squares) {
+                // Welford's recurrence.
+                let step = w.norm_sqr() - *m;
+                *m += step / (index + 1) as f64;
+                *s += step * (w.norm_sqr() - *m);
+            }
+        }
+        let freedom = (self.surrogates.len() - 1) as f64;
+        mean.iter()
+            .zip(&squares)
+            .map(|(m, s)| m + deviations * (s / freedom).sqrt())
+            .fold(0.0, f64::max)
+    }
+
+    /// `|W|` inside the cone where it stands out of the surrogates, else 0.
+    fn content(&self, level: usize, deviations: f64) -> Vec<f64> {
+        let inside = self.plan.inside(level);
+        if inside.is_empty() {
+            return Vec::new();
+        }
+        let threshold = self.threshold(level, deviations);
+        let [row] = self.plan.rows(level, [&self.signal]);
+        row[inside]
+            .iter()
+            .map(|w| {
+                if w.norm_sqr() > threshold {
+                    w.norm()
+                } else {
+                    0.0
+                }
+            })
+            .collect()
+    }
+}
+
+fn content_metric(
+    plan: &Morlet,
+    signals: &[Ensemble<'_>; 2],
+    deviations: f64,
+) -> Result<Metric<DistanceDetails>> {
+    let groups = plan.by_groups(|levels| {
+        let mut pairs = Vec::new();
+        for level in levels {
+            let [first, second] = [&signals[0], &signals[1]].map(|s| s.content(level, deviations));
+            pairs.extend(first.into_iter().zip(second).filter(|p| *p != (0.0, 0.0)));
+        }
+        pairs
+    });
+    let pairs = || groups.iter().flatten().copied();
+    let nothing = |value| Metric {
+        value,
+        details: DistanceDetails {
+            distance: 0.0,
+            reference_norm: 0.0,
+        },
+    };
+    let (first, second) = (pairs().any(|p| p.0 > 0.0), pairs().any(|p| p.1 > 0.0));
+    match (first, second) {
+        (true, true) => distance_metric(pairs()),
+        (false, false) => Ok(nothing(1.0)),
+        _ => Ok(nothing(0.0)),
+    }
+}
+
+/// Statistic Θ. With `s(t) = ΣS` and the mean spectrum `h = S̄`, `Σ(G − H) ln(G/H)` is
+/// `Σ S ln(S/h)/s − Σ h ln(S/h)/Σh`, which needs one level at a time.
+fn spread(plan: &Morlet, spectrum: &[Complex64]) -> f64 {
+    // Silence would have an infinite logarithm.
+    const FLOOR: f64 = 1e-30;
+    let count = plan.sample_count();
+    let mut power = vec![0.0; count];
+    let mut weighted_local = vec![0.0; count];
+    let mut weighted_global = vec![0.0; count];
+    let mut deviation = vec![0.0; count];
+    let mut global = 0.0;
+    for level in 0..plan.level_count() {
+        let [row] = plan.rows(level, [spectrum]);
+        let mean = row.iter().map(|w| w.norm_sqr()).sum::<f64>() / count as f64;
+        if mean == 0.0 {
+            continue;
+        }
+        global += mean;
+        for (t, w) in row.iter().enumerate() {
+            let ratio = (w.norm_sqr() / mean).max(FLOOR);
+            let logarithm = ratio.log10();
+            power[t] += ratio * mean;
+            weighted_local[t] += ratio * mean * logarithm;
+            weighted_global[t] += mean * logarithm;
+            deviation[t] += logarithm.abs();
+        }
+    }
+    let step = plan.frequency_step_hz();
+    let divergence = (0..count).map(|t| weighted_local[t] / power[t] - weighted_global[t] / global);
+    let log_deviation = deviation.iter().map(|d| d * step);
+    let (_, divergence_spread) = mean_and_deviation(divergence);
+    let (_, log_spread) = mean_and_deviation(log_deviation);
+    divergence_spread.powi(2) * (1.0 + log_spread.powi(2))
+}
+
+/// Mean and standard deviation with n − 1.
+fn mean_and_deviation(values: impl ExactSizeIterator<Item = f64> + Clone) -> (f64, f64) {
+    let n = values.len() as f64;
+    let mean = values.clone().sum::<f64>() / n;
+    let squares: f64 = values.map(|x| (x - mean).powi(2)).sum();
+    (mean, (squares / (n - 1.0)).sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::comparison::surrogates::random_stream;
+    use approx::assert_relative_eq;
+    use rand_distr::{Distribution, StandardNormal};
+
+    const COUNT: usize = 1024;
+
+    fn parameters() -> StationarityParameters {
+        StationarityParameters {
+            wavelet: WaveletParameters {
+                level_count: 20,
+                frequency_min_hz: 2.0,
+                frequency_max_hz: 20.0,
+                ..WaveletParameters::default()
+            },
+            surrogate_count: 40,
+            ..StationarityParameters::default()
+        }
+    }
+
+    fn noise(stream: u64) -> Vec<f64> {
+        let mut random = random_stream(99, stream);
+        (0..COUNT)
+            .map(|_| StandardNormal.sample(&mut random))
+            .collect()
+    }
+
+    /// Noise of which a burst at 8 Hz stands out.
+    fn burst(amplitude: f64, stream: u64) -> Vec<f64> {
+        let mut x = noise(stream);
+        for (k, value) in x.iter_mut().enumerate() {
+            let t = (k as f64 - 512.0) * 0.01;
+            *value += amplitude * (-t * t / 0.5).exp() * (std::f64::consts::TAU * 8.0 * t).cos();
+        }
+        x
+    }
+
+    fn metric(x1: &[f64], x2: &[f64]) -> Metric<StationarityDetails> {
+        let pair = SignalPair::new(x1, x2, 0.01).unwrap();
+        stationarity(&pair, &parameters()).unwrap()
+    }
+
+    #[test]
+    fn noise_is_stationary_and_bursts_are_not() {
+        let both = metric(&noise(1), &noise(2));
+        assert!(both.details.reference.stationary && both.details.compared.stationary);
+        assert_eq!(both.value, 1.0);
+        let one = metric(&noise(1), &burst(12.0, 2));
+        assert!(!one.details.compared.stationary);
+        assert_eq!(one.value, 0.0);
+    }
+
+    #[test]
+    fn content_of_bursts_is_compared() {
+        let x = burst(12.0, 3);
+        let twice: Vec<f64> = x.iter().map(|v| 2.0 * v).collect();
+        let metric = metric(&x, &twice);
+        let content = metric.details.content.unwrap();
+        assert!(content.reference_norm > 0.0);
+        // The same surrogates twice as large, so the same content twice as large.
+        assert_relative_eq!(metric.value, (-1.0_f64).exp(), max_relative = 1e-12);
+    }
+
+    #[test]
+    fn statistic_is_the_sum_of_the_definition() {
+        let p = parameters();
+        let plan = Morlet::new(&p.wavelet, COUNT, 0.01).unwrap();
+        let spectrum = plan.spectrum(&burst(3.0, 4));
+        let scalogram: Vec<Vec<f64>> = (0..20)
+            .map(|level| {
+                let [row] = plan.rows(level, [&spectrum]);
+                row.iter().map(|w| w.norm_sqr()).collect()
+            })
+            .collect();
+        let df = 18.0 / 19.0;
+        let mean: Vec<f64> = scalogram
+            .iter()
+            .map(|row| row.iter().sum::<f64>() / COUNT as f64)
+            .collect();
+        let area = mean.iter().sum::<f64>() * df;
+        let at = |t: usize| {
+            let local = scalogram.iter().map(|row| row[t]).sum::<f64>() * df;
+            let mut sums = (0.0, 0.0);
+            for (row, m) in scalogram.iter().zip(&mean) {
+                let (g, h) = (row[t] / local, m / area);
+                sums.0 += (g - h) * (g / h).log10() * df;
+                sums.1 += (row[t] / m).log10().abs() * df;
+            }
+            sums
+        };
+        let (kl, lsd): (Vec<f64>, Vec<f64>) = (0..COUNT).map(at).unzip();
+        let variance = |x: &[f64]| mean_and_deviation(x.iter().copied()).1.powi(2);
+        assert_relative_eq!(
+            spread(&plan, &spectrum),
+            variance(&kl) * (1.0 + variance(&lsd)),
+            max_relative = 1e-10
+        );
+    }
+}
