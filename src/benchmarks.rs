@@ -8,6 +8,7 @@ mod decks;
 mod fits;
 mod flat_plate;
 mod jones;
+mod records;
 mod table;
 
 pub use table::validation_table;
@@ -162,9 +163,15 @@ pub struct CaseResult {
 
 /// All cases.
 pub fn cases() -> impl Iterator<Item = &'static Case> {
-    [flat_plate::CASES, jones::CASES, fits::CASES, decks::CASES]
-        .into_iter()
-        .flatten()
+    [
+        flat_plate::CASES,
+        jones::CASES,
+        fits::CASES,
+        records::CASES,
+        decks::CASES,
+    ]
+    .into_iter()
+    .flatten()
 }
 
 /// Computes every case. A computation that fails is a result that has not passed.
