@@ -204,13 +204,13 @@ fn wrong_studies_are_refused_with_line_and_key() {
     let at = folder.path();
     let good = aerodeck::study::demo_study_text();
     let cases: [(&str, &str, &[&str]); 14] = [
-        ("width_m = 0.5", "widht_m = 0.5", &["line 10", "widht_m"]),
+        ("width_m = 0.5", "widht_m = 0.5", &["line 9", "widht_m"]),
         (
             "width_m = 0.5",
             "width_m = 0.0",
-            &["line 10", "section.width_m", "positive", "found 0"],
+            &["line 9", "section.width_m", "positive", "found 0"],
         ),
-        ("width_m = 0.5", "width_m = \"half\"", &["line 10", "half"]),
+        ("width_m = 0.5", "width_m = \"half\"", &["line 9", "half"]),
         (
             "mass_kg_m = 15.0",
             "mass_kg_m = -15.0",

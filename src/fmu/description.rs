@@ -15,7 +15,7 @@ use uuid::Uuid;
 const MAX_DEFAULT_STEPS: f64 = 1000.0;
 
 /// Categories of log messages with their descriptions, as the standard names them.
-pub use super::fmi2::LOG_CATEGORIES;
+use super::log_categories::LOG_CATEGORIES;
 
 /// The description of an exported model.
 ///

@@ -10,6 +10,7 @@ pub mod identity;
 pub mod importer;
 pub mod instance;
 pub mod lifecycle;
+pub mod log_categories;
 #[cfg(feature = "packaging")]
 pub mod package;
 pub mod refusal;

@@ -8,29 +8,7 @@ use super::types::{
 };
 use std::ffi::{CStr, CString};
 
-/// Categories of log messages with their descriptions, under the names of the standard.
-pub const LOG_CATEGORIES: [(&str, &str); 6] = [
-    ("logEvents", "Instantiation, initialisation, reset"),
-    (
-        "logStatusWarning",
-        "Something unexpected that does not stop the run, such as an onset outside the tested range",
-    ),
-    (
-        "logStatusDiscard",
-        "A value or a step that was refused; everything is as it was before",
-    ),
-    (
-        "logStatusError",
-        "A call that failed; the instance has to be reset or set back to a saved state",
-    ),
-    (
-        "logStatusFatal",
-        "A defect of the program; the instance cannot be used any more",
-    ),
-    ("logAll", "Everything"),
-];
-
-/// Category of a message: place in [`LOG_CATEGORIES`].
+/// Category of a message: place in [`crate::fmu::log_categories::LOG_CATEGORIES`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Category {
     Events,

@@ -26,4 +26,3 @@ pub use exports_model_exchange::*;
 pub use exports_state::*;
 pub use exports_stepping::*;
 pub use exports_variables::*;
-pub use logger::LOG_CATEGORIES;
