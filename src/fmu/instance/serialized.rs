@@ -4,6 +4,7 @@
 //! magic "AERODECK" · version u32 · identity 16 bytes · number of values, inputs, states u32 each
 //! state code u8 · experiment u8 (bit 0: set up, bit 1: with a stop time) · start, stop, time f64
 //! values f64… · input rates f64… · section state f64… · phase f64
+//! digest of all bytes before, 16 bytes
 //! ```
 
 use super::memory::{Experiment, Memory};
@@ -14,11 +15,17 @@ use uuid::Uuid;
 const MAGIC: &[u8; 8] = b"AERODECK";
 const VERSION: u32 = 1;
 const HEADER: usize = 8 + 4 + 16 + 3 * 4 + 2;
+const DIGEST: usize = 16;
 
 /// Length in bytes of every saved state of an instance with this memory.
 pub(super) fn length(memory: &Memory) -> usize {
     // start, stop, time, phase
-    HEADER + 8 * (4 + counts(memory).iter().sum::<usize>())
+    HEADER + 8 * (4 + counts(memory).iter().sum::<usize>()) + DIGEST
+}
+
+/// Tells damaged bytes from whole ones: a changed digit would go unnoticed otherwise.
+fn digest(bytes: &[u8], guid: &Uuid) -> [u8; DIGEST] {
+    Uuid::new_v5(guid, bytes).into_bytes()
 }
 
 fn counts(memory: &Memory) -> [usize; 3] {
@@ -54,6 +61,8 @@ pub(super) fn write(memory: &Memory, guid: &Uuid) -> Vec<u8> {
     for number in numbers {
         bytes.extend_from_slice(&number.to_le_bytes());
     }
+    let digest = digest(&bytes, guid);
+    bytes.extend_from_slice(&digest);
     bytes
 }
 
@@ -98,6 +107,10 @@ pub(super) fn read(bytes: &[u8], guid: &Uuid, like: &Memory) -> Result<Memory> {
     if !(0.0..1.0).contains(&memory.section.phase) {
         let found = memory.section.phase.to_string();
         return Err(refused("phase", "a number in [0, 1)", found));
+    }
+    let expected = digest(&bytes[..bytes.len() - reader.bytes.len()], guid);
+    if reader.take("digest")? != expected {
+        return Err(refused("digest", "that of the bytes before", "another"));
     }
     reader.expect("end", &[])?;
     Ok(memory)

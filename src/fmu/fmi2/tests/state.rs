@@ -127,6 +127,17 @@ fn serialised_states_go_on_in_another_instance() {
     }
 }
 
+/// Makes the digest at the end that of the bytes before.
+fn sign(bytes: &mut [fmi2Byte]) {
+    let end = bytes.len() - 16;
+    let before: Vec<u8> = bytes[..end].iter().map(|b| *b as u8).collect();
+    let guid = uuid::Uuid::from_slice(&before[12..28]).unwrap();
+    let digest = uuid::Uuid::new_v5(&guid, &before).into_bytes();
+    for (place, new) in bytes[end..].iter_mut().zip(digest) {
+        *place = new as fmi2Byte;
+    }
+}
+
 #[test]
 fn damaged_bytes_are_refused() {
     let started = || Unit::started("rational");
@@ -154,9 +165,13 @@ fn damaged_bytes_are_refused() {
         ),
         // the first value is the wind speed
         (
-            damaged(&|b| b[numbers + 24..numbers + 32].copy_from_slice(&negative)),
+            damaged(&|b| {
+                b[numbers + 24..numbers + 32].copy_from_slice(&negative);
+                sign(b);
+            }),
             "wind_speed",
         ),
+        (damaged(&|b| b[numbers + 24] ^= byte(1)), "digest"),
         (damaged(&|b| b.truncate(100)), "more bytes"),
         (damaged(&|b| b.push(byte(0))), "end"),
         (Vec::new(), "magic"),

@@ -1,0 +1,117 @@
+//! Exports FMUs and lets FMPy, the importer most people use, judge and step them.
+//!
+//! Writes one FMU a model and `expected.json` (what the same models give in process) to a folder below the target
+//! directory, then runs `tests/fmpy` with pytest in an environment of its own; see `common/python.rs`.
+#![cfg(all(feature = "packaging", feature = "identification"))]
+
+#[path = "common/in_process.rs"]
+mod in_process;
+#[path = "common/models.rs"]
+#[allow(dead_code)] // how the fixtures are made is not needed here
+mod models;
+#[path = "common/python.rs"]
+mod python;
+
+use aerodeck::aerodynamics::derivatives::embedded;
+use aerodeck::fmu::package::{Overwrite, Runtime, write_fmu};
+use aerodeck::identification::{Form, FrequencyFit, fit_table};
+use aerodeck::section::{Dof, SectionModel};
+use aerodeck::trained_model::{Experiment, Provenance, SCHEMA_VERSION, TrainedModel};
+use serde_json::{Map, Value, json};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// The deck LN21-5200 with the section of Table 4.1, trained here on its measured derivatives.
+fn measured_deck(form: Form) -> TrainedModel {
+    let table = embedded::deck("LN21-5200").unwrap();
+    let fit = FrequencyFit {
+        form,
+        ..FrequencyFit::default()
+    };
+    let (model, report) = fit_table(&table.samples(&Dof::TWO), &Dof::TWO, &fit).unwrap();
+    TrainedModel {
+        schema_version: SCHEMA_VERSION,
+        name: "LN21-5200".into(),
+        section: SectionModel::table_4_1(),
+        model,
+        tested_range: report.tested_range,
+        provenance: Provenance {
+            source: "LN21-5200, measured derivatives".into(),
+            licence: "as of the data".into(),
+            method: report.method,
+            aerodeck_version: env!("CARGO_PKG_VERSION").into(),
+            notes: report.notes,
+        },
+        experiment: Experiment {
+            wind_speed_m_s: 35.0,
+            initial_vertical_m: 0.01,
+            initial_rotation_rad: 0.01,
+            stop_time_s: 10.0,
+            step_size_s: 0.01,
+            onset_search_limit_m_s: 80.0,
+        },
+    }
+}
+
+/// Writes the FMUs and what is expected of them.
+fn export() -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("fmpy");
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).unwrap();
+    let runtimes = [Runtime::embedded().unwrap()];
+    let mut expected = Map::new();
+    let mut export = |name: &str, model: &TrainedModel, golden: Option<&Path>| {
+        let fmu = folder.join(format!("{name}.fmu"));
+        write_fmu(&fmu, model, &runtimes, Overwrite::Refuse).unwrap();
+        expected.insert(name.into(), in_process::expectations(model, golden));
+    };
+    for kind in models::KINDS {
+        let text = fs::read_to_string(models::model_file(kind)).unwrap();
+        let golden = format!("{}/modelDescription/{kind}.xml", env!("CARGO_MANIFEST_DIR"));
+        let model = TrainedModel::from_json(&text).unwrap();
+        export(kind, &model, Some(Path::new(&golden)));
+    }
+    let lag = Form::Rational {
+        lags: 1,
+        added_mass: false,
+    };
+    export("measured_laguerre", &measured_deck(Form::default()), None);
+    export("measured_rational", &measured_deck(lag), None);
+    let text = serde_json::to_string(&json!({ "models": Value::Object(expected) })).unwrap();
+    fs::write(folder.join("expected.json"), text).unwrap();
+    folder
+}
+
+/// The number in front of `passed` in pytest's last lines.
+fn passed(output: &str) -> usize {
+    let words: Vec<_> = output.split_whitespace().collect();
+    let before = |at: usize| words[at.checked_sub(1)?].parse().ok();
+    (0..words.len())
+        .rev()
+        .filter(|&at| words[at].trim_end_matches(',') == "passed")
+        .find_map(before)
+        .unwrap_or(0)
+}
+
+#[test]
+fn fmpy_validates_and_steps_the_exported_fmus() {
+    let python = python::interpreter().unwrap_or_else(|message| panic!("{message}"));
+    let suite = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fmpy");
+    let output = Command::new(&python)
+        .args(["-m", "pytest", "-q", "--color=no"])
+        .arg(&suite)
+        .env("AERODECK_FMUS", export())
+        .env("PYTHONDONTWRITEBYTECODE", "1")
+        .env("PYTHONUTF8", "1")
+        .output()
+        .unwrap();
+    let said = format!(
+        "{}{}",
+        String::from_utf8_lossy(&output.stdout),
+        String::from_utf8_lossy(&output.stderr)
+    );
+    assert!(output.status.success(), "{}:\n{said}", output.status);
+    assert!(passed(&said) > 0, "nothing was tested:\n{said}");
+    println!("{said}");
+}
