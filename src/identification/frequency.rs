@@ -15,7 +15,7 @@ use nalgebra::DVector;
 /// Fits a continuous model to samples of `G`: real and imaginary parts, each at its own `K`.
 ///
 /// For given poles every entry is a linear least-squares problem; the poles follow from a bounded search that
-/// minimises the weighted residual of all entries together, or of each entry where it has poles of its own.
+/// minimises the relative weighted residuals of all entries together, or of each entry where it has poles of its own.
 ///
 /// # Errors
 /// [`Error::Input`] for impossible options, samples that are not finite, entries without samples or with too few.
@@ -94,31 +94,33 @@ fn choose_poles(
     let mut reports = Vec::new();
     for group in groups {
         let name = (group.len() == 1).then(|| (group[0].force, group[0].motion));
-        let total = group.len() as f64;
-        let residuals = |free: &[f64]| weighted_residuals(group, form, &form.expand(free));
-        let report = search_poles(count, (&fit.poles, bounds), name, total, &residuals)?;
+        let residuals = |free: &[f64]| relative_residuals(group, form, &form.expand(free));
+        let report = search_poles(count, (&fit.poles, bounds), name, &residuals)?;
         poles.extend(vec![form.expand(&report.chosen.poles); group.len()]);
         reports.push(report);
     }
     Ok((poles, reports))
 }
 
-/// Residuals of all entries with the best coefficients for these poles, each entry in proportion to its own size: a
-/// pole that entries share is not chosen for the largest of them.
-fn weighted_residuals(entries: &[Entry], form: &Form, poles: &[f64]) -> Result<DVector<f64>> {
+/// Weighted residuals of all entries with the best coefficients for these poles, each entry relative to its weighted
+/// data: whatever the weights, the poles do not follow the largest entry alone. The norm is the objective.
+fn relative_residuals(entries: &[Entry], form: &Form, poles: &[f64]) -> Result<DVector<f64>> {
     let basis = Basis::orthonormal(form, poles)?;
     let mut all = Vec::new();
     for entry in entries {
         let fit = entry.fit(&basis)?;
         let residuals = entry.residuals(&basis, &fit.coefficients);
         let total = entry.total();
-        let size = if total > 0.0 { total.sqrt() } else { 1.0 };
-        all.extend(
-            residuals
-                .iter()
-                .zip(&entry.rows)
-                .map(|(r, row)| r * row.weight / size),
-        );
+        let size = if total > 0.0 {
+            (total * entries.len() as f64).sqrt()
+        } else {
+            1.0
+        };
+        let weighted = residuals
+            .iter()
+            .zip(&entry.rows)
+            .map(|(r, row)| r * row.weight / size);
+        all.extend(weighted);
     }
     Ok(DVector::from_vec(all))
 }

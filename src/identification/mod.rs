@@ -1,6 +1,8 @@
 //! From records and tables to models: regressors, fits, reports.
 
 mod basis;
+#[cfg(test)]
+mod deck_tests;
 mod discrete;
 mod frequency;
 mod least_squares;

@@ -46,7 +46,8 @@ pub struct EntryReport {
     pub force: Dof,
     /// Motion (column of `G`).
     pub motion: Dof,
-    /// Root mean square of the unweighted residuals over that of the data; `None` when the records move several
+    /// Root mean square of the residuals over that of the data, unweighted for a transfer matrix, in the weights of the
+    /// fit for records; `None` when the records move several
     /// degrees of freedom at once, so that the residual belongs to no single entry.
     pub relative_rms: Option<f64>,
     /// Largest residual over the magnitude of `G` at its point; only for fits to a transfer matrix.
@@ -94,7 +95,7 @@ pub struct SearchReport {
 pub struct SearchPoint {
     /// Free poles, dimensionless.
     pub poles: Vec<f64>,
-    /// Weighted root mean square residual over that of the weighted data.
+    /// Root mean square of the relative weighted residuals of the entries (weighted residual over weighted data of each).
     pub objective: f64,
 }
 
@@ -103,7 +104,7 @@ pub struct SearchPoint {
 pub struct OrderReport {
     /// Number of filters `L`.
     pub filters: usize,
-    /// Weighted root mean square residual over that of the weighted data.
+    /// As in [`SearchPoint::objective`].
     pub objective: f64,
 }
 

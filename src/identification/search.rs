@@ -140,8 +140,7 @@ impl Bounds {
     }
 }
 
-/// Searches `count` poles that minimise the norm of `residuals` (weighted, with the best coefficients), relative to
-/// `total`, the weighted sum of squares of the data.
+/// Searches `count` poles that minimise the norm of `residuals` (weighted and relative, with the best coefficients).
 ///
 /// # Errors
 /// When no point of the grid can be fitted (the first such error).
@@ -149,12 +148,10 @@ pub(crate) fn search_poles(
     count: usize,
     (options, bounds): (&PoleSearch, Bounds),
     entry: Option<(Dof, Dof)>,
-    total: f64,
     residuals: &dyn Fn(&[f64]) -> Result<DVector<f64>>,
 ) -> Result<SearchReport> {
     let mut search = Search {
         residuals,
-        total,
         points: Vec::new(),
     };
     let starts = match &options.start {
@@ -180,13 +177,12 @@ pub(crate) fn search_poles(
 
 struct Search<'a> {
     residuals: &'a dyn Fn(&[f64]) -> Result<DVector<f64>>,
-    total: f64,
     points: Vec<SearchPoint>,
 }
 
 impl Search<'_> {
     fn evaluate(&mut self, poles: &[f64]) -> Result<f64> {
-        let objective = ((self.residuals)(poles)?.norm_squared() / self.total).sqrt();
+        let objective = (self.residuals)(poles)?.norm();
         self.points.push(SearchPoint {
             poles: poles.to_vec(),
             objective,
@@ -336,13 +332,13 @@ mod tests {
                     misfit.chain([0.1]),
                 ))
             };
-            let found = search_poles(target.len(), (&options, BOUNDS), None, 1.0, &residuals);
+            let found = search_poles(target.len(), (&options, BOUNDS), None, &residuals);
             for (p, t) in found.unwrap().chosen.poles.iter().zip(&target) {
                 assert!((p / t - 1.0).abs() < 1e-5, "{p} {t}");
             }
         }
         let outside = |p: &[f64]| Ok(DVector::from_element(1, p[0] + 1.0));
-        let found = search_poles(1, (&options, BOUNDS), None, 1.0, &outside).unwrap();
+        let found = search_poles(1, (&options, BOUNDS), None, &outside).unwrap();
         assert!((found.chosen.poles[0] / BOUNDS.min - 1.0).abs() < 1e-6);
     }
 }

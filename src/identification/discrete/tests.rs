@@ -1,17 +1,14 @@
 use super::*;
+use crate::aerodynamics::derivatives::embedded;
 use crate::aerodynamics::{AerodynamicModel, FlatPlate};
-use crate::identification::testing::{onset_m_s, records};
+use crate::identification::testing::{onset_m_s, records, sources};
 use crate::units::ReducedFrequency;
-use crate::wind_tunnel::Record;
-
-fn sources(records: &[Record]) -> Vec<&dyn RecordSource> {
-    records.iter().map(|r| r as &dyn RecordSource).collect()
-}
+use crate::wind_tunnel::TunnelPlan;
 
 /// The thesis's formulation on flat-plate records (8.17 m/s, α = 0.6), computed independently with NumPy.
 #[test]
 fn thesis_formulation_on_the_flat_plate() {
-    let all = records(&FlatPlate::default(), 8.17, 0.0, 1);
+    let all = records(&FlatPlate::default(), &[8.17], 0.0, 1);
     for (filters, expected) in [(3, 37.68), (5, 38.90)] {
         let fit = DiscreteFit {
             filters,
@@ -35,7 +32,7 @@ fn thesis_formulation_on_the_flat_plate() {
 /// Records that a discrete model made itself give it back, static term included.
 #[test]
 fn discrete_model_is_recovered() {
-    let mut all = records(&FlatPlate::default(), 8.17, 0.0, 1);
+    let mut all = records(&FlatPlate::default(), &[8.17], 0.0, 1);
     let (c, alpha, static_lift) = ([[1.2, -0.7], [0.4, 0.3]], 0.6_f64, 0.05);
     for (j, record) in all.iter_mut().enumerate() {
         let h = record.header.clone();
@@ -73,19 +70,17 @@ fn discrete_model_is_recovered() {
 /// K only.
 #[test]
 fn speeds_are_stacked_at_one_step() {
-    let fast = records(&FlatPlate::default(), 8.0, 0.0, 1);
-    let slow = records(&FlatPlate::default(), 5.3, 0.0, 1);
     let fit = DiscreteFit {
         filters: 5,
         ..DiscreteFit::default()
     };
-    let both: Vec<Record> = fast.iter().chain(&slow).cloned().collect();
+    let both = records(&FlatPlate::default(), &[8.0, 5.3], 0.0, 1);
     let (model, report) = fit_discrete(&sources(&both), &fit, &|_| ()).unwrap();
     let Model::DiscreteLaguerre(discrete) = &model else {
         panic!("not discrete");
     };
     assert!((discrete.delta_s - 8.0 / 0.5 / 200.0).abs() < 1e-15);
-    let samples = 2.0 * 44_800.0 * (1.0 + 5.3 / 8.0);
+    let samples = 2.0 * 43_200.0 * (1.0 + 5.3 / 8.0);
     assert!((report.samples as f64 / samples - 1.0).abs() < 1e-3);
     // moment due to rotation at K = 0.5: five filters fit it within 5 %, from either speed
     let k = ReducedFrequency::from_full_width(0.5);
@@ -99,7 +94,7 @@ fn speeds_are_stacked_at_one_step() {
 
 #[test]
 fn impossible_options_are_refused() {
-    let all = records(&FlatPlate::default(), 8.17, 0.0, 1);
+    let all = records(&FlatPlate::default(), &[8.17], 0.0, 1);
     for (filters, alpha, expected) in [
         (0, 0.6, "filters: expected at least 1, found 0"),
         (3, 1.0, "alpha: expected 0 < alpha < 1, found 1"),
@@ -112,5 +107,20 @@ fn impossible_options_are_refused() {
         };
         let error = fit_discrete(&sources(&all), &fit, &|_| ()).unwrap_err();
         assert_eq!(error.to_string(), expected);
+    }
+}
+
+/// The thesis's headline: its own deck and formulation on the records of either test speed (NumPy: 37.87 and 38.78 m/s).
+#[test]
+fn thesis_formulation_on_ln21_5200() {
+    let table = embedded::deck("LN21-5200").unwrap();
+    let all = TunnelPlan::default()
+        .records_from_table(&table, &Dof::TWO)
+        .unwrap();
+    for (pair, expected) in all.chunks(2).zip([37.87, 38.78]) {
+        let fit = DiscreteFit::default();
+        let (model, _) = fit_discrete(&sources(pair), &fit, &|_| ()).unwrap();
+        let onset = onset_m_s(&model);
+        assert!((onset - expected).abs() < 0.15, "{onset} for {expected}");
     }
 }

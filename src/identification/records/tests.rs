@@ -1,13 +1,9 @@
 use super::*;
 use crate::aerodynamics::{AerodynamicModel, FlatPlate, RationalModel};
 use crate::identification::options::{FeedThrough, PoleSearch};
-use crate::identification::testing::{onset_m_s, records};
+use crate::identification::testing::{onset_m_s, records, sources};
 use crate::units::ReducedFrequency;
 use crate::wind_tunnel::{Record, RecordBlock, RecordHeader};
-
-fn sources(records: &[Record]) -> Vec<&dyn RecordSource> {
-    records.iter().map(|r| r as &dyn RecordSource).collect()
-}
 
 fn quiet(_: Progress) {}
 
@@ -38,13 +34,13 @@ fn assert_jones(model: &Model, tolerance: f64) {
     }
 }
 
-/// Records of a rational function give back its coefficients, from two speeds without resampling. What remains is the
-/// force of the ramps beyond the second order that the records contain (relative residual 2e-4 to 2e-3).
+/// Records of a rational function give back its coefficients, from two speeds without resampling, up to the images that the
+/// low-pass leaves.
 #[test]
 fn rational_function_is_recovered_from_its_records() {
     let jones = RationalModel::jones_flat_plate();
-    let mut all = records(&jones, 8.17, 0.0, 1);
-    all.extend(records(&jones, 4.0, 0.0, 1));
+    let all = records(&jones, &[8.17, 4.0], 0.0, 1);
+    let k = |f, v| ReducedFrequency::from_hertz(f, 0.5, v).full_width();
     for weights in [
         TimeWeights::None,
         TimeWeights::PerRecord,
@@ -59,7 +55,6 @@ fn rational_function_is_recovered_from_its_records() {
                 .all(|e| e.relative_rms.unwrap() < 2e-3)
         );
         let range = report.tested_range;
-        let k = |f, v| ReducedFrequency::from_hertz(f, 0.5, v).full_width();
         assert!((range.min.full_width() / k(0.25, 8.17) - 1.0).abs() < 1e-12);
         assert!((range.max.full_width() / k(2.5, 4.0) - 1.0).abs() < 1e-12);
     }
@@ -68,7 +63,7 @@ fn rational_function_is_recovered_from_its_records() {
 /// The sum of the records of the single motions, moving at once, carries the same coefficients.
 #[test]
 fn simultaneous_motions_are_told_apart() {
-    let parts = records(&RationalModel::jones_flat_plate(), 8.17, 0.0, 1);
+    let parts = records(&RationalModel::jones_flat_plate(), &[8.17], 0.0, 1);
     let shift = 700;
     let samples = parts[0].motion[0].len();
     let mut both = parts[0].clone();
@@ -106,7 +101,7 @@ fn simultaneous_motions_are_told_apart() {
 /// 39.468 m/s of the flat plate within 0.1 %.
 #[test]
 fn flat_plate_from_records() {
-    let all = records(&FlatPlate::default(), 8.17, 0.0, 1);
+    let all = records(&FlatPlate::default(), &[8.17], 0.0, 1);
     let calls = std::sync::atomic::AtomicUsize::new(0);
     let count = |p: Progress| {
         assert!(p.pass <= p.passes && p.records_done <= p.records);
@@ -131,8 +126,7 @@ fn flat_plate_from_records() {
 #[test]
 fn noise_of_five_per_cent() {
     for seed in 0..10 {
-        let mut all = records(&FlatPlate::default(), 8.17, 0.05, seed);
-        all.extend(records(&FlatPlate::default(), 4.0, 0.05, 100 + seed));
+        let all = records(&FlatPlate::default(), &[8.17, 4.0], 0.05, seed);
         let (model, _) = fit_records(&sources(&all), &TimeFit::default(), &quiet).unwrap();
         assert!(
             (onset_m_s(&model) / 39.468 - 1.0).abs() < 5e-3,
@@ -144,7 +138,7 @@ fn noise_of_five_per_cent() {
 /// A pole for each transfer function, found in the same passes.
 #[test]
 fn own_poles_from_records() {
-    let all = records(&FlatPlate::default(), 8.17, 0.0, 1);
+    let all = records(&FlatPlate::default(), &[8.17], 0.0, 1);
     let fit = TimeFit {
         form: Form::Laguerre {
             filters: 2,
@@ -186,7 +180,7 @@ impl RecordSource for Pieces {
 /// Streaming in blocks changes nothing but the order of the roundings.
 #[test]
 fn blocks_do_not_matter() {
-    let whole = records(&FlatPlate::default(), 8.17, 0.05, 3);
+    let whole = records(&FlatPlate::default(), &[8.17], 0.05, 3);
     let pieces: Vec<Pieces> = whole.iter().cloned().map(Pieces).collect();
     let streams: Vec<&dyn RecordSource> = pieces.iter().map(|p| p as _).collect();
     let fit = TimeFit {
@@ -202,7 +196,7 @@ fn blocks_do_not_matter() {
 
 #[test]
 fn bad_records_are_refused_with_their_place() {
-    let good = records(&FlatPlate::default(), 8.17, 0.0, 1);
+    let good = records(&FlatPlate::default(), &[8.17], 0.0, 1);
     let message = |all: &[Record], fit: &TimeFit| {
         fit_records(&sources(all), fit, &quiet)
             .unwrap_err()
@@ -217,14 +211,14 @@ fn bad_records_are_refused_with_their_place() {
     bad[1].force[0][1234] = f64::NAN;
     assert_eq!(
         message(&bad, &default),
-        "record torsion at 8.17 m/s, force, sample 1234: expected a finite number, found NaN"
+        "record test-torsion-8.17, force, sample 1234: expected a finite number, found NaN"
     );
     let mut short = good.clone();
     let Record { motion, force, .. } = &mut short[0];
     for channel in motion.iter_mut().chain(force) {
         channel.truncate(20);
     }
-    assert!(message(&short, &default).contains("record vertical at 8.17 m/s: expected at least"));
+    assert!(message(&short, &default).contains("record test-vertical-8.17: expected at least"));
     let one = message(&good[..1], &default);
     assert!(one.contains("a torsion motion rich enough"), "{one}");
     let cutoff = TimeFit {
@@ -234,5 +228,5 @@ fn bad_records_are_refused_with_their_place() {
     assert!(message(&good, &cutoff).starts_with("low_pass_hz: expected less than half"));
     let mut other = good.clone();
     other[1].header.mean_speed_m_s = 0.0;
-    assert!(message(&other, &default).contains("record torsion at 8.17 m/s: mean_speed_m_s"));
+    assert!(message(&other, &default).contains("record test-torsion-8.17: mean_speed_m_s"));
 }

@@ -313,10 +313,17 @@ impl Factored {
             .map(|(_, factors)| &factors[i])
     }
 
-    /// Weighted residual over weighted data of all forces with the first `filters` filters after `feed` columns.
-    pub fn objective(&self, leading_per_input: usize) -> f64 {
-        let leading = self.layout.index(leading_per_input, 0);
-        let sum = |columns| -> f64 { self.whole.iter().map(|f| f.residual_sum(columns, 0)).sum() };
-        (sum(leading) / sum(0)).sqrt()
+    /// Root mean square, over forces and sets of inputs, of the weighted residual relative to the weighted data, with the
+    /// first `per_input` columns of each input.
+    pub fn objective(&self, per_input: usize) -> f64 {
+        let (mut sum, mut count) = (0.0, 0.0);
+        for (set, factors) in self.sets.iter().filter(|(set, _)| !set.is_empty()) {
+            let leading = usize::from(self.layout.constant) + per_input * set.len();
+            for factor in factors.iter().filter(|f| f.total_sum(0) > 0.0) {
+                sum += factor.residual_sum(leading, 0) / factor.total_sum(0);
+                count += 1.0;
+            }
+        }
+        (sum / f64::max(count, 1.0)).sqrt()
     }
 }
