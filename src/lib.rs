@@ -1,4 +1,29 @@
 //! Self-excited wind forces on bridge decks: models, coupling, flutter, FMU.
+//!
+//! Every aerodynamic model is a transfer matrix `q̂(K) = G(K) r̂(K)` and, where it has one, a state-space realisation. A
+//! structure is `(M, R, K)`. Their coupling at a wind speed is one linear system; flutter, response and the FMU only
+//! ever see that system. So: data → identification → model → coupling → {flutter, response, FMU}.
+//!
+//! # Conventions
+//!
+//! | quantity | symbol | convention | unit |
+//! |---|---|---|---|
+//! | deck width | `B` | full width; semi-chord `b = B/2` | m |
+//! | vertical displacement, lift | `y`, `F_y` | positive up | m, N/m |
+//! | lateral displacement, drag | `x`, `F_x` | positive downwind | m, N/m |
+//! | rotation, moment | `θ`, `M` | positive nose-up (windward edge up) | rad, N·m/m |
+//! | forces | | per unit length of span | |
+//! | dimensionless time | `s` | `V t / B` | – |
+//! | reduced frequency | `K` | `ωB/V`; see [`units`] for `k`, `V̂`, `V*` | – |
+//! | dimensionless motion | `r` | `(y/B, x/B, θ)`, in this order everywhere | – |
+//! | dimensionless force | `q` | `F/(½ρV²B)`, `M/(½ρV²B²)` | – |
+//!
+//! # Map
+//!
+//! [`aerodynamics`] holds the force models, [`section`] the structure, [`aeroelastic`] their coupling, [`flutter`] modes and
+//! onsets, [`response`] the exact steps, [`trained_model`] what is saved, [`fmu`] the co-simulation slave with its
+//! packing and importer. `wind_tunnel` and `identification` lead from records and tables to models, `comparison` compares
+//! time histories, `study` runs the whole chain, `report` draws it and `cli` is the program.
 #![deny(unsafe_code, missing_docs)]
 
 pub mod aerodynamics;

@@ -73,13 +73,17 @@ pub enum Form {
         #[serde(default = "one")]
         lags: usize,
         /// Whether there is an `a₃`.
-        #[serde(default)]
+        #[serde(default = "yes")]
         added_mass: bool,
     },
 }
 
 fn one() -> usize {
     1
+}
+
+fn yes() -> bool {
+    true
 }
 
 fn three() -> usize {

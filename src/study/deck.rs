@@ -25,6 +25,8 @@ const EXACT_RANGE: (f64, f64) = (0.02, 10.0);
 #[derive(Debug, Clone)]
 pub struct Deck {
     source: Source,
+    /// Whether the table is part of this program.
+    built_in: bool,
     dofs: Vec<Dof>,
 }
 
@@ -61,7 +63,12 @@ impl Deck {
                 FLAT_PLATE,
             ));
         }
-        Ok(Self { source, dofs })
+        let built_in = matches!(source, Source::Table(_)) && !is_file;
+        Ok(Self {
+            source,
+            built_in,
+            dofs,
+        })
     }
 
     /// The deck in words.
@@ -75,6 +82,8 @@ impl Deck {
     /// Licence notice of the data.
     pub fn licence(&self) -> String {
         match &self.source {
+            // the notice has to go wherever the figures go
+            Source::Table(_) if self.built_in => embedded::LICENCE.to_owned(),
             Source::Table(table) => table.header.licence.clone(),
             Source::FlatPlate => "none needed: a closed formula".to_owned(),
         }

@@ -73,7 +73,7 @@ pub(super) fn write(memory: &Memory, guid: &Uuid) -> Vec<u8> {
 /// [`Error::Input`] naming what does not fit.
 pub(super) fn read(bytes: &[u8], guid: &Uuid, like: &Memory) -> Result<Memory> {
     let mut reader = Reader { bytes };
-    reader.expect("magic", MAGIC)?;
+    reader.demand("magic", MAGIC)?;
     let version = u32::from_le_bytes(reader.take("version")?);
     if version != VERSION {
         return Err(refused("version", VERSION.to_string(), version.to_string()));
@@ -112,7 +112,7 @@ pub(super) fn read(bytes: &[u8], guid: &Uuid, like: &Memory) -> Result<Memory> {
     if reader.take("digest")? != expected {
         return Err(refused("digest", "that of the bytes before", "another"));
     }
-    reader.expect("end", &[])?;
+    reader.demand("end", &[])?;
     Ok(memory)
 }
 
@@ -147,7 +147,7 @@ impl Reader<'_> {
     }
 
     /// The given bytes; no bytes stand for the end.
-    fn expect(&mut self, place: &str, expected: &[u8]) -> Result<()> {
+    fn demand(&mut self, place: &str, expected: &[u8]) -> Result<()> {
         if expected.is_empty() {
             return if self.bytes.is_empty() {
                 Ok(())
