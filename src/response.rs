@@ -12,8 +12,12 @@ mod varying_speed;
 use crate::aerodynamics::Realization;
 use crate::aeroelastic::{CoupledSection, CoupledSystem};
 use crate::error::{Error, Result, non_negative, positive};
+use crate::section::Dof;
 use nalgebra::{DMatrix, DVector};
 use step_cache::{StepCache, apply};
+
+/// Degrees of freedom at most: heave, sway, rotation.
+const MAX_DOFS: usize = Dof::THREE.len();
 
 /// Wind speed and external forces at the start of a step, and their constant rates over it.
 #[derive(Debug, Clone, PartialEq)]
@@ -202,16 +206,11 @@ impl Stepper {
         self.operand[..state.values.len()].copy_from_slice(&state.values);
         self.operand[state.values.len()..][..n].copy_from_slice(&inputs.force);
         let columns = state.values.len() + n;
-        apply(
-            &entry.acceleration,
-            &self.operand[..columns],
-            &mut outputs.acceleration,
-        );
-        apply(
-            &entry.force,
-            &self.operand[..columns],
-            &mut outputs.self_excited_force,
-        );
+        let mut both = [0.0; 2 * MAX_DOFS];
+        let both = &mut both[..2 * n];
+        apply(&entry.rows, &self.operand[..columns], both);
+        outputs.acceleration.copy_from_slice(&both[..n]);
+        outputs.self_excited_force.copy_from_slice(&both[n..]);
         Ok(())
     }
 

@@ -41,17 +41,33 @@ impl Packed {
     }
 }
 
+/// Sums that run side by side, so that no addition waits for the one before it.
+const PARTIAL_SUMS: usize = 4;
+
 /// `y = W v` over the first `v.len()` columns, which may be fewer than `W` has.
 pub(super) fn apply(w: &Packed, v: &[f64], y: &mut [f64]) {
     let y = &mut y[..w.rows];
     for (out, columns) in y.chunks_mut(LANES).zip(w.data.chunks_exact(w.columns)) {
-        let mut sum = [0.0; LANES];
-        for (column, x) in columns.iter().zip(v) {
-            for lane in 0..LANES {
-                sum[lane] += column[lane] * x;
+        let columns = &columns[..v.len()];
+        let mut sums = [[0.0; LANES]; PARTIAL_SUMS];
+        let four_columns = columns.chunks_exact(PARTIAL_SUMS);
+        let four_values = v.chunks_exact(PARTIAL_SUMS);
+        let rest = four_columns.remainder().iter().zip(four_values.remainder());
+        for (four, x) in four_columns.zip(four_values) {
+            for part in 0..PARTIAL_SUMS {
+                for lane in 0..LANES {
+                    sums[part][lane] += four[part][lane] * x[part];
+                }
             }
         }
-        out.copy_from_slice(&sum[..out.len()]);
+        for (part, (column, x)) in rest.enumerate() {
+            for lane in 0..LANES {
+                sums[part][lane] += column[lane] * x;
+            }
+        }
+        for (lane, y) in out.iter_mut().enumerate() {
+            *y = (sums[0][lane] + sums[1][lane]) + (sums[2][lane] + sums[3][lane]);
+        }
     }
 }
 
@@ -64,8 +80,8 @@ pub(super) struct StepEntry {
 /// Rows of accelerations and of self-excited forces over `[z, w]`, of one wind speed.
 #[derive(Debug, Clone)]
 pub(super) struct OutputEntry {
-    pub(super) acceleration: Packed,
-    pub(super) force: Packed,
+    /// Accelerations (n), then forces (n).
+    pub(super) rows: Packed,
 }
 
 /// Least recently used entries leave first; the one used last is found first.
@@ -135,18 +151,14 @@ impl StepCache {
         self.outputs.get(speed.to_bits(), || {
             let (c, d) = output_matrices(section, speed)?;
             let (n, states) = (section.structure().dofs.len(), section.states());
-            let rows = |from: usize| {
-                Packed::new(n, states + n, |i, j| {
-                    if j < states {
-                        c[(from + i, j)]
-                    } else {
-                        d[(from + i, j - states)]
-                    }
-                })
-            };
             Ok(OutputEntry {
-                acceleration: rows(2 * n),
-                force: rows(3 * n),
+                rows: Packed::new(2 * n, states + n, |i, j| {
+                    if j < states {
+                        c[(2 * n + i, j)]
+                    } else {
+                        d[(2 * n + i, j - states)]
+                    }
+                }),
             })
         })
     }

@@ -10,10 +10,8 @@ use crate::fmu::lifecycle::Call;
 use crate::fmu::refusal::{Answer, Refusal, Severity};
 use crate::fmu::variables::Value;
 use std::any::Any;
-use std::cell::Cell;
 use std::ffi::CString;
-use std::panic::{AssertUnwindSafe, PanicHookInfo, catch_unwind};
-use std::sync::OnceLock;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// What a component handle points to.
 #[derive(Debug)]
@@ -138,36 +136,67 @@ pub(super) unsafe fn not_offered(handle: fmi2Component, function: &str, why: &st
     fmi2Status::fmi2Error
 }
 
-thread_local! {
-    // a plain cell: a thread-local value with a destructor would keep the library loaded for ever
-    static SHIELDED: Cell<bool> = const { Cell::new(false) };
-}
+/// Silence about panics inside [`shielded`], where the library shares its process with Rust code that may panic on its
+/// own account (tests, the program). The runtime in an FMU has a panic hook to itself and needs no bookkeeping.
+#[cfg(feature = "packaging")]
+mod silence {
+    use std::cell::Cell;
+    use std::panic::PanicHookInfo;
+    use std::sync::OnceLock;
 
-type PanicHook = Box<dyn Fn(&PanicHookInfo<'_>) + Send + Sync>;
+    thread_local! {
+        // a plain cell: a thread-local value with a destructor would keep the library loaded for ever
+        static SHIELDED: Cell<bool> = const { Cell::new(false) };
+    }
 
-/// The panic hook that was there before ours.
-static PREVIOUS_HOOK: OnceLock<PanicHook> = OnceLock::new();
+    type PanicHook = Box<dyn Fn(&PanicHookInfo<'_>) + Send + Sync>;
 
-/// Keeps panics inside [`shielded`] silent: they are reported through the importer's logger, and collecting a backtrace
-/// would cost tens of megabytes. Others are reported as before. The hook owns nothing, so that nothing leaks when the
-/// library is unloaded.
-pub(super) fn install_panic_hook() {
-    static INSTALLED: std::sync::Once = std::sync::Once::new();
-    INSTALLED.call_once(|| {
+    /// The panic hook that was there before ours.
+    static PREVIOUS_HOOK: OnceLock<PanicHook> = OnceLock::new();
+
+    pub fn install() {
         let _ = PREVIOUS_HOOK.set(std::panic::take_hook());
         std::panic::set_hook(Box::new(|info| {
             if let (false, Some(previous)) = (SHIELDED.get(), PREVIOUS_HOOK.get()) {
                 previous(info);
             }
         }));
-    });
+    }
+
+    pub fn enter() -> bool {
+        SHIELDED.replace(true)
+    }
+
+    pub fn leave(outer: bool) {
+        SHIELDED.set(outer);
+    }
+}
+
+#[cfg(not(feature = "packaging"))]
+mod silence {
+    pub fn install() {
+        std::panic::set_hook(Box::new(|_| ()));
+    }
+
+    pub fn enter() -> bool {
+        false
+    }
+
+    pub fn leave(_: bool) {}
+}
+
+/// Keeps panics inside [`shielded`] silent: they are reported through the importer's logger, and collecting a backtrace
+/// would cost tens of megabytes. The hook owns nothing, so that nothing leaks when the library is unloaded.
+pub(super) fn install_panic_hook() {
+    static INSTALLED: std::sync::Once = std::sync::Once::new();
+    INSTALLED.call_once(silence::install);
 }
 
 /// Runs `body`; a panic in it is returned, not passed on.
 pub(super) fn shielded<T>(body: impl FnOnce() -> T) -> Result<T, Box<dyn Any + Send>> {
-    let outer = SHIELDED.replace(true);
+    let outer = silence::enter();
     let outcome = catch_unwind(AssertUnwindSafe(body));
-    SHIELDED.set(outer);
+    silence::leave(outer);
     outcome
 }
 

@@ -85,6 +85,8 @@ pub(super) struct Layout {
     pub force: Vec<usize>,
     /// Displacement, rate, acceleration and self-excited force of each degree of freedom.
     pub responses: Vec<[usize; 4]>,
+    /// Entry of the section's state that a variable is, for displacements and rates; by place.
+    pub state_entry: Vec<Option<usize>>,
     /// Displacement at release of each degree of freedom.
     pub initial_displacement: Vec<usize>,
     /// Rate at release of each degree of freedom.
@@ -110,8 +112,15 @@ impl Layout {
                 *slot = place(Role::Response(response, dof))?;
             }
         }
+        let mut state_entry = vec![None; table.variables().len()];
+        for (i, places) in responses.iter().enumerate() {
+            // the state begins with all displacements, then all rates
+            state_entry[places[0]] = Some(i);
+            state_entry[places[1]] = Some(dofs.len() + i);
+        }
         Ok(Self {
             access: table.variables().iter().map(Access::of).collect(),
+            state_entry,
             wind_speed: place(Role::WindSpeed)?,
             force: each(Role::ExternalForce)?,
             responses,

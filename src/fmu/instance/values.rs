@@ -53,7 +53,14 @@ impl Instance {
             .layout
             .readable(reference, wanted, self.memory.state, table)?;
         match access.source {
-            Source::Response if !self.outputs_current => self.refresh_outputs()?,
+            Source::Response if !self.outputs_current => {
+                self.prepare()?;
+                // what is part of the state needs no output equation
+                if let Some(entry) = self.layout.state_entry[place] {
+                    return Ok(self.memory.section.values[entry]);
+                }
+                self.refresh_outputs()?;
+            }
             Source::Calculated if !self.onset_current => self.refresh_onset()?,
             _ => {}
         }
