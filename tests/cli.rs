@@ -398,3 +398,32 @@ fn the_thesis_command_repeats_the_headline() {
     assert!((rational - 37.94).abs() < 0.15, "{rational}");
     assert!((laguerre / rational - 1.0).abs() < 0.005);
 }
+
+/// On the flat plate at 8.17 m/s the thesis's formulation is 4.5 % low, and the program says so and why.
+#[test]
+fn the_thesis_formulation_is_told_its_bias() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    let study = aerodeck::study::demo_study_text()
+        .replace("source = \"LN21-5200\"", "source = \"flat plate\"")
+        .replace("speed_groups = [1]", "speed_groups = [2]");
+    fs::write(at.join("study.toml"), study).unwrap();
+    let text = succeeds(at, &["study", "study.toml"]);
+    let said = "thesis: 4.5 % below flat plate (exact)";
+    assert!(
+        text.contains(said)
+            && text.contains("no feed-through")
+            && text.contains("holding the force"),
+        "{text}"
+    );
+    let summary: Value =
+        serde_json::from_str(&fs::read_to_string(at.join("summary.json")).unwrap()).unwrap();
+    let speed = |model: &str, method: &str| {
+        onset_of(&summary, model, method)["speed_m_s"]
+            .as_f64()
+            .unwrap()
+    };
+    assert!((speed("thesis", "eigenvalues") - 37.68).abs() < 0.1);
+    assert!((speed("flat plate (exact)", "determinant") - 39.468).abs() < 0.001);
+    assert!((speed("Laguerre", "eigenvalues") / 39.468 - 1.0).abs() < 0.005);
+}

@@ -130,7 +130,9 @@ impl Deck {
                 Ok(samples)
             }
             Source::FlatPlate => {
-                let speeds = &study.tunnel.speeds_m_s;
+                // groups are numbered from the lowest speed, as those of tables and records
+                let mut speeds = study.tunnel.speeds_m_s.clone();
+                speeds.sort_by(f64::total_cmp);
                 let chosen = chosen(groups, speeds.len())?;
                 let ks: Vec<_> = chosen
                     .iter()

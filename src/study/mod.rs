@@ -62,7 +62,7 @@ pub struct Study {
 pub struct DeckSource {
     /// Name of an embedded deck, `flat plate`, or the path of a derivative table (`.csv`, `.xlsx`).
     pub source: String,
-    /// Mean speeds of the table to be used, by their number from 1; left out, all.
+    /// Mean speeds of the table to be used, numbered from 1 for the lowest; left out, all.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub speed_groups: Option<Vec<usize>>,
     /// Measured records (`.csv`) to be used instead of the virtual tunnel.
@@ -76,7 +76,7 @@ pub struct DeckSource {
 pub struct ModelBlock {
     /// Name in tables and figures.
     pub name: String,
-    /// Mean speeds used for this model, by their number from 1; left out, all of the deck.
+    /// Mean speeds used for this model, numbered from 1 for the lowest; left out, all of the deck.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub speed_groups: Option<Vec<usize>>,
     /// Continuous model fitted to records in the time domain.
