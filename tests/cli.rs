@@ -427,3 +427,32 @@ fn the_thesis_formulation_is_told_its_bias() {
     assert!((speed("flat plate (exact)", "determinant") - 39.468).abs() < 0.001);
     assert!((speed("Laguerre", "eigenvalues") / 39.468 - 1.0).abs() < 0.005);
 }
+
+/// LN21-5500: the three routes agree within 3 %, the scatter of its two test speeds, and an instability far outside the
+/// tested range is named and not taken for the answer.
+#[test]
+fn spurious_onsets_are_named_and_not_taken() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    let study = aerodeck::study::demo_study_text()
+        .replace("source = \"LN21-5200\"", "source = \"LN21-5500\"");
+    fs::write(at.join("study.toml"), study).unwrap();
+    let text = succeeds(at, &["study", "study.toml"]);
+    let summary: Value =
+        serde_json::from_str(&fs::read_to_string(at.join("summary.json")).unwrap()).unwrap();
+    let laguerre = onset_of(&summary, "Laguerre", "eigenvalues");
+    let speed = |o: &Value| o["speed_m_s"].as_f64().unwrap();
+    let others = [
+        onset_of(&summary, "rational functions", "eigenvalues"),
+        onset_of(&summary, "interpolated table", "determinant"),
+    ];
+    for other in others {
+        let ratio = speed(laguerre) / speed(other);
+        assert!((ratio - 1.0).abs() < 0.03, "{ratio}");
+        assert_eq!(other["in_tested_range"], true);
+    }
+    assert_eq!(laguerre["in_tested_range"], true);
+    let spurious = laguerre["spurious_speeds_m_s"].as_array().unwrap();
+    assert!(spurious.iter().all(|v| v.as_f64().unwrap() < 10.0) && !spurious.is_empty());
+    assert!(text.contains("probably spurious"), "{text}");
+}
