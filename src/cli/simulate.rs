@@ -166,7 +166,7 @@ fn panels(model: &TrainedModel, trajectory: &Trajectory) -> Vec<TimePanel> {
             .collect();
         TimePanel {
             y_label: format!("{} {} ({unit})", dof.name(), dof.symbol()),
-            series: vec![PlottedSeries::new(dof.name(), points)],
+            series: vec![PlottedSeries::new(model.name.as_str(), points)],
         }
     };
     dofs.iter().enumerate().map(panel).collect()
