@@ -33,6 +33,18 @@ fn jones_onset(section: &SectionModel) -> Onset {
     search.onset().unwrap().clone()
 }
 
+fn jones_onset_by_determinant(section: &SectionModel) -> Onset {
+    let search = determinant_onset(
+        "Jones",
+        &section.structure().unwrap(),
+        &RationalModel::jones_flat_plate(),
+        wide_range(),
+        200.0,
+    )
+    .unwrap();
+    search.onset().unwrap().clone()
+}
+
 #[track_caller]
 fn near(found: f64, expected: f64, tolerance: f64) {
     assert!(
@@ -45,15 +57,7 @@ fn near(found: f64, expected: f64, tolerance: f64) {
 fn jones_by_eigenvalues_and_by_determinant() {
     let section = SectionModel::iabse_1_1a();
     let onset = jones_onset(&section);
-    let second = determinant_onset(
-        "Jones",
-        &section.structure().unwrap(),
-        &RationalModel::jones_flat_plate(),
-        wide_range(),
-        200.0,
-    )
-    .unwrap();
-    let second = second.onset().unwrap();
+    let second = jones_onset_by_determinant(&section);
     near(second.speed_m_s / onset.speed_m_s, 1.0, 1e-10);
     near(second.frequency_hz / onset.frequency_hz, 1.0, 1e-10);
     near(second.mode_ratio, onset.mode_ratio, 1e-8);
@@ -65,15 +69,7 @@ fn jones_by_eigenvalues_and_by_determinant() {
 fn an_overdamped_mode_hides_no_onset() {
     let section = SectionModel::table_4_1();
     let onset = jones_onset(&section);
-    let second = determinant_onset(
-        "Jones",
-        &section.structure().unwrap(),
-        &RationalModel::jones_flat_plate(),
-        wide_range(),
-        200.0,
-    )
-    .unwrap();
-    let second = second.onset().unwrap();
+    let second = jones_onset_by_determinant(&section);
     near(second.speed_m_s / onset.speed_m_s, 1.0, 1e-10);
     near(second.frequency_hz / onset.frequency_hz, 1.0, 1e-10);
     let structure = section.structure().unwrap();

@@ -12,7 +12,7 @@ mod stepped;
 
 pub use deck::{Deck, RecordSet};
 pub use defaults::{demo_study_text, thesis_study_text};
-pub use models::{TrainedWithReport, train_all, train_one};
+pub use models::{TrainedWithReport, train_one};
 pub use onsets::{Deviation, Divergence, FlutterStudy, OnsetSummary, flutter_study};
 pub use stepped::{SteppedOnset, stepped_onset};
 

@@ -16,23 +16,6 @@ pub struct TrainedWithReport {
     pub report: FitReport,
 }
 
-/// Trains all models of a study.
-///
-/// # Errors
-/// Those of [`train_one`].
-pub fn train_all(
-    study: &Study,
-    deck: &Deck,
-    records: &RecordSet,
-    progress: OnProgress<'_>,
-) -> Result<Vec<TrainedWithReport>> {
-    study
-        .models
-        .iter()
-        .map(|block| train_one(study, block, deck, records, progress))
-        .collect()
-}
-
 /// Trains one model of a study from its records or table.
 ///
 /// # Errors
