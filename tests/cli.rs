@@ -1,70 +1,13 @@
 //! The command line as a new user meets it: an empty folder, the demo, the single stages, and wrong input.
 
-use assert_cmd::Command;
+#[path = "common/command.rs"]
+#[allow(dead_code)] // each test file needs a part of it
+mod command;
+
+use command::{listing, onset_of, refused, succeeds};
 use serde_json::Value;
 use std::fs;
-use std::path::Path;
 use tempfile::TempDir;
-
-fn aerodeck(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
-    let output = Command::new(env!("CARGO_BIN_EXE_aerodeck"))
-        .current_dir(folder)
-        .args(arguments)
-        .output()
-        .unwrap();
-    (
-        output.status.code().unwrap(),
-        String::from_utf8(output.stdout).unwrap(),
-        String::from_utf8(output.stderr).unwrap(),
-    )
-}
-
-#[track_caller]
-fn succeeds(folder: &Path, arguments: &[&str]) -> String {
-    let (code, stdout, stderr) = aerodeck(folder, arguments);
-    assert_eq!(code, 0, "{arguments:?}\n{stdout}\n{stderr}");
-    stdout
-}
-
-/// Wrong input: exit code 2, every fragment in the message, and nothing new in the folder.
-#[track_caller]
-fn refused(folder: &Path, arguments: &[&str], fragments: &[&str]) {
-    let before = listing(folder);
-    let (code, stdout, stderr) = aerodeck(folder, arguments);
-    assert_eq!(code, 2, "{arguments:?}\n{stdout}\n{stderr}");
-    for fragment in fragments {
-        assert!(
-            stderr.contains(fragment),
-            "`{fragment}` is not in: {stderr}"
-        );
-    }
-    assert_eq!(listing(folder), before, "something was left behind");
-}
-
-fn listing(folder: &Path) -> Vec<String> {
-    let mut names = Vec::new();
-    let mut folders = vec![folder.to_path_buf()];
-    while let Some(at) = folders.pop() {
-        for entry in fs::read_dir(at).unwrap() {
-            let path = entry.unwrap().path();
-            names.push(path.strip_prefix(folder).unwrap().display().to_string());
-            if path.is_dir() {
-                folders.push(path);
-            }
-        }
-    }
-    names.sort();
-    names
-}
-
-fn onset_of<'a>(summary: &'a Value, model: &str, method: &str) -> &'a Value {
-    summary["onsets"]
-        .as_array()
-        .unwrap()
-        .iter()
-        .find(|o| o["model"] == model && o["method"] == method)
-        .unwrap_or_else(|| panic!("no onset of {model} by {method}: {}", summary["onsets"]))
-}
 
 #[test]
 fn the_demo_does_the_whole_chain() {
@@ -380,79 +323,4 @@ fn every_command_explains_itself_with_an_example() {
         );
         assert!(help.contains("--json"), "{command}:\n{help}");
     }
-}
-
-/// The thesis prints 37.6 m/s for both models; rebuilt records give 37.87 and 37.94.
-#[test]
-fn the_thesis_command_repeats_the_headline() {
-    let folder = TempDir::new().unwrap();
-    let json: Value =
-        serde_json::from_str(&succeeds(folder.path(), &["thesis", "--json"])).unwrap();
-    let laguerre = onset_of(&json["flutter"], "Laguerre, discrete", "eigenvalues")["speed_m_s"]
-        .as_f64()
-        .unwrap();
-    let rational = onset_of(&json["flutter"], "rational functions", "eigenvalues")["speed_m_s"]
-        .as_f64()
-        .unwrap();
-    assert!((laguerre - 37.87).abs() < 0.15, "{laguerre}");
-    assert!((rational - 37.94).abs() < 0.15, "{rational}");
-    assert!((laguerre / rational - 1.0).abs() < 0.005);
-}
-
-/// On the flat plate at 8.17 m/s the thesis's formulation is 4.5 % low, and the program says so and why.
-#[test]
-fn the_thesis_formulation_is_told_its_bias() {
-    let folder = TempDir::new().unwrap();
-    let at = folder.path();
-    let study = aerodeck::study::demo_study_text()
-        .replace("source = \"LN21-5200\"", "source = \"flat plate\"")
-        .replace("speed_groups = [1]", "speed_groups = [2]");
-    fs::write(at.join("study.toml"), study).unwrap();
-    let text = succeeds(at, &["study", "study.toml"]);
-    let said = "thesis: 4.5 % below flat plate (exact)";
-    assert!(
-        text.contains(said)
-            && text.contains("no feed-through")
-            && text.contains("holding the force"),
-        "{text}"
-    );
-    let summary: Value =
-        serde_json::from_str(&fs::read_to_string(at.join("summary.json")).unwrap()).unwrap();
-    let speed = |model: &str, method: &str| {
-        onset_of(&summary, model, method)["speed_m_s"]
-            .as_f64()
-            .unwrap()
-    };
-    assert!((speed("thesis", "eigenvalues") - 37.68).abs() < 0.1);
-    assert!((speed("flat plate (exact)", "determinant") - 39.468).abs() < 0.001);
-    assert!((speed("Laguerre", "eigenvalues") / 39.468 - 1.0).abs() < 0.005);
-}
-
-/// LN21-5500: the three routes agree within 3 %, the scatter of its two test speeds, and an instability far outside the
-/// tested range is named and not taken for the answer.
-#[test]
-fn spurious_onsets_are_named_and_not_taken() {
-    let folder = TempDir::new().unwrap();
-    let at = folder.path();
-    let study = aerodeck::study::demo_study_text()
-        .replace("source = \"LN21-5200\"", "source = \"LN21-5500\"");
-    fs::write(at.join("study.toml"), study).unwrap();
-    let text = succeeds(at, &["study", "study.toml"]);
-    let summary: Value =
-        serde_json::from_str(&fs::read_to_string(at.join("summary.json")).unwrap()).unwrap();
-    let laguerre = onset_of(&summary, "Laguerre", "eigenvalues");
-    let speed = |o: &Value| o["speed_m_s"].as_f64().unwrap();
-    let others = [
-        onset_of(&summary, "rational functions", "eigenvalues"),
-        onset_of(&summary, "interpolated table", "determinant"),
-    ];
-    for other in others {
-        let ratio = speed(laguerre) / speed(other);
-        assert!((ratio - 1.0).abs() < 0.03, "{ratio}");
-        assert_eq!(other["in_tested_range"], true);
-    }
-    assert_eq!(laguerre["in_tested_range"], true);
-    let spurious = laguerre["spurious_speeds_m_s"].as_array().unwrap();
-    assert!(spurious.iter().all(|v| v.as_f64().unwrap() < 10.0) && !spurious.is_empty());
-    assert!(text.contains("probably spurious"), "{text}");
 }
