@@ -1,12 +1,14 @@
 //! Forced-vibration records: what they are, reading and writing them, and a virtual tunnel that makes them.
 
 mod motion;
+mod raw;
 mod record_file;
 mod record_format;
 mod records;
 mod virtual_forces;
 mod virtual_tunnel;
 
+pub use raw::{CELL_CHANNELS, LoadCell, RawCampaign, RawRecording, RawRun, Rig};
 pub use record_file::{RecordFile, SAMPLES_AT_LEAST, read_record, write_record};
 pub use records::{Record, RecordBlock, RecordHeader, RecordSource, Segment};
 pub use virtual_tunnel::TunnelPlan;

@@ -1,0 +1,135 @@
+//! Raw runs: what the load cells of a rig say, before any processing.
+//!
+//! # Axes
+//!
+//! Global axes are fixed to the tunnel: x downwind, y up, z along the span so that (x, y, z) is right-handed. Motion
+//! and moments of the section are positive nose-up (windward edge up), which is a turn about −z:
+//! `θ = −θ_z`, `M = −M_z`. Order of degrees of freedom is that of the whole crate: vertical, lateral, torsion.
+//!
+//! A load cell measures three forces and three moments in axes of its own; [`LoadCell::axes`] takes them to global
+//! ones: `v_global = axes · v_local`. The sign of a channel is that of the force **on the cell by the model**, so
+//! that inertia of an accelerating model of mass m shows as −m ẍ.
+
+use crate::error::{Error, Result, positive};
+use serde::{Deserialize, Serialize};
+
+/// Names of the six channels of a load cell, in their order: forces in N, moments in N·m.
+pub const CELL_CHANNELS: [&str; 6] = ["fx", "fy", "fz", "mx", "my", "mz"];
+
+/// One six-component load cell of a rig.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LoadCell {
+    /// Name, as in the campaign file.
+    pub name: String,
+    /// Rotation from the cell's axes to the global ones, row by row: `v_global = axes · v_local`.
+    pub axes: [[f64; 3]; 3],
+    /// Position of the cell relative to the centre of rotation of the model, global axes at rest, m.
+    pub position_m: [f64; 3],
+    /// Whether the cell sits behind the actuator and turns with the model; its axes then turn with θ.
+    pub turns_with_model: bool,
+}
+
+/// The rig that holds the section model.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Rig {
+    /// Length of the model along the span, m.
+    pub model_length_m: f64,
+    /// Width of the model B, m.
+    pub model_width_m: f64,
+    /// The cells that carry the model.
+    pub cells: Vec<LoadCell>,
+}
+
+impl Rig {
+    /// Checks lengths and axes.
+    ///
+    /// # Errors
+    /// [`Error::Input`] naming the key: no cell, a length that is not positive, axes that are no rotation.
+    pub fn validate(&self) -> Result<()> {
+        positive("rig.model_length_m", self.model_length_m)?;
+        positive("rig.model_width_m", self.model_width_m)?;
+        if self.cells.is_empty() {
+            return Err(Error::input("rig.cells", "at least one load cell", "none"));
+        }
+        self.cells.iter().try_for_each(LoadCell::validate)
+    }
+}
+
+impl LoadCell {
+    fn validate(&self) -> Result<()> {
+        let axes = nalgebra::Matrix3::from_fn(|i, j| self.axes[i][j]);
+        // axes are typed by hand with a few digits
+        let is_rotation = (axes * axes.transpose() - nalgebra::Matrix3::identity())
+            .iter()
+            .all(|e| e.abs() <= 1e-4)
+            && axes.determinant() > 0.0;
+        if is_rotation {
+            Ok(())
+        } else {
+            Err(Error::input(
+                format!("rig.cells `{}`.axes", self.name),
+                "a rotation (orthonormal rows, right-handed)",
+                format!("{:?}", self.axes),
+            ))
+        }
+    }
+}
+
+/// One file of samples, channels mapped and in SI units. All channels have the same length.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RawRecording {
+    /// File (and group in it) the samples come from, for messages.
+    pub source: String,
+    /// Sampling frequency, Hz.
+    pub sampling_hz: f64,
+    /// Motion as measured: vertical m, lateral m, torsion rad; a channel that was not recorded is empty.
+    pub motion: [Vec<f64>; 3],
+    /// For every cell of the rig, its six channels in the order of [`CELL_CHANNELS`], local axes: N, N·m.
+    pub cells: Vec<[Vec<f64>; 6]>,
+    /// Wind speed, m/s; empty when there was no channel.
+    pub wind_speed_m_s: Vec<f64>,
+}
+
+impl RawRecording {
+    /// Number of samples.
+    pub fn len(&self) -> usize {
+        self.cells.first().map_or(0, |c| c[0].len())
+    }
+
+    /// Whether there is no sample.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}
+
+/// One motion at one wind speed: in wind, and the same motion in still air.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RawRun {
+    /// Name of the run, for messages.
+    pub name: String,
+    /// Recording in wind.
+    pub in_wind: RawRecording,
+    /// Recording of the same motion in still air.
+    pub still_air: RawRecording,
+    /// Mean wind speed, m/s: stated, or the mean of its channel.
+    pub mean_speed_m_s: f64,
+    /// Air density, kg/m³: stated, or from temperature and pressure.
+    pub air_density_kg_m3: f64,
+}
+
+/// Every run of a campaign, with what they have in common.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RawCampaign {
+    /// Name of the section.
+    pub section: String,
+    /// Where the data come from.
+    pub source: String,
+    /// Licence of the data.
+    pub licence: String,
+    /// The rig.
+    pub rig: Rig,
+    /// The runs, in the order of the campaign file.
+    pub runs: Vec<RawRun>,
+}
