@@ -24,6 +24,7 @@ pub fn documentation(resources: &Resources, runtimes: &[Runtime]) -> Result<Stri
         guid: resources.guid.to_string(),
         version: env!("CARGO_PKG_VERSION"),
         filters: filters(model)?,
+        initial_rotation_deg: digits(model.experiment.initial_rotation_rad.to_degrees()),
         lateral: model.section.lateral.is_some(),
         platforms: runtimes
             .iter()
@@ -47,6 +48,7 @@ struct Page<'a> {
     guid: String,
     version: &'static str,
     filters: usize,
+    initial_rotation_deg: String,
     lateral: bool,
     platforms: Vec<(String, &'static str)>,
     groups: Vec<Group>,
