@@ -5,6 +5,7 @@ mod raw;
 mod record_file;
 mod record_format;
 mod records;
+pub mod virtual_campaign;
 mod virtual_forces;
 mod virtual_tunnel;
 

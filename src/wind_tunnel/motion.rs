@@ -15,16 +15,21 @@ pub(super) struct RampedSine {
 }
 
 impl RampedSine {
-    /// Displacement and velocity (1/s) at `t` from the beginning of the stretch.
-    pub fn at(&self, t_s: f64) -> (f64, f64) {
-        let (w, w_rate) = self.window(t_s);
-        let (sin, cos) = (self.omega_rad_s * t_s).sin_cos();
-        (w * sin, w_rate * sin + w * self.omega_rad_s * cos)
+    /// Displacement, velocity (1/s) and acceleration (1/s²) at `t` from the beginning of the stretch.
+    pub fn at(&self, t_s: f64) -> [f64; 3] {
+        let [w, w_rate, w_second] = self.window(t_s);
+        let omega = self.omega_rad_s;
+        let (sin, cos) = (omega * t_s).sin_cos();
+        [
+            w * sin,
+            w_rate * sin + w * omega * cos,
+            w_second * sin + omega * (2.0 * w_rate * cos - w * omega * sin),
+        ]
     }
 
-    fn window(&self, t_s: f64) -> (f64, f64) {
+    fn window(&self, t_s: f64) -> [f64; 3] {
         if t_s <= 0.0 || t_s >= self.duration_s {
-            return (0.0, 0.0);
+            return [0.0; 3];
         }
         let to_end = self.duration_s - t_s;
         let (u, sign) = if t_s < to_end {
@@ -33,11 +38,12 @@ impl RampedSine {
             (to_end / self.ramp_s, -1.0)
         };
         if u >= 1.0 {
-            return (1.0, 0.0);
+            return [1.0, 0.0, 0.0];
         }
         let rise = u * u * u * (10.0 + u * (6.0 * u - 15.0));
         let slope = 30.0 * u * u * (1.0 - u) * (1.0 - u) / self.ramp_s;
-        (rise, sign * slope)
+        let bend = 60.0 * u * (1.0 - u) * (1.0 - 2.0 * u) / (self.ramp_s * self.ramp_s);
+        [rise, sign * slope, bend]
     }
 }
 
@@ -49,6 +55,8 @@ pub(super) struct UnitMotion {
     pub displacement: Vec<f64>,
     /// Velocity, 1/s.
     pub velocity: Vec<f64>,
+    /// Acceleration, 1/s².
+    pub acceleration: Vec<f64>,
     /// Segment of each sample; `None` at rest before the first.
     pub segment_of: Vec<Option<usize>>,
 }
@@ -60,10 +68,12 @@ pub(super) struct Timing {
     pub segment_s: f64,
     pub ramp_s: f64,
     pub sampling_hz: f64,
+    /// The whole motion comes later by this; the segments are stated as without it.
+    pub delay_s: f64,
 }
 
 impl UnitMotion {
-    /// Rest for `still_s`, then `segment_s` at each frequency.
+    /// Rest for `still_s`, then `segment_s` at each frequency, all of it `delay_s` later.
     pub fn new(frequencies_hz: &[f64], timing: Timing) -> Self {
         let start = |i: usize| timing.still_s + i as f64 * timing.segment_s;
         let segments: Vec<Segment> = frequencies_hz
@@ -80,10 +90,11 @@ impl UnitMotion {
             segments,
             displacement: vec![0.0; samples],
             velocity: vec![0.0; samples],
+            acceleration: vec![0.0; samples],
             segment_of: vec![None; samples],
         };
         for sample in 0..samples {
-            let t = sample as f64 / timing.sampling_hz;
+            let t = sample as f64 / timing.sampling_hz - timing.delay_s;
             if t >= timing.still_s {
                 let index = ((t - timing.still_s) / timing.segment_s) as usize;
                 motion.fill(sample, index.min(frequencies_hz.len() - 1), t, timing);
@@ -99,7 +110,11 @@ impl UnitMotion {
             duration_s: timing.segment_s,
             ramp_s: timing.ramp_s,
         };
-        (self.displacement[sample], self.velocity[sample]) = sine.at(t - segment.start_s);
+        [
+            self.displacement[sample],
+            self.velocity[sample],
+            self.acceleration[sample],
+        ] = sine.at(t - segment.start_s);
         self.segment_of[sample] = Some(index);
     }
 }
@@ -109,7 +124,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_velocity_is_the_derivative_of_the_displacement() {
+    fn the_rates_are_the_derivatives_of_the_displacement() {
         let sine = RampedSine {
             omega_rad_s: TAU * 1.1,
             duration_s: 26.0,
@@ -118,15 +133,18 @@ mod tests {
         let h = 1e-5;
         for i in 0..520 {
             let t = 0.025 + 0.05 * f64::from(i);
-            let difference = (sine.at(t + h).0 - sine.at(t - h).0) / (2.0 * h);
+            let [x, v, a] = sine.at(t);
+            let slope = |i: usize| (sine.at(t + h)[i] - sine.at(t - h)[i]) / (2.0 * h);
             // Central difference: ω³h²/6 ≈ 6e-9, rounding ε/h ≈ 1e-11.
-            assert!((sine.at(t).1 - difference).abs() < 1e-7, "{t}");
+            assert!((v - slope(0)).abs() < 1e-7, "{t}: {x}");
+            // The same with one more ω, and a kink of the acceleration where a ramp begins: 30/ramp³·h ≈ 5e-6.
+            assert!((a - slope(1)).abs() < 1e-5, "{t}");
         }
-        assert_eq!(sine.at(0.0), (0.0, 0.0));
-        assert_eq!(sine.at(26.0), (0.0, 0.0));
+        assert_eq!(sine.at(0.0), [0.0; 3]);
+        assert_eq!(sine.at(26.0), [0.0; 3]);
         // Between the ramps it is the plain sine.
         let t: f64 = 13.3;
-        assert_eq!(sine.at(t).0, (TAU * 1.1 * t).sin());
+        assert_eq!(sine.at(t)[0], (TAU * 1.1 * t).sin());
     }
 
     #[test]
@@ -136,6 +154,7 @@ mod tests {
             segment_s: 26.0,
             ramp_s: 4.0,
             sampling_hz: 200.0,
+            delay_s: 0.0,
         };
         let motion = UnitMotion::new(&[0.25, 0.8], timing);
         assert_eq!(motion.displacement.len(), 12_000);
@@ -147,5 +166,11 @@ mod tests {
                 .all(|x| x.abs() < 1e-6)
         );
         assert_eq!(motion.segment_of[6799..6801], [Some(0), Some(1)]);
+        // A delay of whole samples moves the samples, bit by bit up to the rounding of the time.
+        let delay_s = 0.035;
+        let later = UnitMotion::new(&[0.25, 0.8], Timing { delay_s, ..timing });
+        for (a, b) in motion.displacement.iter().zip(&later.displacement[7..]) {
+            assert!((a - b).abs() < 1e-12);
+        }
     }
 }

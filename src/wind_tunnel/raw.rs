@@ -11,6 +11,7 @@
 //! that inertia of an accelerating model of mass m shows as −m ẍ.
 
 use crate::error::{Error, Result, positive};
+use nalgebra::{Matrix3, Rotation3, Vector3};
 use serde::{Deserialize, Serialize};
 
 /// Names of the six channels of a load cell, in their order: forces in N, moments in N·m.
@@ -58,10 +59,31 @@ impl Rig {
 }
 
 impl LoadCell {
+    /// Rotation from the cell's axes to the global ones while the model is turned nose-up by `theta_rad`.
+    pub fn axes_at(&self, theta_rad: f64) -> Matrix3<f64> {
+        self.turn(theta_rad) * Matrix3::from_fn(|i, j| self.axes[i][j])
+    }
+
+    /// Position relative to the centre of rotation while the model is turned nose-up by `theta_rad`, global axes, m.
+    /// The centre and the cell move with heave and sway, so these do not show.
+    pub fn position_at(&self, theta_rad: f64) -> Vector3<f64> {
+        self.turn(theta_rad) * Vector3::from(self.position_m)
+    }
+
+    /// Nose-up is a turn about −z; a cell that does not turn with the model does not notice.
+    fn turn(&self, theta_rad: f64) -> Rotation3<f64> {
+        let angle = if self.turns_with_model {
+            -theta_rad
+        } else {
+            0.0
+        };
+        Rotation3::from_axis_angle(&Vector3::z_axis(), angle)
+    }
+
     fn validate(&self) -> Result<()> {
-        let axes = nalgebra::Matrix3::from_fn(|i, j| self.axes[i][j]);
+        let axes = Matrix3::from_fn(|i, j| self.axes[i][j]);
         // axes are typed by hand with a few digits
-        let is_rotation = (axes * axes.transpose() - nalgebra::Matrix3::identity())
+        let is_rotation = (axes * axes.transpose() - Matrix3::identity())
             .iter()
             .all(|e| e.abs() <= 1e-4)
             && axes.determinant() > 0.0;

@@ -112,6 +112,17 @@ impl TunnelPlan {
     /// [`Error::Input`] for an impossible plan, or a table that lacks a derivative of `dofs`, has no mean speeds, or
     /// has other test points for other derivatives of the same motion.
     pub fn records_from_table(&self, table: &DerivativeTable, dofs: &[Dof]) -> Result<Vec<Record>> {
+        let records = self.clean_from_table(table, dofs, 0.0)?;
+        Ok(self.with_noise(records))
+    }
+
+    /// The same without noise, motion and forces `delay_s` late.
+    pub(super) fn clean_from_table(
+        &self,
+        table: &DerivativeTable,
+        dofs: &[Dof],
+        delay_s: f64,
+    ) -> Result<Vec<Record>> {
         self.validate()?;
         table.require(dofs)?;
         let speeds = table.speed_groups();
@@ -126,10 +137,10 @@ impl TunnelPlan {
         let mut records = Vec::new();
         for (i, speed) in speeds.iter().enumerate() {
             let group = table.at_speed_group(i)?;
-            for motion in 0..dofs.len() {
-                let mut record = self.record_at_points(&group, dofs, motion, *speed)?;
-                self.add_noise(&mut record, records.len());
-                records.push(record);
+            for motion in dofs {
+                let points = TestPoints::new(&group, dofs, *motion)?;
+                records
+                    .push(self.record_at_points(&group, &points, dofs, *motion, *speed, delay_s)?);
             }
         }
         Ok(records)
@@ -146,9 +157,21 @@ impl TunnelPlan {
         name: &str,
         width_m: f64,
     ) -> Result<Vec<Record>> {
+        let records = self.clean_from_model(model, name, width_m, 0.0)?;
+        Ok(self.with_noise(records))
+    }
+
+    /// The same without noise, motion and forces `delay_s` late.
+    pub(super) fn clean_from_model(
+        &self,
+        model: &dyn AerodynamicModel,
+        name: &str,
+        width_m: f64,
+        delay_s: f64,
+    ) -> Result<Vec<Record>> {
         self.validate()?;
         positive("width_m", width_m)?;
-        let unit = UnitMotion::new(&self.frequencies_hz, self.timing());
+        let unit = UnitMotion::new(&self.frequencies_hz, self.timing(delay_s));
         let mut records = Vec::new();
         for speed in &self.speeds_m_s {
             let response = unit_response(model, &unit, self.sampling_hz, width_m / speed)?;
@@ -158,16 +181,15 @@ impl TunnelPlan {
                     licence: String::new(),
                     ..self.header(name, model.dofs(), *motion, width_m, *speed, &unit)
                 };
-                let mut record = self.record(header, *motion, &unit, |i, k| response[i][j][k]);
-                self.add_noise(&mut record, records.len());
-                records.push(record);
+                records.push(self.record(header, *motion, &unit, |i, k| response[i][j][k]));
             }
         }
         Ok(records)
     }
 
-    fn timing(&self) -> Timing {
+    pub(super) fn timing(&self, delay_s: f64) -> Timing {
         Timing {
+            delay_s,
             still_s: self.still_s,
             segment_s: self.segment_s,
             ramp_s: self.ramp_s,
@@ -188,7 +210,7 @@ impl TunnelPlan {
     }
 
     /// Amplitude of a motion: m, rad.
-    fn amplitude(&self, motion: Dof) -> f64 {
+    pub(super) fn amplitude(&self, motion: Dof) -> f64 {
         match motion {
             Dof::Vertical => self.vertical_amplitude_m,
             Dof::Lateral => self.lateral_amplitude_m,
@@ -255,32 +277,26 @@ impl TunnelPlan {
     fn record_at_points(
         &self,
         group: &DerivativeTable,
+        points: &TestPoints,
         dofs: &[Dof],
-        motion: usize,
+        motion: Dof,
         speed_m_s: f64,
+        delay_s: f64,
     ) -> Result<Record> {
-        let points = TestPoints::new(group, dofs, dofs[motion])?;
         let frequencies: Vec<f64> = points
             .k
             .iter()
             .map(|k| k.circular(group.width_m, speed_m_s) / TAU)
             .collect();
         self.check_sampling(&frequencies)?;
-        let unit = UnitMotion::new(&frequencies, self.timing());
+        let unit = UnitMotion::new(&frequencies, self.timing(delay_s));
         let header = RecordHeader {
             source: format!(
                 "virtual tunnel: derivatives of {} at their test points ({})",
                 group.name, group.header.source
             ),
             licence: group.header.licence.clone(),
-            ..self.header(
-                &group.name,
-                dofs,
-                dofs[motion],
-                group.width_m,
-                speed_m_s,
-                &unit,
-            )
+            ..self.header(&group.name, dofs, motion, group.width_m, speed_m_s, &unit)
         };
         let force = |row: usize, sample: usize| {
             unit.segment_of[sample].map_or(0.0, |segment| {
@@ -289,7 +305,15 @@ impl TunnelPlan {
                 g.re * unit.displacement[sample] + g.im * in_quadrature
             })
         };
-        Ok(self.record(header, dofs[motion], &unit, force))
+        Ok(self.record(header, motion, &unit, force))
+    }
+
+    /// White noise on every record.
+    fn with_noise(&self, mut records: Vec<Record>) -> Vec<Record> {
+        for (index, record) in records.iter_mut().enumerate() {
+            self.add_noise(record, index);
+        }
+        records
     }
 
     /// White noise on every force; each record draws from a stream of its own.

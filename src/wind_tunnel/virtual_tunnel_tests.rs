@@ -192,13 +192,13 @@ fn integrated(jones: &RationalModel, j: usize, plan: &TunnelPlan, speed: f64) ->
         };
         sine.at(t - index as f64 * plan.segment_s)
     };
-    let rate = |x: &DVector<f64>, t: f64| (&c.a * x + c.b.column(j) * motion(t).0) / scale;
+    let rate = |x: &DVector<f64>, t: f64| (&c.a * x + c.b.column(j) * motion(t)[0]) / scale;
     let mut x = DVector::zeros(c.a.nrows());
     let mut forces = Vec::new();
     for i in 0..43_200 {
         let t = f64::from(i) * h;
-        let (r, velocity) = motion(t);
-        let acceleration = (motion(t + 1e-4).1 - motion(t - 1e-4).1) / 2e-4;
+        let [r, velocity, _] = motion(t);
+        let acceleration = (motion(t + 1e-4)[1] - motion(t - 1e-4)[1]) / 2e-4;
         let q = &c.c * &x
             + c.e0.column(j) * r
             + c.e1.column(j) * (scale * velocity)
