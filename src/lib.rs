@@ -46,6 +46,8 @@ pub mod section;
 pub mod state_space;
 #[cfg(feature = "cli")]
 pub mod study;
+#[cfg(feature = "campaigns")]
+mod toml_lines;
 pub mod trained_model;
 pub mod units;
 #[cfg(feature = "identification")]

@@ -2,6 +2,7 @@
 
 mod account;
 mod answer;
+mod campaign;
 mod common;
 mod demo;
 mod flutter;
@@ -46,6 +47,8 @@ enum Command {
     Demo(demo::Args),
     Study(study::Args),
     Tunnel(tunnel::Args),
+    #[command(subcommand)]
+    Campaign(campaign::Campaign),
     Train(train::Args),
     Flutter(flutter::Args),
     Simulate(simulate::Args),
@@ -81,6 +84,7 @@ fn run(command: &Command, progress: &progress::Progress) -> Result<Answer> {
         Command::Demo(args) => demo::run(args, progress),
         Command::Study(args) => study::run(args, progress),
         Command::Tunnel(args) => tunnel::run(args, progress),
+        Command::Campaign(command) => campaign::run(command, progress),
         Command::Train(args) => train::run(args, progress),
         Command::Flutter(args) => flutter::run(args, progress),
         Command::Simulate(args) => simulate::run(args),

@@ -1,5 +1,9 @@
 //! Forced-vibration records: what they are, reading and writing them, and a virtual tunnel that makes them.
 
+#[cfg(feature = "campaigns")]
+pub mod campaign;
+#[cfg(feature = "campaigns")]
+pub mod lab_files;
 mod motion;
 mod raw;
 mod record_file;

@@ -146,7 +146,7 @@ pub fn write_record(record: &dyn RecordSource, out: &mut dyn Write) -> Result<()
 }
 
 /// The shortest text that reads back as the same double.
-fn push_number(text: &mut String, x: f64) {
+pub(super) fn push_number(text: &mut String, x: f64) {
     let plain = x == 0.0 || (1e-3..1e6).contains(&x.abs());
     // Writing to a string cannot fail.
     let _ = if plain {

@@ -29,7 +29,11 @@ pub const ARROWS: &[Row] = &[
     row("comparison", &[]),
     row("section", &["units"]),
     row("aerodynamics", &["units", "section", "state_space"]),
-    row("wind_tunnel", &["units", "section", "aerodynamics"]),
+    row("toml_lines", &[]),
+    row(
+        "wind_tunnel",
+        &["units", "section", "aerodynamics", "toml_lines"],
+    ),
     row("trained_model", &["units", "section", "aerodynamics"]),
     row(
         "identification",

@@ -23,6 +23,8 @@ mod disturbances;
 mod gusts;
 mod make;
 mod plan;
+#[cfg(feature = "campaigns")]
+mod plan_file;
 mod truth;
 
 pub use make::VirtualCampaign;

@@ -1,0 +1,145 @@
+//! `aerodeck campaign virtual`: a raw campaign with a known truth.
+
+use crate::aerodynamics::derivatives::{embedded, read_table};
+use crate::aerodynamics::{FlatPlate, RationalModel};
+use crate::cli::answer::Answer;
+use crate::cli::output::{OutputDir, list};
+use crate::cli::progress::Progress;
+use crate::error::{Error, Result};
+use crate::section::Dof;
+use crate::wind_tunnel::campaign::{FileFormat, write_virtual_campaign};
+use crate::wind_tunnel::virtual_campaign::{VirtualCampaign, VirtualCampaignPlan};
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+/// Invent the raw campaign of a known deck: two load cells, gravity, inertia, wind, noise, drift, a spike, lags
+///
+/// Example: aerodeck campaign virtual LN21-5200 --out campaign
+#[derive(clap::Args)]
+#[command(verbatim_doc_comment)]
+pub struct Args {
+    /// Name of an embedded deck, `flat plate`, `jones`, or a table of derivatives (.csv, .xlsx).
+    #[arg(default_value = "LN21-5200")]
+    deck: String,
+    /// Where the campaign goes.
+    #[arg(long, default_value = "aerodeck-campaign")]
+    out: PathBuf,
+    /// A plan (TOML); left out, a realistic one. What it does not state is without disturbances.
+    #[arg(long)]
+    plan: Option<PathBuf>,
+    /// Without noise, drift, spike, lag and offset.
+    #[arg(long)]
+    clean: bool,
+    /// Noise as a fraction of the RMS of the self-excited forces, instead of the plan's.
+    #[arg(long)]
+    noise: Option<f64>,
+    /// Seed of everything random, instead of the plan's.
+    #[arg(long)]
+    seed: Option<u64>,
+    /// Also sway and drag (tables only).
+    #[arg(long)]
+    lateral: bool,
+    /// Width of the model for a deck that has none (`flat plate`, `jones`), m.
+    #[arg(long, default_value_t = 0.5)]
+    width: f64,
+    /// How the recordings are written.
+    #[arg(long, value_enum, default_value_t = Format::Csv)]
+    format: Format,
+}
+
+/// How the recordings are written.
+#[derive(Debug, Clone, Copy, clap::ValueEnum)]
+enum Format {
+    /// One CSV file a recording; reads back bit for bit.
+    Csv,
+    /// One HDF5 file in the layout of NTNU's tools.
+    Ntnu,
+}
+
+/// Runs the command.
+pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+    let plan = plan(args)?;
+    let stage = progress.stage("virtual campaign");
+    let made = make(args, &plan)?;
+    drop(stage);
+    let mut out = OutputDir::new(&args.out)?;
+    let stage = progress.stage("writing the recordings");
+    out.write("plan.toml", plan.to_toml()?)?;
+    let format = match args.format {
+        Format::Csv => FileFormat::Csv,
+        Format::Ntnu => FileFormat::Ntnu,
+    };
+    write_virtual_campaign(&made, format, &mut |name| out.stage(name))?;
+    drop(stage);
+    let written = out.commit()?;
+    let mut text = format!("{}: {}\n", made.raw.section, made.raw.source);
+    for run in &made.raw.runs {
+        let _ = writeln!(
+            text,
+            "  {}: {:.2} m/s, {} samples at {} Hz in wind and in still air",
+            run.name,
+            run.mean_speed_m_s,
+            run.in_wind.len(),
+            run.in_wind.sampling_hz
+        );
+    }
+    text.push_str(&list(&written));
+    let answer = serde_json::json!({
+        "section": made.raw.section,
+        "runs": made.truth.disturbances,
+        "plan": plan,
+        "files": written,
+    });
+    Answer::new(text, &answer)
+}
+
+fn plan(args: &Args) -> Result<VirtualCampaignPlan> {
+    let mut plan = match (&args.plan, args.clean) {
+        (Some(path), _) => VirtualCampaignPlan::read(path)?,
+        (None, true) => VirtualCampaignPlan::default(),
+        (None, false) => VirtualCampaignPlan::realistic(),
+    };
+    if args.clean {
+        plan.tunnel.noise_fraction = 0.0;
+        plan.disturbances = Default::default();
+    }
+    if let Some(noise) = args.noise {
+        plan.tunnel.noise_fraction = noise;
+    }
+    if let Some(seed) = args.seed {
+        plan.tunnel.seed = seed;
+    }
+    plan.validate()?;
+    Ok(plan)
+}
+
+fn make(args: &Args, plan: &VirtualCampaignPlan) -> Result<VirtualCampaign> {
+    let name = args.deck.trim();
+    let refuse_lateral = || {
+        if args.lateral {
+            let expected = "a table of derivatives, since sway is asked for";
+            return Err(Error::input("deck", expected, name));
+        }
+        Ok(())
+    };
+    match name.to_lowercase().as_str() {
+        "flat plate" => {
+            refuse_lateral()?;
+            plan.from_model(&FlatPlate::default(), "flat plate", args.width)
+        }
+        "jones" => {
+            refuse_lateral()?;
+            plan.from_model(&RationalModel::jones_flat_plate(), "Jones", args.width)
+        }
+        lower => {
+            let is_file = [".csv", ".xlsx"].iter().any(|end| lower.ends_with(end));
+            let table = if is_file {
+                read_table(name)?
+            } else {
+                embedded::deck(name)?
+            };
+            let dofs: &[Dof] = if args.lateral { &Dof::THREE } else { &Dof::TWO };
+            plan.from_table(&table, dofs)
+        }
+    }
+}

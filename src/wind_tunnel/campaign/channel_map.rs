@@ -1,0 +1,286 @@
+//! The channel map: which channel of the files is what, in which unit, with which sign.
+
+use super::quantity::Quantity;
+use crate::error::{Error, Result};
+use crate::section::Dof;
+use crate::wind_tunnel::lab_files::{Channel, ChannelSet};
+use crate::wind_tunnel::{CELL_CHANNELS, Rig};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// One channel of the files.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ChannelRef {
+    /// Name in the file.
+    pub name: String,
+    /// Unit; may be left out where the file states it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unit: Option<String>,
+    /// Factor on the samples before they are taken in `unit`; negative to turn the sign, 1 when left out.
+    #[serde(default = "one", skip_serializing_if = "is_one")]
+    pub scale: f64,
+}
+
+/// Which channel is what. Cells are named as in the rig.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ChannelMap {
+    /// Time; may be left out where the sampling frequency is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub time: Option<ChannelRef>,
+    /// Heave, positive up.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub vertical: Option<ChannelRef>,
+    /// Sway, positive downwind.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lateral: Option<ChannelRef>,
+    /// Rotation, positive nose-up.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub torsion: Option<ChannelRef>,
+    /// Wind speed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub wind_speed: Option<ChannelRef>,
+    /// Air density, a channel or a single number.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub air_density: Option<ChannelRef>,
+    /// Air temperature, a channel or a single number.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub temperature: Option<ChannelRef>,
+    /// Static pressure, a channel or a single number.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pressure: Option<ChannelRef>,
+    /// For each cell its channels `fx`, `fy`, `fz`, `mx`, `my`, `mz` in local axes.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub cells: BTreeMap<String, BTreeMap<String, CellChannel>>,
+}
+
+/// A channel of a cell, or the statement that there is none.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum CellChannel {
+    /// Measured.
+    Measured(ChannelRef),
+    /// Not measured: `"none"`. Taken as zero.
+    NotMeasured(NotMeasured),
+}
+
+/// The word that says so.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum NotMeasured {
+    /// `"none"`.
+    None,
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+#[allow(clippy::trivially_copy_pass_by_ref)] // the signature that serde wants
+fn is_one(scale: &f64) -> bool {
+    *scale == 1.0
+}
+
+impl ChannelRef {
+    /// A channel in a unit as it is.
+    pub fn new(name: impl Into<String>, unit: &str) -> Self {
+        Self {
+            name: name.into(),
+            unit: Some(unit.to_owned()),
+            scale: 1.0,
+        }
+    }
+
+    fn validate(&self, place: &str, quantity: Quantity) -> Result<()> {
+        if let Some(unit) = &self.unit {
+            quantity.factor(&format!("{place}.unit"), unit)?;
+        }
+        if self.scale.is_finite() && self.scale != 0.0 {
+            return Ok(());
+        }
+        let place = format!("{place}.scale");
+        Err(Error::input(
+            place,
+            "a number other than zero",
+            self.scale.to_string(),
+        ))
+    }
+
+    /// The samples in SI units.
+    ///
+    /// # Errors
+    /// [`Error::Input`] at `place` listing what the file holds when there is no such channel, and for units that are
+    /// missing, do not fit, or differ from those that the file states.
+    pub fn samples(&self, place: &str, quantity: Quantity, set: &ChannelSet) -> Result<Vec<f64>> {
+        let channel = set
+            .channel(&self.name)
+            .ok_or_else(|| self.missing(place, set))?;
+        let factor = self.factor(place, quantity, channel.unit.as_deref())?;
+        Ok(channel.samples.iter().map(|x| factor * x).collect())
+    }
+
+    /// A single number in SI units, or the mean of a channel.
+    ///
+    /// # Errors
+    /// Those of [`ChannelRef::samples`]; a number that is not finite.
+    pub fn number(&self, place: &str, quantity: Quantity, set: &ChannelSet) -> Result<f64> {
+        let value = match set.number(&self.name) {
+            Some(number) => number * self.factor(place, quantity, None)?,
+            None => mean(&self.samples(place, quantity, set)?),
+        };
+        if value.is_finite() {
+            return Ok(value);
+        }
+        let place = format!("{place}, `{}`", self.name);
+        Err(Error::input(place, "a finite number", value.to_string()))
+    }
+
+    fn missing(&self, place: &str, set: &ChannelSet) -> Error {
+        Error::input(place, format!("a channel `{}`", self.name), set.listing())
+    }
+
+    /// Factor from the samples to SI units.
+    fn factor(&self, place: &str, quantity: Quantity, stated: Option<&str>) -> Result<f64> {
+        let place = format!("{place}, `{}`", self.name);
+        let unit =
+            self.unit.as_deref().or(stated).ok_or_else(|| {
+                Error::input(&place, "its unit, in the map or in the file", "none")
+            })?;
+        let factor = quantity.factor(&place, unit)?;
+        // a unit of the file that is not known here cannot be compared
+        let by_file = stated.and_then(|u| quantity.factor_of(u));
+        if by_file.is_some_and(|f| (f / factor - 1.0).abs() > 1e-12) {
+            return Err(Error::input(
+                &place,
+                format!("the unit `{}` that the file states", stated.unwrap_or("")),
+                format!("`{unit}` in the map"),
+            ));
+        }
+        Ok(self.scale * factor)
+    }
+}
+
+pub(super) fn mean(samples: &[f64]) -> f64 {
+    samples.iter().sum::<f64>() / samples.len() as f64
+}
+
+impl ChannelMap {
+    /// The channel of a motion.
+    pub fn motion(&self, dof: Dof) -> Option<&ChannelRef> {
+        match dof {
+            Dof::Vertical => self.vertical.as_ref(),
+            Dof::Lateral => self.lateral.as_ref(),
+            Dof::Torsion => self.torsion.as_ref(),
+        }
+    }
+
+    /// Checks units and names without any file.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with the key: a unit that does not fit, a cell that the rig does not have or that has no map,
+    /// a channel that a cell does not have or that has no map.
+    pub fn validate(&self, rig: &Rig) -> Result<()> {
+        let single = [
+            ("time", &self.time, Quantity::Time),
+            ("vertical", &self.vertical, Quantity::Length),
+            ("lateral", &self.lateral, Quantity::Length),
+            ("torsion", &self.torsion, Quantity::Angle),
+            ("wind_speed", &self.wind_speed, Quantity::Speed),
+            ("air_density", &self.air_density, Quantity::Density),
+            ("temperature", &self.temperature, Quantity::Temperature),
+            ("pressure", &self.pressure, Quantity::Pressure),
+        ];
+        for (key, channel, quantity) in single {
+            if let Some(channel) = channel {
+                channel.validate(&format!("channels.{key}"), quantity)?;
+            }
+        }
+        let names: Vec<&str> = rig.cells.iter().map(|c| c.name.as_str()).collect();
+        if let Some(unknown) = self.cells.keys().find(|n| !names.contains(&n.as_str())) {
+            let expected = format!("one of the cells of the rig: {}", names.join(", "));
+            return Err(Error::input(
+                "channels.cells",
+                expected,
+                format!("`{unknown}`"),
+            ));
+        }
+        names.iter().try_for_each(|cell| self.validate_cell(cell))
+    }
+
+    fn validate_cell(&self, cell: &str) -> Result<()> {
+        let place = format!("channels.cells.{cell}");
+        let Some(map) = self.cells.get(cell) else {
+            return Err(Error::input(
+                "channels.cells",
+                format!("a table `{cell}`"),
+                "none",
+            ));
+        };
+        let all = || {
+            format!(
+                "{} (`\"none\"` for one not measured)",
+                CELL_CHANNELS.join(", ")
+            )
+        };
+        if let Some(unknown) = map.keys().find(|k| !CELL_CHANNELS.contains(&k.as_str())) {
+            return Err(Error::input(
+                format!("{place}.{unknown}"),
+                all(),
+                format!("`{unknown}`"),
+            ));
+        }
+        for key in CELL_CHANNELS {
+            match map.get(key) {
+                None => return Err(Error::input(&place, all(), format!("no `{key}`"))),
+                Some(CellChannel::NotMeasured(_)) => {}
+                Some(CellChannel::Measured(channel)) => {
+                    channel.validate(&format!("{place}.{key}"), cell_quantity(key))?;
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// What a channel of a cell measures.
+pub(super) fn cell_quantity(key: &str) -> Quantity {
+    if key.starts_with('f') {
+        Quantity::Force
+    } else {
+        Quantity::Moment
+    }
+}
+
+/// The time channel as a sampling frequency, Hz.
+///
+/// # Errors
+/// [`Error::Input`] with the sample at which a step is uneven or time does not advance.
+pub(super) fn sampling_of(place: &str, time_s: &[f64]) -> Result<f64> {
+    let n = time_s.len();
+    if n < 2 {
+        return Err(Error::input(place, "at least two samples", n.to_string()));
+    }
+    let step = (time_s[n - 1] - time_s[0]) / (n - 1) as f64;
+    // stamps are often rounded: a sample may stand off its place by a quarter of a step
+    let uneven = (1..n).find(|i| {
+        let off = (time_s[*i] - time_s[i - 1]) / step - 1.0;
+        off.is_nan() || off.abs() > 0.25
+    });
+    match uneven {
+        None if step > 0.0 && step.is_finite() => Ok(1.0 / step),
+        uneven => {
+            let i = uneven.unwrap_or(1);
+            Err(Error::input(
+                format!("{place}, sample {i}"),
+                format!("{step:.6} s after the sample before, as on average"),
+                format!("{:.6} s", time_s[i] - time_s[i - 1]),
+            ))
+        }
+    }
+}
+
+/// Length of a channel, for messages about unequal ones.
+pub(super) fn described(channel: &Channel) -> String {
+    format!("{} in `{}`", channel.samples.len(), channel.name)
+}

@@ -1,0 +1,194 @@
+//! What is odd in a recording but does not stop reading it, and where a channel is no number.
+
+use crate::section::Dof;
+use crate::wind_tunnel::RawRun;
+use serde::Serialize;
+use std::fmt;
+
+/// This many equal samples at the extreme of a channel are taken for clipping.
+const CLIPPED_AT_LEAST: usize = 5;
+/// A channel that was digitised dwells at a peak; one that is clipped gets there in a step of more than this many of
+/// its smallest steps.
+const STEPS_AT_LEAST: f64 = 3.0;
+/// A motion that should not be there may have this part of the one that should, both dimensionless.
+const OTHER_MOTION_AT_MOST: f64 = 0.05;
+/// Stated and measured mean speed may differ by this part.
+const SPEED_OFF_AT_MOST: f64 = 0.05;
+
+/// Something that a user should look at.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Finding {
+    /// Name of the run.
+    pub run: String,
+    /// Recording: `in wind` or `still air`; empty for the run as a whole.
+    pub recording: String,
+    /// Channel as the file names it, if one is meant.
+    pub channel: Option<String>,
+    /// First sample, from 0.
+    pub sample: Option<usize>,
+    /// Number of samples from there.
+    pub samples: Option<usize>,
+    /// What was found.
+    pub what: String,
+}
+
+impl fmt::Display for Finding {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "run `{}`", self.run)?;
+        if !self.recording.is_empty() {
+            write!(f, ", {}", self.recording)?;
+        }
+        if let Some(channel) = &self.channel {
+            write!(f, ", `{channel}`")?;
+        }
+        if let Some(sample) = self.sample {
+            write!(f, ", sample {sample}")?;
+        }
+        write!(f, ": {}", self.what)
+    }
+}
+
+impl Finding {
+    /// About a run as a whole.
+    pub(super) fn of_run(run: &str, what: String) -> Self {
+        Self {
+            run: run.to_owned(),
+            recording: String::new(),
+            channel: None,
+            sample: None,
+            samples: None,
+            what,
+        }
+    }
+}
+
+/// First stretch of samples that are no numbers: where it begins and how long it is.
+pub(super) fn first_gap(samples: &[f64]) -> Option<(usize, usize)> {
+    let first = samples.iter().position(|x| !x.is_finite())?;
+    let length = samples[first..]
+        .iter()
+        .take_while(|x| !x.is_finite())
+        .count();
+    Some((first, length))
+}
+
+/// What is odd about one channel: clipped at its highest or lowest value, or not moving at all where it should.
+pub(super) fn channel_findings(
+    (run, recording): (&str, &str),
+    name: &str,
+    samples: &[f64],
+    must_change: bool,
+) -> Vec<Finding> {
+    let finding = |sample, samples, what| Finding {
+        run: run.to_owned(),
+        recording: recording.to_owned(),
+        channel: Some(name.to_owned()),
+        sample,
+        samples,
+        what,
+    };
+    let low = samples.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = samples.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    if low == high {
+        let what = format!("is {low} all the time");
+        return if must_change {
+            vec![finding(None, None, what)]
+        } else {
+            Vec::new()
+        };
+    }
+    [(high, "highest"), (low, "lowest")]
+        .into_iter()
+        .filter_map(|(extreme, word)| {
+            let (first, longest, total) = clipped(samples, extreme)?;
+            let what = format!(
+                "stays at its {word} value {extreme:.6} for {longest} samples (clipped? {total} such samples in all)"
+            );
+            Some(finding(Some(first), Some(longest), what))
+        })
+        .collect()
+}
+
+/// Stretches at `extreme`: begin and length of the first, and samples in all of them.
+fn clipped(samples: &[f64], extreme: f64) -> Option<(usize, usize, usize)> {
+    let finest = samples
+        .windows(2)
+        .map(|w| (w[1] - w[0]).abs())
+        .filter(|step| *step > 0.0)
+        .fold(f64::INFINITY, f64::min);
+    let mut found: Option<(usize, usize, usize)> = None;
+    let mut at = 0;
+    for stretch in samples.chunk_by(|a, b| a == b) {
+        let behind = at + stretch.len();
+        if stretch[0] == extreme && stretch.len() >= CLIPPED_AT_LEAST {
+            let before = at.checked_sub(1).and_then(|i| samples.get(i));
+            let sides = before.into_iter().chain(samples.get(behind));
+            let steep = sides.fold(0.0_f64, |m, x| m.max((x - extreme).abs()));
+            if steep > STEPS_AT_LEAST * finest {
+                let (first, length, total) = found.unwrap_or((at, stretch.len(), 0));
+                found = Some((first, length, total + stretch.len()));
+            }
+        }
+        at = behind;
+    }
+    found
+}
+
+/// What is odd about a run: lengths, speeds, motions.
+pub(super) fn run_findings(run: &RawRun, motion: &[Dof], width_m: f64) -> Vec<Finding> {
+    let mut found = Vec::new();
+    let mut say = |what: String| found.push(Finding::of_run(&run.name, what));
+    let (wind, still) = (run.in_wind.len(), run.still_air.len());
+    if wind != still {
+        say(format!(
+            "{wind} samples in wind, {still} in still air; only the first {} have both",
+            wind.min(still)
+        ));
+    }
+    let mean = |x: &[f64]| x.iter().sum::<f64>() / x.len() as f64;
+    let (measured, at_rest) = (&run.in_wind.wind_speed_m_s, &run.still_air.wind_speed_m_s);
+    if !measured.is_empty() && (mean(measured) / run.mean_speed_m_s - 1.0).abs() > SPEED_OFF_AT_MOST
+    {
+        say(format!(
+            "the mean speed is {} m/s, its channel says {:.3} m/s",
+            run.mean_speed_m_s,
+            mean(measured)
+        ));
+    }
+    if !at_rest.is_empty() && mean(at_rest) > SPEED_OFF_AT_MOST * run.mean_speed_m_s {
+        say(format!(
+            "the still-air recording has a wind of {:.3} m/s",
+            mean(at_rest)
+        ));
+    }
+    for (name, recording) in [("in wind", &run.in_wind), ("still air", &run.still_air)] {
+        let spread = |d: Dof| {
+            let index = Dof::THREE.iter().position(|t| *t == d).unwrap_or(0);
+            deviation(&recording.motion[index]) * d.motion_scale(width_m)
+        };
+        let stated = motion.iter().map(|d| spread(*d)).fold(0.0, f64::max);
+        for dof in Dof::THREE {
+            let is_stated = motion.contains(&dof);
+            if is_stated && spread(dof) == 0.0 {
+                say(format!("{name}: no {} motion", dof.name()));
+            } else if !is_stated && spread(dof) > OTHER_MOTION_AT_MOST * stated {
+                let part = 100.0 * spread(dof) / stated;
+                say(format!(
+                    "{name}: {} motion of {part:.0} % of the stated one, both over the width",
+                    dof.name()
+                ));
+            }
+        }
+    }
+    found
+}
+
+/// Standard deviation; 0 for a channel that is not there.
+fn deviation(samples: &[f64]) -> f64 {
+    if samples.is_empty() {
+        return 0.0;
+    }
+    let n = samples.len() as f64;
+    let mean = samples.iter().sum::<f64>() / n;
+    (samples.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / n).sqrt()
+}

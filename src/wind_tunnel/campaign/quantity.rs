@@ -1,0 +1,145 @@
+//! Units of channels: what each quantity may be stated in, and the factor to SI.
+
+use crate::error::{Error, Result};
+
+/// Kinds of channels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Quantity {
+    /// Displacement, m.
+    Length,
+    /// Rotation, rad.
+    Angle,
+    /// Force, N.
+    Force,
+    /// Moment, N·m.
+    Moment,
+    /// Wind speed, m/s.
+    Speed,
+    /// Time, s.
+    Time,
+    /// Density, kg/m³.
+    Density,
+    /// Temperature, °C.
+    Temperature,
+    /// Pressure, Pa.
+    Pressure,
+}
+
+/// Unit, quantity, factor to the unit used here.
+const UNITS: &[(&str, Quantity, f64)] = &[
+    ("m", Quantity::Length, 1.0),
+    ("cm", Quantity::Length, 1e-2),
+    ("mm", Quantity::Length, 1e-3),
+    ("um", Quantity::Length, 1e-6),
+    ("rad", Quantity::Angle, 1.0),
+    ("mrad", Quantity::Angle, 1e-3),
+    ("deg", Quantity::Angle, std::f64::consts::PI / 180.0),
+    ("°", Quantity::Angle, std::f64::consts::PI / 180.0),
+    ("N", Quantity::Force, 1.0),
+    ("mN", Quantity::Force, 1e-3),
+    ("kN", Quantity::Force, 1e3),
+    ("Nm", Quantity::Moment, 1.0),
+    ("Nmm", Quantity::Moment, 1e-3),
+    ("mNm", Quantity::Moment, 1e-3),
+    ("Ncm", Quantity::Moment, 1e-2),
+    ("kNm", Quantity::Moment, 1e3),
+    ("m/s", Quantity::Speed, 1.0),
+    ("km/h", Quantity::Speed, 1.0 / 3.6),
+    ("s", Quantity::Time, 1.0),
+    ("ms", Quantity::Time, 1e-3),
+    ("kg/m3", Quantity::Density, 1.0),
+    ("C", Quantity::Temperature, 1.0),
+    ("°C", Quantity::Temperature, 1.0),
+    ("Pa", Quantity::Pressure, 1.0),
+    ("hPa", Quantity::Pressure, 1e2),
+    ("mbar", Quantity::Pressure, 1e2),
+    ("kPa", Quantity::Pressure, 1e3),
+];
+
+impl Quantity {
+    /// Name in words.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Length => "a length",
+            Self::Angle => "an angle",
+            Self::Force => "a force",
+            Self::Moment => "a moment",
+            Self::Speed => "a speed",
+            Self::Time => "a time",
+            Self::Density => "a density",
+            Self::Temperature => "a temperature",
+            Self::Pressure => "a pressure",
+        }
+    }
+
+    /// Factor from `unit` to SI (°C for temperatures).
+    ///
+    /// # Errors
+    /// [`Error::Input`] at `place` listing the units that this quantity may have.
+    pub fn factor(self, place: &str, unit: &str) -> Result<f64> {
+        self.factor_of(unit).ok_or_else(|| {
+            let own: Vec<&str> = UNITS
+                .iter()
+                .filter(|(_, quantity, _)| *quantity == self)
+                .map(|(name, ..)| *name)
+                .collect();
+            let expected = format!("a unit of {}: {}", self.name(), own.join(", "));
+            Error::input(place, expected, format!("`{unit}`"))
+        })
+    }
+
+    /// The same; `None` for a unit that does not fit.
+    pub fn factor_of(self, unit: &str) -> Option<f64> {
+        let plain = normalised(unit);
+        UNITS
+            .iter()
+            .find(|(name, quantity, _)| *quantity == self && *name == plain)
+            .map(|(.., factor)| *factor)
+    }
+}
+
+/// Spellings of one unit as one: `N·m`, `N m`, `N*m`, `kg/m^3`, `kg/m³`, `degC`.
+fn normalised(unit: &str) -> String {
+    let mut plain: String = unit
+        .trim()
+        .chars()
+        .filter(|c| !matches!(c, ' ' | '·' | '*' | '.' | '^'))
+        .map(|c| match c {
+            '³' => '3',
+            'µ' | 'μ' => 'u',
+            c => c,
+        })
+        .collect();
+    if let Some(rest) = plain.strip_prefix("deg")
+        && rest == "C"
+    {
+        plain = "C".to_owned();
+    }
+    plain
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn units_are_those_of_their_quantity() {
+        let factor = |q: Quantity, unit: &str| q.factor_of(unit);
+        assert_eq!(factor(Quantity::Length, "mm"), Some(1e-3));
+        assert_eq!(factor(Quantity::Moment, "N·m"), Some(1.0));
+        assert_eq!(factor(Quantity::Moment, "kN m"), Some(1e3));
+        assert_eq!(factor(Quantity::Density, "kg/m³"), Some(1.0));
+        assert_eq!(factor(Quantity::Temperature, "degC"), Some(1.0));
+        let degree = factor(Quantity::Angle, "deg").unwrap();
+        assert!((degree * 180.0 / std::f64::consts::PI - 1.0).abs() < 1e-15);
+        // mN is a force and never milli of a moment; N is no moment
+        assert_eq!(factor(Quantity::Moment, "N"), None);
+        assert_eq!(
+            Quantity::Force
+                .factor("channels.x", "mm")
+                .unwrap_err()
+                .to_string(),
+            "channels.x: expected a unit of a force: N, mN, kN, found `mm`"
+        );
+    }
+}

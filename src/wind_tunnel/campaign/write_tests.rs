@@ -1,0 +1,92 @@
+//! A virtual campaign written and read back.
+
+use super::*;
+use crate::aerodynamics::RationalModel;
+use crate::wind_tunnel::virtual_campaign::{VirtualCampaign, VirtualCampaignPlan};
+use crate::wind_tunnel::{RawCampaign, RawRecording, Rig, read_record};
+use nalgebra::Vector3;
+use std::path::Path;
+
+fn made() -> VirtualCampaign {
+    let mut plan = VirtualCampaignPlan::realistic();
+    plan.tunnel.frequencies_hz = vec![0.5, 2.0];
+    plan.tunnel.speeds_m_s = vec![8.17];
+    plan.tunnel.still_s = 2.0;
+    plan.tunnel.segment_s = 6.0;
+    plan.tunnel.ramp_s = 2.0;
+    let jones = RationalModel::jones_flat_plate();
+    plan.from_model(&jones, "Jones", 0.5).unwrap()
+}
+
+/// Written to a folder and read back; what was found on the way.
+fn again(made: &VirtualCampaign, format: FileFormat, folder: &Path) -> CampaignReading {
+    let mut place = |name: &Path| {
+        let path = folder.join(name);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        Ok(path)
+    };
+    write_virtual_campaign(made, format, &mut place).unwrap();
+    Campaign::read(folder.join("campaign.toml"))
+        .unwrap()
+        .load()
+        .unwrap()
+}
+
+#[test]
+fn csv_reads_back_bit_for_bit() {
+    let folder = tempfile::tempdir().unwrap();
+    let made = made();
+    let mut reading = again(&made, FileFormat::Csv, folder.path());
+    assert_eq!(reading.findings, []);
+    for (run, own) in reading.raw.runs.iter_mut().zip(&made.raw.runs) {
+        assert_eq!(run.in_wind.source, format!("runs/{}-wind.csv", own.name));
+        run.in_wind.source = own.in_wind.source.clone();
+        run.still_air.source = own.still_air.source.clone();
+    }
+    assert_eq!(reading.raw, made.raw);
+    // the truth stands beside it
+    let truth = std::fs::read_to_string(folder.path().join("truth.csv")).unwrap();
+    assert_eq!(truth.lines().count(), 1 + 2 * 2 * 2);
+    let record = read_record(folder.path().join("truth/Jones-torsion-8.17.csv")).unwrap();
+    assert_eq!(record.force, made.truth.records[1].force);
+    let applied = std::fs::read_to_string(folder.path().join("disturbances.json")).unwrap();
+    assert!(applied.contains("\"force_lag_s\": 0.0017"));
+}
+
+/// Force and moment about the centre of rotation at one sample.
+fn sum(rig: &Rig, recording: &RawRecording, i: usize) -> (Vector3<f64>, Vector3<f64>) {
+    let theta = recording.motion[2][i];
+    let (mut force, mut moment) = (Vector3::zeros(), Vector3::zeros());
+    for (cell, c) in rig.cells.iter().zip(&recording.cells) {
+        let own = cell.axes_at(theta) * Vector3::new(c[0][i], c[1][i], c[2][i]);
+        force += own;
+        moment += cell.axes_at(theta) * Vector3::new(c[3][i], c[4][i], c[5][i])
+            + cell.position_at(theta).cross(&own);
+    }
+    (force, moment)
+}
+
+#[test]
+fn the_layout_of_ntnu_reads_back_the_same_forces() {
+    let folder = tempfile::tempdir().unwrap();
+    let made = made();
+    let reading = again(&made, FileFormat::Ntnu, folder.path());
+    assert_eq!(reading.findings, []);
+    let raw: &RawCampaign = &reading.raw;
+    assert!(raw.rig.cells.iter().all(|c| !c.turns_with_model));
+    for (a, b) in raw.runs.iter().zip(&made.raw.runs) {
+        assert_eq!(a.air_density_kg_m3, b.air_density_kg_m3);
+        for (a, b) in [(&a.in_wind, &b.in_wind), (&a.still_air, &b.still_air)] {
+            assert_eq!(
+                (&a.motion, &a.wind_speed_m_s),
+                (&b.motion, &b.wind_speed_m_s)
+            );
+            for i in (0..a.len()).step_by(7) {
+                let (f, m) = sum(&raw.rig, a, i);
+                let (f0, m0) = sum(&made.raw.rig, b, i);
+                // rounding of forces of 60 N on an arm of 1.4 m
+                assert!((f - f0).amax() < 1e-12 && (m - m0).amax() < 1e-12, "{i}");
+            }
+        }
+    }
+}

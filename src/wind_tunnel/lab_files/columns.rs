@@ -1,0 +1,68 @@
+//! Arrays as channels: one a column, time along the longer side.
+
+use super::{Attribute, ChannelSet};
+
+/// More channels than this in one array are taken for an image or a table, not for channels.
+const CHANNELS_AT_MOST: usize = 512;
+
+/// Order of the elements of an array.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Order {
+    /// The first index runs fastest (MATLAB).
+    FirstFastest,
+    /// The last index runs fastest (HDF5).
+    LastFastest,
+}
+
+/// Adds an array of `shape` under `name`: a number, a channel or several.
+pub(super) fn push_array(
+    set: &mut ChannelSet,
+    name: &str,
+    shape: &[usize],
+    order: Order,
+    values: Vec<f64>,
+    unit: Option<&str>,
+) {
+    let sides: Vec<usize> = shape.iter().copied().filter(|n| *n != 1).collect();
+    let unit = || unit.map(str::to_owned);
+    match (sides[..].len(), &sides[..]) {
+        _ if values.is_empty() => set.leave_out(name, "empty"),
+        (0, _) => {
+            set.attributes
+                .insert(name.to_owned(), Attribute::Number(values[0]));
+        }
+        (1, _) => set.push(name, values, unit()),
+        (2, &[rows, columns]) => {
+            // as if stored with the first index fastest
+            let (fast, slow) = match order {
+                Order::FirstFastest => (rows, columns),
+                Order::LastFastest => (columns, rows),
+            };
+            let time_is_fast = match order {
+                Order::FirstFastest => fast >= slow,
+                Order::LastFastest => fast > slow,
+            };
+            let (samples, channels) = if time_is_fast {
+                (fast, slow)
+            } else {
+                (slow, fast)
+            };
+            if channels > CHANNELS_AT_MOST {
+                set.leave_out(name, format!("{rows} × {columns} numbers"));
+                return;
+            }
+            for c in 0..channels {
+                let at = |i: usize| {
+                    values[if time_is_fast {
+                        c * fast + i
+                    } else {
+                        i * fast + c
+                    }]
+                };
+                let column = (0..samples).map(at).collect();
+                set.push(format!("{name}[{}]", c + 1), column, unit());
+            }
+        }
+        (dimensions, _) => set.leave_out(name, format!("an array of {dimensions} dimensions")),
+    }
+}

@@ -1,0 +1,220 @@
+//! CSV as laboratories write it: commas, semicolons or tabs; decimal points or commas; a row of units or none.
+//!
+//! Lines that begin with `#` or `%` are comments; `# key: value` gives an attribute. The first other row is the header
+//! unless all of it is numbers. A row of units may follow, or units may stand behind the names: `y [mm]`, `Fx (N)`.
+//! An empty cell or `NaN` is a missing sample. A column whose first cell is text is left out.
+
+use super::{Attribute, ChannelSet, no_group};
+use crate::error::{Error, Result};
+use std::borrow::Cow;
+
+/// How cells and numbers are written.
+#[derive(Debug, Clone, Copy)]
+struct Style {
+    separator: u8,
+    decimal_comma: bool,
+}
+
+/// Reads the text of a CSV file.
+///
+/// # Errors
+/// [`Error::Input`] with line and column for text in place of a number and rows of unequal length.
+pub(super) fn parse(bytes: &[u8], group: Option<&str>) -> Result<ChannelSet> {
+    if let Some(group) = group {
+        return Err(no_group(group, &[]));
+    }
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let mut set = ChannelSet::default();
+    let start = take_comments(bytes, &mut set);
+    let (skipped, rest) = (count_lines(&bytes[..start]), &bytes[start..]);
+    let style = Style::of(rest);
+    let mut reader = csv::ReaderBuilder::new()
+        .delimiter(style.separator)
+        .has_headers(false)
+        .flexible(true)
+        .from_reader(rest);
+    let mut row = csv::ByteRecord::new();
+    let mut table: Option<Table> = None;
+    loop {
+        let line = skipped + reader.position().line() as usize;
+        match reader.read_byte_record(&mut row) {
+            Ok(true) => {}
+            Ok(false) => break,
+            Err(e) => return Err(Error::input(format!("line {line}"), "a row", e.to_string())),
+        }
+        match &mut table {
+            None => table = Some(Table::begin(&row, style)),
+            Some(table) => table.take(&row, line)?,
+        }
+    }
+    let table = table
+        .filter(|t| t.rows > 0)
+        .ok_or_else(|| Error::input("", "a header and rows of numbers", "no row of numbers"))?;
+    table.finish(&mut set);
+    Ok(set)
+}
+
+/// Comments at the head as attributes; the byte behind them.
+fn take_comments(bytes: &[u8], set: &mut ChannelSet) -> usize {
+    let mut start = 0;
+    for line in bytes.split_inclusive(|b| *b == b'\n') {
+        let text = String::from_utf8_lossy(line);
+        let text = text.trim();
+        let comment = text.strip_prefix(['#', '%']);
+        if let Some((key, value)) = comment.and_then(|c| c.split_once(':')) {
+            let value = value.trim();
+            let value = match value.parse() {
+                Ok(number) => Attribute::Number(number),
+                Err(_) => Attribute::Text(value.to_owned()),
+            };
+            set.attributes.insert(key.trim().to_owned(), value);
+        } else if comment.is_none() && !text.is_empty() {
+            break;
+        }
+        start += line.len();
+    }
+    start
+}
+
+fn count_lines(bytes: &[u8]) -> usize {
+    bytes.iter().filter(|b| **b == b'\n').count()
+}
+
+impl Style {
+    /// The separator is the one of semicolon, tab and comma that the first line holds, in this order: where
+    /// semicolons or tabs separate, commas are decimal.
+    fn of(text: &[u8]) -> Self {
+        let first = text.split(|b| *b == b'\n').next().unwrap_or(text);
+        let separator = [b';', b'\t']
+            .into_iter()
+            .find(|s| first.contains(s))
+            .unwrap_or(b',');
+        Self {
+            separator,
+            decimal_comma: separator != b',',
+        }
+    }
+
+    /// A number, NaN where nothing stands; `None` for text.
+    fn number(self, cell: &[u8]) -> Option<f64> {
+        let text = std::str::from_utf8(cell).ok()?.trim();
+        if text.is_empty() {
+            return Some(f64::NAN);
+        }
+        let text = if self.decimal_comma && text.contains(',') {
+            Cow::Owned(text.replacen(',', ".", 1))
+        } else {
+            Cow::Borrowed(text)
+        };
+        text.parse().ok()
+    }
+}
+
+/// Columns being filled.
+struct Table {
+    style: Style,
+    names: Vec<String>,
+    units: Vec<Option<String>>,
+    /// `None` for a column of text.
+    columns: Vec<Option<Vec<f64>>>,
+    rows: usize,
+    units_taken: bool,
+}
+
+impl Table {
+    /// From the first row.
+    fn begin(row: &csv::ByteRecord, style: Style) -> Self {
+        let numbers: Option<Vec<f64>> = row.iter().map(|cell| style.number(cell)).collect();
+        let cells = row.iter().map(String::from_utf8_lossy);
+        let (names, units) = match &numbers {
+            Some(_) => (1..=row.len())
+                .map(|i| (format!("column[{i}]"), None))
+                .unzip(),
+            None => cells.map(|cell| name_and_unit(cell.trim())).unzip(),
+        };
+        Self {
+            style,
+            names,
+            units,
+            columns: match &numbers {
+                Some(numbers) => numbers.iter().map(|x| Some(vec![*x])).collect(),
+                None => vec![Some(Vec::new()); row.len()],
+            },
+            rows: usize::from(numbers.is_some()),
+            units_taken: numbers.is_some(),
+        }
+    }
+
+    fn take(&mut self, row: &csv::ByteRecord, line: usize) -> Result<()> {
+        // a separator at the end of every line gives an empty cell more
+        let surplus = row.iter().skip(self.names.len());
+        if row.len() < self.names.len() || surplus.into_iter().any(|c| !c.trim_ascii().is_empty()) {
+            return Err(Error::input(
+                format!("line {line}"),
+                format!("{} columns as in the header", self.names.len()),
+                row.len().to_string(),
+            ));
+        }
+        if self.rows == 0 && self.take_units(row) {
+            return Ok(());
+        }
+        for (c, cell) in row.iter().take(self.names.len()).enumerate() {
+            let Some(column) = &mut self.columns[c] else {
+                continue;
+            };
+            match self.style.number(cell) {
+                Some(x) => column.push(x),
+                None if self.rows == 0 => self.columns[c] = None,
+                None => {
+                    let found = format!("`{}`", String::from_utf8_lossy(cell));
+                    let place = format!("line {line}, column {}", self.names[c]);
+                    return Err(Error::input(place, "a number", found));
+                }
+            }
+        }
+        self.rows += 1;
+        Ok(())
+    }
+
+    /// Takes a row without any number as units.
+    fn take_units(&mut self, row: &csv::ByteRecord) -> bool {
+        let is_text = |cell: &[u8]| self.style.number(cell).is_none_or(f64::is_nan);
+        if self.units_taken || !row.iter().all(is_text) || row.iter().all(<[u8]>::is_empty) {
+            return false;
+        }
+        let stated = |cell: &[u8]| {
+            let text = String::from_utf8_lossy(cell);
+            let text = text.trim().trim_matches(['[', ']', '(', ')']).to_owned();
+            (!text.is_empty()).then_some(text)
+        };
+        for (unit, cell) in self.units.iter_mut().zip(row) {
+            *unit = unit.take().or_else(|| stated(cell));
+        }
+        self.units_taken = true;
+        true
+    }
+
+    fn finish(self, set: &mut ChannelSet) {
+        for ((name, unit), column) in self.names.into_iter().zip(self.units).zip(self.columns) {
+            match column {
+                Some(samples) if !name.is_empty() => set.push(name, samples, unit),
+                Some(_) => {}
+                None => set.leave_out(name, "text"),
+            }
+        }
+    }
+}
+
+/// `y [mm]` and `y (mm)` are the channel `y` in mm.
+fn name_and_unit(header: &str) -> (String, Option<String>) {
+    for (open, close) in [('[', ']'), ('(', ')')] {
+        let inside = header.strip_suffix(close).and_then(|h| h.rsplit_once(open));
+        if let Some((name, unit)) = inside {
+            let is_unit = unit.parse::<usize>().is_err() && !name.trim().is_empty();
+            if is_unit {
+                return (name.trim().to_owned(), Some(unit.trim().to_owned()));
+            }
+        }
+    }
+    (header.to_owned(), None)
+}

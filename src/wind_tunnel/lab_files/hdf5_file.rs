@@ -1,0 +1,174 @@
+//! HDF5, and MATLAB v7.3, which is HDF5 with MATLAB's dimensions reversed, by `hdf5-pure`.
+
+use super::columns::{Order, push_array};
+use super::guarded::guarded;
+use super::{Attribute, ChannelSet, no_group};
+use crate::error::{Error, Result};
+use hdf5_pure::{AttrValue, DType, Dataset, File, Group};
+
+/// First bytes; a user block of 512 bytes or a multiple by a power of two may stand before them.
+const SIGNATURE: &[u8] = b"\x89HDF\r\n\x1a\n";
+/// Deflate packs at most this many bytes into one.
+const PACKED_AT_MOST: u64 = 1032;
+/// Groups within groups within groups.
+const DEPTH_AT_MOST: usize = 8;
+/// Where MATLAB keeps what its cells point to.
+const REFERENCES: &str = "#refs#";
+
+/// Whether the bytes are an HDF5 file.
+pub(super) fn is_hdf5(bytes: &[u8]) -> bool {
+    let blocks = std::iter::once(0).chain((9..20).map(|power| 1_usize << power));
+    blocks
+        .map_while(|at| bytes.get(at..))
+        .any(|rest| rest.starts_with(SIGNATURE))
+}
+
+/// Reads the bytes of a file; `separator` stands between the names of groups and datasets.
+///
+/// # Errors
+/// [`Error::Input`] for a file that is truncated or corrupt, or lacks the `group`.
+pub(super) fn parse(bytes: Vec<u8>, group: Option<&str>, separator: &str) -> Result<ChannelSet> {
+    let length = bytes.len() as u64;
+    guarded(|| read(bytes, length, group, separator)).unwrap_or_else(|| Err(corrupt("", "a part")))
+}
+
+fn corrupt(place: &str, found: impl std::fmt::Display) -> Error {
+    Error::input(
+        place,
+        "an HDF5 file that is neither truncated nor corrupt",
+        format!("one that cannot be read ({found})"),
+    )
+}
+
+fn read(bytes: Vec<u8>, length: u64, group: Option<&str>, separator: &str) -> Result<ChannelSet> {
+    let file = File::from_bytes(bytes).map_err(|e| corrupt("", e))?;
+    let root = file.root();
+    let mut reader = Reader {
+        set: ChannelSet::default(),
+        bytes_at_most: length.saturating_mul(PACKED_AT_MOST),
+        separator: separator.to_owned(),
+    };
+    let Some(wanted) = group else {
+        reader.take_group(&root, "", 0)?;
+        return Ok(reader.set);
+    };
+    let by_path = || root.group(&wanted.replace('.', "/"));
+    let Ok(inner) = root.group(wanted).or_else(|_| by_path()) else {
+        let groups = root.groups().map_err(|e| corrupt("", e))?;
+        return Err(no_group(wanted, &groups));
+    };
+    // what holds for the whole file holds for the group, unless it says otherwise
+    reader.take_attributes(&root, "");
+    reader.take_group(&inner, "", 0)?;
+    Ok(reader.set)
+}
+
+struct Reader {
+    set: ChannelSet,
+    bytes_at_most: u64,
+    separator: String,
+}
+
+impl Reader {
+    fn take_group(&mut self, group: &Group, prefix: &str, depth: usize) -> Result<()> {
+        self.take_attributes(group, prefix);
+        for name in group.datasets().map_err(|e| corrupt(prefix, e))? {
+            let path = format!("{prefix}{name}");
+            let dataset = group.dataset(&name).map_err(|e| corrupt(&path, e))?;
+            self.take_dataset(&dataset, &path)?;
+        }
+        for name in group.groups().map_err(|e| corrupt(prefix, e))? {
+            if name == REFERENCES {
+                continue;
+            }
+            let path = format!("{prefix}{name}");
+            if depth == DEPTH_AT_MOST {
+                self.set.leave_out(path, "too deep");
+                continue;
+            }
+            let inner = group.group(&name).map_err(|e| corrupt(&path, e))?;
+            self.take_group(&inner, &format!("{path}{}", self.separator), depth + 1)?;
+        }
+        Ok(())
+    }
+
+    fn take_attributes(&mut self, group: &Group, prefix: &str) {
+        // attributes of kinds that the reader does not know are of no use here
+        for (name, value) in group.attrs().unwrap_or_default() {
+            if let Some(value) = attribute(&value) {
+                self.set.attributes.insert(format!("{prefix}{name}"), value);
+            }
+        }
+    }
+
+    fn take_dataset(&mut self, dataset: &Dataset, path: &str) -> Result<()> {
+        let shape = dataset.shape().map_err(|e| corrupt(path, e))?;
+        let size = dataset.element_size().map_err(|e| corrupt(path, e))?;
+        let bytes = shape
+            .iter()
+            .try_fold(size, |product, n| product.checked_mul(*n));
+        if bytes.is_none_or(|bytes| bytes > self.bytes_at_most) {
+            return Err(corrupt(path, format!("a dataset of {shape:?} numbers")));
+        }
+        let attributes = dataset.attrs().unwrap_or_default();
+        let text = |name: &str| attributes.get(name).and_then(|v| v.as_str());
+        let kind = dataset.dtype().map_err(|e| corrupt(path, e))?;
+        let is_number = !matches!(
+            kind,
+            DType::String
+                | DType::Compound(_)
+                | DType::Array(..)
+                | DType::VariableLengthString
+                | DType::ObjectReference
+                | DType::Other(_)
+        );
+        if !is_number {
+            match dataset.read_string().ok().as_deref() {
+                Some([text]) => {
+                    let text = Attribute::Text(text.clone());
+                    self.set.attributes.insert(path.to_owned(), text);
+                }
+                _ => self.set.leave_out(path, kind.to_string()),
+            }
+            return Ok(());
+        }
+        let values = dataset.read_f64().map_err(|e| corrupt(path, e))?;
+        let count: usize = shape.iter().map(|n| *n as usize).product();
+        if values.len() != count {
+            return Err(corrupt(
+                path,
+                format!("{} of {count} numbers", values.len()),
+            ));
+        }
+        if text("MATLAB_class") == Some("char") {
+            let codes = values.iter().map(|x| *x as u16);
+            let text: String = char::decode_utf16(codes)
+                .map(|c| c.unwrap_or('?'))
+                .collect();
+            self.set
+                .attributes
+                .insert(path.to_owned(), Attribute::Text(text));
+            return Ok(());
+        }
+        let unit = text("unit").or_else(|| text("units"));
+        let shape: Vec<usize> = shape.iter().map(|n| *n as usize).collect();
+        push_array(
+            &mut self.set,
+            path,
+            &shape,
+            Order::LastFastest,
+            values,
+            unit,
+        );
+        Ok(())
+    }
+}
+
+fn attribute(value: &AttrValue) -> Option<Attribute> {
+    let number = || {
+        let integer = value.as_i64().map(|x| x as f64);
+        value.as_f64().or(integer).map(Attribute::Number)
+    };
+    let text = || value.as_str().map(|t| Attribute::Text(t.to_owned()));
+    number().or_else(text)
+}

@@ -1,0 +1,174 @@
+//! MATLAB files of versions 5 to 7 by `matrw`, behind a shim.
+//!
+//! `matrw` wants the header text that MATLAB writes and refuses that of others, panics on corrupt files, and converts
+//! no integers; all three are seen to here.
+
+use super::columns::{Order, push_array};
+use super::guarded::guarded;
+use super::{Attribute, ChannelSet, no_group};
+use crate::error::{Error, Result};
+use matrw::{MatFile, MatVariable, MatlabType};
+
+/// What `matrw` looks for.
+const HEADER: &[u8] = b"MATLAB 5.0 MAT-file, ";
+/// Length of the header; version and byte order are its last four bytes.
+const HEADER_BYTES: usize = 128;
+
+/// Reads the bytes of a file.
+///
+/// # Errors
+/// [`Error::Input`] for a file that is no MATLAB file, truncated or corrupt, or lacks the struct `group`.
+pub(super) fn parse(mut bytes: Vec<u8>, group: Option<&str>) -> Result<ChannelSet> {
+    check_elements(&bytes)?;
+    bytes[..HEADER.len()].copy_from_slice(HEADER);
+    let corrupt = |found: String| {
+        let expected =
+            "a MATLAB file of version 5 to 7 (saving it with `-v7.3`, or as CSV, may help)";
+        Error::input("", expected, found)
+    };
+    let file = guarded(|| matrw::load_matfile_from_u8(&bytes))
+        .ok_or_else(|| corrupt("a part that cannot be read".to_owned()))?
+        .map_err(|e| corrupt(e.to_string()))?;
+    guarded(|| channels(&file, group))
+        .ok_or_else(|| corrupt("a part that cannot be read".to_owned()))?
+}
+
+/// Checks that all elements lie in the file, so that a truncated one is named as such.
+fn check_elements(bytes: &[u8]) -> Result<()> {
+    let version = bytes.get(124..HEADER_BYTES);
+    let little = match version {
+        Some([0, 1, b'I', b'M']) => true,
+        Some([1, 0, b'M', b'I']) => false,
+        _ => {
+            let expected = "a MATLAB file of version 5 or later";
+            let found = if bytes.len() < HEADER_BYTES {
+                format!("{} bytes", bytes.len())
+            } else {
+                "another header".to_owned()
+            };
+            return Err(Error::input("header", expected, found));
+        }
+    };
+    let word = |at: usize| -> Option<u32> {
+        let four: [u8; 4] = bytes.get(at..at + 4)?.try_into().ok()?;
+        Some(if little {
+            u32::from_le_bytes(four)
+        } else {
+            u32::from_be_bytes(four)
+        })
+    };
+    let mut at = HEADER_BYTES;
+    while at < bytes.len() {
+        let size = word(at + 4).map(|size| size as usize);
+        match size {
+            Some(size) if size <= bytes.len() - at - 8 => at += 8 + size,
+            _ => {
+                let expected = match size {
+                    Some(size) => format!("{size} bytes"),
+                    None => "an element".to_owned(),
+                };
+                let found = format!(
+                    "the end of the file after {} (truncated?)",
+                    bytes.len() - at
+                );
+                return Err(Error::input(format!("byte {at}"), expected, found));
+            }
+        }
+    }
+    Ok(())
+}
+
+fn channels(file: &MatFile, group: Option<&str>) -> Result<ChannelSet> {
+    let mut set = ChannelSet::default();
+    let Some(group) = group else {
+        for (name, variable) in file.iter() {
+            push(&mut set, name, variable);
+        }
+        return Ok(set);
+    };
+    let found = file.iter().find(|(name, _)| *name == group);
+    let Some((_, MatVariable::Structure(inner))) = found.map(|(n, v)| (n, uncompressed(v))) else {
+        let is_struct = |v: &MatVariable| matches!(uncompressed(v), MatVariable::Structure(_));
+        let structs: Vec<String> = file
+            .iter()
+            .filter(|(_, v)| is_struct(v))
+            .map(|(name, _)| name.clone())
+            .collect();
+        return Err(no_group(group, &structs));
+    };
+    for name in inner.fieldnames() {
+        if let Some(field) = inner.get(&name) {
+            push(&mut set, &name, field);
+        }
+    }
+    Ok(set)
+}
+
+fn uncompressed(variable: &MatVariable) -> &MatVariable {
+    match variable {
+        MatVariable::Compressed(inner) => uncompressed(&inner.value),
+        other => other,
+    }
+}
+
+fn push(set: &mut ChannelSet, name: &str, variable: &MatVariable) {
+    match variable {
+        MatVariable::Compressed(inner) => push(set, name, &inner.value),
+        MatVariable::NumericArray(array) if array.is_complex() => {
+            set.leave_out(name, "complex numbers");
+        }
+        MatVariable::NumericArray(array) => match numbers(array.numeric_type()) {
+            Numbers::Values(values) => {
+                push_array(set, name, &array.dim, Order::FirstFastest, values, None);
+            }
+            Numbers::Text(text) => {
+                set.attributes
+                    .insert(name.to_owned(), Attribute::Text(text));
+            }
+        },
+        MatVariable::Structure(inner) => {
+            for field in inner.fieldnames() {
+                if let Some(value) = inner.get(&field) {
+                    push(set, &format!("{name}.{field}"), value);
+                }
+            }
+        }
+        MatVariable::StructureArray(array) => {
+            for (i, value) in array.value.iter().enumerate() {
+                push(set, &format!("{name}[{}]", i + 1), value);
+            }
+        }
+        MatVariable::CellArray(array) => {
+            for (i, value) in array.value.iter().enumerate() {
+                push(set, &format!("{name}{{{}}}", i + 1), value);
+            }
+        }
+        _ => set.leave_out(name, "neither numbers nor struct nor cell"),
+    }
+}
+
+enum Numbers {
+    Values(Vec<f64>),
+    Text(String),
+}
+
+/// All numeric types as doubles; 64-bit integers beyond 2⁵³ are rounded.
+fn numbers(values: &MatlabType) -> Numbers {
+    fn wide<T: Copy + Into<f64>>(values: &[T]) -> Numbers {
+        Numbers::Values(values.iter().map(|x| (*x).into()).collect())
+    }
+    match values {
+        MatlabType::U8(v) => wide(v),
+        MatlabType::I8(v) => wide(v),
+        MatlabType::U16(v) => wide(v),
+        MatlabType::I16(v) => wide(v),
+        MatlabType::U32(v) => wide(v),
+        MatlabType::I32(v) => wide(v),
+        MatlabType::U64(v) => Numbers::Values(v.iter().map(|x| *x as f64).collect()),
+        MatlabType::I64(v) => Numbers::Values(v.iter().map(|x| *x as f64).collect()),
+        MatlabType::F32(v) => wide(v),
+        MatlabType::F64(v) => Numbers::Values(v.clone()),
+        MatlabType::BOOL(v) => Numbers::Values(v.iter().map(|x| f64::from(u8::from(*x))).collect()),
+        MatlabType::UTF8(v) | MatlabType::UTF16(v) => Numbers::Text(v.iter().collect()),
+    }
+}

@@ -1,0 +1,185 @@
+//! Laboratory files of any kind as one set of channels.
+//!
+//! | file | read by | names of channels |
+//! |---|---|---|
+//! | CSV (`.csv`, `.txt`, `.dat`, `.tsv`) | this crate | those of the header row, else `column[1]` … |
+//! | MATLAB v5 to v7 (`.mat`) | `matrw` | `variable`, `struct.field`, `struct[2].field`, `cell{1}` |
+//! | MATLAB v7.3 (`.mat`) | `hdf5-pure` | likewise (no cells) |
+//! | HDF5 (`.h5`, `.hdf5`) | `hdf5-pure` | `group/dataset` |
+//! | NI TDMS (`.tdms`) | this crate | `group/channel` |
+//!
+//! A matrix gives one channel a column, `name[3]`, counted from 1; time runs along its longer side. A single number
+//! or text is an attribute, not a channel. With a group (of HDF5 or TDMS, or a MATLAB struct) only what is in it is
+//! read, under names without the group.
+
+mod columns;
+mod csv_file;
+mod guarded;
+mod hdf5_file;
+mod matlab5;
+mod tdms;
+mod tdms_bytes;
+
+use crate::error::{Error, Result};
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// What one file, or one group of it, holds.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ChannelSet {
+    /// Sampled channels in the order of the file.
+    pub channels: Vec<Channel>,
+    /// Single numbers and texts by name.
+    pub attributes: BTreeMap<String, Attribute>,
+    /// Sampling frequency, Hz, where the file states it.
+    pub sampling_hz: Option<f64>,
+    /// What was not read: name and reason.
+    pub left_out: Vec<(String, String)>,
+}
+
+/// One sampled channel.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Channel {
+    /// Name, as a channel map has it.
+    pub name: String,
+    /// Samples in the unit of the file.
+    pub samples: Vec<f64>,
+    /// Unit, where the file states it.
+    pub unit: Option<String>,
+}
+
+/// A single value.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Attribute {
+    /// A number.
+    Number(f64),
+    /// A text.
+    Text(String),
+}
+
+/// Names under which files state their sampling frequency in Hz, in lower case.
+const SAMPLING_NAMES: [&str; 8] = [
+    "sampling frequency",
+    "sampling_frequency",
+    "samplingfrequency",
+    "sampling_hz",
+    "sampling_rate",
+    "sample_rate",
+    "samplerate",
+    "fs",
+];
+
+impl ChannelSet {
+    /// Reads a file of any known kind, or one `group` of it.
+    ///
+    /// # Errors
+    /// [`Error::Io`]; [`Error::Input`] with the file for one that is truncated or corrupt, of an unknown kind, or
+    /// without the group.
+    pub fn read(path: impl AsRef<Path>, group: Option<&str>) -> Result<Self> {
+        let path = path.as_ref();
+        let bytes = std::fs::read(path).map_err(|e| Error::io(path, e))?;
+        let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("");
+        let mut set =
+            Self::parse(bytes, &extension.to_lowercase(), group).map_err(|e| e.in_file(path))?;
+        set.find_sampling();
+        Ok(set)
+    }
+
+    /// The kind is told by the first bytes; CSV, which has none of its own, by the end of the name.
+    fn parse(bytes: Vec<u8>, extension: &str, group: Option<&str>) -> Result<Self> {
+        let is_mat = extension == "mat";
+        if bytes.is_empty() {
+            return Err(Error::input("", "a file with samples", "an empty file"));
+        }
+        if hdf5_file::is_hdf5(&bytes) {
+            hdf5_file::parse(bytes, group, if is_mat { "." } else { "/" })
+        } else if bytes.starts_with(b"TDSm") {
+            tdms::parse(&bytes, group)
+        } else if is_mat {
+            matlab5::parse(bytes, group)
+        } else if ["csv", "txt", "dat", "tsv", "asc"].contains(&extension) {
+            csv_file::parse(&bytes, group)
+        } else {
+            let expected = "a CSV (.csv, .txt, .dat, .tsv), MATLAB (.mat), HDF5 or TDMS file";
+            Err(Error::input("", expected, "something else"))
+        }
+    }
+
+    /// The channel of this name.
+    pub fn channel(&self, name: &str) -> Option<&Channel> {
+        self.channels.iter().find(|c| c.name == name)
+    }
+
+    /// The attribute of this name as a number.
+    pub fn number(&self, name: &str) -> Option<f64> {
+        match self.attributes.get(name) {
+            Some(Attribute::Number(x)) => Some(*x),
+            _ => None,
+        }
+    }
+
+    /// Everything that is there, in words, for a message.
+    pub fn listing(&self) -> String {
+        let names: Vec<&str> = self.channels.iter().map(|c| c.name.as_str()).collect();
+        let mut text = if names.is_empty() {
+            "no channel".to_owned()
+        } else {
+            format!("the channels {}", names.join(", "))
+        };
+        let numbers: Vec<&str> = self
+            .attributes
+            .iter()
+            .filter(|(_, a)| matches!(a, Attribute::Number(_)))
+            .map(|(name, _)| name.as_str())
+            .collect();
+        if !numbers.is_empty() {
+            text.push_str(&format!("; the numbers {}", numbers.join(", ")));
+        }
+        for (name, reason) in &self.left_out {
+            text.push_str(&format!("; not read: {name} ({reason})"));
+        }
+        text
+    }
+
+    fn find_sampling(&mut self) {
+        if self.sampling_hz.is_none() {
+            let found = self.attributes.iter().find_map(|(name, value)| {
+                let last = name.rsplit(['/', '.']).next().unwrap_or(name);
+                match value {
+                    Attribute::Number(hz)
+                        if SAMPLING_NAMES.contains(&last.to_lowercase().as_str()) =>
+                    {
+                        Some(*hz)
+                    }
+                    _ => None,
+                }
+            });
+            self.sampling_hz = found.filter(|hz| hz.is_finite() && *hz > 0.0);
+        }
+    }
+
+    fn push(&mut self, name: impl Into<String>, samples: Vec<f64>, unit: Option<String>) {
+        self.channels.push(Channel {
+            name: name.into(),
+            samples,
+            unit,
+        });
+    }
+
+    fn leave_out(&mut self, name: impl Into<String>, reason: impl Into<String>) {
+        self.left_out.push((name.into(), reason.into()));
+    }
+}
+
+/// The error that there is no such group.
+fn no_group(wanted: &str, groups: &[String]) -> Error {
+    let expected = if groups.is_empty() {
+        "no group: the file has none".to_owned()
+    } else {
+        format!("one of the groups {}", groups.join(", "))
+    };
+    Error::input("group", expected, format!("`{wanted}`"))
+}
+
+#[cfg(test)]
+mod tests;

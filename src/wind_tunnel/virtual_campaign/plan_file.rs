@@ -1,0 +1,38 @@
+//! Plans of virtual campaigns as TOML files.
+
+use super::plan::VirtualCampaignPlan;
+use crate::error::{Error, Result};
+use crate::toml_lines;
+use std::path::Path;
+
+impl VirtualCampaignPlan {
+    /// Reads and checks a plan; what it does not state is as in [`VirtualCampaignPlan::default`].
+    ///
+    /// # Errors
+    /// [`Error::Io`] when it cannot be read; [`Error::Input`] with file and line for everything that is wrong in it.
+    pub fn read(path: impl AsRef<Path>) -> Result<Self> {
+        let path = path.as_ref();
+        let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, e))?;
+        Self::from_toml(&text).map_err(|e| e.in_file(path))
+    }
+
+    /// Reads and checks the text of a plan.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with line and key for everything that is wrong in it.
+    pub fn from_toml(text: &str) -> Result<Self> {
+        let plan: Self = toml::from_str(text)
+            .map_err(|e| toml_lines::syntax_error("a plan of a virtual campaign", text, &e))?;
+        plan.validate()
+            .map_err(|e| toml_lines::with_line(text, e))?;
+        Ok(plan)
+    }
+
+    /// The plan as the text of a file.
+    ///
+    /// # Errors
+    /// [`Error::Numerical`] when it cannot be written as TOML.
+    pub fn to_toml(&self) -> Result<String> {
+        toml::to_string(self).map_err(|e| Error::Numerical(e.to_string()))
+    }
+}

@@ -1,0 +1,148 @@
+//! Raw campaigns on the command line: invented, checked, and wrong in many ways.
+
+#[path = "common/command.rs"]
+#[allow(dead_code)] // each test file needs a part of it
+mod command;
+
+use command::{listing, refused, succeeds};
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+use tempfile::TempDir;
+
+/// Two short frequencies at one speed; nothing else is stated.
+const PLAN: &str = "[tunnel]\nfrequencies_hz = [0.5, 2.0]\nspeeds_m_s = [8.0]\nstill_s = 2.0\nsegment_s = 6.0\nramp_s = 2.0\nnoise_fraction = 0.05\n";
+
+fn invent(folder: &Path, more: &[&str]) -> String {
+    fs::write(folder.join("plan.toml"), PLAN).unwrap();
+    let arguments = [
+        "campaign",
+        "virtual",
+        "jones",
+        "--plan",
+        "plan.toml",
+        "--out",
+        "c",
+    ];
+    succeeds(folder, &[&arguments[..], more].concat())
+}
+
+#[test]
+fn an_invented_campaign_is_sound() {
+    let folder = TempDir::new().unwrap();
+    let text = invent(folder.path(), &[]);
+    assert!(text.contains("Jones-torsion-8.00"), "{text}");
+    for name in [
+        "c/campaign.toml",
+        "c/plan.toml",
+        "c/truth.csv",
+        "c/disturbances.json",
+        "c/truth/Jones-vertical-8.00.csv",
+        "c/runs/Jones-vertical-8.00-wind.csv",
+        "c/runs/Jones-torsion-8.00-still.csv",
+    ] {
+        assert!(folder.path().join(name).is_file(), "{name}");
+    }
+    let text = succeeds(folder.path(), &["campaign", "check", "c/campaign.toml"]);
+    for words in [
+        "cells near, far",
+        "vertical motion, 8.000 m/s, 1.1900 kg/m³",
+        "2800 samples at 200 Hz (14.0 s)",
+        "near.fx",
+        "nothing odd found",
+    ] {
+        assert!(text.contains(words), "`{words}` is not in:\n{text}");
+    }
+    // the same seed gives the same files, another one others
+    let samples = |c: &Path| fs::read(c.join("c/runs/Jones-vertical-8.00-wind.csv")).unwrap();
+    let before = samples(folder.path());
+    invent(folder.path(), &[]);
+    assert!(before == samples(folder.path()));
+    invent(folder.path(), &["--seed", "9"]);
+    assert!(before != samples(folder.path()));
+}
+
+#[test]
+fn the_layout_of_ntnu_and_json() {
+    let folder = TempDir::new().unwrap();
+    let text = invent(
+        folder.path(),
+        &["--format", "ntnu", "--noise", "0", "--json"],
+    );
+    let answer: Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(answer["plan"]["tunnel"]["noise_fraction"], 0.0);
+    assert_eq!(answer["runs"].as_array().unwrap().len(), 2);
+    let text = succeeds(
+        folder.path(),
+        &["campaign", "check", "c/campaign.toml", "--json"],
+    );
+    let answer: Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(answer["runs"][0]["in_wind"]["samples"], 2800);
+    assert_eq!(answer["runs"][0]["air_density_kg_m3"], 1.19);
+    assert_eq!(answer["findings"], serde_json::json!([]));
+    assert!(listing(folder.path()).contains(&"c/runs.h5".to_owned()));
+}
+
+#[test]
+fn wrong_campaigns_are_refused() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    invent(at, &[]);
+    let file = at.join("c/campaign.toml");
+    let text = fs::read_to_string(&file).unwrap();
+    let with = |from: &str, to: &str, fragments: &[&str]| {
+        assert!(text.contains(from), "{from}\n{text}");
+        fs::write(&file, text.replacen(from, to, 1)).unwrap();
+        refused(at, &["campaign", "check", "c/campaign.toml"], fragments);
+    };
+    with(
+        "\"near.fx\"",
+        "\"near.force\"",
+        &[
+            "Jones-vertical-8.00-wind.csv",
+            "channels.cells.near.fx",
+            "a channel `near.force`",
+            "far.mz",
+        ],
+    );
+    with(
+        "mean_speed_m_s = 8.0",
+        "mean_speed_m_s = 0.0",
+        &["campaign.toml: line ", "run[0].mean_speed_m_s", "found 0"],
+    );
+    with("Jones-torsion-8.00-still", "gone", &["gone.csv"]);
+    with(
+        "density_kg_m3",
+        "density",
+        &["campaign.toml: line ", "density"],
+    );
+    refused(
+        at,
+        &["campaign", "virtual", "LN22", "--out", "d"],
+        &["LN21-5200", "`LN22`"],
+    );
+    refused(
+        at,
+        &["campaign", "virtual", "jones", "--lateral", "--out", "d"],
+        &["a table of derivatives"],
+    );
+    refused(
+        at,
+        &["campaign", "virtual", "jones", "--noise=-1", "--out", "d"],
+        &["noise_fraction"],
+    );
+    fs::write(at.join("plan.toml"), "[disturbances]\nforce_lag_s = 9.0\n").unwrap();
+    refused(
+        at,
+        &[
+            "campaign",
+            "virtual",
+            "jones",
+            "--plan",
+            "plan.toml",
+            "--out",
+            "d",
+        ],
+        &["plan.toml: line 2, disturbances.force_lag_s", "found 9"],
+    );
+}
