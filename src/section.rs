@@ -259,6 +259,23 @@ impl Structure {
         order.into_iter().map(|i| self.dofs[i]).collect()
     }
 
+    /// The same structure with only those of its degrees of freedom that are among `dofs`; the others are locked.
+    #[must_use]
+    pub fn only(&self, dofs: &[Dof]) -> Self {
+        let kept: Vec<usize> = (0..self.dofs.len())
+            .filter(|i| dofs.contains(&self.dofs[*i]))
+            .collect();
+        let part = |m: &DMatrix<f64>| m.select_rows(&kept).select_columns(&kept);
+        Self {
+            dofs: kept.iter().map(|i| self.dofs[*i]).collect(),
+            width_m: self.width_m,
+            air_density_kg_m3: self.air_density_kg_m3,
+            mass: part(&self.mass),
+            damping: part(&self.damping),
+            stiffness: part(&self.stiffness),
+        }
+    }
+
     /// Scales a dimensionless aerodynamic matrix to physical motion and force:
     /// `diag(B, B, B²) G diag(1/B, 1/B, 1)`, still to be multiplied by `½ρV²`.
     pub fn to_physical<T>(&self, dimensionless: &DMatrix<T>) -> DMatrix<T>

@@ -8,6 +8,7 @@ mod flutter;
 mod fmu;
 mod output;
 mod progress;
+mod routes;
 mod simulate;
 mod stages;
 mod study;

@@ -16,6 +16,20 @@ pub enum OnsetMethod {
     Determinant,
     /// Growth rate of the stepped FMU.
     FmuStepping,
+    /// Modes with the forces at their own frequency, iterated (p-k).
+    PkIteration,
+}
+
+impl OnsetMethod {
+    /// The route in a word.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Eigenvalues => "eigenvalues",
+            Self::Determinant => "determinant",
+            Self::FmuStepping => "FMU stepped",
+            Self::PkIteration => "p-k iteration",
+        }
+    }
 }
 
 /// A flutter onset.
