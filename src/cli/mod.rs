@@ -6,6 +6,7 @@ mod common;
 mod demo;
 mod flutter;
 mod fmu;
+mod monte_carlo;
 mod output;
 mod progress;
 mod routes;
@@ -49,6 +50,7 @@ enum Command {
     Tunnel(tunnel::Args),
     Train(train::Args),
     Flutter(flutter::Args),
+    MonteCarlo(monte_carlo::Args),
     Simulate(simulate::Args),
     #[command(subcommand)]
     Fmu(fmu::Fmu),
@@ -84,6 +86,7 @@ fn run(command: &Command, progress: &progress::Progress) -> Result<Answer> {
         Command::Tunnel(args) => tunnel::run(args, progress),
         Command::Train(args) => train::run(args, progress),
         Command::Flutter(args) => flutter::run(args, progress),
+        Command::MonteCarlo(args) => monte_carlo::run(args, progress),
         Command::Simulate(args) => simulate::run(args),
         Command::Fmu(command) => fmu::run(command, progress),
         Command::Validate(args) => validate::run(args, progress),

@@ -185,10 +185,10 @@ pub(super) fn damping_slope(
         Some(z.determinant())
     };
     let h = SLOPE_STEP;
-    let over_speed = determinant(speed_m_s * (1.0 + h), omega)?
-        - determinant(speed_m_s * (1.0 - h), omega)?;
-    let over_omega = determinant(speed_m_s, omega * (1.0 + h))?
-        - determinant(speed_m_s, omega * (1.0 - h))?;
+    let over_speed =
+        determinant(speed_m_s * (1.0 + h), omega)? - determinant(speed_m_s * (1.0 - h), omega)?;
+    let over_omega =
+        determinant(speed_m_s, omega * (1.0 + h))? - determinant(speed_m_s, omega * (1.0 - h))?;
     let rate = Complex::new(0.0, -1.0) * (over_speed / speed_m_s) / (over_omega / omega);
     let slope = -rate.re / omega;
     slope.is_finite().then_some(slope)

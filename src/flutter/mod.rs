@@ -13,6 +13,7 @@ mod pk;
 mod quasi_pk;
 mod sanity;
 mod search;
+mod sweep;
 mod tracking;
 
 pub use curves::{FlutterCurves, ModeBranch, ModePoint, trace_modes};
@@ -24,3 +25,4 @@ pub use pk::{pk_curves, pk_onset};
 pub use quasi_pk::quasi_pk_mode;
 pub use sanity::{SanityLines, sanity_lines};
 pub use search::{OnsetSearch, find_onset};
+pub use sweep::{LinearForces, OnsetSweep, SweepOutcome, SweptOnset};

@@ -209,13 +209,14 @@ impl Iteration<'_> {
         let still = before.speed == 0.0;
         let doubled = (0..after.all.len())
             .any(|i| (0..i).any(|j| same_root(&after.all[i].1, &after.all[j].1)));
-        !doubled && before.all.iter().zip(&after.all).all(|((_, a), (_, b))| {
-            let change = (b.lambda - a.lambda).norm() / a.lambda.norm();
-            let (u, v) = (self.dimensionless(a), self.dimensionless(b));
-            let assurance = u.dotc(&v).norm_sqr() / (u.norm_squared() * v.norm_squared());
-            // the added mass of the air changes the modes at once, however slow the wind
-            still || change < MAX_CHANGE && assurance > MIN_ASSURANCE
-        })
+        !doubled
+            && before.all.iter().zip(&after.all).all(|((_, a), (_, b))| {
+                let change = (b.lambda - a.lambda).norm() / a.lambda.norm();
+                let (u, v) = (self.dimensionless(a), self.dimensionless(b));
+                let assurance = u.dotc(&v).norm_sqr() / (u.norm_squared() * v.norm_squared());
+                // the added mass of the air changes the modes at once, however slow the wind
+                still || change < MAX_CHANGE && assurance > MIN_ASSURANCE
+            })
     }
 
     fn dimensionless(&self, mode: &PkMode) -> nalgebra::DVector<Complex<f64>> {

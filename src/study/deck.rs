@@ -1,11 +1,11 @@
 //! The deck of a study: a measured table or the flat plate, and the records made from it or measured.
 
 use super::Study;
-use crate::aerodynamics::{AerodynamicModel, FlatPlate};
 use crate::aerodynamics::derivatives::TransferSample;
 use crate::aerodynamics::derivatives::{
     DerivativeTable, Extrapolation, InterpolatedTable, embedded, read_table,
 };
+use crate::aerodynamics::{AerodynamicModel, FlatPlate};
 use crate::error::{Error, Result};
 use crate::flutter::{FlutterSearch, determinant_onset};
 use crate::identification::sample_model;

@@ -5,7 +5,6 @@
 
 mod deck;
 mod defaults;
-mod locate;
 mod models;
 mod onsets;
 mod routes;
@@ -22,6 +21,7 @@ use crate::error::{Error, Result, positive};
 use crate::flutter::OnsetSearch;
 use crate::identification::{DiscreteFit, FrequencyFit, TimeFit};
 use crate::section::SectionModel;
+use crate::toml_lines;
 use crate::wind_tunnel::TunnelPlan;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -182,9 +182,12 @@ impl Study {
     /// # Errors
     /// [`Error::Input`] with line and key for everything that is wrong in it.
     pub fn from_toml(text: &str, directory: PathBuf) -> Result<Self> {
-        let mut study: Self = toml::from_str(text).map_err(|e| locate::syntax_error(text, &e))?;
+        let mut study: Self =
+            toml::from_str(text).map_err(|e| toml_lines::syntax_error("a study file", text, &e))?;
         study.directory = directory;
-        study.validate().map_err(|e| locate::with_line(text, e))?;
+        study
+            .validate()
+            .map_err(|e| toml_lines::with_line(text, e))?;
         Ok(study)
     }
 

@@ -134,10 +134,8 @@ impl RouteTable {
         };
         let found = find_onset(&model.name, &section, &search, forces.tested)?;
         let mut by_eigenvalues = forces.route(study, OnsetMethod::Eigenvalues, found)?;
-        by_eigenvalues.divergence_m_s = divergence_by_eigenvalues(
-            &section,
-            study.flutter.speed_max_m_s.max(beyond(&forces)),
-        )?;
+        by_eigenvalues.divergence_m_s =
+            divergence_by_eigenvalues(&section, study.flutter.speed_max_m_s.max(beyond(&forces)))?;
         self.routes.push(by_eigenvalues);
         self.curves.push(trace_modes(
             &model.name,
@@ -177,10 +175,9 @@ impl RouteTable {
 
     fn add_deck(&mut self, study: &Study, deck: &Deck, structure: &Structure) -> Result<()> {
         let (model, tested) = deck.model()?;
-        let steady_k = tested.map_or(
-            ReducedFrequency::from_full_width(NEARLY_STEADY),
-            |range| range.min,
-        );
+        let steady_k = tested.map_or(ReducedFrequency::from_full_width(NEARLY_STEADY), |range| {
+            range.min
+        });
         let limit = if tested.is_some() {
             low_frequency_limit(model.as_ref(), steady_k)?
         } else {
@@ -206,8 +203,11 @@ impl RouteTable {
             }
         }
         let speeds = study.flutter.curve_speeds_m_s();
-        self.curves
-            .push(pk_curves(&forces.name, structure, model.as_ref(), &speeds)?);
+        let mut curves = pk_curves(&forces.name, structure, model.as_ref(), &speeds)?;
+        if let Some(range) = tested {
+            keep_tested(&mut curves, structure.width_m, range);
+        }
+        self.curves.push(curves);
         self.add_quasi_steady(study, structure, &limit, tested.map(|range| range.min))
     }
 
@@ -226,7 +226,7 @@ impl RouteTable {
             structure,
             tested: None,
             divergence_m_s: divergence_speed(structure, &steady)?,
-            quasi_steady_m_s: None,
+            quasi_steady_m_s: quasi_steady(study, structure, limit)?,
         };
         let section = coupled(structure, limit)?;
         let found = find_onset(&forces.name, &section, &study.flutter.search(), None)?;
@@ -325,6 +325,19 @@ impl Forces<'_> {
     }
 }
 
+/// Leaves out the points at which a table was asked outside its range.
+fn keep_tested(curves: &mut FlutterCurves, width_m: f64, range: ReducedFrequencyRange) {
+    for branch in &mut curves.branches {
+        branch.points.retain(|p| {
+            range.contains(ReducedFrequency::from_hertz(
+                p.frequency_hz,
+                width_m,
+                p.speed_m_s,
+            ))
+        });
+    }
+}
+
 /// `G ≈ Re G(K) + iK · Im G(K)/K` at a low `K`: affine in `iK`, the form of quasi-steady theory.
 ///
 /// # Errors
@@ -367,7 +380,11 @@ fn steady_flat_plate() -> RationalModel {
 }
 
 /// Onset of an affine model, m/s.
-fn quasi_steady(study: &Study, structure: &Structure, limit: &RationalModel) -> Result<Option<f64>> {
+fn quasi_steady(
+    study: &Study,
+    structure: &Structure,
+    limit: &RationalModel,
+) -> Result<Option<f64>> {
     let section = coupled(structure, limit)?;
     let found = find_onset("", &section, &study.flutter.search(), None)?;
     Ok(found.onset().map(|o| o.speed_m_s))
