@@ -54,7 +54,7 @@ fn row(route: &Route) -> String {
             o.damping_slope_s_m.unwrap_or(f64::NAN),
             o.branch,
             kind(route),
-            tested(o),
+            tested(o, route),
         ),
         FlutterSearch::StableUpTo(speed) => {
             format!(
@@ -68,8 +68,9 @@ fn kind(route: &Route) -> &'static str {
     route.mode.as_ref().map_or("", |m| m.kind.name())
 }
 
-fn tested(onset: &Onset) -> &'static str {
+fn tested(onset: &Onset, route: &Route) -> &'static str {
     match onset.in_tested_range {
+        None if route.low_frequency_limit => "limit",
         Some(true) => "yes",
         Some(false) => "NO",
         None => "exact",
@@ -137,8 +138,9 @@ fn found(o: &Onset, route: &Route) -> String {
             " (tested V̂ {:.2} to {:.2}: {})",
             range.max.v_hat(),
             range.min.v_hat(),
-            tested(o)
+            tested(o, route)
         ),
+        None if route.low_frequency_limit => writeln!(text, " (a limit for K → 0)"),
         None => writeln!(text, " (exact at every K)"),
     };
     let slope = o

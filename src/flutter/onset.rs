@@ -3,11 +3,11 @@
 use crate::section::Structure;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange, ReducedVelocity};
 use nalgebra::{Complex, DVector};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
 /// How an onset was found.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum OnsetMethod {
     /// Eigenvalues of the coupled state matrix.

@@ -24,6 +24,10 @@ use serde::Serialize;
 const WIDE: (f64, f64) = (0.02, 10.0);
 /// A reduced frequency at which the flow is steady to rounding of `Re G` and to 1e-5 of `Im G/K`.
 const NEARLY_STEADY: f64 = 1e-5;
+/// Share of the kinetic energy, and onset alone over onset, from which on an instability is nearly one of a single
+/// degree of freedom.
+const NEARLY_ALONE: f64 = 0.8;
+const ALONE_SOON: f64 = 1.5;
 /// Name of the flat plate with the section's structure.
 const FLAT_PLATE: &str = "flat plate, same structure";
 
@@ -57,7 +61,9 @@ pub struct Route {
     pub divergence_m_s: Option<f64>,
     /// Reduced frequencies in which the force model was tested; `null` for an exact one.
     pub tested_range: Option<ReducedFrequencyRange>,
-    /// Onset of the low-frequency limit of the same force model, m/s; only where it was asked for.
+    /// Whether the force model is a limit for `K → 0`, which no test range bounds but the theory does.
+    pub low_frequency_limit: bool,
+    /// Onset of the low-frequency limit of the same force model, m/s.
     pub quasi_steady_m_s: Option<f64>,
     /// What a reader must know before using the numbers.
     pub warnings: Vec<String>,
@@ -231,6 +237,7 @@ impl RouteTable {
         let section = coupled(structure, limit)?;
         let found = find_onset(&forces.name, &section, &study.flutter.search(), None)?;
         let mut route = forces.route(study, OnsetMethod::Eigenvalues, found)?;
+        route.low_frequency_limit = true;
         route.warnings.push(match from {
             Some(k) => format!(
                 "no static coefficients given: slopes and rates from the derivatives at K = {:.3}, good for K well below \
@@ -311,6 +318,10 @@ impl Forces<'_> {
                 "static divergence at {divergence:.2} m/s comes before flutter"
             ));
         }
+        warnings.extend(
+            mode.iter()
+                .filter_map(|m| nearly_single(m, onset?.speed_m_s)),
+        );
         Ok(Route {
             model: self.name.clone(),
             method,
@@ -318,11 +329,27 @@ impl Forces<'_> {
             mode,
             divergence_m_s: self.divergence_m_s,
             tested_range: self.tested,
+            low_frequency_limit: false,
             quasi_steady_m_s: self.quasi_steady_m_s,
             warnings,
             search,
         })
     }
+}
+
+/// A warning for coupled flutter close to one of a single degree of freedom.
+fn nearly_single(mode: &ModeAtOnset, onset_m_s: f64) -> Option<String> {
+    let near = mode.participation.iter().find(|p| {
+        p.energy_share > NEARLY_ALONE && p.alone_m_s.is_some_and(|v| v < ALONE_SOON * onset_m_s)
+    })?;
+    (!mode.kind.single_dof()).then(|| {
+        format!(
+            "nearly a one-degree-of-freedom instability: {} carries {:.0} % of the kinetic energy and flutters alone at {:.2} m/s",
+            near.dof.name(),
+            100.0 * near.energy_share,
+            near.alone_m_s.unwrap_or(f64::NAN)
+        )
+    })
 }
 
 /// Leaves out the points at which a table was asked outside its range.
