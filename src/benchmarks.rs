@@ -10,11 +10,16 @@ mod flat_plate;
 mod jones;
 mod records;
 mod table;
+#[cfg(feature = "campaigns")]
+mod user_case;
 
 pub use table::validation_table;
+#[cfg(feature = "campaigns")]
+pub use user_case::{CASE_SCHEMA, Quantity, UserAerodynamics, UserCase, UserFigure};
 
 use crate::error::{Error, Result};
 use serde::Serialize;
+use std::borrow::Cow;
 
 /// Who says what the figure should be.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -24,6 +29,38 @@ pub enum Source {
     Published(&'static str),
     /// Computed independently of this crate, by this method.
     Computed(&'static str),
+}
+
+/// The same in a result, where it may come from a file.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[serde(tag = "kind", content = "citation", rename_all = "snake_case")]
+pub enum Citation {
+    /// Printed in this publication.
+    Published(Cow<'static, str>),
+    /// Computed independently of this crate, by this method.
+    Computed(Cow<'static, str>),
+    /// Stated by the user in a case file.
+    Stated(Cow<'static, str>),
+}
+
+impl Citation {
+    /// The source in words.
+    pub fn words(&self) -> String {
+        match self {
+            Self::Published(text) => format!("published: {text}"),
+            Self::Computed(text) => format!("computed: {text}"),
+            Self::Stated(text) => format!("stated: {text}"),
+        }
+    }
+}
+
+impl From<Source> for Citation {
+    fn from(source: Source) -> Self {
+        match source {
+            Source::Published(text) => Self::Published(text.into()),
+            Source::Computed(text) => Self::Computed(text.into()),
+        }
+    }
 }
 
 /// How far a figure may be from its reference.
@@ -132,13 +169,13 @@ pub struct Case {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CaseResult {
     /// Name of the case.
-    pub name: &'static str,
+    pub name: Cow<'static, str>,
     /// What is computed, in words.
-    pub what: &'static str,
+    pub what: Cow<'static, str>,
     /// The figure.
-    pub quantity: &'static str,
+    pub quantity: Cow<'static, str>,
     /// Its unit.
-    pub unit: &'static str,
+    pub unit: Cow<'static, str>,
     /// The reference.
     pub expected: f64,
     /// Decimals to which the reference is given.
@@ -150,11 +187,11 @@ pub struct CaseResult {
     /// Allowed deviation.
     pub tolerance: f64,
     /// Reason of the tolerance.
-    pub reason: &'static str,
+    pub reason: Cow<'static, str>,
     /// Whether the deviation is within the tolerance.
     pub passed: bool,
     /// Whose figure it is.
-    pub source: Source,
+    pub source: Citation,
     /// Whether it stands in the short table of the README.
     pub headline: bool,
     /// Why the computation failed, if it did.
@@ -218,18 +255,18 @@ impl Case {
     fn result(&self, figure: &Figure, found: Option<f64>, problem: Option<String>) -> CaseResult {
         let deviation = found.map(|found| found - figure.expected);
         CaseResult {
-            name: self.name,
-            what: self.what,
-            quantity: figure.quantity,
-            unit: figure.unit,
+            name: self.name.into(),
+            what: self.what.into(),
+            quantity: figure.quantity.into(),
+            unit: figure.unit.into(),
             expected: figure.expected,
             decimals: figure.decimals,
             found,
             deviation,
             tolerance: figure.allowed(),
-            reason: figure.reason(),
+            reason: figure.reason().into(),
             passed: deviation.is_some_and(|d| d.abs() <= figure.allowed()),
-            source: figure.source,
+            source: figure.source.into(),
             headline: figure.headline,
             problem,
         }

@@ -73,6 +73,15 @@ impl Error {
         }
     }
 
+    /// The same error at another place.
+    #[must_use]
+    pub fn at(mut self, place: impl Into<String>) -> Self {
+        if let Self::Input(input) = &mut self {
+            input.place = place.into();
+        }
+        self
+    }
+
     /// The same error, naming the file it came from (a file already named is kept).
     #[must_use]
     pub fn in_file(mut self, path: impl AsRef<Path>) -> Self {

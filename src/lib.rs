@@ -23,7 +23,7 @@
 //! [`aerodynamics`] holds the force models, [`section`] the structure, [`aeroelastic`] their coupling, [`flutter`] modes and
 //! onsets, [`response`] the exact steps, [`trained_model`] what is saved, [`fmu`] the co-simulation slave with its
 //! packing and importer. `wind_tunnel` and `identification` lead from records and tables to models, `comparison` compares
-//! time histories, `study` runs the whole chain, `report` draws it and `cli` is the program.
+//! time histories, `reliability` draws random sections, `study` runs the whole chain, `report` draws it and `cli` is the program.
 #![deny(unsafe_code, missing_docs)]
 
 pub mod aerodynamics;
@@ -39,6 +39,8 @@ pub mod flutter;
 pub mod fmu;
 #[cfg(feature = "identification")]
 pub mod identification;
+#[cfg(feature = "campaigns")]
+pub mod reliability;
 #[cfg(feature = "report")]
 pub mod report;
 pub mod response;

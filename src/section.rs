@@ -161,23 +161,7 @@ impl SectionModel {
     /// [`Error::Input`] for a value that is not finite, not positive where it must be, or for a support that states
     /// both or neither of frequency and stiffness.
     pub fn structure(&self) -> Result<Structure> {
-        positive("section.width_m", self.width_m)?;
-        positive("section.air_density_kg_m3", self.air_density_kg_m3)?;
-        let heave = translation_support("section.vertical", &self.vertical)?;
-        let sway = self
-            .lateral
-            .as_ref()
-            .map(|s| translation_support("section.lateral", s))
-            .transpose()?;
-        let rotation = &self.torsion;
-        let twist = support(
-            "section.torsion",
-            ("inertia_kg_m2_m", rotation.inertia_kg_m2_m),
-            rotation.frequency_hz,
-            ("stiffness_n", rotation.stiffness_n),
-            rotation.damping_ratio,
-        )?;
-        let supports: Vec<_> = std::iter::once(heave).chain(sway).chain([twist]).collect();
+        let supports: Vec<_> = self.diagonal()?.into_iter().flatten().collect();
         let diagonal = |pick: fn(&(f64, f64, f64)) -> f64| {
             DMatrix::from_diagonal(&supports.iter().map(pick).collect::<Vec<_>>().into())
         };
@@ -190,6 +174,27 @@ impl SectionModel {
             stiffness: diagonal(|s| s.2),
         })
     }
+
+    /// (mass, damping, stiffness) of the vertical, lateral and torsional support.
+    pub(crate) fn diagonal(&self) -> Result<[Option<(f64, f64, f64)>; 3]> {
+        positive("section.width_m", self.width_m)?;
+        positive("section.air_density_kg_m3", self.air_density_kg_m3)?;
+        let heave = translation_support("section.vertical", &self.vertical)?;
+        let sway = self.lateral.as_ref();
+        let sway = sway.map(|s| translation_support("section.lateral", s));
+        let twist = rotation_support("section.torsion", &self.torsion)?;
+        Ok([Some(heave), sway.transpose()?, Some(twist)])
+    }
+}
+
+fn rotation_support(place: &str, s: &Rotation) -> Result<(f64, f64, f64)> {
+    support(
+        place,
+        ("inertia_kg_m2_m", s.inertia_kg_m2_m),
+        s.frequency_hz,
+        ("stiffness_n", s.stiffness_n),
+        s.damping_ratio,
+    )
 }
 
 fn translation_support(place: &str, s: &Translation) -> Result<(f64, f64, f64)> {
@@ -210,14 +215,18 @@ fn support(
     (stiffness_key, stiffness): (&str, Option<f64>),
     damping_ratio: f64,
 ) -> Result<(f64, f64, f64)> {
-    let inertia = positive(&format!("{place}.{inertia_key}"), inertia)?;
-    let damping_ratio = non_negative(&format!("{place}.damping_ratio"), damping_ratio)?;
+    // the place is put together only where something is wrong: this is called for every sample of a random section
+    let at = |key: &str, checked: fn(&str, f64) -> Result<f64>, value: f64| {
+        checked("", value).map_err(|e| e.at(format!("{place}.{key}")))
+    };
+    let inertia = at(inertia_key, positive, inertia)?;
+    let damping_ratio = at("damping_ratio", non_negative, damping_ratio)?;
     let stiffness = match (frequency_hz, stiffness) {
         (Some(f), None) => {
-            let omega = TAU * positive(&format!("{place}.frequency_hz"), f)?;
+            let omega = TAU * at("frequency_hz", positive, f)?;
             inertia * omega * omega
         }
-        (None, Some(k)) => non_negative(&format!("{place}.{stiffness_key}"), k)?,
+        (None, Some(k)) => at(stiffness_key, non_negative, k)?,
         (given, _) => {
             return Err(Error::input(
                 place,
@@ -257,6 +266,23 @@ impl Structure {
         let square = |i: &usize| self.stiffness[(*i, *i)] / self.mass[(*i, *i)];
         order.sort_by(|i, j| square(i).total_cmp(&square(j)));
         order.into_iter().map(|i| self.dofs[i]).collect()
+    }
+
+    /// The same structure with only those of its degrees of freedom that are among `dofs`; the others are locked.
+    #[must_use]
+    pub fn only(&self, dofs: &[Dof]) -> Self {
+        let kept: Vec<usize> = (0..self.dofs.len())
+            .filter(|i| dofs.contains(&self.dofs[*i]))
+            .collect();
+        let part = |m: &DMatrix<f64>| m.select_rows(&kept).select_columns(&kept);
+        Self {
+            dofs: kept.iter().map(|i| self.dofs[*i]).collect(),
+            width_m: self.width_m,
+            air_density_kg_m3: self.air_density_kg_m3,
+            mass: part(&self.mass),
+            damping: part(&self.damping),
+            stiffness: part(&self.stiffness),
+        }
     }
 
     /// Scales a dimensionless aerodynamic matrix to physical motion and force:

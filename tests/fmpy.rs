@@ -11,6 +11,9 @@ mod in_process;
 mod models;
 #[path = "common/python.rs"]
 mod python;
+#[path = "common/three_dof.rs"]
+#[allow(dead_code)] // one model of several
+mod three_dof;
 
 use aerodeck::aerodynamics::derivatives::embedded;
 use aerodeck::fmu::package::{Overwrite, Runtime, write_fmu};
@@ -78,7 +81,13 @@ fn export() -> PathBuf {
     };
     export("measured_laguerre", &measured_deck(Form::default()), None);
     export("measured_rational", &measured_deck(lag), None);
-    let text = serde_json::to_string(&json!({ "models": Value::Object(expected) })).unwrap();
+    let lateral = three_dof::trained(Form::default(), 3.9);
+    let fmu = folder.join("three_dof.fmu");
+    write_fmu(&fmu, &lateral, &runtimes, Overwrite::Refuse).unwrap();
+    let text = serde_json::to_string(&json!({
+        "models": Value::Object(expected), "three_dof": in_process::three_dof(&lateral),
+    }))
+    .unwrap();
     fs::write(folder.join("expected.json"), text).unwrap();
     folder
 }

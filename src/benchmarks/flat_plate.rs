@@ -3,7 +3,10 @@
 use super::{Case, Figure};
 use crate::aerodynamics::{AerodynamicModel, FlatPlate};
 use crate::error::{Error, Result};
-use crate::flutter::{Onset, determinant_onset, divergence_speed, impedance, quasi_pk_mode};
+use crate::flutter::{
+    Onset, OnsetSearch, determinant_onset, divergence_speed, impedance, pk_onset, quasi_pk_mode,
+    sanity_lines,
+};
 use crate::section::SectionModel;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use std::f64::consts::{PI, TAU};
@@ -112,6 +115,25 @@ pub const CASES: &[Case] = &[
         compute: iabse_impedance,
     },
     Case {
+        name: "iabse-1.1a-sanity-lines",
+        what: "IABSE 1.1a: handbook formulas for the onset of a flat plate",
+        figures: &[
+            Figure::new("Selberg, factor 3.72", 76.385, 3, "m/s"),
+            Figure::new("Selberg, factor 0.44", 76.175, 3, "m/s"),
+            Figure::new("Rocard", 76.646, 3, "m/s"),
+        ],
+        compute: iabse_sanity,
+    },
+    Case {
+        name: "iabse-1.1a-p-k",
+        what: "Flat plate (Theodorsen), IABSE 1.1a: onset by the p-k iteration, without the rotary inertia",
+        figures: &[
+            Figure::new("onset speed", 77.480, 3, "m/s"),
+            Figure::new("frequency at onset", 0.19400, 5, "Hz"),
+        ],
+        compute: iabse_by_iteration,
+    },
+    Case {
         name: "fung-p236",
         what: "Flat plate (Theodorsen), bridge deck of Fung, Theory of Aeroelasticity, p. 236 (μ 40, r² 0.6222, B 60 ft)",
         figures: &[
@@ -177,6 +199,29 @@ fn iabse_onset() -> Result<Vec<f64>> {
         with_rotary.frequency_hz,
         divergence,
     ])
+}
+
+fn iabse_sanity() -> Result<Vec<f64>> {
+    let lines = sanity_lines(&SectionModel::iabse_1_1a().structure()?)
+        .ok_or_else(|| Error::Numerical("no sanity lines".into()))?;
+    Ok(vec![
+        lines.selberg_rounded_m_s,
+        lines.selberg_m_s,
+        lines.rocard_m_s,
+    ])
+}
+
+fn iabse_by_iteration() -> Result<Vec<f64>> {
+    let structure = SectionModel::iabse_1_1a().structure()?;
+    let search = OnsetSearch {
+        speed_max_m_s: 100.0,
+        speeds: 100,
+    };
+    let onset = pk_onset("", &structure, &WITHOUT_ROTARY, &search, None)?
+        .onset()
+        .cloned()
+        .ok_or_else(|| Error::Numerical("no onset up to 100 m/s".into()))?;
+    Ok(vec![onset.speed_m_s, onset.frequency_hz])
 }
 
 /// Frequency (Hz) and damping ratio: torsion at 15 to 75 m/s, heave at 15 to 60 m/s.

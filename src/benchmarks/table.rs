@@ -1,6 +1,6 @@
 //! The results as a Markdown table.
 
-use super::{CaseResult, Source};
+use super::CaseResult;
 use std::fmt::Write;
 
 /// Markdown table of the headline figures, and a sentence that counts all of them.
@@ -10,20 +10,20 @@ pub fn validation_table(results: &[CaseResult]) -> String {
     );
     let mut last = "";
     for r in results.iter().filter(|r| r.headline) {
-        let case = if r.what == last { "" } else { r.what };
-        last = r.what;
+        let case = if r.what == last { "" } else { &r.what };
+        last = &r.what;
         let found = match r.found {
-            Some(found) => with_unit(found, r.decimals, r.unit),
+            Some(found) => with_unit(found, r.decimals, &r.unit),
             None => "no result".into(),
         };
         let mark = if r.passed { "" } else { " **failed**" };
         let _ = writeln!(
             text,
             "| {case} | {} | {} | {found}{mark} | ±{} | {} |",
-            escaped(r.quantity),
-            with_unit(r.expected, r.decimals, r.unit),
+            escaped(&r.quantity),
+            with_unit(r.expected, r.decimals, &r.unit),
             allowed(r),
-            cited(r.source)
+            escaped(&r.source.words())
         );
     }
     let passed = results.iter().filter(|r| r.passed).count();
@@ -47,13 +47,6 @@ fn allowed(result: &CaseResult) -> String {
     // one digit more than the reference shows half of its last digit
     let text = format!("{:.*}", result.decimals + 1, result.tolerance);
     text.trim_end_matches('0').to_owned()
-}
-
-fn cited(source: Source) -> String {
-    match source {
-        Source::Published(citation) => format!("published: {}", escaped(citation)),
-        Source::Computed(method) => format!("computed: {}", escaped(method)),
-    }
 }
 
 /// A bar would end the cell.

@@ -1,7 +1,7 @@
 //! Results in words and tables, for people.
 
 use super::study::Summary;
-use crate::flutter::{Onset, OnsetMethod};
+use crate::flutter::Onset;
 use crate::identification::FitReport;
 use crate::study::{Deck, Deviation, Divergence, OnsetSummary, Study};
 use std::fmt::Write as _;
@@ -112,7 +112,7 @@ pub fn onsets(onsets: &[Onset], stable: &[OnsetSummary]) -> String {
             text,
             "{:<22} {:<12} {:>9.3} {:>8.4} {:>8.3} {:>8.4} {:>8.1}  {:<9} {}",
             o.model,
-            method(o.method),
+            o.method.name(),
             o.speed_m_s,
             o.frequency_hz,
             o.reduced_velocity.v_star(),
@@ -131,7 +131,7 @@ pub fn onsets(onsets: &[Onset], stable: &[OnsetSummary]) -> String {
             text,
             "{:<22} {:<12} no flutter up to {} m/s",
             s.model,
-            method(s.method),
+            s.method.name(),
             s.stable_up_to_m_s
         );
     }
@@ -158,13 +158,4 @@ pub fn divergence(all: &[Divergence]) -> String {
 /// Deviations from the deck's own onset.
 pub fn deviations(all: &[Deviation]) -> String {
     all.iter().map(|d| d.explain() + "\n").collect()
-}
-
-/// The method in a word.
-pub fn method(method: OnsetMethod) -> &'static str {
-    match method {
-        OnsetMethod::Eigenvalues => "eigenvalues",
-        OnsetMethod::Determinant => "determinant",
-        OnsetMethod::FmuStepping => "FMU stepped",
-    }
 }

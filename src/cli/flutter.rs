@@ -4,18 +4,24 @@ use super::answer::Answer;
 use super::common::StudyArgs;
 use super::output::{OutputDir, list};
 use super::progress::Progress;
+use super::routes;
 use super::{account, stages};
 use crate::error::Result;
-use crate::study::Deck;
+use crate::study::{Deck, Study, route_table};
+use crate::trained_model::TrainedModel;
 
 /// Frequencies, damping and flutter onset of the trained models of a study (see `train`)
 ///
-/// Example: aerodeck flutter study.toml
+/// Example: aerodeck flutter study.toml --all
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Args {
     #[command(flatten)]
     study: StudyArgs,
+    /// Every route side by side: eigenvalues, determinant, p-k iteration, quasi-steady limit, flat plate, Selberg and
+    /// Rocard; with an onset card for each force model.
+    #[arg(long)]
+    all: bool,
 }
 
 /// Runs the command.
@@ -24,6 +30,10 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     let deck = Deck::load(&study)?;
     let directory = args.study.directory();
     let models = stages::read_models(&study, &directory)?;
+    if args.all {
+        let out = OutputDir::new(&directory)?;
+        return all_routes(&study, &deck, &models, out, progress);
+    }
     let results = stages::flutter(&study, &deck, &models, progress)?;
     let mut out = OutputDir::new(&directory)?;
     stages::flutter_figure(&study, &results, &[], &mut out)?;
@@ -36,5 +46,27 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     Answer::new(
         text,
         &serde_json::json!({ "flutter": results, "files": written }),
+    )
+}
+
+/// Every route in one table, with cards and a figure.
+fn all_routes(
+    study: &Study,
+    deck: &Deck,
+    models: &[TrainedModel],
+    mut out: OutputDir,
+    progress: &Progress,
+) -> Result<Answer> {
+    let stage = progress.stage("onset by every route");
+    let table = route_table(study, deck, models)?;
+    drop(stage);
+    stages::routes_figure(study, &table.curves, &routes::marked(&table), &mut out)?;
+    let written = out.commit()?;
+    let mut text = format!("{}\n{}\n\n", study.name, deck.description());
+    text.push_str(&routes::account(&table, study.flutter.speed_max_m_s));
+    text.push_str(&list(&written));
+    Answer::new(
+        text,
+        &serde_json::json!({ "routes": table, "files": written }),
     )
 }

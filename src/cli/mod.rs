@@ -7,8 +7,10 @@ mod common;
 mod demo;
 mod flutter;
 mod fmu;
+mod monte_carlo;
 mod output;
 mod progress;
+mod routes;
 mod simulate;
 mod stages;
 mod study;
@@ -51,6 +53,7 @@ enum Command {
     Campaign(campaign::Campaign),
     Train(train::Args),
     Flutter(flutter::Args),
+    MonteCarlo(monte_carlo::Args),
     Simulate(simulate::Args),
     #[command(subcommand)]
     Fmu(fmu::Fmu),
@@ -87,6 +90,7 @@ fn run(command: &Command, progress: &progress::Progress) -> Result<Answer> {
         Command::Campaign(command) => campaign::run(command, progress),
         Command::Train(args) => train::run(args, progress),
         Command::Flutter(args) => flutter::run(args, progress),
+        Command::MonteCarlo(args) => monte_carlo::run(args, progress),
         Command::Simulate(args) => simulate::run(args),
         Command::Fmu(command) => fmu::run(command, progress),
         Command::Validate(args) => validate::run(args, progress),

@@ -3,7 +3,7 @@
 use super::output::OutputDir;
 use super::progress::Progress;
 use crate::error::{Error, Result};
-use crate::flutter::Onset;
+use crate::flutter::{FlutterCurves, Onset};
 use crate::fmu::package::{Runtime, package};
 use crate::identification::{self, FitReport};
 use crate::report::{PNG_SCALE, VfVgOptions, vf_vg_figure};
@@ -26,6 +26,8 @@ pub const FITS: &str = "fits";
 pub const MODEL_FILE: &str = "model.json";
 /// The FMU.
 pub const FMU_FILE: &str = "deck_section.fmu";
+/// Force models that can be told apart in one figure.
+pub const MAX_CURVES: usize = 7;
 /// Stem of the figure of frequencies and damping ratios.
 pub const FIGURE: &str = "flutter";
 
@@ -147,6 +149,25 @@ pub fn flutter_figure(
     let figure = vf_vg_figure(&results.curves, &onsets, &options)?;
     out.write(format!("{FIGURE}.svg"), figure.svg())?;
     out.write(format!("{FIGURE}.png"), figure.png(PNG_SCALE)?)
+}
+
+/// The same figure for all routes, as far as there are colours.
+pub fn routes_figure(
+    study: &Study,
+    curves: &[FlutterCurves],
+    onsets: &[Onset],
+    out: &mut OutputDir,
+) -> Result<()> {
+    let curves = &curves[..curves.len().min(MAX_CURVES)];
+    let drawn = |o: &&Onset| curves.iter().any(|c| c.model == o.model);
+    let onsets: Vec<Onset> = onsets.iter().filter(drawn).cloned().collect();
+    let options = VfVgOptions {
+        title: Some(format!("{}: all routes", study.name)),
+        ..VfVgOptions::default()
+    };
+    let figure = vf_vg_figure(curves, &onsets, &options)?;
+    out.write("routes.svg", figure.svg())?;
+    out.write("routes.png", figure.png(PNG_SCALE)?)
 }
 
 /// Packs a model with all runtimes that are there.

@@ -2,18 +2,23 @@
 
 use super::answer::Answer;
 use super::progress::Progress;
-use crate::benchmarks::{CaseResult, Source, run as run_case, run_all, validation_table};
+use crate::benchmarks::{CaseResult, UserCase, run as run_case, run_all, validation_table};
 use crate::error::Result;
 use std::fmt::Write as _;
+use std::path::PathBuf;
 
 /// Compute the reference cases and compare them with published or independently computed figures
 ///
 /// Example: aerodeck validate
+/// Example: aerodeck validate --case my_bridge.toml --case my_deck.toml
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Args {
     /// One case by name; by default, all.
-    case: Option<String>,
+    name: Option<String>,
+    /// A case of your own (`.toml`); may be given several times.
+    #[arg(long = "case", value_name = "FILE", conflicts_with = "name")]
+    files: Vec<PathBuf>,
     /// The table in Markdown, as it stands in the README.
     #[arg(long)]
     markdown: bool,
@@ -22,9 +27,10 @@ pub struct Args {
 /// Runs the command.
 pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     let stage = progress.stage("reference cases");
-    let results = match &args.case {
+    let results = match &args.name {
         Some(name) => run_case(name)?,
-        None => run_all(),
+        None if args.files.is_empty() => run_all(),
+        None => user_cases(&args.files)?,
     };
     drop(stage);
     let passed = results.iter().all(|r| r.passed);
@@ -36,12 +42,20 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     Ok(Answer::new(text, &results)?.with_verdict(passed))
 }
 
+fn user_cases(files: &[PathBuf]) -> Result<Vec<CaseResult>> {
+    let cases = files
+        .iter()
+        .map(|file| UserCase::read(file))
+        .collect::<Result<Vec<_>>>()?;
+    Ok(cases.iter().flat_map(UserCase::run).collect())
+}
+
 fn table(results: &[CaseResult]) -> String {
     let mut text = String::new();
     let mut case = "";
     for r in results {
         if r.name != case {
-            case = r.name;
+            case = &r.name;
             let _ = writeln!(text, "{case}: {}", r.what);
         }
         let _ = writeln!(text, "  {}", line(r));
@@ -66,10 +80,7 @@ fn line(r: &CaseResult) -> String {
     let deviation = r
         .deviation
         .map_or(String::new(), |d| format!(" ({d:+.1e})"));
-    let source = match r.source {
-        Source::Published(citation) => format!("published, {citation}"),
-        Source::Computed(method) => format!("computed, {method}"),
-    };
+    let source = r.source.words();
     format!(
         "{verdict} {}: expected {:.decimals$} {}, found {found}{deviation}, allowed ±{:.1e}: {}; {source}",
         r.quantity, r.expected, r.unit, r.tolerance, r.reason

@@ -7,9 +7,9 @@
 use super::onset::{FlutterSearch, Onset, OnsetMethod, choose};
 use super::search::root;
 use super::tracking::branch_name;
-use crate::aerodynamics::AerodynamicModel;
+use crate::aerodynamics::{AerodynamicModel, Realization, TransferMatrix};
 use crate::error::{Error, Result, positive};
-use crate::section::Structure;
+use crate::section::{Dof, Structure};
 use crate::state_space::complex;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use nalgebra::{Complex, DMatrix, DVector, Schur};
@@ -17,6 +17,8 @@ use nalgebra::{Complex, DMatrix, DVector, Schur};
 /// Reduced frequencies at which the roots are looked at, logarithmically spaced over the range.
 const GRID: usize = 600;
 const MAX_SCHUR_SWEEPS: usize = 600;
+/// Relative step of the differences for the damping slope: truncation 1e-10 against rounding 1e-11.
+const SLOPE_STEP: f64 = 1e-5;
 
 /// Impedance `−ω²M + iωR + K − ½ρV² P(G(ωB/V))` at speed (m/s) and circular frequency (rad/s), n×n, per unit length.
 ///
@@ -162,19 +164,71 @@ impl Problem<'_> {
         let s = self.structure;
         let speed = omega * s.width_m / k;
         let shape = null_vector(&impedance(s, self.model, speed, omega)?)?;
-        Ok(Onset::new(
-            name,
-            OnsetMethod::Determinant,
-            s,
-            (speed, omega),
-            &shape,
-            branch,
-        ))
+        let (method, at) = (OnsetMethod::Determinant, (speed, omega));
+        let mut onset = Onset::new(name, method, s, at, &shape, branch);
+        onset.damping_slope_s_m = damping_slope(s, self.model, speed, omega);
+        Ok(onset)
+    }
+}
+
+/// `dζ/dV` (s/m) at an onset, from the determinant `d(V, ω)` of the impedance alone: with `λ = iω` on the axis,
+/// `dλ/dV = −d_V/d_λ = −i d_V/d_ω` and `dζ/dV = −Re(dλ/dV)/ω`, central differences. `None` where the model does not
+/// answer on both sides (a table at the end of its range).
+pub(super) fn damping_slope(
+    structure: &Structure,
+    model: &dyn AerodynamicModel,
+    speed_m_s: f64,
+    omega: f64,
+) -> Option<f64> {
+    let determinant = |speed: f64, omega: f64| {
+        let z = impedance(structure, model, speed, omega).ok()?;
+        Some(z.determinant())
+    };
+    let h = SLOPE_STEP;
+    let over_speed =
+        determinant(speed_m_s * (1.0 + h), omega)? - determinant(speed_m_s * (1.0 - h), omega)?;
+    let over_omega =
+        determinant(speed_m_s, omega * (1.0 + h))? - determinant(speed_m_s, omega * (1.0 - h))?;
+    let rate = Complex::new(0.0, -1.0) * (over_speed / speed_m_s) / (over_omega / omega);
+    let slope = -rate.re / omega;
+    slope.is_finite().then_some(slope)
+}
+
+/// Onset speed of one degree of freedom with the others locked, m/s.
+pub(super) fn single_dof_onset(
+    structure: &Structure,
+    model: &dyn AerodynamicModel,
+    dof: usize,
+    range: ReducedFrequencyRange,
+    speed_max_m_s: f64,
+) -> Result<Option<f64>> {
+    let locked = structure.only(&[structure.dofs[dof]]);
+    let alone = OneDof { model, dof };
+    let search = determinant_onset("", &locked, &alone, range, speed_max_m_s)?;
+    Ok(search.onset().map(|o| o.speed_m_s))
+}
+
+/// One diagonal entry of a model.
+struct OneDof<'a> {
+    model: &'a dyn AerodynamicModel,
+    dof: usize,
+}
+
+impl AerodynamicModel for OneDof<'_> {
+    fn dofs(&self) -> &[Dof] {
+        &self.model.dofs()[self.dof..=self.dof]
+    }
+    fn transfer(&self, k: ReducedFrequency) -> Result<TransferMatrix> {
+        let g = self.model.transfer(k)?;
+        Ok(DMatrix::from_element(1, 1, g[(self.dof, self.dof)]))
+    }
+    fn realize(&self) -> Option<Realization> {
+        None
     }
 }
 
 /// Right singular vector of the smallest singular value; rows are scaled first, forces and moments have different units.
-fn null_vector(m: &DMatrix<Complex<f64>>) -> Result<DVector<Complex<f64>>> {
+pub(super) fn null_vector(m: &DMatrix<Complex<f64>>) -> Result<DVector<Complex<f64>>> {
     let mut scaled = m.clone();
     for mut row in scaled.row_iter_mut() {
         let size = row.norm();

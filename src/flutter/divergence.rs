@@ -1,9 +1,15 @@
-//! Static divergence in closed form.
+//! Static divergence: in closed form, and by a real eigenvalue of the coupled system that passes through zero.
 
+use super::search::root;
 use crate::aerodynamics::TransferMatrix;
-use crate::error::{Error, Result};
+use crate::aeroelastic::{CoupledSection, CoupledSystem};
+use crate::error::{Error, Result, positive};
 use crate::section::Structure;
-use crate::state_space::eigenvalues;
+use crate::state_space::{balance, eigenvalues};
+use nalgebra::DMatrix;
+
+/// Speeds at which the sign of the determinant is looked at.
+const SPEEDS: usize = 400;
 
 /// Lowest speed at which `det(K − ½ρV² P(G(0))) = 0`, m/s; `None` when the steady forces never overcome the springs.
 ///
@@ -26,4 +32,41 @@ pub fn divergence_speed(
         .map(|mu| mu.re)
         .fold(0.0, f64::max);
     Ok((largest > 0.0).then(|| (2.0 / (structure.air_density_kg_m3 * largest)).sqrt()))
+}
+
+/// Lowest speed up to `speed_max_m_s` at which a real eigenvalue of the coupled system passes through zero, m/s: a change
+/// of sign of `det A` (of `det(A − I)` for the sampled system).
+///
+/// # Errors
+/// [`Error::Input`] for a highest speed that is not positive; those of the coupling.
+pub fn divergence_by_eigenvalues(
+    section: &CoupledSection,
+    speed_max_m_s: f64,
+) -> Result<Option<f64>> {
+    let speed_max = positive("highest wind speed", speed_max_m_s)?;
+    let mut before = (
+        speed_max / SPEEDS as f64,
+        singularity(section, speed_max / SPEEDS as f64)?,
+    );
+    for i in 2..=SPEEDS {
+        let speed = speed_max * i as f64 / SPEEDS as f64;
+        let after = (speed, singularity(section, speed)?);
+        if (before.1 > 0.0) != (after.1 > 0.0) {
+            return root(before, after, |speed| singularity(section, speed)).map(Some);
+        }
+        before = after;
+    }
+    Ok(None)
+}
+
+/// A number with the sign of the product of all eigenvalues (less one for the sampled system); zero at divergence.
+fn singularity(section: &CoupledSection, speed_m_s: f64) -> Result<f64> {
+    let matrix = match section.at(speed_m_s)? {
+        CoupledSystem::Continuous(s) => s.a,
+        CoupledSystem::Sampled(s) => {
+            let n = s.a.nrows();
+            s.a - DMatrix::identity(n, n)
+        }
+    };
+    Ok(balance(&matrix).determinant())
 }

@@ -1,20 +1,28 @@
 //! Flutter: modes tracked over wind speed, onset, divergence.
 //!
-//! Two independent routes: eigenvalues of the coupled state matrix (for models with a realisation), and the
-//! determinant in `(V, ω)` (for any `G(K)`, tables and the flat plate included).
+//! Three independent routes: eigenvalues of the coupled state matrix (for models with a realisation); the
+//! determinant in `(V, ω)` and the p-k iteration (for any `G(K)`, tables and the flat plate included).
 
 mod characteristic;
 mod curves;
 mod determinant;
 mod divergence;
+mod instability;
 mod onset;
+mod pk;
 mod quasi_pk;
+mod sanity;
 mod search;
+mod sweep;
 mod tracking;
 
 pub use curves::{FlutterCurves, ModeBranch, ModePoint, trace_modes};
 pub use determinant::{determinant_onset, impedance};
-pub use divergence::divergence_speed;
+pub use divergence::{divergence_by_eigenvalues, divergence_speed};
+pub use instability::{Instability, ModeAtOnset, Participation, classify};
 pub use onset::{FlutterSearch, Onset, OnsetMethod};
+pub use pk::{pk_curves, pk_onset};
 pub use quasi_pk::quasi_pk_mode;
+pub use sanity::{SanityLines, sanity_lines};
 pub use search::{OnsetSearch, find_onset};
+pub use sweep::{LinearForces, OnsetSweep, SweepOutcome, SweptOnset};

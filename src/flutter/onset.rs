@@ -3,11 +3,11 @@
 use crate::section::Structure;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange, ReducedVelocity};
 use nalgebra::{Complex, DVector};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
 /// How an onset was found.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum OnsetMethod {
     /// Eigenvalues of the coupled state matrix.
@@ -16,6 +16,20 @@ pub enum OnsetMethod {
     Determinant,
     /// Growth rate of the stepped FMU.
     FmuStepping,
+    /// Modes with the forces at their own frequency, iterated (p-k).
+    PkIteration,
+}
+
+impl OnsetMethod {
+    /// The route in a word.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Eigenvalues => "eigenvalues",
+            Self::Determinant => "determinant",
+            Self::FmuStepping => "FMU stepped",
+            Self::PkIteration => "p-k iteration",
+        }
+    }
 }
 
 /// A flutter onset.

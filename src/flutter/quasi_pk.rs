@@ -3,9 +3,9 @@
 use crate::aerodynamics::AerodynamicModel;
 use crate::error::{Error, Result, positive};
 use crate::section::Structure;
-use crate::state_space::eigenvalues;
+use crate::state_space::{eigenvalues, eigenvector};
 use crate::units::ReducedFrequency;
-use nalgebra::{Complex, DMatrix};
+use nalgebra::{Complex, DMatrix, DVector};
 
 /// The iteration contracts by about ten a round; one that needs more than this has no solution.
 const MAX_ROUNDS: usize = 200;
@@ -38,23 +38,56 @@ pub fn quasi_pk_mode(
         ));
     }
     let square = structure.stiffness[(dof, dof)] / structure.mass[(dof, dof)];
-    let mut lambda = Complex::new(0.0, square.sqrt());
+    let start = Complex::new(0.0, square.sqrt());
+    settle(structure, model, speed_m_s, start)?.ok_or_else(|| {
+        Error::Numerical(format!(
+            "quasi-p-k: no mode settles and oscillates at {speed_m_s} m/s"
+        ))
+    })
+}
+
+/// An eigenvalue (rad/s, upper half plane) with its displacements (n): m, rad; of any size.
+#[derive(Debug, Clone)]
+pub(super) struct PkMode {
+    pub(super) lambda: Complex<f64>,
+    pub(super) shape: DVector<Complex<f64>>,
+}
+
+/// The mode at `speed_m_s` that the iteration reaches from `start`; `None` when it stops oscillating or does not settle.
+pub(super) fn pk_mode(
+    structure: &Structure,
+    model: &dyn AerodynamicModel,
+    speed_m_s: f64,
+    start: &PkMode,
+) -> Result<Option<PkMode>> {
+    let Some(lambda) = settle(structure, model, speed_m_s, start.lambda)? else {
+        return Ok(None);
+    };
+    let n = structure.dofs.len();
+    let vector = eigenvector(&frozen(structure, model, speed_m_s, lambda.im)?, lambda)?;
+    let shape = vector.rows(0, n).into_owned();
+    Ok(Some(PkMode { lambda, shape }))
+}
+
+fn settle(
+    structure: &Structure,
+    model: &dyn AerodynamicModel,
+    speed_m_s: f64,
+    start: Complex<f64>,
+) -> Result<Option<Complex<f64>>> {
+    let mut lambda = start;
     for _ in 0..MAX_ROUNDS {
         let next = eigenvalues(&frozen(structure, model, speed_m_s, lambda.im)?)?
             .into_iter()
-            .filter(|z| z.im > 0.0)
-            .min_by(|a, b| (a - lambda).norm().total_cmp(&(b - lambda).norm()))
-            .ok_or_else(|| {
-                Error::Numerical(format!("quasi-p-k: no mode oscillates at {speed_m_s} m/s"))
-            })?;
+            .filter(|z| z.im > 1e-6 * z.norm())
+            .min_by(|a, b| (a - lambda).norm().total_cmp(&(b - lambda).norm()));
+        let Some(next) = next else { return Ok(None) };
         if (next - lambda).norm() <= TOLERANCE * next.norm() {
-            return Ok(next);
+            return Ok(Some(next));
         }
         lambda = next;
     }
-    Err(Error::Numerical(format!(
-        "quasi-p-k: the mode does not settle at {speed_m_s} m/s"
-    )))
+    Ok(None)
 }
 
 /// State matrix of `[q, q̇]` with the forces frozen at one frequency.

@@ -146,6 +146,7 @@ fn onset_ink(onset: &Onset, colour: &'static str) -> Ink {
             OnsetMethod::Eigenvalues => Shape::Circle,
             OnsetMethod::Determinant => Shape::Diamond,
             OnsetMethod::FmuStepping => Shape::Square,
+            OnsetMethod::PkIteration => Shape::Cross,
         },
         radius: 4.5,
         hollow: onset.in_tested_range == Some(false),
@@ -181,18 +182,14 @@ fn mark_onset(frequency: &mut Panel, damping: &mut Panel, onset: &Onset, colour:
 
 /// The onset in words, for the legend.
 fn statement(onset: &Onset) -> String {
-    let method = match onset.method {
-        OnsetMethod::Eigenvalues => "eigenvalues",
-        OnsetMethod::Determinant => "determinant",
-        OnsetMethod::FmuStepping => "FMU stepped",
-    };
     format!(
-        "Onset {}: V = {} m/s, f = {} Hz, V/(fB) = {}, {} branch ({method})",
+        "Onset {}: V = {} m/s, f = {} Hz, V/(fB) = {}, {} branch ({})",
         onset.model,
         significant(onset.speed_m_s),
         significant(onset.frequency_hz),
         significant(onset.reduced_velocity.v_star()),
         onset.branch,
+        onset.method.name(),
     )
 }
 

@@ -1,11 +1,11 @@
 //! The deck of a study: a measured table or the flat plate, and the records made from it or measured.
 
 use super::Study;
-use crate::aerodynamics::FlatPlate;
 use crate::aerodynamics::derivatives::TransferSample;
 use crate::aerodynamics::derivatives::{
     DerivativeTable, Extrapolation, InterpolatedTable, embedded, read_table,
 };
+use crate::aerodynamics::{AerodynamicModel, FlatPlate};
 use crate::error::{Error, Result};
 use crate::flutter::{FlutterSearch, determinant_onset};
 use crate::identification::sample_model;
@@ -144,6 +144,30 @@ impl Deck {
                     .collect();
                 sample_model(&FlatPlate::default(), &ks)
             }
+        }
+    }
+
+    /// The measured table; `None` for the flat plate.
+    pub fn table(&self) -> Option<&DerivativeTable> {
+        match &self.source {
+            Source::Table(table) => Some(table),
+            Source::FlatPlate => None,
+        }
+    }
+
+    /// The deck as a force model that answers at every reduced frequency, and where it was tested (everywhere when
+    /// `None`). Outside, a table keeps the values of its nearest points.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when the table lacks a derivative of the section.
+    pub fn model(&self) -> Result<(Box<dyn AerodynamicModel>, Option<ReducedFrequencyRange>)> {
+        match &self.source {
+            Source::Table(table) => {
+                let model = InterpolatedTable::new(table, &self.dofs, Extrapolation::Hold)?;
+                let range = model.tested_range();
+                Ok((Box::new(model), Some(range)))
+            }
+            Source::FlatPlate => Ok((Box::new(FlatPlate::default()), None)),
         }
     }
 

@@ -7,12 +7,14 @@ mod deck;
 mod defaults;
 mod models;
 mod onsets;
+mod routes;
 mod stepped;
 
 pub use deck::{Deck, RecordSet};
 pub use defaults::{demo_study_text, thesis_study_text};
 pub use models::{TrainedWithReport, train_one};
 pub use onsets::{Deviation, Divergence, FlutterStudy, OnsetSummary, flutter_study};
+pub use routes::{Route, RouteTable, low_frequency_limit, route_table};
 pub use stepped::{SteppedOnset, stepped_onset};
 
 use crate::error::{Error, Result, positive};

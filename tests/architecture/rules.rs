@@ -53,18 +53,26 @@ pub const ARROWS: &[Row] = &[
     row("response", &["aeroelastic+"]),
     row("fmu", &["flutter+", "response+", "trained_model+"]),
     row("fmu::fmi2", &["fmu"]),
+    row("toml_lines", &[]),
+    row("reliability", &["flutter+", "trained_model+", "toml_lines"]),
     row("benchmarks", BELOW_STUDY),
     row("study", BELOW_STUDY),
     Row {
         module: "report",
-        may_use: &["study+", "benchmarks+"],
+        may_use: &["study+", "benchmarks+", "reliability"],
         types_only: true,
     },
-    row("cli", &["report", "study+", "benchmarks+"]),
+    row("cli", &["report", "study+", "benchmarks+", "reliability"]),
     row("main", &["cli+"]),
 ];
 
-const BELOW_STUDY: &[&str] = &["fmu+", "identification+", "wind_tunnel+", "comparison"];
+const BELOW_STUDY: &[&str] = &[
+    "fmu+",
+    "identification+",
+    "wind_tunnel+",
+    "comparison",
+    "toml_lines",
+];
 
 /// Every module may use these.
 const FOR_ALL: &[&str] = &["error"];

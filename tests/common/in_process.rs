@@ -271,3 +271,60 @@ fn retuned(model: &TrainedModel) -> Value {
     }
     run.written("retuned")
 }
+
+/// A section with a lateral support, released and pushed sideways, and its onset.
+#[allow(dead_code)] // not every test has such a model
+pub fn three_dof(model: &TrainedModel) -> Value {
+    let coupled = couple(model, &model.section);
+    let search = OnsetSearch {
+        speed_max_m_s: model.experiment.onset_search_limit_m_s,
+        ..OnsetSearch::default()
+    };
+    let found = find_onset("", &coupled, &search, Some(model.tested_range)).unwrap();
+    let onset = found.onset().unwrap();
+    let onset = json!({ "speed_m_s": onset.speed_m_s, "frequency_hz": onset.frequency_hz });
+    let mut stepper = Stepper::new(coupled);
+    let e = &model.experiment;
+    let release = [e.initial_vertical_m, 0.0, e.initial_rotation_rad];
+    let mut state = stepper.released(&release, &[0.0; 3]).unwrap();
+    let mut inputs = Inputs::steady(e.wind_speed_m_s, 3);
+    let mut steps = Vec::new();
+    let mut time = 0.0;
+    for n in 0..400 {
+        let size = [0.01, 0.0037, 0.02][n % 3];
+        let drag = (0.1 * n as f64).sin();
+        inputs.force[1] = drag;
+        stepper.advance(&mut state, &inputs, size).unwrap();
+        let mut out = Outputs::default();
+        stepper.outputs(&state, &inputs, &mut out).unwrap();
+        let outputs: Value = (0..3)
+            .flat_map(|i| {
+                [
+                    out.displacement[i],
+                    out.rate[i],
+                    out.acceleration[i],
+                    out.self_excited_force[i],
+                ]
+            })
+            .map(bits)
+            .collect();
+        steps.push(json!({
+            "time": bits(time), "size": bits(size), "set": named(&[("external_drag", drag)]), "outputs": outputs,
+        }));
+        time += size;
+    }
+    let words = [("heave", "lift"), ("sway", "drag"), ("rotation", "moment")];
+    let outputs: Vec<String> = words
+        .iter()
+        .flat_map(|(motion, force)| {
+            let response = |suffix: &str| format!("{motion}{suffix}");
+            [
+                response(""),
+                response("_rate"),
+                response("_acceleration"),
+                (*force).to_owned(),
+            ]
+        })
+        .collect();
+    json!({ "onset": onset, "outputs": outputs, "steps": steps })
+}

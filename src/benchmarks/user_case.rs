@@ -1,0 +1,318 @@
+//! Reference cases of users, as TOML files.
+
+mod evaluate;
+
+use super::{CaseResult, Citation};
+use crate::error::{Error, Result, non_negative, positive};
+use crate::flutter::OnsetMethod;
+use crate::section::{Dof, SectionModel};
+use crate::toml_lines;
+use evaluate::Loaded;
+use nalgebra::DMatrix;
+use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
+use std::path::{Path, PathBuf};
+
+/// Version of the case file.
+pub const CASE_SCHEMA: u32 = 1;
+
+/// Contents of a case file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct UserCase {
+    /// [`CASE_SCHEMA`].
+    pub schema: u32,
+    /// Name of the case.
+    pub name: String,
+    /// What is computed, in words.
+    pub what: String,
+    /// The suspended section; may be left out for a trained model, which brings its own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub section: Option<SectionModel>,
+    /// The forces: exactly one kind.
+    pub aerodynamics: UserAerodynamics,
+    /// Onsets are searched up to this wind speed, m/s.
+    #[serde(default = "usual_speed_max")]
+    pub speed_max_m_s: f64,
+    /// The expected figures.
+    #[serde(rename = "figure")]
+    pub figures: Vec<UserFigure>,
+    /// Folder of the file.
+    #[serde(skip)]
+    pub directory: PathBuf,
+}
+
+fn usual_speed_max() -> f64 {
+    200.0
+}
+
+/// The forces of a case: exactly one of these.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct UserAerodynamics {
+    /// Theodorsen's flat plate; `rotary_inertia` keeps the apparent rotary inertia.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub flat_plate: Option<UserFlatPlate>,
+    /// Rational functions in Roger's form.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rational: Option<UserRational>,
+    /// A table of derivatives (`.csv`, `.xlsx`) or the name of an embedded deck, interpolated linearly.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub table: Option<String>,
+    /// A trained model (`.json`).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub model: Option<PathBuf>,
+}
+
+/// Options of the flat plate.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct UserFlatPlate {
+    /// Keep the apparent rotary inertia of the air (the `π/64` term of `A3*`).
+    pub rotary_inertia: bool,
+}
+
+/// `G = a₁ + a₂ p + a₃ p² + Σ a_{l+3} p/(p + d_l)`; rows of matrices are forces, in the order of the section.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct UserRational {
+    /// `a₁`.
+    #[serde(with = "crate::state_space::rows")]
+    pub a1: DMatrix<f64>,
+    /// `a₂`.
+    #[serde(with = "crate::state_space::rows")]
+    pub a2: DMatrix<f64>,
+    /// `a₃`.
+    #[serde(with = "crate::state_space::rows")]
+    pub a3: DMatrix<f64>,
+    /// `d_l`.
+    #[serde(default)]
+    pub lags: Vec<f64>,
+    /// `a_{l+3}`, one matrix a lag.
+    #[serde(default, with = "crate::state_space::rows::list")]
+    pub lag_terms: Vec<DMatrix<f64>>,
+}
+
+/// One expected figure.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct UserFigure {
+    /// What.
+    pub quantity: Quantity,
+    /// Route of the onset; left out, eigenvalues where the forces have a realisation, else the determinant.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub route: Option<OnsetMethod>,
+    /// Wind speed of a mode in wind, m/s.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub speed_m_s: Option<f64>,
+    /// Degree of freedom that a mode in wind moves in still air.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub dof: Option<Dof>,
+    /// The reference.
+    pub expected: f64,
+    /// Allowed deviation, in the unit of the quantity.
+    pub tolerance: f64,
+    /// Why so much is allowed.
+    #[serde(default)]
+    pub reason: String,
+    /// Whose figure it is.
+    pub source: String,
+}
+
+/// What a figure of a case file can be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Quantity {
+    /// Onset speed, m/s.
+    OnsetSpeed,
+    /// Frequency at onset, Hz.
+    OnsetFrequency,
+    /// `V* = V/(fB)` at onset.
+    OnsetReducedVelocity,
+    /// `V̂ = V/(ωB)` at onset.
+    OnsetVHat,
+    /// `|y|/(B|θ|)` at onset.
+    ModeRatio,
+    /// Phase of `y` to `θ` at onset, degrees.
+    Phase,
+    /// `dζ/dV` at onset, s/m.
+    DampingSlope,
+    /// Static divergence, m/s.
+    DivergenceSpeed,
+    /// Selberg's formula, factor 0.44, m/s.
+    Selberg,
+    /// Rocard's formula, m/s.
+    Rocard,
+    /// Frequency of a mode in wind (p-k), Hz; needs `speed_m_s` and `dof`.
+    ModeFrequency,
+    /// Damping ratio of a mode in wind (p-k); needs `speed_m_s` and `dof`.
+    ModeDampingRatio,
+}
+
+impl Quantity {
+    /// Name and unit in words.
+    pub fn words(self) -> (&'static str, &'static str) {
+        match self {
+            Self::OnsetSpeed => ("onset speed", "m/s"),
+            Self::OnsetFrequency => ("frequency at onset", "Hz"),
+            Self::OnsetReducedVelocity => ("reduced velocity V/(fB) at onset", ""),
+            Self::OnsetVHat => ("reduced velocity V/(ωB) at onset", ""),
+            Self::ModeRatio => ("mode ratio |y|/(B|θ|)", ""),
+            Self::Phase => ("phase of y to θ", "°"),
+            Self::DampingSlope => ("damping slope dζ/dV at onset", "s/m"),
+            Self::DivergenceSpeed => ("divergence speed", "m/s"),
+            Self::Selberg => ("Selberg's formula", "m/s"),
+            Self::Rocard => ("Rocard's formula", "m/s"),
+            Self::ModeFrequency => ("frequency in wind", "Hz"),
+            Self::ModeDampingRatio => ("damping ratio in wind", ""),
+        }
+    }
+
+    fn in_wind(self) -> bool {
+        matches!(self, Self::ModeFrequency | Self::ModeDampingRatio)
+    }
+}
+
+impl UserCase {
+    /// Reads and checks a case file.
+    ///
+    /// # Errors
+    /// [`Error::Io`] when it cannot be read; [`Error::Input`] with file and line for everything that is wrong in it.
+    pub fn read(path: &Path) -> Result<Self> {
+        let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, e))?;
+        let directory = path.parent().unwrap_or(Path::new("")).to_path_buf();
+        Self::from_toml(&text, directory).map_err(|e| e.in_file(path))
+    }
+
+    /// Reads and checks the text of a case file; paths in it are read against `directory`.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with line and key.
+    pub fn from_toml(text: &str, directory: PathBuf) -> Result<Self> {
+        let mut case: Self =
+            toml::from_str(text).map_err(|e| toml_lines::syntax_error("a case file", text, &e))?;
+        case.directory = directory;
+        case.validate()
+            .map_err(|e| toml_lines::with_line(text, e))?;
+        Ok(case)
+    }
+
+    fn validate(&self) -> Result<()> {
+        if self.schema != CASE_SCHEMA {
+            let (expected, found) = (CASE_SCHEMA.to_string(), self.schema.to_string());
+            return Err(Error::input("schema", expected, found));
+        }
+        positive("speed_max_m_s", self.speed_max_m_s)?;
+        let a = &self.aerodynamics;
+        let kinds = [
+            a.flat_plate.is_some(),
+            a.rational.is_some(),
+            a.table.is_some(),
+            a.model.is_some(),
+        ];
+        if kinds.iter().filter(|given| **given).count() != 1 {
+            let expected = "exactly one of `flat_plate`, `rational`, `table`, `model`";
+            return Err(Error::input("aerodynamics", expected, "none or several"));
+        }
+        match &self.section {
+            Some(section) => drop(section.structure()?),
+            None if a.model.is_some() => {}
+            None => return Err(Error::input("section", "a section", "none")),
+        }
+        if self.figures.is_empty() {
+            return Err(Error::input("figure", "at least one [[figure]]", "none"));
+        }
+        for (i, figure) in self.figures.iter().enumerate() {
+            figure.validate(&format!("figure[{i}]"))?;
+        }
+        Ok(())
+    }
+
+    /// Computes every figure. A computation that fails is a result that has not passed.
+    pub fn run(&self) -> Vec<CaseResult> {
+        let loaded = Loaded::new(self);
+        let judge = |figure: &UserFigure| {
+            let found = match &loaded {
+                Ok(loaded) => loaded.figure(figure).map_err(|e| e.to_string()),
+                Err(error) => Err(error.to_string()),
+            };
+            self.result(figure, found)
+        };
+        self.figures.iter().map(judge).collect()
+    }
+
+    fn result(&self, figure: &UserFigure, found: std::result::Result<f64, String>) -> CaseResult {
+        let (name, unit) = figure.quantity.words();
+        let mut quantity = name.to_owned();
+        if let (Some(dof), Some(speed)) = (figure.dof, figure.speed_m_s) {
+            quantity = format!("{} at {speed} m/s: {name}", dof.name());
+        } else if let Some(route) = figure.route {
+            quantity = format!("{name} ({})", route.name());
+        }
+        let (found, problem) = match found {
+            Ok(found) => (Some(found), None),
+            Err(problem) => (None, Some(problem)),
+        };
+        let deviation = found.map(|found| found - figure.expected);
+        // as many digits as the tolerance makes sense of
+        let decimals = (-figure.tolerance.log10().floor()).clamp(0.0, 12.0) as usize;
+        CaseResult {
+            name: Cow::Owned(self.name.clone()),
+            what: Cow::Owned(self.what.clone()),
+            quantity: quantity.into(),
+            unit: unit.into(),
+            expected: figure.expected,
+            decimals,
+            found,
+            deviation,
+            tolerance: figure.tolerance,
+            reason: Cow::Owned(figure.reason.clone()),
+            passed: deviation.is_some_and(|d| d.abs() <= figure.tolerance),
+            source: Citation::Stated(Cow::Owned(figure.source.clone())),
+            headline: true,
+            problem,
+        }
+    }
+}
+
+impl UserFigure {
+    fn validate(&self, place: &str) -> Result<()> {
+        if !self.expected.is_finite() {
+            let found = self.expected.to_string();
+            return Err(Error::input(
+                format!("{place}.expected"),
+                "a finite number",
+                found,
+            ));
+        }
+        positive(&format!("{place}.tolerance"), self.tolerance)?;
+        if self.route == Some(OnsetMethod::FmuStepping) {
+            let expected = "`eigenvalues`, `determinant` or `pk_iteration`";
+            return Err(Error::input(
+                format!("{place}.route"),
+                expected,
+                "`fmu_stepping`",
+            ));
+        }
+        let in_wind = (self.speed_m_s, self.dof);
+        match (self.quantity.in_wind(), in_wind) {
+            (true, (Some(speed), Some(_))) => {
+                non_negative(&format!("{place}.speed_m_s"), speed).map(drop)
+            }
+            (true, _) => Err(Error::input(
+                place,
+                "`speed_m_s` and `dof` of a mode in wind",
+                "none",
+            )),
+            (false, (None, None)) => Ok(()),
+            (false, _) => Err(Error::input(
+                place,
+                "`speed_m_s` and `dof` with `mode_frequency` and `mode_damping_ratio` only",
+                format!("them with `{:?}`", self.quantity),
+            )),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,180 @@
+//! Loads the forces of a case and computes its figures.
+
+use super::{Quantity, UserCase, UserFigure};
+use crate::aerodynamics::derivatives::{Extrapolation, InterpolatedTable, embedded, read_table};
+use crate::aerodynamics::{AerodynamicModel, FlatPlate, RationalModel};
+use crate::aeroelastic::CoupledSection;
+use crate::error::{Error, Result};
+use crate::flutter::{
+    FlutterSearch, Onset, OnsetMethod, OnsetSearch, determinant_onset, divergence_speed,
+    find_onset, pk_onset, quasi_pk_mode, sanity_lines,
+};
+use crate::section::{Dof, SectionModel, Structure};
+use crate::trained_model::TrainedModel;
+use crate::units::{ReducedFrequency, ReducedFrequencyRange};
+use std::f64::consts::TAU;
+
+/// Reduced frequencies in which the onset of a model without a tested range is searched.
+const WIDE: ReducedFrequencyRange = ReducedFrequencyRange {
+    min: ReducedFrequency::from_full_width(0.02),
+    max: ReducedFrequency::from_full_width(10.0),
+};
+
+/// A case with its forces loaded.
+pub(super) struct Loaded {
+    structure: Structure,
+    model: Box<dyn AerodynamicModel>,
+    tested: Option<ReducedFrequencyRange>,
+    speed_max: f64,
+}
+
+impl Loaded {
+    /// Reads what the case names.
+    pub(super) fn new(case: &UserCase) -> Result<Self> {
+        let a = &case.aerodynamics;
+        let mut section = case.section.clone();
+        let (model, tested): (Box<dyn AerodynamicModel>, _) = if let Some(path) = &a.model {
+            let path = case.directory.join(path);
+            let text = std::fs::read_to_string(&path).map_err(|e| Error::io(&path, e))?;
+            let trained = TrainedModel::from_json(&text).map_err(|e| e.in_file(&path))?;
+            section.get_or_insert(trained.section);
+            (Box::new(trained.model), Some(trained.tested_range))
+        } else if let Some(name) = &a.table {
+            let path = case.directory.join(name);
+            let table = if path.is_file() {
+                read_table(path)?
+            } else {
+                embedded::deck(name)?
+            };
+            let dofs = section
+                .as_ref()
+                .map_or(Dof::TWO.to_vec(), SectionModel::dofs);
+            let model = InterpolatedTable::new(&table, &dofs, Extrapolation::Hold)?;
+            let range = model.tested_range();
+            (Box::new(model), Some(range))
+        } else if let Some(r) = &a.rational {
+            let dofs = section
+                .as_ref()
+                .map_or(Dof::TWO.to_vec(), SectionModel::dofs);
+            let model = RationalModel {
+                dofs,
+                a1: r.a1.clone(),
+                a2: r.a2.clone(),
+                a3: r.a3.clone(),
+                lags: r.lags.clone(),
+                lag_terms: r.lag_terms.clone(),
+            };
+            model.validate()?;
+            (Box::new(model), None)
+        } else {
+            let rotary_inertia = a.flat_plate.is_none_or(|p| p.rotary_inertia);
+            (Box::new(FlatPlate { rotary_inertia }), None)
+        };
+        let section = section.ok_or_else(|| Error::input("section", "a section", "none"))?;
+        let structure = section.structure()?;
+        if model.dofs() != structure.dofs {
+            return Err(Error::input(
+                "section",
+                format!("the degrees of freedom of the forces, {:?}", model.dofs()),
+                format!("{:?}", structure.dofs),
+            ));
+        }
+        Ok(Self {
+            structure,
+            model,
+            tested,
+            speed_max: case.speed_max_m_s,
+        })
+    }
+
+    /// One figure.
+    pub(super) fn figure(&self, figure: &UserFigure) -> Result<f64> {
+        let nothing = |what: &str| Error::Numerical(format!("no {what}"));
+        Ok(match figure.quantity {
+            Quantity::DivergenceSpeed => {
+                // a table says nothing about steady flow; its lowest tested K is the nearest to it
+                let slowest = self.tested.filter(|_| self.model.realize().is_none());
+                let k = slowest.map_or(ReducedFrequency::from_full_width(0.0), |range| range.min);
+                let steady = self.model.transfer(k)?;
+                divergence_speed(&self.structure, &steady)?.ok_or_else(|| nothing("divergence"))?
+            }
+            Quantity::Selberg | Quantity::Rocard => {
+                let lines = sanity_lines(&self.structure)
+                    .ok_or_else(|| nothing("formula: the rotation is not faster than the heave"))?;
+                if figure.quantity == Quantity::Selberg {
+                    lines.selberg_m_s
+                } else {
+                    lines.rocard_m_s
+                }
+            }
+            Quantity::ModeFrequency | Quantity::ModeDampingRatio => self.in_wind(figure)?,
+            quantity => {
+                let onset = self.onset(figure.route)?;
+                match quantity {
+                    Quantity::OnsetSpeed => onset.speed_m_s,
+                    Quantity::OnsetFrequency => onset.frequency_hz,
+                    Quantity::OnsetReducedVelocity => onset.reduced_velocity.v_star(),
+                    Quantity::OnsetVHat => onset.reduced_frequency.v_hat(),
+                    Quantity::ModeRatio => onset.mode_ratio,
+                    Quantity::Phase => onset.phase_deg,
+                    _ => onset
+                        .damping_slope_s_m
+                        .ok_or_else(|| nothing("damping slope by this route"))?,
+                }
+            }
+        })
+    }
+
+    fn in_wind(&self, figure: &UserFigure) -> Result<f64> {
+        let speed = figure.speed_m_s.unwrap_or(0.0);
+        let place = self
+            .structure
+            .dofs
+            .iter()
+            .position(|d| Some(*d) == figure.dof);
+        let dof = place.ok_or_else(|| {
+            let expected = format!("one of {:?}", self.structure.dofs);
+            Error::input("dof", expected, format!("{:?}", figure.dof))
+        })?;
+        let mode = quasi_pk_mode(&self.structure, self.model.as_ref(), speed, dof)?;
+        Ok(if figure.quantity == Quantity::ModeFrequency {
+            mode.im / TAU
+        } else {
+            -mode.re / mode.norm()
+        })
+    }
+
+    fn onset(&self, route: Option<OnsetMethod>) -> Result<Onset> {
+        let realization = self.model.realize();
+        let route = route.unwrap_or(if realization.is_some() {
+            OnsetMethod::Eigenvalues
+        } else {
+            OnsetMethod::Determinant
+        });
+        let (s, model) = (&self.structure, self.model.as_ref());
+        let search = OnsetSearch {
+            speed_max_m_s: self.speed_max,
+            ..OnsetSearch::default()
+        };
+        let found: FlutterSearch = match (route, realization) {
+            (OnsetMethod::Eigenvalues, Some(aero)) => {
+                let section = CoupledSection::new(s.clone(), aero)?;
+                find_onset("", &section, &search, self.tested)?
+            }
+            (OnsetMethod::Eigenvalues, None) => {
+                let expected = "forces with a realisation for the eigenvalues";
+                return Err(Error::input(
+                    "route",
+                    expected,
+                    "forces that are only a G(K)",
+                ));
+            }
+            (OnsetMethod::PkIteration, _) => pk_onset("", s, model, &search, self.tested)?,
+            _ => determinant_onset("", s, model, self.tested.unwrap_or(WIDE), self.speed_max)?,
+        };
+        found
+            .onset()
+            .cloned()
+            .ok_or_else(|| Error::Numerical(format!("no onset up to {} m/s", self.speed_max)))
+    }
+}

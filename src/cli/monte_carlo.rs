@@ -1,0 +1,134 @@
+//! `aerodeck monte-carlo`: the distribution of the onset when section and forces are random.
+
+use super::answer::Answer;
+use super::output::{OutputDir, list};
+use super::progress::Progress;
+use super::stages;
+use crate::error::Result;
+use crate::reliability::{MonteCarloPlan, MonteCarloResult, monte_carlo};
+use crate::report::{PNG_SCALE, onset_distribution_figure};
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+/// Distribution of the flutter onset when section and forces are random, and its probability below a design speed
+///
+/// Example: aerodeck monte-carlo scatter.toml --samples 100000
+#[derive(clap::Args)]
+#[command(verbatim_doc_comment)]
+pub struct Args {
+    /// What is random (`.toml`); names the trained model.
+    plan: PathBuf,
+    /// Number of samples instead of that of the file.
+    #[arg(long)]
+    samples: Option<usize>,
+    /// Seed instead of that of the file.
+    #[arg(long)]
+    seed: Option<u64>,
+    /// Folder of the results; by default the folder of the file.
+    #[arg(long)]
+    out: Option<PathBuf>,
+}
+
+/// Runs the command.
+pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+    let text = std::fs::read_to_string(&args.plan).map_err(|e| crate::Error::io(&args.plan, e))?;
+    let folder = args.plan.parent().unwrap_or(Path::new(""));
+    let mut plan = MonteCarloPlan::from_toml(&text, folder.to_path_buf())
+        .map_err(|e| e.in_file(&args.plan))?;
+    plan.samples = args.samples.unwrap_or(plan.samples);
+    plan.seed = args.seed.unwrap_or(plan.seed);
+    let model = stages::read_model(&plan.directory.join(&plan.model))?;
+    let stage = progress.steps("samples");
+    let result = monte_carlo(&plan, &model, &|done, total| {
+        stage.at(done as u64, total as u64);
+    });
+    drop(stage);
+    let result = result.map_err(|e| MonteCarloPlan::locate(&text, e).in_file(&args.plan))?;
+    let beside = if folder.as_os_str().is_empty() {
+        Path::new(".")
+    } else {
+        folder
+    };
+    let mut out = OutputDir::new(args.out.as_deref().unwrap_or(beside))?;
+    if result.onsets > 1 {
+        let figure = onset_distribution_figure(&result)?;
+        out.write("monte_carlo.svg", figure.svg())?;
+        out.write("monte_carlo.png", figure.png(PNG_SCALE)?)?;
+    }
+    let mut json = serde_json::to_string_pretty(&result)
+        .map_err(|e| crate::Error::Numerical(e.to_string()))?;
+    json.push('\n');
+    out.write("monte_carlo.json", json)?;
+    let written = out.commit()?;
+    Answer::new(
+        account(&result) + &list(&written),
+        &serde_json::json!({ "result": result, "files": written }),
+    )
+}
+
+fn account(r: &MonteCarloResult) -> String {
+    let mut text = format!(
+        "{}: {} samples, seed {}: {} with an onset up to {} m/s, {} without, {} failed\n",
+        r.model, r.samples, r.seed, r.onsets, r.speed_max_m_s, r.stable, r.failed
+    );
+    let speed = |v: Option<f64>| match v {
+        Some(v) => format!("{v:.3} m/s"),
+        None => format!("above {} m/s", r.speed_max_m_s),
+    };
+    let _ = writeln!(
+        text,
+        "Onset     of the model itself {}",
+        speed(r.nominal_m_s)
+    );
+    if let (Some(mean), Some(deviation)) = (r.mean_m_s, r.standard_deviation_m_s) {
+        let _ = writeln!(
+            text,
+            "          mean {mean:.3} m/s, standard deviation {deviation:.3} m/s"
+        );
+    }
+    for q in &r.quantiles {
+        let _ = writeln!(
+            text,
+            "          {:>6} % of all sections flutter at or below {}",
+            100.0 * q.probability,
+            speed(q.speed_m_s)
+        );
+    }
+    if let Some(d) = &r.design {
+        let _ = writeln!(
+            text,
+            "Design    onset below {} m/s: probability {:.3e}, {} % confidence {:.3e} to {:.3e} ({} samples)",
+            d.speed_m_s,
+            d.probability,
+            100.0 * d.confidence,
+            d.lower,
+            d.upper,
+            d.below
+        );
+    }
+    if r.outside_tested_range > 0 {
+        let _ = writeln!(
+            text,
+            "warning: {} onsets lie outside the tested range of the model",
+            r.outside_tested_range
+        );
+    }
+    if r.with_spurious_crossings > 0 {
+        let _ = writeln!(
+            text,
+            "warning: {} samples lose damping below the onset, outside the tested range: probably spurious",
+            r.with_spurious_crossings
+        );
+    }
+    for failure in &r.failures {
+        let _ = writeln!(
+            text,
+            "failed: sample {}: {}",
+            failure.sample, failure.reason
+        );
+    }
+    if r.failed > r.failures.len() {
+        let _ = writeln!(text, "failed: {} more", r.failed - r.failures.len());
+    }
+    text
+}

@@ -1,0 +1,179 @@
+//! The table of all routes and the onset cards, in words.
+
+use crate::flutter::{FlutterSearch, Onset, SanityLines};
+use crate::study::{Route, RouteTable};
+use std::fmt::Write as _;
+
+/// The table, the handbook lines, the cards and what was left out.
+pub fn account(table: &RouteTable, speed_max_m_s: f64) -> String {
+    let mut text = format!(
+        "{:<26} {:<14} {:>8} {:>7} {:>7} {:>6} {:>8} {:>7} {:>9} {:<9} {:>8}  {}\n",
+        "Force model",
+        "route",
+        "V_F m/s",
+        "f Hz",
+        "V/(fB)",
+        "V/(ωB)",
+        "|y|/B|θ|",
+        "phase °",
+        "dζ/dV s/m",
+        "branch",
+        "V_D m/s",
+        "kind; in tested range"
+    );
+    for route in &table.routes {
+        text.push_str(&row(route));
+    }
+    if let Some(lines) = &table.sanity {
+        text.push_str(&sanity(lines));
+    }
+    for left_out in &table.left_out {
+        let _ = writeln!(text, "left out: {left_out}");
+    }
+    text.push('\n');
+    for route in cards(table) {
+        text.push_str(&card(route, table.sanity.as_ref(), speed_max_m_s));
+    }
+    text
+}
+
+fn row(route: &Route) -> String {
+    let divergence = route
+        .divergence_m_s
+        .map_or("none".to_owned(), |v| format!("{v:.3}"));
+    let (name, method) = (&route.model, route.method.name());
+    match &route.search {
+        FlutterSearch::Onset(o) => format!(
+            "{name:<26} {method:<14} {:>8.3} {:>7.4} {:>7.3} {:>6.3} {:>8.4} {:>7.1} {:>9.5} {:<9} {divergence:>8}  {}; {}\n",
+            o.speed_m_s,
+            o.frequency_hz,
+            o.reduced_velocity.v_star(),
+            o.reduced_frequency.v_hat(),
+            o.mode_ratio,
+            o.phase_deg,
+            o.damping_slope_s_m.unwrap_or(f64::NAN),
+            o.branch,
+            kind(route),
+            tested(o, route),
+        ),
+        FlutterSearch::StableUpTo(speed) => {
+            format!(
+                "{name:<26} {method:<14} no flutter below {speed:.2} m/s; divergence {divergence}\n"
+            )
+        }
+    }
+}
+
+fn kind(route: &Route) -> &'static str {
+    route.mode.as_ref().map_or("", |m| m.kind.name())
+}
+
+fn tested(onset: &Onset, route: &Route) -> &'static str {
+    match onset.in_tested_range {
+        None if route.low_frequency_limit => "limit",
+        Some(true) => "yes",
+        Some(false) => "NO",
+        None => "exact",
+    }
+}
+
+fn sanity(lines: &SanityLines) -> String {
+    format!(
+        "sanity lines (flat plate, no damping): Selberg {:.2} m/s (3.72: {:.2}), Rocard {:.2} m/s\n",
+        lines.selberg_m_s, lines.selberg_rounded_m_s, lines.rocard_m_s
+    )
+}
+
+/// One card a force model: by eigenvalues where it has them, else by the determinant.
+fn cards(table: &RouteTable) -> impl Iterator<Item = &Route> {
+    let mut seen: Vec<&str> = Vec::new();
+    table.routes.iter().filter(move |route| {
+        let first = !seen.contains(&route.model.as_str());
+        seen.push(&route.model);
+        first
+    })
+}
+
+fn card(route: &Route, sanity: Option<&SanityLines>, speed_max_m_s: f64) -> String {
+    let mut text = format!("Onset card: {} ({})\n", route.model, route.method.name());
+    match &route.search {
+        FlutterSearch::Onset(onset) => text.push_str(&found(onset, route)),
+        FlutterSearch::StableUpTo(speed) => {
+            let _ = writeln!(text, "  no flutter below {speed:.2} m/s");
+        }
+    }
+    let speed = |v: Option<f64>| v.map_or("none".to_owned(), |v| format!("{v:.2} m/s"));
+    let _ = write!(
+        text,
+        "  divergence {}; quasi-steady limit {}",
+        speed(route.divergence_m_s),
+        route
+            .quasi_steady_m_s
+            .map_or(format!("none below {speed_max_m_s} m/s"), |v| format!(
+                "{v:.2} m/s"
+            )),
+    );
+    let _ = match sanity {
+        Some(lines) => writeln!(text, "; Selberg {:.2} m/s", lines.selberg_m_s),
+        None => writeln!(text),
+    };
+    for warning in &route.warnings {
+        let _ = writeln!(text, "  warning: {warning}");
+    }
+    text
+}
+
+fn found(o: &Onset, route: &Route) -> String {
+    let mut text = format!(
+        "  V_F {:.3} m/s at {:.4} Hz; V* = V/(fB) {:.3}, V̂ = V/(ωB) {:.3}, K {:.4}",
+        o.speed_m_s,
+        o.frequency_hz,
+        o.reduced_velocity.v_star(),
+        o.reduced_frequency.v_hat(),
+        o.reduced_frequency.full_width()
+    );
+    let _ = match &route.tested_range {
+        Some(range) => writeln!(
+            text,
+            " (tested V̂ {:.2} to {:.2}: {})",
+            range.max.v_hat(),
+            range.min.v_hat(),
+            tested(o, route)
+        ),
+        None if route.low_frequency_limit => writeln!(text, " (a limit for K → 0)"),
+        None => writeln!(text, " (exact at every K)"),
+    };
+    let slope = o
+        .damping_slope_s_m
+        .map_or("unknown".to_owned(), |s| format!("{s:.5} s/m"));
+    let _ = writeln!(
+        text,
+        "  mode |y|/(B|θ|) {:.4}, phase of y to θ {:.1}°; damping slope dζ/dV {slope}",
+        o.mode_ratio, o.phase_deg
+    );
+    let _ = writeln!(text, "  {} branch: {}", o.branch, kind(route));
+    for p in route.mode.iter().flat_map(|m| &m.participation) {
+        let name = match p.dof {
+            crate::section::Dof::Vertical => "H1*",
+            crate::section::Dof::Lateral => "P1*",
+            crate::section::Dof::Torsion => "A2*",
+        };
+        let _ = writeln!(
+            text,
+            "    {:<8} {:>5.1} % of the kinetic energy, {name} {:+.4}, alone: {}",
+            p.dof.name(),
+            100.0 * p.energy_share,
+            p.direct_damping,
+            p.alone_m_s
+                .map_or("no onset".to_owned(), |v| format!("onset at {v:.2} m/s"))
+        );
+    }
+    text
+}
+
+/// The onsets that the figure marks: one a force model, as on the cards.
+pub fn marked(table: &RouteTable) -> Vec<Onset> {
+    cards(table)
+        .filter_map(|route| route.search.onset().cloned())
+        .collect()
+}

@@ -1,0 +1,182 @@
+//! A force model as a linear combination of fixed functions of `p = iK`: `G_ij(p) = Σ_b θ_ijb φ_jb(p)`.
+
+use crate::aerodynamics::{LaguerreModel, RationalModel};
+use crate::section::Dof;
+use crate::units::ReducedFrequencyRange;
+use nalgebra::{Complex, DMatrix};
+
+type Complex64 = Complex<f64>;
+
+/// One function of `p`.
+#[derive(Debug, Clone, PartialEq)]
+enum Function {
+    /// `p^n`.
+    Power(i32),
+    /// `p/(p + d)`.
+    Lag(f64),
+    /// Takenaka–Malmquist filter with the poles up to its own.
+    Filter(Vec<f64>),
+}
+
+/// Functions and coefficients of a force model. Coefficients stand by motion, then function, then force.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LinearForces {
+    pub(super) dofs: Vec<Dof>,
+    functions: Vec<Function>,
+    /// First function of each motion, and one past the last.
+    pub(super) starts: Vec<usize>,
+    coefficients: Vec<f64>,
+    names: Vec<String>,
+    pub(super) tested: Option<ReducedFrequencyRange>,
+}
+
+impl LinearForces {
+    /// The continuous Laguerre (Takenaka–Malmquist) model.
+    pub fn of_laguerre(model: &LaguerreModel, tested: Option<ReducedFrequencyRange>) -> Self {
+        let mut forces = Self::empty(&model.dofs, tested);
+        for input in 0..model.dofs.len() {
+            forces.add_powers(
+                input,
+                [("e0", &model.e0), ("e1", &model.e1), ("e2", &model.e2)],
+            );
+            let terms: Vec<_> = model.terms.iter().filter(|t| t.input == input).collect();
+            for (t, term) in terms.iter().enumerate() {
+                let poles = term.poles.poles();
+                // where every transfer function has a chain of its own, a force counts the filters of its own only
+                let own = |i: usize| terms.len() == 1 || term.coefficients.row(i).amax() > 0.0;
+                for l in 0..poles.len() {
+                    let function = Function::Filter(poles[..=l].to_vec());
+                    let value = |i: usize| term.coefficients[(i, l)];
+                    forces.add(input, function, value, |i| {
+                        if own(i) {
+                            format!("c{l}")
+                        } else {
+                            format!("chain{t}.c{l}")
+                        }
+                    });
+                }
+            }
+            forces.starts.push(forces.functions.len());
+        }
+        forces
+    }
+
+    /// Rational functions in Roger's form.
+    pub fn of_rational(model: &RationalModel, tested: Option<ReducedFrequencyRange>) -> Self {
+        let mut forces = Self::empty(&model.dofs, tested);
+        for input in 0..model.dofs.len() {
+            forces.add_powers(
+                input,
+                [("a1", &model.a1), ("a2", &model.a2), ("a3", &model.a3)],
+            );
+            for (l, (lag, term)) in model.lags.iter().zip(&model.lag_terms).enumerate() {
+                let value = |i: usize| term[(i, input)];
+                forces.add(input, Function::Lag(*lag), value, |_| format!("a{}", l + 4));
+            }
+            forces.starts.push(forces.functions.len());
+        }
+        forces
+    }
+
+    fn empty(dofs: &[Dof], tested: Option<ReducedFrequencyRange>) -> Self {
+        Self {
+            dofs: dofs.to_vec(),
+            functions: Vec::new(),
+            starts: vec![0],
+            coefficients: Vec::new(),
+            names: Vec::new(),
+            tested,
+        }
+    }
+
+    fn add_powers(&mut self, input: usize, terms: [(&str, &DMatrix<f64>); 3]) {
+        for ((name, matrix), power) in terms.into_iter().zip(0..) {
+            let value = |i: usize| matrix[(i, input)];
+            self.add(input, Function::Power(power), value, |_| name.to_owned());
+        }
+    }
+
+    fn add(
+        &mut self,
+        input: usize,
+        function: Function,
+        value: impl Fn(usize) -> f64,
+        name: impl Fn(usize) -> String,
+    ) {
+        self.functions.push(function);
+        for i in 0..self.dofs.len() {
+            let (force, motion) = (self.dofs[i].name(), self.dofs[input].name());
+            self.names.push(format!("{force}.{motion}.{}", name(i)));
+            self.coefficients.push(value(i));
+        }
+    }
+
+    /// The coefficients of the model.
+    pub fn coefficients(&self) -> &[f64] {
+        &self.coefficients
+    }
+
+    /// Their names, `force.motion.term`, e.g. `vertical.torsion.e0`.
+    pub fn names(&self) -> &[String] {
+        &self.names
+    }
+
+    pub(super) fn count(&self) -> usize {
+        self.functions.len()
+    }
+
+    /// Values of all functions at `p`.
+    pub(super) fn values(&self, p: Complex64, out: &mut [Complex64]) {
+        for (function, out) in self.functions.iter().zip(out) {
+            *out = function.at(p).0;
+        }
+    }
+
+    /// `G` and `dG/dp` at `p` with other coefficients.
+    pub(super) fn transfer<const N: usize>(
+        &self,
+        p: Complex64,
+        coefficients: &[f64],
+    ) -> ([[Complex64; N]; N], [[Complex64; N]; N]) {
+        let zero = Complex64::new(0.0, 0.0);
+        let (mut g, mut slope) = ([[zero; N]; N], [[zero; N]; N]);
+        for j in 0..N {
+            for b in self.starts[j]..self.starts[j + 1] {
+                let (value, rate) = self.functions[b].at(p);
+                for i in 0..N {
+                    let theta = coefficients[b * N + i];
+                    g[i][j] += value * theta;
+                    slope[i][j] += rate * theta;
+                }
+            }
+        }
+        (g, slope)
+    }
+}
+
+impl Function {
+    /// Value and derivative at `p` off the real axis.
+    fn at(&self, p: Complex64) -> (Complex64, Complex64) {
+        match self {
+            Self::Power(0) => (Complex64::new(1.0, 0.0), Complex64::new(0.0, 0.0)),
+            Self::Power(1) => (p, Complex64::new(1.0, 0.0)),
+            Self::Power(n) => (p.powi(*n), p.powi(n - 1) * f64::from(*n)),
+            Self::Lag(d) => {
+                let inverse = (p + d).inv();
+                (p * inverse, inverse * inverse * *d)
+            }
+            Self::Filter(poles) => {
+                let (before, own) = poles.split_at(poles.len() - 1);
+                let inverse = (p + own[0]).inv();
+                let mut value = inverse * (2.0 * own[0]).sqrt();
+                let mut logarithmic = -inverse;
+                for pole in before {
+                    let (plus, minus) = ((p + pole).inv(), (p - pole).inv());
+                    value *= (p - pole) * plus;
+                    logarithmic += minus - plus;
+                }
+                (value, value * logarithmic)
+            }
+        }
+    }
+}

@@ -1,0 +1,130 @@
+//! A crossing of the imaginary axis, refined by Newton's method in speed and frequency with exact derivatives.
+
+use super::basis::LinearForces;
+use super::pencil::Supports;
+use nalgebra::Complex;
+
+type Complex64 = Complex<f64>;
+type Matrix<const N: usize> = [[Complex64; N]; N];
+
+/// Relative size of the last Newton step.
+const TOLERANCE: f64 = 1e-13;
+/// From a start interpolated on the grid five steps do.
+const STEPS: usize = 20;
+
+/// A speed at which an oscillating eigenvalue lies on the imaginary axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Crossing {
+    /// m/s.
+    pub(super) speed: f64,
+    /// rad/s.
+    pub(super) omega: f64,
+    /// Whether the motion begins to grow there with rising speed.
+    pub(super) destabilises: bool,
+}
+
+/// The crossing next to a speed (m/s) and circular frequency (rad/s); `None` when Newton's method does not settle.
+pub(super) fn refine<const N: usize>(
+    forces: &LinearForces,
+    coefficients: &[f64],
+    supports: &Supports<N>,
+    (mut speed, mut omega): (f64, f64),
+) -> Option<Crossing> {
+    for _ in 0..STEPS {
+        let at = determinant(forces, coefficients, supports, speed, omega);
+        // i d_λ is the derivative along ω
+        let (by_omega, by_speed) = (
+            Complex64::new(-at.by_lambda.im, at.by_lambda.re),
+            at.by_speed,
+        );
+        let jacobian = by_omega.re * by_speed.im - by_omega.im * by_speed.re;
+        let omega_step = (at.value.re * by_speed.im - at.value.im * by_speed.re) / jacobian;
+        let speed_step = (by_omega.re * at.value.im - by_omega.im * at.value.re) / jacobian;
+        if !(omega_step.is_finite() && speed_step.is_finite()) {
+            return None;
+        }
+        omega -= omega_step;
+        speed -= speed_step;
+        if speed_step.abs() <= TOLERANCE * speed && omega_step.abs() <= TOLERANCE * omega {
+            let rate = -at.by_speed / at.by_lambda;
+            return (speed > 0.0 && omega > 0.0).then_some(Crossing {
+                speed,
+                omega,
+                destabilises: rate.re > 0.0,
+            });
+        }
+    }
+    None
+}
+
+/// `det D(λ, V)` with its derivatives.
+struct Determinant {
+    value: Complex64,
+    by_lambda: Complex64,
+    by_speed: Complex64,
+}
+
+/// `D = λ²M + λR + K − ½ρV²B² G(λB/V)` at `λ = iω`.
+fn determinant<const N: usize>(
+    forces: &LinearForces,
+    coefficients: &[f64],
+    s: &Supports<N>,
+    speed: f64,
+    omega: f64,
+) -> Determinant {
+    let width = s.width;
+    let p = Complex64::new(0.0, omega * width / speed);
+    let (g, slope) = forces.transfer::<N>(p, coefficients);
+    let lambda = Complex64::new(0.0, omega);
+    let air = 0.5 * s.density * width * width;
+    let (pressure, lag) = (air * speed * speed, air * width);
+    let zero = Complex64::new(0.0, 0.0);
+    let (mut d, mut by_lambda, mut by_speed) = ([[zero; N]; N], [[zero; N]; N], [[zero; N]; N]);
+    for i in 0..N {
+        for j in 0..N {
+            d[i][j] = -g[i][j] * pressure;
+            by_lambda[i][j] = -slope[i][j] * (lag * speed);
+            by_speed[i][j] = g[i][j] * (-2.0 * air * speed) + slope[i][j] * lambda * lag;
+        }
+        let (m, r, k) = (s.mass[i], s.damping[i], s.stiffness[i]);
+        d[i][i] += Complex64::new(k - m * omega * omega, r * omega);
+        by_lambda[i][i] += lambda * (2.0 * m) + r;
+    }
+    let adjugate = adjugate(&d);
+    Determinant {
+        value: (0..N).map(|k| d[0][k] * adjugate[k][0]).sum(),
+        by_lambda: trace_of_product(&adjugate, &by_lambda),
+        by_speed: trace_of_product(&adjugate, &by_speed),
+    }
+}
+
+/// `adj(D)`; `(det D)' = tr(adj(D) D')`.
+fn adjugate<const N: usize>(d: &Matrix<N>) -> Matrix<N> {
+    let mut out = [[Complex64::new(0.0, 0.0); N]; N];
+    if N == 2 {
+        out[0][0] = d[1][1];
+        out[0][1] = -d[0][1];
+        out[1][0] = -d[1][0];
+        out[1][1] = d[0][0];
+        return out;
+    }
+    for (i, row) in out.iter_mut().enumerate() {
+        for (j, x) in row.iter_mut().enumerate() {
+            // cofactor of entry (j, i), indices cyclic so that the sign comes by itself
+            let (r1, r2) = ((j + 1) % N, (j + 2) % N);
+            let (c1, c2) = ((i + 1) % N, (i + 2) % N);
+            *x = d[r1][c1] * d[r2][c2] - d[r1][c2] * d[r2][c1];
+        }
+    }
+    out
+}
+
+fn trace_of_product<const N: usize>(a: &Matrix<N>, b: &Matrix<N>) -> Complex64 {
+    let mut sum = Complex64::new(0.0, 0.0);
+    for i in 0..N {
+        for k in 0..N {
+            sum += a[i][k] * b[k][i];
+        }
+    }
+    sum
+}

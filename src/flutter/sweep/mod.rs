@@ -1,0 +1,365 @@
+//! Onsets by the ten thousand: every crossing of a section with two or three degrees of freedom, without allocation.
+//!
+//! At a fixed reduced frequency `K` the speed follows from the frequency, `V = ωB/K`, and the determinant is a
+//! polynomial in `ω` ([`pencil`]). Its roots are followed from nearly still air (high `K`) downwards over a fixed grid
+//! on which the functions of the force model are tabulated once; a root that passes the real axis is a crossing, of
+//! whatever mode, and is refined with exact derivatives ([`crossing`]). As all crossings are found, the first one is the
+//! first, and a switch of modes between samples is no special case. Where two roots come too close to be told apart the
+//! answer is "not resolved", for [`find_onset`](super::find_onset) to decide.
+
+mod basis;
+mod crossing;
+mod pencil;
+
+pub use basis::LinearForces;
+
+use crate::error::{Error, Result, positive};
+use crate::section::{Dof, SectionModel, Structure};
+use crate::units::ReducedFrequency;
+use crossing::{Crossing, refine};
+use nalgebra::Complex;
+use pencil::{Pencil, Supports};
+
+type Complex64 = Complex<f64>;
+
+/// Highest reduced frequency: nearly still air.
+const K_MAX: f64 = 10.0;
+/// Points of the grid for a factor e of `K`.
+const POINTS_PER_E: f64 = 10.0;
+/// The slowest natural frequency may fall to this part before the highest speed is reached.
+const LOWEST_PART: f64 = 0.3;
+/// Roots beyond the highest speed, or the first onset, by this factor are not followed any further.
+const BEYOND: f64 = 1.1;
+/// A step is halved until every root moves less than this part of the distance to its neighbour.
+const MAX_PART: f64 = 0.3;
+const MAX_HALVINGS: usize = 6;
+/// More crossings than this below the highest speed are no section that anybody would build.
+const MAX_CROSSINGS: usize = 8;
+
+/// Answer for one sample.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum SweepOutcome {
+    /// The section flutters.
+    Onset(SweptOnset),
+    /// No flutter up to the highest speed.
+    Stable,
+    /// Two roots come too close, or Newton's method fails: to be searched in full.
+    Unresolved,
+}
+
+/// The onset of one sample; chosen among all crossings as [`find_onset`](super::find_onset) does.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SweptOnset {
+    /// m/s.
+    pub speed_m_s: f64,
+    /// Hz.
+    pub frequency_hz: f64,
+    /// Whether `K` lies in the tested range; true when there is none.
+    pub in_tested_range: bool,
+    /// Crossings below this one outside the tested range.
+    pub spurious: usize,
+}
+
+/// Finds onsets of many sections with one kind of force model.
+#[derive(Debug, Clone)]
+pub struct OnsetSweep {
+    forces: LinearForces,
+    speed_max: f64,
+    /// Reduced frequencies, falling.
+    grid: Vec<f64>,
+    /// Functions of the force model at each of them.
+    table: Vec<Complex64>,
+}
+
+impl OnsetSweep {
+    /// A sweep up to `speed_max_m_s` for sections like `nominal`.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a speed that is not positive, and for other degrees of freedom than two or three.
+    pub fn new(forces: LinearForces, nominal: &Structure, speed_max_m_s: f64) -> Result<Self> {
+        let speed_max = positive("speed_max_m_s", speed_max_m_s)?;
+        if !matches!(forces.dofs.len(), 2 | 3) || forces.dofs != nominal.dofs {
+            return Err(Error::input(
+                "onset sweep",
+                format!("two or three degrees of freedom, {:?}", nominal.dofs),
+                format!("{:?}", forces.dofs),
+            ));
+        }
+        let slowest = (0..nominal.dofs.len())
+            .map(|i| (nominal.stiffness[(i, i)] / nominal.mass[(i, i)]).sqrt())
+            .fold(f64::INFINITY, f64::min);
+        let k_min = (LOWEST_PART * slowest * nominal.width_m / speed_max).clamp(1e-3, 0.5 * K_MAX);
+        let steps = (POINTS_PER_E * (K_MAX / k_min).ln()).ceil();
+        let grid: Vec<f64> = (0..=steps as usize)
+            .map(|i| K_MAX * (k_min / K_MAX).powf(i as f64 / steps))
+            .collect();
+        let count = forces.count();
+        let mut table = vec![Complex64::new(0.0, 0.0); count * grid.len()];
+        for (k, row) in grid.iter().zip(table.chunks_mut(count)) {
+            forces.values(Complex64::new(0.0, *k), row);
+        }
+        Ok(Self {
+            forces,
+            speed_max,
+            grid,
+            table,
+        })
+    }
+
+    /// The force model, with its nominal coefficients.
+    pub fn forces(&self) -> &LinearForces {
+        &self.forces
+    }
+
+    /// The onset of `section` with these coefficients (as many as [`LinearForces::coefficients`]).
+    ///
+    /// # Errors
+    /// Those of [`SectionModel::structure`]; [`Error::Input`] for coefficients of another number.
+    pub fn onset(&self, section: &SectionModel, coefficients: &[f64]) -> Result<SweepOutcome> {
+        if coefficients.len() != self.forces.coefficients().len() {
+            return Err(Error::input(
+                "coefficients of the force model",
+                self.forces.coefficients().len().to_string(),
+                coefficients.len().to_string(),
+            ));
+        }
+        Ok(match self.forces.dofs.len() {
+            2 => Sweep::<2>::new(self, supports(section)?, coefficients).run(),
+            _ => Sweep::<3>::new(self, supports(section)?, coefficients).run(),
+        })
+    }
+}
+
+/// Mass, damping, stiffness of the supports in units of the rotation. Does not allocate for values that are right.
+fn supports<const N: usize>(section: &SectionModel) -> Result<Supports<N>> {
+    let usual = section.diagonal()?;
+    let square = section.width_m * section.width_m;
+    let mut s = Supports {
+        width: section.width_m,
+        density: section.air_density_kg_m3,
+        mass: [0.0; N],
+        damping: [0.0; N],
+        stiffness: [0.0; N],
+    };
+    let mut used = 0;
+    for (dof, support) in Dof::THREE.into_iter().zip(usual) {
+        let (Some((mass, damping, stiffness)), true) = (support, used < N) else {
+            continue;
+        };
+        let scale = if dof == Dof::Torsion { 1.0 } else { square };
+        s.mass[used] = scale * mass;
+        s.damping[used] = scale * damping;
+        s.stiffness[used] = scale * stiffness;
+        used += 1;
+    }
+    Ok(s)
+}
+
+/// The roots at one reduced frequency; those that have left the right half plane are no longer followed.
+#[derive(Debug, Clone, Copy)]
+struct Roots<const N: usize> {
+    k: f64,
+    omega: [Complex64; N],
+    /// Change for a unit of `ln K`, from the last step.
+    slope: [Complex64; N],
+    alive: [bool; N],
+}
+
+/// One sample.
+struct Sweep<'a, const N: usize> {
+    sweep: &'a OnsetSweep,
+    supports: Supports<N>,
+    coefficients: &'a [f64],
+    crossings: [Option<Crossing>; MAX_CROSSINGS],
+    found: usize,
+}
+
+impl<'a, const N: usize> Sweep<'a, N> {
+    fn new(sweep: &'a OnsetSweep, supports: Supports<N>, coefficients: &'a [f64]) -> Self {
+        Self {
+            sweep,
+            supports,
+            coefficients,
+            crossings: [None; MAX_CROSSINGS],
+            found: 0,
+        }
+    }
+
+    fn run(mut self) -> SweepOutcome {
+        match self.follow() {
+            Some(()) => self.choose(),
+            None => SweepOutcome::Unresolved,
+        }
+    }
+
+    /// All crossings up to the highest speed; `None` when the roots cannot be followed.
+    fn follow(&mut self) -> Option<()> {
+        let mut roots = self.start()?;
+        for i in 1..self.sweep.grid.len() {
+            let k = self.sweep.grid[i];
+            let pencil = Pencil::new(&self.supports, k, &self.tabulated(i));
+            roots = match self.step(&roots, k, &pencil) {
+                Some(next) => {
+                    self.look(&roots, &next)?;
+                    next
+                }
+                None => self.halved(roots, k)?,
+            };
+            let limit = BEYOND * self.lowest().min(self.sweep.speed_max) * k / self.supports.width;
+            let beyond = |i: usize| !roots.alive[i] || roots.omega[i].re > limit;
+            if (0..N).all(beyond) {
+                break;
+            }
+        }
+        Some(())
+    }
+
+    fn start(&self) -> Option<Roots<N>> {
+        let k = self.sweep.grid[0];
+        let pencil = Pencil::new(&self.supports, k, &self.tabulated(0));
+        let mut omega = pencil.uncoupled();
+        for root in &mut omega {
+            *root = pencil.root(*root)?;
+        }
+        let roots = Roots {
+            k,
+            omega,
+            slope: [Complex64::new(0.0, 0.0); N],
+            alive: [true; N],
+        };
+        let distinct = |i: usize, j: usize| (omega[i] - omega[j]).norm() > 1e-6 * omega[i].norm();
+        (0..N)
+            .all(|i| omega[i].re > 0.0 && (0..i).all(|j| distinct(i, j)))
+            .then_some(roots)
+    }
+
+    /// The step to `k` in smaller ones.
+    fn halved(&mut self, from: Roots<N>, k: f64) -> Option<Roots<N>> {
+        let mut at = from;
+        let mut parts = 2.0_f64;
+        let mut halvings = 1;
+        while at.k != k {
+            let ratio = (k / from.k).powf(1.0 / parts);
+            let next_k = if at.k * ratio <= k * (1.0 + 1e-9) {
+                k
+            } else {
+                at.k * ratio
+            };
+            let p = Complex64::new(0.0, next_k);
+            let (g, _) = self.sweep.forces.transfer::<N>(p, self.coefficients);
+            let pencil = Pencil::new(&self.supports, next_k, &g);
+            if let Some(next) = self.step(&at, next_k, &pencil) {
+                self.look(&at, &next)?;
+                at = next;
+            } else if halvings < MAX_HALVINGS {
+                halvings += 1;
+                parts *= 2.0;
+            } else {
+                return None;
+            }
+        }
+        Some(at)
+    }
+
+    /// `G` at a point of the grid.
+    fn tabulated(&self, i: usize) -> [[Complex64; N]; N] {
+        let forces = &self.sweep.forces;
+        let count = forces.count();
+        let row = &self.sweep.table[i * count..][..count];
+        let mut g = [[Complex64::new(0.0, 0.0); N]; N];
+        for j in 0..N {
+            for b in forces.starts[j]..forces.starts[j + 1] {
+                let theta = &self.coefficients[b * N..][..N];
+                for (row_of_g, theta) in g.iter_mut().zip(theta) {
+                    row_of_g[j] += row[b] * *theta;
+                }
+            }
+        }
+        g
+    }
+
+    /// The roots at `k`, unless one of them is not clearly the continuation of one before.
+    fn step(&self, from: &Roots<N>, k: f64, pencil: &Pencil<N>) -> Option<Roots<N>> {
+        let advance = (k / from.k).ln();
+        let mut next = Roots { k, ..*from };
+        let mut predicted = from.omega;
+        for i in 0..N {
+            predicted[i] = from.omega[i] + from.slope[i] * advance;
+            if !from.alive[i] {
+                continue;
+            }
+            next.omega[i] = pencil.root(predicted[i])?;
+        }
+        for i in (0..N).filter(|i| from.alive[*i]) {
+            let nearest = (0..N)
+                .filter(|j| *j != i && from.alive[*j])
+                .map(|j| (predicted[i] - predicted[j]).norm_sqr())
+                .fold(predicted[i].norm_sqr(), f64::min);
+            let miss = (next.omega[i] - predicted[i]).norm_sqr();
+            if miss > MAX_PART * MAX_PART * nearest {
+                return None;
+            }
+            next.slope[i] = (next.omega[i] - from.omega[i]) / advance;
+            next.alive[i] = next.omega[i].re > 0.0;
+        }
+        Some(next)
+    }
+
+    /// Refines what passed the real axis between two reduced frequencies; `None` when that fails.
+    fn look(&mut self, before: &Roots<N>, after: &Roots<N>) -> Option<()> {
+        for i in (0..N).filter(|i| after.alive[*i]) {
+            let (a, b) = (before.omega[i], after.omega[i]);
+            if (a.im > 0.0) == (b.im > 0.0) {
+                continue;
+            }
+            let share = a.im / (a.im - b.im);
+            let k = before.k + (after.k - before.k) * share;
+            let omega = a.re + (b.re - a.re) * share;
+            let speed = omega * self.supports.width / k;
+            let forces = &self.sweep.forces;
+            let crossing = refine(forces, self.coefficients, &self.supports, (speed, omega))?;
+            if crossing.speed <= self.sweep.speed_max {
+                *self.crossings.get_mut(self.found)? = Some(crossing);
+                self.found += 1;
+            }
+        }
+        Some(())
+    }
+
+    /// Speed of the lowest crossing inside the tested range so far: nothing above it can be the answer.
+    fn lowest(&self) -> f64 {
+        let found = self.crossings[..self.found].iter().flatten();
+        found
+            .filter(|c| c.destabilises && self.inside(c))
+            .map(|c| c.speed)
+            .fold(f64::INFINITY, f64::min)
+    }
+
+    fn inside(&self, c: &Crossing) -> bool {
+        let k = ReducedFrequency::from_circular(c.omega, self.supports.width, c.speed);
+        let tested = self.sweep.forces.tested;
+        tested.is_none_or(|range| range.contains(k))
+    }
+
+    /// The lowest crossing inside the tested range, else the lowest.
+    fn choose(&self) -> SweepOutcome {
+        let all = || {
+            let found = self.crossings[..self.found].iter().flatten();
+            found.filter(|c| c.destabilises)
+        };
+        let by_speed = |a: &&Crossing, b: &&Crossing| a.speed.total_cmp(&b.speed);
+        let trusted = all().filter(|c| self.inside(c)).min_by(by_speed);
+        let Some(chosen) = trusted.or_else(|| all().min_by(by_speed)) else {
+            return SweepOutcome::Stable;
+        };
+        SweepOutcome::Onset(SweptOnset {
+            speed_m_s: chosen.speed,
+            frequency_hz: chosen.omega / std::f64::consts::TAU,
+            in_tested_range: self.inside(chosen),
+            spurious: all().filter(|c| c.speed < chosen.speed).count(),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests;

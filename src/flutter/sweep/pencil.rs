@@ -1,0 +1,109 @@
+//! The determinant of the impedance at a fixed reduced frequency: a polynomial in `ω` with complex coefficients.
+//!
+//! With `V = ωB/K` and all rows and columns in units of the rotation, `D(ω) = −ω² A + iωR + K_s`, where
+//! `A = M + ½ρB⁴/K² G(iK)` is a full complex matrix and `R`, `K_s` are diagonal.
+
+use nalgebra::Complex;
+
+type Complex64 = Complex<f64>;
+
+/// A supported section of `N` degrees of freedom, in units of the rotation (displacements over `B`).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Supports<const N: usize> {
+    pub(super) width: f64,
+    pub(super) density: f64,
+    pub(super) mass: [f64; N],
+    pub(super) damping: [f64; N],
+    pub(super) stiffness: [f64; N],
+}
+
+/// Coefficients of `det D(ω)` at one `K`.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Pencil<const N: usize> {
+    diagonal: [Complex64; N],
+    damping: [f64; N],
+    stiffness: [f64; N],
+    /// `A_ij A_ji` for the pairs (0, 1), (0, 2), (1, 2).
+    pairs: [Complex64; 3],
+    /// `A_01 A_12 A_20 + A_02 A_10 A_21`.
+    rings: Complex64,
+}
+
+impl<const N: usize> Pencil<N> {
+    pub(super) fn new(s: &Supports<N>, k: f64, g: &[[Complex64; N]; N]) -> Self {
+        let air = 0.5 * s.density * s.width * s.width * s.width * s.width / (k * k);
+        let zero = Complex64::new(0.0, 0.0);
+        let mut diagonal = [zero; N];
+        for i in 0..N {
+            diagonal[i] = g[i][i] * air + s.mass[i];
+        }
+        let square = air * air;
+        let mut pairs = [zero; 3];
+        let mut rings = zero;
+        if N >= 2 {
+            pairs[0] = g[0][1] * g[1][0] * square;
+        }
+        if N == 3 {
+            pairs[1] = g[0][2] * g[2][0] * square;
+            pairs[2] = g[1][2] * g[2][1] * square;
+            rings = (g[0][1] * g[1][2] * g[2][0] + g[0][2] * g[1][0] * g[2][1]) * (square * air);
+        }
+        Self {
+            diagonal,
+            damping: s.damping,
+            stiffness: s.stiffness,
+            pairs,
+            rings,
+        }
+    }
+
+    /// Frequencies of the degrees of freedom by themselves, the apparent mass included.
+    pub(super) fn uncoupled(&self) -> [Complex64; N] {
+        std::array::from_fn(|i| {
+            let mass = self.diagonal[i].re;
+            let omega = (self.stiffness[i] / mass).sqrt();
+            Complex64::new(omega, self.damping[i] / (2.0 * mass))
+        })
+    }
+
+    /// `det D(ω)` and its derivative.
+    fn at(&self, omega: Complex64) -> (Complex64, Complex64) {
+        let w = -omega * omega;
+        let dw = omega * -2.0;
+        let mut d = [Complex64::new(1.0, 0.0); 3];
+        let mut dd = [Complex64::new(0.0, 0.0); 3];
+        for i in 0..N {
+            let (a, r, k) = (self.diagonal[i], self.damping[i], self.stiffness[i]);
+            d[i] = w * a + Complex64::new(k - r * omega.im, r * omega.re);
+            dd[i] = dw * a + Complex64::new(0.0, r);
+        }
+        let (w2, dw2) = (w * w, w * dw * 2.0);
+        let mut value = d[0] * d[1] - w2 * self.pairs[0];
+        let mut slope = dd[0] * d[1] + d[0] * dd[1] - dw2 * self.pairs[0];
+        if N == 3 {
+            let others = d[0] * self.pairs[2] + d[1] * self.pairs[1];
+            let d_others = dd[0] * self.pairs[2] + dd[1] * self.pairs[1];
+            slope = slope * d[2] + value * dd[2] - dw2 * others - w2 * d_others
+                + w2 * dw * self.rings * 3.0;
+            value = value * d[2] - w2 * others + w2 * w * self.rings;
+        }
+        (value, slope)
+    }
+
+    /// The root next to `start` by Newton's method; `None` when it does not settle.
+    pub(super) fn root(&self, start: Complex64) -> Option<Complex64> {
+        const STEPS: usize = 8;
+        // the next step would be the square of this
+        const TOLERANCE_SQUARED: f64 = 1e-12;
+        let mut omega = start;
+        for _ in 0..STEPS {
+            let (value, slope) = self.at(omega);
+            let step = value / slope;
+            omega -= step;
+            if step.norm_sqr() <= TOLERANCE_SQUARED * omega.norm_sqr() {
+                return omega.re.is_finite().then_some(omega);
+            }
+        }
+        None
+    }
+}

@@ -1,0 +1,222 @@
+//! The sweep against the search by eigenvalues, sample by sample.
+
+use super::*;
+use crate::aerodynamics::{AerodynamicModel, FilterBank, FilterTerm, LaguerreModel, RationalModel};
+use crate::aeroelastic::CoupledSection;
+use crate::flutter::{OnsetSearch, find_onset};
+use crate::section::Translation;
+use nalgebra::DMatrix;
+
+/// Numbers in [−1, 1] from a multiplicative congruence: no crate needed, the same everywhere.
+struct Noise(u64);
+
+impl Noise {
+    fn next(&mut self) -> f64 {
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+}
+
+fn varied(section: &SectionModel, noise: &mut Noise) -> SectionModel {
+    let mut s = section.clone();
+    s.width_m *= 1.0 + 0.02 * noise.next();
+    s.air_density_kg_m3 *= 1.0 + 0.05 * noise.next();
+    s.vertical.mass_kg_m *= 1.0 + 0.2 * noise.next();
+    s.vertical.damping_ratio *= 1.0 + noise.next();
+    s.torsion.inertia_kg_m2_m *= 1.0 + 0.2 * noise.next();
+    s.torsion.damping_ratio *= 1.0 + noise.next();
+    s.torsion.frequency_hz = s
+        .torsion
+        .frequency_hz
+        .map(|f| f * (1.0 + 0.3 * noise.next()));
+    if let Some(lateral) = &mut s.lateral {
+        lateral.mass_kg_m *= 1.0 + 0.2 * noise.next();
+    }
+    s
+}
+
+/// Counts onsets; asserts that both routes agree on every sample.
+fn compare(
+    forces: LinearForces,
+    section: &SectionModel,
+    rebuilt: impl Fn(&[f64]) -> Box<dyn AerodynamicModel>,
+    (samples, speed_max, scatter): (usize, f64, f64),
+) -> (usize, usize) {
+    let sweep = OnsetSweep::new(forces, &section.structure().unwrap(), speed_max).unwrap();
+    let tested = sweep.forces().tested;
+    let mut noise = Noise(7);
+    let (mut onsets, mut unresolved) = (0, 0);
+    for sample in 0..samples {
+        let s = varied(section, &mut noise);
+        let nominal = sweep.forces().coefficients();
+        let coefficients: Vec<f64> = nominal
+            .iter()
+            .map(|c| c * (1.0 + scatter * noise.next()))
+            .collect();
+        let aero = rebuilt(&coefficients).realize().unwrap();
+        let coupled = CoupledSection::new(s.structure().unwrap(), aero).unwrap();
+        let search = OnsetSearch {
+            speed_max_m_s: speed_max,
+            speeds: 60,
+        };
+        let full = find_onset("", &coupled, &search, tested).unwrap();
+        match (sweep.onset(&s, &coefficients).unwrap(), full.onset()) {
+            (SweepOutcome::Onset(fast), Some(slow)) => {
+                onsets += 1;
+                assert!(
+                    (fast.speed_m_s / slow.speed_m_s - 1.0).abs() < 1e-9,
+                    "{sample}: {fast:?} {slow:?}"
+                );
+                assert!(
+                    (fast.frequency_hz / slow.frequency_hz - 1.0).abs() < 1e-9,
+                    "{sample}"
+                );
+                assert_eq!(
+                    fast.in_tested_range,
+                    slow.in_tested_range != Some(false),
+                    "{sample}"
+                );
+            }
+            (SweepOutcome::Stable, None) => {}
+            (SweepOutcome::Unresolved, _) => unresolved += 1,
+            (fast, slow) => panic!("{sample}: {fast:?} against {slow:?}"),
+        }
+    }
+    (onsets, unresolved)
+}
+
+fn with_powers(model: &LaguerreModel, c: &[f64]) -> LaguerreModel {
+    let n = model.dofs.len();
+    let per_input = c.len() / n;
+    let at = |j: usize, b: usize, i: usize| c[j * per_input + b * n + i];
+    let mut m = model.clone();
+    m.e0 = DMatrix::from_fn(n, n, |i, j| at(j, 0, i));
+    m.e1 = DMatrix::from_fn(n, n, |i, j| at(j, 1, i));
+    m.e2 = DMatrix::from_fn(n, n, |i, j| at(j, 2, i));
+    for term in &mut m.terms {
+        let j = term.input;
+        let l = term.coefficients.ncols();
+        term.coefficients = DMatrix::from_fn(n, l, |i, l| at(j, 3 + l, i));
+    }
+    m
+}
+
+/// The flat plate of Jones as three Laguerre filters a motion would have it, near enough to flutter like one.
+fn three_filters() -> LaguerreModel {
+    let jones = RationalModel::jones_flat_plate();
+    let total = &jones.lag_terms[0] + &jones.lag_terms[1];
+    // p/(p + d) = 1 − √(d/2) Λ_0 for one filter of pole d
+    let d: f64 = 0.35;
+    let terms = (0..2)
+        .map(|input| FilterTerm {
+            input,
+            poles: FilterBank::laguerre(d, 3).unwrap(),
+            coefficients: DMatrix::from_fn(2, 3, |i, l| {
+                -total[(i, input)] * (d / 2.0).sqrt() * [1.0, 0.1, 0.02][l]
+            }),
+        })
+        .collect();
+    LaguerreModel {
+        dofs: Dof::TWO.to_vec(),
+        e0: &jones.a1 + &total,
+        e1: jones.a2.clone(),
+        e2: jones.a3.clone(),
+        terms,
+    }
+}
+
+#[test]
+fn two_thousand_laguerre_samples() {
+    let model = three_filters();
+    let forces = LinearForces::of_laguerre(&model, None);
+    assert_eq!(forces.coefficients().len(), 2 * 6 * 2);
+    let rebuilt = |c: &[f64]| Box::new(with_powers(&model, c)) as Box<dyn AerodynamicModel>;
+    let section = SectionModel::table_4_1();
+    let (onsets, unresolved) = compare(forces, &section, rebuilt, (2000, 60.0, 0.05));
+    assert!(onsets > 1500 && unresolved < 4, "{onsets} {unresolved}");
+}
+
+/// The torsional frequency falls below that of heave in some samples: other modes flutter, or none.
+#[test]
+fn frequencies_that_cross() {
+    let mut section = SectionModel::table_4_1();
+    section.torsion.frequency_hz = Some(2.2);
+    let jones = RationalModel::jones_flat_plate();
+    let forces = LinearForces::of_rational(&jones, None);
+    let rebuilt =
+        |_: &[f64]| Box::new(RationalModel::jones_flat_plate()) as Box<dyn AerodynamicModel>;
+    let (_, unresolved) = compare(forces, &section, rebuilt, (300, 60.0, 0.0));
+    assert!(unresolved < 30, "{unresolved}");
+}
+
+#[test]
+fn three_degrees_of_freedom() {
+    let mut section = SectionModel::table_4_1();
+    section.lateral = Some(Translation {
+        mass_kg_m: 15.0,
+        frequency_hz: Some(1.1),
+        stiffness_n_m2: None,
+        damping_ratio: 0.003,
+    });
+    let two = three_filters();
+    // a drag that follows the slope of a parabola, and couples back weakly
+    let three = |m: &DMatrix<f64>, drag: f64, coupling: f64| {
+        let place = [0, 2];
+        DMatrix::from_fn(3, 3, |i, j| match (i, j) {
+            (1, 1) => drag,
+            (1, _) | (_, 1) => coupling,
+            _ => {
+                m[(
+                    place.iter().position(|p| *p == i).unwrap(),
+                    place.iter().position(|p| *p == j).unwrap(),
+                )]
+            }
+        })
+    };
+    let model = LaguerreModel {
+        dofs: Dof::THREE.to_vec(),
+        e0: three(&two.e0, 0.0, 0.05),
+        e1: three(&two.e1, -0.4, -0.02),
+        e2: three(&two.e2, 0.0, 0.0),
+        terms: (0..3)
+            .map(|input| FilterTerm {
+                input,
+                poles: FilterBank::laguerre(0.35, 3).unwrap(),
+                coefficients: DMatrix::from_fn(3, 3, |i, l| match (i, input) {
+                    (1, _) | (_, 1) => 0.01,
+                    _ => two.terms[input / 2].coefficients[(i / 2, l)],
+                }),
+            })
+            .collect(),
+    };
+    let forces = LinearForces::of_laguerre(&model, None);
+    let rebuilt = |c: &[f64]| Box::new(with_powers(&model, c)) as Box<dyn AerodynamicModel>;
+    let (onsets, unresolved) = compare(forces, &section, rebuilt, (500, 60.0, 0.05));
+    assert!(onsets > 300 && unresolved < 4, "{onsets} {unresolved}");
+}
+
+#[test]
+fn impossible_samples_are_refused_by_name() {
+    let model = three_filters();
+    let mut section = SectionModel::table_4_1();
+    let structure = section.structure().unwrap();
+    let sweep = OnsetSweep::new(LinearForces::of_laguerre(&model, None), &structure, 60.0).unwrap();
+    let coefficients = sweep.forces().coefficients().to_vec();
+    section.vertical.mass_kg_m = -1.0;
+    let message = sweep
+        .onset(&section, &coefficients)
+        .unwrap_err()
+        .to_string();
+    assert_eq!(
+        message,
+        "section.vertical.mass_kg_m: expected a positive number, found -1"
+    );
+    assert!(
+        sweep
+            .onset(&SectionModel::table_4_1(), &coefficients[1..])
+            .is_err()
+    );
+}

@@ -1,0 +1,316 @@
+//! Distributions of single parameters, as they stand in the file.
+
+use super::normal;
+use crate::error::{Error, Result, positive};
+use serde::{Deserialize, Serialize};
+
+/// Probability that must be left between the ends of a truncated distribution.
+const SMALLEST_PROBABILITY: f64 = 1e-9;
+
+/// Distribution of one parameter. Mean and scatter are those of the parameter itself (for the lognormal one too); a mean
+/// that is left out is the value of the model, and the scatter is either a standard deviation in the unit of the
+/// parameter or a coefficient of variation.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+pub enum Distribution {
+    /// Gaussian; a bound that is given truncates it.
+    Normal {
+        /// Mean before truncation.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        mean: Option<f64>,
+        /// Standard deviation before truncation.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        standard_deviation: Option<f64>,
+        /// Standard deviation over mean, before truncation.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        coefficient_of_variation: Option<f64>,
+        /// Lower end.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        lower: Option<f64>,
+        /// Upper end.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        upper: Option<f64>,
+    },
+    /// The logarithm is Gaussian; a bound that is given truncates it.
+    Lognormal {
+        /// Mean of the parameter before truncation.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        mean: Option<f64>,
+        /// Standard deviation of the parameter before truncation.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        standard_deviation: Option<f64>,
+        /// Standard deviation over mean, before truncation.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        coefficient_of_variation: Option<f64>,
+        /// Lower end.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        lower: Option<f64>,
+        /// Upper end.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        upper: Option<f64>,
+    },
+    /// Every value between two ends is as likely.
+    Uniform {
+        /// Lower end.
+        lower: f64,
+        /// Upper end.
+        upper: f64,
+    },
+}
+
+/// A distribution with its numbers worked out: a function of a standard normal variable.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Transform {
+    Normal {
+        mean: f64,
+        deviation: f64,
+    },
+    Lognormal {
+        mean: f64,
+        deviation: f64,
+    },
+    Uniform {
+        lower: f64,
+        width: f64,
+    },
+    /// A Gaussian between two quantiles, of the logarithm if `exponential`.
+    Truncated {
+        mean: f64,
+        deviation: f64,
+        from: f64,
+        to: f64,
+        mirrored: bool,
+        exponential: bool,
+    },
+}
+
+impl Distribution {
+    /// The distribution around `nominal`; `place` is the key it stands under.
+    ///
+    /// # Errors
+    /// [`Error::Input`] naming the key.
+    pub(super) fn resolve(&self, place: &str, nominal: f64) -> Result<Transform> {
+        let at = |key: &str| format!("{place}.{key}");
+        match *self {
+            Self::Uniform { lower, upper } => {
+                if !(lower.is_finite() && upper.is_finite() && lower < upper) {
+                    let found = format!("{lower} to {upper}");
+                    return Err(Error::input(
+                        at("lower"),
+                        "a finite number below `upper`",
+                        found,
+                    ));
+                }
+                let width = upper - lower;
+                Ok(Transform::Uniform { lower, width })
+            }
+            Self::Normal {
+                mean,
+                standard_deviation,
+                coefficient_of_variation,
+                lower,
+                upper,
+            } => {
+                let mean = finite(&at("mean"), mean.unwrap_or(nominal))?;
+                let scatter = (standard_deviation, coefficient_of_variation);
+                let deviation = deviation(place, mean, scatter)?;
+                if lower.is_none() && upper.is_none() {
+                    return Ok(Transform::Normal { mean, deviation });
+                }
+                truncated(place, (mean, deviation), (lower, upper), false)
+            }
+            Self::Lognormal {
+                mean,
+                standard_deviation,
+                coefficient_of_variation,
+                lower,
+                upper,
+            } => {
+                let mean = positive(&at("mean"), mean.unwrap_or(nominal))?;
+                let scatter = (standard_deviation, coefficient_of_variation);
+                let ratio = deviation(place, mean, scatter)? / mean;
+                let variance = (ratio * ratio).ln_1p();
+                let (mean, deviation) = (mean.ln() - 0.5 * variance, variance.sqrt());
+                if lower.is_none() && upper.is_none() {
+                    return Ok(Transform::Lognormal { mean, deviation });
+                }
+                let log = |key: &str, end: Option<f64>| {
+                    end.map(|x| positive(&at(key), x).map(f64::ln)).transpose()
+                };
+                let ends = (log("lower", lower)?, log("upper", upper)?);
+                truncated(place, (mean, deviation), ends, true)
+            }
+        }
+    }
+}
+
+fn finite(place: &str, value: f64) -> Result<f64> {
+    if value.is_finite() {
+        return Ok(value);
+    }
+    Err(Error::input(place, "a finite number", value.to_string()))
+}
+
+/// The standard deviation from exactly one of its two forms.
+fn deviation(place: &str, mean: f64, scatter: (Option<f64>, Option<f64>)) -> Result<f64> {
+    match scatter {
+        (Some(s), None) => positive(&format!("{place}.standard_deviation"), s),
+        (None, Some(c)) => {
+            let key = format!("{place}.coefficient_of_variation");
+            positive(&key, c)?;
+            positive(&key, c * mean.abs())
+        }
+        (given, _) => Err(Error::input(
+            place,
+            "either `standard_deviation` or `coefficient_of_variation`",
+            if given.is_some() { "both" } else { "neither" },
+        )),
+    }
+}
+
+fn truncated(
+    place: &str,
+    (mean, deviation): (f64, f64),
+    (lower, upper): (Option<f64>, Option<f64>),
+    exponential: bool,
+) -> Result<Transform> {
+    let standard = |end: f64| (end - mean) / deviation;
+    let low = lower.map_or(f64::NEG_INFINITY, standard);
+    let high = upper.map_or(f64::INFINITY, standard);
+    // in the upper tail the quantiles are taken from the other side, where they hold their digits
+    let mirrored = low > 0.0;
+    let (a, b) = if mirrored { (-high, -low) } else { (low, high) };
+    let (from, to) = (normal::cdf(a), normal::cdf(b));
+    if !(to - from > SMALLEST_PROBABILITY) {
+        let end = |e: Option<f64>| e.map_or("open".to_owned(), |e| e.to_string());
+        return Err(Error::input(
+            format!(
+                "{place}.{}",
+                if lower.is_some() { "lower" } else { "upper" }
+            ),
+            "bounds between which the distribution has some probability",
+            format!("{} to {}", end(lower), end(upper)),
+        ));
+    }
+    Ok(Transform::Truncated {
+        mean,
+        deviation,
+        from,
+        to,
+        mirrored,
+        exponential,
+    })
+}
+
+impl Transform {
+    /// The parameter for a standard normal `z`.
+    pub(super) fn value(&self, z: f64) -> f64 {
+        match *self {
+            Self::Normal { mean, deviation } => mean + deviation * z,
+            Self::Lognormal { mean, deviation } => (mean + deviation * z).exp(),
+            Self::Uniform { lower, width } => lower + width * normal::cdf(z),
+            Self::Truncated {
+                mean,
+                deviation,
+                from,
+                to,
+                mirrored,
+                exponential,
+            } => {
+                let z = if mirrored { -z } else { z };
+                let u = from + (to - from) * normal::cdf(z);
+                let inside = normal::quantile(u.clamp(f64::MIN_POSITIVE, 1.0 - f64::EPSILON));
+                let x = mean + deviation * if mirrored { -inside } else { inside };
+                if exponential { x.exp() } else { x }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parse(text: &str) -> Transform {
+        let d: Distribution = serde_json::from_str(text).unwrap();
+        d.resolve("p", 2.0).unwrap()
+    }
+
+    /// Mean and standard deviation over equal steps of probability; closed forms beside them.
+    fn moments(t: Transform) -> (f64, f64) {
+        const N: usize = 20_000;
+        let values: Vec<f64> = (0..N)
+            .map(|i| t.value(normal::quantile((i as f64 + 0.5) / N as f64)))
+            .collect();
+        let mean = values.iter().sum::<f64>() / N as f64;
+        let square = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / N as f64;
+        (mean, square.sqrt())
+    }
+
+    #[test]
+    fn moments_are_those_stated() {
+        let (mean, deviation) = moments(parse(
+            r#"{"kind":"lognormal","coefficient_of_variation":0.3}"#,
+        ));
+        // the midpoint rule leaves out a little of the tail
+        assert!(
+            (mean - 2.0).abs() < 1e-4 && (deviation - 0.6).abs() < 1e-3,
+            "{mean} {deviation}"
+        );
+        let (mean, deviation) = moments(parse(r#"{"kind":"uniform","lower":1.0,"upper":4.0}"#));
+        assert!((mean - 2.5).abs() < 1e-12 && (deviation - 3.0 / 12f64.sqrt()).abs() < 1e-6);
+        // half a Gaussian: mean μ + σ√(2/π), in both directions
+        for (end, sign) in [("lower", 1.0), ("upper", -1.0)] {
+            let text = format!(r#"{{"kind":"normal","standard_deviation":0.5,"{end}":2.0}}"#);
+            let (mean, _) = moments(parse(&text));
+            let expected = 2.0 + sign * 0.5 * (2.0 / std::f64::consts::PI).sqrt();
+            assert!((mean - expected).abs() < 1e-4, "{mean}");
+        }
+    }
+
+    #[test]
+    fn truncation_keeps_the_ends_in_either_tail() {
+        for (lower, upper) in [(4.0, 4.5), (0.1, 0.4), (1.0, 3.0)] {
+            let t = parse(&format!(
+                r#"{{"kind":"normal","standard_deviation":0.5,"lower":{lower},"upper":{upper}}}"#
+            ));
+            let mut last = f64::NEG_INFINITY;
+            for z in [-6.0, -2.0, 0.0, 1.0, 6.0] {
+                let x = t.value(z);
+                assert!(
+                    lower <= x + 1e-9 && x <= upper + 1e-9 && x > last,
+                    "{x} at {z}"
+                );
+                last = x;
+            }
+        }
+    }
+
+    #[test]
+    fn nonsense_is_refused_by_key() {
+        for (text, said) in [
+            (r#"{"kind":"normal"}"#, "found neither"),
+            (
+                r#"{"kind":"normal","standard_deviation":1.0,"coefficient_of_variation":1.0}"#,
+                "found both",
+            ),
+            (
+                r#"{"kind":"normal","standard_deviation":-1.0}"#,
+                "p.standard_deviation",
+            ),
+            (
+                r#"{"kind":"lognormal","mean":-1.0,"standard_deviation":1.0}"#,
+                "p.mean",
+            ),
+            (r#"{"kind":"uniform","lower":2.0,"upper":1.0}"#, "p.lower"),
+            (
+                r#"{"kind":"normal","standard_deviation":0.1,"lower":9.0}"#,
+                "some probability",
+            ),
+        ] {
+            let d: Distribution = serde_json::from_str(text).unwrap();
+            let message = d.resolve("p", 2.0).unwrap_err().to_string();
+            assert!(message.contains(said), "{message}");
+        }
+    }
+}

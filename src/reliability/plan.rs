@@ -1,0 +1,232 @@
+//! The file of a Monte Carlo analysis.
+
+use super::distribution::Distribution;
+use super::parameter::Parameter;
+use crate::error::{Error, Result, positive};
+use crate::toml_lines;
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+
+/// Version of the file.
+pub const PLAN_SCHEMA: u32 = 1;
+/// More samples than this do not fit into memory.
+const MAX_SAMPLES: usize = 100_000_000;
+
+/// What is random, and what is asked.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MonteCarloPlan {
+    /// [`PLAN_SCHEMA`].
+    pub schema: u32,
+    /// The trained model (section and forces), a path against the folder of the file.
+    pub model: PathBuf,
+    /// Number of samples.
+    pub samples: usize,
+    /// Seed of the random numbers; the same seed gives the same samples on every machine and number of threads.
+    #[serde(default)]
+    pub seed: u64,
+    /// Onsets are searched up to this wind speed, m/s.
+    pub speed_max_m_s: f64,
+    /// The probability of an onset below this wind speed is asked, m/s.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub design_speed_m_s: Option<f64>,
+    /// Level of the confidence interval of that probability.
+    #[serde(default = "usual_confidence")]
+    pub confidence: f64,
+    /// Probabilities whose quantiles are printed.
+    #[serde(default = "usual_quantiles")]
+    pub quantiles: Vec<f64>,
+    /// Random numbers of the section.
+    #[serde(rename = "parameter", default)]
+    pub parameters: Vec<RandomParameter>,
+    /// Correlations between them.
+    #[serde(rename = "correlation", default)]
+    pub correlations: Vec<Correlation>,
+    /// Scatter of the force model.
+    #[serde(default)]
+    pub aerodynamics: AerodynamicScatter,
+    /// Folder of the file.
+    #[serde(skip)]
+    pub directory: PathBuf,
+}
+
+/// One random number of the section.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RandomParameter {
+    /// Which.
+    pub name: Parameter,
+    /// Its distribution.
+    pub distribution: Distribution,
+}
+
+/// Correlation of two random numbers (of the Gaussian variables behind them).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Correlation {
+    /// The two.
+    pub between: [Parameter; 2],
+    /// Between −1 and 1.
+    pub coefficient: f64,
+}
+
+/// Scatter of the coefficients of the force model: nothing, a relative one, or a covariance.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AerodynamicScatter {
+    /// Standard deviation of every coefficient over its value, Gaussian and independent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub relative_scatter: Option<f64>,
+    /// Covariance of the coefficients: a report of a fit (`.json`, as `train` writes it) or a table (`.csv`: names of the
+    /// coefficients in the first line, then the matrix).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub covariance: Option<PathBuf>,
+}
+
+fn usual_confidence() -> f64 {
+    0.95
+}
+
+fn usual_quantiles() -> Vec<f64> {
+    vec![0.001, 0.01, 0.05, 0.5, 0.95, 0.99]
+}
+
+impl MonteCarloPlan {
+    /// Reads and checks a file.
+    ///
+    /// # Errors
+    /// [`Error::Io`] when it cannot be read; [`Error::Input`] with file and line for everything that is wrong in it.
+    pub fn read(path: &Path) -> Result<Self> {
+        let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, e))?;
+        let directory = path.parent().unwrap_or(Path::new("")).to_path_buf();
+        Self::from_toml(&text, directory).map_err(|e| e.in_file(path))
+    }
+
+    /// Reads and checks the text of a file; paths in it are read against `directory`.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with line and key.
+    pub fn from_toml(text: &str, directory: PathBuf) -> Result<Self> {
+        let mut plan: Self = toml::from_str(text)
+            .map_err(|e| toml_lines::syntax_error("a Monte Carlo file", text, &e))?;
+        plan.directory = directory;
+        plan.validate()
+            .map_err(|e| toml_lines::with_line(text, e))?;
+        Ok(plan)
+    }
+
+    /// The same error with the line of the key it names in `text`, for what shows only beside the model.
+    pub fn locate(text: &str, error: Error) -> Error {
+        toml_lines::with_line(text, error)
+    }
+
+    /// Checks every value that does not need the model.
+    ///
+    /// # Errors
+    /// [`Error::Input`] naming the key.
+    pub fn validate(&self) -> Result<()> {
+        let wrong =
+            |key: &str, expected: &str, found: String| Err(Error::input(key, expected, found));
+        if self.schema != PLAN_SCHEMA {
+            return wrong("schema", &PLAN_SCHEMA.to_string(), self.schema.to_string());
+        }
+        if self.samples == 0 || self.samples > MAX_SAMPLES {
+            return wrong(
+                "samples",
+                "a number from 1 to 1e8",
+                self.samples.to_string(),
+            );
+        }
+        positive("speed_max_m_s", self.speed_max_m_s)?;
+        if let Some(speed) = self.design_speed_m_s
+            && positive("design_speed_m_s", speed)? > self.speed_max_m_s
+        {
+            let expected = "a speed not above speed_max_m_s, up to which onsets are searched";
+            return wrong("design_speed_m_s", expected, speed.to_string());
+        }
+        let inside = |p: f64| p > 0.0 && p < 1.0;
+        if !inside(self.confidence) {
+            return wrong(
+                "confidence",
+                "a number between 0 and 1",
+                self.confidence.to_string(),
+            );
+        }
+        for (i, p) in self.quantiles.iter().enumerate() {
+            if !inside(*p) {
+                return wrong(
+                    &format!("quantiles[{i}]"),
+                    "probabilities between 0 and 1",
+                    p.to_string(),
+                );
+            }
+        }
+        self.validate_parameters()?;
+        self.aerodynamics.validate()?;
+        let fixed =
+            self.parameters.is_empty() && self.aerodynamics == AerodynamicScatter::default();
+        if fixed {
+            return wrong(
+                "parameter",
+                "something random: a [[parameter]] or [aerodynamics]",
+                "nothing".into(),
+            );
+        }
+        Ok(())
+    }
+
+    fn validate_parameters(&self) -> Result<()> {
+        for (i, random) in self.parameters.iter().enumerate() {
+            if self.parameters[..i].iter().any(|p| p.name == random.name) {
+                return Err(Error::input(
+                    format!("parameter[{i}].name"),
+                    "every parameter once",
+                    format!("`{}` a second time", random.name.name()),
+                ));
+            }
+        }
+        for (i, c) in self.correlations.iter().enumerate() {
+            let key = format!("correlation[{i}]");
+            if !(c.coefficient > -1.0 && c.coefficient < 1.0) {
+                return Err(Error::input(
+                    format!("{key}.coefficient"),
+                    "a number between -1 and 1",
+                    c.coefficient.to_string(),
+                ));
+            }
+            let random = |p: &Parameter| self.parameters.iter().any(|r| r.name == *p);
+            let missing = c.between.iter().find(|p| !random(p));
+            let pair = |o: &Correlation| {
+                o.between == c.between || o.between == [c.between[1], c.between[0]]
+            };
+            let twice = c.between[0] == c.between[1] || self.correlations[..i].iter().any(pair);
+            if missing.is_some() || twice {
+                return Err(Error::input(
+                    format!("{key}.between"),
+                    "two different random parameters, every pair once",
+                    match missing {
+                        Some(p) => format!("`{}`, which is not random", p.name()),
+                        None => "a pair of one parameter, or a pair a second time".into(),
+                    },
+                ));
+            }
+        }
+        Ok(())
+    }
+}
+
+impl AerodynamicScatter {
+    fn validate(&self) -> Result<()> {
+        if let Some(scatter) = self.relative_scatter {
+            positive("aerodynamics.relative_scatter", scatter)?;
+            if self.covariance.is_some() {
+                return Err(Error::input(
+                    "aerodynamics.covariance",
+                    "either `relative_scatter` or `covariance`",
+                    "both",
+                ));
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,244 @@
+//! What a Monte Carlo analysis gives.
+
+use super::interval::clopper_pearson;
+use super::plan::MonteCarloPlan;
+use crate::flutter::SweptOnset;
+use serde::Serialize;
+
+/// Failed samples that are named one by one; of more, their number is given.
+const NAMED_FAILURES: usize = 20;
+/// Bins of the histogram at most.
+const MAX_BINS: f64 = 60.0;
+
+/// Distribution of the onset speed.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MonteCarloResult {
+    /// Name of the model.
+    pub model: String,
+    /// Seed of the random numbers.
+    pub seed: u64,
+    /// Samples asked for.
+    pub samples: usize,
+    /// Samples with an onset up to the highest speed.
+    pub onsets: usize,
+    /// Samples without one.
+    pub stable: usize,
+    /// Samples without an answer, mostly for impossible values.
+    pub failed: usize,
+    /// The first of them, with the reason.
+    pub failures: Vec<Failure>,
+    /// Onsets outside the tested range of the model: extrapolations.
+    pub outside_tested_range: usize,
+    /// Samples whose model loses damping below the onset, outside the tested range.
+    pub with_spurious_crossings: usize,
+    /// Samples that needed the search by eigenvalues.
+    pub searched_in_full: usize,
+    /// Highest speed searched, m/s.
+    pub speed_max_m_s: f64,
+    /// Onset of the model itself, m/s; `null` when it has none.
+    pub nominal_m_s: Option<f64>,
+    /// Mean of the onsets, m/s; samples without onset are left out.
+    pub mean_m_s: Option<f64>,
+    /// Standard deviation of the onsets, m/s.
+    pub standard_deviation_m_s: Option<f64>,
+    /// Quantiles of the onset speed; samples without onset count as above the highest speed.
+    pub quantiles: Vec<Quantile>,
+    /// Onsets counted in bins of equal width.
+    pub histogram: Histogram,
+    /// Probability of an onset below the design speed.
+    pub design: Option<DesignCheck>,
+}
+
+/// A sample without an answer.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Failure {
+    /// Its number, from 0.
+    pub sample: usize,
+    /// Why.
+    pub reason: String,
+}
+
+/// One quantile.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Quantile {
+    /// Probability of an onset at or below the speed.
+    pub probability: f64,
+    /// m/s; `null` above the highest speed searched.
+    pub speed_m_s: Option<f64>,
+}
+
+/// Counts in bins of equal width.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct Histogram {
+    /// Lower end of the first bin, m/s.
+    pub from_m_s: f64,
+    /// Width of a bin, m/s.
+    pub width_m_s: f64,
+    /// Onsets in each bin.
+    pub counts: Vec<u64>,
+}
+
+/// Probability of an onset below the design speed.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct DesignCheck {
+    /// Design speed, m/s.
+    pub speed_m_s: f64,
+    /// Samples with an onset below it.
+    pub below: u64,
+    /// Their part of all samples with an answer.
+    pub probability: f64,
+    /// Lower end of the exact (Clopper–Pearson) confidence interval.
+    pub lower: f64,
+    /// Upper end.
+    pub upper: f64,
+    /// Level of the interval, two-sided.
+    pub confidence: f64,
+}
+
+/// Answers of a run of samples.
+#[derive(Debug, Default)]
+pub(super) struct Tally {
+    pub(super) onsets: Vec<f64>,
+    pub(super) stable: usize,
+    pub(super) failed: usize,
+    pub(super) failures: Vec<Failure>,
+    pub(super) outside: usize,
+    pub(super) spurious: usize,
+    pub(super) in_full: usize,
+}
+
+impl Tally {
+    pub(super) fn onset(&mut self, onset: &SweptOnset) {
+        self.onsets.push(onset.speed_m_s);
+        self.outside += usize::from(!onset.in_tested_range);
+        self.spurious += usize::from(onset.spurious > 0);
+    }
+
+    pub(super) fn failure(&mut self, sample: usize, reason: String) {
+        self.failed += 1;
+        if self.failures.len() < NAMED_FAILURES {
+            self.failures.push(Failure { sample, reason });
+        }
+    }
+
+    /// Adds a later run.
+    pub(super) fn add(&mut self, later: Self) {
+        self.onsets.extend(later.onsets);
+        self.stable += later.stable;
+        self.failed += later.failed;
+        let room = NAMED_FAILURES - self.failures.len().min(NAMED_FAILURES);
+        self.failures.extend(later.failures.into_iter().take(room));
+        self.outside += later.outside;
+        self.spurious += later.spurious;
+        self.in_full += later.in_full;
+    }
+
+    pub(super) fn summarise(
+        mut self,
+        plan: &MonteCarloPlan,
+        model: &str,
+        nominal_m_s: Option<f64>,
+    ) -> MonteCarloResult {
+        self.onsets.sort_by(f64::total_cmp);
+        let answered = self.onsets.len() + self.stable;
+        let (mean, deviation) = moments(&self.onsets);
+        MonteCarloResult {
+            model: model.to_owned(),
+            seed: plan.seed,
+            samples: plan.samples,
+            onsets: self.onsets.len(),
+            stable: self.stable,
+            failed: self.failed,
+            outside_tested_range: self.outside,
+            with_spurious_crossings: self.spurious,
+            searched_in_full: self.in_full,
+            speed_max_m_s: plan.speed_max_m_s,
+            nominal_m_s,
+            mean_m_s: mean,
+            standard_deviation_m_s: deviation,
+            quantiles: plan
+                .quantiles
+                .iter()
+                .map(|p| quantile(&self.onsets, answered, *p))
+                .collect(),
+            histogram: histogram(&self.onsets),
+            design: plan
+                .design_speed_m_s
+                .filter(|_| answered > 0)
+                .map(|speed| design(&self.onsets, answered, speed, plan.confidence)),
+            failures: self.failures,
+        }
+    }
+}
+
+fn moments(sorted: &[f64]) -> (Option<f64>, Option<f64>) {
+    let n = sorted.len() as f64;
+    if sorted.is_empty() {
+        return (None, None);
+    }
+    let mean = sorted.iter().sum::<f64>() / n;
+    if sorted.len() == 1 {
+        return (Some(mean), None);
+    }
+    let squares: f64 = sorted.iter().map(|v| (v - mean).powi(2)).sum();
+    (Some(mean), Some((squares / (n - 1.0)).sqrt()))
+}
+
+/// Linear between the order statistics, `(n − 1)p` from the first (Hyndman and Fan's type 7); open at the top.
+fn quantile(sorted: &[f64], answered: usize, probability: f64) -> Quantile {
+    let place = probability * (answered.max(1) - 1) as f64;
+    let (below, share) = (place.floor() as usize, place.fract());
+    let speed_m_s = match (sorted.get(below), sorted.get(below + 1)) {
+        (Some(a), Some(b)) => Some(a + (b - a) * share),
+        (Some(a), None) if share == 0.0 => Some(*a),
+        _ => None,
+    };
+    Quantile {
+        probability,
+        speed_m_s,
+    }
+}
+
+/// Bins of Freedman and Diaconis's width.
+fn histogram(sorted: &[f64]) -> Histogram {
+    let (Some(low), Some(high)) = (sorted.first(), sorted.last()) else {
+        return Histogram::default();
+    };
+    let range = high - low;
+    if range <= 1e-9 * high {
+        return Histogram {
+            from_m_s: *low,
+            width_m_s: range,
+            counts: vec![sorted.len() as u64],
+        };
+    }
+    let n = sorted.len();
+    let quartiles = sorted[3 * (n - 1) / 4] - sorted[(n - 1) / 4];
+    let wished = 2.0 * quartiles / (n as f64).cbrt();
+    let bins = (range / wished).ceil().clamp(1.0, MAX_BINS);
+    let width = range / bins;
+    let mut counts = vec![0; bins as usize];
+    for v in sorted {
+        let bin = ((v - low) / width) as usize;
+        let last = counts.len() - 1;
+        counts[bin.min(last)] += 1;
+    }
+    Histogram {
+        from_m_s: *low,
+        width_m_s: width,
+        counts,
+    }
+}
+
+fn design(sorted: &[f64], answered: usize, speed_m_s: f64, confidence: f64) -> DesignCheck {
+    let below = sorted.partition_point(|v| *v < speed_m_s) as u64;
+    let (lower, upper) = clopper_pearson(below, answered as u64, confidence);
+    DesignCheck {
+        speed_m_s,
+        below,
+        probability: below as f64 / answered as f64,
+        lower,
+        upper,
+        confidence,
+    }
+}

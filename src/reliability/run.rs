@@ -1,0 +1,130 @@
+//! All samples, over all cores.
+
+use super::coefficients;
+use super::plan::MonteCarloPlan;
+use super::results::{MonteCarloResult, Tally};
+use super::sampler::{Sample, Sampler};
+use crate::aerodynamics::AerodynamicModel;
+use crate::aeroelastic::CoupledSection;
+use crate::error::{Error, Result};
+use crate::flutter::{OnsetSearch, OnsetSweep, SweepOutcome, SweptOnset, find_onset};
+use crate::section::SectionModel;
+use crate::trained_model::{Model, TrainedModel};
+use rayon::prelude::*;
+
+/// Samples between two reports of progress, on one core.
+const CHUNK: usize = 2048;
+/// Wind speeds of the search by eigenvalues.
+const SPEEDS: usize = 200;
+
+/// Called with the samples done and all of them, from any thread.
+pub type OnSamples<'a> = &'a (dyn Fn(usize, usize) + Sync);
+
+/// Finds the onset of one sample.
+struct Finder<'a> {
+    model: &'a TrainedModel,
+    /// For continuous models.
+    sweep: Option<OnsetSweep>,
+    search: OnsetSearch,
+}
+
+/// Draws all samples of a plan and finds their onsets.
+///
+/// Continuous models go through [`OnsetSweep`]; what that does not resolve, and sampled models, through
+/// [`find_onset`]. The result does not depend on the number of threads.
+///
+/// # Errors
+/// [`Error::Input`] naming the key of the plan that does not fit the model. Samples that fail are counted and named.
+pub fn monte_carlo(
+    plan: &MonteCarloPlan,
+    model: &TrainedModel,
+    progress: OnSamples<'_>,
+) -> Result<MonteCarloResult> {
+    plan.validate()?;
+    let finder = Finder::new(model, plan.speed_max_m_s)?;
+    let (values, names) = coefficients::of(&model.model);
+    let sampler = Sampler::new(plan, &model.section, (&values, &names))?;
+    let nominal = finder.onset(&model.section, &values)?.0;
+    let chunks = plan.samples.div_ceil(CHUNK);
+    let done = std::sync::atomic::AtomicUsize::new(0);
+    let tallies: Vec<Tally> = (0..chunks)
+        .into_par_iter()
+        .map(|chunk| {
+            let range = chunk * CHUNK..plan.samples.min((chunk + 1) * CHUNK);
+            let count = range.len();
+            let tally = finder.tally(&sampler, range);
+            let before = done.fetch_add(count, std::sync::atomic::Ordering::Relaxed);
+            progress(before + count, plan.samples);
+            tally
+        })
+        .collect();
+    let mut total = Tally::default();
+    for tally in tallies {
+        total.add(tally);
+    }
+    Ok(total.summarise(plan, &model.name, nominal.map(|o| o.speed_m_s)))
+}
+
+impl<'a> Finder<'a> {
+    fn new(model: &'a TrainedModel, speed_max_m_s: f64) -> Result<Self> {
+        let sweep = coefficients::linear(&model.model, model.tested_range)
+            .map(|forces| OnsetSweep::new(forces, &model.section.structure()?, speed_max_m_s))
+            .transpose()?;
+        Ok(Self {
+            model,
+            sweep,
+            search: OnsetSearch {
+                speed_max_m_s,
+                speeds: SPEEDS,
+            },
+        })
+    }
+
+    fn tally(&self, sampler: &Sampler, samples: std::ops::Range<usize>) -> Tally {
+        let mut tally = Tally::default();
+        let mut sample: Sample = sampler.empty();
+        for index in samples {
+            sampler.draw(index as u64, &mut sample);
+            match self.onset(&sample.section, &sample.coefficients) {
+                Ok((onset, in_full)) => {
+                    tally.in_full += usize::from(in_full);
+                    match onset {
+                        Some(onset) => tally.onset(&onset),
+                        None => tally.stable += 1,
+                    }
+                }
+                Err(error) => tally.failure(index, error.to_string()),
+            }
+        }
+        tally
+    }
+
+    /// The onset, and whether it took the search by eigenvalues.
+    fn onset(&self, section: &SectionModel, values: &[f64]) -> Result<(Option<SweptOnset>, bool)> {
+        if let Some(sweep) = &self.sweep {
+            match sweep.onset(section, values)? {
+                SweepOutcome::Onset(onset) => return Ok((Some(onset), false)),
+                SweepOutcome::Stable => return Ok((None, false)),
+                SweepOutcome::Unresolved => {}
+            }
+        }
+        Ok((self.searched(section, values)?, true))
+    }
+
+    fn searched(&self, section: &SectionModel, values: &[f64]) -> Result<Option<SweptOnset>> {
+        let mut model: Model = self.model.model.clone();
+        coefficients::replace(&mut model, values);
+        let realization = model
+            .realize()
+            .ok_or_else(|| Error::Numerical("the model has no realisation".into()))?;
+        let coupled = CoupledSection::new(section.structure()?, realization)?;
+        let tested = Some(self.model.tested_range);
+        let found = find_onset(&self.model.name, &coupled, &self.search, tested)?;
+        Ok(found.onset().map(|o| SweptOnset {
+            speed_m_s: o.speed_m_s,
+            frequency_hz: o.frequency_hz,
+            in_tested_range: o.in_tested_range != Some(false),
+            spurious: o.spurious_speeds_m_s.len(),
+        }))
+    }
+}

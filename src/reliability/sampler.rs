@@ -1,0 +1,147 @@
+//! Samples of section and coefficients: each a function of the seed and its own number.
+
+use super::distribution::Transform;
+use super::parameter::Parameter;
+use super::plan::MonteCarloPlan;
+use super::scatter::{CovarianceFactor, read_covariance};
+use crate::error::{Error, Result};
+use crate::section::SectionModel;
+use nalgebra::DMatrix;
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use rand_distr::StandardNormal;
+
+/// Draws samples. One stream of the generator a sample, so that neither threads nor their order matter.
+#[derive(Debug, Clone)]
+pub(super) struct Sampler {
+    seed: u64,
+    section: SectionModel,
+    coefficients: Vec<f64>,
+    parameters: Vec<(Parameter, Transform)>,
+    /// Lower factor of the correlation matrix; `None` when all are independent.
+    correlation: Option<DMatrix<f64>>,
+    scatter: Scatter,
+}
+
+#[derive(Debug, Clone)]
+enum Scatter {
+    None,
+    Relative(f64),
+    Covariance(CovarianceFactor),
+}
+
+/// One sample, kept from one to the next so that nothing is allocated anew.
+#[derive(Debug, Clone)]
+pub(super) struct Sample {
+    pub(super) section: SectionModel,
+    pub(super) coefficients: Vec<f64>,
+    normal: Vec<f64>,
+}
+
+impl Sampler {
+    /// The sampler of a plan for a section and the coefficients (with names) of its force model.
+    ///
+    /// # Errors
+    /// [`Error::Input`] naming the key of the plan.
+    pub(super) fn new(
+        plan: &MonteCarloPlan,
+        section: &SectionModel,
+        (coefficients, names): (&[f64], &[String]),
+    ) -> Result<Self> {
+        let mut parameters = Vec::with_capacity(plan.parameters.len());
+        for (i, random) in plan.parameters.iter().enumerate() {
+            let key = format!("parameter[{i}]");
+            let nominal = random.name.nominal(&format!("{key}.name"), section)?;
+            let place = format!("{key}.distribution");
+            parameters.push((random.name, random.distribution.resolve(&place, nominal)?));
+        }
+        let aerodynamics = &plan.aerodynamics;
+        let scatter = match (aerodynamics.relative_scatter, &aerodynamics.covariance) {
+            (Some(scatter), _) => Scatter::Relative(scatter),
+            (None, Some(path)) => {
+                Scatter::Covariance(read_covariance(&plan.directory.join(path), names)?)
+            }
+            (None, None) => Scatter::None,
+        };
+        Ok(Self {
+            seed: plan.seed,
+            section: section.clone(),
+            coefficients: coefficients.to_vec(),
+            correlation: correlation(plan)?,
+            parameters,
+            scatter,
+        })
+    }
+
+    /// A sample to be filled by [`Sampler::draw`].
+    pub(super) fn empty(&self) -> Sample {
+        Sample {
+            section: self.section.clone(),
+            coefficients: self.coefficients.clone(),
+            normal: Vec::new(),
+        }
+    }
+
+    /// Sample number `index`.
+    pub(super) fn draw(&self, index: u64, sample: &mut Sample) {
+        let mut random = ChaCha8Rng::seed_from_u64(self.seed);
+        random.set_stream(index);
+        fill(&mut sample.normal, self.parameters.len(), &mut random);
+        for (i, (parameter, transform)) in self.parameters.iter().enumerate() {
+            let z = match &self.correlation {
+                None => sample.normal[i],
+                Some(factor) => (0..=i).map(|j| factor[(i, j)] * sample.normal[j]).sum(),
+            };
+            if let Some(place) = parameter.place(&mut sample.section) {
+                *place = transform.value(z);
+            }
+        }
+        match &self.scatter {
+            Scatter::None => {}
+            Scatter::Relative(scatter) => {
+                for (value, nominal) in sample.coefficients.iter_mut().zip(&self.coefficients) {
+                    let z: f64 = random.sample(StandardNormal);
+                    *value = nominal * (1.0 + scatter * z);
+                }
+            }
+            Scatter::Covariance(covariance) => {
+                let n = covariance.places.len();
+                fill(&mut sample.normal, n, &mut random);
+                for (row, place) in covariance.places.iter().enumerate() {
+                    let terms = covariance.factor.row(row);
+                    let change: f64 = terms.iter().zip(&sample.normal).map(|(s, z)| s * z).sum();
+                    sample.coefficients[*place] = self.coefficients[*place] + change;
+                }
+            }
+        }
+    }
+}
+
+fn fill(normal: &mut Vec<f64>, count: usize, random: &mut ChaCha8Rng) {
+    normal.clear();
+    normal.extend((0..count).map(|_| random.sample::<f64, _>(StandardNormal)));
+}
+
+/// Lower Cholesky factor of the correlation matrix.
+fn correlation(plan: &MonteCarloPlan) -> Result<Option<DMatrix<f64>>> {
+    if plan.correlations.is_empty() {
+        return Ok(None);
+    }
+    let n = plan.parameters.len();
+    let mut matrix = DMatrix::identity(n, n);
+    for c in &plan.correlations {
+        let at = |p: Parameter| plan.parameters.iter().position(|r| r.name == p);
+        if let [Some(i), Some(j)] = c.between.map(at) {
+            matrix[(i, j)] = c.coefficient;
+            matrix[(j, i)] = c.coefficient;
+        }
+    }
+    let factor = matrix.cholesky().ok_or_else(|| {
+        Error::input(
+            "correlation",
+            "coefficients that go together (a positive definite matrix)",
+            "some that contradict each other",
+        )
+    })?;
+    Ok(Some(factor.l()))
+}

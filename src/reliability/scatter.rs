@@ -1,0 +1,221 @@
+//! Covariances of the coefficients of a force model from files, and their factors.
+
+use crate::error::{Error, Result};
+use crate::section::Dof;
+use nalgebra::{DMatrix, SymmetricEigen};
+use serde::Deserialize;
+use std::path::Path;
+
+/// An eigenvalue below this part of the largest, on the negative side, is no rounding.
+const INDEFINITE: f64 = 1e-9;
+
+/// A symmetric factor `S` of a covariance, `C = S Sᵀ`, and the coefficients it belongs to.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct CovarianceFactor {
+    /// Places among the coefficients of the force model.
+    pub(super) places: Vec<usize>,
+    pub(super) factor: DMatrix<f64>,
+}
+
+/// Reads a covariance of coefficients whose names are among `names`.
+pub(super) fn read_covariance(path: &Path, names: &[String]) -> Result<CovarianceFactor> {
+    let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, e))?;
+    let json = path
+        .extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case("json"));
+    let read = if json {
+        from_report(&text)
+    } else {
+        from_csv(&text)
+    };
+    read.and_then(|(own, matrix)| factorise(&own, matrix, names))
+        .map_err(|e| e.in_file(path))
+}
+
+#[derive(Deserialize)]
+struct Report {
+    entries: Vec<ReportEntry>,
+}
+
+#[derive(Deserialize)]
+struct ReportEntry {
+    force: Dof,
+    motion: Dof,
+    coefficients: Vec<ReportCoefficient>,
+    covariance: Vec<Vec<f64>>,
+}
+
+#[derive(Deserialize)]
+struct ReportCoefficient {
+    name: String,
+}
+
+/// The blocks of all transfer functions of a fit, independent of each other.
+fn from_report(text: &str) -> Result<(Vec<String>, DMatrix<f64>)> {
+    let report: Report = serde_json::from_str(text).map_err(|e| {
+        let place = format!("line {}, column {}", e.line(), e.column());
+        Error::input(
+            place,
+            "a report of a fit as written by `aerodeck train`",
+            e.to_string(),
+        )
+    })?;
+    let size = report.entries.iter().map(|e| e.coefficients.len()).sum();
+    let mut names = Vec::with_capacity(size);
+    let mut matrix = DMatrix::zeros(size, size);
+    for entry in &report.entries {
+        let (at, n) = (names.len(), entry.coefficients.len());
+        let place = format!("{}.{}", entry.force.name(), entry.motion.name());
+        if entry.covariance.len() != n || entry.covariance.iter().any(|row| row.len() != n) {
+            return Err(Error::input(
+                format!("covariance of {place}"),
+                format!("a {n}x{n} matrix"),
+                format!("{} rows", entry.covariance.len()),
+            ));
+        }
+        names.extend(
+            entry
+                .coefficients
+                .iter()
+                .map(|c| format!("{place}.{}", c.name)),
+        );
+        for (i, row) in entry.covariance.iter().enumerate() {
+            for (j, value) in row.iter().enumerate() {
+                matrix[(at + i, at + j)] = *value;
+            }
+        }
+    }
+    Ok((names, matrix))
+}
+
+/// Names in the first line, then as many rows of as many numbers; lines that start with `#` are remarks.
+fn from_csv(text: &str) -> Result<(Vec<String>, DMatrix<f64>)> {
+    let mut lines = text
+        .lines()
+        .zip(1..)
+        .filter(|(line, _)| !line.trim().is_empty() && !line.trim_start().starts_with('#'));
+    let cells = |line: &str| {
+        line.split(',')
+            .map(|c| c.trim().to_owned())
+            .collect::<Vec<_>>()
+    };
+    let (header, _) = lines
+        .next()
+        .ok_or_else(|| Error::input("line 1", "names of coefficients", "an empty file"))?;
+    let names = cells(header);
+    let mut values = Vec::with_capacity(names.len() * names.len());
+    let mut rows = 0;
+    for (line, number) in lines {
+        let row = cells(line);
+        let place = format!("line {number}");
+        if row.len() != names.len() || rows == names.len() {
+            let expected = format!("{0} rows of {0} numbers", names.len());
+            let found = format!("{} numbers in row {}", row.len(), rows + 1);
+            return Err(Error::input(place, expected, found));
+        }
+        for (cell, name) in row.iter().zip(&names) {
+            let value = cell.parse::<f64>().ok().filter(|v| v.is_finite());
+            values.push(value.ok_or_else(|| {
+                let place = format!("{place}, column {name}");
+                Error::input(place, "a finite number", format!("`{cell}`"))
+            })?);
+        }
+        rows += 1;
+    }
+    if rows != names.len() {
+        let expected = format!("{} rows", names.len());
+        return Err(Error::input("covariance", expected, rows.to_string()));
+    }
+    let matrix = DMatrix::from_row_slice(rows, rows, &values);
+    Ok((names, matrix))
+}
+
+fn factorise(own: &[String], matrix: DMatrix<f64>, names: &[String]) -> Result<CovarianceFactor> {
+    let mut places = Vec::with_capacity(own.len());
+    for name in own {
+        let place = names.iter().position(|n| n == name).ok_or_else(|| {
+            let expected = format!("coefficients of the model: {}", names.join(", "));
+            Error::input("name of a coefficient", expected, format!("`{name}`"))
+        })?;
+        if places.contains(&place) {
+            let found = format!("`{name}` a second time");
+            return Err(Error::input(
+                "name of a coefficient",
+                "every name once",
+                found,
+            ));
+        }
+        places.push(place);
+    }
+    if !matrix.iter().all(|x| x.is_finite()) {
+        return Err(Error::input("covariance", "finite numbers", "others"));
+    }
+    let asymmetry = (&matrix - matrix.transpose()).amax();
+    if asymmetry > INDEFINITE * matrix.amax() {
+        let found = format!("a difference of {asymmetry:e} between mirrored entries");
+        return Err(Error::input("covariance", "a symmetric matrix", found));
+    }
+    let eigen = SymmetricEigen::new((&matrix + matrix.transpose()) * 0.5);
+    let (low, high) = (eigen.eigenvalues.min(), eigen.eigenvalues.max());
+    if low < -INDEFINITE * high || high <= 0.0 {
+        return Err(Error::input(
+            "covariance",
+            "a positive semidefinite matrix that is not zero",
+            format!("eigenvalues from {low:e} to {high:e}"),
+        ));
+    }
+    let roots = DMatrix::from_diagonal(&eigen.eigenvalues.map(|x| x.max(0.0).sqrt()));
+    Ok(CovarianceFactor {
+        places,
+        factor: &eigen.eigenvectors * roots,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names() -> Vec<String> {
+        ["a", "b", "c"].map(str::to_owned).to_vec()
+    }
+
+    fn write(name: &str, text: &str) -> tempfile::TempDir {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join(name), text).unwrap();
+        folder
+    }
+
+    #[test]
+    fn the_factor_gives_the_covariance_back() {
+        let folder = write("c.csv", "# made up\nc, a\n4.0, 1.0\n1.0, 9.0\n");
+        let read = read_covariance(&folder.path().join("c.csv"), &names()).unwrap();
+        assert_eq!(read.places, [2, 0]);
+        let product = &read.factor * read.factor.transpose();
+        let expected = DMatrix::from_row_slice(2, 2, &[4.0, 1.0, 1.0, 9.0]);
+        assert!((product - expected).amax() < 1e-13);
+    }
+
+    #[test]
+    fn wrong_files_are_refused_with_their_line() {
+        for (text, said) in [
+            ("a,b\n1,0\n", "expected 2 rows, found 1"),
+            (
+                "a,b\n1,0\n0,x\n",
+                "line 3, column b: expected a finite number, found `x`",
+            ),
+            ("a,b\n1,0\n0\n", "line 3: expected 2 rows of 2 numbers"),
+            ("a,d\n1,0\n0,1\n", "found `d`"),
+            ("a,b\n1,2\n2,1\n", "positive semidefinite"),
+            ("a,b\n1,2\n3,9\n", "symmetric"),
+            ("", "an empty file"),
+        ] {
+            let folder = write("c.csv", text);
+            let path = folder.path().join("c.csv");
+            let message = read_covariance(&path, &names()).unwrap_err().to_string();
+            assert!(
+                message.contains(said) && message.contains("c.csv"),
+                "{message}"
+            );
+        }
+    }
+}

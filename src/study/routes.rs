@@ -1,0 +1,418 @@
+//! The onset of a study by every route, side by side.
+//!
+//! Eigenvalues of each realisation, the determinant and the p-k iteration on the same `G(K)`, both on the deck itself
+//! (interpolated table or exact flat plate), the low-frequency (quasi-steady) limit, the flat plate with the same
+//! structure, and handbook formulas. Two routes on one force model must agree to rounding; between force models the
+//! table shows what the choice of the model does.
+
+use super::onsets::coupled;
+use super::{Deck, Study};
+use crate::aerodynamics::{AerodynamicModel, FlatPlate, RationalModel, Realization};
+use crate::error::Result;
+use crate::flutter::{
+    FlutterCurves, FlutterSearch, ModeAtOnset, OnsetMethod, SanityLines, classify,
+    determinant_onset, divergence_by_eigenvalues, divergence_speed, find_onset, pk_curves,
+    pk_onset, sanity_lines, trace_modes,
+};
+use crate::section::{Dof, Structure};
+use crate::trained_model::TrainedModel;
+use crate::units::{ReducedFrequency, ReducedFrequencyRange};
+use nalgebra::DMatrix;
+use serde::Serialize;
+
+/// Reduced frequencies from still air to nearly steady flow.
+const WIDE: (f64, f64) = (0.02, 10.0);
+/// A reduced frequency at which the flow is steady to rounding of `Re G` and to 1e-5 of `Im G/K`.
+const NEARLY_STEADY: f64 = 1e-5;
+/// Share of the kinetic energy, and onset alone over onset, from which on an instability is nearly one of a single
+/// degree of freedom.
+const NEARLY_ALONE: f64 = 0.8;
+const ALONE_SOON: f64 = 1.5;
+/// Name of the flat plate with the section's structure.
+const FLAT_PLATE: &str = "flat plate, same structure";
+
+/// All routes of one study.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RouteTable {
+    /// One entry a route and force model.
+    pub routes: Vec<Route>,
+    /// Handbook formulas; `null` when they say nothing about this section.
+    pub sanity: Option<SanityLines>,
+    /// Modes over wind speed of one route a force model.
+    pub curves: Vec<FlutterCurves>,
+    /// Routes that were left out, and why.
+    pub left_out: Vec<String>,
+}
+
+/// The answer of one route: everything on the onset card.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Route {
+    /// Force model.
+    pub model: String,
+    /// How the onset was found.
+    pub method: OnsetMethod,
+    /// The onset, or the speed up to which there is none.
+    pub search: FlutterSearch,
+    /// `V̂ = V/(ωB) = 1/K` at onset.
+    pub v_hat: Option<f64>,
+    /// Kind of the instability and the mode behind it.
+    pub mode: Option<ModeAtOnset>,
+    /// Static divergence, m/s.
+    pub divergence_m_s: Option<f64>,
+    /// Reduced frequencies in which the force model was tested; `null` for an exact one.
+    pub tested_range: Option<ReducedFrequencyRange>,
+    /// Whether the force model is a limit for `K → 0`, which no test range bounds but the theory does.
+    pub low_frequency_limit: bool,
+    /// Onset of the low-frequency limit of the same force model, m/s.
+    pub quasi_steady_m_s: Option<f64>,
+    /// What a reader must know before using the numbers.
+    pub warnings: Vec<String>,
+}
+
+/// A force model with its name and where it may be asked.
+struct Forces<'a> {
+    name: String,
+    model: &'a dyn AerodynamicModel,
+    structure: &'a Structure,
+    tested: Option<ReducedFrequencyRange>,
+    /// Divergence, m/s.
+    divergence_m_s: Option<f64>,
+    /// Onset of the low-frequency limit, m/s.
+    quasi_steady_m_s: Option<f64>,
+}
+
+/// Compares all routes for the trained models of a study and its deck.
+///
+/// # Errors
+/// Those of tracking and search.
+pub fn route_table(study: &Study, deck: &Deck, trained: &[TrainedModel]) -> Result<RouteTable> {
+    let structure = study.section.structure()?;
+    let mut table = RouteTable {
+        routes: Vec::new(),
+        sanity: sanity_lines(&structure),
+        curves: Vec::new(),
+        left_out: Vec::new(),
+    };
+    for model in trained {
+        table.add_trained(study, &structure, model)?;
+    }
+    table.add_deck(study, deck, &structure)?;
+    if deck.table().is_some() {
+        table.add_flat_plate(study, &structure)?;
+    }
+    if table.sanity.is_none() {
+        table.left_out.push(
+            "Selberg, Rocard: the formulas are for sections whose rotation is faster than their heave".into(),
+        );
+    }
+    table
+        .curves
+        .retain(|c| c.branches.iter().any(|b| !b.points.is_empty()));
+    for curves in &mut table.curves {
+        curves.branches.retain(|b| !b.points.is_empty());
+    }
+    Ok(table)
+}
+
+impl RouteTable {
+    fn add_trained(
+        &mut self,
+        study: &Study,
+        structure: &Structure,
+        model: &TrainedModel,
+    ) -> Result<()> {
+        let section = coupled(structure, &model.model)?;
+        let search = study.flutter.search();
+        let steady = model
+            .model
+            .transfer(ReducedFrequency::from_full_width(0.0))?;
+        let limit = low_frequency_limit(
+            &model.model,
+            ReducedFrequency::from_full_width(NEARLY_STEADY),
+        )?;
+        let forces = Forces {
+            name: model.name.clone(),
+            model: &model.model,
+            structure,
+            tested: Some(model.tested_range),
+            divergence_m_s: divergence_speed(structure, &steady)?,
+            quasi_steady_m_s: quasi_steady(study, structure, &limit)?,
+        };
+        let found = find_onset(&model.name, &section, &search, forces.tested)?;
+        let mut by_eigenvalues = forces.route(study, OnsetMethod::Eigenvalues, found)?;
+        by_eigenvalues.divergence_m_s =
+            divergence_by_eigenvalues(&section, study.flutter.speed_max_m_s.max(beyond(&forces)))?;
+        self.routes.push(by_eigenvalues);
+        self.curves.push(trace_modes(
+            &model.name,
+            &section,
+            &study.flutter.curve_speeds_m_s(),
+        )?);
+        let sampled = matches!(model.model.realize(), Some(Realization::Discrete(_)));
+        self.add_transfer_routes(study, &forces, sampled)
+    }
+
+    /// Determinant and p-k iteration on one `G(K)`.
+    fn add_transfer_routes(
+        &mut self,
+        study: &Study,
+        forces: &Forces<'_>,
+        sampled: bool,
+    ) -> Result<()> {
+        let speed_max = study.flutter.speed_max_m_s;
+        let (name, s, model) = (&forces.name, forces.structure, forces.model);
+        let inside = determinant_onset(name, s, model, forces.range(), speed_max)?;
+        let search = study.flutter.search();
+        let iterated = pk_onset(name, s, model, &search, forces.tested)?;
+        for (method, found) in [
+            (OnsetMethod::Determinant, inside),
+            (OnsetMethod::PkIteration, iterated),
+        ] {
+            let mut route = forces.route(study, method, found)?;
+            if sampled {
+                route.warnings.push(
+                    "the transfer matrix without the hold of the force over each step".into(),
+                );
+            }
+            self.routes.push(route);
+        }
+        Ok(())
+    }
+
+    fn add_deck(&mut self, study: &Study, deck: &Deck, structure: &Structure) -> Result<()> {
+        let (model, tested) = deck.model()?;
+        let steady_k = tested.map_or(ReducedFrequency::from_full_width(NEARLY_STEADY), |range| {
+            range.min
+        });
+        let limit = if tested.is_some() {
+            low_frequency_limit(model.as_ref(), steady_k)?
+        } else {
+            steady_flat_plate()
+        };
+        let static_transfer = limit.transfer(ReducedFrequency::from_full_width(0.0))?;
+        let forces = Forces {
+            name: deck.own_model_name(),
+            model: model.as_ref(),
+            structure,
+            tested,
+            divergence_m_s: divergence_speed(structure, &static_transfer)?,
+            quasi_steady_m_s: quasi_steady(study, structure, &limit)?,
+        };
+        let from = self.routes.len();
+        self.add_transfer_routes(study, &forces, false)?;
+        if tested.is_some() {
+            for route in &mut self.routes[from..] {
+                route.warnings.push(format!(
+                    "divergence and quasi-steady limit from the derivatives at the lowest tested K, {:.3}",
+                    steady_k.full_width()
+                ));
+            }
+        }
+        let speeds = study.flutter.curve_speeds_m_s();
+        let mut curves = pk_curves(&forces.name, structure, model.as_ref(), &speeds)?;
+        if let Some(range) = tested {
+            keep_tested(&mut curves, structure.width_m, range);
+        }
+        self.curves.push(curves);
+        self.add_quasi_steady(study, structure, &limit, tested.map(|range| range.min))
+    }
+
+    /// The affine limit of the deck's own forces.
+    fn add_quasi_steady(
+        &mut self,
+        study: &Study,
+        structure: &Structure,
+        limit: &RationalModel,
+        from: Option<ReducedFrequency>,
+    ) -> Result<()> {
+        let steady = limit.transfer(ReducedFrequency::from_full_width(0.0))?;
+        let forces = Forces {
+            name: "quasi-steady limit".into(),
+            model: limit,
+            structure,
+            tested: None,
+            divergence_m_s: divergence_speed(structure, &steady)?,
+            quasi_steady_m_s: quasi_steady(study, structure, limit)?,
+        };
+        let section = coupled(structure, limit)?;
+        let found = find_onset(&forces.name, &section, &study.flutter.search(), None)?;
+        let mut route = forces.route(study, OnsetMethod::Eigenvalues, found)?;
+        route.low_frequency_limit = true;
+        route.warnings.push(match from {
+            Some(k) => format!(
+                "no static coefficients given: slopes and rates from the derivatives at K = {:.3}, good for K well below \
+                 that only",
+                k.full_width()
+            ),
+            None => "circulation without lag, C = 1".into(),
+        });
+        self.routes.push(route);
+        let speeds = study.flutter.curve_speeds_m_s();
+        self.curves
+            .push(trace_modes(&forces.name, &section, &speeds)?);
+        Ok(())
+    }
+
+    fn add_flat_plate(&mut self, study: &Study, structure: &Structure) -> Result<()> {
+        let two = structure.only(&Dof::TWO);
+        let plate = FlatPlate::default();
+        let steady = plate.transfer(ReducedFrequency::from_full_width(0.0))?;
+        let forces = Forces {
+            name: FLAT_PLATE.into(),
+            model: &plate,
+            structure: &two,
+            tested: None,
+            divergence_m_s: divergence_speed(&two, &steady)?,
+            quasi_steady_m_s: quasi_steady(study, &two, &steady_flat_plate())?,
+        };
+        let from = self.routes.len();
+        self.add_transfer_routes(study, &forces, false)?;
+        if structure.dofs.len() > two.dofs.len() {
+            for route in &mut self.routes[from..] {
+                route
+                    .warnings
+                    .push("heave and rotation only: a plate has no drag".into());
+            }
+        }
+        let speeds = study.flutter.curve_speeds_m_s();
+        self.curves
+            .push(pk_curves(FLAT_PLATE, &two, &plate, &speeds)?);
+        Ok(())
+    }
+}
+
+/// Twice the divergence speed in closed form, so that the search by eigenvalues reaches it.
+fn beyond(forces: &Forces<'_>) -> f64 {
+    forces.divergence_m_s.map_or(0.0, |v| 2.0 * v)
+}
+
+impl Forces<'_> {
+    /// Where the determinant may be searched.
+    fn range(&self) -> ReducedFrequencyRange {
+        self.tested.unwrap_or(ReducedFrequencyRange {
+            min: ReducedFrequency::from_full_width(WIDE.0),
+            max: ReducedFrequency::from_full_width(WIDE.1),
+        })
+    }
+
+    fn route(
+        &self,
+        study: &Study,
+        method: OnsetMethod,
+        mut search: FlutterSearch,
+    ) -> Result<Route> {
+        if let (FlutterSearch::Onset(onset), None) = (&mut search, self.tested) {
+            // exact at every K: there is no tested range to leave
+            onset.in_tested_range = None;
+        }
+        let onset = search.onset();
+        let speed_max = study.flutter.speed_max_m_s;
+        let mode = onset
+            .map(|o| classify(self.structure, self.model, o, self.range(), speed_max))
+            .transpose()?;
+        let mut warnings: Vec<String> = onset.map_or(Vec::new(), |o| o.warnings.clone());
+        if let (Some(onset), Some(divergence)) = (onset, self.divergence_m_s)
+            && divergence < onset.speed_m_s
+        {
+            warnings.push(format!(
+                "static divergence at {divergence:.2} m/s comes before flutter"
+            ));
+        }
+        warnings.extend(
+            mode.iter()
+                .filter_map(|m| nearly_single(m, onset?.speed_m_s)),
+        );
+        Ok(Route {
+            model: self.name.clone(),
+            method,
+            v_hat: onset.map(|o| o.reduced_frequency.v_hat()),
+            mode,
+            divergence_m_s: self.divergence_m_s,
+            tested_range: self.tested,
+            low_frequency_limit: false,
+            quasi_steady_m_s: self.quasi_steady_m_s,
+            warnings,
+            search,
+        })
+    }
+}
+
+/// A warning for coupled flutter close to one of a single degree of freedom.
+fn nearly_single(mode: &ModeAtOnset, onset_m_s: f64) -> Option<String> {
+    let near = mode.participation.iter().find(|p| {
+        p.energy_share > NEARLY_ALONE && p.alone_m_s.is_some_and(|v| v < ALONE_SOON * onset_m_s)
+    })?;
+    (!mode.kind.single_dof()).then(|| {
+        format!(
+            "nearly a one-degree-of-freedom instability: {} carries {:.0} % of the kinetic energy and flutters alone at {:.2} m/s",
+            near.dof.name(),
+            100.0 * near.energy_share,
+            near.alone_m_s.unwrap_or(f64::NAN)
+        )
+    })
+}
+
+/// Leaves out the points at which a table was asked outside its range.
+fn keep_tested(curves: &mut FlutterCurves, width_m: f64, range: ReducedFrequencyRange) {
+    for branch in &mut curves.branches {
+        branch.points.retain(|p| {
+            range.contains(ReducedFrequency::from_hertz(
+                p.frequency_hz,
+                width_m,
+                p.speed_m_s,
+            ))
+        });
+    }
+}
+
+/// `G ≈ Re G(K) + iK · Im G(K)/K` at a low `K`: affine in `iK`, the form of quasi-steady theory.
+///
+/// # Errors
+/// Those of [`AerodynamicModel::transfer`].
+pub fn low_frequency_limit(
+    model: &dyn AerodynamicModel,
+    k: ReducedFrequency,
+) -> Result<RationalModel> {
+    let g = model.transfer(k)?;
+    let n = g.nrows();
+    Ok(RationalModel {
+        dofs: model.dofs().to_vec(),
+        a1: g.map(|z| z.re),
+        a2: g.map(|z| z.im / k.full_width()),
+        a3: DMatrix::zeros(n, n),
+        lags: Vec::new(),
+        lag_terms: Vec::new(),
+    })
+}
+
+/// The flat plate with `C = 1` and without apparent mass; its own limit has a logarithm in `K`.
+fn steady_flat_plate() -> RationalModel {
+    let mut plate = RationalModel::jones_flat_plate();
+    let (pi, quarter) = (std::f64::consts::PI, 0.25);
+    // the part of the rates that is apparent mass, and what the circulation gives at once
+    plate.a2 = DMatrix::from_row_slice(
+        2,
+        2,
+        &[
+            -2.0 * pi,
+            pi / 2.0 + 2.0 * pi * quarter,
+            -pi / 2.0,
+            -pi / 8.0 + pi / 2.0 * quarter,
+        ],
+    );
+    plate.a3 = DMatrix::zeros(2, 2);
+    plate.lags.clear();
+    plate.lag_terms.clear();
+    plate
+}
+
+/// Onset of an affine model, m/s.
+fn quasi_steady(
+    study: &Study,
+    structure: &Structure,
+    limit: &RationalModel,
+) -> Result<Option<f64>> {
+    let section = coupled(structure, limit)?;
+    let found = find_onset("", &section, &study.flutter.search(), None)?;
+    Ok(found.onset().map(|o| o.speed_m_s))
+}
