@@ -2,12 +2,14 @@
 
 mod account;
 mod answer;
+mod buffeting;
 mod common;
 mod demo;
 mod flutter;
 mod fmu;
 mod output;
 mod progress;
+mod quasi_steady;
 mod simulate;
 mod stages;
 mod study;
@@ -15,6 +17,7 @@ mod thesis;
 mod train;
 mod tunnel;
 mod validate;
+mod wind;
 
 pub use answer::Answer;
 
@@ -49,6 +52,8 @@ enum Command {
     Train(train::Args),
     Flutter(flutter::Args),
     Simulate(simulate::Args),
+    QuasiSteady(quasi_steady::Args),
+    Buffeting(buffeting::Args),
     #[command(subcommand)]
     Fmu(fmu::Fmu),
     Validate(validate::Args),
@@ -84,6 +89,8 @@ fn run(command: &Command, progress: &progress::Progress) -> Result<Answer> {
         Command::Train(args) => train::run(args, progress),
         Command::Flutter(args) => flutter::run(args, progress),
         Command::Simulate(args) => simulate::run(args),
+        Command::QuasiSteady(args) => quasi_steady::run(args, progress),
+        Command::Buffeting(args) => buffeting::run(args, progress),
         Command::Fmu(command) => fmu::run(command, progress),
         Command::Validate(args) => validate::run(args, progress),
         Command::Thesis(args) => thesis::run(args, progress),

@@ -9,6 +9,7 @@ mod determinant;
 mod divergence;
 mod onset;
 mod quasi_pk;
+mod quasi_steady;
 mod search;
 mod tracking;
 
@@ -17,4 +18,5 @@ pub use determinant::{determinant_onset, impedance};
 pub use divergence::divergence_speed;
 pub use onset::{FlutterSearch, Onset, OnsetMethod};
 pub use quasi_pk::quasi_pk_mode;
+pub use quasi_steady::{QuasiSteadyOnset, quasi_steady_modes, quasi_steady_onset};
 pub use search::{OnsetSearch, find_onset};

@@ -10,8 +10,8 @@ fn line_of(text: &str, offset: usize) -> usize {
         .count()
 }
 
-/// A reading error of the TOML library as one of ours.
-pub(super) fn syntax_error(text: &str, error: &toml::de::Error) -> Error {
+/// A reading error of the TOML library as one of ours; `what` says what kind of file it should be.
+pub(super) fn syntax_error(what: &str, text: &str, error: &toml::de::Error) -> Error {
     let (place, found) = match error.span() {
         Some(span) => {
             let line = line_of(text, span.start);
@@ -22,7 +22,7 @@ pub(super) fn syntax_error(text: &str, error: &toml::de::Error) -> Error {
     };
     Error::input(
         place,
-        format!("a study file ({})", error.message().replace('\n', " ")),
+        format!("{what} ({})", error.message().replace('\n', " ")),
         found,
     )
 }

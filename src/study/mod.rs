@@ -9,12 +9,17 @@ mod locate;
 mod models;
 mod onsets;
 mod stepped;
+mod wind;
 
 pub use deck::{Deck, RecordSet};
 pub use defaults::{demo_study_text, thesis_study_text};
 pub use models::{TrainedWithReport, train_one};
 pub use onsets::{Deviation, Divergence, FlutterStudy, OnsetSummary, flutter_study};
 pub use stepped::{SteppedOnset, stepped_onset};
+pub use wind::{
+    BuffetingStudy, QuasiSteadyStudy, SimulatedMotion, SpectrumCurve, TimeDomain, WindStudy,
+    buffeting_study, example_wind_study_text, quasi_steady_study, simulated_motion,
+};
 
 use crate::error::{Error, Result, positive};
 use crate::flutter::OnsetSearch;
@@ -121,6 +126,20 @@ impl FlutterBlock {
         }
     }
 
+    /// Checks the range; `place` is the table it stands in.
+    pub(super) fn validate(&self, place: &str) -> Result<()> {
+        positive(&format!("{place}.speed_max_m_s"), self.speed_max_m_s)?;
+        positive(&format!("{place}.speed_min_m_s"), self.speed_min_m_s)?;
+        if self.speed_min_m_s >= self.speed_max_m_s || self.speeds < 2 {
+            return Err(Error::input(
+                place,
+                "speed_min_m_s below speed_max_m_s and at least 2 speeds",
+                format!("{self:?}"),
+            ));
+        }
+        Ok(())
+    }
+
     /// Wind speeds of the curves, m/s.
     pub fn curve_speeds_m_s(&self) -> Vec<f64> {
         let last = (self.speeds - 1) as f64;
@@ -180,7 +199,8 @@ impl Study {
     /// # Errors
     /// [`Error::Input`] with line and key for everything that is wrong in it.
     pub fn from_toml(text: &str, directory: PathBuf) -> Result<Self> {
-        let mut study: Self = toml::from_str(text).map_err(|e| locate::syntax_error(text, &e))?;
+        let mut study: Self =
+            toml::from_str(text).map_err(|e| locate::syntax_error("a study file", text, &e))?;
         study.directory = directory;
         study.validate().map_err(|e| locate::with_line(text, e))?;
         Ok(study)
@@ -209,15 +229,7 @@ impl Study {
                 ));
             }
         }
-        positive("flutter.speed_max_m_s", self.flutter.speed_max_m_s)?;
-        positive("flutter.speed_min_m_s", self.flutter.speed_min_m_s)?;
-        if self.flutter.speed_min_m_s >= self.flutter.speed_max_m_s || self.flutter.speeds < 2 {
-            return Err(Error::input(
-                "flutter",
-                "speed_min_m_s below speed_max_m_s and at least 2 speeds",
-                format!("{:?}", self.flutter),
-            ));
-        }
+        self.flutter.validate("flutter")?;
         self.export.validate()?;
         self.exported().map(|_| ())
     }

@@ -47,6 +47,7 @@ pub const ARROWS: &[Row] = &[
     row("aeroelastic", &["aerodynamics+"]),
     row("flutter", &["aeroelastic+"]),
     row("response", &["aeroelastic+"]),
+    row("buffeting", &["flutter+", "response+"]),
     row("fmu", &["flutter+", "response+", "trained_model+"]),
     row("fmu::fmi2", &["fmu"]),
     row("benchmarks", BELOW_STUDY),
@@ -60,7 +61,13 @@ pub const ARROWS: &[Row] = &[
     row("main", &["cli+"]),
 ];
 
-const BELOW_STUDY: &[&str] = &["fmu+", "identification+", "wind_tunnel+", "comparison"];
+const BELOW_STUDY: &[&str] = &[
+    "fmu+",
+    "buffeting+",
+    "identification+",
+    "wind_tunnel+",
+    "comparison",
+];
 
 /// Every module may use these.
 const FOR_ALL: &[&str] = &["error"];
