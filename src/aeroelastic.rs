@@ -10,6 +10,10 @@
 //! The added mass moves to the left and does not depend on `V`. Discrete model: equation (B.4) of the thesis,
 //! corrected; the force is held over each step `Δt = Δs B/V`.
 
+mod equilibrium;
+
+pub use equilibrium::{EquilibriumEnd, EquilibriumPath, StaticEquilibrium, static_equilibria};
+
 use crate::aerodynamics::{ContinuousRealization, DiscreteRealization, Realization};
 use crate::error::{Error, Result, non_negative, positive};
 use crate::section::Structure;

@@ -4,6 +4,7 @@
 //! stands once. "Published" figures are printed in the source named; "computed" ones were obtained with NumPy and
 //! SciPy, independently of this crate.
 
+mod buffeting;
 mod decks;
 mod fits;
 mod flat_plate;
@@ -206,6 +207,7 @@ pub fn cases() -> impl Iterator<Item = &'static Case> {
         fits::CASES,
         records::CASES,
         decks::CASES,
+        buffeting::CASES,
     ]
     .into_iter()
     .flatten()

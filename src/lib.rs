@@ -21,7 +21,7 @@
 //! # Map
 //!
 //! [`aerodynamics`] holds the force models, [`section`] the structure, [`aeroelastic`] their coupling, [`flutter`] modes and
-//! onsets, [`response`] the exact steps, [`trained_model`] what is saved, [`fmu`] the co-simulation slave with its
+//! onsets, [`response`] the exact steps, `buffeting` the response to turbulence, [`trained_model`] what is saved, [`fmu`] the co-simulation slave with its
 //! packing and importer. `wind_tunnel` and `identification` lead from records and tables to models, `comparison` compares
 //! time histories, `reliability` draws random sections, `study` runs the whole chain, `report` draws it and `cli` is the program.
 #![deny(unsafe_code, missing_docs)]
@@ -30,6 +30,8 @@ pub mod aerodynamics;
 pub mod aeroelastic;
 #[cfg(feature = "identification")]
 pub mod benchmarks;
+#[cfg(feature = "identification")]
+pub mod buffeting;
 #[cfg(feature = "cli")]
 pub mod cli;
 #[cfg(feature = "identification")]

@@ -6,11 +6,18 @@
 
 pub mod derivatives;
 pub mod flat_plate;
+mod gust;
+#[cfg(feature = "identification")]
+mod gust_file;
 pub mod laguerre;
+pub mod quasi_steady;
 pub mod rational;
 mod realization;
 
 pub use flat_plate::FlatPlate;
+pub use gust::GustSeries;
+#[cfg(feature = "identification")]
+pub use gust_file::{GUST_COLUMNS, parse_gusts, read_gusts, write_gusts};
 pub use laguerre::{DiscreteLaguerre, FilterBank, FilterTerm, LaguerreModel};
 pub use rational::RationalModel;
 pub use realization::{ContinuousRealization, DiscreteRealization, Realization};

@@ -11,7 +11,7 @@ use crate::section::SectionModel;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use std::f64::consts::{PI, TAU};
 
-const IABSE: &str =
+pub(super) const IABSE: &str =
     "IABSE Task Group 3.1, step 1.1a, as quoted in the tests of the Python package wawi";
 
 /// Figures about the flat plate.
@@ -160,7 +160,7 @@ pub(super) const WIDE: ReducedFrequencyRange = ReducedFrequencyRange {
     max: ReducedFrequency::from_full_width(10.0),
 };
 
-const WITHOUT_ROTARY: FlatPlate = FlatPlate {
+pub(super) const WITHOUT_ROTARY: FlatPlate = FlatPlate {
     rotary_inertia: false,
 };
 

@@ -3,6 +3,7 @@
 mod account;
 mod answer;
 mod campaign;
+mod buffeting;
 mod common;
 mod demo;
 mod flutter;
@@ -11,6 +12,7 @@ mod monte_carlo;
 mod output;
 mod progress;
 mod routes;
+mod quasi_steady;
 mod simulate;
 mod stages;
 mod study;
@@ -18,6 +20,7 @@ mod thesis;
 mod train;
 mod tunnel;
 mod validate;
+mod wind;
 
 pub use answer::Answer;
 
@@ -55,6 +58,8 @@ enum Command {
     Flutter(flutter::Args),
     MonteCarlo(monte_carlo::Args),
     Simulate(simulate::Args),
+    QuasiSteady(quasi_steady::Args),
+    Buffeting(buffeting::Args),
     #[command(subcommand)]
     Fmu(fmu::Fmu),
     Validate(validate::Args),
@@ -92,6 +97,8 @@ fn run(command: &Command, progress: &progress::Progress) -> Result<Answer> {
         Command::Flutter(args) => flutter::run(args, progress),
         Command::MonteCarlo(args) => monte_carlo::run(args, progress),
         Command::Simulate(args) => simulate::run(args),
+        Command::QuasiSteady(args) => quasi_steady::run(args, progress),
+        Command::Buffeting(args) => buffeting::run(args, progress),
         Command::Fmu(command) => fmu::run(command, progress),
         Command::Validate(args) => validate::run(args, progress),
         Command::Thesis(args) => thesis::run(args, progress),

@@ -19,6 +19,7 @@ mod root_locus;
 mod series;
 mod sheet;
 mod style;
+mod wind_figures;
 
 pub use derivatives_figure::{DerivativePlot, DerivativesPlot, derivatives_figure};
 pub use figure::{Figure, PNG_SCALE};
@@ -28,3 +29,4 @@ pub use reliability_figure::onset_distribution_figure;
 pub use response_figures::{PoleSearchPlot, TimePanel, pole_search_figure, time_history_figure};
 pub use root_locus::root_locus_figure;
 pub use series::PlottedSeries;
+pub use wind_figures::{buffeting_rms_figure, buffeting_spectra_figure, equilibrium_figure};

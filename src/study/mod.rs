@@ -9,6 +9,7 @@ mod models;
 mod onsets;
 mod routes;
 mod stepped;
+mod wind;
 
 pub use deck::{Deck, RecordSet};
 pub use defaults::{demo_study_text, thesis_study_text};
@@ -16,6 +17,10 @@ pub use models::{TrainedWithReport, train_one};
 pub use onsets::{Deviation, Divergence, FlutterStudy, OnsetSummary, flutter_study};
 pub use routes::{Route, RouteTable, low_frequency_limit, route_table};
 pub use stepped::{SteppedOnset, stepped_onset};
+pub use wind::{
+    BuffetingStudy, QuasiSteadyStudy, SimulatedMotion, SpectrumCurve, TimeDomain, WindStudy,
+    buffeting_study, example_wind_study_text, quasi_steady_study, simulated_motion,
+};
 
 use crate::error::{Error, Result, positive};
 use crate::flutter::OnsetSearch;
@@ -123,6 +128,20 @@ impl FlutterBlock {
         }
     }
 
+    /// Checks the range; `place` is the table it stands in.
+    pub(super) fn validate(&self, place: &str) -> Result<()> {
+        positive(&format!("{place}.speed_max_m_s"), self.speed_max_m_s)?;
+        positive(&format!("{place}.speed_min_m_s"), self.speed_min_m_s)?;
+        if self.speed_min_m_s >= self.speed_max_m_s || self.speeds < 2 {
+            return Err(Error::input(
+                place,
+                "speed_min_m_s below speed_max_m_s and at least 2 speeds",
+                format!("{self:?}"),
+            ));
+        }
+        Ok(())
+    }
+
     /// Wind speeds of the curves, m/s.
     pub fn curve_speeds_m_s(&self) -> Vec<f64> {
         let last = (self.speeds - 1) as f64;
@@ -214,15 +233,7 @@ impl Study {
                 ));
             }
         }
-        positive("flutter.speed_max_m_s", self.flutter.speed_max_m_s)?;
-        positive("flutter.speed_min_m_s", self.flutter.speed_min_m_s)?;
-        if self.flutter.speed_min_m_s >= self.flutter.speed_max_m_s || self.flutter.speeds < 2 {
-            return Err(Error::input(
-                "flutter",
-                "speed_min_m_s below speed_max_m_s and at least 2 speeds",
-                format!("{:?}", self.flutter),
-            ));
-        }
+        self.flutter.validate("flutter")?;
         self.export.validate()?;
         self.exported().map(|_| ())
     }

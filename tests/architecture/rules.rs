@@ -51,6 +51,7 @@ pub const ARROWS: &[Row] = &[
     row("aeroelastic", &["aerodynamics+"]),
     row("flutter", &["aeroelastic+"]),
     row("response", &["aeroelastic+"]),
+    row("buffeting", &["flutter+", "response+"]),
     row("fmu", &["flutter+", "response+", "trained_model+"]),
     row("fmu::fmi2", &["fmu"]),
     row("toml_lines", &[]),
@@ -72,6 +73,7 @@ const BELOW_STUDY: &[&str] = &[
     "wind_tunnel+",
     "comparison",
     "toml_lines",
+    "buffeting+",
 ];
 
 /// Every module may use these.

@@ -142,7 +142,7 @@ fn read_rows(text: &str, names_line: usize) -> Result<Rows> {
         .trim(csv::Trim::All)
         .from_reader(text.as_bytes());
     let names = reader.headers().map_err(csv_error)?.clone();
-    let columns = find_columns(&names, names_line)?;
+    let columns = find_columns(&names, CSV_COLUMNS, names_line)?;
     let mut rows = Rows::new();
     for record in reader.records() {
         let record = record.map_err(csv_error)?;
@@ -174,10 +174,14 @@ fn read_rows(text: &str, names_line: usize) -> Result<Rows> {
     Ok(rows)
 }
 
-/// Positions of [`CSV_COLUMNS`] among `names`, which may stand in any order.
-fn find_columns(names: &csv::StringRecord, line: usize) -> Result<[usize; CSV_COLUMNS.len()]> {
-    let mut columns = [0; CSV_COLUMNS.len()];
-    for (column, wanted) in columns.iter_mut().zip(CSV_COLUMNS) {
+/// Positions of the `wanted` columns among `names`, which may stand in any order.
+pub(in crate::aerodynamics) fn find_columns<const N: usize>(
+    names: &csv::StringRecord,
+    wanted: [&str; N],
+    line: usize,
+) -> Result<[usize; N]> {
+    let mut columns = [0; N];
+    for (column, wanted) in columns.iter_mut().zip(wanted) {
         *column = names
             .iter()
             .position(|name| name == wanted)
@@ -193,7 +197,8 @@ fn find_columns(names: &csv::StringRecord, line: usize) -> Result<[usize; CSV_CO
     Ok(columns)
 }
 
-fn number(place: &str, text: &str) -> Result<f64> {
+/// The number in one cell.
+pub(in crate::aerodynamics) fn number(place: &str, text: &str) -> Result<f64> {
     text.parse()
         .map_err(|_| Error::input(place, "a number", format!("`{text}`")))
 }
@@ -206,7 +211,8 @@ fn at_place(error: Error, place: &str) -> Error {
     }
 }
 
-fn csv_error(error: csv::Error) -> Error {
+/// An error of the CSV reader as one of ours, with the line.
+pub(in crate::aerodynamics) fn csv_error(error: csv::Error) -> Error {
     let place = error
         .position()
         .map_or_else(String::new, |p| format!("line {}", p.line()));

@@ -10,7 +10,7 @@ mod table;
 #[cfg(feature = "identification")]
 pub(crate) mod comment_header;
 #[cfg(feature = "identification")]
-mod csv_file;
+pub(in crate::aerodynamics) mod csv_file;
 #[cfg(feature = "identification")]
 pub mod embedded;
 #[cfg(feature = "identification")]

@@ -1,0 +1,120 @@
+//! Nonlinear quasi-steady forces (1.1)–(1.7).
+
+use super::{Arms, LinearQuasiSteady, StaticCoefficients};
+use crate::error::{Error, Result};
+use crate::section::Dof;
+
+/// Quasi-steady theory of one deck.
+///
+/// Component `i` sees the relative wind at its own reference point,
+///
+/// ```text
+/// a = V + u − ẋ,  bᵢ = w − ẏ − B₁ᵢ θ̇,  V_rel² = a² + bᵢ²,  ψᵢ = atan(bᵢ/a),  αᵢ = θ + ψᵢ
+/// F_x = ½ρB V_rel² (C_D(α_x) cos ψ_x − C_L(α_x) sin ψ_x)
+/// F_y = ½ρB V_rel² (C_D(α_y) sin ψ_y + C_L(α_y) cos ψ_y)
+/// M   = ½ρB² V_rel² C_M(α_θ)
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct QuasiSteady {
+    coefficients: StaticCoefficients,
+    arms: Arms,
+    dofs: Vec<Dof>,
+}
+
+/// What the deck feels of the wind at one instant: mean wind, gusts and its own velocity.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct RelativeWind {
+    /// `V + u − ẋ`, m/s.
+    pub along_m_s: f64,
+    /// `w − ẏ`, m/s.
+    pub vertical_m_s: f64,
+    /// `B θ̇`, m/s.
+    pub rotation_m_s: f64,
+}
+
+impl QuasiSteady {
+    /// The theory for a deck of these degrees of freedom.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when the degrees of freedom are neither [`Dof::TWO`] nor [`Dof::THREE`] or an arm is not finite.
+    pub fn new(coefficients: StaticCoefficients, arms: Arms, dofs: &[Dof]) -> Result<Self> {
+        arms.validate()?;
+        if dofs != Dof::TWO && dofs != Dof::THREE {
+            return Err(Error::input(
+                "quasi-steady theory",
+                "vertical and torsional degrees of freedom, with or without the lateral one between",
+                format!("{dofs:?}"),
+            ));
+        }
+        Ok(Self {
+            coefficients,
+            arms,
+            dofs: dofs.to_vec(),
+        })
+    }
+
+    /// The static coefficients.
+    pub fn coefficients(&self) -> &StaticCoefficients {
+        &self.coefficients
+    }
+
+    /// The arms `B₁ᵢ/B`.
+    pub fn arms(&self) -> Arms {
+        self.arms
+    }
+
+    /// Degrees of freedom, in the order of the forces.
+    pub fn dofs(&self) -> &[Dof] {
+        &self.dofs
+    }
+
+    /// Forces `F/(½ρB)` and `M/(½ρB²)` (m²/s²) into the first n places, at the rotation `θ` (rad).
+    ///
+    /// # Errors
+    /// [`Error::Input`] naming the angle of attack when it lies outside the table.
+    pub fn specific_forces(&self, rotation_rad: f64, wind: &RelativeWind) -> Result<[f64; 3]> {
+        let mut forces = [0.0; 3];
+        for (force, dof) in forces.iter_mut().zip(&self.dofs) {
+            let normal = wind.vertical_m_s - self.arms.of(*dof) * wind.rotation_m_s;
+            let square = wind.along_m_s * wind.along_m_s + normal * normal;
+            let psi = normal.atan2(wind.along_m_s);
+            let c = self.coefficients.at(rotation_rad + psi)?;
+            let direction = match dof {
+                Dof::Vertical => c.drag * psi.sin() + c.lift * psi.cos(),
+                Dof::Lateral => c.drag * psi.cos() - c.lift * psi.sin(),
+                Dof::Torsion => c.moment,
+            };
+            *force = square * direction;
+        }
+        Ok(forces)
+    }
+
+    /// Static coefficients of the force components at a rotation in smooth wind, and their slopes per rad (1.9): in
+    /// the order of the degrees of freedom, n each.
+    ///
+    /// # Errors
+    /// [`Error::Input`] naming the angle when it lies outside the table.
+    pub fn static_forces(&self, rotation_rad: f64) -> Result<(Vec<f64>, Vec<f64>)> {
+        let c = self.coefficients.at(rotation_rad)?;
+        let pick = |dof: &Dof| match dof {
+            Dof::Vertical => (c.lift, c.lift_slope),
+            Dof::Lateral => (c.drag, c.drag_slope),
+            Dof::Torsion => (c.moment, c.moment_slope),
+        };
+        Ok(self.dofs.iter().map(pick).unzip())
+    }
+
+    /// The linear theory about the rotation `θ₀` (rad) in smooth wind (1.11)–(1.13).
+    ///
+    /// # Errors
+    /// [`Error::Input`] naming the angle when it lies outside the table.
+    pub fn linearised(&self, rotation_rad: f64) -> Result<LinearQuasiSteady> {
+        let at = self.coefficients.at(rotation_rad)?;
+        Ok(LinearQuasiSteady::new(
+            &self.dofs,
+            self.arms,
+            rotation_rad,
+            at,
+        ))
+    }
+}

@@ -1,0 +1,207 @@
+//! Response in the frequency domain: `S_r = H S_F Hᴴ`, and its integral.
+
+use super::problem::BuffetingProblem;
+use super::quadrature::integrate;
+use super::spectrum::GustComponent;
+use super::stability::unstable_roots;
+use crate::error::{Error, Result};
+use crate::units::{ReducedFrequency, ReducedFrequencyRange};
+use nalgebra::Complex;
+use serde::Serialize;
+
+/// Relative error of the variances.
+const TOLERANCE: f64 = 1e-8;
+/// Frequencies at which resonances are looked for, over this range about the natural ones.
+const GRID: usize = 800;
+const REACH: (f64, f64) = (0.02, 20.0);
+/// Steps of the golden section on a resonance.
+const GOLDEN_STEPS: usize = 40;
+
+/// Response to turbulence at one mean wind speed; vectors in the order of the degrees of freedom.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct BuffetingResponse {
+    /// Mean wind speed, m/s.
+    pub speed_m_s: f64,
+    /// Root mean square of the displacements about their mean: m, rad.
+    pub rms: Vec<f64>,
+    /// Root mean square of the rates: m/s, rad/s.
+    pub rate_rms: Vec<f64>,
+    /// The part of `rms` that each component of the turbulence causes alone, `u` then `w`.
+    pub rms_by_gust: [Vec<f64>; 2],
+    /// Mean frequency of upward crossings of the mean, Hz: rate over displacement over 2π.
+    pub crossing_frequency_hz: Vec<f64>,
+    /// Part of each variance inside the tested range of `K`, when the model has one.
+    pub part_in_tested_range: Option<Vec<f64>>,
+}
+
+/// One-sided spectra of the displacements at a frequency (n): m²/Hz, rad²/Hz.
+///
+/// # Errors
+/// Those of the model; [`Error::Numerical`] where the impedance is singular.
+pub fn response_spectrum(
+    problem: &BuffetingProblem<'_>,
+    frequency_hz: f64,
+    speed_m_s: f64,
+) -> Result<Vec<f64>> {
+    let by_gust = spectra_by_gust(problem, frequency_hz, speed_m_s)?;
+    Ok(by_gust[0]
+        .iter()
+        .zip(&by_gust[1])
+        .map(|(u, w)| u + w)
+        .collect())
+}
+
+/// The same by each component of the turbulence; the components are independent, so that they add up.
+fn spectra_by_gust(
+    problem: &BuffetingProblem<'_>,
+    frequency_hz: f64,
+    speed_m_s: f64,
+) -> Result<[Vec<f64>; 2]> {
+    let motion = problem.gust_to_motion(frequency_hz, speed_m_s)?;
+    let column = |j: usize| -> Vec<f64> {
+        let component = GustComponent::BOTH[j];
+        let density = problem.turbulence.component(component).map_or(0.0, |gust| {
+            gust.spectrum.density(component, frequency_hz, speed_m_s)
+        });
+        motion
+            .column(j)
+            .iter()
+            .map(|z| z.norm_sqr() * density)
+            .collect()
+    };
+    Ok([column(0), column(1)])
+}
+
+/// Root mean squares at a mean wind speed, the variances integrated over all frequencies to 1e-8.
+///
+/// `tested` is the range of reduced frequencies in which the model was tested.
+///
+/// # Errors
+/// [`Error::Input`] for parts that do not fit together; those of the model; [`Error::Numerical`] when the section is
+/// unstable at this speed.
+pub fn buffeting_response(
+    problem: &BuffetingProblem<'_>,
+    speed_m_s: f64,
+    tested: Option<ReducedFrequencyRange>,
+) -> Result<BuffetingResponse> {
+    problem.validate()?;
+    let unstable = unstable_roots(problem, speed_m_s)?;
+    if unstable > 0 {
+        return Err(Error::Numerical(format!(
+            "buffeting at {speed_m_s} m/s: the section is unstable there ({unstable} growing roots), no response is stationary"
+        )));
+    }
+    let peaks = resonances(problem, speed_m_s)?;
+    let n = problem.structure.dofs.len();
+    let variances = all_frequencies(problem, speed_m_s, &peaks)?;
+    let part = |i: usize| variances[i * n..(i + 1) * n].to_vec();
+    let [by_u, by_w, rates] = [part(0), part(1), part(2)];
+    let rms: Vec<f64> = by_u
+        .iter()
+        .zip(&by_w)
+        .map(|(u, w)| (u + w).sqrt())
+        .collect();
+    let rate_rms = roots(&rates);
+    let crossing = rate_rms
+        .iter()
+        .zip(&rms)
+        .map(|(rate, rms)| rate / rms / std::f64::consts::TAU);
+    let part_in_tested_range = tested
+        .map(|range| tested_part(problem, speed_m_s, &peaks, range, &rms))
+        .transpose()?;
+    Ok(BuffetingResponse {
+        speed_m_s,
+        crossing_frequency_hz: crossing.collect(),
+        rms_by_gust: [roots(&by_u), roots(&by_w)],
+        rms,
+        rate_rms,
+        part_in_tested_range,
+    })
+}
+
+fn roots(variances: &[f64]) -> Vec<f64> {
+    variances.iter().map(|v| v.sqrt()).collect()
+}
+
+/// Variances of the displacements by `u`, by `w`, and of the rates (3n): up to the last break over the frequency, beyond it
+/// over its inverse.
+fn all_frequencies(problem: &BuffetingProblem<'_>, speed: f64, peaks: &[f64]) -> Result<Vec<f64>> {
+    let last = REACH.1 * problem.natural_range_hz().1;
+    let mut breaks = vec![0.0];
+    breaks.extend_from_slice(peaks);
+    breaks.push(last);
+    let densities = |f: f64| -> Result<Vec<f64>> {
+        let [by_u, by_w] = spectra_by_gust(problem, f, speed)?;
+        let square = (std::f64::consts::TAU * f).powi(2);
+        let rates: Vec<f64> = by_u
+            .iter()
+            .zip(&by_w)
+            .map(|(u, w)| square * (u + w))
+            .collect();
+        Ok([by_u, by_w, rates].concat())
+    };
+    let (inner, _) = integrate(densities, &breaks, TOLERANCE)?;
+    let beyond = |t: f64| -> Result<Vec<f64>> {
+        let values = densities(1.0 / t)?;
+        Ok(values.into_iter().map(|v| v / (t * t)).collect())
+    };
+    // a millionth of the whole at most, so a coarser tolerance does
+    let (tail, _) = integrate(beyond, &[0.0, 1.0 / last], 1e-4)?;
+    Ok(inner.iter().zip(&tail).map(|(a, b)| a + b).collect())
+}
+
+fn tested_part(
+    problem: &BuffetingProblem<'_>,
+    speed: f64,
+    peaks: &[f64],
+    range: ReducedFrequencyRange,
+    rms: &[f64],
+) -> Result<Vec<f64>> {
+    let hertz =
+        |k: ReducedFrequency| k.circular(problem.structure.width_m, speed) / std::f64::consts::TAU;
+    let (low, high) = (hertz(range.min), hertz(range.max));
+    let mut breaks = vec![low];
+    breaks.extend(peaks.iter().filter(|f| (low..high).contains(f)));
+    breaks.push(high);
+    let (inside, _) = integrate(|f| response_spectrum(problem, f, speed), &breaks, 1e-6)?;
+    Ok(inside
+        .iter()
+        .zip(rms)
+        .map(|(v, rms)| v / (rms * rms))
+        .collect())
+}
+
+/// Frequencies at which the determinant of the impedance is smallest, Hz, rising: the breaks of the integration.
+fn resonances(problem: &BuffetingProblem<'_>, speed: f64) -> Result<Vec<f64>> {
+    let (low, high) = problem.natural_range_hz();
+    let (first, last) = (low * REACH.0, high * REACH.1);
+    let frequency = |i: usize| first * (last / first).powf(i as f64 / GRID as f64);
+    let at = |f: f64| -> Result<f64> {
+        let determinant: Complex<f64> = problem.determinant(f, speed)?;
+        Ok(determinant.norm())
+    };
+    let values = (0..=GRID)
+        .map(|i| at(frequency(i)))
+        .collect::<Result<Vec<_>>>()?;
+    let mut found = Vec::new();
+    for i in 1..GRID {
+        if values[i] < values[i - 1] && values[i] <= values[i + 1] {
+            found.push(golden(&at, frequency(i - 1), frequency(i + 1))?);
+        }
+    }
+    Ok(found)
+}
+
+/// Minimum between two frequencies by the golden section.
+fn golden(at: &impl Fn(f64) -> Result<f64>, mut low: f64, mut high: f64) -> Result<f64> {
+    let ratio = 0.5 * (5f64.sqrt() - 1.0);
+    for _ in 0..GOLDEN_STEPS {
+        let (a, b) = (high - ratio * (high - low), low + ratio * (high - low));
+        if at(a)? < at(b)? {
+            high = b;
+        } else {
+            low = a;
+        }
+    }
+    Ok(0.5 * (low + high))
+}

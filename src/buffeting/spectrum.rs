@@ -1,0 +1,264 @@
+//! Spectra of the turbulence components, normalised to their variance.
+
+use crate::error::{Error, Result, positive};
+use serde::{Deserialize, Serialize};
+
+/// Part by which the integral of a user's spectrum may differ from its variance.
+const NORMALISATION_TOLERANCE: f64 = 0.01;
+
+/// A component of the turbulence.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum GustComponent {
+    /// `u`, along the mean wind.
+    Along,
+    /// `w`, upwards.
+    Vertical,
+}
+
+impl GustComponent {
+    /// Both, in the order of the columns of a buffeting matrix.
+    pub const BOTH: [GustComponent; 2] = [GustComponent::Along, GustComponent::Vertical];
+
+    /// Symbol: `u`, `w`.
+    pub fn symbol(self) -> &'static str {
+        match self {
+            Self::Along => "u",
+            Self::Vertical => "w",
+        }
+    }
+}
+
+/// Shape of a spectrum over `x = fL/V`, all of the form `f S/σ² = a x (1 + e xᶜ)/(1 + b xᶜ)ᵈ`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+pub enum SpectrumShape {
+    /// Von Kármán: `u: 4x/(1 + 70.8x²)^(5/6)`, `w: 4x(1 + 755.2x²)/(1 + 283.2x²)^(11/6)`.
+    VonKarman,
+    /// Kaimal in the form of EN 1991-1-4, B.1, and Handbook N400: `A x/(1 + 1.5 A x)^(5/3)`, `A_u = 6.8`, `A_w = 9.4`.
+    Kaimal,
+    /// Constants of the user's own; the integral must be the variance within 1 %.
+    General {
+        /// Factor `a`: at low frequency `S = a σ² L/V`.
+        a: f64,
+        /// Factor `b` in the denominator.
+        b: f64,
+        /// Power `c` of `x`.
+        c: f64,
+        /// Power `d` of the denominator.
+        d: f64,
+        /// Factor `e` in the numerator.
+        #[serde(default)]
+        e: f64,
+    },
+}
+
+/// A spectrum with its scales.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GustSpectrum {
+    /// Shape over `fL/V`.
+    pub shape: SpectrumShape,
+    /// Length scale `L` of this component along the wind, m.
+    pub length_m: f64,
+    /// Turbulence intensity `σ/V`.
+    pub intensity: f64,
+}
+
+/// `a x (1 + e xᶜ)/(1 + b xᶜ)ᵈ`.
+#[derive(Debug, Clone, Copy)]
+struct Formula {
+    a: f64,
+    b: f64,
+    c: f64,
+    d: f64,
+    e: f64,
+}
+
+impl Formula {
+    /// `S V/(σ² L)`, finite at zero.
+    fn density(&self, x: f64) -> f64 {
+        let power = x.powf(self.c);
+        self.a * (1.0 + self.e * power) / (1.0 + self.b * power).powf(self.d)
+    }
+
+    /// Integral over all frequencies, as a part of the variance: Euler's beta function.
+    fn integral(&self) -> f64 {
+        let Self { a, b, c, d, e } = *self;
+        let beta = |p: f64, q: f64| libm::tgamma(p) * libm::tgamma(q) / libm::tgamma(p + q);
+        let first = beta(1.0 / c, d - 1.0 / c);
+        let second = if e == 0.0 {
+            0.0
+        } else {
+            e / b * beta(1.0 + 1.0 / c, d - 1.0 - 1.0 / c)
+        };
+        a * b.powf(-1.0 / c) / c * (first + second)
+    }
+}
+
+impl SpectrumShape {
+    fn formula(&self, component: GustComponent) -> Formula {
+        let formula = |a, b, c, d, e| Formula { a, b, c, d, e };
+        match (*self, component) {
+            (Self::VonKarman, GustComponent::Along) => formula(4.0, 70.8, 2.0, 5.0 / 6.0, 0.0),
+            (Self::VonKarman, GustComponent::Vertical) => {
+                formula(4.0, 283.2, 2.0, 11.0 / 6.0, 755.2)
+            }
+            (Self::Kaimal, component) => {
+                let factor = match component {
+                    GustComponent::Along => 6.8,
+                    GustComponent::Vertical => 9.4,
+                };
+                formula(factor, 1.5 * factor, 1.0, 5.0 / 3.0, 0.0)
+            }
+            (Self::General { a, b, c, d, e }, _) => formula(a, b, c, d, e),
+        }
+    }
+
+    fn validate(&self, place: &str) -> Result<()> {
+        let Self::General { a, b, c, d, e } = *self else {
+            return Ok(());
+        };
+        for (key, value) in [("a", a), ("b", b), ("c", c), ("d", d)] {
+            positive(&format!("{place}.{key}"), value)?;
+        }
+        crate::error::non_negative(&format!("{place}.e"), e)?;
+        let fall = if e > 0.0 { c * (d - 1.0) } else { c * d };
+        if fall <= 1.0 {
+            let expected = if e > 0.0 { "c(d − 1)" } else { "c d" };
+            return Err(Error::input(
+                place,
+                format!("{expected} above 1, so that the variance is finite"),
+                fall.to_string(),
+            ));
+        }
+        let integral = self.formula(GustComponent::Along).integral();
+        if (integral - 1.0).abs() > NORMALISATION_TOLERANCE {
+            return Err(Error::input(
+                format!("{place}.a"),
+                format!(
+                    "a = {:.6}, so that the spectrum integrates to the variance",
+                    a / integral
+                ),
+                format!("{a}, which gives {integral:.4} of it"),
+            ));
+        }
+        Ok(())
+    }
+}
+
+impl GustSpectrum {
+    /// Checks scales and constants.
+    ///
+    /// # Errors
+    /// [`Error::Input`] naming the key below `place`.
+    pub fn validate(&self, place: &str) -> Result<()> {
+        positive(&format!("{place}.length_m"), self.length_m)?;
+        positive(&format!("{place}.intensity"), self.intensity)?;
+        if self.intensity >= 1.0 {
+            return Err(Error::input(
+                format!("{place}.intensity"),
+                "a ratio σ/V below 1, not per cent",
+                self.intensity.to_string(),
+            ));
+        }
+        self.shape.validate(&format!("{place}.shape"))
+    }
+
+    /// Standard deviation at a mean wind speed, m/s.
+    pub fn sigma_m_s(&self, speed_m_s: f64) -> f64 {
+        self.intensity * speed_m_s
+    }
+
+    /// `S(f)`, one-sided, m²/s² per Hz.
+    pub fn density(&self, component: GustComponent, frequency_hz: f64, speed_m_s: f64) -> f64 {
+        let time = self.length_m / speed_m_s;
+        let sigma = self.sigma_m_s(speed_m_s);
+        sigma * sigma * time * self.shape.formula(component).density(frequency_hz * time)
+    }
+
+    /// Integral of the formula over all frequencies, as a part of `σ²`: printed constants are rounded.
+    pub fn integral(&self, component: GustComponent) -> f64 {
+        self.shape.formula(component).integral()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn spectrum(shape: SpectrumShape) -> GustSpectrum {
+        GustSpectrum {
+            shape,
+            length_m: 20.0,
+            intensity: 0.05,
+        }
+    }
+
+    /// IABSE 1.1a: `S_w(0.278 Hz, 45 m/s) = 5.26 m²/s² / Hz`.
+    #[test]
+    fn the_benchmark_value() {
+        let s = spectrum(SpectrumShape::VonKarman);
+        let value = s.density(GustComponent::Vertical, 0.278, 45.0);
+        assert!((value - 5.26).abs() < 0.005, "{value}");
+    }
+
+    /// Sums over 10 decades against the closed integral, and both against one: constants have four digits at most.
+    #[test]
+    fn spectra_integrate_to_their_variance() {
+        for shape in [SpectrumShape::VonKarman, SpectrumShape::Kaimal] {
+            for component in GustComponent::BOTH {
+                let s = spectrum(shape);
+                let steps = 40_000;
+                let sum: f64 = (0..steps)
+                    .map(|i| {
+                        let log = -7.0 + 14.0 * (f64::from(i) + 0.5) / f64::from(steps);
+                        let f = 10f64.powf(log);
+                        s.density(component, f, 30.0) * f * 10f64.ln() * 14.0 / f64::from(steps)
+                    })
+                    .sum();
+                let integral = s.integral(component);
+                // beyond 1e7 Hz and below 1e-7 Hz lie 1e-5 of the variance
+                assert!((sum / 2.25 - integral).abs() < 2e-5, "{sum} {integral}");
+                assert!((integral - 1.0).abs() < 1e-3, "{integral}");
+            }
+        }
+    }
+
+    #[test]
+    fn constants_of_the_user_are_checked() {
+        let general = |a, b, c, d, e| spectrum(SpectrumShape::General { a, b, c, d, e });
+        assert!(
+            general(6.8, 10.2, 1.0, 5.0 / 3.0, 0.0)
+                .validate("w")
+                .is_ok()
+        );
+        assert!(
+            general(4.0, 283.2, 2.0, 11.0 / 6.0, 755.2)
+                .validate("w")
+                .is_ok()
+        );
+        for (bad, expected) in [
+            (
+                general(13.6, 10.2, 1.0, 5.0 / 3.0, 0.0),
+                "w.shape.a: expected a = 6.800000",
+            ),
+            (
+                general(6.8, 10.2, 1.0, 0.9, 0.0),
+                "w.shape: expected c d above 1",
+            ),
+            (general(6.8, 10.2, 1.0, 5.0 / 3.0, 1.0), "c(d − 1) above 1"),
+            (
+                general(6.8, -1.0, 1.0, 5.0 / 3.0, 0.0),
+                "w.shape.b: expected a positive number",
+            ),
+        ] {
+            let message = bad.validate("w").unwrap_err().to_string();
+            assert!(message.contains(expected), "{message}");
+        }
+        let mut percent = spectrum(SpectrumShape::Kaimal);
+        percent.intensity = 5.0;
+        let message = percent.validate("w").unwrap_err().to_string();
+        assert!(message.contains("not per cent"), "{message}");
+    }
+}

@@ -1,0 +1,142 @@
+//! `aerodeck buffeting`: response to turbulence over wind speed.
+
+use super::answer::Answer;
+use super::output::list;
+use super::progress::Progress;
+use super::wind::{WindArgs, write_figure, write_json};
+use crate::error::Result;
+use crate::report::{buffeting_rms_figure, buffeting_spectra_figure};
+use crate::section::Dof;
+use crate::study::{BuffetingStudy, WindStudy, buffeting_study};
+use std::fmt::Write as _;
+
+/// Lines of the table at most: of finer lists of speeds every second, third, … is printed.
+const TABLE_LINES: usize = 15;
+
+/// RMS response to turbulence over wind speed, in the frequency and in the time domain
+///
+/// Example: aerodeck buffeting wind.toml
+#[derive(clap::Args)]
+#[command(verbatim_doc_comment)]
+pub struct Args {
+    #[command(flatten)]
+    wind: WindArgs,
+}
+
+/// Runs the command.
+pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+    let (study, mut out) = args.wind.open()?;
+    let stage = progress.steps("records in the time domain");
+    let results = buffeting_study(&study, &|done, all| stage.at(done as u64, all as u64))?;
+    drop(stage);
+    write_json(&mut out, "buffeting.json", &results)?;
+    if !results.responses.is_empty() {
+        let figure = buffeting_rms_figure(&study.name, &results)?;
+        write_figure(&mut out, "buffeting", &figure)?;
+    }
+    for spectra in &results.spectra {
+        let title = format!("{} at {} m/s", study.name, spectra.speed_m_s);
+        let figure = buffeting_spectra_figure(&title, &results.dofs, spectra)?;
+        let stem = format!("buffeting_spectra_{}", spectra.speed_m_s);
+        write_figure(&mut out, &stem, &figure)?;
+    }
+    let written = out.commit()?;
+    let text = account(&study, &results) + &list(&written);
+    Answer::new(
+        text,
+        &serde_json::json!({ "buffeting": results, "files": written }),
+    )
+}
+
+/// A number in the unit of tables: m, or degrees.
+fn shown(dof: Dof, value: f64) -> f64 {
+    if dof == Dof::Torsion {
+        value.to_degrees()
+    } else {
+        value
+    }
+}
+
+fn unit(dof: Dof) -> &'static str {
+    if dof == Dof::Torsion { "deg" } else { "m" }
+}
+
+fn account(study: &WindStudy, results: &BuffetingStudy) -> String {
+    let mut text = format!(
+        "{}\nself-excited forces: {}\n\n{:>8}",
+        study.name, results.aerodynamics, "V m/s"
+    );
+    for dof in &results.dofs {
+        let _ = write!(
+            text,
+            "{:>15}",
+            format!("RMS {} {}", dof.symbol(), unit(*dof))
+        );
+    }
+    for dof in &results.dofs {
+        let _ = write!(text, "{:>12}", format!("ν {} Hz", dof.symbol()));
+    }
+    text.push('\n');
+    let every = results.responses.len().div_ceil(TABLE_LINES).max(1);
+    for response in results.responses.iter().step_by(every) {
+        let _ = write!(text, "{:>8.2}", response.speed_m_s);
+        for (dof, rms) in results.dofs.iter().zip(&response.rms) {
+            let _ = write!(text, "{:>15.5}", shown(*dof, *rms));
+        }
+        for frequency in &response.crossing_frequency_hz {
+            let _ = write!(text, "{frequency:>12.4}");
+        }
+        text.push('\n');
+    }
+    if let Some((speed, reason)) = &results.ends_at {
+        let _ = writeln!(text, "at {speed:.2} m/s and above: {reason}");
+    }
+    text.push_str(&tested(results));
+    text.push_str(&time_domain(results));
+    text
+}
+
+/// A warning where much of the response lies outside the tested range.
+fn tested(results: &BuffetingStudy) -> String {
+    let least = results
+        .responses
+        .iter()
+        .filter_map(|r| Some((r.speed_m_s, r.part_in_tested_range.as_ref()?)))
+        .map(|(v, parts)| (v, parts.iter().copied().fold(f64::INFINITY, f64::min)))
+        .min_by(|a, b| a.1.total_cmp(&b.1));
+    least.map_or(String::new(), |(speed, part)| {
+        format!(
+            "variance inside the tested range of K: {:.0} % at least (at {speed:.2} m/s); the rest is extrapolation\n",
+            100.0 * part
+        )
+    })
+}
+
+fn time_domain(results: &BuffetingStudy) -> String {
+    let mut text = String::new();
+    for domain in &results.time {
+        let e = &domain.ensemble;
+        let _ = writeln!(
+            text,
+            "\ntime domain at {} m/s: {} records of {:.0} s, step {:.4} s, warm-up {:.0} s",
+            e.speed_m_s,
+            e.rms_of_records.len(),
+            e.duration_s,
+            e.step_s,
+            e.warm_up_s
+        );
+        for c in &domain.comparison {
+            let _ = writeln!(
+                text,
+                "  {} RMS {:.5} ± {:.5} {}, frequency domain {:.5}: {:+.1} standard errors",
+                c.dof.symbol(),
+                shown(c.dof, c.time_rms),
+                shown(c.dof, c.standard_error),
+                unit(c.dof),
+                shown(c.dof, c.frequency_rms),
+                c.deviations
+            );
+        }
+    }
+    text
+}

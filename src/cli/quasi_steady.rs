@@ -1,0 +1,267 @@
+//! `aerodeck quasi-steady`: equilibrium, linear model, onset and a nonlinear run from static coefficients.
+
+use super::account;
+use super::answer::Answer;
+use super::output::{OutputDir, list};
+use super::progress::Progress;
+use super::wind::{WindArgs, write_figure, write_json};
+use crate::aerodynamics::{GustSeries, write_gusts};
+use crate::error::{Error, Result};
+use crate::flutter::FlutterSearch;
+use crate::report::{
+    DerivativePlot, DerivativesPlot, PlottedSeries, TimePanel, VfVgOptions, derivatives_figure,
+    equilibrium_figure, time_history_figure, vf_vg_figure,
+};
+use crate::section::Dof;
+use crate::study::{
+    QuasiSteadyStudy, SimulatedMotion, WindStudy, quasi_steady_study, simulated_motion,
+};
+use std::fmt::Write as _;
+
+/// Lines of the table at most.
+const TABLE_LINES: usize = 15;
+
+/// Static equilibrium over wind speed, linear quasi-steady model, its onset, and a nonlinear run in gusts
+///
+/// Example: aerodeck quasi-steady wind.toml
+#[derive(clap::Args)]
+#[command(verbatim_doc_comment)]
+pub struct Args {
+    #[command(flatten)]
+    wind: WindArgs,
+}
+
+/// Runs the command.
+pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+    let (study, mut out) = args.wind.open()?;
+    let stage = progress.stage("equilibria and modes over wind speed");
+    let results = quasi_steady_study(&study)?;
+    drop(stage);
+    let stage = progress.stage("nonlinear run");
+    let run = simulated_motion(&study)?;
+    drop(stage);
+    write_json(&mut out, "quasi_steady.json", &results)?;
+    figures(&study, &results, &mut out)?;
+    if let Some(run) = &run {
+        write_run(&study, run, &mut out)?;
+    }
+    let written = out.commit()?;
+    let mut text = in_words(&study, &results);
+    if let Some(run) = &run {
+        text.push_str(&run_in_words(run));
+    }
+    text.push_str(&list(&written));
+    Answer::new(
+        text,
+        &serde_json::json!({ "quasi_steady": results, "simulation": run, "files": written }),
+    )
+}
+
+fn figures(study: &WindStudy, results: &QuasiSteadyStudy, out: &mut OutputDir) -> Result<()> {
+    write_figure(
+        out,
+        "coefficients",
+        &derivatives_figure(&coefficients(results))?,
+    )?;
+    if results.equilibria.points.is_empty() {
+        return Ok(());
+    }
+    let figure = equilibrium_figure(&study.name, &results.dofs, &results.equilibria)?;
+    write_figure(out, "equilibrium", &figure)?;
+    let onsets: Vec<_> = results.onset.search.onset().cloned().into_iter().collect();
+    let options = VfVgOptions {
+        title: Some(study.name.clone()),
+        ..VfVgOptions::default()
+    };
+    let figure = vf_vg_figure(std::slice::from_ref(&results.curves), &onsets, &options)?;
+    write_figure(out, "quasi_steady_modes", &figure)
+}
+
+/// The table as dots and the line that is computed with.
+fn coefficients(results: &QuasiSteadyStudy) -> DerivativesPlot {
+    let plot = |name: &str, measured: Vec<(f64, f64)>, fitted: Vec<(f64, f64)>| DerivativePlot {
+        name: name.to_owned(),
+        measured: vec![PlottedSeries::new("table", measured)],
+        fitted: vec![PlottedSeries::new("spline", fitted)],
+        reference: Vec::new(),
+    };
+    let rows = || results.rows.iter();
+    let line = || results.line.iter();
+    DerivativesPlot {
+        title: format!("Static coefficients: {}", results.coefficients),
+        velocity_label: "Angle of attack α (deg)".to_owned(),
+        derivatives: vec![
+            plot(
+                "Drag C_D",
+                rows().map(|r| (r.angle_deg, r.drag)).collect(),
+                line().map(|(a, c)| (*a, c.drag)).collect(),
+            ),
+            plot(
+                "Lift C_L",
+                rows().map(|r| (r.angle_deg, r.lift)).collect(),
+                line().map(|(a, c)| (*a, c.lift)).collect(),
+            ),
+            plot(
+                "Moment C_M",
+                rows().map(|r| (r.angle_deg, r.moment)).collect(),
+                line().map(|(a, c)| (*a, c.moment)).collect(),
+            ),
+        ],
+    }
+}
+
+fn in_words(study: &WindStudy, results: &QuasiSteadyStudy) -> String {
+    let mut text = format!(
+        "{}\nstatic coefficients: {}\n",
+        study.name, results.coefficients
+    );
+    if let Some(first) = results.linear.first() {
+        let arms = first.arms();
+        let arms: Vec<String> = results
+            .dofs
+            .iter()
+            .map(|d| format!("{} {:+.3}", d.symbol(), arms.of(*d)))
+            .collect();
+        let _ = writeln!(text, "arms B₁/B, upwind positive: {}", arms.join(", "));
+    }
+    let _ = write!(text, "\nStatic equilibrium\n{:>8}", "V m/s");
+    for dof in &results.dofs {
+        let unit = if *dof == Dof::Torsion { "deg" } else { "m" };
+        let _ = write!(text, "{:>12}", format!("{} {unit}", dof.symbol()));
+    }
+    let _ = writeln!(text, "{:>16}", "stiffness left");
+    let points = &results.equilibria.points;
+    for point in points
+        .iter()
+        .step_by(points.len().div_ceil(TABLE_LINES).max(1))
+    {
+        let _ = write!(text, "{:>8.2}", point.speed_m_s);
+        for (dof, value) in results.dofs.iter().zip(&point.displacement) {
+            let shown = if *dof == Dof::Torsion {
+                value.to_degrees()
+            } else {
+                *value
+            };
+            let _ = write!(text, "{shown:>12.5}");
+        }
+        let _ = writeln!(text, "{:>14.1} %", 100.0 * point.stiffness_left);
+    }
+    if let Some(end) = &results.equilibria.end {
+        let _ = writeln!(text, "{}", end.explain());
+    }
+    text.push('\n');
+    match &results.onset.search {
+        FlutterSearch::Onset(onset) => {
+            text.push_str(&account::onsets(std::slice::from_ref(onset.as_ref()), &[]));
+        }
+        FlutterSearch::StableUpTo(speed) => {
+            let _ = writeln!(text, "no flutter up to {speed:.3} m/s");
+        }
+    }
+    text
+}
+
+fn run_in_words(run: &SimulatedMotion) -> String {
+    let n = run.dofs.len();
+    let mut text = format!(
+        "\nNonlinear run at {} m/s: {} rows of {} s, {} Runge-Kutta steps each, halving changes {:.1e}\n",
+        run.speed_m_s,
+        run.nonlinear.len(),
+        run.step_s,
+        run.substeps,
+        run.step_error
+    );
+    let spread = |rows: &[Vec<f64>], i: usize| {
+        let mean = rows.iter().map(|r| r[i]).sum::<f64>() / rows.len() as f64;
+        let square = rows.iter().map(|r| (r[i] - mean).powi(2)).sum::<f64>() / rows.len() as f64;
+        (mean, square.sqrt())
+    };
+    for (i, dof) in run.dofs.iter().enumerate().take(n) {
+        let (factor, unit) = match dof {
+            Dof::Torsion => (1f64.to_degrees(), "deg"),
+            _ => (1.0, "m"),
+        };
+        let (mean, rms) = spread(&run.nonlinear, i);
+        let (linear_mean, linear_rms) = spread(&run.linear, i);
+        let _ = writeln!(
+            text,
+            "  {}: mean {:.5}, RMS {:.5} {unit}; linear: mean {:.5}, RMS {:.5}",
+            dof.symbol(),
+            factor * mean,
+            factor * rms,
+            factor * linear_mean,
+            factor * linear_rms
+        );
+    }
+    text
+}
+
+fn write_run(study: &WindStudy, run: &SimulatedMotion, out: &mut OutputDir) -> Result<()> {
+    out.write("quasi_steady_run.csv", csv(study, run))?;
+    let (u, w) = run.gusts_m_s.iter().copied().unzip();
+    let gusts = GustSeries::new(run.step_s, u, w)?;
+    let path = out.stage("gusts.csv")?;
+    let mut file = std::fs::File::create(&path).map_err(|e| Error::io(&path, e))?;
+    let source = format!("the run of quasi_steady_run.csv at {} m/s", run.speed_m_s);
+    write_gusts(&study.name, &source, &gusts, &mut file).map_err(|e| Error::io(&path, e))?;
+    let title = format!("{} at {} m/s", study.name, run.speed_m_s);
+    let figure = time_history_figure(&title, &panels(run), "Time t (s)")?;
+    write_figure(out, "quasi_steady_run", &figure)
+}
+
+fn csv(study: &WindStudy, run: &SimulatedMotion) -> String {
+    let mut text = format!(
+        "# {}; quasi-steady forces at {} m/s, per unit length of span; y and lift up, theta nose-up, x downwind\n",
+        study.name, run.speed_m_s
+    );
+    let mut columns = vec!["time_s".to_owned(), "u_m_s".into(), "w_m_s".into()];
+    for kind in ["nonlinear", "linear"] {
+        for (what, linear, angular) in [("", "m", "rad"), ("_rate", "m_s", "rad_s")] {
+            columns.extend(run.dofs.iter().map(|d| {
+                let unit = if *d == Dof::Torsion { angular } else { linear };
+                format!("{}{what}_{kind}_{unit}", d.name())
+            }));
+        }
+    }
+    let _ = writeln!(text, "{}", columns.join(","));
+    let rows = run.nonlinear.iter().zip(&run.linear).zip(&run.gusts_m_s);
+    for (i, ((nonlinear, linear), (u, w))) in rows.enumerate() {
+        let _ = write!(text, "{},{u},{w}", run.step_s * i as f64);
+        for value in nonlinear.iter().chain(linear) {
+            let _ = write!(text, ",{value}");
+        }
+        text.push('\n');
+    }
+    text
+}
+
+/// Gusts, then one panel a degree of freedom.
+fn panels(run: &SimulatedMotion) -> Vec<TimePanel> {
+    let series = |label: &str, values: &mut dyn Iterator<Item = f64>| {
+        let points = values.enumerate();
+        let points = points.map(|(i, v)| (run.step_s * i as f64, v)).collect();
+        PlottedSeries::new(label, points)
+    };
+    let mut panels = vec![TimePanel {
+        y_label: "gusts (m/s)".to_owned(),
+        series: vec![
+            series("gust u", &mut run.gusts_m_s.iter().map(|g| g.0)),
+            series("gust w", &mut run.gusts_m_s.iter().map(|g| g.1)),
+        ],
+    }];
+    for (i, dof) in run.dofs.iter().enumerate() {
+        let (factor, unit) = match dof {
+            Dof::Torsion => (1f64.to_degrees(), "deg"),
+            _ => (1.0, "m"),
+        };
+        let of = |rows: &[Vec<f64>]| rows.iter().map(|r| factor * r[i]).collect::<Vec<_>>();
+        panels.push(TimePanel {
+            y_label: format!("{} {} ({unit})", dof.name(), dof.symbol()),
+            series: vec![
+                series("nonlinear", &mut of(&run.nonlinear).into_iter()),
+                series("linear", &mut of(&run.linear).into_iter()),
+            ],
+        });
+    }
+    panels
+}

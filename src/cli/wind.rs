@@ -1,0 +1,55 @@
+//! What the commands on a wind file have in common.
+
+use super::output::OutputDir;
+use crate::error::{Error, Result};
+use crate::report::{Figure, PNG_SCALE};
+use crate::study::{WindStudy, example_wind_study_text};
+use std::path::{Path, PathBuf};
+
+/// Name under which the example is left with the user.
+const EXAMPLE_FILE: &str = "wind.toml";
+
+/// The wind file, and where results go.
+#[derive(clap::Args)]
+pub struct WindArgs {
+    /// The wind file: section, aerodynamics, turbulence. Left out, an example is used and written beside the results.
+    pub file: Option<PathBuf>,
+    /// Folder of the results; by default that of the file, or `aerodeck-out`.
+    #[arg(long)]
+    pub out: Option<PathBuf>,
+}
+
+impl WindArgs {
+    /// The wind file or the example, and the folder of the results, in which the example then stands.
+    ///
+    /// # Errors
+    /// Those of reading and writing.
+    pub fn open(&self) -> Result<(WindStudy, OutputDir)> {
+        let Some(file) = &self.file else {
+            let text = example_wind_study_text();
+            let study = WindStudy::from_toml(text, PathBuf::new())?;
+            let directory = self.out.as_deref().unwrap_or(Path::new("aerodeck-out"));
+            let mut out = OutputDir::new(directory)?;
+            out.write(EXAMPLE_FILE, text)?;
+            return Ok((study, out));
+        };
+        let study = WindStudy::read(file)?;
+        let beside = file.parent().filter(|p| !p.as_os_str().is_empty());
+        let directory = self.out.as_deref().or(beside).unwrap_or(Path::new("."));
+        Ok((study, OutputDir::new(directory)?))
+    }
+}
+
+/// Writes a figure as SVG and PNG.
+pub fn write_figure(out: &mut OutputDir, stem: &str, figure: &Figure) -> Result<()> {
+    out.write(format!("{stem}.svg"), figure.svg())?;
+    out.write(format!("{stem}.png"), figure.png(PNG_SCALE)?)
+}
+
+/// A result as indented JSON.
+pub fn write_json(out: &mut OutputDir, name: &str, value: &impl serde::Serialize) -> Result<()> {
+    let mut text =
+        serde_json::to_string_pretty(value).map_err(|e| Error::Numerical(e.to_string()))?;
+    text.push('\n');
+    out.write(name, text)
+}

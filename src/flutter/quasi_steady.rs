@@ -1,0 +1,304 @@
+//! Modes and onset of quasi-steady theory (1.31)–(1.32): at every wind speed the forces are linear about the static
+//! equilibrium of that speed, so that the linear model itself changes with the speed.
+
+use super::curves::{FlutterCurves, ModeBranch, damping_ratio, trace_modes};
+use super::onset::{FlutterSearch, Onset, OnsetMethod};
+use super::search::{OnsetSearch, root};
+use super::tracking::{TrackedMode, Tracker, branch_name, oscillates};
+use crate::aerodynamics::AerodynamicModel;
+use crate::aerodynamics::quasi_steady::QuasiSteady;
+use crate::aeroelastic::{CoupledSection, EquilibriumEnd, EquilibriumPath, static_equilibria};
+use crate::error::{Error, Result, positive};
+use crate::section::Structure;
+use serde::Serialize;
+
+/// Reduced velocity below which quasi-steady theory does not hold: ten transits of the deck in a period.
+const LEAST_REDUCED_VELOCITY: f64 = 10.0;
+
+/// Relative distance of the second speed of a slope.
+const NEARBY: f64 = 1e-5;
+
+/// Answer of quasi-steady theory.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct QuasiSteadyOnset {
+    /// The lowest onset, or up to where there is none: the highest speed, or the end of the equilibrium.
+    pub search: FlutterSearch,
+    /// Where the static equilibrium ends, if it does below the highest speed.
+    pub equilibrium_end: Option<EquilibriumEnd>,
+}
+
+/// First wind speed at which an oscillation about the static equilibrium of that speed loses its damping.
+///
+/// # Errors
+/// [`Error::Input`] for a search range that is none; those of [`static_equilibria`] and of the eigenvalues.
+pub fn quasi_steady_onset(
+    name: &str,
+    structure: &Structure,
+    theory: &QuasiSteady,
+    search: &OnsetSearch,
+) -> Result<QuasiSteadyOnset> {
+    let speed_max = positive("flutter.speed_max_m_s", search.speed_max_m_s)?;
+    if search.speeds < 2 {
+        return Err(Error::input(
+            "flutter.speeds",
+            "at least 2",
+            search.speeds.to_string(),
+        ));
+    }
+    let speeds: Vec<f64> = (1..=search.speeds)
+        .map(|i| speed_max * i as f64 / search.speeds as f64)
+        .collect();
+    let path = static_equilibria(structure, theory, &speeds)?;
+    let found = |search| QuasiSteadyOnset {
+        search,
+        equilibrium_end: path.end,
+    };
+    // in still air the structure's own damping, at least no growth
+    let mut before = (0.0, -f64::MIN_POSITIVE);
+    for point in &path.points {
+        let frozen = frozen(structure, theory, point.rotation_rad)?;
+        let growth = fastest_growth(&frozen, point.speed_m_s)?;
+        if growth >= 0.0 {
+            let speed = root(before, (point.speed_m_s, growth), |speed| {
+                fastest_growth(&at_equilibrium(structure, theory, speed)?, speed)
+            })?;
+            let onset = described(name, structure, theory, speed)?;
+            return Ok(found(FlutterSearch::Onset(Box::new(onset))));
+        }
+        before = (point.speed_m_s, growth);
+    }
+    let stable_up_to = path.end.map_or(speed_max, |end| end.speed_m_s());
+    Ok(found(FlutterSearch::StableUpTo(stable_up_to)))
+}
+
+/// Frequencies and damping over rising wind speeds, about the equilibrium of each; ends with the equilibrium.
+///
+/// # Errors
+/// Those of [`static_equilibria`] and [`trace_modes`].
+pub fn quasi_steady_modes(
+    name: &str,
+    structure: &Structure,
+    theory: &QuasiSteady,
+    path: &EquilibriumPath,
+) -> Result<FlutterCurves> {
+    let mut branches: Vec<ModeBranch> = structure
+        .dofs
+        .iter()
+        .map(|dof| ModeBranch {
+            name: branch_name(*dof),
+            points: Vec::with_capacity(path.points.len()),
+        })
+        .collect();
+    for point in &path.points {
+        let frozen = frozen(structure, theory, point.rotation_rad)?;
+        let at = trace_modes(name, &frozen, &[point.speed_m_s])?;
+        for (all, one) in branches.iter_mut().zip(at.branches) {
+            all.points.extend(one.points);
+        }
+    }
+    Ok(FlutterCurves {
+        model: name.to_owned(),
+        branches,
+    })
+}
+
+/// The section with the forces linear about one rotation, at whatever speed.
+fn frozen(
+    structure: &Structure,
+    theory: &QuasiSteady,
+    rotation_rad: f64,
+) -> Result<CoupledSection> {
+    let linear = theory.linearised(rotation_rad)?;
+    let realization = linear.realize().ok_or_else(|| {
+        Error::Numerical("quasi-steady theory: the linear model has no realisation".into())
+    })?;
+    CoupledSection::new(structure.clone(), realization)
+}
+
+fn at_equilibrium(
+    structure: &Structure,
+    theory: &QuasiSteady,
+    speed_m_s: f64,
+) -> Result<CoupledSection> {
+    let path = static_equilibria(structure, theory, &[speed_m_s])?;
+    let point = path.points.first().ok_or_else(|| {
+        Error::Numerical(format!(
+            "quasi-steady onset: no equilibrium at {speed_m_s} m/s"
+        ))
+    })?;
+    frozen(structure, theory, point.rotation_rad)
+}
+
+/// Largest real part of the eigenvalues that oscillate, 1/s; divergence is the end of the equilibrium.
+fn fastest_growth(section: &CoupledSection, speed_m_s: f64) -> Result<f64> {
+    Ok(section
+        .at(speed_m_s)?
+        .eigenvalues()?
+        .into_iter()
+        .filter(oscillates)
+        .map(|z| z.re)
+        .fold(f64::NEG_INFINITY, f64::max))
+}
+
+/// The mode with the least damping, followed from still air at one linearisation.
+fn least_damped(section: &CoupledSection, speed_m_s: f64) -> Result<TrackedMode> {
+    Tracker::start(section)?
+        .advance(speed_m_s)?
+        .modes
+        .into_iter()
+        .max_by(|a, b| a.lambda.re.total_cmp(&b.lambda.re))
+        .ok_or_else(|| {
+            Error::Numerical(format!(
+                "quasi-steady onset: no mode oscillates at {speed_m_s} m/s"
+            ))
+        })
+}
+
+fn described(name: &str, structure: &Structure, theory: &QuasiSteady, speed: f64) -> Result<Onset> {
+    let mode = least_damped(&at_equilibrium(structure, theory, speed)?, speed)?;
+    let below = speed * (1.0 - NEARBY);
+    let nearby = least_damped(&at_equilibrium(structure, theory, below)?, below)?;
+    let mut onset = Onset::new(
+        name,
+        OnsetMethod::Eigenvalues,
+        structure,
+        (speed, mode.lambda.im),
+        &mode.shape,
+        branch_name(structure.dofs[mode.branch]),
+    );
+    let slope = damping_ratio(mode.lambda) - damping_ratio(nearby.lambda);
+    onset.damping_slope_s_m = Some(slope / (speed * NEARBY));
+    let v_star = onset.reduced_velocity.v_star();
+    if v_star < LEAST_REDUCED_VELOCITY {
+        onset.warnings.push(format!(
+            "V* {v_star:.2} at this onset is below {LEAST_REDUCED_VELOCITY}: quasi-steady theory does not hold there"
+        ));
+    }
+    Ok(onset)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::aerodynamics::quasi_steady::{Arms, embedded};
+    use crate::flutter::find_onset;
+    use crate::section::{Dof, SectionModel};
+    use crate::units::{ReducedFrequency, ReducedFrequencyRange};
+
+    fn plate(arms: Arms) -> QuasiSteady {
+        let table = embedded::coefficients("flat plate").unwrap();
+        QuasiSteady::new(table, arms, &Dof::TWO).unwrap()
+    }
+
+    /// The plate stays at rotation zero, so the linear model is the same at every speed: eigenvalues of one coupled
+    /// section and the determinant give the same onset.
+    #[test]
+    fn three_routes_to_the_onset_of_the_plate() {
+        let structure = SectionModel::table_4_1().structure().unwrap();
+        let theory = plate(Arms {
+            vertical: -0.25,
+            torsion: 0.2,
+            lateral: 0.0,
+        });
+        let search = OnsetSearch {
+            speed_max_m_s: 80.0,
+            speeds: 160,
+        };
+        let found = quasi_steady_onset("plate", &structure, &theory, &search).unwrap();
+        let onset = found.search.onset().unwrap();
+        let linear = theory.linearised(0.0).unwrap();
+        let section = CoupledSection::new(structure.clone(), linear.realize().unwrap()).unwrap();
+        let eigenvalues = find_onset("plate", &section, &search, None).unwrap();
+        let eigenvalues = eigenvalues.onset().unwrap();
+        assert!((onset.speed_m_s / eigenvalues.speed_m_s - 1.0).abs() < 1e-9);
+        assert!((onset.mode_ratio / eigenvalues.mode_ratio - 1.0).abs() < 1e-6);
+        let slopes = (onset.damping_slope_s_m, eigenvalues.damping_slope_s_m);
+        assert!((slopes.0.unwrap() / slopes.1.unwrap() - 1.0).abs() < 1e-3);
+        let range = ReducedFrequencyRange {
+            min: ReducedFrequency::from_full_width(0.02),
+            max: ReducedFrequency::from_full_width(10.0),
+        };
+        let determinant =
+            crate::flutter::determinant_onset("plate", &structure, &linear, range, 80.0).unwrap();
+        let determinant = determinant.onset().unwrap();
+        assert!((onset.speed_m_s / determinant.speed_m_s - 1.0).abs() < 1e-8);
+        assert!((onset.frequency_hz / determinant.frequency_hz - 1.0).abs() < 1e-8);
+        assert!(
+            onset.warnings.iter().any(|w| w.contains("does not hold"))
+                == (onset.reduced_velocity.v_star() < 10.0)
+        );
+    }
+
+    /// Den Hartog: a vertical mode gallops where the aerodynamic damping `½ρVB(C'_L + C_D)` eats up its own, `2mζω`.
+    #[test]
+    fn galloping_of_a_bluff_section() {
+        use crate::aerodynamics::quasi_steady::{
+            CoefficientRow, CoefficientsHeader, StaticCoefficients,
+        };
+        let rows = [-10.0, -5.0, 0.0, 5.0, 10.0]
+            .map(|angle_deg: f64| CoefficientRow {
+                angle_deg,
+                drag: 1.2,
+                lift: -3.2 * angle_deg.to_radians(),
+                moment: 0.0,
+            })
+            .to_vec();
+        let table = StaticCoefficients::new("bluff", CoefficientsHeader::default(), rows).unwrap();
+        let theory = QuasiSteady::new(table, Arms::default(), &Dof::TWO).unwrap();
+        let s = SectionModel::table_4_1().structure().unwrap();
+        let search = OnsetSearch {
+            speed_max_m_s: 20.0,
+            speeds: 40,
+        };
+        let found = quasi_steady_onset("bluff", &s, &theory, &search).unwrap();
+        let onset = found.search.onset().unwrap();
+        let exact = s.damping[(0, 0)] / (0.5 * s.air_density_kg_m3 * s.width_m * 2.0);
+        assert!(
+            (onset.speed_m_s / exact - 1.0).abs() < 1e-9,
+            "{} {exact}",
+            onset.speed_m_s
+        );
+        assert_eq!(onset.branch, "vertical");
+    }
+
+    /// With a quasi-steady plate without arms the twist diverges before anything flutters, or the other way round: both
+    /// ends of the search are said.
+    #[test]
+    fn the_end_of_the_equilibrium_ends_the_search() {
+        let mut section = SectionModel::iabse_1_1a();
+        // a heavily damped section does not flutter below its divergence
+        section.vertical.damping_ratio = 0.9;
+        section.torsion.damping_ratio = 0.9;
+        let structure = section.structure().unwrap();
+        let search = OnsetSearch {
+            speed_max_m_s: 120.0,
+            speeds: 60,
+        };
+        let found = quasi_steady_onset("plate", &structure, &plate(Arms::default()), &search);
+        let found = found.unwrap();
+        let FlutterSearch::StableUpTo(speed) = found.search else {
+            panic!("{found:?}")
+        };
+        assert!((speed - 90.466).abs() < 5e-4, "{speed}");
+        assert!(
+            found
+                .equilibrium_end
+                .unwrap()
+                .explain()
+                .contains("divergence")
+        );
+    }
+
+    #[test]
+    fn modes_end_with_the_equilibrium() {
+        let structure = SectionModel::iabse_1_1a().structure().unwrap();
+        let theory = plate(Arms::default());
+        let speeds: Vec<f64> = (1..=12).map(|i| 10.0 * f64::from(i)).collect();
+        let path = static_equilibria(&structure, &theory, &speeds).unwrap();
+        let curves = quasi_steady_modes("plate", &structure, &theory, &path).unwrap();
+        assert_eq!(path.points.len(), 9);
+        // the heaving mode is overdamped before that
+        assert_eq!(curves.branches[1].points.len(), 9);
+        assert!((curves.branches[0].points[0].frequency_hz - 0.1).abs() < 0.002);
+    }
+}

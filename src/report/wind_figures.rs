@@ -1,0 +1,203 @@
+//! Static equilibria, spectra and root mean squares of the response to turbulence.
+
+use super::axis::Axis;
+use super::figure::Figure;
+use super::legend::Entry;
+use super::panel::Panel;
+use super::sheet::Sheet;
+use super::style::{BLACK, Ink, Shape, colour, dash};
+use crate::aeroelastic::EquilibriumPath;
+use crate::error::Result;
+use crate::section::Dof;
+use crate::study::{BuffetingStudy, SpectrumCurve};
+
+/// Components of the turbulence in words.
+const GUSTS: [&str; 2] = ["u", "w"];
+
+/// Name, symbol and unit of an ordinate, and the factor to that unit from m and rad.
+fn ordinate(dof: Dof, before: &str) -> (String, f64) {
+    let (unit, factor) = match dof {
+        Dof::Torsion => ("deg", 1f64.to_degrees()),
+        _ => ("m", 1.0),
+    };
+    (
+        format!("{before}{} {} ({unit})", dof.name(), dof.symbol()),
+        factor,
+    )
+}
+
+fn titled(title: &str) -> Option<String> {
+    Some(title.to_owned()).filter(|t| !t.is_empty())
+}
+
+/// Static displacements over wind speed, one panel a degree of freedom; the end of the branch is an upright.
+///
+/// # Errors
+/// [`crate::Error::Input`] for no points and numbers that are not finite.
+pub fn equilibrium_figure(title: &str, dofs: &[Dof], path: &EquilibriumPath) -> Result<Figure> {
+    const PLACE: &str = "static equilibrium";
+    let line = Ink::line(colour(PLACE, 0)?, None);
+    let last = dofs.len() - 1;
+    let mut panels = Vec::with_capacity(dofs.len());
+    for (i, dof) in dofs.iter().enumerate() {
+        let (label, factor) = ordinate(*dof, "");
+        let speed = if i == last { "Wind speed V (m/s)" } else { "" };
+        let mut panel = Panel::new(Axis::new(speed).tight(), Axis::new(label));
+        panel.level = Some(0.0);
+        let points = path.points.iter();
+        let points = points.map(|p| (p.speed_m_s, factor * p.displacement[i]));
+        panel.add(dof.name(), points.collect(), line);
+        if let Some(end) = &path.end {
+            panel.uprights.push((end.speed_m_s(), BLACK));
+        }
+        panels.push(panel);
+    }
+    let mut legend = vec![Entry::new("static equilibrium", line)];
+    if let Some(end) = &path.end {
+        let upright = Ink::Line {
+            colour: BLACK,
+            dash: Some("3 3"),
+            width: 0.9,
+        };
+        legend.push(Entry::new(end.explain(), upright));
+    }
+    Sheet {
+        name: PLACE,
+        title: titled(title),
+        panels,
+        columns: 1,
+        axes: (640.0, 150.0),
+        legend: vec![legend],
+    }
+    .draw()
+}
+
+/// Root mean squares over wind speed, one panel a degree of freedom: in all, by each component of the turbulence, and in
+/// the time domain with two standard errors either way.
+///
+/// # Errors
+/// [`crate::Error::Input`] for no points and numbers that are not finite.
+pub fn buffeting_rms_figure(title: &str, study: &BuffetingStudy) -> Result<Figure> {
+    const PLACE: &str = "RMS over wind speed";
+    let total = Ink::line(colour(PLACE, 0)?, None);
+    let parts = [
+        Ink::line(colour(PLACE, 1)?, dash(1)),
+        Ink::line(colour(PLACE, 2)?, dash(2)),
+    ];
+    let stepped = Ink::dots(BLACK, Shape::Diamond);
+    let bar = Ink::Line {
+        colour: BLACK,
+        dash: None,
+        width: 1.2,
+    };
+    let last = study.dofs.len() - 1;
+    let both = (0..2).all(|j| has_gust(study, j));
+    let mut panels = Vec::with_capacity(study.dofs.len());
+    for (i, dof) in study.dofs.iter().enumerate() {
+        let (label, factor) = ordinate(*dof, "RMS ");
+        let speed = if i == last { "Wind speed V (m/s)" } else { "" };
+        let mut panel = Panel::new(Axis::new(speed).tight(), Axis::new(label).zero_based());
+        let line = |pick: &dyn Fn(usize) -> f64| -> Vec<(f64, f64)> {
+            let speeds = study.responses.iter().enumerate();
+            speeds
+                .map(|(k, r)| (r.speed_m_s, factor * pick(k)))
+                .collect()
+        };
+        panel.add("all", line(&|k| study.responses[k].rms[i]), total);
+        for (j, ink) in parts.iter().enumerate().filter(|_| both) {
+            let part = |k: usize| study.responses[k].rms_by_gust[j][i];
+            panel.add(GUSTS[j], line(&part), *ink);
+        }
+        for domain in &study.time {
+            let e = &domain.ensemble;
+            let (at, rms, error) = (e.speed_m_s, e.rms[i], e.standard_error[i]);
+            let ends = [-2.0, 2.0].map(|s| (at, factor * (rms + s * error)));
+            panel.add("standard error", ends.to_vec(), bar);
+            panel.add("time domain", vec![(at, factor * rms)], stepped);
+        }
+        panels.push(panel);
+    }
+    let mut legend = vec![Entry::new("frequency domain", total)];
+    if both {
+        legend.push(Entry::new("by u alone", parts[0]));
+        legend.push(Entry::new("by w alone", parts[1]));
+    }
+    if !study.time.is_empty() {
+        legend.push(Entry::new("time domain, ±2 standard errors", stepped));
+    }
+    Sheet {
+        name: PLACE,
+        title: titled(title),
+        panels,
+        columns: 1,
+        axes: (640.0, 170.0),
+        legend: vec![legend],
+    }
+    .draw()
+}
+
+fn has_gust(study: &BuffetingStudy, j: usize) -> bool {
+    study
+        .responses
+        .iter()
+        .any(|r| r.rms_by_gust[j].iter().any(|x| *x > 0.0))
+}
+
+/// Spectra at one wind speed, logarithmic: `f S` of the turbulence above, of each displacement below.
+///
+/// # Errors
+/// [`crate::Error::Input`] for no points and numbers that are not finite.
+pub fn buffeting_spectra_figure(
+    title: &str,
+    dofs: &[Dof],
+    spectra: &SpectrumCurve,
+) -> Result<Figure> {
+    const PLACE: &str = "spectra";
+    let logarithmic = |label: &str| Axis {
+        logarithmic: true,
+        ..Axis::new(label)
+    };
+    let power = |density: &[f64], factor: f64| -> Vec<(f64, f64)> {
+        let pairs = spectra.frequency_hz.iter().zip(density);
+        pairs.map(|(f, s)| (*f, factor * f * s)).collect()
+    };
+    let mut turbulence = Panel::new(logarithmic(""), logarithmic("f S of the gusts (m²/s²)"));
+    let mut legend = Vec::new();
+    for (j, density) in spectra.gust.iter().enumerate() {
+        if density.iter().any(|s| *s > 0.0) {
+            let ink = Ink::line(colour(PLACE, j + 1)?, dash(j + 1));
+            turbulence.add(GUSTS[j], power(density, 1.0), ink);
+            legend.push(Entry::new(format!("gusts {}", GUSTS[j]), ink));
+        }
+    }
+    let line = Ink::line(colour(PLACE, 0)?, None);
+    let mut panels = vec![turbulence];
+    for (i, dof) in dofs.iter().enumerate() {
+        let (label, factor, unit) = match dof {
+            Dof::Torsion => ("f S_θ", 1f64.to_degrees().powi(2), "deg²"),
+            Dof::Lateral => ("f S_x", 1.0, "m²"),
+            Dof::Vertical => ("f S_y", 1.0, "m²"),
+        };
+        let frequency = if i + 1 == dofs.len() {
+            "Frequency f (Hz)"
+        } else {
+            ""
+        };
+        let mut panel = Panel::new(
+            logarithmic(frequency),
+            logarithmic(&format!("{label} ({unit})")),
+        );
+        panel.add(dof.name(), power(&spectra.motion[i], factor), line);
+        panels.push(panel);
+    }
+    legend.push(Entry::new("motion", line));
+    Sheet {
+        name: PLACE,
+        title: titled(title),
+        panels,
+        columns: 1,
+        axes: (640.0, 150.0),
+        legend: vec![legend],
+    }
+    .draw()
+}

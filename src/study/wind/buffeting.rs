@@ -1,0 +1,293 @@
+//! Buffeting of a wind file: RMS over wind speed, spectra, both domains side by side.
+
+use super::{QUASI_STEADY, WindStudy};
+use crate::aerodynamics::quasi_steady::QuasiSteady;
+use crate::aerodynamics::{AerodynamicModel, FlatPlate, RationalModel};
+use crate::aeroelastic::static_equilibria;
+use crate::buffeting::{
+    BuffetingProblem, BuffetingResponse, ComponentComparison, Ensemble, GustComponent, GustForces,
+    TimePlan, buffeting_response, compare, response_spectrum, time_ensemble, unstable_roots,
+};
+use crate::error::{Error, Result};
+use crate::section::{Dof, SectionModel, Structure};
+use crate::units::ReducedFrequencyRange;
+use serde::Serialize;
+
+const FLAT_PLATE: &str = "flat plate";
+const JONES: &str = "flat plate (Jones)";
+/// Frequencies of the spectra, over this range about the natural ones.
+const SPECTRUM_POINTS: usize = 600;
+const SPECTRUM_REACH: (f64, f64) = (0.05, 8.0);
+
+/// Response to turbulence over wind speed.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct BuffetingStudy {
+    /// The self-excited forces in words.
+    pub aerodynamics: String,
+    /// Degrees of freedom, in the order of all vectors.
+    pub dofs: Vec<Dof>,
+    /// Deck width, m.
+    pub width_m: f64,
+    /// Root mean squares at each speed at which the section is stable.
+    pub responses: Vec<BuffetingResponse>,
+    /// First speed of the list at which it is not, m/s, and why.
+    pub ends_at: Option<(f64, String)>,
+    /// Spectra at the speeds of the time domain, else at the middle speed.
+    pub spectra: Vec<SpectrumCurve>,
+    /// Both domains at the speeds asked for.
+    pub time: Vec<TimeDomain>,
+}
+
+/// Spectra at one wind speed.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SpectrumCurve {
+    /// Mean wind speed, m/s.
+    pub speed_m_s: f64,
+    /// Frequencies, Hz.
+    pub frequency_hz: Vec<f64>,
+    /// `S_u` and `S_w`, m²/s² per Hz; zero for a component that is left out.
+    pub gust: [Vec<f64>; 2],
+    /// Spectra of the displacements (n): m²/Hz, rad²/Hz.
+    pub motion: Vec<Vec<f64>>,
+}
+
+/// Both domains at one wind speed.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct TimeDomain {
+    /// The records.
+    pub ensemble: Ensemble,
+    /// Degree by degree of freedom.
+    pub comparison: Vec<ComponentComparison>,
+}
+
+/// What does not change with the wind speed.
+struct Setting<'a> {
+    study: &'a WindStudy,
+    structure: Structure,
+    theory: Option<QuasiSteady>,
+    fixed: Option<Box<dyn AerodynamicModel>>,
+    tested: Option<ReducedFrequencyRange>,
+}
+
+/// Everything about one wind speed.
+struct AtSpeed {
+    moving: Option<Box<dyn AerodynamicModel>>,
+    forces: GustForces,
+}
+
+/// RMS over the speeds of the file, spectra, and the time domain where it is asked for. `progress` is told records done and
+/// all of them.
+///
+/// # Errors
+/// Those of the file's parts and of the computations.
+pub fn buffeting_study(
+    study: &WindStudy,
+    progress: &(dyn Fn(usize, usize) + Sync),
+) -> Result<BuffetingStudy> {
+    let setting = Setting::new(study)?;
+    let mut responses = Vec::new();
+    let mut ends_at = None;
+    for speed in study.speeds.curve_speeds_m_s() {
+        match setting.response(speed)? {
+            Ok(response) => responses.push(response),
+            Err(reason) => {
+                ends_at = Some((speed, reason));
+                break;
+            }
+        }
+    }
+    let time = setting.time(progress)?;
+    let mut of_spectra = study.time.speeds_m_s.clone();
+    if of_spectra.is_empty() {
+        of_spectra.extend(responses.get(responses.len() / 2).map(|r| r.speed_m_s));
+    }
+    let spectra = of_spectra
+        .iter()
+        .map(|speed| setting.spectra(*speed))
+        .collect::<Result<_>>()?;
+    Ok(BuffetingStudy {
+        aerodynamics: study.aerodynamics.clone(),
+        dofs: setting.structure.dofs.clone(),
+        width_m: setting.structure.width_m,
+        responses,
+        ends_at,
+        spectra,
+        time,
+    })
+}
+
+impl<'a> Setting<'a> {
+    fn new(study: &'a WindStudy) -> Result<Self> {
+        let section: SectionModel = study.section()?;
+        let theory = study.coefficients.is_some().then(|| study.quasi_steady());
+        let theory = theory.transpose()?;
+        let trained = study.trained_model()?;
+        let tested = trained.as_ref().map(|m| m.tested_range);
+        let fixed: Option<Box<dyn AerodynamicModel>> = match study.aerodynamics.as_str() {
+            QUASI_STEADY => {
+                study.static_coefficients()?;
+                None
+            }
+            FLAT_PLATE => Some(Box::new(FlatPlate::default())),
+            JONES => Some(Box::new(RationalModel::jones_flat_plate())),
+            other => {
+                let model = trained.ok_or_else(|| {
+                    Error::input(
+                        "aerodynamics",
+                        format!(
+                            "`{QUASI_STEADY}`, `{FLAT_PLATE}`, `{JONES}` or a trained model (.json)"
+                        ),
+                        format!("`{other}`"),
+                    )
+                })?;
+                Some(Box::new(model.model))
+            }
+        };
+        Ok(Self {
+            study,
+            structure: section.structure()?,
+            theory,
+            fixed,
+            tested,
+        })
+    }
+
+    /// The forces at one speed: gust forces about the equilibrium with quasi-steady theory, else at rotation zero; without
+    /// coefficients those of the thin plate. The inner error says that there is no equilibrium.
+    fn at(&self, speed_m_s: f64) -> Result<std::result::Result<AtSpeed, String>> {
+        let Some(theory) = &self.theory else {
+            return Ok(Ok(AtSpeed {
+                moving: None,
+                forces: GustForces::flat_plate(),
+            }));
+        };
+        if self.fixed.is_some() {
+            let forces = GustForces::quasi_steady(&theory.linearised(0.0)?);
+            return Ok(Ok(AtSpeed {
+                moving: None,
+                forces,
+            }));
+        }
+        let path = static_equilibria(&self.structure, theory, &[speed_m_s])?;
+        let Some(point) = path.points.first() else {
+            let why = path
+                .end
+                .map_or("no equilibrium".to_owned(), |e| e.explain());
+            return Ok(Err(why));
+        };
+        let linear = theory.linearised(point.rotation_rad)?;
+        Ok(Ok(AtSpeed {
+            forces: GustForces::quasi_steady(&linear),
+            moving: Some(Box::new(linear)),
+        }))
+    }
+
+    fn problem<'b>(&'b self, at: &'b AtSpeed) -> Result<BuffetingProblem<'b>> {
+        let model = at.moving.as_deref().or(self.fixed.as_deref());
+        let turbulence = self.study.turbulence.as_ref();
+        Ok(BuffetingProblem {
+            structure: &self.structure,
+            model: model.ok_or_else(|| Error::input("aerodynamics", "a model", "none"))?,
+            forces: &at.forces,
+            turbulence: turbulence
+                .ok_or_else(|| Error::input("turbulence", "`along`, `vertical` or both", "none"))?,
+        })
+    }
+
+    /// The response, or why there is none.
+    fn response(&self, speed: f64) -> Result<std::result::Result<BuffetingResponse, String>> {
+        let at = match self.at(speed)? {
+            Ok(at) => at,
+            Err(why) => return Ok(Err(why)),
+        };
+        let problem = self.problem(&at)?;
+        problem.validate()?;
+        let unstable = unstable_roots(&problem, speed)?;
+        if unstable > 0 {
+            return Ok(Err(format!(
+                "the section is unstable ({unstable} growing roots): no stationary response"
+            )));
+        }
+        buffeting_response(&problem, speed, self.tested).map(Ok)
+    }
+
+    /// The forces at a speed that was asked for by name.
+    fn required(&self, speed: f64) -> Result<AtSpeed> {
+        self.at(speed)?
+            .map_err(|why| Error::Numerical(format!("buffeting at {speed} m/s: {why}")))
+    }
+
+    fn time(&self, progress: &(dyn Fn(usize, usize) + Sync)) -> Result<Vec<TimeDomain>> {
+        let (speeds, plan) = (&self.study.time.speeds_m_s, &self.study.time.plan);
+        let all = speeds.len() * plan.records;
+        speeds
+            .iter()
+            .enumerate()
+            .map(|(i, speed)| {
+                let told = |done: usize, _: usize| progress(i * plan.records + done, all);
+                self.both_domains(*speed, plan, &told)
+            })
+            .collect()
+    }
+
+    fn both_domains(
+        &self,
+        speed: f64,
+        plan: &TimePlan,
+        progress: &(dyn Fn(usize, usize) + Sync),
+    ) -> Result<TimeDomain> {
+        let at = self.required(speed)?;
+        let problem = self.problem(&at)?;
+        let frequency = buffeting_response(&problem, speed, self.tested)?;
+        let ensemble = time_ensemble(&problem, speed, plan, progress)?;
+        Ok(TimeDomain {
+            comparison: compare(&self.structure.dofs, &frequency, &ensemble),
+            ensemble,
+        })
+    }
+
+    fn spectra(&self, speed: f64) -> Result<SpectrumCurve> {
+        let at = self.required(speed)?;
+        let problem = self.problem(&at)?;
+        let natural = self.structure.dofs_by_frequency();
+        let hertz = |dof: &Dof| {
+            let i = self
+                .structure
+                .dofs
+                .iter()
+                .position(|d| d == dof)
+                .unwrap_or(0);
+            let s = &self.structure;
+            (s.stiffness[(i, i)] / s.mass[(i, i)]).sqrt() / std::f64::consts::TAU
+        };
+        let ends = natural.first().zip(natural.last());
+        let (low, high) = ends.map_or((1.0, 1.0), |(a, b)| (hertz(a), hertz(b)));
+        let (low, high) = (low * SPECTRUM_REACH.0, high * SPECTRUM_REACH.1);
+        let last = (SPECTRUM_POINTS - 1) as f64;
+        let frequency_hz: Vec<f64> = (0..SPECTRUM_POINTS)
+            .map(|i| low * (high / low).powf(i as f64 / last))
+            .collect();
+        let gust = GustComponent::BOTH.map(|component| {
+            let density = |f: &f64| {
+                problem
+                    .turbulence
+                    .component(component)
+                    .map_or(0.0, |gust| gust.spectrum.density(component, *f, speed))
+            };
+            frequency_hz.iter().map(density).collect()
+        });
+        let rows = frequency_hz
+            .iter()
+            .map(|f| response_spectrum(&problem, *f, speed))
+            .collect::<Result<Vec<_>>>()?;
+        let motion = (0..self.structure.dofs.len())
+            .map(|i| rows.iter().map(|row| row[i]).collect())
+            .collect();
+        Ok(SpectrumCurve {
+            speed_m_s: speed,
+            frequency_hz,
+            gust,
+            motion,
+        })
+    }
+}

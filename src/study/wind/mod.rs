@@ -1,0 +1,271 @@
+//! The wind file: section, aerodynamics and turbulence for quasi-steady theory and buffeting.
+
+mod buffeting;
+mod quasi_steady;
+
+pub use buffeting::{BuffetingStudy, SpectrumCurve, TimeDomain, buffeting_study};
+pub use quasi_steady::{QuasiSteadyStudy, SimulatedMotion, quasi_steady_study, simulated_motion};
+
+use super::{FlutterBlock, locate};
+use crate::aerodynamics::derivatives::{
+    DerivativeTable, Extrapolation, InterpolatedTable, embedded as decks, read_table,
+};
+use crate::aerodynamics::quasi_steady::{
+    Arms, QuasiSteady, StaticCoefficients, embedded, read_coefficients,
+};
+use crate::buffeting::{TimePlan, Turbulence};
+use crate::error::{Error, Result, positive};
+use crate::section::SectionModel;
+use crate::trained_model::TrainedModel;
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+
+/// Version of the wind file.
+const WIND_SCHEMA: u32 = 1;
+
+/// Text of the example: a box girder of made-up coefficients in turbulent wind.
+pub fn example_wind_study_text() -> &'static str {
+    include_str!("example.toml")
+}
+
+/// Contents of a wind file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct WindStudy {
+    /// Version of the file, 1.
+    pub schema: u32,
+    /// Name in titles.
+    pub name: String,
+    /// The suspended section; may be left out with a trained model, which has its own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub section: Option<SectionModel>,
+    /// Static coefficients, for quasi-steady theory and for gust forces.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub coefficients: Option<CoefficientsBlock>,
+    /// Self-excited forces in turbulence: `quasi-steady`, `flat plate`, `flat plate (Jones)` or a trained model (`.json`).
+    #[serde(default = "quasi_steady_forces")]
+    pub aerodynamics: String,
+    /// Wind speeds of all curves and of the search for the onset.
+    #[serde(default)]
+    pub speeds: FlutterBlock,
+    /// The turbulence.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub turbulence: Option<Turbulence>,
+    /// Wind speeds at which the response is computed in the time domain as well.
+    #[serde(default)]
+    pub time: TimeBlock,
+    /// A run with nonlinear forces.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub simulation: Option<SimulationBlock>,
+    /// Directory of the file, against which paths in it are read.
+    #[serde(skip)]
+    pub directory: PathBuf,
+}
+
+fn quasi_steady_forces() -> String {
+    QUASI_STEADY.to_owned()
+}
+
+const QUASI_STEADY: &str = "quasi-steady";
+
+/// Static coefficients and the arms of the corrected theory.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CoefficientsBlock {
+    /// Name of an embedded table, or the path of one (`.csv`).
+    pub source: String,
+    /// `B₁/B` of each force; left out, none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub arms: Option<Arms>,
+    /// Derivatives from which the arms follow at their highest reduced velocity (1.18): an embedded deck or a table.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub arms_from: Option<String>,
+}
+
+/// What is stepped in the time domain.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct TimeBlock {
+    /// Mean wind speeds, m/s; none by default.
+    pub speeds_m_s: Vec<f64>,
+    /// Records at each.
+    pub plan: TimePlan,
+}
+
+/// A run with nonlinear quasi-steady forces, released from the static equilibrium.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SimulationBlock {
+    /// Mean wind speed, m/s.
+    pub wind_speed_m_s: f64,
+    /// Length of the run, s.
+    pub duration_s: f64,
+    /// Time between rows of the result, s.
+    pub step_s: f64,
+    /// Gusts (`.csv`); left out, they are generated from the turbulence, or there are none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gusts: Option<PathBuf>,
+    /// Seed of generated gusts.
+    #[serde(default = "first_seed")]
+    pub seed: u64,
+    /// Release from this vertical displacement off the equilibrium, m.
+    #[serde(default)]
+    pub initial_vertical_m: f64,
+    /// Release from this rotation off the equilibrium, deg.
+    #[serde(default)]
+    pub initial_rotation_deg: f64,
+}
+
+fn first_seed() -> u64 {
+    1
+}
+
+impl WindStudy {
+    /// Reads and checks a wind file.
+    ///
+    /// # Errors
+    /// [`Error::Io`] when it cannot be read; [`Error::Input`] with file and line for everything that is wrong in it.
+    pub fn read(path: &Path) -> Result<Self> {
+        let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, e))?;
+        let directory = path.parent().unwrap_or(Path::new("")).to_path_buf();
+        Self::from_toml(&text, directory).map_err(|e| e.in_file(path))
+    }
+
+    /// Reads and checks the text of a wind file; paths in it are read against `directory`.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with line and key for everything that is wrong in it.
+    pub fn from_toml(text: &str, directory: PathBuf) -> Result<Self> {
+        let mut study: Self =
+            toml::from_str(text).map_err(|e| toml_lines::syntax_error("a wind file", text, &e))?;
+        study.directory = directory;
+        study.validate().map_err(|e| toml_lines::with_line(text, e))?;
+        Ok(study)
+    }
+
+    fn validate(&self) -> Result<()> {
+        if self.schema != WIND_SCHEMA {
+            return Err(Error::input(
+                "schema",
+                WIND_SCHEMA.to_string(),
+                self.schema.to_string(),
+            ));
+        }
+        if let Some(section) = &self.section {
+            section.structure()?;
+        }
+        self.speeds.validate("speeds")?;
+        if let Some(turbulence) = &self.turbulence {
+            turbulence.validate("turbulence")?;
+        }
+        for (i, speed) in self.time.speeds_m_s.iter().enumerate() {
+            positive(&format!("time.speeds_m_s[{i}]"), *speed)?;
+        }
+        if let Some(block) = &self.coefficients
+            && block.arms.is_some()
+            && block.arms_from.is_some()
+        {
+            return Err(Error::input(
+                "coefficients.arms_from",
+                "`arms` or `arms_from`",
+                "both",
+            ));
+        }
+        if let Some(run) = &self.simulation {
+            positive("simulation.wind_speed_m_s", run.wind_speed_m_s)?;
+            positive("simulation.duration_s", run.duration_s)?;
+            positive("simulation.step_s", run.step_s)?;
+            for (key, value) in [
+                ("initial_vertical_m", run.initial_vertical_m),
+                ("initial_rotation_deg", run.initial_rotation_deg),
+            ] {
+                if !value.is_finite() {
+                    let place = format!("simulation.{key}");
+                    return Err(Error::input(place, "a finite number", value.to_string()));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The trained model of `aerodynamics`, when it names one.
+    ///
+    /// # Errors
+    /// [`Error::Io`] and those of the file.
+    pub fn trained_model(&self) -> Result<Option<TrainedModel>> {
+        if !self.aerodynamics.ends_with(".json") {
+            return Ok(None);
+        }
+        let path = self.directory.join(&self.aerodynamics);
+        let text = std::fs::read_to_string(&path).map_err(|e| Error::io(&path, e))?;
+        let model = TrainedModel::from_json(&text).map_err(|e| e.in_file(&path))?;
+        Ok(Some(model))
+    }
+
+    /// The section: that of the file, else that of the trained model.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when there is neither.
+    pub fn section(&self) -> Result<SectionModel> {
+        if let Some(section) = &self.section {
+            return Ok(section.clone());
+        }
+        let model = self.trained_model()?;
+        model.map(|m| m.section).ok_or_else(|| {
+            Error::input(
+                "section",
+                "a [section], or a trained model that has one",
+                "neither",
+            )
+        })
+    }
+
+    /// The table of static coefficients.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when the file names none; those of reading.
+    pub fn static_coefficients(&self) -> Result<StaticCoefficients> {
+        let block = self.coefficients_block()?;
+        if block.source.to_lowercase().ends_with(".csv") {
+            read_coefficients(self.directory.join(&block.source))
+        } else {
+            embedded::coefficients(&block.source)
+        }
+    }
+
+    fn coefficients_block(&self) -> Result<&CoefficientsBlock> {
+        self.coefficients
+            .as_ref()
+            .ok_or_else(|| Error::input("coefficients", "a table of static coefficients", "none"))
+    }
+
+    /// Quasi-steady theory with its arms.
+    ///
+    /// # Errors
+    /// Those of the coefficients and of the derivatives that give the arms.
+    pub fn quasi_steady(&self) -> Result<QuasiSteady> {
+        let dofs = self.section()?.dofs();
+        let block = self.coefficients_block()?;
+        let arms = match (&block.arms, &block.arms_from) {
+            (Some(arms), _) => *arms,
+            (None, Some(source)) => {
+                let table = self.derivatives(source)?;
+                let model = InterpolatedTable::new(&table, &dofs, Extrapolation::Refuse)?;
+                Arms::from_model(&model, model.tested_range().min)?
+            }
+            (None, None) => Arms::default(),
+        };
+        QuasiSteady::new(self.static_coefficients()?, arms, &dofs)
+    }
+
+    fn derivatives(&self, source: &str) -> Result<DerivativeTable> {
+        let is_file = [".csv", ".xlsx"]
+            .iter()
+            .any(|end| source.to_lowercase().ends_with(end));
+        if is_file {
+            read_table(self.directory.join(source))
+        } else {
+            decks::deck(source)
+        }
+    }
+}

@@ -1,0 +1,234 @@
+//! Quasi-steady theory of a wind file: equilibria, linear model, onset, a nonlinear run.
+
+use super::{SimulationBlock, WindStudy};
+use crate::aerodynamics::quasi_steady::{
+    CoefficientRow, CoefficientsAt, LinearQuasiSteady, QuasiSteady,
+};
+use crate::aerodynamics::{AerodynamicModel, GustSeries, read_gusts};
+use crate::aeroelastic::{CoupledSection, EquilibriumPath, StaticEquilibrium, static_equilibria};
+use crate::buffeting::{BuffetingProblem, GustForces, synthesise};
+use crate::error::{Error, Result};
+use crate::flutter::{FlutterCurves, QuasiSteadyOnset, quasi_steady_modes, quasi_steady_onset};
+use crate::response::{Inputs, NonlinearSection, Stepper};
+use crate::section::{Dof, Structure};
+use serde::Serialize;
+
+/// Agreement that halving the step has to reach.
+const STEP_TOLERANCE: f64 = 1e-6;
+/// Angles of the line through the coefficients in the figure.
+const LINE_POINTS: usize = 161;
+
+/// Results of quasi-steady theory over wind speed.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct QuasiSteadyStudy {
+    /// Name of the coefficients.
+    pub coefficients: String,
+    /// Degrees of freedom, in the order of all vectors.
+    pub dofs: Vec<Dof>,
+    /// Static equilibria.
+    pub equilibria: EquilibriumPath,
+    /// The linear model at the equilibrium of each speed.
+    pub linear: Vec<LinearQuasiSteady>,
+    /// Frequencies and damping about the equilibria.
+    pub curves: FlutterCurves,
+    /// Onset.
+    pub onset: QuasiSteadyOnset,
+    /// Rows of the table, for the figure.
+    #[serde(skip)]
+    pub rows: Vec<CoefficientRow>,
+    /// The line through them: angle (deg) and coefficients.
+    #[serde(skip)]
+    pub line: Vec<(f64, CoefficientsAt)>,
+}
+
+/// Equilibria, linear models, modes and onset of a wind file.
+///
+/// # Errors
+/// Those of the file's parts and of the computations.
+pub fn quasi_steady_study(study: &WindStudy) -> Result<QuasiSteadyStudy> {
+    let structure = study.section()?.structure()?;
+    let theory = study.quasi_steady()?;
+    let table = theory.coefficients();
+    let speeds = study.speeds.curve_speeds_m_s();
+    let equilibria = static_equilibria(&structure, &theory, &speeds)?;
+    let name = format!("quasi-steady, {}", table.name());
+    let linear = equilibria
+        .points
+        .iter()
+        .map(|p| theory.linearised(p.rotation_rad))
+        .collect::<Result<_>>()?;
+    let (low, high) = table.range_rad();
+    let line = (0..LINE_POINTS)
+        .map(|i| {
+            let angle = low + (high - low) * i as f64 / (LINE_POINTS - 1) as f64;
+            Ok((angle.to_degrees(), table.at(angle)?))
+        })
+        .collect::<Result<_>>()?;
+    Ok(QuasiSteadyStudy {
+        coefficients: table.name().to_owned(),
+        dofs: structure.dofs.clone(),
+        curves: quasi_steady_modes(&name, &structure, &theory, &equilibria)?,
+        onset: quasi_steady_onset(&name, &structure, &theory, &study.speeds.search())?,
+        rows: table.rows().to_vec(),
+        linear,
+        equilibria,
+        line,
+    })
+}
+
+/// One run with nonlinear forces, and the same with the linear ones.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SimulatedMotion {
+    /// Mean wind speed, m/s.
+    pub speed_m_s: f64,
+    /// Degrees of freedom.
+    pub dofs: Vec<Dof>,
+    /// Where it starts from, apart from the release.
+    pub equilibrium: StaticEquilibrium,
+    /// Time between rows, s.
+    pub step_s: f64,
+    /// Displacements (n) and rates (n): m, rad, m/s, rad/s.
+    pub nonlinear: Vec<Vec<f64>>,
+    /// The same with forces linear about the equilibrium.
+    pub linear: Vec<Vec<f64>>,
+    /// Steps of the nonlinear run between two rows.
+    pub substeps: usize,
+    /// Largest relative difference to a run with half as many.
+    pub step_error: f64,
+    /// The gusts: `u`, `w` at each row, m/s.
+    pub gusts_m_s: Vec<(f64, f64)>,
+}
+
+/// The run that the wind file asks for; `None` when it asks for none.
+///
+/// # Errors
+/// Those of the file's parts; [`Error::Numerical`] without an equilibrium at its wind speed.
+pub fn simulated_motion(study: &WindStudy) -> Result<Option<SimulatedMotion>> {
+    let Some(run) = &study.simulation else {
+        return Ok(None);
+    };
+    let structure = study.section()?.structure()?;
+    let theory = study.quasi_steady()?;
+    let path = static_equilibria(&structure, &theory, &[run.wind_speed_m_s])?;
+    let Some(equilibrium) = path.points.first().cloned() else {
+        let why = path.end.map_or(String::new(), |end| end.explain());
+        return Err(Error::Numerical(format!(
+            "simulation at {} m/s: {why}",
+            run.wind_speed_m_s
+        )));
+    };
+    let linear = theory.linearised(equilibrium.rotation_rad)?;
+    let gusts = gusts(study, run, &structure, &linear)?;
+    let steps = (run.duration_s / run.step_s).round().max(1.0) as usize;
+    let n = structure.dofs.len();
+    let mut released = vec![0.0; 2 * n];
+    released[0] = run.initial_vertical_m;
+    released[n - 1] = run.initial_rotation_deg.to_radians();
+    let start: Vec<f64> = (0..2 * n)
+        .map(|i| released[i] + equilibrium.displacement.get(i).copied().unwrap_or(0.0))
+        .collect();
+    let wind = (run.wind_speed_m_s, &gusts);
+    let grid = (run.step_s, steps);
+    let nonlinear = nonlinear(&structure, &theory, &start, wind, grid)?;
+    let about = linear_rows(&structure, &linear, &released, wind, grid)?;
+    let with_rest = |row: Vec<f64>| -> Vec<f64> {
+        let rest = equilibrium
+            .displacement
+            .iter()
+            .chain(std::iter::repeat(&0.0));
+        row.iter().zip(rest).map(|(a, b)| a + b).collect()
+    };
+    Ok(Some(SimulatedMotion {
+        speed_m_s: run.wind_speed_m_s,
+        dofs: structure.dofs.clone(),
+        linear: about.into_iter().map(with_rest).collect(),
+        gusts_m_s: (0..=steps)
+            .map(|i| gusts.at(run.step_s * i as f64))
+            .collect(),
+        step_s: run.step_s,
+        substeps: nonlinear.substeps,
+        step_error: nonlinear.step_error,
+        nonlinear: nonlinear.rows,
+        equilibrium,
+    }))
+}
+
+fn nonlinear(
+    structure: &Structure,
+    theory: &QuasiSteady,
+    start: &[f64],
+    wind: (f64, &GustSeries),
+    grid: (f64, usize),
+) -> Result<crate::response::NonlinearRun> {
+    NonlinearSection::new(structure.clone(), theory.clone())?.run(start, wind, grid, STEP_TOLERANCE)
+}
+
+/// Gusts of the run: from the file named, generated, or none. The last sample is at least at the end of the run.
+fn gusts(
+    study: &WindStudy,
+    run: &SimulationBlock,
+    structure: &Structure,
+    linear: &LinearQuasiSteady,
+) -> Result<GustSeries> {
+    if let Some(path) = &run.gusts {
+        return read_gusts(study.directory.join(path));
+    }
+    let Some(turbulence) = &study.turbulence else {
+        return GustSeries::calm(run.duration_s + run.step_s);
+    };
+    let forces = GustForces::quasi_steady(linear);
+    let problem = BuffetingProblem {
+        structure,
+        model: linear,
+        forces: &forces,
+        turbulence,
+    };
+    // an even number of samples that reaches beyond the end
+    let samples = 2 * (0.5 * run.duration_s / run.step_s).ceil() as usize + 2;
+    let sample = synthesise(
+        &problem,
+        run.wind_speed_m_s,
+        (run.step_s, samples.max(16)),
+        run.seed,
+    )?;
+    Ok(sample.gusts)
+}
+
+/// Motion about the equilibrium under linear forces and gusts on straight lines, by exact steps.
+fn linear_rows(
+    structure: &Structure,
+    linear: &LinearQuasiSteady,
+    released: &[f64],
+    (speed, gusts): (f64, &GustSeries),
+    (step_s, steps): (f64, usize),
+) -> Result<Vec<Vec<f64>>> {
+    let n = structure.dofs.len();
+    let realization = linear.realize().ok_or_else(|| {
+        Error::Numerical("quasi-steady theory: the linear model has no realisation".into())
+    })?;
+    let mut stepper = Stepper::new(CoupledSection::new(structure.clone(), realization)?);
+    let mut state = stepper.released(&released[..n], &released[n..])?;
+    let half_rho_v = 0.5 * structure.air_density_kg_m3 * speed;
+    let force = |time: f64| -> Vec<f64> {
+        let (u, w) = gusts.at(time);
+        let rows = linear.buffeting().row_iter().zip(&structure.dofs);
+        rows.map(|(row, dof)| {
+            half_rho_v * dof.force_scale(structure.width_m) * (row[0] * u + row[1] * w)
+        })
+        .collect()
+    };
+    let mut inputs = Inputs::steady(speed, n);
+    let mut rows = vec![state.values.clone()];
+    for i in 0..steps {
+        let (now, next) = (force(step_s * i as f64), force(step_s * (i + 1) as f64));
+        inputs.force_rate = now
+            .iter()
+            .zip(&next)
+            .map(|(a, b)| (b - a) / step_s)
+            .collect();
+        inputs.force = now;
+        stepper.advance(&mut state, &inputs, step_s)?;
+        rows.push(state.values.clone());
+    }
+    Ok(rows)
+}
