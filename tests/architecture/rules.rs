@@ -26,10 +26,14 @@ pub const ARROWS: &[Row] = &[
     row("error", &[]),
     row("units", &[]),
     row("state_space", &[]),
-    row("comparison", &[]),
+    row("signal", &[]),
+    row("comparison", &["signal"]),
     row("section", &["units"]),
     row("aerodynamics", &["units", "section", "state_space"]),
-    row("wind_tunnel", &["units", "section", "aerodynamics"]),
+    row(
+        "wind_tunnel",
+        &["units", "section", "aerodynamics", "signal"],
+    ),
     row("trained_model", &["units", "section", "aerodynamics"]),
     row(
         "identification",
@@ -38,6 +42,7 @@ pub const ARROWS: &[Row] = &[
             "section",
             "state_space",
             "aerodynamics",
+            "signal",
             "wind_tunnel::Record*",
             "wind_tunnel::Segment",
             // what a fit returns
