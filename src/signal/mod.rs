@@ -6,6 +6,7 @@
 mod butterworth;
 mod correlation;
 mod delay;
+mod differences;
 mod harmonics;
 mod lagrange;
 mod resample;
@@ -15,6 +16,7 @@ mod zero_phase;
 pub use butterworth::{ButterworthLowPass, Section};
 pub use correlation::CrossCorrelation;
 pub use delay::{Delay, delay};
+pub use differences::{acceleration, rate};
 pub use harmonics::{HarmonicFit, Plateau, fit_harmonics, fit_sine, plateau, refine_frequency};
 pub use lagrange::{NODES, delayed, lagrange_weights, value_at};
 pub use resample::Resampler;

@@ -1,6 +1,7 @@
 //! Forced-vibration records: what they are, reading and writing them, and a virtual tunnel that makes them.
 
 mod motion;
+pub mod processing;
 mod raw;
 mod record_file;
 mod record_format;
