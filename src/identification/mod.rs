@@ -3,6 +3,7 @@
 mod basis;
 #[cfg(test)]
 mod deck_tests;
+pub mod derivatives;
 mod discrete;
 mod frequency;
 mod least_squares;

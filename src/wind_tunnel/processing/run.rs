@@ -123,6 +123,7 @@ impl<'a> Prepared<'a> {
             &regressors,
             filter.as_ref().map(|f| &f.0),
             &options.spikes,
+            rig.model_width_m,
             &self.clipped(&covered, aligned.alignment.offset_samples),
         )?;
         stages.add("spikes replaced", &signals);

@@ -219,8 +219,8 @@ mod tests {
         assert_eq!(found.len(), truth.len());
         for (found, truth) in found.iter().zip(truth) {
             let s = found.segment;
-            // the part of the ramp above 0.99 shifts no phase
-            assert!((s.frequency_hz / truth.frequency_hz - 1.0).abs() < 1e-6, "{s:?}");
+            // the part of the ramps above 0.99 is not quite harmonic: 4e-5 at 0.25 Hz, where five periods are steady
+            assert!((s.frequency_hz / truth.frequency_hz - 1.0).abs() < 1e-4, "{s:?}");
             // the rest between two smooth ramps is found to within a part of a second
             assert!((s.start_s - truth.start_s).abs() < 0.7, "{s:?} {truth:?}");
             assert!((s.end_s - truth.end_s).abs() < 0.7, "{s:?} {truth:?}");

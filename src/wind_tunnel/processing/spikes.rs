@@ -18,6 +18,10 @@ use std::ops::Range;
 /// Rounds of regression at most.
 const ROUNDS: usize = 8;
 
+/// Nothing below this part of the greatest force that follows the motion is a spike: a force that hardly exists (drag of a
+/// heaving model) has residuals of second order only, and no noise to measure them by. The moment counts over the width.
+const NEGLIGIBLE: f64 = 1e-2;
+
 /// A stretch of samples that was replaced.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Replaced {
@@ -50,6 +54,7 @@ pub fn remove_spikes(
     regressors: &Regressors,
     filter: Option<&ButterworthLowPass>,
     options: &SpikeOptions,
+    width_m: f64,
     clipped: &[Range<usize>],
 ) -> Result<Cleaned> {
     let count = signals.len();
@@ -61,14 +66,19 @@ pub fn remove_spikes(
     let mut parts = fit_all(signals, regressors, &reasons)?;
     for _ in 0..ROUNDS {
         let mut added = false;
+        let scale = |d: usize| Dof::THREE[d].force_scale(width_m) / width_m;
+        let greatest = (0..parts.len())
+            .map(|d| greatest(&parts[d].coherent) / scale(d))
+            .fold(0.0, f64::max);
         for (d, part) in parts.iter().enumerate() {
+            let least = NEGLIGIBLE * greatest * scale(d);
             let residual = residual(&signals.force[d], part, &reasons);
             let mut views = vec![residual.clone()];
             if let Some(filter) = filter.filter(|f| count > f.padding()) {
                 views.push(filter.zero_phase(&residual)?);
             }
             for view in &views {
-                for k in wild(view, part, regressors, options) {
+                for k in wild(view, part, regressors, options, least) {
                     if reasons[k].is_none() {
                         mark(&mut reasons, k, k + 1, guard, "spike");
                         added = true;
@@ -128,6 +138,7 @@ fn wild(
     part: &Parts,
     regressors: &Regressors,
     options: &SpikeOptions,
+    least: f64,
 ) -> Vec<usize> {
     if options.deviations == 0.0 {
         return Vec::new();
@@ -142,20 +153,27 @@ fn wild(
     }
     stretches.push(at..residual.len());
     // a rest has no force that follows the motion: what counts there is that of the recording
-    let overall = part.coherent.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+    let overall = greatest(&part.coherent);
     for (i, range) in stretches.into_iter().enumerate() {
         if range.is_empty() {
             continue;
         }
         let deviation = robust_deviation(&residual[range.clone()]);
-        let follows = part.coherent[range.clone()]
-            .iter()
-            .fold(0.0_f64, |m, x| m.max(x.abs()));
-        let follows = if i % 2 == 1 { follows } else { overall };
-        let limit = (options.deviations * deviation).max(options.least_part * follows);
+        let follows = if i % 2 == 1 {
+            greatest(&part.coherent[range.clone()])
+        } else {
+            overall
+        };
+        let limit = (options.deviations * deviation)
+            .max(options.least_part * follows)
+            .max(least);
         found.extend(range.filter(|k| residual[*k].abs() > limit));
     }
     found
+}
+
+fn greatest(x: &[f64]) -> f64 {
+    x.iter().fold(0.0, |m, v| m.max(v.abs()))
 }
 
 fn replace(

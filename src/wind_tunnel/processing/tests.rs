@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::aerodynamics::FlatPlate;
-use crate::wind_tunnel::{VirtualCampaign, VirtualCampaignPlan};
+use crate::wind_tunnel::virtual_campaign::{VirtualCampaign, VirtualCampaignPlan};
 
 fn campaign(plan: &VirtualCampaignPlan) -> VirtualCampaign {
     plan.from_model(&FlatPlate::default(), "plate", 0.5).unwrap()
