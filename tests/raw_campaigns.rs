@@ -129,3 +129,37 @@ fn figures_of_many_campaigns() {
         }
     }
 }
+
+/// Where the deviation of the onset comes from: noise alone on clean records, and processing without noise.
+#[test]
+#[ignore = "minutes: the most sensitive deck, four ways"]
+fn shares_of_the_deviation_of_the_onset() {
+    for name in ["LN21-6100", "LN21-5800"] {
+        let table = embedded::deck(name).unwrap();
+        let mut plan = VirtualCampaignPlan::realistic();
+        plan.tunnel.noise_fraction = 0.0;
+        let clean = onset_m_s(&plan.tunnel.records_from_table(&table, &Dof::TWO).unwrap());
+        let quiet = plan.from_table(&table, &Dof::TWO).unwrap();
+        let with = |options: &ProcessingOptions| {
+            onset_m_s(&process(&quiet.raw, options, &|_| {}).unwrap().records)
+        };
+        let mut options = ProcessingOptions::default();
+        let processed = with(&options);
+        options.low_pass.order = 0;
+        let unfiltered = with(&options);
+        println!(
+            "{name}: clean {clean:.3}; processed without noise {:+.3} %, without low-pass {:+.3} %",
+            100.0 * (processed / clean - 1.0),
+            100.0 * (unfiltered / clean - 1.0)
+        );
+        for seed in 1..=4 {
+            plan.tunnel.noise_fraction = 0.05;
+            plan.tunnel.seed = seed;
+            let noisy = plan.tunnel.records_from_table(&table, &Dof::TWO).unwrap();
+            println!(
+                "  noise alone, seed {seed}: {:+.3} %",
+                100.0 * (onset_m_s(&noisy) / clean - 1.0)
+            );
+        }
+    }
+}

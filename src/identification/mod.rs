@@ -5,6 +5,7 @@ mod basis;
 mod deck_tests;
 pub mod derivatives;
 mod discrete;
+pub mod free_decay;
 mod frequency;
 mod least_squares;
 mod options;

@@ -12,6 +12,8 @@ mod font;
 mod labels;
 mod legend;
 mod panel;
+#[cfg(feature = "identification")]
+mod processing_figures;
 mod response_figures;
 mod root_locus;
 mod series;
@@ -21,6 +23,8 @@ mod style;
 pub use derivatives_figure::{DerivativePlot, DerivativesPlot, derivatives_figure};
 pub use figure::{Figure, PNG_SCALE};
 pub use flutter_figures::{VfVgOptions, vf_vg_figure};
+#[cfg(feature = "identification")]
+pub use processing_figures::processing_figure;
 pub use response_figures::{PoleSearchPlot, TimePanel, pole_search_figure, time_history_figure};
 pub use root_locus::root_locus_figure;
 pub use series::PlottedSeries;

@@ -8,12 +8,16 @@ mod defaults;
 mod locate;
 mod models;
 mod onsets;
+mod processed;
+mod reference_lines;
 mod stepped;
 
 pub use deck::{Deck, RecordSet};
 pub use defaults::{demo_study_text, thesis_study_text};
 pub use models::{TrainedWithReport, train_one};
 pub use onsets::{Deviation, Divergence, FlutterStudy, OnsetSummary, flutter_study};
+pub use processed::processed_study_text;
+pub use reference_lines::derivative_lines;
 pub use stepped::{SteppedOnset, stepped_onset};
 
 use crate::error::{Error, Result, positive};

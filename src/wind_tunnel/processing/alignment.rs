@@ -15,6 +15,9 @@ use std::ops::Range;
 /// Motions that are less alike than this are not the same run.
 const ALIKE: f64 = 0.9;
 
+/// Part of a sample that counts as none.
+const ROUNDING: f64 = 1e-6;
+
 /// How the still-air recording stood against the one in wind.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Alignment {
@@ -79,8 +82,9 @@ pub fn align(
             .collect(),
         wind_speed_m_s: shift(&still_air.wind_speed_m_s),
     };
-    let first = (-found.samples).ceil().max(0.0) as usize;
-    let end = (still_air.len() as f64 - found.samples).floor().max(0.0) as usize;
+    // an offset of rounding costs no sample
+    let first = (-found.samples - ROUNDING).ceil().max(0.0) as usize;
+    let end = (still_air.len() as f64 - found.samples + ROUNDING).floor().max(0.0) as usize;
     let covered = first.min(count)..end.min(count);
     let aligned_motion = moved(&compared, found.samples, count);
     let inside = |x: &[f64]| x[covered.clone()].to_vec();
