@@ -47,6 +47,8 @@ pub mod reliability;
 pub mod report;
 pub mod response;
 pub mod section;
+#[cfg(feature = "identification")]
+pub mod signal;
 pub mod state_space;
 #[cfg(feature = "cli")]
 pub mod study;

@@ -20,7 +20,6 @@
 
 mod amplitude;
 mod bicoherence;
-mod correlation;
 mod density;
 mod dtw;
 mod gamma;

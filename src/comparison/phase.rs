@@ -1,8 +1,8 @@
 //! Phase metric: the mean delay between two signals.
 
-use super::correlation::CrossCorrelation;
 use super::{Metric, SignalPair, zero_signal};
 use crate::error::{Result, positive};
+use crate::signal::CrossCorrelation;
 use serde::Serialize;
 use std::f64::consts::PI;
 

@@ -3,7 +3,9 @@
 mod basis;
 #[cfg(test)]
 mod deck_tests;
+pub mod derivatives;
 mod discrete;
+pub mod free_decay;
 mod frequency;
 mod least_squares;
 mod options;

@@ -8,6 +8,8 @@ mod defaults;
 mod models;
 mod onsets;
 mod routes;
+mod processed;
+mod reference_lines;
 mod stepped;
 mod wind;
 
@@ -16,6 +18,8 @@ pub use defaults::{demo_study_text, thesis_study_text};
 pub use models::{TrainedWithReport, train_one};
 pub use onsets::{Deviation, Divergence, FlutterStudy, OnsetSummary, flutter_study};
 pub use routes::{Route, RouteTable, low_frequency_limit, route_table};
+pub use processed::processed_study_text;
+pub use reference_lines::derivative_lines;
 pub use stepped::{SteppedOnset, stepped_onset};
 pub use wind::{
     BuffetingStudy, QuasiSteadyStudy, SimulatedMotion, SpectrumCurve, TimeDomain, WindStudy,

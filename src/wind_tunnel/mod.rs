@@ -5,6 +5,7 @@ pub mod campaign;
 #[cfg(feature = "campaigns")]
 pub mod lab_files;
 mod motion;
+pub mod processing;
 mod raw;
 mod record_file;
 mod record_format;

@@ -26,13 +26,14 @@ pub const ARROWS: &[Row] = &[
     row("error", &[]),
     row("units", &[]),
     row("state_space", &[]),
-    row("comparison", &[]),
+    row("signal", &[]),
+    row("comparison", &["signal"]),
     row("section", &["units"]),
     row("aerodynamics", &["units", "section", "state_space"]),
     row("toml_lines", &[]),
     row(
         "wind_tunnel",
-        &["units", "section", "aerodynamics", "toml_lines"],
+        &["units", "section", "aerodynamics", "signal", "toml_lines"],
     ),
     row("trained_model", &["units", "section", "aerodynamics"]),
     row(
@@ -42,6 +43,7 @@ pub const ARROWS: &[Row] = &[
             "section",
             "state_space",
             "aerodynamics",
+            "signal",
             "wind_tunnel::Record*",
             "wind_tunnel::Segment",
             // what a fit returns
@@ -54,7 +56,6 @@ pub const ARROWS: &[Row] = &[
     row("buffeting", &["flutter+", "response+"]),
     row("fmu", &["flutter+", "response+", "trained_model+"]),
     row("fmu::fmi2", &["fmu"]),
-    row("toml_lines", &[]),
     row("reliability", &["flutter+", "trained_model+", "toml_lines"]),
     row("benchmarks", BELOW_STUDY),
     row("study", BELOW_STUDY),

@@ -15,6 +15,8 @@ pub(in crate::aerodynamics) mod csv_file;
 pub mod embedded;
 #[cfg(feature = "identification")]
 mod workbook;
+#[cfg(feature = "campaigns")]
+mod workbook_writer;
 
 #[cfg(feature = "identification")]
 pub use csv_file::{CSV_COLUMNS, parse_csv, read_csv, write_csv};
@@ -23,6 +25,8 @@ pub use interpolated::{Extrapolation, InterpolatedTable};
 pub use table::{DerivativePoint, DerivativeTable, SIGN_CONVENTION, TableHeader, UNITS};
 #[cfg(feature = "identification")]
 pub use workbook::{TABLE_3_2_FREQUENCIES_HZ, WorkbookOptions, read_workbook};
+#[cfg(feature = "campaigns")]
+pub use workbook_writer::{workbook_bytes, write_workbook};
 
 use crate::section::Dof;
 

@@ -2,6 +2,7 @@
 //!
 //! Three sheets, `Mean wind velocity`, `Reduced Velocities`, `Aerodynamic Derivatives`, in any order; in each a
 //! row of names and below it one row a test point; one column a derivative, named `MeanWind_H1`, `Vred_H1`, `H1`.
+//! Derivatives of sway may be left out, in all three sheets alike; other sheets are not looked at.
 //! Every derivative has its own `V̂ = V/(ωB)`. The width is not written down; it follows from the frequencies,
 //! `B = V/(2πf V̂)`. The sign convention is that of this project ([`super::SIGN_CONVENTION`]).
 
@@ -19,9 +20,9 @@ pub const TABLE_3_2_FREQUENCIES_HZ: [f64; 8] = [0.25, 0.5, 0.8, 1.1, 1.4, 1.7, 2
 const WIDTH_TOLERANCE: f64 = 0.01;
 
 /// Kind of sheet: its name and what its column names begin with.
-const SPEEDS: (&str, &str) = ("Mean wind velocity", "MeanWind_");
-const REDUCED_VELOCITIES: (&str, &str) = ("Reduced Velocities", "Vred_");
-const DERIVATIVES: (&str, &str) = ("Aerodynamic Derivatives", "");
+pub(super) const SPEEDS: (&str, &str) = ("Mean wind velocity", "MeanWind_");
+pub(super) const REDUCED_VELOCITIES: (&str, &str) = ("Reduced Velocities", "Vred_");
+pub(super) const DERIVATIVES: (&str, &str) = ("Aerodynamic Derivatives", "");
 
 /// What a workbook does not say of itself.
 #[derive(Debug, Clone, PartialEq)]
@@ -66,29 +67,36 @@ type Points = BTreeMap<Derivative, Vec<DerivativePoint>>;
 fn read_sheets(path: &Path) -> Result<Points> {
     let mut book: Xlsx<_> = open_workbook(path)
         .map_err(|e: calamine::XlsxError| Error::input("", "an .xlsx workbook", e.to_string()))?;
-    let mut sheet = |kind: (&str, &str)| -> Result<BTreeMap<Derivative, Vec<f64>>> {
+    let mut range = |kind: (&str, &str)| -> Result<Range<Data>> {
         let names = book.sheet_names();
         let wanted = names.iter().find(|n| n.trim().eq_ignore_ascii_case(kind.0));
         let name = wanted.cloned().ok_or_else(|| {
             let expected = format!("a sheet `{}`", kind.0);
             Error::input("workbook", expected, format!("`{}`", names.join("`, `")))
         })?;
-        let range = book
-            .worksheet_range(&name)
-            .map_err(|e| Error::input(format!("sheet {name}"), "readable cells", e.to_string()))?;
-        read_columns(&range, kind)
+        book.worksheet_range(&name)
+            .map_err(|e| Error::input(format!("sheet {name}"), "readable cells", e.to_string()))
     };
-    let (speeds, v_hats, values) = (
-        sheet(SPEEDS)?,
-        sheet(REDUCED_VELOCITIES)?,
-        sheet(DERIVATIVES)?,
-    );
+    let sheets = [
+        (range(SPEEDS)?, SPEEDS),
+        (range(REDUCED_VELOCITIES)?, REDUCED_VELOCITIES),
+        (range(DERIVATIVES)?, DERIVATIVES),
+    ];
+    // tests without sway have no columns for what it couples; a column in one sheet must be in all
+    let is_held = |d: &Derivative| {
+        sheets
+            .iter()
+            .any(|(range, kind)| column_of(&titles(range), kind.1, *d).is_some())
+    };
+    let held: Vec<Derivative> = Derivative::ALL.into_iter().filter(is_held).collect();
+    let columns = |i: usize| read_columns(&sheets[i].0, sheets[i].1, &held);
+    let (speeds, v_hats, values) = (columns(0)?, columns(1)?, columns(2)?);
     let point = |((speed, v_hat), value): ((&f64, &f64), &f64)| DerivativePoint {
         mean_speed_m_s: Some(*speed),
         v_hat: *v_hat,
         value: *value,
     };
-    let points = Derivative::ALL.map(|d| {
+    let points = held.iter().map(|&d| {
         let (speeds, v_hats, values) = (&speeds[&d], &v_hats[&d], &values[&d]);
         for (sheet, column) in [(REDUCED_VELOCITIES, v_hats), (DERIVATIVES, values)] {
             if column.len() != speeds.len() {
@@ -102,29 +110,40 @@ fn read_sheets(path: &Path) -> Result<Points> {
             speeds.iter().zip(v_hats).zip(values).map(point).collect(),
         ))
     });
-    points.into_iter().collect()
+    points.collect()
 }
 
-/// The 18 columns of one sheet.
-fn read_columns(
-    range: &Range<Data>,
-    (sheet, prefix): (&str, &str),
-) -> Result<BTreeMap<Derivative, Vec<f64>>> {
+/// The first row of a sheet.
+fn titles(range: &Range<Data>) -> Vec<String> {
     let title = |column: usize| {
         range
             .get((0, column))
             .map(ToString::to_string)
             .unwrap_or_default()
     };
-    let titles: Vec<String> = (0..range.width()).map(title).collect();
+    (0..range.width()).map(title).collect()
+}
+
+fn column_of(titles: &[String], prefix: &str, d: Derivative) -> Option<usize> {
+    let wanted = format!("{prefix}{d}");
+    titles
+        .iter()
+        .position(|t| t.trim().trim_end_matches('*').eq_ignore_ascii_case(&wanted))
+}
+
+/// The columns of one sheet that belong to the derivatives `held`.
+fn read_columns(
+    range: &Range<Data>,
+    (sheet, prefix): (&str, &str),
+    held: &[Derivative],
+) -> Result<BTreeMap<Derivative, Vec<f64>>> {
+    let titles = titles(range);
     let column = |d: Derivative| {
-        let wanted = format!("{prefix}{d}");
-        let is_it = |t: &String| t.trim().trim_end_matches('*').eq_ignore_ascii_case(&wanted);
-        let at = titles.iter().position(is_it).ok_or_else(|| {
+        let at = column_of(&titles, prefix, d).ok_or_else(|| {
             let place = format!("sheet {sheet}, first row");
             Error::input(
                 place,
-                format!("a column `{wanted}`"),
+                format!("a column `{prefix}{d}`"),
                 format!("`{}`", titles.join("`, `")),
             )
         })?;
@@ -133,7 +152,7 @@ fn read_columns(
             .collect::<Result<Vec<f64>>>()
             .map(|numbers| (d, numbers))
     };
-    Derivative::ALL.into_iter().map(column).collect()
+    held.iter().copied().map(column).collect()
 }
 
 fn number(range: &Range<Data>, sheet: &str, row: usize, column: usize) -> Result<f64> {

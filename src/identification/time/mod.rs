@@ -2,6 +2,5 @@
 
 pub(crate) mod accumulate;
 pub(crate) mod filters;
-pub(crate) mod resample;
 pub(crate) mod search;
 pub(crate) mod slices;

@@ -1,10 +1,10 @@
 //! A record as a stream of dimensionless slices: checked, scaled, resampled where asked, cut where its chunks end.
 
-use super::resample::Resampler;
 use crate::error::{Error, Result, positive};
 use crate::identification::basis::index_of;
 use crate::identification::least_squares::BLOCK_ROWS;
 use crate::section::Dof;
+use crate::signal::Resampler;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use crate::wind_tunnel::{RecordBlock, RecordSource};
 

@@ -6,7 +6,8 @@ mod quasi_steady;
 pub use buffeting::{BuffetingStudy, SpectrumCurve, TimeDomain, buffeting_study};
 pub use quasi_steady::{QuasiSteadyStudy, SimulatedMotion, quasi_steady_study, simulated_motion};
 
-use super::{FlutterBlock, locate};
+use super::FlutterBlock;
+use crate::toml_lines;
 use crate::aerodynamics::derivatives::{
     DerivativeTable, Extrapolation, InterpolatedTable, embedded as decks, read_table,
 };

@@ -1,22 +1,15 @@
 //! Resampling of a stream at a longer step by six-point Lagrange interpolation.
 //!
-//! Interpolation moves no phase. Its relative error for a motion sampled `m` times a period is about `(2/m)⁶`; nothing is
+//! Interpolation moves no phase. Its relative error for a motion sampled `m` times a period is about `(2.6/m)⁶`; nothing is
 //! filtered before, so components near half the sampling frequency must be absent already.
 
-/// Reciprocals of `Π_{m≠n} (n − m)` for the nodes 0…5.
-const NODE_FACTORS: [f64; 6] = [
-    -1.0 / 120.0,
-    1.0 / 24.0,
-    -1.0 / 12.0,
-    1.0 / 12.0,
-    -1.0 / 24.0,
-    1.0 / 120.0,
-];
+use super::lagrange::lagrange_weights;
+
 /// Input samples kept before the buffer is cut.
 const KEEP: usize = 1024;
 
 /// Interpolates channels that arrive in pieces at the times `m · ratio`, in units of the input step.
-pub(crate) struct Resampler {
+pub struct Resampler {
     ratio: f64,
     /// Next output sample.
     next: usize,
@@ -72,14 +65,6 @@ impl Resampler {
             self.start = needed;
         }
     }
-}
-
-fn lagrange_weights(t: f64) -> [f64; 6] {
-    std::array::from_fn(|n| {
-        (0..6)
-            .filter(|m| *m != n)
-            .fold(NODE_FACTORS[n], |w, m| w * (t - m as f64))
-    })
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use rustfft::FftPlanner;
 use rustfft::num_complex::Complex64;
 
 /// `c(n) = Σ_k X₂[k+n] X₁[k]`, `|n| < N`: a positive lag means that `X₂` comes later.
-pub(super) struct CrossCorrelation {
+pub struct CrossCorrelation {
     /// `c(n)` at `n mod M`, M large enough that nothing wraps round.
     values: Vec<f64>,
     /// `Σ_{k<n} X[k]²` for n = 0…N, of reference and compared signal.
@@ -13,7 +13,7 @@ pub(super) struct CrossCorrelation {
 
 impl CrossCorrelation {
     /// Of two signals of equal length.
-    pub(super) fn new(reference: &[f64], compared: &[f64]) -> Self {
+    pub fn new(reference: &[f64], compared: &[f64]) -> Self {
         let sample_count = reference.len();
         let size = (2 * sample_count).next_power_of_two();
         let mut planner = FftPlanner::new();
@@ -38,12 +38,13 @@ impl CrossCorrelation {
         }
     }
 
-    pub(super) fn sample_count(&self) -> usize {
+    /// Number of samples N.
+    pub fn sample_count(&self) -> usize {
         self.cumulated_energy[0].len() - 1
     }
 
     /// `√(Σ X₁² Σ X₂²)` over the samples that overlap at a lag: by Schwarz's inequality the largest `|c|` can be.
-    pub(super) fn overlap_energy(&self, lag: isize) -> f64 {
+    pub fn overlap_energy(&self, lag: isize) -> f64 {
         let count = self.sample_count();
         let shift = lag.unsigned_abs().min(count);
         let [first, second] = &self.cumulated_energy;
@@ -58,20 +59,28 @@ impl CrossCorrelation {
     }
 
     /// `c` at a whole lag; zero where the signals do not overlap.
-    pub(super) fn at(&self, lag: isize) -> f64 {
+    pub fn at(&self, lag: isize) -> f64 {
         if lag.unsigned_abs() >= self.sample_count() {
             return 0.0;
         }
         self.values[lag.rem_euclid(self.values.len() as isize) as usize]
     }
 
+    /// Whole lag at which `c` itself is largest, the first of equal ones.
+    pub fn largest(&self) -> isize {
+        self.largest_by(|c| c)
+    }
+
     /// Whole lag at which `|c|` is largest, the first of equal ones.
-    pub(super) fn largest_magnitude(&self) -> isize {
+    pub fn largest_magnitude(&self) -> isize {
+        self.largest_by(f64::abs)
+    }
+
+    fn largest_by(&self, measure: impl Fn(f64) -> f64) -> isize {
         let end = self.sample_count() as isize;
-        let mut best = 0;
-        let mut best_value = -1.0;
+        let (mut best, mut best_value) = (0, f64::NEG_INFINITY);
         for lag in 1 - end..end {
-            let value = self.at(lag).abs();
+            let value = measure(self.at(lag));
             if value > best_value {
                 (best, best_value) = (lag, value);
             }

@@ -1,0 +1,196 @@
+//! Steady harmonic stretches of records, sorted into test points.
+
+use super::result::DerivativeOptions;
+use crate::error::{Error, Result, positive};
+use crate::section::Dof;
+use crate::signal::{HarmonicFit, fit_harmonics, plateau, refine_frequency};
+use crate::units::ReducedFrequency;
+use crate::wind_tunnel::{RecordHeader, RecordSource};
+
+/// Harmonics of a driven motion: a rig is not perfectly linear.
+const HARMONICS: usize = 3;
+/// A motion below this part of the greatest is cross-talk.
+pub(super) const CROSS_TALK: f64 = 0.05;
+
+/// One run at one test point, without dimensions.
+pub(super) struct Stretch {
+    pub run: String,
+    /// The motion that is driven, by its place among the degrees of freedom.
+    pub driven: usize,
+    pub speed_m_s: f64,
+    pub frequency_hz: f64,
+    pub k: ReducedFrequency,
+    pub periods: usize,
+    /// `r_j` and `r_j'/K` at each sample.
+    pub motion: Vec<[Vec<f64>; 2]>,
+    /// Amplitude of each motion.
+    pub amplitude: Vec<f64>,
+    /// `q_i` at each sample.
+    pub force: Vec<Vec<f64>>,
+}
+
+/// All test points.
+pub(super) struct TestPoints {
+    pub width_m: f64,
+    pub dofs: Vec<Dof>,
+    pub groups: Vec<Vec<Stretch>>,
+    pub warnings: Vec<String>,
+}
+
+/// Takes the steady stretches of all records and groups them.
+pub(super) fn collect(
+    records: &[&dyn RecordSource],
+    options: &DerivativeOptions,
+) -> Result<TestPoints> {
+    let first = records
+        .first()
+        .ok_or_else(|| Error::input("records", "at least one", "none"))?
+        .header();
+    let mut points = TestPoints {
+        width_m: first.width_m,
+        dofs: first.dofs.clone(),
+        groups: Vec::new(),
+        warnings: Vec::new(),
+    };
+    for record in records {
+        let header = record.header();
+        check(header, first)?;
+        let mut channels = vec![Vec::new(); 2 * header.dofs.len()];
+        record.for_each_block(&mut |block| {
+            let all = block.motion.iter().chain(block.force);
+            for (to, from) in channels.iter_mut().zip(all) {
+                to.extend_from_slice(from);
+            }
+            Ok(())
+        })?;
+        for i in 0..header.segments.len() {
+            match stretch(header, &channels, i, options)? {
+                Some(stretch) => insert(&mut points.groups, stretch, options),
+                None => points.warnings.push(format!(
+                    "record {}: no whole period of steady motion at {:.3} Hz",
+                    header.name, header.segments[i].frequency_hz
+                )),
+            }
+        }
+    }
+    if points.groups.is_empty() {
+        let expected = "stretches of harmonic motion (`segment` lines)";
+        return Err(Error::input("records", expected, "none"));
+    }
+    Ok(points)
+}
+
+fn check(header: &RecordHeader, first: &RecordHeader) -> Result<()> {
+    let place = |key: &str| format!("record {}: {key}", header.name);
+    for (key, value) in [
+        ("width_m", header.width_m),
+        ("air_density_kg_m3", header.air_density_kg_m3),
+        ("mean_speed_m_s", header.mean_speed_m_s),
+        ("sampling_hz", header.sampling_hz),
+    ] {
+        positive(&place(key), value)?;
+    }
+    if header.dofs != first.dofs {
+        let expected = format!("{:?}, as in the first record", first.dofs);
+        let found = format!("{:?}", header.dofs);
+        return Err(Error::input(place("dofs"), expected, found));
+    }
+    if (header.width_m / first.width_m - 1.0).abs() > 1e-6 {
+        let expected = format!("{} m, as in the first record", first.width_m);
+        let found = format!("{} m", header.width_m);
+        return Err(Error::input(place("width_m"), expected, found));
+    }
+    Ok(())
+}
+
+/// The steady part of one segment; `None` when it has no whole period.
+fn stretch(
+    header: &RecordHeader,
+    channels: &[Vec<f64>],
+    segment: usize,
+    options: &DerivativeOptions,
+) -> Result<Option<Stretch>> {
+    let n = header.dofs.len();
+    let rate = header.sampling_hz;
+    let count = channels[0].len();
+    if let Some((c, k)) = channels
+        .iter()
+        .enumerate()
+        .find_map(|(c, x)| Some((c, x.iter().position(|v| !v.is_finite())?)))
+    {
+        let place = format!("record {}, channel {}, sample {k}", header.name, c + 1);
+        return Err(Error::input(place, "a finite number", channels[c][k].to_string()));
+    }
+    let s = header.segments[segment];
+    let at = |t: f64| ((t * rate).round().max(0.0) as usize).min(count);
+    let range = at(s.start_s)..at(s.end_s);
+    let size = |j: usize| {
+        let x = &channels[j][range.clone()];
+        let mean = x.iter().sum::<f64>() / x.len().max(1) as f64;
+        let greatest = x.iter().fold(0.0_f64, |m, v| m.max((v - mean).abs()));
+        greatest * header.dofs[j].motion_scale(header.width_m)
+    };
+    let driven = (0..n).max_by(|a, b| size(*a).total_cmp(&size(*b)));
+    let Some(driven) = driven.filter(|j| size(*j) > 0.0) else {
+        return Ok(None);
+    };
+    let motion = &channels[driven];
+    let steady = |f| plateau(motion, range.clone(), rate, f, options.full_amplitude);
+    let Some(rough) = steady(s.frequency_hz) else {
+        return Ok(None);
+    };
+    let frequency_hz = refine_frequency(motion, rough.range(), rate, s.frequency_hz)?;
+    let Some(p) = steady(frequency_hz) else {
+        return Ok(None);
+    };
+    let fit = |x: &[f64]| fit_harmonics(x, p.range(), rate, frequency_hz, HARMONICS, &|_| true);
+    let fits = channels[..n]
+        .iter()
+        .map(|x| fit(x))
+        .collect::<Result<Vec<HarmonicFit>>>()?;
+    let omega = std::f64::consts::TAU * frequency_hz;
+    let scale = |j: usize| header.dofs[j].motion_scale(header.width_m);
+    let pressure = 0.5 * header.air_density_kg_m3 * header.mean_speed_m_s.powi(2);
+    let motion_of = |j: usize| {
+        let mut both = [Vec::with_capacity(p.samples), Vec::with_capacity(p.samples)];
+        for k in p.range() {
+            let (value, rate_of_change) = fits[j].oscillation(k as f64 / rate);
+            both[0].push(scale(j) * value);
+            both[1].push(scale(j) * rate_of_change / omega);
+        }
+        both
+    };
+    let force_of = |i: usize| {
+        let factor = 1.0 / (pressure * header.dofs[i].force_scale(header.width_m));
+        channels[n + i][p.range()].iter().map(|f| f * factor).collect()
+    };
+    Ok(Some(Stretch {
+        run: header.name.clone(),
+        driven,
+        speed_m_s: header.mean_speed_m_s,
+        frequency_hz,
+        k: ReducedFrequency::from_hertz(frequency_hz, header.width_m, header.mean_speed_m_s),
+        periods: p.periods,
+        motion: (0..n).map(motion_of).collect(),
+        amplitude: (0..n)
+            .map(|j| scale(j) * fits[j].fundamental().norm())
+            .collect(),
+        force: (0..n).map(force_of).collect(),
+    }))
+}
+
+/// Into the group of the same speed and frequency, unless that motion is there already: repeated tests are points of their own.
+fn insert(groups: &mut Vec<Vec<Stretch>>, stretch: Stretch, options: &DerivativeOptions) {
+    let near = |a: f64, b: f64, ratio: f64| (a / b).ln().abs() <= ratio.ln();
+    let fits = |group: &&mut Vec<Stretch>| {
+        let same = |s: &Stretch| {
+            near(s.speed_m_s, stretch.speed_m_s, options.same_speed)
+                && near(s.frequency_hz, stretch.frequency_hz, options.same_frequency)
+        };
+        group.iter().all(same) && group.iter().all(|s| s.driven != stretch.driven)
+    };
+    match groups.iter_mut().find(fits) {
+        Some(group) => group.push(stretch),
+        None => groups.push(vec![stretch]),
+    }
+}

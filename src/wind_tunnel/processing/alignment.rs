@@ -1,0 +1,125 @@
+//! Still-air recording brought into step with the one in wind.
+//!
+//! The two motions are the same but for when recording began. Their delay is that of the largest cross-correlation, refined by
+//! the slope of the phase of the cross-spectrum ([`crate::signal::delay`]): whole samples would not do, since inertia is many
+//! times the self-excited force and half a sample turns it by 2° at 2.5 Hz and 200 Hz. Then every channel in still air is moved
+//! by Lagrange interpolation, which keeps the phase.
+
+use crate::error::{Error, Result};
+use crate::section::Dof;
+use crate::signal::{delay, delayed};
+use crate::wind_tunnel::RawRecording;
+use serde::{Deserialize, Serialize};
+use std::ops::Range;
+
+/// Motions that are less alike than this are not the same run.
+const ALIKE: f64 = 0.9;
+
+/// Part of a sample that counts as none.
+const ROUNDING: f64 = 1e-6;
+
+/// How the still-air recording stood against the one in wind.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Alignment {
+    /// By how much the still-air recording was late, s.
+    pub offset_s: f64,
+    /// The same in samples.
+    pub offset_samples: f64,
+    /// The same by a parabola through the correlation alone, samples.
+    pub parabolic_samples: f64,
+    /// Correlation of the motions at the whole lag.
+    pub correlation: f64,
+    /// Amplitude of the motion in wind over that in still air.
+    pub amplitude_ratio: f64,
+    /// RMS of the difference of the aligned motions over that of the motion in wind.
+    pub motion_difference: f64,
+}
+
+/// A still-air recording in step with the one in wind.
+pub struct Aligned {
+    /// The recording, as long as the one in wind.
+    pub still_air: RawRecording,
+    /// Samples of the recording in wind that both cover.
+    pub covered: Range<usize>,
+    /// What was found.
+    pub alignment: Alignment,
+}
+
+/// Moves `still_air` into step with `in_wind` by their motions in `dof`.
+///
+/// # Errors
+/// [`Error::Input`] when the motions are not alike, naming `run`.
+pub fn align(
+    run: &str,
+    in_wind: &RawRecording,
+    still_air: &RawRecording,
+    dof: Dof,
+) -> Result<Aligned> {
+    let of = |r: &RawRecording| without_mean(&r.motion[super::index(dof)]);
+    let (reference, compared) = (of(in_wind), of(still_air));
+    let place = || format!("run {run}, still air, {} motion", dof.name());
+    let found = delay(&reference, &compared).map_err(|_| {
+        let expected = "the motion of the recording in wind";
+        Error::input(place(), expected, "one that is nowhere like it")
+    })?;
+    if found.correlation < ALIKE {
+        return Err(Error::input(
+            place(),
+            format!("the motion of the recording in wind, correlation at least {ALIKE}"),
+            format!("correlation {:.3}", found.correlation),
+        ));
+    }
+    let count = in_wind.len();
+    let shift = |x: &Vec<f64>| moved(x, found.samples, count);
+    let moved_still = RawRecording {
+        source: still_air.source.clone(),
+        sampling_hz: still_air.sampling_hz,
+        motion: std::array::from_fn(|d| shift(&still_air.motion[d])),
+        cells: still_air
+            .cells
+            .iter()
+            .map(|cell| std::array::from_fn(|c| shift(&cell[c])))
+            .collect(),
+        wind_speed_m_s: shift(&still_air.wind_speed_m_s),
+    };
+    // an offset of rounding costs no sample
+    let first = (-found.samples - ROUNDING).ceil().max(0.0) as usize;
+    let end = (still_air.len() as f64 - found.samples + ROUNDING).floor().max(0.0) as usize;
+    let covered = first.min(count)..end.min(count);
+    let aligned_motion = moved(&compared, found.samples, count);
+    let inside = |x: &[f64]| x[covered.clone()].to_vec();
+    let (a, b) = (inside(&reference), inside(&aligned_motion));
+    let dot = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(p, q)| p * q).sum::<f64>();
+    let difference: f64 = a.iter().zip(&b).map(|(p, q)| (p - q).powi(2)).sum();
+    Ok(Aligned {
+        still_air: moved_still,
+        covered,
+        alignment: Alignment {
+            offset_s: found.samples / in_wind.sampling_hz,
+            offset_samples: found.samples,
+            parabolic_samples: found.parabolic_samples,
+            correlation: found.correlation,
+            amplitude_ratio: dot(&a, &b) / dot(&b, &b),
+            motion_difference: (difference / dot(&a, &a)).sqrt(),
+        },
+    })
+}
+
+/// The signal earlier by `samples`, cut or held to `count` samples; an empty one stays empty.
+fn moved(x: &[f64], samples: f64, count: usize) -> Vec<f64> {
+    if x.is_empty() {
+        return Vec::new();
+    }
+    let mut x = x.to_vec();
+    let last = x[x.len() - 1];
+    x.resize(x.len().max(count), last);
+    let mut y = delayed(&x, -samples);
+    y.truncate(count);
+    y
+}
+
+fn without_mean(x: &[f64]) -> Vec<f64> {
+    // the model rests most often at its middle: the median is where it rests, whatever the motion is
+    let rest = crate::signal::median(x);
+    x.iter().map(|v| v - rest).collect()
+}

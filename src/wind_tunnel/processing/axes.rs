@@ -1,0 +1,29 @@
+//! From the axes of the load cells to global ones.
+//!
+//! `v_global = R(θ) A v_local` with the mounting `A` of the cell; a cell behind the actuator turns with the model, and
+//! `R(θ)` is a turn of θ nose-up, that is of −θ about z. So the weight of the model, which a turning cell sees swing by
+//! `θ W` from one channel to another, is constant again.
+
+use crate::wind_tunnel::{LoadCell, RawRecording, Rig};
+
+/// Force (x, y, z) and moment (x, y, z) at a cell in global axes: N, N·m.
+pub type GlobalCell = [Vec<f64>; 6];
+
+/// All cells of a recording in global axes; `rotation_rad` is the rotation of the model at each sample.
+pub fn to_global(recording: &RawRecording, rig: &Rig, rotation_rad: &[f64]) -> Vec<GlobalCell> {
+    let turn = |(cell, channels): (&LoadCell, &[Vec<f64>; 6])| {
+        let mut global: GlobalCell = std::array::from_fn(|_| Vec::with_capacity(recording.len()));
+        for k in 0..recording.len() {
+            let axes = cell.axes_at(rotation_rad.get(k).copied().unwrap_or(0.0));
+            for triple in [0, 3] {
+                let local = nalgebra::Vector3::from_fn(|i, _| channels[triple + i][k]);
+                let v = axes * local;
+                for i in 0..3 {
+                    global[triple + i].push(v[i]);
+                }
+            }
+        }
+        global
+    };
+    rig.cells.iter().zip(&recording.cells).map(turn).collect()
+}

@@ -1,0 +1,232 @@
+//! What a raw run must be before anything is computed from it.
+
+use crate::error::{Error, Result, positive};
+use crate::section::Dof;
+use crate::wind_tunnel::{CELL_CHANNELS, RawRecording, RawRun, Rig, SAMPLES_AT_LEAST};
+use serde::{Deserialize, Serialize};
+
+/// So many equal samples at the extreme of a channel are a converter at its limit: 0.04 s at 200 Hz.
+const CLIPPED_AT_LEAST: usize = 8;
+
+/// A digitised channel dwells at a peak; one that is clipped gets there in more than this many of its smallest steps.
+const STEPS_AT_LEAST: f64 = 3.0;
+
+/// Up to this part of a channel may be clipped and replaced; more is refused.
+const CLIPPED_PART: f64 = 0.005;
+
+/// Sampling frequencies that differ by less are the same, written with fewer digits.
+const SAME_RATE: f64 = 1e-6;
+
+/// A stretch in which a channel stood at its limit.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ClippedStretch {
+    /// Channel, with the recording it is of.
+    pub channel: String,
+    /// First sample.
+    pub first: usize,
+    /// Number of samples.
+    pub samples: usize,
+}
+
+/// What was found in a run that can be processed.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Findings {
+    /// Clipped stretches in wind.
+    pub clipped_in_wind: Vec<ClippedStretch>,
+    /// Clipped stretches in still air.
+    pub clipped_still_air: Vec<ClippedStretch>,
+    /// What the user should know.
+    pub warnings: Vec<String>,
+}
+
+/// Checks both recordings of a run.
+///
+/// # Errors
+/// [`Error::Input`] naming run, recording, channel and sample: a speed or density that is not positive, no cells, too few
+/// samples, channels of unequal length, numbers that are not finite, different sampling frequencies, no motion, channels
+/// at their limit for more than a short while.
+pub fn check_run(run: &RawRun, rig: &Rig) -> Result<Findings> {
+    let place = |what: &str| format!("run {}, {what}", run.name);
+    positive(&place("mean wind speed"), run.mean_speed_m_s)?;
+    positive(&place("air density"), run.air_density_kg_m3)?;
+    let (wind, still) = (&run.in_wind, &run.still_air);
+    for (name, recording) in [("in wind", wind), ("still air", still)] {
+        check_recording(&place(name), recording, rig)?;
+    }
+    let (f1, f2) = (wind.sampling_hz, still.sampling_hz);
+    if (f1 / f2 - 1.0).abs() > SAME_RATE {
+        return Err(Error::input(
+            place("still air"),
+            format!("the sampling frequency of the recording in wind, {f1} Hz"),
+            format!("{f2} Hz"),
+        ));
+    }
+    for dof in Dof::THREE {
+        let recorded = |r: &RawRecording| !r.motion[super::index(dof)].is_empty();
+        if recorded(wind) != recorded(still) {
+            let (with, without) = if recorded(wind) {
+                ("in wind", "still air")
+            } else {
+                ("still air", "in wind")
+            };
+            let expected = format!("a {} motion channel, as {with}", dof.name());
+            return Err(Error::input(place(without), expected, "none"));
+        }
+    }
+    let mut findings = Findings {
+        clipped_in_wind: clipped(&place("in wind"), wind, rig)?,
+        clipped_still_air: clipped(&place("still air"), still, rig)?,
+        warnings: Vec::new(),
+    };
+    if wind.len() != still.len() {
+        findings.warnings.push(format!(
+            "{} samples in wind, {} in still air: only the part that both cover is used",
+            wind.len(),
+            still.len()
+        ));
+    }
+    for c in findings
+        .clipped_in_wind
+        .iter()
+        .chain(&findings.clipped_still_air)
+    {
+        findings.warnings.push(format!(
+            "{}: {} samples from sample {} stand at the limit of the channel; they are replaced",
+            c.channel, c.samples, c.first
+        ));
+    }
+    Ok(findings)
+}
+
+/// Channels of a recording with their names.
+fn channels<'a>(recording: &'a RawRecording, rig: &'a Rig) -> Vec<(String, &'a [f64])> {
+    let mut all = Vec::new();
+    for (dof, samples) in Dof::THREE.iter().zip(&recording.motion) {
+        if !samples.is_empty() {
+            all.push((format!("{} motion", dof.name()), samples.as_slice()));
+        }
+    }
+    for (cell, channels) in rig.cells.iter().zip(&recording.cells) {
+        for (name, samples) in CELL_CHANNELS.iter().zip(channels) {
+            all.push((format!("cell {}, {name}", cell.name), samples.as_slice()));
+        }
+    }
+    if !recording.wind_speed_m_s.is_empty() {
+        all.push(("wind speed".to_owned(), &recording.wind_speed_m_s));
+    }
+    all
+}
+
+fn check_recording(place: &str, recording: &RawRecording, rig: &Rig) -> Result<()> {
+    positive(
+        &format!("{place}, sampling frequency"),
+        recording.sampling_hz,
+    )?;
+    if recording.cells.len() != rig.cells.len() || rig.cells.is_empty() {
+        let expected = format!("{} load cells, at least one", rig.cells.len());
+        return Err(Error::input(
+            place,
+            expected,
+            recording.cells.len().to_string(),
+        ));
+    }
+    if recording.motion.iter().all(Vec::is_empty) {
+        return Err(Error::input(place, "a motion channel", "none"));
+    }
+    let count = recording.len();
+    if count < SAMPLES_AT_LEAST {
+        let expected = format!("at least {SAMPLES_AT_LEAST} samples");
+        return Err(Error::input(place, expected, count.to_string()));
+    }
+    for (name, samples) in channels(recording, rig) {
+        if samples.len() != count {
+            return Err(Error::input(
+                format!("{place}, {name}"),
+                format!("{count} samples, as the first force channel"),
+                samples.len().to_string(),
+            ));
+        }
+        if let Some(k) = samples.iter().position(|x| !x.is_finite()) {
+            return Err(Error::input(
+                format!("{place}, {name}, sample {k}"),
+                "a finite number",
+                samples[k].to_string(),
+            ));
+        }
+    }
+    Ok(())
+}
+
+fn clipped(place: &str, recording: &RawRecording, rig: &Rig) -> Result<Vec<ClippedStretch>> {
+    let mut found = Vec::new();
+    for (name, samples) in channels(recording, rig) {
+        let stretches = at_limit(samples);
+        let Some((first, _)) = stretches.first() else {
+            continue;
+        };
+        let total: usize = stretches.iter().map(|s| s.1).sum();
+        if total as f64 > CLIPPED_PART * samples.len() as f64 {
+            return Err(Error::input(
+                format!("{place}, {name}, sample {first}"),
+                "a channel that is not clipped",
+                format!(
+                    "{total} samples at its limit in {} stretches",
+                    stretches.len()
+                ),
+            ));
+        }
+        found.extend(stretches.iter().map(|(first, samples)| ClippedStretch {
+            channel: format!("{place}, {name}"),
+            first: *first,
+            samples: *samples,
+        }));
+    }
+    Ok(found)
+}
+
+/// First sample and length of every stretch of [`CLIPPED_AT_LEAST`] or more equal samples at the highest or lowest value.
+/// A rest at the end of the range (a motion to one side) is none: the channel must have come there from elsewhere and go back.
+fn at_limit(samples: &[f64]) -> Vec<(usize, usize)> {
+    let low = samples.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = samples.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let smallest = samples
+        .windows(2)
+        .map(|w| (w[1] - w[0]).abs())
+        .filter(|step| *step > 0.0)
+        .fold(f64::INFINITY, f64::min);
+    let mut found = Vec::new();
+    let mut at = 0;
+    while at < samples.len() && low < high {
+        let from = at;
+        while at < samples.len() && samples[at] == samples[from] {
+            at += 1;
+        }
+        let is_extreme = samples[from] == low || samples[from] == high;
+        let is_long = at - from >= CLIPPED_AT_LEAST && from > 0 && at < samples.len();
+        if is_extreme
+            && is_long
+            && (samples[from] - samples[from - 1]).abs() > STEPS_AT_LEAST * smallest
+        {
+            found.push((from, at - from));
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::at_limit;
+
+    #[test]
+    fn a_converter_at_its_limit_is_seen() {
+        let sine: Vec<f64> = (0..800).map(|k| (0.01 * f64::from(k)).sin()).collect();
+        assert!(at_limit(&sine).is_empty());
+        let clipped: Vec<f64> = sine.iter().map(|x| x.min(0.98)).collect();
+        let found = at_limit(&clipped);
+        // sin t > 0.98 from t = 1.3705 to 1.7711, and 2π later
+        assert_eq!(found, [(138, 40)]);
+        let digitised: Vec<f64> = sine.iter().map(|x| (100.0 * x).round() / 100.0).collect();
+        assert!(at_limit(&digitised).is_empty());
+        assert!(at_limit(&[1.0; 50]).is_empty());
+    }
+}

@@ -1,0 +1,129 @@
+//! What of a force follows the motion, and what drifts: one robust regression over a whole recording.
+//!
+//! `f(t) ≈ Σ_j b_j T_j(t) + Σ_s w_s(t) [α_s x + β_s ẋ]` with Chebyshev polynomials over the recording, the motion and its rate,
+//! and `w_s` one in segment s and zero elsewhere. Without segments the motion has one pair for all. The pair is equation (1.14)
+//! at the frequency of the segment; drift and motion are fitted together, so that neither takes what is the other's.
+
+use super::segmentation::HarmonicSegment;
+use crate::error::{Error, Result};
+use nalgebra::{DMatrix, DVector};
+use std::ops::Range;
+
+/// Regressors of one recording.
+pub struct Regressors {
+    degree: usize,
+    count: usize,
+    motion: Vec<f64>,
+    rate: Vec<f64>,
+    /// Samples of each segment.
+    pub stretches: Vec<Range<usize>>,
+}
+
+/// The two parts of a force.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Parts {
+    /// Follows the motion.
+    pub coherent: Vec<f64>,
+    /// Drifts.
+    pub drift: Vec<f64>,
+}
+
+impl Regressors {
+    /// For a motion of any scale.
+    pub fn new(
+        motion: &[f64],
+        sampling_hz: f64,
+        segments: &[HarmonicSegment],
+        degree: usize,
+    ) -> Self {
+        let scaled = |x: Vec<f64>| {
+            let size = x.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+            let factor = if size > 0.0 { 1.0 / size } else { 0.0 };
+            x.into_iter().map(|v| v * factor).collect::<Vec<f64>>()
+        };
+        let count = motion.len();
+        let mut stretches: Vec<Range<usize>> = segments
+            .iter()
+            .map(|s| s.range(sampling_hz, count))
+            .collect();
+        if stretches.is_empty() {
+            stretches.push(0..count);
+        }
+        Self {
+            degree,
+            count,
+            motion: scaled(motion.to_vec()),
+            rate: scaled(crate::signal::rate(motion, sampling_hz)),
+            stretches,
+        }
+    }
+
+    fn chebyshev(&self, k: usize) -> Vec<f64> {
+        let t = 2.0 * k as f64 / (self.count.max(2) - 1) as f64 - 1.0;
+        let mut values = vec![1.0, t];
+        for j in 2..=self.degree {
+            values.push(2.0 * t * values[j - 1] - values[j - 2]);
+        }
+        values.truncate(self.degree + 1);
+        values
+    }
+
+    /// Least squares over the samples that are not `wild`.
+    ///
+    /// # Errors
+    /// [`Error::Numerical`] when too few samples are left.
+    pub fn fit(&self, force: &[f64], wild: &[bool]) -> Result<Parts> {
+        let smooth = self.degree + 1;
+        let unknowns = smooth + 2 * self.stretches.len();
+        let mut gram = DMatrix::<f64>::zeros(unknowns, unknowns);
+        let mut moments = DVector::<f64>::zeros(unknowns);
+        let mut entries: Vec<(usize, f64)> = Vec::new();
+        for k in (0..self.count).filter(|k| !wild[*k]) {
+            self.row(k, &mut entries);
+            for (i, a) in &entries {
+                for (j, b) in &entries {
+                    gram[(*i, *j)] += a * b;
+                }
+                moments[*i] += a * force[k];
+            }
+        }
+        // a segment without motion, or with no sample left, leaves its pair at zero
+        for i in 0..unknowns {
+            if gram[(i, i)] < 1e-9 {
+                gram[(i, i)] += 1.0;
+            }
+        }
+        let solution: DVector<f64> = gram
+            .cholesky()
+            .map(|c| c.solve(&moments))
+            .ok_or_else(|| Error::Numerical("drift: too few samples to tell it from the motion".into()))?;
+        let mut parts = Parts {
+            coherent: vec![0.0; self.count],
+            drift: vec![0.0; self.count],
+        };
+        for k in 0..self.count {
+            self.row(k, &mut entries);
+            for (i, a) in &entries {
+                let part = if *i < smooth {
+                    &mut parts.drift
+                } else {
+                    &mut parts.coherent
+                };
+                part[k] += a * solution[*i];
+            }
+        }
+        Ok(parts)
+    }
+
+    fn row(&self, k: usize, entries: &mut Vec<(usize, f64)>) {
+        entries.clear();
+        entries.extend(self.chebyshev(k).into_iter().enumerate());
+        for (s, range) in self.stretches.iter().enumerate() {
+            if range.contains(&k) {
+                let at = self.degree + 1 + 2 * s;
+                entries.push((at, self.motion[k]));
+                entries.push((at + 1, self.rate[k]));
+            }
+        }
+    }
+}

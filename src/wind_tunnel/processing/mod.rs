@@ -1,0 +1,129 @@
+//! From raw runs to records: what a laboratory does between the load cells and the derivatives (thesis, section 3.3).
+//!
+//! The measured force is `F_tot = F_E + F_G + F_I + F_B + F_Se + F_S` (3.1). In this order, each a function of its own file:
+//!
+//! 1. [`check`]: lengths, rates, finite numbers, clipping;
+//! 2. [`segmentation`]: the test points, from the motion;
+//! 3. [`lag`]: force channels behind the motion, from the inertia in still air, and the sign of that inertia;
+//! 4. [`alignment`]: still air in step with wind;
+//! 5. [`axes`], [`cells`]: global axes, about the centre of rotation, summed: clamping `F_E` is gone;
+//! 6. [`means`]: gravity `F_G` and static wind `F_S` are gone;
+//! 7. [`inertia`]: still air subtracted: inertia `F_I` and the turning part of gravity are gone;
+//! 8. [`spikes`] and drift, by the [`coherent`] regression;
+//! 9. [`low_pass`]: noise and buffeting `F_B` above the cut-off are gone, `F_Se` is left;
+//! 10. [`dimensionless`]: per unit length; dimensionless, one step, stacked where a discrete model needs it.
+
+pub mod alignment;
+pub mod axes;
+pub mod cells;
+pub mod check;
+pub mod coherent;
+pub mod dimensionless;
+pub mod inertia;
+pub mod lag;
+pub mod low_pass;
+pub mod means;
+mod options;
+mod report;
+mod run;
+pub mod segmentation;
+mod signals;
+pub mod spikes;
+
+pub use dimensionless::{DimensionlessRecord, stack};
+pub use options::{LowPassOptions, ProcessingOptions, Ramps, SegmentOptions, SpikeOptions};
+pub use report::{
+    DimensionlessFactors, ProcessingReport, RemovedDrift, RunReport, SignalToNoise, StageLevels,
+};
+pub use run::{ProcessedRun, StageSignals};
+pub use segmentation::HarmonicSegment;
+pub use signals::{SectionSignals, force_unit, index};
+
+use super::{RawCampaign, Record};
+use crate::error::{Error, Result};
+use crate::section::Dof;
+use rayon::prelude::*;
+use run::Prepared;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Records of a campaign, what was done to get them, and the forces stage by stage.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Processed {
+    /// Self-excited forces, in the order of the runs.
+    pub records: Vec<Record>,
+    /// What was done.
+    pub report: ProcessingReport,
+    /// Signals after each stage, one list a run, for figures.
+    pub stages: Vec<Vec<StageSignals>>,
+}
+
+/// Processes every run of a campaign; `progress` is called with the number of runs done.
+///
+/// # Errors
+/// [`Error::Input`] naming run, recording, channel and sample for what cannot be processed.
+pub fn process(
+    campaign: &RawCampaign,
+    options: &ProcessingOptions,
+    progress: &(dyn Fn(usize) + Sync),
+) -> Result<Processed> {
+    options.validate()?;
+    campaign.rig.validate()?;
+    if campaign.runs.is_empty() {
+        return Err(Error::input("campaign", "at least one run", "none"));
+    }
+    let prepared = campaign
+        .runs
+        .par_iter()
+        .map(|run| Prepared::new(run, &campaign.rig, options))
+        .collect::<Result<Vec<_>>>()?;
+    let dofs = options.dofs.clone().unwrap_or_else(|| dofs_of(&prepared));
+    let estimates: Vec<_> = prepared.iter().filter_map(|p| p.still_air.clone()).collect();
+    let sampling_hz = campaign.runs[0].in_wind.sampling_hz;
+    let estimated = lag::common_lag(&estimates, sampling_hz);
+    let lag_s = options
+        .lag_s
+        .unwrap_or_else(|| estimated.map_or(0.0, |(lag, _)| lag));
+    let done = AtomicUsize::new(0);
+    let runs = prepared
+        .into_par_iter()
+        .map(|p| {
+            let run = p.process(campaign, &dofs, lag_s, options)?;
+            progress(1 + done.fetch_add(1, Ordering::Relaxed));
+            Ok(run)
+        })
+        .collect::<Result<Vec<ProcessedRun>>>()?;
+    let delta_s = |r: &ProcessedRun| r.report.dimensionless.delta_s;
+    let report = ProcessingReport {
+        section: campaign.section.clone(),
+        options: options.clone(),
+        lag_s,
+        lag_standard_error_s: match options.lag_s {
+            Some(_) => None,
+            None => estimated.map(|(_, error)| error),
+        },
+        common_delta_s: runs.iter().map(delta_s).fold(0.0, f64::max),
+        runs: runs.iter().map(|r| r.report.clone()).collect(),
+    };
+    let (mut records, mut stages) = (Vec::new(), Vec::new());
+    for run in runs {
+        records.extend(run.records);
+        stages.push(run.stages);
+    }
+    Ok(Processed {
+        records,
+        report,
+        stages,
+    })
+}
+
+/// Heave and rotation, and sway when a run moves it.
+fn dofs_of(prepared: &[Prepared<'_>]) -> Vec<Dof> {
+    if prepared.iter().any(|p| p.dof == Dof::Lateral) {
+        Dof::THREE.to_vec()
+    } else {
+        Dof::TWO.to_vec()
+    }
+}
+
+#[cfg(test)]
+mod tests;

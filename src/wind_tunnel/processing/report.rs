@@ -1,0 +1,140 @@
+//! What processing did, in numbers.
+
+use super::alignment::Alignment;
+use super::cells::CellShare;
+use super::check::ClippedStretch;
+use super::inertia::RemovedInertia;
+use super::lag::StillAirInertia;
+use super::low_pass::AppliedLowPass;
+use super::means::RemovedMeans;
+use super::options::ProcessingOptions;
+use super::segmentation::HarmonicSegment;
+use super::signals::{SectionSignals, peak_and_rms};
+use super::spikes::Replaced;
+use crate::section::Dof;
+use serde::{Deserialize, Serialize};
+
+/// Force on the whole model after a stage.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct StageLevels {
+    /// What has been done.
+    pub stage: String,
+    /// Greatest absolute lift (N), drag (N), moment (N·m).
+    pub peak: [f64; 3],
+    /// Root mean square of the same.
+    pub rms: [f64; 3],
+}
+
+impl StageLevels {
+    pub(super) fn of(stage: &str, signals: &SectionSignals) -> Self {
+        let levels: [(f64, f64); 3] = std::array::from_fn(|d| peak_and_rms(&signals.force[d]));
+        Self {
+            stage: stage.to_owned(),
+            peak: levels.map(|l| l.0),
+            rms: levels.map(|l| l.1),
+        }
+    }
+}
+
+/// What drift was taken for.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct RemovedDrift {
+    /// Degree of the polynomial.
+    pub degree: usize,
+    /// Greatest minus least value over the recording: N, N, N·m.
+    pub range: [f64; 3],
+}
+
+/// Force that follows the motion against what is left, over the steady parts of the segments, dB: lift, drag, moment.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct SignalToNoise {
+    /// Before the low-pass.
+    pub before_low_pass_db: [f64; 3],
+    /// Behind the low-pass.
+    pub after_low_pass_db: [f64; 3],
+}
+
+/// Factors of the dimensionless form.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct DimensionlessFactors {
+    /// Mean wind speed V, m/s.
+    pub speed_m_s: f64,
+    /// Air density ρ, kg/m³.
+    pub air_density_kg_m3: f64,
+    /// `½ρV²`, Pa.
+    pub pressure_pa: f64,
+    /// `Δs = VΔt/B` of the record.
+    pub delta_s: f64,
+}
+
+/// Everything that was done to one run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RunReport {
+    /// Name of the run.
+    pub run: String,
+    /// Degree of freedom that moved.
+    pub dof: Dof,
+    /// Sampling frequency, Hz.
+    pub sampling_hz: f64,
+    /// Samples of the recording in wind.
+    pub samples: usize,
+    /// Samples at its beginning and end that the still-air recording does not cover.
+    pub cut: [usize; 2],
+    /// Stretches at the limit of a channel.
+    pub clipped: Vec<ClippedStretch>,
+    /// Test points found in the motion.
+    pub segments: Vec<HarmonicSegment>,
+    /// Lag and inertia found in still air; `None` when nothing tells them.
+    pub still_air: Option<StillAirInertia>,
+    /// Lag that was corrected, s.
+    pub lag_corrected_s: f64,
+    /// Alignment of the still-air recording.
+    pub alignment: Alignment,
+    /// Means of the cells in wind, global axes.
+    pub cells: Vec<CellShare>,
+    /// Means that were removed.
+    pub means: RemovedMeans,
+    /// What the still-air recording took away.
+    pub inertia: RemovedInertia,
+    /// Samples replaced, with place and reason.
+    pub replaced: Vec<Replaced>,
+    /// What drift was removed.
+    pub drift: RemovedDrift,
+    /// The low-pass, if any.
+    pub low_pass: Option<AppliedLowPass>,
+    /// Signal and noise.
+    pub signal_to_noise: SignalToNoise,
+    /// Factors of the dimensionless form.
+    pub dimensionless: DimensionlessFactors,
+    /// Force after each stage.
+    pub levels: Vec<StageLevels>,
+    /// What the user should know.
+    pub warnings: Vec<String>,
+}
+
+/// What processing did to a campaign.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ProcessingReport {
+    /// Name of the section.
+    pub section: String,
+    /// Choices that were made.
+    pub options: ProcessingOptions,
+    /// Lag of the force channels that was corrected in all runs, s.
+    pub lag_s: f64,
+    /// Its standard error, s; `None` when it was stated, or could not be estimated.
+    pub lag_standard_error_s: Option<f64>,
+    /// Longest `Δs`, to which a discrete model resamples.
+    pub common_delta_s: f64,
+    /// The runs, in the order of the campaign.
+    pub runs: Vec<RunReport>,
+}
+
+impl ProcessingReport {
+    /// Every warning with its run.
+    pub fn warnings(&self) -> Vec<String> {
+        self.runs
+            .iter()
+            .flat_map(|r| r.warnings.iter().map(move |w| format!("run {}: {w}", r.run)))
+            .collect()
+    }
+}

@@ -1,0 +1,245 @@
+//! Stretches of harmonic motion, by the frequency of excitation.
+//!
+//! Upward passages of the motion through zero, counted when it comes from below −0.3 and goes above 0.3 of its amplitude,
+//! give the periods; neighbouring periods that agree within 6 % are one frequency. Between two frequencies the segment ends
+//! in the middle of the rest, or half way when there is none. The frequency is then refined by the phases of the two
+//! halves of the steady part, and the steady part cut to whole periods.
+
+use super::options::SegmentOptions;
+use crate::section::Dof;
+use crate::signal::{Plateau, median, plateau, refine_frequency};
+use crate::wind_tunnel::Segment;
+use serde::{Deserialize, Serialize};
+use std::ops::Range;
+
+/// Passages are counted from and to this part of the amplitude.
+const HYSTERESIS: f64 = 0.3;
+/// Periods that agree within this fraction belong to one frequency.
+const SAME_PERIOD: f64 = 0.06;
+/// Below this part of the amplitude the model rests.
+const AT_REST: f64 = 0.02;
+/// Periods of one frequency at least.
+const PERIODS_AT_LEAST: usize = 2;
+/// A stated frequency is met within this fraction.
+const SAME_FREQUENCY: f64 = 0.05;
+
+/// A stretch with one frequency, and its steady part.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct HarmonicSegment {
+    /// Frequency, first and last instant, ramps included.
+    pub segment: Segment,
+    /// Whole periods at full amplitude.
+    pub plateau: Plateau,
+}
+
+impl HarmonicSegment {
+    /// Samples of the whole segment in a recording of `count` samples.
+    pub fn range(&self, sampling_hz: f64, count: usize) -> Range<usize> {
+        let at = |t: f64| ((t * sampling_hz).round().max(0.0) as usize).min(count);
+        at(self.segment.start_s)..at(self.segment.end_s)
+    }
+}
+
+/// The degree of freedom that moves most: displacements over the width of the model, rotation in rad.
+pub fn moving_dof(motion: &[Vec<f64>; 3], width_m: f64) -> Option<Dof> {
+    let size = |d: Dof| {
+        let x = &motion[super::index(d)];
+        let mean = x.iter().sum::<f64>() / x.len().max(1) as f64;
+        x.iter().fold(0.0_f64, |m, v| m.max((v - mean).abs())) * d.motion_scale(width_m)
+    };
+    Dof::THREE
+        .into_iter()
+        .filter(|d| size(*d) > 0.0)
+        .max_by(|a, b| size(*a).total_cmp(&size(*b)))
+}
+
+/// The harmonic stretches of a motion, in order; empty when it is something else.
+pub fn find_segments(
+    motion: &[f64],
+    sampling_hz: f64,
+    options: &SegmentOptions,
+) -> Vec<HarmonicSegment> {
+    let amplitude = motion.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+    let passages = upward_passages(motion, HYSTERESIS * amplitude);
+    let groups = groups_of_one_period(&passages);
+    let mut found = Vec::new();
+    for (i, group) in groups.iter().enumerate() {
+        let before = i.checked_sub(1).map(|j| groups[j].last);
+        let after = groups.get(i + 1).map(|g| g.first);
+        let quiet = AT_REST * amplitude;
+        let start = match before {
+            Some(last) => seam(motion, last, group.first, quiet),
+            None => first_motion(motion, group.first, quiet, sampling_hz),
+        };
+        let end = match after {
+            Some(first) => seam(motion, group.last, first, quiet),
+            None => {
+                let reversed: Vec<f64> = motion.iter().rev().copied().collect();
+                let last = motion.len() as f64 - 1.0 - group.last;
+                motion.len() - first_motion(&reversed, last, quiet, sampling_hz)
+            }
+        };
+        let rough = sampling_hz / group.period;
+        let full = options.full_amplitude;
+        let steady = |f: f64| plateau(motion, start..end, sampling_hz, f, full);
+        let refined = steady(rough)
+            .and_then(|p| refine_frequency(motion, p.range(), sampling_hz, rough).ok())
+            .filter(|f| (f / rough - 1.0).abs() < SAME_PERIOD);
+        let Some((frequency_hz, plateau)) = refined.and_then(|f| Some((f, steady(f)?))) else {
+            continue;
+        };
+        let stated = &options.frequencies_hz;
+        let near = |f: &f64| (frequency_hz / f - 1.0).abs() <= SAME_FREQUENCY;
+        if stated.is_empty() || stated.iter().any(near) {
+            found.push(HarmonicSegment {
+                segment: Segment {
+                    frequency_hz,
+                    start_s: start as f64 / sampling_hz,
+                    end_s: end as f64 / sampling_hz,
+                },
+                plateau,
+            });
+        }
+    }
+    found
+}
+
+/// Places (in samples) at which the motion passes zero upwards between −`level` and `level`.
+fn upward_passages(motion: &[f64], level: f64) -> Vec<f64> {
+    let mut passages = Vec::new();
+    let mut armed = false;
+    let mut zero = None;
+    for (k, pair) in motion.windows(2).enumerate() {
+        if pair[0] <= -level {
+            armed = level > 0.0;
+        }
+        if armed && pair[0] <= 0.0 && pair[1] > 0.0 {
+            zero = Some(k as f64 + pair[0] / (pair[0] - pair[1]));
+        }
+        if armed && pair[1] >= level {
+            passages.extend(zero.take());
+            armed = false;
+        }
+    }
+    passages
+}
+
+/// Passages of one frequency, in samples.
+struct Group {
+    first: f64,
+    last: f64,
+    period: f64,
+}
+
+fn groups_of_one_period(passages: &[f64]) -> Vec<Group> {
+    let mut groups = Vec::new();
+    let mut from = 0;
+    while from + 1 < passages.len() {
+        let mut periods = vec![passages[from + 1] - passages[from]];
+        let mut to = from + 1;
+        while to + 1 < passages.len() {
+            let next = passages[to + 1] - passages[to];
+            if (next / median(&periods) - 1.0).abs() > SAME_PERIOD {
+                break;
+            }
+            periods.push(next);
+            to += 1;
+        }
+        if periods.len() >= PERIODS_AT_LEAST {
+            groups.push(Group {
+                first: passages[from],
+                last: passages[to],
+                period: (passages[to] - passages[from]) / periods.len() as f64,
+            });
+            from = to;
+        } else {
+            from += 1;
+        }
+    }
+    groups
+}
+
+/// Middle of the longest rest between two places, or half way.
+fn seam(motion: &[f64], from: f64, to: f64, quiet: f64) -> usize {
+    let (from, to) = (from as usize, (to as usize).min(motion.len()));
+    let (mut best, mut at) = (from..from, from);
+    while at < to {
+        let start = at;
+        while at < to && motion[at].abs() <= quiet {
+            at += 1;
+        }
+        if at - start > best.len() {
+            best = start..at;
+        }
+        at += 1;
+    }
+    // a passage through zero is quiet for a few samples only
+    if best.len() > 20 {
+        (best.start + best.end) / 2
+    } else {
+        usize::midpoint(from, to)
+    }
+}
+
+/// First sample of the motion that leads to the passage at `first`: after the last quarter of a second of rest before it, with
+/// half a second for the smooth beginning of a ramp; 0 when it never rested.
+fn first_motion(motion: &[f64], first: f64, quiet: f64, sampling_hz: f64) -> usize {
+    let rest = (0.25 * sampling_hz) as usize;
+    let mut quiet_for = 0;
+    for k in (0..(first as usize).min(motion.len())).rev() {
+        quiet_for = if motion[k].abs() <= quiet {
+            quiet_for + 1
+        } else {
+            0
+        };
+        if quiet_for == rest {
+            return (k + rest).saturating_sub((0.5 * sampling_hz) as usize);
+        }
+    }
+    0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::wind_tunnel::TunnelPlan;
+    use crate::aerodynamics::FlatPlate;
+
+    #[test]
+    fn segments_of_the_tunnel_are_found() {
+        let plan = TunnelPlan {
+            speeds_m_s: vec![8.0],
+            ..TunnelPlan::default()
+        };
+        let records = plan
+            .records_from_model(&FlatPlate::default(), "plate", 0.5)
+            .unwrap();
+        let truth = &records[0].header.segments;
+        let found = find_segments(&records[0].motion[0], 200.0, &SegmentOptions::default());
+        assert_eq!(found.len(), truth.len());
+        for (found, truth) in found.iter().zip(truth) {
+            let s = found.segment;
+            // the part of the ramps above 0.99 is not quite harmonic: 4e-5 at 0.25 Hz, where five periods are steady
+            assert!((s.frequency_hz / truth.frequency_hz - 1.0).abs() < 1e-4, "{s:?}");
+            // the rest between two smooth ramps is found to within a part of a second
+            assert!((s.start_s - truth.start_s).abs() < 0.7, "{s:?} {truth:?}");
+            assert!((s.end_s - truth.end_s).abs() < 0.7, "{s:?} {truth:?}");
+            let periods = (found.plateau.samples as f64 * s.frequency_hz / 200.0).round();
+            assert_eq!(periods as usize, found.plateau.periods);
+            assert!(found.plateau.samples as f64 / 200.0 > 15.0, "{found:?}");
+        }
+    }
+
+    #[test]
+    fn noise_has_no_segments_and_stated_frequencies_are_kept_only() {
+        let wild: Vec<f64> = (0..2000).map(|k| f64::from((k * k * 7919) % 1009) - 504.0).collect();
+        assert!(find_segments(&wild, 200.0, &SegmentOptions::default()).is_empty());
+        let sine: Vec<f64> = (0..4000).map(|k| (0.05 * f64::from(k)).sin()).collect();
+        let stated = |f| SegmentOptions {
+            frequencies_hz: vec![f],
+            ..SegmentOptions::default()
+        };
+        assert_eq!(find_segments(&sine, 200.0, &stated(1.59)).len(), 1);
+        assert!(find_segments(&sine, 200.0, &stated(1.4)).is_empty());
+    }
+}

@@ -1,0 +1,264 @@
+//! Processing of virtual campaigns against their truth.
+
+use super::*;
+use crate::aerodynamics::FlatPlate;
+use crate::wind_tunnel::virtual_campaign::{VirtualCampaign, VirtualCampaignPlan};
+
+fn campaign(plan: &VirtualCampaignPlan) -> VirtualCampaign {
+    plan.from_model(&FlatPlate::default(), "plate", 0.5).unwrap()
+}
+
+/// Three frequencies at 8 m/s, heave and rotation.
+fn short(mut plan: VirtualCampaignPlan) -> VirtualCampaignPlan {
+    plan.tunnel.speeds_m_s = vec![8.0];
+    plan.tunnel.frequencies_hz = vec![0.5, 1.1, 2.0];
+    plan
+}
+
+fn done(raw: &RawCampaign, options: &ProcessingOptions) -> Processed {
+    process(raw, options, &|_| {}).unwrap()
+}
+
+fn refused(raw: &RawCampaign) -> String {
+    process(raw, &ProcessingOptions::default(), &|_| {})
+        .unwrap_err()
+        .to_string()
+}
+
+/// Greatest difference over greatest force, records against truth.
+fn worst(processed: &Processed, truth: &[Record], force: usize) -> f64 {
+    let mut worst = 0.0_f64;
+    for (ours, truth) in processed.records.iter().zip(truth) {
+        let size = truth.force[force]
+            .iter()
+            .fold(0.0_f64, |m, x| m.max(x.abs()));
+        for (a, b) in ours.force[force].iter().zip(&truth.force[force]) {
+            worst = worst.max((a - b).abs() / size);
+        }
+    }
+    worst
+}
+
+/// Gravity, inertia, clamping, static wind and turning cells, but nothing that measurement adds.
+#[test]
+fn a_campaign_without_disturbances_gives_the_truth_back() {
+    let made = campaign(&short(VirtualCampaignPlan::default()));
+    let processed = done(&made.raw, &ProcessingOptions::default());
+    assert_eq!(processed.records.len(), 2);
+    for force in 0..2 {
+        // the low-pass rounds the corners of the ramps, the drift takes a little of them
+        assert!(worst(&processed, &made.truth.records, force) < 1e-3);
+    }
+    for run in &processed.report.runs {
+        assert!(run.warnings.is_empty(), "{:?}", run.warnings);
+        assert!(run.replaced.is_empty() && run.clipped.is_empty());
+        // the plan: lift −0.12, drag 0.08, moment 0.02; the transform behind the truth leaks 3e-9 into the rest
+        for (found, stated) in run.means.static_coefficients.iter().zip([-0.12, 0.08, 0.02]) {
+            assert!((found - stated).abs() < 1e-7, "{found}");
+        }
+        // weight of 2 kg/m × 2.68 m, rounding of the sums
+        assert!((run.means.still_air[0] + 2.0 * 2.68 * 9.81).abs() < 1e-9);
+        assert_eq!(run.segments.len(), 3);
+    }
+    let inertia = |i: usize| processed.report.runs[i].still_air.clone().unwrap();
+    // the ramps in the steady part are not quite harmonic: 1e-4
+    assert!((inertia(0).inertia / (2.0 * 2.68) - 1.0).abs() < 1e-4);
+    let about_centre = (0.04 + 2.0 * (0.004_f64.powi(2) + 0.01_f64.powi(2))) * 2.68;
+    assert!((inertia(1).inertia / about_centre - 1.0).abs() < 1e-4);
+    // gravity turns the model back: centre of gravity 10 mm below the axis
+    assert!((inertia(1).stiffness / (2.0 * 2.68 * 9.81 * 0.01) - 1.0).abs() < 5e-3);
+    assert!(processed.report.lag_s.abs() < 1e-5);
+}
+
+#[test]
+fn lag_offset_drift_and_spike_are_found() {
+    let plan = short(VirtualCampaignPlan::realistic());
+    let made = campaign(&plan);
+    let processed = done(&made.raw, &ProcessingOptions::default());
+    let report = &processed.report;
+    let d = &plan.disturbances;
+    let error = report.lag_standard_error_s.unwrap();
+    assert!(error < 1e-4, "{error}");
+    // four standard errors; 5e-6 s is what the ramps in the steady part cost
+    assert!((report.lag_s - d.force_lag_s).abs() < 4.0 * error + 5e-6);
+    for (run, applied) in report.runs.iter().zip(&made.truth.disturbances) {
+        // the motions are without noise: interpolation alone
+        assert!((run.alignment.offset_s - d.still_air_offset_s).abs() < 1e-8);
+        assert!((run.alignment.parabolic_samples - run.alignment.offset_samples).abs() < 1e-3);
+        let spike = applied.spike.unwrap();
+        let [found] = &run.replaced[..] else {
+            panic!("{:?}", run.replaced);
+        };
+        assert_eq!(found.reason, "spike");
+        // counted from the first covered sample, which is the first here
+        assert_eq!(run.cut[0], 0);
+        assert!(found.first <= spike.first);
+        assert!(found.first + found.samples >= spike.first + spike.samples);
+        // the knock, a guard of a tenth of a second on either side, and a period of the low-pass (5.6 Hz) about which it rings
+        assert!(found.samples < spike.samples + 2 * 20 + 36, "{found:?}");
+        // 5 % of noise is 26 dB, and 7 of 100 Hz are left
+        let at = index(run.dof);
+        assert!(run.signal_to_noise.before_low_pass_db[at] > 20.0);
+        assert!(run.signal_to_noise.after_low_pass_db[at] > 30.0);
+        // two recordings of two cells, each with up to 0.3 N of rise and 0.15 N of wave
+        assert!(run.drift.range[0] > 0.0 && run.drift.range[0] < 4.0 * 0.45);
+    }
+    for force in 0..2 {
+        // what is left of 5 % noise behind the low-pass: 4.5 standard deviations of 1.3 % of an RMS, ⅓ of the greatest force
+        assert!(worst(&processed, &made.truth.records, force) < 0.05);
+    }
+    let text = serde_json::to_string(report).unwrap();
+    assert_eq!(serde_json::from_str::<ProcessingReport>(&text).unwrap(), *report);
+}
+
+/// Without correction the same campaign is wrong: each stage is needed.
+#[test]
+fn a_stated_lag_is_taken_and_a_wrong_one_shows() {
+    let mut plan = short(VirtualCampaignPlan::default());
+    plan.disturbances.force_lag_s = 0.0017;
+    let made = campaign(&plan);
+    let with = |lag_s| {
+        let options = ProcessingOptions {
+            lag_s,
+            ..ProcessingOptions::default()
+        };
+        worst(&done(&made.raw, &options), &made.truth.records, 0)
+    };
+    assert!(with(Some(0.0017)) < 1e-3);
+    assert!(with(None) < 1e-3);
+    // ωτ = 2π·2·0.0017
+    assert!(with(Some(0.0)) > 0.01);
+}
+
+#[test]
+fn cut_ramps_leave_whole_periods() {
+    let made = campaign(&short(VirtualCampaignPlan::default()));
+    let mut options = ProcessingOptions::default();
+    options.segments.ramps = Ramps::Cut;
+    let processed = done(&made.raw, &options);
+    assert_eq!(processed.records.len(), 6);
+    for record in &processed.records {
+        let [segment] = &record.header.segments[..] else {
+            panic!("one segment a record");
+        };
+        let periods = record.force[0].len() as f64 * segment.frequency_hz / 200.0;
+        assert!((periods - periods.round()).abs() < 0.01, "{periods}");
+    }
+}
+
+/// Still air recorded for less long: what both cover is used, and too little is said.
+#[test]
+fn recordings_of_unequal_length() {
+    let mut made = campaign(&short(VirtualCampaignPlan::default()));
+    let cut = |raw: &mut RawCampaign, count: usize| {
+        let still = &mut raw.runs[0].still_air;
+        still.motion.iter_mut().for_each(|x| x.truncate(count));
+        still.cells.iter_mut().flatten().for_each(|x| x.truncate(count));
+        still.wind_speed_m_s.truncate(count);
+    };
+    let whole = made.raw.runs[0].in_wind.len();
+    cut(&mut made.raw, whole - 100);
+    let processed = done(&made.raw, &ProcessingOptions::default());
+    assert_eq!(processed.report.runs[0].cut[1], 100);
+    assert!(processed.report.warnings()[0].contains("only the part that both cover"));
+    cut(&mut made.raw, whole - 4000);
+    let message = refused(&made.raw);
+    assert!(message.contains("still air: expected a recording as long as the motion at 2.000 Hz"), "{message}");
+    made.raw.runs[0].still_air.motion[0].pop();
+    assert!(refused(&made.raw).contains("samples, as the first force channel"));
+}
+
+#[test]
+fn channels_of_the_wrong_sign_or_place_are_named() {
+    let made = campaign(&short(VirtualCampaignPlan::default()));
+    let with = |change: &dyn Fn(&mut RawCampaign)| {
+        let mut raw = made.raw.clone();
+        change(&mut raw);
+        refused(&raw)
+    };
+    fn both(raw: &mut RawCampaign, change: impl Fn(&mut super::super::RawRecording)) {
+        for run in &mut raw.runs {
+            change(&mut run.in_wind);
+            change(&mut run.still_air);
+        }
+    }
+    // x of the near cell points up: the lift of one cell turned round
+    let message = with(&|raw| both(raw, |r| r.cells[1][0].iter_mut().for_each(|x| *x = -*x)));
+    assert!(message.contains("still air, cell far: expected a vertical force in antiphase"), "{message}");
+    // all of it
+    let message = with(&|raw| {
+        both(raw, |r| {
+            for cell in &mut r.cells {
+                cell[0].iter_mut().for_each(|x| *x = -*x);
+            }
+        });
+    });
+    assert!(message.contains("sum of the cells: expected a vertical force in antiphase"), "{message}");
+    assert!(message.contains("turned round"), "{message}");
+    // lift and drag exchanged
+    let message = with(&|raw| {
+        both(raw, |r| {
+            for cell in &mut r.cells {
+                cell.swap(0, 1);
+            }
+        });
+    });
+    assert!(message.contains("exchanged"), "{message}");
+    // the motion of the turning run measured nose-down
+    let message = with(&|raw| both(raw, |r| r.motion[2].iter_mut().for_each(|x| *x = -*x)));
+    assert!(message.contains("torsion force in antiphase"), "{message}");
+}
+
+#[test]
+fn bad_recordings_name_run_channel_and_sample() {
+    let made = campaign(&short(VirtualCampaignPlan::default()));
+    let with = |change: &dyn Fn(&mut RawCampaign)| {
+        let mut raw = made.raw.clone();
+        change(&mut raw);
+        refused(&raw)
+    };
+    let message = with(&|raw| raw.runs[1].in_wind.cells[0][3][812] = f64::NAN);
+    assert_eq!(
+        message,
+        "run plate-torsion-8.00, in wind, cell near, mx, sample 812: expected a finite number, found NaN"
+    );
+    let message = with(&|raw| raw.runs[0].mean_speed_m_s = 0.0);
+    assert!(message.contains("run plate-vertical-8.00, mean wind speed: expected a positive number"));
+    let message = with(&|raw| raw.runs[0].still_air.sampling_hz = 250.0);
+    assert!(message.contains("still air: expected the sampling frequency of the recording in wind"));
+    let message = with(&|raw| {
+        let x = &mut raw.runs[0].in_wind.cells[0][0];
+        let limit = 0.7 * x.iter().fold(f64::MIN, |m, v| m.max(*v))
+            + 0.3 * x.iter().sum::<f64>() / x.len() as f64;
+        x.iter_mut().for_each(|v| *v = v.min(limit));
+    });
+    assert!(message.contains("cell near, fx, sample "), "{message}");
+    assert!(message.contains("a channel that is not clipped"), "{message}");
+    let mut options = ProcessingOptions::default();
+    options.low_pass.cutoff_hz = Some(120.0);
+    let message = process(&made.raw, &options, &|_| {}).unwrap_err().to_string();
+    assert!(message.contains("below the Nyquist frequency, 100 Hz at 200 Hz"), "{message}");
+    let message = with(&|raw| raw.runs.clear());
+    assert!(message.contains("at least one run"));
+}
+
+/// A knock that drives a channel to its limit for a moment is replaced and said.
+#[test]
+fn a_short_clip_is_replaced() {
+    let mut plan = short(VirtualCampaignPlan::realistic());
+    let spike = plan.disturbances.spike.as_mut().unwrap();
+    // far above the inertia of the fastest motion, so that only the knock is cut off
+    (spike.height, spike.duration_s) = (40.0, 0.2);
+    let mut made = campaign(&plan);
+    for cell in &mut made.raw.runs[0].in_wind.cells {
+        let high = cell[0].iter().fold(f64::MIN, |m, v| m.max(*v));
+        let low = cell[0].iter().fold(f64::MAX, |m, v| m.min(*v));
+        let limit = high - 0.2 * (high - low);
+        cell[0].iter_mut().for_each(|v| *v = v.min(limit));
+    }
+    let processed = done(&made.raw, &ProcessingOptions::default());
+    let run = &processed.report.runs[0];
+    assert!(!run.clipped.is_empty());
+    assert!(run.replaced.iter().any(|r| r.reason == "clipped"), "{:?}", run.replaced);
+    assert!(worst(&processed, &made.truth.records, 0) < 0.05);
+}
