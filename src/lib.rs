@@ -47,6 +47,8 @@ pub mod state_space;
 #[cfg(feature = "cli")]
 pub mod study;
 pub mod trained_model;
+#[cfg(feature = "identification")]
+pub mod uncertainty;
 pub mod units;
 #[cfg(feature = "identification")]
 pub mod wind_tunnel;

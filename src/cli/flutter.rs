@@ -24,7 +24,8 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     let deck = Deck::load(&study)?;
     let directory = args.study.directory();
     let models = stages::read_models(&study, &directory)?;
-    let results = stages::flutter(&study, &deck, &models, progress)?;
+    let known = stages::read_uncertainties(&study, &directory)?;
+    let results = stages::flutter(&study, &deck, &models, &known, progress)?;
     let mut out = OutputDir::new(&directory)?;
     stages::flutter_figure(&study, &results, &[], &mut out)?;
     let written = out.commit()?;

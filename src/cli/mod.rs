@@ -3,6 +3,7 @@
 mod account;
 mod answer;
 mod common;
+mod coverage;
 mod demo;
 mod flutter;
 mod fmu;
@@ -53,6 +54,7 @@ enum Command {
     Fmu(fmu::Fmu),
     Validate(validate::Args),
     Thesis(thesis::Args),
+    Coverage(coverage::Args),
 }
 
 /// Runs the command line of this process.
@@ -87,6 +89,7 @@ fn run(command: &Command, progress: &progress::Progress) -> Result<Answer> {
         Command::Fmu(command) => fmu::run(command, progress),
         Command::Validate(args) => validate::run(args, progress),
         Command::Thesis(args) => thesis::run(args, progress),
+        Command::Coverage(args) => coverage::run(args, progress),
     }
 }
 

@@ -15,6 +15,6 @@ mod tracking;
 pub use curves::{FlutterCurves, ModeBranch, ModePoint, trace_modes};
 pub use determinant::{determinant_onset, impedance};
 pub use divergence::divergence_speed;
-pub use onset::{FlutterSearch, Onset, OnsetMethod};
+pub use onset::{FlutterSearch, Onset, OnsetInterval, OnsetMethod};
 pub use quasi_pk::quasi_pk_mode;
 pub use search::{OnsetSearch, find_onset};

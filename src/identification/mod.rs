@@ -14,6 +14,7 @@ mod search;
 #[cfg(test)]
 mod testing;
 mod time;
+mod uncertainty;
 
 pub use discrete::fit_discrete;
 pub use frequency::fit_table;
@@ -28,3 +29,7 @@ pub use report::{
     OrderReport, SearchPoint, SearchReport,
 };
 pub use samples::sample_model;
+pub use uncertainty::{
+    CoefficientUncertainty, Coordinates, Parameter, SearchedPole, discrete_uncertainty,
+    record_uncertainty, table_uncertainty, two_sided_quantile,
+};

@@ -121,7 +121,8 @@ pub(crate) struct Task<'a> {
 }
 
 impl Task<'_> {
-    fn cutoff_hz(&self, record: &Scaled<'_>) -> f64 {
+    /// Cut-off of the low-pass, Hz.
+    pub fn cutoff_hz(&self, record: &Scaled<'_>) -> f64 {
         self.fit
             .low_pass_hz
             .unwrap_or(CUTOFF_OVER_SAMPLING / record.step_s)
@@ -165,6 +166,7 @@ impl Task<'_> {
             } else {
                 1
             },
+            keep_stretches: false,
         };
         accumulate(
             self.records,

@@ -5,6 +5,7 @@
 
 mod deck;
 mod defaults;
+mod intervals;
 mod locate;
 mod models;
 mod onsets;
@@ -12,6 +13,7 @@ mod stepped;
 
 pub use deck::{Deck, RecordSet};
 pub use defaults::{demo_study_text, thesis_study_text};
+pub use intervals::{KnownUncertainty, interval_of, state_intervals};
 pub use models::{TrainedWithReport, train_one};
 pub use onsets::{Deviation, Divergence, FlutterStudy, OnsetSummary, flutter_study};
 pub use stepped::{SteppedOnset, stepped_onset};

@@ -49,6 +49,10 @@ pub const ARROWS: &[Row] = &[
     row("response", &["aeroelastic+"]),
     row("fmu", &["flutter+", "response+", "trained_model+"]),
     row("fmu::fmi2", &["fmu"]),
+    row(
+        "uncertainty",
+        &["flutter+", "identification+", "wind_tunnel+"],
+    ),
     row("benchmarks", BELOW_STUDY),
     row("study", BELOW_STUDY),
     Row {
@@ -60,7 +64,13 @@ pub const ARROWS: &[Row] = &[
     row("main", &["cli+"]),
 ];
 
-const BELOW_STUDY: &[&str] = &["fmu+", "identification+", "wind_tunnel+", "comparison"];
+const BELOW_STUDY: &[&str] = &[
+    "fmu+",
+    "identification+",
+    "wind_tunnel+",
+    "comparison",
+    "uncertainty",
+];
 
 /// Every module may use these.
 const FOR_ALL: &[&str] = &["error"];

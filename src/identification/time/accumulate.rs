@@ -2,6 +2,7 @@
 //! chunks after they have been factored, and one pass serves many candidate models.
 
 use super::slices::{Event, Scaled, Slice};
+use super::stretches::{Closed, stretch_ends, weigh_by_record, weight};
 use crate::error::{Error, Result};
 use crate::identification::least_squares::{Factor, StreamingQr};
 use crate::identification::options::TimeWeights;
@@ -29,7 +30,7 @@ impl Layout {
     }
 
     /// Columns of the whole system that a set of inputs takes, in the order of its own system.
-    fn map(&self, active: &[usize]) -> Vec<usize> {
+    pub fn map(&self, active: &[usize]) -> Vec<usize> {
         let constant = self.constant.then_some(0);
         let columns =
             (0..self.per_input).flat_map(|c| active.iter().map(move |&j| self.index(c, j)));
@@ -59,6 +60,8 @@ pub(crate) struct Plan {
     pub discard_s: f64,
     /// Every how many samples a row is taken.
     pub stride: usize,
+    /// Keep every stretch between boundaries apart, and set boundaries where segments begin whatever the weights.
+    pub keep_stretches: bool,
 }
 
 /// Systems of one candidate, one a set of inputs that moved together and force.
@@ -86,19 +89,11 @@ pub(crate) fn accumulate<'a, C: Columns>(
     make: &(dyn Fn(&Scaled<'a>) -> Result<C> + Sync),
     done: &(dyn Fn(usize) + Sync),
 ) -> Result<Vec<Factored>> {
-    let finished = std::sync::atomic::AtomicUsize::new(0);
-    let parts: Vec<Result<Vec<Totals>>> = records
-        .par_iter()
-        .map(|record| {
-            let totals = one_record(record, plan, &mut make(record)?);
-            done(1 + finished.fetch_add(1, std::sync::atomic::Ordering::Relaxed));
-            totals
-        })
-        .collect();
+    let parts = each_record(records, plan, make, done)?;
     // merged in the order of the records, whatever the order in which they were done
     let mut by_candidate: Vec<Vec<Totals>> = Vec::new();
     for part in parts {
-        for (c, totals) in part?.into_iter().enumerate() {
+        for (c, totals) in part.0.into_iter().enumerate() {
             if by_candidate.len() <= c {
                 by_candidate.push(Vec::new());
             }
@@ -111,8 +106,29 @@ pub(crate) fn accumulate<'a, C: Columns>(
         .collect())
 }
 
-fn one_record<C: Columns>(record: &Scaled<'_>, plan: &Plan, make: &mut C) -> Result<Vec<Totals>> {
+/// What one record yields: its totals, or its stretches where they are kept.
+type Part = (Vec<Totals>, Vec<Closed>);
+
+pub(super) fn each_record<'a, C: Columns>(
+    records: &[Scaled<'a>],
+    plan: &Plan,
+    make: &(dyn Fn(&Scaled<'a>) -> Result<C> + Sync),
+    done: &(dyn Fn(usize) + Sync),
+) -> Result<Vec<Part>> {
+    let finished = std::sync::atomic::AtomicUsize::new(0);
+    records
+        .par_iter()
+        .map(|record| {
+            let totals = one_record(record, plan, &mut make(record)?);
+            done(1 + finished.fetch_add(1, std::sync::atomic::Ordering::Relaxed));
+            totals
+        })
+        .collect()
+}
+
+fn one_record<C: Columns>(record: &Scaled<'_>, plan: &Plan, make: &mut C) -> Result<Part> {
     let mut boundaries = match plan.weights {
+        _ if plan.keep_stretches => stretch_ends(record),
         TimeWeights::PerSegment => record.segment_starts(),
         _ => Vec::new(),
     };
@@ -127,10 +143,11 @@ fn one_record<C: Columns>(record: &Scaled<'_>, plan: &Plan, make: &mut C) -> Res
         .collect();
     let mut chunk = Chunk::new(plan.layout.inputs);
     let mut active: Vec<usize> = Vec::new();
+    let mut closed: Vec<Closed> = Vec::new();
     let mut rows = 0;
     record.stream(plan.delta_s, &boundaries, &mut |event| {
         match event {
-            Event::Boundary => chunk.close(plan, &mut totals),
+            Event::Boundary => chunk.close(plan, &mut totals, &mut closed),
             Event::Samples(slice) => {
                 let moving = activate(&slice, &mut active);
                 make.advance(&slice, &active);
@@ -142,7 +159,7 @@ fn one_record<C: Columns>(record: &Scaled<'_>, plan: &Plan, make: &mut C) -> Res
         }
         Ok(())
     })?;
-    chunk.close(plan, &mut totals);
+    chunk.close(plan, &mut totals, &mut closed);
     let least = plan.layout.width(1).max(16) * plan.stride;
     if rows < least {
         return Err(Error::input(
@@ -151,7 +168,10 @@ fn one_record<C: Columns>(record: &Scaled<'_>, plan: &Plan, make: &mut C) -> Res
             rows.to_string(),
         ));
     }
-    Ok(totals)
+    if plan.weights == TimeWeights::PerRecord && plan.keep_stretches {
+        weigh_by_record(&mut closed);
+    }
+    Ok((totals, closed))
 }
 
 /// Adds the inputs that begin to move in this slice to `active`; returns from which row on something has moved.
@@ -232,20 +252,38 @@ impl Chunk {
     }
 
     /// Hands the rows over with the weight of each force, and starts anew.
-    fn close(&mut self, plan: &Plan, totals: &mut [Totals]) {
+    fn close(&mut self, plan: &Plan, totals: &mut [Totals], closed: &mut Vec<Closed>) {
         let weights: Vec<f64> = self
             .squares
             .iter()
             .map(|sum| match plan.weights {
                 TimeWeights::None => 1.0,
-                // a force that is zero throughout cannot be scaled by its size
-                _ if *sum == 0.0 => 1.0,
-                _ => (self.rows as f64 / sum).sqrt(),
+                _ => weight(self.rows, *sum),
             })
             .collect();
-        for (set, systems) in self.sets.drain(..) {
-            for (system, totals) in systems.into_iter().zip(totals.iter_mut()) {
-                totals.add(&set, &system.finish(), &weights);
+        let stretch = closed.last().map_or(0, |c| c.stretch + 1);
+        let last = self.sets.len().saturating_sub(1);
+        for (at, (set, systems)) in self.sets.drain(..).enumerate() {
+            let factors: Vec<Factor> = systems.into_iter().map(StreamingQr::finish).collect();
+            if plan.keep_stretches {
+                let own = at == last;
+                closed.push(Closed {
+                    record: 0,
+                    stretch,
+                    set,
+                    factors,
+                    weights: weights.clone(),
+                    squares: self
+                        .squares
+                        .iter()
+                        .map(|s| if own { *s } else { 0.0 })
+                        .collect(),
+                    moving_rows: if own { self.rows } else { 0 },
+                });
+                continue;
+            }
+            for (factor, totals) in factors.iter().zip(totals.iter_mut()) {
+                totals.add(&set, factor, &weights);
             }
         }
         *self = Self::new(plan.layout.inputs);

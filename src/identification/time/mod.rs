@@ -5,3 +5,4 @@ pub(crate) mod filters;
 pub(crate) mod resample;
 pub(crate) mod search;
 pub(crate) mod slices;
+pub(crate) mod stretches;

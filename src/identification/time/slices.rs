@@ -109,6 +109,17 @@ impl<'a> Scaled<'a> {
         self.rate * self.step_s
     }
 
+    /// Whether the record states its segments.
+    pub fn has_segments(&self) -> bool {
+        !self.record.header().segments.is_empty()
+    }
+
+    /// Excitation frequency of a segment, Hz.
+    pub fn segment_hz(&self, index: usize) -> Option<f64> {
+        let segments = &self.record.header().segments;
+        segments.get(index).map(|s| s.frequency_hz)
+    }
+
     /// Instants (s) at which one segment gives way to the next.
     pub fn segment_starts(&self) -> Vec<f64> {
         let segments = &self.record.header().segments;

@@ -1,0 +1,22 @@
+//! Covariance of fitted coefficients when residuals are correlated.
+//!
+//! Residuals of a wind-tunnel record are not white: the low-pass colours noise, turbulence and the support have spectra
+//! of their own, and what the model cannot follow repeats in every period. A formula for independent residuals
+//! is then wrong by the ratio of the spectra at the motion's frequency. Estimators with a chosen lag
+//! (Newey–West) see the noise but not the misfit, which has the memory of a whole segment. The segments themselves
+//! are the natural blocks: motion and force come to rest between them, so they are independent whatever happens inside.
+//! See [`CoefficientUncertainty::assumption`] for what is assumed in each case.
+
+mod coefficients;
+mod columns;
+mod design;
+mod poles;
+mod records;
+mod segments;
+mod student;
+mod table;
+
+pub use coefficients::{CoefficientUncertainty, Coordinates, Parameter, SearchedPole};
+pub use records::{discrete_uncertainty, record_uncertainty};
+pub use student::two_sided_quantile;
+pub use table::table_uncertainty;
