@@ -43,6 +43,8 @@ pub mod identification;
 pub mod report;
 pub mod response;
 pub mod section;
+#[cfg(feature = "identification")]
+pub mod selection;
 pub mod state_space;
 #[cfg(feature = "cli")]
 pub mod study;

@@ -104,11 +104,15 @@ fn account(r: &CoverageReport) -> String {
     ] {
         let _ = writeln!(text, "{what:<42} {value:>9.4} m/s");
     }
-    let _ = writeln!(
-        text,
-        "{:<42} {:>9.1}",
-        "degrees of freedom (mean)", r.mean_degrees_of_freedom
-    );
+    for (what, value) in [
+        ("degrees of freedom (mean)", r.mean_degrees_of_freedom),
+        (
+            "  as the scatter of the variances shows",
+            r.observed_degrees_of_freedom,
+        ),
+    ] {
+        let _ = writeln!(text, "{what:<42} {value:>9.1}");
+    }
     for (what, value) in [
         ("intervals of the onset that hold the truth", &r.holds_truth),
         ("  with the bias taken away", &r.holds_fit_without_noise),

@@ -9,6 +9,7 @@ mod flutter;
 mod fmu;
 mod output;
 mod progress;
+mod select;
 mod simulate;
 mod stages;
 mod study;
@@ -54,6 +55,7 @@ enum Command {
     Fmu(fmu::Fmu),
     Validate(validate::Args),
     Thesis(thesis::Args),
+    Select(select::Args),
     Coverage(coverage::Args),
 }
 
@@ -89,6 +91,7 @@ fn run(command: &Command, progress: &progress::Progress) -> Result<Answer> {
         Command::Fmu(command) => fmu::run(command, progress),
         Command::Validate(args) => validate::run(args, progress),
         Command::Thesis(args) => thesis::run(args, progress),
+        Command::Select(args) => select::run(args, progress),
         Command::Coverage(args) => coverage::run(args, progress),
     }
 }

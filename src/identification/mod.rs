@@ -5,6 +5,7 @@ mod basis;
 mod deck_tests;
 mod discrete;
 mod frequency;
+mod grid;
 mod least_squares;
 mod options;
 mod records;
@@ -18,6 +19,7 @@ mod uncertainty;
 
 pub use discrete::fit_discrete;
 pub use frequency::fit_table;
+pub use grid::{CellFit, Grid, GridAxis, StretchLabel};
 pub use least_squares::{Factor, StreamingQr};
 pub use options::{
     DiscreteFit, FeedThrough, Form, FrequencyFit, FrequencyWeights, PoleSearch, TimeFit,
@@ -30,6 +32,6 @@ pub use report::{
 };
 pub use samples::sample_model;
 pub use uncertainty::{
-    CoefficientUncertainty, Coordinates, Parameter, SearchedPole, discrete_uncertainty,
-    record_uncertainty, table_uncertainty, two_sided_quantile,
+    CoefficientUncertainty, Coordinates, LinearModel, Parameter, SearchedPole,
+    discrete_uncertainty, record_uncertainty, table_uncertainty, two_sided_quantile,
 };

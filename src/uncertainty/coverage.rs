@@ -111,6 +111,8 @@ pub struct CoverageReport {
     pub mean_half_width_m_s: f64,
     /// Mean degrees of freedom.
     pub mean_degrees_of_freedom: f64,
+    /// Degrees of freedom that the scatter of the stated variances shows, `2 mean²/variance`.
+    pub observed_degrees_of_freedom: f64,
     /// Intervals of the onset that hold the true one.
     pub holds_truth: Share,
     /// Intervals of the onset that hold that of the fit without noise: coverage with the bias taken away.
@@ -300,6 +302,7 @@ impl Campaign {
         let mean = |f: &dyn Fn(&Run) -> f64| good.iter().map(|r| f(r)).sum::<f64>() / count;
         let average = mean(&|r| r.onset_m_s);
         let scatter = (mean(&|r| (r.onset_m_s - average).powi(2)) * count / (count - 1.0)).sqrt();
+        let variance = mean(&|r| r.standard_error_m_s.powi(2));
         let holds = |target: f64| {
             Share::count(
                 good.iter()
@@ -313,9 +316,11 @@ impl Campaign {
             mean_error_m_s: average - self.true_onset_m_s,
             standard_error_of_mean_m_s: scatter / count.sqrt(),
             scatter_m_s: scatter,
-            stated_standard_error_m_s: mean(&|r| r.standard_error_m_s.powi(2)).sqrt(),
+            stated_standard_error_m_s: variance.sqrt(),
             mean_half_width_m_s: mean(&|r| r.half_width_m_s),
             mean_degrees_of_freedom: mean(&|r| r.degrees_of_freedom),
+            observed_degrees_of_freedom: 2.0 * variance * variance
+                / (mean(&|r| r.standard_error_m_s.powi(4)) - variance * variance),
             holds_truth: holds(self.true_onset_m_s),
             holds_fit_without_noise: holds(self.true_onset_m_s + self.bias_m_s),
             derivatives_hold_truth: Share::count(

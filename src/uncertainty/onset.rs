@@ -1,6 +1,7 @@
 //! Interval of an onset: by its gradient, and by re-solving it for other weights of the blocks.
 
-use super::sensitivity::{onset_gradient, onset_nearby, section_at};
+use super::sensitivity::{coupled, onset_gradient, onset_nearby};
+use crate::aerodynamics::AerodynamicModel;
 use crate::error::Result;
 use crate::flutter::{FlutterSearch, Onset, OnsetInterval, OnsetSearch, find_onset};
 use crate::identification::{CoefficientUncertainty, two_sided_quantile};
@@ -116,7 +117,8 @@ pub struct ResamplingPlan {
     pub tested: Option<ReducedFrequencyRange>,
 }
 
-/// Draws parameters and solves the onset anew for each draw, in parallel; the answer does not depend on the number of
+/// Draws parameters and solves the onset anew for each draw, in parallel. Searched poles move the transfer function
+/// along its slope (see [`crate::identification::LinearModel`]). The answer does not depend on the number of
 /// threads. `None` for blocks of an estimate that no longer knows its data.
 ///
 /// # Errors
@@ -128,6 +130,7 @@ pub fn resample_onset(
     plan: &ResamplingPlan,
 ) -> Result<Option<ResampledOnset>> {
     let draw = Draw::new(estimate, plan)?;
+    let linear = estimate.linear()?;
     let at = (onset.speed_m_s, TAU * onset.frequency_hz);
     let drawn: Vec<Option<Option<f64>>> = (0..plan.replicates)
         .into_par_iter()
@@ -135,7 +138,13 @@ pub fn resample_onset(
             let Some(values) = draw.parameters(estimate, plan, r)? else {
                 return Ok(None);
             };
-            Ok(Some(solve(estimate, structure, &values, at, plan)))
+            let model = match &linear {
+                Some(linear) => linear.model_at(&values),
+                None => estimate.model_at(&values),
+            };
+            Ok(Some(
+                model.ok().and_then(|m| solve(&m, structure, at, plan)),
+            ))
         })
         .collect::<Result<_>>()?;
     if drawn.iter().any(Option::is_none) {
@@ -157,15 +166,14 @@ pub fn resample_onset(
     }))
 }
 
-/// Onset of one draw; a draw that makes no model (a negative pole, say) has none.
+/// Onset of one draw.
 fn solve(
-    estimate: &CoefficientUncertainty,
+    model: &dyn AerodynamicModel,
     structure: &Structure,
-    values: &[f64],
     at: (f64, f64),
     plan: &ResamplingPlan,
 ) -> Option<f64> {
-    let section = section_at(structure, estimate, values).ok()?;
+    let section = coupled(structure, model).ok()?;
     if let Ok(Some(speed)) = onset_nearby(&section, at) {
         return Some(speed);
     }

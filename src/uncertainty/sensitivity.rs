@@ -26,7 +26,7 @@ const REACH: f64 = 0.5;
 ///
 /// # Errors
 /// Parameters that make no model, or a model that cannot be coupled.
-pub(super) fn section_at(
+fn section_at(
     structure: &Structure,
     estimate: &CoefficientUncertainty,
     values: &[f64],
@@ -34,6 +34,10 @@ pub(super) fn section_at(
     coupled(structure, &estimate.model_at(values)?)
 }
 
+/// The section with a model.
+///
+/// # Errors
+/// A model without a realisation, or one that cannot be coupled.
 pub(super) fn coupled(
     structure: &Structure,
     model: &dyn AerodynamicModel,

@@ -53,6 +53,10 @@ pub const ARROWS: &[Row] = &[
         "uncertainty",
         &["flutter+", "identification+", "wind_tunnel+"],
     ),
+    row(
+        "selection",
+        &["flutter+", "identification+", "wind_tunnel+", "comparison"],
+    ),
     row("benchmarks", BELOW_STUDY),
     row("study", BELOW_STUDY),
     Row {
@@ -70,6 +74,7 @@ const BELOW_STUDY: &[&str] = &[
     "wind_tunnel+",
     "comparison",
     "uncertainty",
+    "selection",
 ];
 
 /// Every module may use these.

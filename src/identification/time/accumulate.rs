@@ -2,7 +2,7 @@
 //! chunks after they have been factored, and one pass serves many candidate models.
 
 use super::slices::{Event, Scaled, Slice};
-use super::stretches::{Closed, stretch_ends, weigh_by_record, weight};
+use super::stretches::{Closed, settle, stretch_ends, weight};
 use crate::error::{Error, Result};
 use crate::identification::least_squares::{Factor, StreamingQr};
 use crate::identification::options::TimeWeights;
@@ -27,6 +27,11 @@ impl Layout {
     /// Column `c` of input `j` in the whole system.
     pub fn index(&self, c: usize, j: usize) -> usize {
         usize::from(self.constant) + c * self.inputs + j
+    }
+
+    /// Number of columns of the whole system that the first `per_input` columns of every input take.
+    pub fn leading(&self, per_input: usize) -> usize {
+        usize::from(self.constant) + per_input * self.inputs
     }
 
     /// Columns of the whole system that a set of inputs takes, in the order of its own system.
@@ -60,8 +65,8 @@ pub(crate) struct Plan {
     pub discard_s: f64,
     /// Every how many samples a row is taken.
     pub stride: usize,
-    /// Keep every stretch between boundaries apart, and set boundaries where segments begin whatever the weights.
-    pub keep_stretches: bool,
+    /// Into how many stretches every segment is cut that are kept apart; 0 keeps none.
+    pub stretches: usize,
 }
 
 /// Systems of one candidate, one a set of inputs that moved together and force.
@@ -128,7 +133,7 @@ pub(super) fn each_record<'a, C: Columns>(
 
 fn one_record<C: Columns>(record: &Scaled<'_>, plan: &Plan, make: &mut C) -> Result<Part> {
     let mut boundaries = match plan.weights {
-        _ if plan.keep_stretches => stretch_ends(record),
+        _ if plan.stretches > 0 => stretch_ends(record, plan.stretches),
         TimeWeights::PerSegment => record.segment_starts(),
         _ => Vec::new(),
     };
@@ -152,6 +157,7 @@ fn one_record<C: Columns>(record: &Scaled<'_>, plan: &Plan, make: &mut C) -> Res
                 let moving = activate(&slice, &mut active);
                 make.advance(&slice, &active);
                 if slice.first >= discard {
+                    chunk.begin(slice.first as f64 * step);
                     chunk.take(&slice, moving, plan, &active, make);
                     rows += slice.rows();
                 }
@@ -168,9 +174,7 @@ fn one_record<C: Columns>(record: &Scaled<'_>, plan: &Plan, make: &mut C) -> Res
             rows.to_string(),
         ));
     }
-    if plan.weights == TimeWeights::PerRecord && plan.keep_stretches {
-        weigh_by_record(&mut closed);
-    }
+    settle(&mut closed, record, plan.weights);
     Ok((totals, closed))
 }
 
@@ -198,6 +202,8 @@ struct Chunk {
     squares: Vec<f64>,
     rows: usize,
     strided: Vec<Vec<f64>>,
+    /// Instant of the first row, s.
+    start_s: f64,
 }
 
 impl Chunk {
@@ -207,6 +213,14 @@ impl Chunk {
             squares: vec![0.0; forces],
             rows: 0,
             strided: Vec::new(),
+            start_s: 0.0,
+        }
+    }
+
+    /// Notes the instant of the first row.
+    fn begin(&mut self, time_s: f64) {
+        if self.sets.is_empty() {
+            self.start_s = time_s;
         }
     }
 
@@ -265,11 +279,13 @@ impl Chunk {
         let last = self.sets.len().saturating_sub(1);
         for (at, (set, systems)) in self.sets.drain(..).enumerate() {
             let factors: Vec<Factor> = systems.into_iter().map(StreamingQr::finish).collect();
-            if plan.keep_stretches {
+            if plan.stretches > 0 {
                 let own = at == last;
                 closed.push(Closed {
                     record: 0,
                     stretch,
+                    segment: None,
+                    start_s: self.start_s,
                     set,
                     factors,
                     weights: weights.clone(),
@@ -305,6 +321,21 @@ impl Totals {
 }
 
 impl Factored {
+    /// The systems of one candidate from stretches that were kept apart.
+    pub fn from_stretches<'a>(
+        layout: Layout,
+        stretches: impl Iterator<Item = &'a Closed>,
+        candidate: usize,
+    ) -> Self {
+        let mut totals = Totals {
+            sets: BTreeMap::new(),
+        };
+        for closed in stretches {
+            totals.add(&closed.set, &closed.factors[candidate], &closed.weights);
+        }
+        Self::merge(layout, vec![totals])
+    }
+
     fn merge(layout: Layout, parts: Vec<Totals>) -> Self {
         let mut sets: BTreeMap<Vec<usize>, Vec<StreamingQr>> = BTreeMap::new();
         for part in parts {

@@ -6,7 +6,7 @@ use crate::identification::basis::index_of;
 use crate::identification::least_squares::BLOCK_ROWS;
 use crate::section::Dof;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
-use crate::wind_tunnel::{RecordBlock, RecordSource};
+use crate::wind_tunnel::{RecordBlock, RecordSource, Segment};
 
 /// A record with the factors that make it dimensionless.
 pub(crate) struct Scaled<'a> {
@@ -109,15 +109,9 @@ impl<'a> Scaled<'a> {
         self.rate * self.step_s
     }
 
-    /// Whether the record states its segments.
-    pub fn has_segments(&self) -> bool {
-        !self.record.header().segments.is_empty()
-    }
-
-    /// Excitation frequency of a segment, Hz.
-    pub fn segment_hz(&self, index: usize) -> Option<f64> {
-        let segments = &self.record.header().segments;
-        segments.get(index).map(|s| s.frequency_hz)
+    /// Stretches of harmonic motion that the record states.
+    pub fn segments(&self) -> &'a [Segment] {
+        &self.record.header().segments
     }
 
     /// Instants (s) at which one segment gives way to the next.

@@ -1,5 +1,6 @@
 //! Estimated parameters of a model, their covariance, and the model as a function of them.
 
+use super::columns::LinearModel;
 use super::design::Design;
 use crate::aerodynamics::DiscreteLaguerre;
 use crate::error::{Error, Result};
@@ -179,6 +180,24 @@ impl CoefficientUncertainty {
                 model.validate()?;
                 Ok(Model::DiscreteLaguerre(model))
             }
+        }
+    }
+
+    /// The model as a linear function of its parameters, where poles are among them.
+    ///
+    /// # Errors
+    /// Chains whose columns cannot be told apart.
+    pub fn linear(&self) -> Result<Option<LinearModel>> {
+        match &self.coordinates {
+            Coordinates::Continuous {
+                form,
+                chains,
+                searched,
+            } if !searched.is_empty() => {
+                let of = (form, self.dofs.as_slice());
+                LinearModel::new(of, chains, searched, self.values()).map(Some)
+            }
+            _ => Ok(None),
         }
     }
 

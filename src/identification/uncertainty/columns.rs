@@ -4,10 +4,13 @@
 //! all poles a second time spans it exactly (for Laguerre filters one more of the same pole is enough). One pass over
 //! the records with that chain serves coefficients and poles, and its leading columns are those of the fit.
 
+use super::coefficients::SearchedPole;
 use crate::error::{Error, Result};
-use crate::identification::basis::Basis;
+use crate::identification::basis::{Basis, assemble};
 use crate::identification::options::Form;
-use nalgebra::{Complex, DMatrix};
+use crate::section::Dof;
+use crate::trained_model::Model;
+use nalgebra::{Complex, DMatrix, DVector};
 
 /// Relative step of central differences: truncation and rounding both near 1e-10.
 const STEP: f64 = 1e-5;
@@ -105,6 +108,84 @@ impl Expansion {
         Ok(DMatrix::from_fn(scale.len(), count, |i, j| {
             solution[(i, j)] / scale[i]
         }))
+    }
+}
+
+/// A model as a linear function of its parameters: that of the estimate and its slopes, in chains that hold both.
+///
+/// A pole far from the estimate with coefficients that were not refitted for it makes no sense; the linear model is
+/// what the covariance speaks of, however far it is followed.
+#[derive(Debug, Clone)]
+pub struct LinearModel {
+    form: Form,
+    dofs: Vec<Dof>,
+    estimate: Vec<f64>,
+    searched: usize,
+    /// Chain, native columns and slopes of every transfer function, row by row.
+    entries: Vec<(Vec<f64>, DMatrix<f64>, DMatrix<f64>)>,
+}
+
+impl LinearModel {
+    /// For the chains of every transfer function, the estimates and the searched poles.
+    pub(super) fn new(
+        (form, dofs): (&Form, &[Dof]),
+        chains: &[Vec<Vec<f64>>],
+        searched: &[SearchedPole],
+        estimate: Vec<f64>,
+    ) -> Result<Self> {
+        let mut entries = Vec::new();
+        let mut first = 0;
+        for (i, row) in chains.iter().enumerate() {
+            for (j, chain) in row.iter().enumerate() {
+                let expansion = Expansion::new(form, chain, true)?;
+                let count = expansion.native.ncols();
+                let values = &estimate[first..first + count];
+                let all = expansion.jacobian(form, &form.collapse(chain), values)?;
+                let mut slopes = DMatrix::zeros(all.nrows(), searched.len());
+                for (m, pole) in searched.iter().enumerate() {
+                    if pole.entry.is_none_or(|entry| entry == (i, j)) {
+                        slopes.column_mut(m).copy_from(&all.column(pole.index));
+                    }
+                }
+                entries.push((expansion.extended, expansion.native, slopes));
+                first += count;
+            }
+        }
+        let filters = entries.first().map_or(0, |e| e.0.len());
+        Ok(Self {
+            form: Form::TakenakaMalmquist {
+                filters,
+                feed_through: form.feed_through(),
+                pole_per_transfer_function: true,
+            },
+            dofs: dofs.to_vec(),
+            estimate,
+            searched: searched.len(),
+            entries,
+        })
+    }
+
+    /// The linear model at other parameters.
+    ///
+    /// # Errors
+    /// Coefficients that are not finite.
+    pub fn model_at(&self, values: &[f64]) -> Result<Model> {
+        let poles = self.estimate.len() - self.searched;
+        let moved = DVector::from_fn(self.searched, |m, _| {
+            values[poles + m] - self.estimate[poles + m]
+        });
+        let mut first = 0;
+        let mut list = Vec::with_capacity(self.entries.len());
+        for (_, native, slopes) in &self.entries {
+            let own = DVector::from_column_slice(&values[first..first + native.ncols()]);
+            first += native.ncols();
+            let all: DVector<f64> = native * own + slopes * &moved;
+            list.push(all.as_slice().to_vec());
+        }
+        let n = self.dofs.len();
+        let rows = |all: Vec<Vec<f64>>| all.chunks(n).map(<[_]>::to_vec).collect::<Vec<_>>();
+        let chains = rows(self.entries.iter().map(|e| e.0.clone()).collect());
+        assemble(&self.form, &self.dofs, &chains, &rows(list))
     }
 }
 

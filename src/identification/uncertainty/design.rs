@@ -32,23 +32,37 @@ pub(crate) struct Block {
 impl Block {
     /// Rows, residuals and working variance of several forces, one below the other.
     pub fn stacked(name: String, parts: &[(DMatrix<f64>, DVector<f64>, f64)]) -> Self {
-        let count = parts.iter().map(|p| p.1.len()).sum();
-        let width = parts.first().map_or(0, |p| p.0.ncols());
-        let mut block = Self {
+        let blocks: Vec<Self> = parts
+            .iter()
+            .map(|(rows, residual, variance)| Self {
+                name: String::new(),
+                rows: rows.clone(),
+                residual: residual.clone(),
+                variance: DVector::from_element(residual.len(), *variance),
+            })
+            .collect();
+        Self::joined(name, &blocks)
+    }
+
+    /// Several blocks as one.
+    pub fn joined(name: String, blocks: &[Self]) -> Self {
+        let count = blocks.iter().map(|b| b.residual.len()).sum();
+        let width = blocks.first().map_or(0, |b| b.rows.ncols());
+        let mut joined = Self {
             name,
             rows: DMatrix::zeros(count, width),
             residual: DVector::zeros(count),
             variance: DVector::zeros(count),
         };
         let mut at = 0;
-        for (rows, residual, variance) in parts {
-            let n = residual.len();
-            block.rows.rows_mut(at, n).copy_from(rows);
-            block.residual.rows_mut(at, n).copy_from(residual);
-            block.variance.rows_mut(at, n).fill(*variance);
+        for block in blocks {
+            let n = block.residual.len();
+            joined.rows.rows_mut(at, n).copy_from(&block.rows);
+            joined.residual.rows_mut(at, n).copy_from(&block.residual);
+            joined.variance.rows_mut(at, n).copy_from(&block.variance);
             at += n;
         }
-        block
+        joined
     }
 }
 
@@ -127,6 +141,34 @@ impl Design {
             .map(|x| if x > floor { x.sqrt().recip() } else { 0.0 });
         let middle = &eigen.eigenvectors * scaled(&eigen.eigenvectors.transpose(), &powers);
         Ok(scaled(&scaled(&middle, &root).transpose(), &root))
+    }
+
+    /// How much larger the contributions of groups of blocks are than those of the blocks, in the metric of the fit:
+    /// one for independent blocks, the number of blocks in a group where all say the same.
+    pub fn coherence(&self, groups: &[usize]) -> f64 {
+        let count = groups.iter().max().map_or(0, |g| g + 1);
+        let mut sums = vec![DVector::zeros(self.inverse.nrows()); count];
+        let size = |score: &DVector<f64>| score.dot(&(&self.inverse * score));
+        let mut apart = 0.0;
+        for ((block, enlarge), group) in self.blocks.iter().zip(&self.enlarge).zip(groups) {
+            let score = block.rows.transpose() * (enlarge * &block.residual);
+            apart += size(&score);
+            sums[*group] += score;
+        }
+        let together: f64 = sums.iter().map(size).sum();
+        if apart > 0.0 { together / apart } else { 1.0 }
+    }
+
+    /// The blocks put together in groups.
+    pub fn merged(self, groups: &[usize], names: &[String]) -> Vec<Block> {
+        let mut parts: Vec<Vec<Block>> = names.iter().map(|_| Vec::new()).collect();
+        for (block, group) in self.blocks.into_iter().zip(groups) {
+            parts[*group].push(block);
+        }
+        let zipped = parts.into_iter().zip(names);
+        zipped
+            .map(|(blocks, name)| Block::joined(name.clone(), &blocks))
+            .collect()
     }
 
     /// Names of the blocks.

@@ -2,9 +2,9 @@
 
 use super::coefficients::{CoefficientUncertainty, Coordinates, Parameter};
 use super::columns::Expansion;
-use super::design::{Block, Design};
+
 use super::poles::{FreePoles, free_poles};
-use super::segments::{Part, gather};
+use super::segments::{Part, Stretched, gather, sandwich};
 use crate::error::{Error, Result};
 use crate::identification::basis::Basis;
 use crate::identification::options::{DiscreteFit, Form, TimeFit};
@@ -19,10 +19,8 @@ use crate::trained_model::Model;
 use crate::wind_tunnel::RecordSource;
 use nalgebra::{DMatrix, DVector};
 
-const SANDWICH: &str = "residuals may be correlated in any way within a segment of a record and between its forces, \
-     and are independent from segment to segment (the motion is at rest between them); sandwich of the segments with \
-     the small-sample correction CR2; what the model cannot fit counts as scatter from segment to segment; motions are \
-     exact";
+/// Stretches into which a segment is cut: long against the memory of turbulence, and enough of them for narrow intervals.
+const STRETCHES: usize = 4;
 
 /// Covariance of the coefficients of a continuous model that [`crate::identification::fit_records`] fitted to the same
 /// records with the same options, from one more pass over them.
@@ -45,11 +43,11 @@ pub fn record_uncertainty(
     let poles = free_poles(&fit.form, &fit.poles, report);
     let entries = Entries::new(&fit.form, dofs.len(), report, &poles)?;
     let closed = task.stretches(&entries.chains())?;
-    let blocks = entries.blocks(&scaled, &closed)?;
+    let (design, blocks) = sandwich(entries.blocks(&scaled, &closed)?)?;
     let searched = poles.sentence();
     let inputs = dofs.len();
     Ok(CoefficientUncertainty::new(
-        format!("{SANDWICH}; {searched}"),
+        format!("{blocks}; motions are exact; {searched}"),
         dofs,
         Coordinates::Continuous {
             form: fit.form.clone(),
@@ -61,7 +59,7 @@ pub fn record_uncertainty(
             searched: poles.searched,
         },
         entries.parameters(report, &poles.values),
-        Design::new(blocks)?,
+        design,
     ))
 }
 
@@ -82,7 +80,7 @@ impl Task<'_> {
             delta_s: None,
             discard_s: self.fit.discard_s,
             stride: 1,
-            keep_stretches: true,
+            stretches: STRETCHES,
         };
         let make = |record: &Scaled<'_>| {
             ContinuousColumns::new(record, self.dofs.len(), &bases, self.cutoff_hz(record))
@@ -159,7 +157,7 @@ impl Entries {
             .collect()
     }
 
-    fn blocks(&self, records: &[Scaled<'_>], closed: &[Closed]) -> Result<Vec<Block>> {
+    fn blocks(&self, records: &[Scaled<'_>], closed: &[Closed]) -> Result<Stretched> {
         let mut parts = Vec::new();
         for stretch in closed.iter().filter(|c| !c.set.is_empty()) {
             if !self.shared && stretch.set.len() > 1 {
@@ -172,6 +170,7 @@ impl Entries {
                 parts.push(Part {
                     record: stretch.record,
                     stretch: stretch.stretch,
+                    segment: stretch.segment,
                     group: (stretch.set.clone(), i),
                     weight: stretch.weights[i],
                     rows,
@@ -267,7 +266,7 @@ pub fn discrete_uncertainty(
         delta_s: Some(model.delta_s),
         discard_s: 0.0,
         stride: 1,
-        keep_stretches: true,
+        stretches: STRETCHES,
     };
     let done = |records_done| {
         progress(Progress {
@@ -304,8 +303,9 @@ pub fn discrete_uncertainty(
         .flat_map(|stretch| (0..n).map(move |i| (stretch, i)))
         .map(|(stretch, i)| discrete_part(stretch, i, each, fit.filters, &values))
         .collect();
+    let (design, blocks) = sandwich(gather(&scaled, parts))?;
     Ok(CoefficientUncertainty::new(
-        format!("{SANDWICH}; α is given"),
+        format!("{blocks}; motions are exact; α is given"),
         dofs,
         Coordinates::Discrete {
             alpha: model.alpha,
@@ -313,7 +313,7 @@ pub fn discrete_uncertainty(
             filters: fit.filters,
         },
         parameters,
-        Design::new(gather(&scaled, parts))?,
+        design,
     ))
 }
 
@@ -333,6 +333,7 @@ fn discrete_part(stretch: &Closed, i: usize, each: usize, filters: usize, values
     Part {
         record: stretch.record,
         stretch: stretch.stretch,
+        segment: stretch.segment,
         group: (stretch.set.clone(), i),
         weight,
         rows: factor.upper() * columns * weight,
