@@ -48,6 +48,8 @@ pub mod report;
 pub mod response;
 pub mod section;
 #[cfg(feature = "identification")]
+pub mod selection;
+#[cfg(feature = "identification")]
 pub mod signal;
 pub mod state_space;
 #[cfg(feature = "cli")]
@@ -55,6 +57,8 @@ pub mod study;
 #[cfg(feature = "campaigns")]
 mod toml_lines;
 pub mod trained_model;
+#[cfg(feature = "identification")]
+pub mod uncertainty;
 pub mod units;
 #[cfg(feature = "identification")]
 pub mod wind_tunnel;

@@ -1,9 +1,9 @@
 //! Results in words and tables, for people.
 
 use super::study::Summary;
-use crate::flutter::Onset;
+use crate::flutter::{Onset, OnsetInterval, OnsetMethod};
 use crate::identification::FitReport;
-use crate::study::{Deck, Deviation, Divergence, OnsetSummary, Study};
+use crate::study::{Deck, Deviation, Divergence, KnownUncertainty, OnsetSummary, Study};
 use std::fmt::Write as _;
 
 /// The whole chain.
@@ -18,7 +18,11 @@ pub fn chain(study: &Study, deck: &Deck, summary: &Summary, files: &str) -> Stri
     );
     text.push('\n');
     for fit_summary in &summary.fits {
-        text.push_str(&fit(&fit_summary.model, &fit_summary.report));
+        text.push_str(&fit(
+            &fit_summary.model,
+            &fit_summary.report,
+            &fit_summary.uncertainty,
+        ));
     }
     text.push('\n');
     text.push_str(&onsets(&summary.onsets, &summary.stable));
@@ -33,7 +37,7 @@ pub fn chain(study: &Study, deck: &Deck, summary: &Summary, files: &str) -> Stri
 }
 
 /// One fit.
-pub fn fit(name: &str, report: &FitReport) -> String {
+pub fn fit(name: &str, report: &FitReport, uncertainty: &KnownUncertainty) -> String {
     let mut text = format!("Fit       {name}: {}\n", report.method);
     let residuals: Vec<String> = report
         .entries
@@ -68,6 +72,16 @@ pub fn fit(name: &str, report: &FitReport) -> String {
         std::f64::consts::TAU / report.tested_range.max.full_width(),
         std::f64::consts::TAU / report.tested_range.min.full_width(),
     );
+    match uncertainty {
+        Ok(known) => {
+            if let Some(line) = known.explain() {
+                let _ = writeln!(text, "          {line}");
+            }
+        }
+        Err(reason) => {
+            let _ = writeln!(text, "          no interval of the onset: {reason}");
+        }
+    }
     for note in &report.notes {
         let _ = writeln!(text, "          note: {note}");
     }
@@ -96,10 +110,11 @@ fn force_symbol(dof: crate::section::Dof) -> &'static str {
 /// The onsets side by side.
 pub fn onsets(onsets: &[Onset], stable: &[OnsetSummary]) -> String {
     let mut text = format!(
-        "{:<22} {:<12} {:>9} {:>8} {:>8} {:>8} {:>8}  {:<9} {}\n",
+        "{:<22} {:<12} {:>9} {:>16} {:>8} {:>8} {:>8} {:>8}  {:<9} {}\n",
         "Flutter onset",
         "method",
         "V m/s",
+        "95 % interval",
         "f Hz",
         "V*",
         "|y|/B|θ|",
@@ -110,10 +125,11 @@ pub fn onsets(onsets: &[Onset], stable: &[OnsetSummary]) -> String {
     for o in onsets {
         let _ = writeln!(
             text,
-            "{:<22} {:<12} {:>9.3} {:>8.4} {:>8.3} {:>8.4} {:>8.1}  {:<9} {}",
+            "{:<22} {:<12} {:>9.3} {:>16} {:>8.4} {:>8.3} {:>8.4} {:>8.1}  {:<9} {}",
             o.model,
             o.method.name(),
             o.speed_m_s,
+            interval(&o.interval),
             o.frequency_hz,
             o.reduced_velocity.v_star(),
             o.mode_ratio,
@@ -136,11 +152,32 @@ pub fn onsets(onsets: &[Onset], stable: &[OnsetSummary]) -> String {
         );
     }
     for o in onsets {
+        if let OnsetInterval::None { reason } = &o.interval {
+            let _ = writeln!(
+                text,
+                "no interval: {} ({}): {reason}",
+                o.model,
+                method(o.method)
+            );
+        }
         for warning in &o.warnings {
             let _ = writeln!(text, "warning: {}: {warning}", o.model);
         }
     }
     text
+}
+
+/// The ends of an interval, with as many digits as it leaves meaning.
+fn interval(of: &OnsetInterval) -> String {
+    match of {
+        OnsetInterval::Known {
+            low_m_s, high_m_s, ..
+        } => {
+            let digits = if high_m_s - low_m_s < 0.2 { 3 } else { 2 };
+            format!("{low_m_s:.digits$} – {high_m_s:.digits$}")
+        }
+        OnsetInterval::None { .. } => "none".to_owned(),
+    }
 }
 
 /// Divergence of each model.

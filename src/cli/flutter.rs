@@ -34,7 +34,8 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
         let out = OutputDir::new(&directory)?;
         return all_routes(&study, &deck, &models, out, progress);
     }
-    let results = stages::flutter(&study, &deck, &models, progress)?;
+    let known = stages::read_uncertainties(&study, &directory)?;
+    let results = stages::flutter(&study, &deck, &models, &known, progress)?;
     let mut out = OutputDir::new(&directory)?;
     stages::flutter_figure(&study, &results, &[], &mut out)?;
     let written = out.commit()?;

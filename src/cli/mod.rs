@@ -5,6 +5,7 @@ mod answer;
 mod campaign;
 mod buffeting;
 mod common;
+mod coverage;
 mod demo;
 mod flutter;
 mod fmu;
@@ -13,6 +14,7 @@ mod output;
 mod progress;
 mod routes;
 mod quasi_steady;
+mod select;
 mod simulate;
 mod stages;
 mod study;
@@ -64,6 +66,8 @@ enum Command {
     Fmu(fmu::Fmu),
     Validate(validate::Args),
     Thesis(thesis::Args),
+    Select(select::Args),
+    Coverage(coverage::Args),
 }
 
 /// Runs the command line of this process.
@@ -102,6 +106,8 @@ fn run(command: &Command, progress: &progress::Progress) -> Result<Answer> {
         Command::Fmu(command) => fmu::run(command, progress),
         Command::Validate(args) => validate::run(args, progress),
         Command::Thesis(args) => thesis::run(args, progress),
+        Command::Select(args) => select::run(args, progress),
+        Command::Coverage(args) => coverage::run(args, progress),
     }
 }
 

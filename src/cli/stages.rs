@@ -8,9 +8,11 @@ use crate::fmu::package::{Runtime, package};
 use crate::identification::{self, FitReport};
 use crate::report::{PNG_SCALE, VfVgOptions, vf_vg_figure};
 use crate::study::{
-    Deck, FlutterStudy, RecordSet, Study, TrainedWithReport, flutter_study, train_one,
+    Deck, FlutterStudy, KnownUncertainty, RecordSet, Study, TrainedWithReport, flutter_study,
+    state_intervals, train_one,
 };
 use crate::trained_model::TrainedModel;
+use crate::uncertainty::ModelUncertainty;
 use crate::wind_tunnel::{Record, write_record};
 use std::fs;
 use std::io::BufWriter;
@@ -22,6 +24,8 @@ pub const RECORDS: &str = "records";
 pub const MODELS: &str = "models";
 /// Folder of the fit reports.
 pub const FITS: &str = "fits";
+/// Ending of the uncertainties, in the folder of the fit reports.
+pub const UNCERTAINTY: &str = "uncertainty.json";
 /// The model that goes into the FMU.
 pub const MODEL_FILE: &str = "model.json";
 /// The FMU.
@@ -77,6 +81,10 @@ pub fn train(
         let json = result.model.to_json()?;
         out.write(Path::new(MODELS).join(&file), &json)?;
         out.write(Path::new(FITS).join(&file), report_json(&result.report)?)?;
+        if let Ok(uncertainty) = &result.uncertainty {
+            let file = format!("{}.{UNCERTAINTY}", block.slug());
+            out.write(Path::new(FITS).join(file), uncertainty.to_json()?)?;
+        }
         if block.name == study.exported()?.name {
             out.write(MODEL_FILE, json)?;
         }
@@ -121,15 +129,35 @@ pub fn read_model(path: &Path) -> Result<TrainedModel> {
     TrainedModel::from_json(&text).map_err(|e| e.in_file(path))
 }
 
-/// Curves and onsets, and their figure.
+/// Reads the uncertainties that `train` wrote beside the models.
+pub fn read_uncertainties(study: &Study, directory: &Path) -> Result<Vec<KnownUncertainty>> {
+    study
+        .models
+        .iter()
+        .map(|block| {
+            let file = format!("{}.{UNCERTAINTY}", block.slug());
+            let path = directory.join(FITS).join(file);
+            if !path.exists() {
+                return Ok(Err("no covariance was saved with the model".to_owned()));
+            }
+            let text = fs::read_to_string(&path).map_err(|e| Error::io(&path, e))?;
+            let known = ModelUncertainty::from_json(&text).map_err(|e| e.in_file(&path))?;
+            Ok(Ok(Box::new(known)))
+        })
+        .collect()
+}
+
+/// Curves and onsets with their intervals.
 pub fn flutter(
     study: &Study,
     deck: &Deck,
     models: &[TrainedModel],
+    known: &[KnownUncertainty],
     progress: &Progress,
 ) -> Result<FlutterStudy> {
     let stage = progress.stage("modes over wind speed");
-    let results = flutter_study(study, deck, models)?;
+    let mut results = flutter_study(study, deck, models)?;
+    state_intervals(&mut results, study, models, known)?;
     drop(stage);
     Ok(results)
 }

@@ -9,7 +9,8 @@ use crate::error::Result;
 use crate::flutter::Onset;
 use crate::identification::FitReport;
 use crate::study::{
-    Deck, Deviation, Divergence, OnsetSummary, RecordSet, SteppedOnset, Study, stepped_onset,
+    Deck, Deviation, Divergence, KnownUncertainty, OnsetSummary, RecordSet, SteppedOnset, Study,
+    interval_of, stepped_onset,
 };
 use serde::Serialize;
 use std::path::PathBuf;
@@ -59,6 +60,8 @@ pub struct FitSummary {
     /// Full account.
     #[serde(flatten)]
     pub report: FitReport,
+    /// Uncertainty, or why it is not known.
+    pub uncertainty: KnownUncertainty,
 }
 
 /// Runs the command.
@@ -78,7 +81,8 @@ pub fn run_chain(study: &Study, mut out: OutputDir, progress: &Progress) -> Resu
     };
     let trained = stages::train(study, &deck, &records, &mut out, progress)?;
     let models: Vec<_> = trained.iter().map(|t| t.model.clone()).collect();
-    let results = stages::flutter(study, &deck, &models, progress)?;
+    let known: Vec<_> = trained.iter().map(|t| t.uncertainty.clone()).collect();
+    let results = stages::flutter(study, &deck, &models, &known, progress)?;
     let exported = study.exported()?;
     let mut stepped = None;
     for model in models.iter().filter(|m| m.name == exported.name) {
@@ -88,6 +92,14 @@ pub fn run_chain(study: &Study, mut out: OutputDir, progress: &Progress) -> Resu
         let stage = progress.stage("stepping the FMU");
         stepped = stepped_onset(model, &path, study.flutter.speed_max_m_s)?;
         drop(stage);
+        let own = models
+            .iter()
+            .zip(&known)
+            .find(|(m, _)| m.name == model.name);
+        if let (Some(stepped), Some((_, known))) = (&mut stepped, own) {
+            let structure = study.section.structure()?;
+            stepped.onset.interval = interval_of(&structure, model, known, &stepped.onset);
+        }
     }
     let further: Vec<Onset> = stepped.iter().map(|s| s.onset.clone()).collect();
     stages::flutter_figure(study, &results, &further, &mut out)?;
@@ -107,6 +119,7 @@ pub fn run_chain(study: &Study, mut out: OutputDir, progress: &Progress) -> Resu
             .map(|t| FitSummary {
                 model: t.model.name,
                 report: t.report,
+                uncertainty: t.uncertainty,
             })
             .collect(),
         stepped,

@@ -28,10 +28,15 @@ pub fn run(_: &Args, progress: &Progress) -> Result<Answer> {
     let records = RecordSet::staged(stages::tunnel(&study, &deck, &mut out, progress)?)?;
     let trained = stages::train(&study, &deck, &records, &mut out, progress)?;
     let models: Vec<_> = trained.iter().map(|t| t.model.clone()).collect();
-    let results = stages::flutter(&study, &deck, &models, progress)?;
+    let known: Vec<_> = trained.iter().map(|t| t.uncertainty.clone()).collect();
+    let results = stages::flutter(&study, &deck, &models, &known, progress)?;
     let mut text = format!("{}\n\n", study.name);
     for result in &trained {
-        text.push_str(&account::fit(&result.model.name, &result.report));
+        text.push_str(&account::fit(
+            &result.model.name,
+            &result.report,
+            &result.uncertainty,
+        ));
     }
     text.push('\n');
     text.push_str(&account::onsets(&results.onsets, &results.stable));

@@ -32,13 +32,23 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     let trained = stages::train(&study, &deck, &records, &mut out, progress)?;
     let mut text = format!("{}\n{}\n", study.name, deck.description());
     for result in &trained {
-        text.push_str(&account::fit(&result.model.name, &result.report));
+        text.push_str(&account::fit(
+            &result.model.name,
+            &result.report,
+            &result.uncertainty,
+        ));
     }
     let written = out.commit()?;
     text.push_str(&list(&written));
     let fits: Vec<_> = trained
         .iter()
-        .map(|t| serde_json::json!({ "model": t.model, "report": t.report }))
+        .map(|t| {
+            serde_json::json!({
+                "model": t.model,
+                "report": t.report,
+                "uncertainty": t.uncertainty.as_ref().ok(),
+            })
+        })
         .collect();
     Answer::new(
         text,

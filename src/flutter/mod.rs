@@ -21,7 +21,7 @@ pub use curves::{FlutterCurves, ModeBranch, ModePoint, trace_modes};
 pub use determinant::{determinant_onset, impedance};
 pub use divergence::{divergence_by_eigenvalues, divergence_speed};
 pub use instability::{Instability, ModeAtOnset, Participation, classify};
-pub use onset::{FlutterSearch, Onset, OnsetMethod};
+pub use onset::{FlutterSearch, Onset, OnsetInterval, OnsetMethod};
 pub use pk::{pk_curves, pk_onset};
 pub use quasi_pk::quasi_pk_mode;
 pub use sanity::{SanityLines, sanity_lines};

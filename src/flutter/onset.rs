@@ -61,6 +61,39 @@ pub struct Onset {
     pub spurious_speeds_m_s: Vec<f64>,
     /// What a reader must know before using the number.
     pub warnings: Vec<String>,
+    /// How far the data leave the speed open.
+    pub interval: OnsetInterval,
+}
+
+/// 95 % interval of an onset speed, or why there is none.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case")]
+pub enum OnsetInterval {
+    /// The scatter of the data, carried to the onset; says nothing of the bias of the form of the model.
+    Known {
+        /// Lower end, m/s.
+        low_m_s: f64,
+        /// Upper end, m/s.
+        high_m_s: f64,
+        /// Standard error, m/s.
+        standard_error_m_s: f64,
+        /// Degrees of freedom of the standard error.
+        degrees_of_freedom: f64,
+    },
+    /// There is none.
+    None {
+        /// Why.
+        reason: String,
+    },
+}
+
+impl OnsetInterval {
+    /// No interval, for this reason.
+    pub fn none(reason: impl Into<String>) -> Self {
+        Self::None {
+            reason: reason.into(),
+        }
+    }
 }
 
 impl Onset {
@@ -91,6 +124,7 @@ impl Onset {
             in_tested_range: None,
             spurious_speeds_m_s: Vec::new(),
             warnings: Vec::new(),
+            interval: OnsetInterval::none("the data behind the model are not known here"),
         }
     }
 }

@@ -94,6 +94,7 @@ fn one_pass(
         delta_s: Some(delta_s),
         discard_s: 0.0,
         stride: 1,
+        stretches: 0,
     };
     let done = |records_done| {
         progress(Progress {

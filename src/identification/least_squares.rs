@@ -191,6 +191,16 @@ impl Factor {
         self.r.ncols()
     }
 
+    /// Upper triangular `R`, n×n.
+    pub(crate) fn upper(&self) -> &DMatrix<f64> {
+        &self.r
+    }
+
+    /// `Qᵀb`, n×m.
+    pub(crate) fn projected(&self) -> &DMatrix<f64> {
+        &self.qtb
+    }
+
     /// Number of rows that went in.
     pub fn rows(&self) -> usize {
         self.rows

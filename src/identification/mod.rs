@@ -7,6 +7,7 @@ pub mod derivatives;
 mod discrete;
 pub mod free_decay;
 mod frequency;
+mod grid;
 mod least_squares;
 mod options;
 mod records;
@@ -16,9 +17,11 @@ mod search;
 #[cfg(test)]
 mod testing;
 mod time;
+mod uncertainty;
 
 pub use discrete::fit_discrete;
 pub use frequency::fit_table;
+pub use grid::{CellFit, Grid, GridAxis, StretchLabel};
 pub use least_squares::{Factor, StreamingQr};
 pub use options::{
     DiscreteFit, FeedThrough, Form, FrequencyFit, FrequencyWeights, PoleSearch, TimeFit,
@@ -30,3 +33,7 @@ pub use report::{
     OrderReport, SearchPoint, SearchReport,
 };
 pub use samples::sample_model;
+pub use uncertainty::{
+    CoefficientUncertainty, Coordinates, LinearModel, Parameter, SearchedPole,
+    discrete_uncertainty, record_uncertainty, table_uncertainty, two_sided_quantile,
+};

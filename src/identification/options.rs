@@ -153,6 +153,14 @@ impl Form {
         }
     }
 
+    /// The free poles from one pole a filter.
+    pub(crate) fn collapse(&self, chain: &[f64]) -> Vec<f64> {
+        match self {
+            Self::Laguerre { .. } => chain.iter().take(1).copied().collect(),
+            _ => chain.to_vec(),
+        }
+    }
+
     /// The form in words.
     pub fn describe(&self) -> String {
         let feed = self.feed_through();

@@ -121,7 +121,8 @@ pub(crate) struct Task<'a> {
 }
 
 impl Task<'_> {
-    fn cutoff_hz(&self, record: &Scaled<'_>) -> f64 {
+    /// Cut-off of the low-pass, Hz.
+    pub fn cutoff_hz(&self, record: &Scaled<'_>) -> f64 {
         self.fit
             .low_pass_hz
             .unwrap_or(CUTOFF_OVER_SAMPLING / record.step_s)
@@ -145,12 +146,6 @@ impl Task<'_> {
             })
             .collect::<Result<Vec<_>>>()?;
         let per_input = bases.first().map_or(0, Basis::len);
-        // four rows a period of the cut-off still hold what the low-pass lets through
-        let stride = self
-            .records
-            .iter()
-            .map(|r| (0.25 / (self.cutoff_hz(r) * r.step_s)) as usize)
-            .min();
         let plan = Plan {
             layout: Layout {
                 inputs: self.dofs.len(),
@@ -160,11 +155,8 @@ impl Task<'_> {
             weights: self.fit.weights,
             delta_s: None,
             discard_s: self.fit.discard_s,
-            stride: if thinned {
-                stride.unwrap_or(1).max(1)
-            } else {
-                1
-            },
+            stride: if thinned { self.thinning() } else { 1 },
+            stretches: 0,
         };
         accumulate(
             self.records,
@@ -181,6 +173,13 @@ impl Task<'_> {
                 });
             },
         )
+    }
+
+    /// Every how many samples a row is enough: four rows a period of the cut-off still hold what the low-pass lets
+    /// through.
+    pub fn thinning(&self) -> usize {
+        let stride = |r: &Scaled<'_>| (0.25 / (self.cutoff_hz(r) * r.step_s)) as usize;
+        self.records.iter().map(stride).min().unwrap_or(1).max(1)
     }
 
     /// Variance of the noise before the low-pass over that of the residuals behind it.

@@ -62,6 +62,8 @@ pub(crate) struct Row {
     pub value: f64,
     pub weight: f64,
     pub magnitude: f64,
+    /// Mean speed of the test, m/s, where it is known.
+    pub mean_speed_m_s: Option<f64>,
 }
 
 /// Linear fit of one entry.
@@ -74,7 +76,8 @@ pub(crate) struct EntryFit {
 }
 
 impl Row {
-    fn of<'a>(&self, columns: &'a [Complex<f64>]) -> impl Iterator<Item = f64> + 'a {
+    /// The part of complex columns that the sample sees.
+    pub fn of<'a>(&self, columns: &'a [Complex<f64>]) -> impl Iterator<Item = f64> + 'a {
         let part = self.part;
         columns.iter().map(move |z| match part {
             Part::Real => z.re,
@@ -206,6 +209,7 @@ pub(crate) fn sort_by_entry(
             value: s.value,
             weight: 1.0,
             magnitude: s.value.abs(),
+            mean_speed_m_s: s.mean_speed_m_s,
         });
     }
     let mut notes = Vec::new();

@@ -9,6 +9,7 @@ mod derivatives_figure;
 mod figure;
 mod flutter_figures;
 mod font;
+mod heat_map;
 mod labels;
 mod legend;
 mod panel;
@@ -30,6 +31,7 @@ pub use flutter_figures::{VfVgOptions, vf_vg_figure};
 pub use reliability_figure::onset_distribution_figure;
 #[cfg(feature = "identification")]
 pub use processing_figures::processing_figure;
+pub use heat_map::{HeatMap, heat_map_figure};
 pub use response_figures::{PoleSearchPlot, TimePanel, pole_search_figure, time_history_figure};
 pub use root_locus::root_locus_figure;
 pub use series::PlottedSeries;

@@ -141,7 +141,7 @@ const CLIP: &str = "panel-clip-";
 
 /// The SVG text with a `viewBox`, so that pages can scale it, and with identifiers made from the content, so that
 /// several figures in one page do not share any.
-fn finished(scene: &Scene) -> String {
+pub(super) fn finished(scene: &Scene) -> String {
     let svg = SvgBackend::new().with_pretty(true).render_scene(scene);
     let own = Uuid::new_v5(&Uuid::NAMESPACE_OID, svg.as_bytes()).simple();
     let head = format!(

@@ -7,7 +7,7 @@ use crate::aerodynamics::derivatives::{
 };
 use crate::aerodynamics::{AerodynamicModel, FlatPlate};
 use crate::error::{Error, Result};
-use crate::flutter::{FlutterSearch, determinant_onset};
+use crate::flutter::{FlutterSearch, OnsetInterval, determinant_onset};
 use crate::identification::sample_model;
 use crate::section::{Dof, Structure};
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
@@ -181,7 +181,13 @@ impl Deck {
             Source::Table(table) => {
                 let model = InterpolatedTable::new(table, &self.dofs, Extrapolation::Refuse)?;
                 let range = model.tested_range();
-                determinant_onset(&name, structure, &model, range, speed_max_m_s)
+                let mut search = determinant_onset(&name, structure, &model, range, speed_max_m_s)?;
+                if let FlutterSearch::Onset(onset) = &mut search {
+                    onset.interval = OnsetInterval::none(
+                        "the table states no errors, and interpolation leaves no residuals to judge them by",
+                    );
+                }
+                Ok(search)
             }
             Source::FlatPlate => {
                 let range = ReducedFrequencyRange {
@@ -198,6 +204,8 @@ impl Deck {
                 if let FlutterSearch::Onset(onset) = &mut search {
                     // exact at every K: there is no tested range to leave
                     onset.in_tested_range = None;
+                    onset.interval =
+                        OnsetInterval::none("a closed formula, without data that scatter");
                 }
                 Ok(search)
             }

@@ -5,6 +5,7 @@
 
 mod deck;
 mod defaults;
+mod intervals;
 mod models;
 mod onsets;
 mod routes;
@@ -15,6 +16,7 @@ mod wind;
 
 pub use deck::{Deck, RecordSet};
 pub use defaults::{demo_study_text, thesis_study_text};
+pub use intervals::{KnownUncertainty, interval_of, state_intervals};
 pub use models::{TrainedWithReport, train_one};
 pub use onsets::{Deviation, Divergence, FlutterStudy, OnsetSummary, flutter_study};
 pub use routes::{Route, RouteTable, low_frequency_limit, route_table};

@@ -1,11 +1,15 @@
 //! Training the models of a study.
 
 use super::onsets::coupled;
-use super::{Deck, ModelBlock, RecordSet, Study};
+use super::{Deck, KnownUncertainty, ModelBlock, RecordSet, Study};
 use crate::error::{Error, Result};
-use crate::flutter::find_onset;
-use crate::identification::{FitReport, OnProgress, fit_discrete, fit_records, fit_table};
+use crate::flutter::{FlutterSearch, find_onset};
+use crate::identification::{
+    FitReport, OnProgress, discrete_uncertainty, fit_discrete, fit_records, fit_table,
+    record_uncertainty, table_uncertainty,
+};
 use crate::trained_model::{Experiment, Model, Provenance, SCHEMA_VERSION, TrainedModel};
+use crate::uncertainty::ModelUncertainty;
 
 /// A model with the account of its fit.
 #[derive(Debug, Clone)]
@@ -14,6 +18,8 @@ pub struct TrainedWithReport {
     pub model: TrainedModel,
     /// How well it fits.
     pub report: FitReport,
+    /// How far the data leave its coefficients, derivatives and onset open.
+    pub uncertainty: KnownUncertainty,
 }
 
 /// Trains one model of a study from its records or table.
@@ -31,14 +37,25 @@ pub fn train_one(
         .speed_groups
         .as_deref()
         .or(study.deck.speed_groups.as_deref());
-    let (model, report) = if let Some(fit) = &block.table {
+    let (model, mut report, estimate) = if let Some(fit) = &block.table {
         let samples = deck.samples(study, groups)?;
-        fit_table(&samples, &study.section.dofs(), fit)?
+        let dofs = study.section.dofs();
+        let (model, report) = fit_table(&samples, &dofs, fit)?;
+        let estimate = table_uncertainty(&samples, &dofs, fit, &report);
+        (model, report, estimate)
     } else {
         let chosen = records.select(groups)?;
         match (&block.records, &block.discrete) {
-            (Some(fit), _) => fit_records(&chosen, fit, progress)?,
-            (_, Some(fit)) => fit_discrete(&chosen, fit, progress)?,
+            (Some(fit), _) => {
+                let (model, report) = fit_records(&chosen, fit, progress)?;
+                let estimate = record_uncertainty(&chosen, fit, &report, progress);
+                (model, report, estimate)
+            }
+            (_, Some(fit)) => {
+                let (model, report) = fit_discrete(&chosen, fit, progress)?;
+                let estimate = discrete_uncertainty(&chosen, fit, &model, progress);
+                (model, report, estimate)
+            }
             (None, None) => {
                 return Err(Error::input(
                     format!("model {}", block.name),
@@ -48,7 +65,21 @@ pub fn train_one(
             }
         }
     };
-    let experiment = experiment(study, block, &model, &report)?;
+    let search = onset_of(study, block, &model, &report)?;
+    let uncertainty = estimate
+        .and_then(|estimate| {
+            estimate.enter(&mut report);
+            ModelUncertainty::new(
+                estimate,
+                &study.section.structure()?,
+                search.onset(),
+                study.flutter.search(),
+                report.tested_range,
+            )
+        })
+        .map(Box::new)
+        .map_err(|e| e.to_string());
+    let experiment = experiment(study, &search);
     let trained = TrainedModel {
         schema_version: SCHEMA_VERSION,
         name: block.name.clone(),
@@ -68,29 +99,34 @@ pub fn train_one(
     Ok(TrainedWithReport {
         model: trained,
         report,
+        uncertainty,
     })
 }
 
-/// A released section just below the onset, so that an importer that merely runs the FMU sees something.
-fn experiment(
+/// Onset of the coupled section.
+fn onset_of(
     study: &Study,
     block: &ModelBlock,
     model: &Model,
     report: &FitReport,
-) -> Result<Experiment> {
+) -> Result<FlutterSearch> {
     let section = coupled(&study.section.structure()?, model)?;
-    let search = find_onset(
+    find_onset(
         &block.name,
         &section,
         &study.flutter.search(),
         Some(report.tested_range),
-    )?;
+    )
+}
+
+/// A released section just below the onset, so that an importer that merely runs the FMU sees something.
+fn experiment(study: &Study, search: &FlutterSearch) -> Experiment {
     let limit = study.flutter.speed_max_m_s;
     let onset = search.onset().map_or(limit, |o| o.speed_m_s);
     let export = &study.export;
     // a round number of decimetres per second reads better in an importer
     let speed = (10.0 * export.part_of_onset * onset).floor() / 10.0;
-    Ok(Experiment {
+    Experiment {
         wind_speed_m_s: if speed > 0.0 {
             speed
         } else {
@@ -101,5 +137,5 @@ fn experiment(
         stop_time_s: export.stop_time_s,
         step_size_s: export.step_size_s,
         onset_search_limit_m_s: limit,
-    })
+    }
 }

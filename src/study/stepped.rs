@@ -1,7 +1,7 @@
 //! Onset of an exported FMU, found by stepping it through its C interface: the third route.
 
 use crate::error::Result;
-use crate::flutter::{Onset, OnsetMethod};
+use crate::flutter::{Onset, OnsetInterval, OnsetMethod};
 use crate::fmu::importer::{Fmu, SteppedOnset as Found, SteppingSearch, onset_by_stepping};
 use crate::trained_model::TrainedModel;
 use crate::units::ReducedFrequency;
@@ -106,5 +106,6 @@ fn as_onset(model: &TrainedModel, found: &Found) -> Onset {
         in_tested_range: Some(model.tested_range.contains(k)),
         spurious_speeds_m_s: Vec::new(),
         warnings: Vec::new(),
+        interval: OnsetInterval::none("that of the model in it"),
     }
 }

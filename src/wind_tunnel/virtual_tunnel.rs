@@ -49,9 +49,11 @@ pub struct TunnelPlan {
     pub ramp_s: f64,
     /// Air density, kg/m³.
     pub air_density_kg_m3: f64,
-    /// Standard deviation of the white noise added to each force, as a fraction of the RMS of that force over the
-    /// record; 0 for none.
+    /// Standard deviation of the noise added to each force, as a fraction of the RMS of that force over the record; 0 for
+    /// none.
     pub noise_fraction: f64,
+    /// Correlation time of the noise, s: its correlation falls as `e^(−|t|/τ)`; 0 for white noise.
+    pub noise_correlation_s: f64,
     /// Seed of the noise.
     pub seed: u64,
 }
@@ -70,6 +72,7 @@ impl Default for TunnelPlan {
             ramp_s: 4.0,
             air_density_kg_m3: 1.19,
             noise_fraction: 0.0,
+            noise_correlation_s: 0.0,
             seed: 1,
         }
     }
@@ -99,6 +102,7 @@ impl TunnelPlan {
         positive("ramp_s", self.ramp_s)?;
         positive("air_density_kg_m3", self.air_density_kg_m3)?;
         non_negative("noise_fraction", self.noise_fraction)?;
+        non_negative("noise_correlation_s", self.noise_correlation_s)?;
         if 2.0 * self.ramp_s > self.segment_s {
             let expected = format!("at most half of segment_s ({} s)", self.segment_s);
             return Err(Error::input("ramp_s", expected, self.ramp_s.to_string()));
@@ -316,19 +320,30 @@ impl TunnelPlan {
         records
     }
 
-    /// White noise on every force; each record draws from a stream of its own.
-    fn add_noise(&self, record: &mut Record, index: usize) {
+    /// Noise on every force of record number `index`; each record draws from a stream of its own.
+    pub fn add_noise(&self, record: &mut Record, index: usize) {
         if self.noise_fraction == 0.0 {
             return;
         }
         let mut random = ChaCha8Rng::seed_from_u64(self.seed);
         random.set_stream(index as u64);
+        // e[k] = a e[k−1] + √(1 − a²) n[k], the samples of noise with an exponential correlation
+        let memory = if self.noise_correlation_s > 0.0 {
+            (-1.0 / (self.sampling_hz * self.noise_correlation_s)).exp()
+        } else {
+            0.0
+        };
+        let fresh = (1.0 - memory * memory).sqrt();
         for force in &mut record.force {
             let mean_square = force.iter().map(|f| f * f).sum::<f64>() / force.len() as f64;
             let deviation = self.noise_fraction * mean_square.sqrt();
-            for f in force {
-                let normal: f64 = StandardNormal.sample(&mut random);
-                *f += deviation * normal;
+            let mut noise: f64 = StandardNormal.sample(&mut random);
+            for (k, f) in force.iter_mut().enumerate() {
+                if k > 0 {
+                    let normal: f64 = StandardNormal.sample(&mut random);
+                    noise = memory * noise + fresh * normal;
+                }
+                *f += deviation * noise;
             }
         }
     }

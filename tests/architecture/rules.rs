@@ -57,6 +57,14 @@ pub const ARROWS: &[Row] = &[
     row("fmu", &["flutter+", "response+", "trained_model+"]),
     row("fmu::fmi2", &["fmu"]),
     row("reliability", &["flutter+", "trained_model+", "toml_lines"]),
+    row(
+        "uncertainty",
+        &["flutter+", "identification+", "wind_tunnel+"],
+    ),
+    row(
+        "selection",
+        &["flutter+", "identification+", "wind_tunnel+", "comparison"],
+    ),
     row("benchmarks", BELOW_STUDY),
     row("study", BELOW_STUDY),
     Row {
@@ -75,6 +83,8 @@ const BELOW_STUDY: &[&str] = &[
     "comparison",
     "toml_lines",
     "buffeting+",
+    "uncertainty",
+    "selection",
 ];
 
 /// Every module may use these.

@@ -2,6 +2,7 @@
 //! chunks after they have been factored, and one pass serves many candidate models.
 
 use super::slices::{Event, Scaled, Slice};
+use super::stretches::{Closed, settle, stretch_ends, weight};
 use crate::error::{Error, Result};
 use crate::identification::least_squares::{Factor, StreamingQr};
 use crate::identification::options::TimeWeights;
@@ -28,8 +29,13 @@ impl Layout {
         usize::from(self.constant) + c * self.inputs + j
     }
 
+    /// Number of columns of the whole system that the first `per_input` columns of every input take.
+    pub fn leading(&self, per_input: usize) -> usize {
+        usize::from(self.constant) + per_input * self.inputs
+    }
+
     /// Columns of the whole system that a set of inputs takes, in the order of its own system.
-    fn map(&self, active: &[usize]) -> Vec<usize> {
+    pub fn map(&self, active: &[usize]) -> Vec<usize> {
         let constant = self.constant.then_some(0);
         let columns =
             (0..self.per_input).flat_map(|c| active.iter().map(move |&j| self.index(c, j)));
@@ -59,6 +65,8 @@ pub(crate) struct Plan {
     pub discard_s: f64,
     /// Every how many samples a row is taken.
     pub stride: usize,
+    /// Into how many stretches every segment is cut that are kept apart; 0 keeps none.
+    pub stretches: usize,
 }
 
 /// Systems of one candidate, one a set of inputs that moved together and force.
@@ -86,19 +94,11 @@ pub(crate) fn accumulate<'a, C: Columns>(
     make: &(dyn Fn(&Scaled<'a>) -> Result<C> + Sync),
     done: &(dyn Fn(usize) + Sync),
 ) -> Result<Vec<Factored>> {
-    let finished = std::sync::atomic::AtomicUsize::new(0);
-    let parts: Vec<Result<Vec<Totals>>> = records
-        .par_iter()
-        .map(|record| {
-            let totals = one_record(record, plan, &mut make(record)?);
-            done(1 + finished.fetch_add(1, std::sync::atomic::Ordering::Relaxed));
-            totals
-        })
-        .collect();
+    let parts = each_record(records, plan, make, done)?;
     // merged in the order of the records, whatever the order in which they were done
     let mut by_candidate: Vec<Vec<Totals>> = Vec::new();
     for part in parts {
-        for (c, totals) in part?.into_iter().enumerate() {
+        for (c, totals) in part.0.into_iter().enumerate() {
             if by_candidate.len() <= c {
                 by_candidate.push(Vec::new());
             }
@@ -111,8 +111,29 @@ pub(crate) fn accumulate<'a, C: Columns>(
         .collect())
 }
 
-fn one_record<C: Columns>(record: &Scaled<'_>, plan: &Plan, make: &mut C) -> Result<Vec<Totals>> {
+/// What one record yields: its totals, or its stretches where they are kept.
+type Part = (Vec<Totals>, Vec<Closed>);
+
+pub(super) fn each_record<'a, C: Columns>(
+    records: &[Scaled<'a>],
+    plan: &Plan,
+    make: &(dyn Fn(&Scaled<'a>) -> Result<C> + Sync),
+    done: &(dyn Fn(usize) + Sync),
+) -> Result<Vec<Part>> {
+    let finished = std::sync::atomic::AtomicUsize::new(0);
+    records
+        .par_iter()
+        .map(|record| {
+            let totals = one_record(record, plan, &mut make(record)?);
+            done(1 + finished.fetch_add(1, std::sync::atomic::Ordering::Relaxed));
+            totals
+        })
+        .collect()
+}
+
+fn one_record<C: Columns>(record: &Scaled<'_>, plan: &Plan, make: &mut C) -> Result<Part> {
     let mut boundaries = match plan.weights {
+        _ if plan.stretches > 0 => stretch_ends(record, plan.stretches),
         TimeWeights::PerSegment => record.segment_starts(),
         _ => Vec::new(),
     };
@@ -127,14 +148,16 @@ fn one_record<C: Columns>(record: &Scaled<'_>, plan: &Plan, make: &mut C) -> Res
         .collect();
     let mut chunk = Chunk::new(plan.layout.inputs);
     let mut active: Vec<usize> = Vec::new();
+    let mut closed: Vec<Closed> = Vec::new();
     let mut rows = 0;
     record.stream(plan.delta_s, &boundaries, &mut |event| {
         match event {
-            Event::Boundary => chunk.close(plan, &mut totals),
+            Event::Boundary => chunk.close(plan, &mut totals, &mut closed),
             Event::Samples(slice) => {
                 let moving = activate(&slice, &mut active);
                 make.advance(&slice, &active);
                 if slice.first >= discard {
+                    chunk.begin(slice.first as f64 * step);
                     chunk.take(&slice, moving, plan, &active, make);
                     rows += slice.rows();
                 }
@@ -142,7 +165,7 @@ fn one_record<C: Columns>(record: &Scaled<'_>, plan: &Plan, make: &mut C) -> Res
         }
         Ok(())
     })?;
-    chunk.close(plan, &mut totals);
+    chunk.close(plan, &mut totals, &mut closed);
     let least = plan.layout.width(1).max(16) * plan.stride;
     if rows < least {
         return Err(Error::input(
@@ -151,7 +174,8 @@ fn one_record<C: Columns>(record: &Scaled<'_>, plan: &Plan, make: &mut C) -> Res
             rows.to_string(),
         ));
     }
-    Ok(totals)
+    settle(&mut closed, record, plan.weights);
+    Ok((totals, closed))
 }
 
 /// Adds the inputs that begin to move in this slice to `active`; returns from which row on something has moved.
@@ -178,6 +202,8 @@ struct Chunk {
     squares: Vec<f64>,
     rows: usize,
     strided: Vec<Vec<f64>>,
+    /// Instant of the first row, s.
+    start_s: f64,
 }
 
 impl Chunk {
@@ -187,6 +213,14 @@ impl Chunk {
             squares: vec![0.0; forces],
             rows: 0,
             strided: Vec::new(),
+            start_s: 0.0,
+        }
+    }
+
+    /// Notes the instant of the first row.
+    fn begin(&mut self, time_s: f64) {
+        if self.sets.is_empty() {
+            self.start_s = time_s;
         }
     }
 
@@ -232,20 +266,40 @@ impl Chunk {
     }
 
     /// Hands the rows over with the weight of each force, and starts anew.
-    fn close(&mut self, plan: &Plan, totals: &mut [Totals]) {
+    fn close(&mut self, plan: &Plan, totals: &mut [Totals], closed: &mut Vec<Closed>) {
         let weights: Vec<f64> = self
             .squares
             .iter()
             .map(|sum| match plan.weights {
                 TimeWeights::None => 1.0,
-                // a force that is zero throughout cannot be scaled by its size
-                _ if *sum == 0.0 => 1.0,
-                _ => (self.rows as f64 / sum).sqrt(),
+                _ => weight(self.rows, *sum),
             })
             .collect();
-        for (set, systems) in self.sets.drain(..) {
-            for (system, totals) in systems.into_iter().zip(totals.iter_mut()) {
-                totals.add(&set, &system.finish(), &weights);
+        let stretch = closed.last().map_or(0, |c| c.stretch + 1);
+        let last = self.sets.len().saturating_sub(1);
+        for (at, (set, systems)) in self.sets.drain(..).enumerate() {
+            let factors: Vec<Factor> = systems.into_iter().map(StreamingQr::finish).collect();
+            if plan.stretches > 0 {
+                let own = at == last;
+                closed.push(Closed {
+                    record: 0,
+                    stretch,
+                    segment: None,
+                    start_s: self.start_s,
+                    set,
+                    factors,
+                    weights: weights.clone(),
+                    squares: self
+                        .squares
+                        .iter()
+                        .map(|s| if own { *s } else { 0.0 })
+                        .collect(),
+                    moving_rows: if own { self.rows } else { 0 },
+                });
+                continue;
+            }
+            for (factor, totals) in factors.iter().zip(totals.iter_mut()) {
+                totals.add(&set, factor, &weights);
             }
         }
         *self = Self::new(plan.layout.inputs);
@@ -267,6 +321,21 @@ impl Totals {
 }
 
 impl Factored {
+    /// The systems of one candidate from stretches that were kept apart.
+    pub fn from_stretches<'a>(
+        layout: Layout,
+        stretches: impl Iterator<Item = &'a Closed>,
+        candidate: usize,
+    ) -> Self {
+        let mut totals = Totals {
+            sets: BTreeMap::new(),
+        };
+        for closed in stretches {
+            totals.add(&closed.set, &closed.factors[candidate], &closed.weights);
+        }
+        Self::merge(layout, vec![totals])
+    }
+
     fn merge(layout: Layout, parts: Vec<Totals>) -> Self {
         let mut sets: BTreeMap<Vec<usize>, Vec<StreamingQr>> = BTreeMap::new();
         for part in parts {

@@ -4,3 +4,4 @@ pub(crate) mod accumulate;
 pub(crate) mod filters;
 pub(crate) mod search;
 pub(crate) mod slices;
+pub(crate) mod stretches;

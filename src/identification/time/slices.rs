@@ -6,7 +6,7 @@ use crate::identification::least_squares::BLOCK_ROWS;
 use crate::section::Dof;
 use crate::signal::Resampler;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
-use crate::wind_tunnel::{RecordBlock, RecordSource};
+use crate::wind_tunnel::{RecordBlock, RecordSource, Segment};
 
 /// A record with the factors that make it dimensionless.
 pub(crate) struct Scaled<'a> {
@@ -107,6 +107,11 @@ impl<'a> Scaled<'a> {
     /// Sampling step in dimensionless time.
     pub fn delta_s(&self) -> f64 {
         self.rate * self.step_s
+    }
+
+    /// Stretches of harmonic motion that the record states.
+    pub fn segments(&self) -> &'a [Segment] {
+        &self.record.header().segments
     }
 
     /// Instants (s) at which one segment gives way to the next.

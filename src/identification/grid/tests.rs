@@ -1,0 +1,86 @@
+//! Cells of a grid against fits of their own.
+
+use super::*;
+use crate::aerodynamics::{AerodynamicModel, FlatPlate};
+use crate::identification::testing::{records, sources};
+use crate::identification::{DiscreteFit, FeedThrough, PoleSearch, fit_discrete, fit_records};
+use crate::units::ReducedFrequency;
+
+fn differ(a: &Model, b: &Model) -> f64 {
+    [0.1, 0.4, 1.1]
+        .map(|k| {
+            let k = ReducedFrequency::from_full_width(k);
+            let (a, b) = (a.transfer(k).unwrap(), b.transfer(k).unwrap());
+            (&a - &b).norm() / b.norm()
+        })
+        .into_iter()
+        .fold(0.0, f64::max)
+}
+
+/// Every cell of the discrete grid is the fit with that number of filters and that decay factor: the same rows, one
+/// factorisation against one a cell.
+#[test]
+fn discrete_cells_are_single_fits() {
+    let made = records(&FlatPlate::default(), &[8.17, 4.0], 0.02, 3);
+    let sources = sources(&made);
+    let alphas = [0.5, 0.8];
+    let axis = GridAxis::Discrete(alphas.to_vec(), TimeWeights::None);
+    let grid = Grid::new(&sources, axis, 4, &|_| ()).unwrap();
+    for (a, alpha) in alphas.into_iter().enumerate() {
+        for (l, cell) in grid.fits(a, &|_| true).into_iter().enumerate() {
+            let fit = DiscreteFit {
+                filters: l + 1,
+                alpha,
+                ..DiscreteFit::default()
+            };
+            let (model, report) = fit_discrete(&sources, &fit, &|_| ()).unwrap();
+            let cell = cell.unwrap();
+            // rounding times the condition of four filters
+            assert!(differ(&cell.model, &model) < 1e-8, "{alpha} {l}");
+            let objective = report.orders[l].objective;
+            assert!((cell.objective / objective - 1.0).abs() < 1e-8);
+        }
+    }
+}
+
+/// The continuous grid takes every fifth row of low-passed signals; with every row it would be the fit itself.
+#[test]
+fn continuous_cells_are_single_fits_but_for_thinning() {
+    let made = records(&FlatPlate::default(), &[8.17, 4.0], 0.0, 3);
+    let sources = sources(&made);
+    let axis = GridAxis::Continuous(vec![0.3], Box::default());
+    let grid = Grid::new(&sources, axis, 3, &|_| ()).unwrap();
+    let cell = grid.fits(0, &|_| true).pop().unwrap().unwrap();
+    let fit = TimeFit {
+        form: Form::Laguerre {
+            filters: 3,
+            feed_through: FeedThrough::default(),
+            pole_per_transfer_function: false,
+        },
+        poles: PoleSearch::fixed(&[0.3]),
+        ..TimeFit::default()
+    };
+    let (model, report) = fit_records(&sources, &fit, &|_| ()).unwrap();
+    assert!(differ(&cell.model, &model) < 1e-3);
+    let objective = report.orders[2].objective;
+    assert!((cell.objective / objective - 1.0).abs() < 1e-2);
+    // residuals of all stretches together are those of the fit
+    let sums = (0..grid.labels().len()).filter_map(|s| grid.residuals(s, 0, &cell));
+    let (residual, total) = sums
+        .flatten()
+        .fold((0.0, 0.0), |t, s| (t.0 + s.0, t.1 + s.1));
+    assert!((residual / total).sqrt() < 2.0 * objective);
+}
+
+/// A fit without the low speed is the fit to the records of the high one.
+#[test]
+fn leaving_stretches_out_is_a_fit_to_the_others() {
+    let made = records(&FlatPlate::default(), &[8.17, 4.0], 0.02, 3);
+    let axis = || GridAxis::Continuous(vec![0.3], Box::default());
+    let both = Grid::new(&sources(&made), axis(), 2, &|_| ()).unwrap();
+    let high = Grid::new(&sources(&made[..2]), axis(), 2, &|_| ()).unwrap();
+    let keep = |s: usize| both.labels()[s].mean_speed_m_s > 8.0;
+    let a = both.fits(0, &keep).pop().unwrap().unwrap();
+    let b = high.fits(0, &|_| true).pop().unwrap().unwrap();
+    assert!(differ(&a.model, &b.model) < 1e-9);
+}

@@ -1,0 +1,264 @@
+//! Columns of a model and their derivatives with respect to searched poles, in one chain of filters that spans both.
+//!
+//! The derivative of a filter with the pole `p` has that pole twice; a Takenaka–Malmquist chain that passes through
+//! all poles a second time spans it exactly (for Laguerre filters one more of the same pole is enough). One pass over
+//! the records with that chain serves coefficients and poles, and its leading columns are those of the fit.
+
+use super::coefficients::SearchedPole;
+use crate::error::{Error, Result};
+use crate::identification::basis::{Basis, assemble};
+use crate::identification::options::Form;
+use crate::section::Dof;
+use crate::trained_model::Model;
+use nalgebra::{Complex, DMatrix, DVector};
+
+/// Relative step of central differences: truncation and rounding both near 1e-10.
+const STEP: f64 = 1e-5;
+/// Frequencies at which columns are compared, for each column.
+const POINTS_PER_COLUMN: usize = 4;
+
+/// The columns of one transfer function in those of a longer chain.
+#[derive(Debug, Clone)]
+pub(super) struct Expansion {
+    /// Poles of the longer chain.
+    pub extended: Vec<f64>,
+    /// Columns of the model in those of the longer chain, E×N.
+    pub native: DMatrix<f64>,
+    basis: Basis,
+    grid: Vec<Complex<f64>>,
+}
+
+impl Expansion {
+    /// For a chain of poles, with room for their derivatives where they were `searched`.
+    pub fn new(form: &Form, chain: &[f64], searched: bool) -> Result<Self> {
+        let mut extended = chain.to_vec();
+        if searched {
+            extended.extend(form.collapse(chain));
+        }
+        let basis = Basis::orthonormal(form, &extended)?;
+        let low = chain.iter().copied().fold(f64::INFINITY, f64::min) / 20.0;
+        let high = chain.iter().copied().fold(0.0, f64::max) * 20.0;
+        let points = POINTS_PER_COLUMN * basis.len();
+        let step = (high / low).ln() / (points as f64 - 1.0);
+        let mut expansion = Self {
+            extended,
+            native: DMatrix::zeros(0, 0),
+            basis,
+            grid: (0..points)
+                .map(|i| Complex::new(0.0, low * (step * i as f64).exp()))
+                .collect(),
+        };
+        let own = Basis::new(form, chain)?;
+        expansion.native = expansion.express(&|p| own.columns(p), own.len())?;
+        Ok(expansion)
+    }
+
+    /// Derivatives of the whole transfer function with coefficients `values` with respect to the free poles, E×m.
+    pub fn jacobian(&self, form: &Form, free: &[f64], values: &[f64]) -> Result<DMatrix<f64>> {
+        let moved = |m: usize, factor: f64| -> Result<Basis> {
+            let mut poles = free.to_vec();
+            poles[m] *= factor;
+            Basis::new(form, &form.expand(&poles))
+        };
+        let mut pairs = Vec::new();
+        for m in 0..free.len() {
+            pairs.push((moved(m, 1.0 + STEP)?, moved(m, 1.0 - STEP)?));
+        }
+        let sum = |basis: &Basis, p: Complex<f64>| -> Complex<f64> {
+            let columns = basis.columns(p);
+            columns.iter().zip(values).map(|(z, c)| z * *c).sum()
+        };
+        let slopes = |p: Complex<f64>| {
+            pairs
+                .iter()
+                .zip(free)
+                .map(|((up, down), pole)| (sum(up, p) - sum(down, p)) / (2.0 * STEP * pole))
+                .collect()
+        };
+        self.express(&slopes, free.len())
+    }
+
+    /// Functions of the complex frequency in the columns of the longer chain, by least squares on the grid.
+    fn express(
+        &self,
+        functions: &dyn Fn(Complex<f64>) -> Vec<Complex<f64>>,
+        count: usize,
+    ) -> Result<DMatrix<f64>> {
+        let rows = 2 * self.grid.len();
+        let table = |f: &dyn Fn(Complex<f64>) -> Vec<Complex<f64>>, width: usize| {
+            let mut m = DMatrix::zeros(rows, width);
+            for (i, p) in self.grid.iter().enumerate() {
+                for (c, z) in f(*p).into_iter().enumerate() {
+                    m[(2 * i, c)] = z.re;
+                    m[(2 * i + 1, c)] = z.im;
+                }
+            }
+            m
+        };
+        let mut columns = table(&|p| self.basis.columns(p), self.basis.len());
+        let scale: Vec<f64> = columns.column_iter().map(|c| c.norm()).collect();
+        for (mut column, s) in columns.column_iter_mut().zip(&scale) {
+            column.unscale_mut(*s);
+        }
+        let values = table(functions, count);
+        let solution = columns
+            .try_svd(true, true, f64::EPSILON, 10_000)
+            .and_then(|svd| svd.solve(&values, 1e-13).ok())
+            .ok_or_else(|| Error::Numerical("covariance: columns of a chain of filters".into()))?;
+        Ok(DMatrix::from_fn(scale.len(), count, |i, j| {
+            solution[(i, j)] / scale[i]
+        }))
+    }
+}
+
+/// A model as a linear function of its parameters: that of the estimate and its slopes, in chains that hold both.
+///
+/// A pole far from the estimate with coefficients that were not refitted for it makes no sense; the linear model is
+/// what the covariance speaks of, however far it is followed.
+#[derive(Debug, Clone)]
+pub struct LinearModel {
+    form: Form,
+    dofs: Vec<Dof>,
+    estimate: Vec<f64>,
+    searched: usize,
+    /// Chain, native columns and slopes of every transfer function, row by row.
+    entries: Vec<(Vec<f64>, DMatrix<f64>, DMatrix<f64>)>,
+}
+
+impl LinearModel {
+    /// For the chains of every transfer function, the estimates and the searched poles.
+    pub(super) fn new(
+        (form, dofs): (&Form, &[Dof]),
+        chains: &[Vec<Vec<f64>>],
+        searched: &[SearchedPole],
+        estimate: Vec<f64>,
+    ) -> Result<Self> {
+        let mut entries = Vec::new();
+        let mut first = 0;
+        for (i, row) in chains.iter().enumerate() {
+            for (j, chain) in row.iter().enumerate() {
+                let expansion = Expansion::new(form, chain, true)?;
+                let count = expansion.native.ncols();
+                let values = &estimate[first..first + count];
+                let all = expansion.jacobian(form, &form.collapse(chain), values)?;
+                let mut slopes = DMatrix::zeros(all.nrows(), searched.len());
+                for (m, pole) in searched.iter().enumerate() {
+                    if pole.entry.is_none_or(|entry| entry == (i, j)) {
+                        slopes.column_mut(m).copy_from(&all.column(pole.index));
+                    }
+                }
+                entries.push((expansion.extended, expansion.native, slopes));
+                first += count;
+            }
+        }
+        let filters = entries.first().map_or(0, |e| e.0.len());
+        Ok(Self {
+            form: Form::TakenakaMalmquist {
+                filters,
+                feed_through: form.feed_through(),
+                pole_per_transfer_function: true,
+            },
+            dofs: dofs.to_vec(),
+            estimate,
+            searched: searched.len(),
+            entries,
+        })
+    }
+
+    /// The linear model at other parameters.
+    ///
+    /// # Errors
+    /// Coefficients that are not finite.
+    pub fn model_at(&self, values: &[f64]) -> Result<Model> {
+        let poles = self.estimate.len() - self.searched;
+        let moved = DVector::from_fn(self.searched, |m, _| {
+            values[poles + m] - self.estimate[poles + m]
+        });
+        let mut first = 0;
+        let mut list = Vec::with_capacity(self.entries.len());
+        for (_, native, slopes) in &self.entries {
+            let own = DVector::from_column_slice(&values[first..first + native.ncols()]);
+            first += native.ncols();
+            let all: DVector<f64> = native * own + slopes * &moved;
+            list.push(all.as_slice().to_vec());
+        }
+        let n = self.dofs.len();
+        let rows = |all: Vec<Vec<f64>>| all.chunks(n).map(<[_]>::to_vec).collect::<Vec<_>>();
+        let chains = rows(self.entries.iter().map(|e| e.0.clone()).collect());
+        assemble(&self.form, &self.dofs, &chains, &rows(list))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::identification::options::FeedThrough;
+
+    /// Columns and slopes written in the longer chain against those computed directly, away from the grid.
+    #[test]
+    fn the_longer_chain_spans_columns_and_derivatives() {
+        let feed_through = FeedThrough::default();
+        let forms = [
+            (
+                Form::Laguerre {
+                    filters: 3,
+                    feed_through,
+                    pole_per_transfer_function: false,
+                },
+                vec![0.4],
+            ),
+            (
+                Form::TakenakaMalmquist {
+                    filters: 2,
+                    feed_through,
+                    pole_per_transfer_function: false,
+                },
+                vec![0.091, 0.6],
+            ),
+            (
+                Form::Rational {
+                    lags: 2,
+                    added_mass: true,
+                },
+                vec![0.15, 0.5],
+            ),
+        ];
+        for (form, free) in forms {
+            let chain = form.expand(&free);
+            let expansion = Expansion::new(&form, &chain, true).unwrap();
+            let own = Basis::new(&form, &chain).unwrap();
+            let values: Vec<f64> = (0..own.len()).map(|c| 1.0 - 0.3 * c as f64).collect();
+            let jacobian = expansion.jacobian(&form, &free, &values).unwrap();
+            for k in [0.037, 0.31, 1.9] {
+                let p = Complex::new(0.0, k);
+                let long = expansion.basis.columns(p);
+                let in_long = |m: &DMatrix<f64>, c: usize| -> Complex<f64> {
+                    long.iter().enumerate().map(|(e, z)| z * m[(e, c)]).sum()
+                };
+                for (c, z) in own.columns(p).into_iter().enumerate() {
+                    assert!((in_long(&expansion.native, c) - z).norm() < 1e-10 * (1.0 + z.norm()));
+                }
+                for m in 0..free.len() {
+                    // a wider step than that of the expansion: differences of 1e-4 err by their square
+                    let at = |factor: f64| -> Complex<f64> {
+                        let mut poles = free.clone();
+                        poles[m] *= factor;
+                        let basis = Basis::new(&form, &form.expand(&poles)).unwrap();
+                        basis
+                            .columns(p)
+                            .iter()
+                            .zip(&values)
+                            .map(|(z, v)| z * *v)
+                            .sum()
+                    };
+                    let direct = (at(1.0 + 1e-4) - at(1.0 - 1e-4)) / (2e-4 * free[m]);
+                    let found = in_long(&jacobian, m);
+                    assert!(
+                        (found - direct).norm() < 1e-6 * direct.norm(),
+                        "{form:?} {found} {direct}"
+                    );
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,343 @@
+//! Uncertainty of models fitted to records: blocks are the segments.
+
+use super::coefficients::{CoefficientUncertainty, Coordinates, Parameter};
+use super::columns::Expansion;
+
+use super::poles::{FreePoles, free_poles};
+use super::segments::{Part, Stretched, gather, sandwich};
+use crate::error::{Error, Result};
+use crate::identification::basis::Basis;
+use crate::identification::options::{DiscreteFit, Form, TimeFit};
+use crate::identification::records::{OnProgress, Progress, Task};
+use crate::identification::report::FitReport;
+use crate::identification::time::accumulate::{Layout, Plan};
+use crate::identification::time::filters::{ContinuousColumns, DiscreteColumns};
+use crate::identification::time::slices::{Scaled, scale_all};
+use crate::identification::time::stretches::{Closed, stretches};
+use crate::section::Dof;
+use crate::trained_model::Model;
+use crate::wind_tunnel::RecordSource;
+use nalgebra::{DMatrix, DVector};
+
+/// Stretches into which a segment is cut: long against the memory of turbulence, and enough of them for narrow intervals.
+const STRETCHES: usize = 4;
+
+/// Covariance of the coefficients of a continuous model that [`crate::identification::fit_records`] fitted to the same
+/// records with the same options, from one more pass over them.
+///
+/// # Errors
+/// [`Error::Numerical`] when there are too few segments to judge the scatter; those of reading.
+pub fn record_uncertainty(
+    records: &[&dyn RecordSource],
+    fit: &TimeFit,
+    report: &FitReport,
+    progress: OnProgress<'_>,
+) -> Result<CoefficientUncertainty> {
+    let (dofs, scaled) = scale_all(records)?;
+    let task = Task {
+        fit,
+        dofs: &dofs,
+        records: &scaled,
+        progress,
+    };
+    let poles = free_poles(&fit.form, &fit.poles, report);
+    let entries = Entries::new(&fit.form, dofs.len(), report, &poles)?;
+    let closed = task.stretches(&entries.chains())?;
+    let (design, blocks) = sandwich(entries.blocks(&scaled, &closed)?)?;
+    let searched = poles.sentence();
+    let inputs = dofs.len();
+    Ok(CoefficientUncertainty::new(
+        format!("{blocks}; motions are exact; {searched}"),
+        dofs,
+        Coordinates::Continuous {
+            form: fit.form.clone(),
+            chains: report
+                .entries
+                .chunks(inputs)
+                .map(|row| row.iter().map(|e| e.poles.clone()).collect())
+                .collect(),
+            searched: poles.searched,
+        },
+        entries.parameters(report, &poles.values),
+        design,
+    ))
+}
+
+impl Task<'_> {
+    /// One pass in which every segment is factored by itself.
+    fn stretches(&self, chains: &[Vec<f64>]) -> Result<Vec<Closed>> {
+        let bases = chains
+            .iter()
+            .map(|poles| Basis::orthonormal(&self.fit.form, poles))
+            .collect::<Result<Vec<_>>>()?;
+        let plan = Plan {
+            layout: Layout {
+                inputs: self.dofs.len(),
+                per_input: bases.first().map_or(0, Basis::len),
+                constant: false,
+            },
+            weights: self.fit.weights,
+            delta_s: None,
+            discard_s: self.fit.discard_s,
+            stride: 1,
+            stretches: STRETCHES,
+        };
+        let make = |record: &Scaled<'_>| {
+            ContinuousColumns::new(record, self.dofs.len(), &bases, self.cutoff_hz(record))
+        };
+        stretches(self.records, &plan, &make, &|records_done| {
+            (self.progress)(Progress {
+                pass: 1,
+                passes: 1,
+                records_done,
+                records: self.records.len(),
+            });
+        })
+    }
+}
+
+/// Transfer functions with their columns in the chains of the pass.
+struct Entries {
+    inputs: usize,
+    expansions: Vec<Expansion>,
+    values: Vec<Vec<f64>>,
+    /// Slopes with respect to the searched poles, E×(number of searched poles).
+    slopes: Vec<DMatrix<f64>>,
+    /// First parameter of each entry.
+    first: Vec<usize>,
+    parameters: usize,
+    /// Whether all entries share one chain.
+    shared: bool,
+}
+
+impl Entries {
+    fn new(form: &Form, inputs: usize, report: &FitReport, poles: &FreePoles) -> Result<Self> {
+        let searched = !poles.searched.is_empty();
+        let mut entries = Self {
+            inputs,
+            expansions: Vec::new(),
+            values: Vec::new(),
+            slopes: Vec::new(),
+            first: Vec::new(),
+            parameters: 0,
+            shared: report.entries.windows(2).all(|w| w[0].poles == w[1].poles),
+        };
+        for (e, entry) in report.entries.iter().enumerate() {
+            let expansion = Expansion::new(form, &entry.poles, searched)?;
+            let values: Vec<f64> = entry.coefficients.iter().map(|c| c.value).collect();
+            let free = form.collapse(&entry.poles);
+            let all = expansion.jacobian(form, &free, &values)?;
+            let mut slopes = DMatrix::zeros(all.nrows(), poles.searched.len());
+            for (m, pole) in poles.searched.iter().enumerate() {
+                if pole.entry.is_none_or(|(i, j)| i * inputs + j == e) {
+                    slopes.column_mut(m).copy_from(&all.column(pole.index));
+                }
+            }
+            entries.first.push(entries.parameters);
+            entries.parameters += values.len();
+            entries.expansions.push(expansion);
+            entries.values.push(values);
+            entries.slopes.push(slopes);
+        }
+        entries.parameters += poles.searched.len();
+        Ok(entries)
+    }
+
+    /// Chains of the pass: one, or one an entry.
+    fn chains(&self) -> Vec<Vec<f64>> {
+        let distinct = if self.shared {
+            1
+        } else {
+            self.expansions.len()
+        };
+        self.expansions
+            .iter()
+            .take(distinct)
+            .map(|e| e.extended.clone())
+            .collect()
+    }
+
+    fn blocks(&self, records: &[Scaled<'_>], closed: &[Closed]) -> Result<Stretched> {
+        let mut parts = Vec::new();
+        for stretch in closed.iter().filter(|c| !c.set.is_empty()) {
+            if !self.shared && stretch.set.len() > 1 {
+                return Err(Error::Numerical(
+                    "covariance: poles per transfer function need records of single motions".into(),
+                ));
+            }
+            for i in 0..self.inputs {
+                let (rows, residual, total) = self.part(stretch, i)?;
+                parts.push(Part {
+                    record: stretch.record,
+                    stretch: stretch.stretch,
+                    segment: stretch.segment,
+                    group: (stretch.set.clone(), i),
+                    weight: stretch.weights[i],
+                    rows,
+                    residual,
+                    total,
+                });
+            }
+        }
+        Ok(gather(records, parts))
+    }
+
+    /// Weighted rows, residuals and sum of squares of force `i` in one stretch.
+    fn part(&self, stretch: &Closed, i: usize) -> Result<(DMatrix<f64>, DVector<f64>, f64)> {
+        let moving = stretch.set.len();
+        let which = if self.shared {
+            0
+        } else {
+            i * self.inputs + stretch.set[0]
+        };
+        let factor = &stretch.factors[which];
+        let weight = stretch.weights[i];
+        let mut columns = DMatrix::zeros(factor.columns(), self.parameters);
+        let mut fitted = DVector::zeros(factor.columns());
+        for (s, &j) in stretch.set.iter().enumerate() {
+            let e = i * self.inputs + j;
+            let (native, slopes) = (&self.expansions[e].native, &self.slopes[e]);
+            for c in 0..native.nrows() {
+                let row = c * moving + s;
+                for a in 0..native.ncols() {
+                    columns[(row, self.first[e] + a)] = native[(c, a)];
+                    fitted[row] += native[(c, a)] * self.values[e][a];
+                }
+                for m in 0..slopes.ncols() {
+                    columns[(row, self.parameters - slopes.ncols() + m)] = slopes[(c, m)];
+                }
+            }
+        }
+        let rows = factor.upper() * columns * weight;
+        let residual = (factor.projected().column(i) - factor.upper() * fitted) * weight;
+        Ok((rows, residual, factor.total_sum(i) * weight * weight))
+    }
+
+    fn parameters(&self, report: &FitReport, poles: &[(FreeName, f64)]) -> Vec<Parameter> {
+        let coefficients = report.entries.iter().flat_map(|entry| {
+            entry.coefficients.iter().map(|c| Parameter {
+                name: c.name.clone(),
+                force: Some(entry.force),
+                motion: Some(entry.motion),
+                value: c.value,
+                standard_error: 0.0,
+            })
+        });
+        let poles = poles.iter().map(|((name, entry), value)| Parameter {
+            name: name.clone(),
+            force: entry.map(|e| e.0),
+            motion: entry.map(|e| e.1),
+            value: *value,
+            standard_error: 0.0,
+        });
+        coefficients.chain(poles).collect()
+    }
+}
+
+type FreeName = (String, Option<(Dof, Dof)>);
+
+/// Covariance of the coefficients of the discrete model that [`crate::identification::fit_discrete`] fitted to the same
+/// records with the same options, from one more pass over them.
+///
+/// # Errors
+/// As [`record_uncertainty`].
+pub fn discrete_uncertainty(
+    records: &[&dyn RecordSource],
+    fit: &DiscreteFit,
+    model: &Model,
+    progress: OnProgress<'_>,
+) -> Result<CoefficientUncertainty> {
+    let Model::DiscreteLaguerre(model) = model else {
+        return Err(Error::input(
+            "model",
+            "a discrete Laguerre model",
+            model.kind(),
+        ));
+    };
+    let (dofs, scaled) = scale_all(records)?;
+    let n = dofs.len();
+    let plan = Plan {
+        layout: Layout {
+            inputs: n,
+            per_input: fit.filters,
+            constant: true,
+        },
+        weights: fit.weights,
+        delta_s: Some(model.delta_s),
+        discard_s: 0.0,
+        stride: 1,
+        stretches: STRETCHES,
+    };
+    let done = |records_done| {
+        progress(Progress {
+            pass: 1,
+            passes: 1,
+            records_done,
+            records: scaled.len(),
+        });
+    };
+    let make = |_: &Scaled<'_>| Ok(DiscreteColumns::new(n, fit.filters, fit.alpha));
+    let closed = stretches(&scaled, &plan, &make, &done)?;
+    let each = 1 + n * fit.filters;
+    let mut parameters = Vec::with_capacity(n * each);
+    for (i, &force) in dofs.iter().enumerate() {
+        let mut push = |name: String, motion, value| {
+            parameters.push(Parameter {
+                name,
+                force: Some(force),
+                motion,
+                value,
+                standard_error: 0.0,
+            });
+        };
+        push("static".into(), None, model.static_term[i]);
+        for (j, &motion) in dofs.iter().enumerate() {
+            for l in 0..fit.filters {
+                push(format!("c{l}"), Some(motion), model.coefficients[j][(i, l)]);
+            }
+        }
+    }
+    let values: Vec<f64> = parameters.iter().map(|p: &Parameter| p.value).collect();
+    let parts = closed
+        .iter()
+        .flat_map(|stretch| (0..n).map(move |i| (stretch, i)))
+        .map(|(stretch, i)| discrete_part(stretch, i, each, fit.filters, &values))
+        .collect();
+    let (design, blocks) = sandwich(gather(&scaled, parts))?;
+    Ok(CoefficientUncertainty::new(
+        format!("{blocks}; motions are exact; α is given"),
+        dofs,
+        Coordinates::Discrete {
+            alpha: model.alpha,
+            delta_s: model.delta_s,
+            filters: fit.filters,
+        },
+        parameters,
+        design,
+    ))
+}
+
+/// Rows of force `i` in one stretch: a constant, then the filters of the inputs that move.
+fn discrete_part(stretch: &Closed, i: usize, each: usize, filters: usize, values: &[f64]) -> Part {
+    let factor = &stretch.factors[0];
+    let weight = stretch.weights[i];
+    let mut columns = DMatrix::zeros(factor.columns(), values.len());
+    columns[(0, i * each)] = 1.0;
+    for (s, &j) in stretch.set.iter().enumerate() {
+        for l in 0..filters {
+            let row = 1 + l * stretch.set.len() + s;
+            columns[(row, i * each + 1 + j * filters + l)] = 1.0;
+        }
+    }
+    let fitted = &columns * DVector::from_column_slice(values);
+    Part {
+        record: stretch.record,
+        stretch: stretch.stretch,
+        segment: stretch.segment,
+        group: (stretch.set.clone(), i),
+        weight,
+        rows: factor.upper() * columns * weight,
+        residual: (factor.projected().column(i) - factor.upper() * fitted) * weight,
+        total: factor.total_sum(i) * weight * weight,
+    }
+}

@@ -1,0 +1,192 @@
+//! Stretches or segments of records as independent blocks, with working variances.
+//!
+//! A segment is cut into stretches much longer than the memory of turbulence, so that noise is independent from one
+//! to the next. What the model cannot follow is not: it repeats through the whole segment. The sum of the squares of
+//! the segments' contributions to the errors is then more than that of the stretches', and whole segments are the
+//! blocks.
+//!
+//! The working variances only tell how the small-sample correction shares its weight; the covariance is unbiased to
+//! first order whatever they are. They follow a power of the motion's frequency, as the spectrum of turbulence or
+//! white noise does, with a level of its own for every record, fitted to the residuals in the span of the columns.
+
+use super::design::{Block, Design};
+use crate::error::Result;
+use crate::identification::time::slices::Scaled;
+use nalgebra::{DMatrix, DVector};
+use std::collections::BTreeMap;
+
+/// Steepest spectrum believed: steeper ones come from chance or from lack of fit.
+const STEEPEST: f64 = 4.0;
+
+/// Contributions of segments may exceed those of their stretches by this factor before whole segments are the blocks;
+/// by chance alone it stays below (its scatter is about 0.15 with 32 segments).
+const COHERENT: f64 = 1.5;
+
+/// Blocks with the segment each belongs to.
+pub(super) struct Stretched {
+    blocks: Vec<Block>,
+    /// One key a segment.
+    segments: Vec<usize>,
+    /// Names of the segments, by their keys.
+    names: Vec<String>,
+}
+
+/// The sandwich over stretches, or over segments where residuals repeat through them; and which, in words.
+pub(super) fn sandwich(stretched: Stretched) -> Result<(Design, String)> {
+    let Stretched {
+        blocks,
+        segments,
+        names,
+    } = stretched;
+    let fine = Design::new(blocks)?;
+    let ratio = fine.coherence(&segments);
+    let either = "residuals may be correlated in any way within a block and between its forces; sandwich of the blocks \
+                  with the small-sample correction CR2";
+    if ratio <= COHERENT {
+        let text = format!(
+            "{either}; blocks are stretches of segments, since nothing repeats through whole segments (ratio {ratio:.2})"
+        );
+        return Ok((fine, text));
+    }
+    let text = format!(
+        "{either}; blocks are whole segments, since residuals repeat through them (ratio {ratio:.2}): what the model \
+         cannot follow counts as scatter from segment to segment"
+    );
+    Ok((Design::new(fine.merged(&segments, &names))?, text))
+}
+
+/// Rows of one force in one stretch of a record.
+pub(super) struct Part {
+    pub record: usize,
+    pub stretch: usize,
+    pub segment: Option<usize>,
+    /// Inputs that moved, and force: equations that share their scale.
+    pub group: (Vec<usize>, usize),
+    /// Weight that rows, residual and total already have.
+    pub weight: f64,
+    pub rows: DMatrix<f64>,
+    pub residual: DVector<f64>,
+    /// Weighted sum of squares of the data.
+    pub total: f64,
+}
+
+/// Stacks the forces of every stretch, each relative to its size over all stretches, as the search of poles weighs
+/// them.
+pub(super) fn gather(records: &[Scaled<'_>], parts: Vec<Part>) -> Stretched {
+    let mut groups: BTreeMap<(Vec<usize>, usize), Vec<usize>> = BTreeMap::new();
+    for (at, part) in parts.iter().enumerate() {
+        groups.entry(part.group.clone()).or_default().push(at);
+    }
+    let mut scales = vec![1.0; parts.len()];
+    let mut variances = vec![1.0; parts.len()];
+    for members in groups.values() {
+        let total: f64 = members.iter().map(|&m| parts[m].total).sum();
+        let scale = if total > 0.0 {
+            total.sqrt().recip()
+        } else {
+            1.0
+        };
+        let own: Vec<&Part> = members.iter().map(|&m| &parts[m]).collect();
+        for (&m, variance) in members.iter().zip(working_variances(records, &own)) {
+            scales[m] = scale;
+            variances[m] = variance * scale * scale;
+        }
+    }
+    let mut stretches: BTreeMap<(usize, usize), Vec<usize>> = BTreeMap::new();
+    for (at, part) in parts.iter().enumerate() {
+        stretches
+            .entry((part.record, part.stretch))
+            .or_default()
+            .push(at);
+    }
+    let mut out = Stretched {
+        blocks: Vec::new(),
+        segments: Vec::new(),
+        names: Vec::new(),
+    };
+    let mut keys: BTreeMap<(usize, usize), usize> = BTreeMap::new();
+    for ((record, stretch), members) in stretches {
+        let segment = parts[members[0]].segment;
+        let name = match segment {
+            Some(s) => format!(
+                "{}, {:.2} Hz",
+                records[record].name(),
+                records[record].segments()[s].frequency_hz
+            ),
+            None => format!("{}, stretch {}", records[record].name(), stretch + 1),
+        };
+        let key = *keys
+            .entry((record, segment.unwrap_or(stretch)))
+            .or_insert_with(|| {
+                out.names.push(name.clone());
+                out.names.len() - 1
+            });
+        let scaled: Vec<_> = members
+            .iter()
+            .map(|&m| {
+                let (part, scale) = (&parts[m], scales[m]);
+                (&part.rows * scale, &part.residual * scale, variances[m])
+            })
+            .collect();
+        let name = if segment.is_some() {
+            format!("{name}, stretch {}", stretch + 1)
+        } else {
+            name
+        };
+        out.blocks.push(Block::stacked(name, &scaled));
+        out.segments.push(key);
+    }
+    out
+}
+
+/// Weighted variance of one row in each part: `w² e^(a + γ ln f)`, with a level `a` a record and one `γ`, by least
+/// squares on the logarithms.
+fn working_variances(records: &[Scaled<'_>], parts: &[&Part]) -> Vec<f64> {
+    let floor = 1e-12
+        * parts
+            .iter()
+            .map(|p| p.residual.norm_squared())
+            .fold(0.0, f64::max);
+    if floor <= 0.0 {
+        // a fit without residuals has no scale; only relative sizes matter
+        return vec![1.0; parts.len()];
+    }
+    let points: Vec<(usize, f64, f64)> = parts
+        .iter()
+        .map(|p| {
+            let hz = p
+                .segment
+                .map_or(1.0, |s| records[p.record].segments()[s].frequency_hz);
+            let mean_square = p.residual.norm_squared().max(floor) / p.residual.len() as f64;
+            (p.record, hz.ln(), (mean_square / p.weight.powi(2)).ln())
+        })
+        .collect();
+    let mut means: BTreeMap<usize, (f64, f64, f64)> = BTreeMap::new();
+    for (record, x, y) in &points {
+        let sums = means.entry(*record).or_insert((0.0, 0.0, 0.0));
+        *sums = (sums.0 + 1.0, sums.1 + x, sums.2 + y);
+    }
+    let mean = |record: &usize| {
+        let (count, x, y) = means[record];
+        (x / count, y / count)
+    };
+    let (mut squares, mut products) = (0.0, 0.0);
+    for (record, x, y) in &points {
+        let (mx, my) = mean(record);
+        squares += (x - mx).powi(2);
+        products += (x - mx) * (y - my);
+    }
+    let slope = if squares > 0.0 {
+        (products / squares).clamp(-STEEPEST, STEEPEST)
+    } else {
+        0.0
+    };
+    points
+        .iter()
+        .zip(parts)
+        .map(|((record, x, _), part)| {
+            let (mx, my) = mean(record);
+            part.weight.powi(2) * (my + slope * (x - mx)).exp()
+        })
+        .collect()
+}

@@ -1,0 +1,199 @@
+//! Uncertainty of models fitted to a table: blocks are its test runs.
+
+use super::coefficients::{CoefficientUncertainty, Coordinates, Parameter};
+use super::design::{Block, Design};
+use super::poles::free_poles;
+use crate::aerodynamics::derivatives::TransferSample;
+use crate::error::Result;
+use crate::identification::basis::Basis;
+use crate::identification::options::{Form, FrequencyFit};
+use crate::identification::report::FitReport;
+use crate::identification::samples::{Entry, Row, sort_by_entry};
+use crate::section::Dof;
+use nalgebra::{Complex, DMatrix, DVector};
+
+/// Samples of one motion belong to one test run when `K` and speed agree within this fraction.
+const SAME_RUN: f64 = 0.03;
+/// Relative step of central differences with respect to poles.
+const STEP: f64 = 1e-5;
+
+/// Covariance of the coefficients of a model that [`crate::identification::fit_table`] fitted to the same samples with
+/// the same options.
+///
+/// A table states no errors: the scatter of its points around the fit stands for them, so that measuring errors and
+/// what the form cannot follow are counted together.
+///
+/// # Errors
+/// [`crate::Error::Numerical`] when there are too few test runs to judge the scatter.
+pub fn table_uncertainty(
+    samples: &[TransferSample],
+    dofs: &[Dof],
+    fit: &FrequencyFit,
+    report: &FitReport,
+) -> Result<CoefficientUncertainty> {
+    let (entries, _) = sort_by_entry(samples, dofs, fit.weights)?;
+    let poles = free_poles(&fit.form, &fit.poles, report);
+    let mut parameters = Vec::new();
+    let mut first = Vec::new();
+    for entry in &report.entries {
+        first.push(parameters.len());
+        parameters.extend(entry.coefficients.iter().map(|c| Parameter {
+            name: c.name.clone(),
+            force: Some(entry.force),
+            motion: Some(entry.motion),
+            value: c.value,
+            standard_error: 0.0,
+        }));
+    }
+    let first_pole = parameters.len();
+    parameters.extend(poles.values.iter().map(|((name, entry), value)| Parameter {
+        name: name.clone(),
+        force: entry.map(|e| e.0),
+        motion: entry.map(|e| e.1),
+        value: *value,
+        standard_error: 0.0,
+    }));
+    let mut runs: Vec<Run> = Vec::new();
+    for (e, entry) in entries.iter().enumerate() {
+        let searched = poles
+            .searched
+            .iter()
+            .enumerate()
+            .filter(|(_, pole)| pole.entry.is_none_or(|(i, j)| i * dofs.len() + j == e));
+        let columns = EntryColumns {
+            chain: &report.entries[e].poles,
+            values: report.entries[e]
+                .coefficients
+                .iter()
+                .map(|c| c.value)
+                .collect(),
+            first: first[e],
+            poles: searched.map(|(m, p)| (first_pole + m, p.index)).collect(),
+        };
+        columns.add_to(&mut runs, &fit.form, entry, parameters.len())?;
+    }
+    let blocks = runs.into_iter().map(Run::block).collect();
+    let searched = poles.sentence();
+    Ok(CoefficientUncertainty::new(
+        format!(
+            "the table states no errors: the scatter of its points around the fit stands for measuring errors and lack of \
+             fit together; correlated in any way within a test run (one motion, frequency and speed), independent \
+             from run to run; sandwich of the runs with the small-sample correction CR2; {searched}"
+        ),
+        dofs.to_vec(),
+        Coordinates::Continuous {
+            form: fit.form.clone(),
+            chains: report
+                .entries
+                .chunks(dofs.len())
+                .map(|row| row.iter().map(|e| e.poles.clone()).collect())
+                .collect(),
+            searched: poles.searched,
+        },
+        parameters,
+        Design::new(blocks)?,
+    ))
+}
+
+/// All samples of one motion at one frequency and speed.
+struct Run {
+    motion: Dof,
+    k: f64,
+    mean_speed_m_s: Option<f64>,
+    rows: Vec<(Vec<f64>, f64, f64)>,
+}
+
+impl Run {
+    fn holds(&self, motion: Dof, row: &Row) -> bool {
+        let near = |a: f64, b: f64| (a / b).ln().abs() < SAME_RUN;
+        let same_speed = match (self.mean_speed_m_s, row.mean_speed_m_s) {
+            (Some(a), Some(b)) => near(a, b),
+            _ => true,
+        };
+        self.motion == motion && near(self.k, row.k) && same_speed
+    }
+
+    fn block(self) -> Block {
+        let width = self.rows.first().map_or(0, |r| r.0.len());
+        let count = self.rows.len();
+        let speed = self
+            .mean_speed_m_s
+            .map_or_else(String::new, |v| format!(", {v:.2} m/s"));
+        Block {
+            name: format!("{} motion, K = {:.3}{speed}", self.motion.name(), self.k),
+            rows: DMatrix::from_fn(count, width, |i, c| self.rows[i].0[c]),
+            residual: DVector::from_fn(count, |i, _| self.rows[i].1),
+            variance: DVector::from_fn(count, |i, _| self.rows[i].2),
+        }
+    }
+}
+
+/// Where the columns of one transfer function stand among the parameters.
+struct EntryColumns<'a> {
+    chain: &'a [f64],
+    values: Vec<f64>,
+    first: usize,
+    /// Parameter and place among the free poles.
+    poles: Vec<(usize, usize)>,
+}
+
+impl EntryColumns<'_> {
+    fn add_to(&self, runs: &mut Vec<Run>, form: &Form, entry: &Entry, width: usize) -> Result<()> {
+        let basis = Basis::new(form, self.chain)?;
+        let free = form.collapse(self.chain);
+        let mut pairs = Vec::new();
+        for &(at, index) in &self.poles {
+            let moved = |factor: f64| {
+                let mut poles = free.clone();
+                poles[index] *= factor;
+                Basis::new(form, &form.expand(&poles))
+            };
+            pairs.push((at, index, moved(1.0 + STEP)?, moved(1.0 - STEP)?));
+        }
+        let total = entry.total();
+        let scale = if total > 0.0 {
+            total.sqrt().recip()
+        } else {
+            1.0
+        };
+        let residuals = entry.residuals(&basis, &self.values);
+        let weighted = |r: f64, row: &Row| scale * row.weight * r;
+        let sum: f64 = residuals
+            .iter()
+            .zip(&entry.rows)
+            .map(|(r, row)| weighted(*r, row).powi(2))
+            .sum();
+        let variance = if sum > 0.0 { sum } else { 1.0 };
+        for (row, residual) in entry.rows.iter().zip(&residuals) {
+            let p = Complex::new(0.0, row.k);
+            let seen = |b: &Basis| -> Vec<f64> { row.of(&b.columns(p)).collect() };
+            let mut line = vec![0.0; width];
+            for (to, x) in line[self.first..].iter_mut().zip(seen(&basis)) {
+                *to = weighted(x, row);
+            }
+            for (at, index, up, down) in &pairs {
+                let change: f64 = seen(up)
+                    .iter()
+                    .zip(seen(down))
+                    .zip(&self.values)
+                    .map(|((a, b), c)| (a - b) * c)
+                    .sum();
+                line[*at] = weighted(change / (2.0 * STEP * free[*index]), row);
+            }
+            let place = runs.iter().position(|run| run.holds(entry.motion, row));
+            let place = place.unwrap_or_else(|| {
+                runs.push(Run {
+                    motion: entry.motion,
+                    k: row.k,
+                    mean_speed_m_s: row.mean_speed_m_s,
+                    rows: Vec::new(),
+                });
+                runs.len() - 1
+            });
+            runs[place]
+                .rows
+                .push((line, weighted(*residual, row), variance));
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,330 @@
+//! A number over a grid of two parameters, as cells of colour.
+
+use super::figure::Figure;
+use super::font::FAMILIES;
+use super::sheet::{finished, text};
+use super::style::{BLACK, GREY};
+use crate::error::{Error, Result};
+use kuva::render::color::Color;
+use kuva::render::render::{Primitive, Scene, TextAnchor};
+
+/// Stops of a colour scale that rises evenly in lightness and is read by colour-blind readers (viridis, CC0).
+const SCALE: [[u8; 3]; 6] = [
+    [68, 1, 84],
+    [65, 68, 135],
+    [42, 120, 142],
+    [34, 168, 132],
+    [122, 209, 81],
+    [253, 231, 37],
+];
+const TITLE: u32 = 14;
+const LABEL: u32 = 12;
+const SMALL: u32 = 11;
+const LEFT: f64 = 58.0;
+const TOP: f64 = 30.0;
+const BOTTOM: f64 = 48.0;
+/// Room for the colour scale and its numbers.
+const RIGHT: f64 = 92.0;
+const WIDTH: f64 = 360.0;
+const ROW: f64 = 22.0;
+/// Labels of the columns at most.
+const TICKS: usize = 7;
+
+/// One map.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HeatMap {
+    /// Line above it.
+    pub title: String,
+    /// Name of the parameter along the abscissa.
+    pub x_label: String,
+    /// Its values, one a column.
+    pub x: Vec<f64>,
+    /// Name of the whole number along the ordinate.
+    pub y_label: String,
+    /// Number of rows, from one upwards.
+    pub rows: usize,
+    /// Values, all rows of the first column first; `None` for empty cells.
+    pub values: Vec<Option<f64>>,
+    /// Whether colours follow the logarithm.
+    pub logarithmic: bool,
+    /// Cells that are crossed out, in the order of the values; may be empty.
+    pub refused: Vec<bool>,
+    /// Column and row (both from zero) of the cell that is framed.
+    pub chosen: Option<(usize, usize)>,
+}
+
+/// Maps side by side, `columns` in a row, under one title; dots mark refused cells, a frame the chosen one.
+///
+/// # Errors
+/// [`Error::Input`] for no maps, maps of other sizes than their axes say, and maps without a finite value.
+pub fn heat_map_figure(title: &str, maps: &[HeatMap], columns: usize) -> Result<Figure> {
+    const PLACE: &str = "heat map";
+    if maps.is_empty() || columns == 0 {
+        return Err(Error::input(PLACE, "at least one map", "none"));
+    }
+    for map in maps {
+        if map.x.is_empty() || map.values.len() != map.x.len() * map.rows {
+            return Err(Error::input(
+                format!("{PLACE} {}", map.title),
+                format!("{} values", map.x.len() * map.rows),
+                map.values.len().to_string(),
+            ));
+        }
+    }
+    let height = |m: &HeatMap| TOP + ROW * m.rows as f64 + BOTTOM;
+    let panel_width = LEFT + WIDTH + RIGHT;
+    let row_heights: Vec<f64> = maps
+        .chunks(columns)
+        .map(|row| row.iter().map(height).fold(0.0, f64::max))
+        .collect();
+    let wide = columns.min(maps.len()) as f64 * panel_width;
+    let foot = 26.0;
+    let mut scene = Scene::new(wide, 34.0 + row_heights.iter().sum::<f64>() + foot);
+    scene.font_family = Some(FAMILIES.to_owned());
+    scene.text_color = Some(BLACK.to_owned());
+    scene.add(text((LEFT, 22.0), title, TITLE, BLACK));
+    let mut top = 34.0;
+    for (row, tall) in maps.chunks(columns).zip(&row_heights) {
+        for (c, map) in row.iter().enumerate() {
+            map.draw(&mut scene, (c as f64 * panel_width, top))?;
+        }
+        top += tall;
+    }
+    scene.add(text(
+        (LEFT, top + 10.0),
+        "dot: refused model     frame: recommended model",
+        SMALL,
+        GREY,
+    ));
+    Ok(Figure::from_svg(finished(&scene)))
+}
+
+impl HeatMap {
+    fn scaled(&self, value: f64) -> f64 {
+        if self.logarithmic { value.ln() } else { value }
+    }
+
+    /// Ends of the colour scale.
+    fn ends(&self) -> Result<(f64, f64)> {
+        let usable = |v: &&f64| v.is_finite() && (!self.logarithmic || **v > 0.0);
+        let values: Vec<f64> = self
+            .values
+            .iter()
+            .flatten()
+            .filter(usable)
+            .copied()
+            .collect();
+        let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        if low > high {
+            return Err(Error::input(
+                format!("heat map {}", self.title),
+                "at least one finite value",
+                "none",
+            ));
+        }
+        Ok((low, high))
+    }
+
+    fn draw(&self, scene: &mut Scene, (x0, y0): (f64, f64)) -> Result<()> {
+        let (low, high) = self.ends()?;
+        let (left, top) = (x0 + LEFT, y0 + TOP);
+        let tall = ROW * self.rows as f64;
+        let cell = WIDTH / self.x.len() as f64;
+        scene.add(text((left, top - 8.0), &self.title, LABEL, BLACK));
+        let part = |v: f64| {
+            let (a, b) = (self.scaled(low), self.scaled(high));
+            if b > a {
+                (self.scaled(v) - a) / (b - a)
+            } else {
+                0.5
+            }
+        };
+        for (at, value) in self.values.iter().enumerate() {
+            let (column, row) = (at / self.rows, at % self.rows);
+            let x = left + column as f64 * cell;
+            let y = top + tall - (row + 1) as f64 * ROW;
+            let known = value.filter(|v| v.is_finite() && (!self.logarithmic || *v > 0.0));
+            let fill = known.map_or_else(|| "#ffffff".to_owned(), |v| shade(part(v)));
+            scene.add(rectangle((x, y, cell, ROW), &fill, None));
+            if self.refused.get(at) == Some(&true) {
+                let light = known.is_some_and(|v| part(v) < 0.6);
+                scene.add(Primitive::Circle {
+                    cx: x + 0.5 * cell,
+                    cy: y + 0.5 * ROW,
+                    r: (0.18 * cell).clamp(1.0, 2.5),
+                    fill: Color::from(if light { "#ffffff" } else { BLACK }),
+                    fill_opacity: None,
+                    stroke: None,
+                    stroke_width: None,
+                });
+            }
+        }
+        if let Some((column, row)) = self.chosen {
+            let x = left + column as f64 * cell;
+            let y = top + tall - (row + 1) as f64 * ROW;
+            scene.add(rectangle(
+                (x - 1.5, y - 1.5, cell + 3.0, ROW + 3.0),
+                "none",
+                Some(("#ffffff", 4.0)),
+            ));
+            scene.add(rectangle(
+                (x - 1.5, y - 1.5, cell + 3.0, ROW + 3.0),
+                "none",
+                Some(("#d55e00", 2.2)),
+            ));
+        }
+        self.axes(scene, (left, top, tall, cell));
+        colour_bar(
+            scene,
+            (left + WIDTH + 16.0, top, tall),
+            &part_inverse(self.logarithmic, low, high),
+        );
+        Ok(())
+    }
+
+    fn axes(&self, scene: &mut Scene, (left, top, tall, cell): (f64, f64, f64, f64)) {
+        let every = self.x.len().div_ceil(TICKS);
+        for (column, x) in self.x.iter().enumerate().step_by(every) {
+            let at = (left + (column as f64 + 0.5) * cell, top + tall + 15.0);
+            scene.add(centred(at, &format!("{x:.2}"), SMALL));
+        }
+        scene.add(centred(
+            (left + 0.5 * WIDTH, top + tall + 34.0),
+            &self.x_label,
+            LABEL,
+        ));
+        for row in 0..self.rows {
+            let y = top + tall - (row as f64 + 0.5) * ROW + 4.0;
+            scene.add(centred((left - 14.0, y), &(row + 1).to_string(), SMALL));
+        }
+        let mut label = centred((left - 36.0, top + 0.5 * tall), &self.y_label, LABEL);
+        if let Primitive::Text { rotate, .. } = &mut label {
+            *rotate = Some(-90.0);
+        }
+        scene.add(label);
+    }
+}
+
+/// Value at a part of the colour scale.
+fn part_inverse(logarithmic: bool, low: f64, high: f64) -> impl Fn(f64) -> f64 {
+    move |part| {
+        if logarithmic {
+            low * (high / low).powf(part)
+        } else {
+            low + part * (high - low)
+        }
+    }
+}
+
+fn colour_bar(scene: &mut Scene, (x, top, tall): (f64, f64, f64), value: &dyn Fn(f64) -> f64) {
+    const STEPS: usize = 48;
+    let step = tall / STEPS as f64;
+    for i in 0..STEPS {
+        let y = top + tall - (i + 1) as f64 * step;
+        let fill = shade((i as f64 + 0.5) / STEPS as f64);
+        scene.add(rectangle((x, y, 12.0, step + 0.4), &fill, None));
+    }
+    for part in [0.0, 0.5, 1.0] {
+        let label = number(value(part));
+        scene.add(text(
+            (x + 17.0, top + tall * (1.0 - part) + 4.0),
+            &label,
+            SMALL,
+            BLACK,
+        ));
+    }
+}
+
+fn number(x: f64) -> String {
+    match x.abs() {
+        a if a >= 100.0 => format!("{x:.0}"),
+        a if a >= 10.0 => format!("{x:.1}"),
+        a if a >= 0.1 => format!("{x:.3}"),
+        _ => format!("{x:.4}"),
+    }
+}
+
+fn shade(part: f64) -> String {
+    let at = part.clamp(0.0, 1.0) * (SCALE.len() - 1) as f64;
+    let low = (at.floor() as usize).min(SCALE.len() - 2);
+    let rest = at - low as f64;
+    let mix = |c: usize| {
+        let (a, b) = (f64::from(SCALE[low][c]), f64::from(SCALE[low + 1][c]));
+        (a + rest * (b - a)).round() as u8
+    };
+    format!("#{:02x}{:02x}{:02x}", mix(0), mix(1), mix(2))
+}
+
+fn rectangle(
+    (x, y, width, height): (f64, f64, f64, f64),
+    fill: &str,
+    stroke: Option<(&str, f64)>,
+) -> Primitive {
+    Primitive::Rect {
+        x,
+        y,
+        width,
+        height,
+        fill: Color::from(fill),
+        stroke: stroke.map(|s| Color::from(s.0)),
+        stroke_width: stroke.map(|s| s.1),
+        opacity: None,
+    }
+}
+
+fn centred(at: (f64, f64), content: &str, size: u32) -> Primitive {
+    let mut primitive = text(at, content, size, BLACK);
+    if let Primitive::Text { anchor, .. } = &mut primitive {
+        *anchor = TextAnchor::Middle;
+    }
+    primitive
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn map() -> HeatMap {
+        HeatMap {
+            title: "error".into(),
+            x_label: "p".into(),
+            x: vec![0.1, 0.2, 0.4],
+            y_label: "L".into(),
+            rows: 2,
+            values: vec![
+                Some(1.0),
+                Some(2.0),
+                None,
+                Some(4.0),
+                Some(f64::NAN),
+                Some(8.0),
+            ],
+            logarithmic: true,
+            refused: vec![false, true, false, false, false, false],
+            chosen: Some((1, 1)),
+        }
+    }
+
+    #[test]
+    fn lowest_and_highest_have_the_ends_of_the_scale() {
+        let figure = heat_map_figure("two", &[map(), map()], 2).unwrap();
+        for colour in ["#440154", "#fde725"] {
+            assert!(figure.svg().contains(colour), "{colour}");
+        }
+        assert!(figure.png(1.0).is_ok());
+        // half way in the logarithm between 1 and 8
+        assert!(figure.svg().contains("2.828"));
+    }
+
+    #[test]
+    fn maps_that_do_not_fit_are_refused() {
+        assert!(heat_map_figure("", &[], 1).is_err());
+        let mut short = map();
+        short.values.pop();
+        assert!(heat_map_figure("", &[short], 1).is_err());
+        let mut empty = map();
+        empty.values = vec![None; 6];
+        assert!(heat_map_figure("", &[empty], 1).is_err());
+    }
+}

@@ -1,0 +1,52 @@
+//! Intervals of the onsets of a study.
+
+use super::{FlutterStudy, Study};
+use crate::error::Result;
+use crate::flutter::{Onset, OnsetInterval, OnsetMethod};
+use crate::section::Structure;
+use crate::trained_model::TrainedModel;
+use crate::uncertainty::ModelUncertainty;
+
+/// Uncertainty of one model, or why it is not known.
+pub type KnownUncertainty = std::result::Result<Box<ModelUncertainty>, String>;
+
+/// Gives every onset of a trained model its interval, in the order of `models`.
+///
+/// # Errors
+/// Those of the study's section.
+pub fn state_intervals(
+    results: &mut FlutterStudy,
+    study: &Study,
+    models: &[TrainedModel],
+    known: &[KnownUncertainty],
+) -> Result<()> {
+    let structure = study.section.structure()?;
+    for onset in &mut results.onsets {
+        if onset.method == OnsetMethod::Determinant {
+            continue;
+        }
+        let own = models
+            .iter()
+            .zip(known)
+            .find(|(m, _)| m.name == onset.model);
+        if let Some((model, known)) = own {
+            onset.interval = interval_of(&structure, model, known, onset);
+        }
+    }
+    Ok(())
+}
+
+/// Interval of one onset of one model. A sensitivity that fails is a reason, not an error: the onset stands.
+pub fn interval_of(
+    structure: &Structure,
+    model: &TrainedModel,
+    known: &KnownUncertainty,
+    onset: &Onset,
+) -> OnsetInterval {
+    match known {
+        Ok(uncertainty) => uncertainty
+            .interval(&model.model, structure, onset)
+            .unwrap_or_else(|e| OnsetInterval::none(e.to_string())),
+        Err(reason) => OnsetInterval::none(reason.clone()),
+    }
+}

@@ -1,0 +1,333 @@
+//! Do the intervals keep their word? Virtual campaigns whose truth is known, fitted many times over.
+
+use super::derivatives::{derivative_intervals, spread_over};
+use super::onset::onset_error;
+use super::sensitivity::coupled;
+use crate::aerodynamics::derivatives::Part;
+use crate::aerodynamics::{AerodynamicModel, FlatPlate, RationalModel};
+use crate::error::{Error, Result, positive};
+use crate::flutter::{Onset, OnsetSearch, determinant_onset, find_onset};
+use crate::identification::{
+    CoefficientUncertainty, FeedThrough, Form, PoleSearch, TimeFit, TimeWeights, fit_records,
+    record_uncertainty,
+};
+use crate::section::SectionModel;
+use crate::units::{ReducedFrequency, ReducedFrequencyRange};
+use crate::wind_tunnel::{Record, RecordSource, TunnelPlan};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Highest wind speed at which an onset is looked for, m/s.
+const SPEED_MAX_M_S: f64 = 80.0;
+/// Reduced frequencies at which derivatives are compared.
+const DERIVATIVE_POINTS: usize = 8;
+
+/// What the forces of the virtual tunnel follow.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Truth {
+    /// R. T. Jones's rational function: poles 0.091 and 0.6.
+    Jones,
+    /// Theodorsen's function: outside every class of finitely many filters.
+    Theodorsen,
+}
+
+/// A virtual campaign that is repeated.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct CoveragePlan {
+    /// What the forces follow.
+    pub truth: Truth,
+    /// Poles of the fitted Takenaka–Malmquist filters.
+    pub poles: Vec<f64>,
+    /// Whether the poles are searched, from those.
+    pub search_poles: bool,
+    /// Weights of the fit.
+    pub weights: TimeWeights,
+    /// The tunnel; noise and seed among it.
+    pub tunnel: TunnelPlan,
+    /// Number of repetitions.
+    pub repetitions: usize,
+}
+
+impl Default for CoveragePlan {
+    fn default() -> Self {
+        Self {
+            truth: Truth::Jones,
+            poles: vec![0.091, 0.6],
+            search_poles: false,
+            weights: TimeWeights::default(),
+            tunnel: TunnelPlan {
+                noise_fraction: 0.05,
+                ..TunnelPlan::default()
+            },
+            repetitions: 500,
+        }
+    }
+}
+
+/// How often intervals held the truth.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Share {
+    /// Intervals that held it.
+    pub inside: usize,
+    /// All intervals.
+    pub of: usize,
+    /// Their ratio, percent.
+    pub percent: f64,
+}
+
+impl Share {
+    fn count(verdicts: impl Iterator<Item = bool>) -> Self {
+        let (inside, of) =
+            verdicts.fold((0, 0), |(inside, of), v| (inside + usize::from(v), of + 1));
+        Self {
+            inside,
+            of,
+            percent: 100.0 * inside as f64 / (of as f64).max(1.0),
+        }
+    }
+}
+
+/// What the repetitions came to; speeds in m/s.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct CoverageReport {
+    /// What was repeated.
+    pub plan: CoveragePlan,
+    /// Onset of the truth.
+    pub true_onset_m_s: f64,
+    /// Onset of the fit to records without noise, minus the truth: what the form of the model cannot follow.
+    pub bias_m_s: f64,
+    /// Mean of the onsets minus the truth.
+    pub mean_error_m_s: f64,
+    /// Standard error of that mean.
+    pub standard_error_of_mean_m_s: f64,
+    /// Standard deviation of the onsets: the scatter from repetition to repetition.
+    pub scatter_m_s: f64,
+    /// Root mean square of the stated standard errors.
+    pub stated_standard_error_m_s: f64,
+    /// Mean half width of the stated intervals.
+    pub mean_half_width_m_s: f64,
+    /// Mean degrees of freedom.
+    pub mean_degrees_of_freedom: f64,
+    /// Degrees of freedom that the scatter of the stated variances shows, `2 mean²/variance`.
+    pub observed_degrees_of_freedom: f64,
+    /// Intervals of the onset that hold the true one.
+    pub holds_truth: Share,
+    /// Intervals of the onset that hold that of the fit without noise: coverage with the bias taken away.
+    pub holds_fit_without_noise: Share,
+    /// The same as the first for all derivatives at eight `K` over the tested range.
+    pub derivatives_hold_truth: Share,
+    /// Repetitions without an onset.
+    pub without_onset: usize,
+}
+
+/// Runs the campaign over and over, each time with noise of its own, in parallel.
+///
+/// `done` is called after each repetition with the number of those that are through.
+///
+/// # Errors
+/// [`Error::Input`] for impossible plans; those of fit and search.
+pub fn coverage(plan: &CoveragePlan, done: &(dyn Fn(usize) + Sync)) -> Result<CoverageReport> {
+    let campaign = Campaign::new(plan)?;
+    let finished = AtomicUsize::new(0);
+    let runs: Vec<Option<Run>> = (0..plan.repetitions)
+        .into_par_iter()
+        .map(|r| {
+            let run = campaign.repeat(r);
+            done(1 + finished.fetch_add(1, Ordering::Relaxed));
+            run
+        })
+        .collect::<Result<_>>()?;
+    campaign.summary(plan, &runs)
+}
+
+struct Campaign {
+    section: SectionModel,
+    model: Box<dyn AerodynamicModel + Sync>,
+    clean: Vec<Record>,
+    tunnel: TunnelPlan,
+    fit: TimeFit,
+    tested: ReducedFrequencyRange,
+    true_onset_m_s: f64,
+    bias_m_s: f64,
+}
+
+/// One repetition.
+struct Run {
+    onset_m_s: f64,
+    standard_error_m_s: f64,
+    half_width_m_s: f64,
+    degrees_of_freedom: f64,
+    derivatives_inside: Vec<bool>,
+}
+
+impl Campaign {
+    fn new(plan: &CoveragePlan) -> Result<Self> {
+        if plan.repetitions < 2 {
+            let found = plan.repetitions.to_string();
+            return Err(Error::input("repetitions", "at least 2", found));
+        }
+        plan.poles
+            .iter()
+            .try_for_each(|p| positive("poles", *p).map(drop))?;
+        let section = SectionModel::table_4_1();
+        let model: Box<dyn AerodynamicModel + Sync> = match plan.truth {
+            Truth::Jones => Box::new(RationalModel::jones_flat_plate()),
+            Truth::Theodorsen => Box::new(FlatPlate::default()),
+        };
+        let quiet = TunnelPlan {
+            noise_fraction: 0.0,
+            ..plan.tunnel.clone()
+        };
+        let clean = quiet.records_from_model(model.as_ref(), "truth", section.width_m)?;
+        let given = PoleSearch {
+            start: Some(plan.poles.clone()),
+            ..PoleSearch::default()
+        };
+        let fit = TimeFit {
+            form: Form::TakenakaMalmquist {
+                filters: plan.poles.len(),
+                feed_through: FeedThrough::default(),
+                pole_per_transfer_function: false,
+            },
+            poles: if plan.search_poles {
+                given
+            } else {
+                PoleSearch::fixed(&plan.poles)
+            },
+            weights: plan.weights,
+            ..TimeFit::default()
+        };
+        let mut campaign = Self {
+            true_onset_m_s: 0.0,
+            bias_m_s: 0.0,
+            section,
+            model,
+            clean,
+            tunnel: plan.tunnel.clone(),
+            fit,
+            tested: ReducedFrequencyRange {
+                min: ReducedFrequency::from_full_width(0.02),
+                max: ReducedFrequency::from_full_width(10.0),
+            },
+        };
+        let structure = campaign.section.structure()?;
+        let found = determinant_onset(
+            "truth",
+            &structure,
+            campaign.model.as_ref(),
+            campaign.tested,
+            SPEED_MAX_M_S,
+        )?;
+        campaign.true_onset_m_s = found
+            .onset()
+            .ok_or_else(|| Error::Numerical("coverage: the truth does not flutter".into()))?
+            .speed_m_s;
+        let (_, onset, tested) = campaign.fitted(&campaign.clean)?;
+        campaign.tested = tested;
+        let onset = onset
+            .ok_or_else(|| Error::Numerical("coverage: the fit without noise is stable".into()))?;
+        campaign.bias_m_s = onset.speed_m_s - campaign.true_onset_m_s;
+        Ok(campaign)
+    }
+
+    /// Fit, its uncertainty, its onset and its tested range.
+    fn fitted(
+        &self,
+        records: &[Record],
+    ) -> Result<(CoefficientUncertainty, Option<Onset>, ReducedFrequencyRange)> {
+        let sources: Vec<&dyn RecordSource> = records.iter().map(|r| r as _).collect();
+        let (model, report) = fit_records(&sources, &self.fit, &|_| ())?;
+        let estimate = record_uncertainty(&sources, &self.fit, &report, &|_| ())?;
+        let section = coupled(&self.section.structure()?, &model)?;
+        let search = OnsetSearch {
+            speed_max_m_s: SPEED_MAX_M_S,
+            ..OnsetSearch::default()
+        };
+        let found = find_onset("", &section, &search, Some(report.tested_range))?;
+        Ok((estimate, found.onset().cloned(), report.tested_range))
+    }
+
+    fn repeat(&self, repetition: usize) -> Result<Option<Run>> {
+        let mut records = self.clean.clone();
+        let plan = TunnelPlan {
+            seed: self.tunnel.seed.wrapping_add(repetition as u64),
+            ..self.tunnel.clone()
+        };
+        for (index, record) in records.iter_mut().enumerate() {
+            plan.add_noise(record, index);
+        }
+        let (estimate, onset, _) = self.fitted(&records)?;
+        let Some(onset) = onset else {
+            return Ok(None);
+        };
+        let error = onset_error(&estimate, &self.section.structure()?, &onset, None)?;
+        Ok(Some(Run {
+            onset_m_s: onset.speed_m_s,
+            standard_error_m_s: error.standard_error_m_s,
+            half_width_m_s: error.half_width_m_s(),
+            degrees_of_freedom: error.degrees_of_freedom,
+            derivatives_inside: self.derivatives(&estimate)?,
+        }))
+    }
+
+    fn derivatives(&self, estimate: &CoefficientUncertainty) -> Result<Vec<bool>> {
+        let ks = spread_over(self.tested, DERIVATIVE_POINTS);
+        let mut inside = Vec::new();
+        for interval in derivative_intervals(estimate, &ks)? {
+            let k = ReducedFrequency::from_full_width(interval.k);
+            let g = self.model.transfer(k)?;
+            let place = |dof| estimate.dofs.iter().position(|d| *d == dof).unwrap_or(0);
+            let which = interval.derivative;
+            let z = g[(place(which.force()), place(which.motion()))];
+            let truth = match which.part() {
+                Part::Real => z.re,
+                Part::Imaginary => z.im,
+            } / interval.k.powi(2);
+            inside.push(interval.low <= truth && truth <= interval.high);
+        }
+        Ok(inside)
+    }
+
+    fn summary(&self, plan: &CoveragePlan, runs: &[Option<Run>]) -> Result<CoverageReport> {
+        let good: Vec<&Run> = runs.iter().flatten().collect();
+        if good.len() < 2 {
+            return Err(Error::Numerical(
+                "coverage: fewer than two repetitions have an onset".into(),
+            ));
+        }
+        let count = good.len() as f64;
+        let mean = |f: &dyn Fn(&Run) -> f64| good.iter().map(|r| f(r)).sum::<f64>() / count;
+        let average = mean(&|r| r.onset_m_s);
+        let scatter = (mean(&|r| (r.onset_m_s - average).powi(2)) * count / (count - 1.0)).sqrt();
+        let variance = mean(&|r| r.standard_error_m_s.powi(2));
+        let holds = |target: f64| {
+            Share::count(
+                good.iter()
+                    .map(|r| (r.onset_m_s - target).abs() <= r.half_width_m_s),
+            )
+        };
+        Ok(CoverageReport {
+            plan: plan.clone(),
+            true_onset_m_s: self.true_onset_m_s,
+            bias_m_s: self.bias_m_s,
+            mean_error_m_s: average - self.true_onset_m_s,
+            standard_error_of_mean_m_s: scatter / count.sqrt(),
+            scatter_m_s: scatter,
+            stated_standard_error_m_s: variance.sqrt(),
+            mean_half_width_m_s: mean(&|r| r.half_width_m_s),
+            mean_degrees_of_freedom: mean(&|r| r.degrees_of_freedom),
+            observed_degrees_of_freedom: 2.0 * variance * variance
+                / (mean(&|r| r.standard_error_m_s.powi(4)) - variance * variance),
+            holds_truth: holds(self.true_onset_m_s),
+            holds_fit_without_noise: holds(self.true_onset_m_s + self.bias_m_s),
+            derivatives_hold_truth: Share::count(
+                good.iter()
+                    .flat_map(|r| r.derivatives_inside.iter().copied()),
+            ),
+            without_onset: runs.len() - good.len(),
+        })
+    }
+}

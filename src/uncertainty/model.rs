@@ -1,0 +1,162 @@
+//! All that is known of the uncertainty of one trained model, as it is saved beside it.
+
+use super::derivatives::{DerivativeInterval, derivative_intervals, spread_over};
+use super::onset::{
+    OnsetError, ResampledOnset, Resampling, ResamplingPlan, onset_error, resample_onset,
+};
+use crate::aerodynamics::AerodynamicModel;
+use crate::error::{Error, Result};
+use crate::flutter::{Onset, OnsetInterval, OnsetMethod, OnsetSearch};
+use crate::identification::CoefficientUncertainty;
+use crate::section::Structure;
+use crate::units::{ReducedFrequency, ReducedFrequencyRange};
+use serde::{Deserialize, Serialize};
+
+/// Replicates of each resampling.
+const REPLICATES: usize = 400;
+/// Seed of the resamplings.
+const SEED: u64 = 1;
+/// Reduced frequencies at which derivatives are stated.
+const DERIVATIVE_POINTS: usize = 9;
+/// A model whose transfer matrix differs by more than this, relatively, is another one.
+const SAME_MODEL: f64 = 1e-6;
+
+/// Uncertainty of a trained model.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ModelUncertainty {
+    /// Coefficients and their covariance.
+    pub coefficients: CoefficientUncertainty,
+    /// Onset of the section it was trained for, if that flutters.
+    pub onset: Option<OnsetError>,
+    /// The same onset by the block bootstrap.
+    pub block_bootstrap: Option<ResampledOnset>,
+    /// The same onset by coefficients drawn from their covariance.
+    pub drawn_coefficients: Option<ResampledOnset>,
+    /// Derivatives over the tested range.
+    pub derivatives: Vec<DerivativeInterval>,
+}
+
+impl ModelUncertainty {
+    /// Carries the covariance of the coefficients to derivatives and onset.
+    ///
+    /// # Errors
+    /// Those of the onset's sensitivity and of the resampled fits.
+    pub fn new(
+        coefficients: CoefficientUncertainty,
+        structure: &Structure,
+        onset: Option<&Onset>,
+        search: OnsetSearch,
+        tested: ReducedFrequencyRange,
+    ) -> Result<Self> {
+        let mut uncertainty = Self {
+            derivatives: derivative_intervals(
+                &coefficients,
+                &spread_over(tested, DERIVATIVE_POINTS),
+            )?,
+            coefficients,
+            onset: None,
+            block_bootstrap: None,
+            drawn_coefficients: None,
+        };
+        let Some(onset) = onset else {
+            return Ok(uncertainty);
+        };
+        let estimate = &uncertainty.coefficients;
+        let resampled = |resampling| {
+            let plan = ResamplingPlan {
+                resampling,
+                replicates: REPLICATES,
+                seed: SEED,
+                search,
+                tested: Some(tested),
+            };
+            resample_onset(estimate, structure, onset, &plan)
+        };
+        let error = onset_error(estimate, structure, onset, None)?;
+        let blocks = resampled(Resampling::Blocks)?;
+        let drawn = resampled(Resampling::Normal)?;
+        uncertainty.onset = Some(error);
+        uncertainty.block_bootstrap = blocks;
+        uncertainty.drawn_coefficients = drawn;
+        Ok(uncertainty)
+    }
+
+    /// Interval of an onset of `model`, on any structure.
+    ///
+    /// # Errors
+    /// Those of the onset's sensitivity.
+    pub fn interval(
+        &self,
+        model: &dyn AerodynamicModel,
+        structure: &Structure,
+        onset: &Onset,
+    ) -> Result<OnsetInterval> {
+        if onset.method == OnsetMethod::Determinant {
+            return Ok(OnsetInterval::none("found without the model's realisation"));
+        }
+        if !self.belongs_to(model, onset.reduced_frequency)? {
+            return Ok(OnsetInterval::none(
+                "the covariance on file belongs to another training",
+            ));
+        }
+        let known = self.onset.as_ref().map(|o| o.degrees_of_freedom);
+        Ok(onset_error(&self.coefficients, structure, onset, known)?.interval())
+    }
+
+    fn belongs_to(&self, model: &dyn AerodynamicModel, k: ReducedFrequency) -> Result<bool> {
+        let own = self.coefficients.model_at(&self.coefficients.values())?;
+        if own.dofs() != model.dofs() {
+            return Ok(false);
+        }
+        let (a, b) = (own.transfer(k)?, model.transfer(k)?);
+        Ok((a - &b).norm() <= SAME_MODEL * b.norm())
+    }
+
+    /// Reads what was saved.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with line and column for text that is not such a file.
+    pub fn from_json(text: &str) -> Result<Self> {
+        serde_json::from_str(text).map_err(|e| {
+            Error::input(
+                format!("line {}, column {}", e.line(), e.column()),
+                "the uncertainty of a model as written by `aerodeck train`",
+                e.to_string(),
+            )
+        })
+    }
+
+    /// Indented JSON.
+    ///
+    /// # Errors
+    /// [`Error::Numerical`] when a number cannot be written.
+    pub fn to_json(&self) -> Result<String> {
+        let text =
+            serde_json::to_string_pretty(self).map_err(|e| Error::Numerical(e.to_string()))?;
+        Ok(text + "\n")
+    }
+
+    /// The onset's interval with its two checks, in words.
+    pub fn explain(&self) -> Option<String> {
+        let onset = self.onset.as_ref()?;
+        let half = onset.half_width_m_s();
+        let other = |r: &Option<ResampledOnset>| {
+            r.as_ref().map_or_else(
+                || "–".to_owned(),
+                |r| format!("{:.3}", r.standard_deviation_m_s),
+            )
+        };
+        Some(format!(
+            "onset {:.3} m/s, 95 % interval {:.3} to {:.3} ({:.1} degrees of freedom); standard error by sensitivities \
+             {:.3}, by block bootstrap {}, by drawn coefficients {} m/s",
+            onset.speed_m_s,
+            onset.speed_m_s - half,
+            onset.speed_m_s + half,
+            onset.degrees_of_freedom,
+            onset.standard_error_m_s,
+            other(&self.block_bootstrap),
+            other(&self.drawn_coefficients),
+        ))
+    }
+}
