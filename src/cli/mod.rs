@@ -2,8 +2,8 @@
 
 mod account;
 mod answer;
-mod campaign;
 mod buffeting;
+mod campaign;
 mod common;
 mod coverage;
 mod demo;
@@ -12,8 +12,8 @@ mod fmu;
 mod monte_carlo;
 mod output;
 mod progress;
-mod routes;
 mod quasi_steady;
+mod routes;
 mod select;
 mod simulate;
 mod stages;

@@ -77,7 +77,10 @@ pub fn process(
         .map(|run| Prepared::new(run, &campaign.rig, options))
         .collect::<Result<Vec<_>>>()?;
     let dofs = options.dofs.clone().unwrap_or_else(|| dofs_of(&prepared));
-    let estimates: Vec<_> = prepared.iter().filter_map(|p| p.still_air.clone()).collect();
+    let estimates: Vec<_> = prepared
+        .iter()
+        .filter_map(|p| p.still_air.clone())
+        .collect();
     let sampling_hz = campaign.runs[0].in_wind.sampling_hz;
     let estimated = lag::common_lag(&estimates, sampling_hz);
     let lag_s = options

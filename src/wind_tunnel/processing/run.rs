@@ -132,9 +132,10 @@ impl<'a> Prepared<'a> {
             range: [0.0; 3],
         };
         for (d, part) in cleaned.parts.iter().enumerate() {
-            let ends = part.drift.iter().fold((f64::MAX, f64::MIN), |(a, b), x| {
-                (a.min(*x), b.max(*x))
-            });
+            let ends = part
+                .drift
+                .iter()
+                .fold((f64::MAX, f64::MIN), |(a, b), x| (a.min(*x), b.max(*x)));
             drift.range[d] = ends.1 - ends.0;
             let force = &mut signals.force[d];
             force.iter_mut().zip(&part.drift).for_each(|(f, x)| *f -= x);
@@ -219,7 +220,10 @@ impl<'a> Prepared<'a> {
                             "a recording as long as the motion at {:.3} Hz (samples {} to {})",
                             s.segment.frequency_hz, p.start, p.end
                         ),
-                        format!("one that covers samples {} to {}", covered.start, covered.end),
+                        format!(
+                            "one that covers samples {} to {}",
+                            covered.start, covered.end
+                        ),
                     ));
                 }
                 let mut moved = *s;
@@ -263,8 +267,9 @@ impl<'a> Prepared<'a> {
                     ));
                 }
             }
-            _ if options.lag_s.is_none() => warnings
-                .push("the inertia in still air is too small to tell the lag of the channels".into()),
+            _ if options.lag_s.is_none() => warnings.push(
+                "the inertia in still air is too small to tell the lag of the channels".into(),
+            ),
             _ => {}
         }
         let ratio = report.alignment.amplitude_ratio;
