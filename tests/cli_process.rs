@@ -17,9 +17,25 @@ fn json(path: impl AsRef<std::path::Path>) -> Value {
 fn a_campaign_becomes_records_derivatives_and_an_onset() {
     let folder = TempDir::new().unwrap();
     let at = folder.path();
-    succeeds(at, &["campaign", "virtual", "LN21-5200", "--seed", "4", "--out", "raw"]);
+    succeeds(
+        at,
+        &[
+            "campaign",
+            "virtual",
+            "LN21-5200",
+            "--seed",
+            "4",
+            "--out",
+            "raw",
+        ],
+    );
     let text = succeeds(at, &["process", "raw/campaign.toml", "--out", "results"]);
-    for word in ["lag of the force channels", "test points", "replaced: spike", "8 derivatives"] {
+    for word in [
+        "lag of the force channels",
+        "test points",
+        "replaced: spike",
+        "8 derivatives",
+    ] {
         assert!(text.contains(word), "`{word}` is not in:\n{text}");
     }
     let out = at.join("results");
@@ -42,9 +58,14 @@ fn a_campaign_becomes_records_derivatives_and_an_onset() {
     let derivatives = json(out.join("derivatives.json"));
     let estimates = derivatives["estimates"].as_array().unwrap();
     assert_eq!(estimates.len(), 8 * 16);
-    assert!(estimates.iter().all(|e| e["standard_error"].as_f64().unwrap() > 0.0));
+    assert!(
+        estimates
+            .iter()
+            .all(|e| e["standard_error"].as_f64().unwrap() > 0.0)
+    );
     // the workbook is one that the program reads, and the study gives an onset
-    let table = aerodeck::aerodynamics::derivatives::read_table(out.join("derivatives.csv")).unwrap();
+    let table =
+        aerodeck::aerodynamics::derivatives::read_table(out.join("derivatives.csv")).unwrap();
     let options = aerodeck::aerodynamics::derivatives::WorkbookOptions {
         width_m: Some(table.width_m),
         ..Default::default()
@@ -67,7 +88,17 @@ fn a_campaign_becomes_records_derivatives_and_an_onset() {
 fn wrong_options_and_campaigns_are_refused() {
     let folder = TempDir::new().unwrap();
     let at = folder.path();
-    succeeds(at, &["campaign", "virtual", "LN21-5200", "--clean", "--out", "raw"]);
+    succeeds(
+        at,
+        &[
+            "campaign",
+            "virtual",
+            "LN21-5200",
+            "--clean",
+            "--out",
+            "raw",
+        ],
+    );
     let process = |more: &[&str], fragments: &[&str]| {
         let mut args = vec!["process", "raw/campaign.toml", "--out", "results"];
         args.extend(more);

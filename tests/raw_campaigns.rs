@@ -1,7 +1,7 @@
 //! From raw virtual campaigns with every disturbance to derivatives and onset.
 
-use aerodeck::aerodynamics::{AerodynamicModel, FlatPlate};
 use aerodeck::aerodynamics::derivatives::{Part, embedded};
+use aerodeck::aerodynamics::{AerodynamicModel, FlatPlate};
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::flutter::{OnsetSearch, find_onset};
 use aerodeck::identification::derivatives::{
@@ -63,7 +63,8 @@ fn errors(made: &VirtualCampaign, found: &IdentifiedDerivatives) -> Errors {
             continue;
         }
         let part = |part| {
-            let derivative = aerodeck::aerodynamics::derivatives::Derivative::of(p.force, p.motion, part);
+            let derivative =
+                aerodeck::aerodynamics::derivatives::Derivative::of(p.force, p.motion, part);
             let e = found
                 .of(derivative)
                 .find(|e| e.run == p.run && (e.frequency_hz / p.frequency_hz - 1.0).abs() < 0.01)
@@ -89,7 +90,8 @@ fn measure(name: &str, seed: u64) -> (f64, f64) {
     let made = if name == "flat plate" {
         plan.from_model(&FlatPlate::default(), name, 0.5).unwrap()
     } else {
-        plan.from_table(&embedded::deck(name).unwrap(), &Dof::TWO).unwrap()
+        plan.from_table(&embedded::deck(name).unwrap(), &Dof::TWO)
+            .unwrap()
     };
     let processed = process(&made.raw, &ProcessingOptions::default(), &|_| {}).unwrap();
     let found =
@@ -123,7 +125,14 @@ fn derivatives_within_two_per_cent_and_onset_within_half_a_per_cent() {
 #[test]
 #[ignore = "five minutes: every deck, five seeds"]
 fn figures_of_many_campaigns() {
-    for deck in ["flat plate", "LN20-5500", "LN21-5200", "LN21-5500", "LN21-5800", "LN21-6100"] {
+    for deck in [
+        "flat plate",
+        "LN20-5500",
+        "LN21-5200",
+        "LN21-5500",
+        "LN21-5800",
+        "LN21-6100",
+    ] {
         for seed in 1..=5 {
             measure(deck, seed);
         }

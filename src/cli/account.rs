@@ -1,7 +1,7 @@
 //! Results in words and tables, for people.
 
 use super::study::Summary;
-use crate::flutter::{Onset, OnsetInterval, OnsetMethod};
+use crate::flutter::{Onset, OnsetInterval};
 use crate::identification::FitReport;
 use crate::study::{Deck, Deviation, Divergence, KnownUncertainty, OnsetSummary, Study};
 use std::fmt::Write as _;
@@ -157,7 +157,7 @@ pub fn onsets(onsets: &[Onset], stable: &[OnsetSummary]) -> String {
                 text,
                 "no interval: {} ({}): {reason}",
                 o.model,
-                method(o.method)
+                o.method.name()
             );
         }
         for warning in &o.warnings {

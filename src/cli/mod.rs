@@ -2,8 +2,8 @@
 
 mod account;
 mod answer;
-mod campaign;
 mod buffeting;
+mod campaign;
 mod common;
 mod coverage;
 mod demo;
@@ -13,8 +13,8 @@ mod monte_carlo;
 mod output;
 mod process;
 mod progress;
-mod routes;
 mod quasi_steady;
+mod routes;
 mod select;
 mod simulate;
 mod stages;

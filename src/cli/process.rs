@@ -5,10 +5,10 @@ use super::output::{OutputDir, list};
 use super::progress::Progress;
 use super::stages::RECORDS;
 use crate::aerodynamics::FlatPlate;
+use crate::aerodynamics::derivatives::{Derivative, TableHeader, workbook_bytes, write_csv};
 use crate::aerodynamics::quasi_steady::{
     Arms, LinearQuasiSteady, QuasiSteady, embedded, read_coefficients,
 };
-use crate::aerodynamics::derivatives::{Derivative, TableHeader, workbook_bytes, write_csv};
 use crate::error::{Error, Result};
 use crate::identification::derivatives::{
     DerivativeOptions, IdentifiedDerivatives, identify_derivatives,
@@ -82,9 +82,19 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     drop(stage);
     let stage = progress.steps("figures");
     let count = processed.stages.len() as u64;
-    for (i, (run, stages)) in processed.report.runs.iter().zip(&processed.stages).enumerate() {
+    for (i, (run, stages)) in processed
+        .report
+        .runs
+        .iter()
+        .zip(&processed.stages)
+        .enumerate()
+    {
         let figure = processing_figure(run, stages, run.dof)?;
-        write_figure(&figure, &format!("processing/{}", file_name(&run.run)), &mut out)?;
+        write_figure(
+            &figure,
+            &format!("processing/{}", file_name(&run.run)),
+            &mut out,
+        )?;
         stage.at(i as u64 + 1, count);
     }
     drop(stage);
@@ -102,7 +112,11 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     };
     if let Some(found) = &derivatives {
         out.write("derivatives.json", json(found)?)?;
-        let figure = derivatives_figure(&plot(&raw, found, args.quasi_steady(&found.dofs)?.as_ref())?)?;
+        let figure = derivatives_figure(&plot(
+            &raw,
+            found,
+            args.quasi_steady(&found.dofs)?.as_ref(),
+        )?)?;
         write_figure(&figure, "derivatives", &mut out)?;
         match write_table(&raw, found, &mut out) {
             Ok(()) => {
@@ -168,7 +182,10 @@ impl Args {
 /// A name that can be part of a path everywhere.
 fn file_name(name: &str) -> String {
     let plain = |c: char| c.is_alphanumeric() || matches!(c, '-' | '_' | '.');
-    let text: String = name.chars().map(|c| if plain(c) { c } else { '_' }).collect();
+    let text: String = name
+        .chars()
+        .map(|c| if plain(c) { c } else { '_' })
+        .collect();
     let trimmed = text.trim_matches('.');
     if trimmed.is_empty() { "run" } else { trimmed }.to_owned()
 }
@@ -193,7 +210,11 @@ fn write_records(processed: &Processed, out: &mut OutputDir) -> Result<Vec<PathB
     Ok(names)
 }
 
-fn write_table(raw: &RawCampaign, found: &IdentifiedDerivatives, out: &mut OutputDir) -> Result<()> {
+fn write_table(
+    raw: &RawCampaign,
+    found: &IdentifiedDerivatives,
+    out: &mut OutputDir,
+) -> Result<()> {
     let header = TableHeader {
         source: raw.source.clone(),
         licence: raw.licence.clone(),
@@ -229,7 +250,10 @@ fn plot(
     quasi_steady: Option<&LinearQuasiSteady>,
 ) -> Result<DerivativesPlot> {
     let largest = found.estimates.iter().map(|e| e.v_hat).fold(0.0, f64::max);
-    let mut theories = vec![("flat plate", derivative_lines(&FlatPlate::default(), largest)?)];
+    let mut theories = vec![(
+        "flat plate",
+        derivative_lines(&FlatPlate::default(), largest)?,
+    )];
     if let Some(model) = quasi_steady {
         theories.push(("quasi-steady", derivative_lines(model, largest)?));
     }
@@ -249,8 +273,13 @@ fn plot(
         if measured.is_empty() {
             continue;
         }
-        let line = |(name, lines): &(&str, std::collections::BTreeMap<Derivative, Vec<(f64, f64)>>)| {
-            lines.get(&d).map(|points| PlottedSeries::new(*name, points.clone()))
+        let line = |(name, lines): &(
+            &str,
+            std::collections::BTreeMap<Derivative, Vec<(f64, f64)>>,
+        )| {
+            lines
+                .get(&d)
+                .map(|points| PlottedSeries::new(*name, points.clone()))
         };
         derivatives.push(DerivativePlot {
             name: d.name().to_owned(),
@@ -310,7 +339,11 @@ fn account(
 fn line(run: &RunReport) -> String {
     let at = crate::wind_tunnel::processing::index(run.dof);
     let replaced: usize = run.replaced.iter().map(|r| r.samples).sum();
-    let unit = if run.dof == Dof::Torsion { "kg·m²" } else { "kg" };
+    let unit = if run.dof == Dof::Torsion {
+        "kg·m²"
+    } else {
+        "kg"
+    };
     let inertia = run.still_air.as_ref().map_or_else(
         || "no inertia seen".to_owned(),
         |s| format!("inertia {:.4} {unit}", s.inertia),

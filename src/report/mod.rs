@@ -13,10 +13,10 @@ mod heat_map;
 mod labels;
 mod legend;
 mod panel;
-#[cfg(feature = "campaigns")]
-mod reliability_figure;
 #[cfg(feature = "identification")]
 mod processing_figures;
+#[cfg(feature = "campaigns")]
+mod reliability_figure;
 mod response_figures;
 mod root_locus;
 mod series;
@@ -27,11 +27,11 @@ mod wind_figures;
 pub use derivatives_figure::{DerivativePlot, DerivativesPlot, derivatives_figure};
 pub use figure::{Figure, PNG_SCALE};
 pub use flutter_figures::{VfVgOptions, vf_vg_figure};
-#[cfg(feature = "campaigns")]
-pub use reliability_figure::onset_distribution_figure;
+pub use heat_map::{HeatMap, heat_map_figure};
 #[cfg(feature = "identification")]
 pub use processing_figures::processing_figure;
-pub use heat_map::{HeatMap, heat_map_figure};
+#[cfg(feature = "campaigns")]
+pub use reliability_figure::onset_distribution_figure;
 pub use response_figures::{PoleSearchPlot, TimePanel, pole_search_figure, time_history_figure};
 pub use root_locus::root_locus_figure;
 pub use series::PlottedSeries;

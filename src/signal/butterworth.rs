@@ -137,7 +137,10 @@ mod tests {
                 let ratio = (PI * f / 200.0).tan() / (PI * 7.0 / 200.0_f64).tan();
                 let analogue = 1.0 / (1.0 + ratio.powi(2 * order as i32)).sqrt();
                 // rounding of eight sections
-                assert!((filter.gain(f, 200.0) - analogue).abs() < 1e-11, "{order} {f}");
+                assert!(
+                    (filter.gain(f, 200.0) - analogue).abs() < 1e-11,
+                    "{order} {f}"
+                );
             }
         }
     }

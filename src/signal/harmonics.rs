@@ -249,7 +249,8 @@ mod tests {
     #[test]
     fn amplitudes_and_rates_come_back() {
         let omega = TAU * 0.8;
-        let x = |t: f64| 3.0 - 0.2 * t + 2.0 * (omega * t + 0.3).cos() + 0.1 * (2.0 * omega * t).sin();
+        let x =
+            |t: f64| 3.0 - 0.2 * t + 2.0 * (omega * t + 0.3).cos() + 0.1 * (2.0 * omega * t).sin();
         let signal: Vec<f64> = (0..3000).map(|k| x(f64::from(k) / 200.0)).collect();
         let fit = fit_harmonics(&signal, 500..2750, 200.0, 0.8, 2, &|k| k != 700).unwrap();
         assert!((fit.fundamental() - Complex::from_polar(2.0, 0.3)).norm() < 1e-11);

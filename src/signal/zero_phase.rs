@@ -29,10 +29,7 @@ impl ButterworthLowPass {
         let (first, last) = (signal[0], signal[n - 1]);
         let before = (1..=pad).rev().map(|k| 2.0 * first - signal[k]);
         let after = (1..=pad).map(|k| 2.0 * last - signal[n - 1 - k]);
-        let mut extended: Vec<f64> = before
-            .chain(signal.iter().copied())
-            .chain(after)
-            .collect();
+        let mut extended: Vec<f64> = before.chain(signal.iter().copied()).chain(after).collect();
         for _ in 0..2 {
             let start = extended[0];
             for section in self.sections() {
@@ -67,13 +64,19 @@ mod tests {
     /// Numbers of SciPy, written by `tests/data/make_butterworth.py`.
     #[test]
     fn the_numbers_are_those_of_scipy() {
-        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/butterworth_golden.json");
+        let path = concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/tests/data/butterworth_golden.json"
+        );
         let text = std::fs::read_to_string(path).unwrap();
         let cases: Vec<Case> = serde_json::from_str(&text).unwrap();
         assert!(cases.len() >= 20);
         for case in cases {
-            let filter = ButterworthLowPass::new(case.order, case.cutoff_hz, case.sampling_hz).unwrap();
-            let input: Vec<f64> = (0..case.samples).map(|k| value(k, case.sampling_hz)).collect();
+            let filter =
+                ButterworthLowPass::new(case.order, case.cutoff_hz, case.sampling_hz).unwrap();
+            let input: Vec<f64> = (0..case.samples)
+                .map(|k| value(k, case.sampling_hz))
+                .collect();
             let ours = filter.zero_phase(&input).unwrap();
             let size = case.output.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
             let worst = ours

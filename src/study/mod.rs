@@ -8,9 +8,9 @@ mod defaults;
 mod intervals;
 mod models;
 mod onsets;
-mod routes;
 mod processed;
 mod reference_lines;
+mod routes;
 mod stepped;
 mod wind;
 
@@ -19,9 +19,9 @@ pub use defaults::{demo_study_text, thesis_study_text};
 pub use intervals::{KnownUncertainty, interval_of, state_intervals};
 pub use models::{TrainedWithReport, train_one};
 pub use onsets::{Deviation, Divergence, FlutterStudy, OnsetSummary, flutter_study};
-pub use routes::{Route, RouteTable, low_frequency_limit, route_table};
 pub use processed::processed_study_text;
 pub use reference_lines::derivative_lines;
+pub use routes::{Route, RouteTable, low_frequency_limit, route_table};
 pub use stepped::{SteppedOnset, stepped_onset};
 pub use wind::{
     BuffetingStudy, QuasiSteadyStudy, SimulatedMotion, SpectrumCurve, TimeDomain, WindStudy,

@@ -6,7 +6,8 @@ use crate::section::{Dof, SectionModel, Translation};
 use crate::wind_tunnel::RawCampaign;
 use std::path::{Path, PathBuf};
 
-const HEAD: &str = "# Records and derivatives of a processed campaign; run `aerodeck study study.toml`.\n";
+const HEAD: &str =
+    "# Records and derivatives of a processed campaign; run `aerodeck study study.toml`.\n";
 const PLACEHOLDER: &str = "# The section is that of Table 4.1 of the thesis, with the width of the model and the air of the first run:\n# put the one that is to be built in its place.\n";
 
 /// Text of a study of `records` and `table` (paths from the folder of the study): section, models and search of `base`, or the

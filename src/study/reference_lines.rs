@@ -47,7 +47,10 @@ mod tests {
         let (v_hat, h1) = lines[&Derivative::H1][POINTS - 1];
         assert_eq!(v_hat, 2000.0);
         // F(k = 1/4000) = 1 − πk/2 + …
-        assert!((h1 / (-std::f64::consts::TAU * v_hat) - 1.0).abs() < 1e-3, "{h1}");
+        assert!(
+            (h1 / (-std::f64::consts::TAU * v_hat) - 1.0).abs() < 1e-3,
+            "{h1}"
+        );
         let (v_hat, a3) = lines[&Derivative::A3][POINTS - 1];
         assert!((a3 / (0.5 * std::f64::consts::PI * v_hat * v_hat) - 1.0).abs() < 1e-3);
     }

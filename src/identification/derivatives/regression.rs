@@ -63,7 +63,11 @@ pub(super) fn solve(
     if factor.undetermined(columns).is_some() || factor.condition(columns) > 1e6 {
         let runs: Vec<&str> = group.iter().map(|s| s.run.as_str()).collect();
         return Err(Error::input(
-            format!("runs {} at {:.3} Hz", runs.join(", "), group[0].frequency_hz),
+            format!(
+                "runs {} at {:.3} Hz",
+                runs.join(", "),
+                group[0].frequency_hz
+            ),
             "motions that can be told apart",
             "motions in step with each other",
         ));

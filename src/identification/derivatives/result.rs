@@ -1,8 +1,6 @@
 //! Identified derivatives with their standard errors, and the table made of them.
 
-use crate::aerodynamics::derivatives::{
-    Derivative, DerivativePoint, DerivativeTable, TableHeader,
-};
+use crate::aerodynamics::derivatives::{Derivative, DerivativePoint, DerivativeTable, TableHeader};
 use crate::error::{Error, Result};
 use crate::section::Dof;
 use serde::{Deserialize, Serialize};
@@ -100,11 +98,14 @@ impl IdentifiedDerivatives {
     pub fn table(&self, name: &str, header: TableHeader) -> Result<DerivativeTable> {
         let mut points = BTreeMap::<Derivative, Vec<DerivativePoint>>::new();
         for e in &self.estimates {
-            points.entry(e.derivative).or_default().push(DerivativePoint {
-                mean_speed_m_s: Some(e.mean_speed_m_s),
-                v_hat: e.v_hat,
-                value: e.value,
-            });
+            points
+                .entry(e.derivative)
+                .or_default()
+                .push(DerivativePoint {
+                    mean_speed_m_s: Some(e.mean_speed_m_s),
+                    v_hat: e.v_hat,
+                    value: e.value,
+                });
         }
         DerivativeTable::new(name, self.width_m, header, points)
     }

@@ -119,7 +119,11 @@ fn stretch(
         .find_map(|(c, x)| Some((c, x.iter().position(|v| !v.is_finite())?)))
     {
         let place = format!("record {}, channel {}, sample {k}", header.name, c + 1);
-        return Err(Error::input(place, "a finite number", channels[c][k].to_string()));
+        return Err(Error::input(
+            place,
+            "a finite number",
+            channels[c][k].to_string(),
+        ));
     }
     let s = header.segments[segment];
     let at = |t: f64| ((t * rate).round().max(0.0) as usize).min(count);
@@ -162,7 +166,10 @@ fn stretch(
     };
     let force_of = |i: usize| {
         let factor = 1.0 / (pressure * header.dofs[i].force_scale(header.width_m));
-        channels[n + i][p.range()].iter().map(|f| f * factor).collect()
+        channels[n + i][p.range()]
+            .iter()
+            .map(|f| f * factor)
+            .collect()
     };
     Ok(Some(Stretch {
         run: header.name.clone(),

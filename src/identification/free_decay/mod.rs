@@ -166,13 +166,14 @@ fn derivatives(
     };
     let mut found = Vec::new();
     for (j, motion) in dofs.iter().enumerate() {
-        let leading = modes.iter().max_by(|a, b| part(a, j).total_cmp(&part(b, j)));
+        let leading = modes
+            .iter()
+            .max_by(|a, b| part(a, j).total_cmp(&part(b, j)));
         let Some(mode) = leading else { continue };
         let omega = mode.eigenvalue().im;
         let k = ReducedFrequency::from_circular(omega, width, speed);
         for (i, force) in dofs.iter().enumerate() {
-            let scale = 1.0
-                / (pressure * force.force_scale(width) * motion.motion_scale(width));
+            let scale = 1.0 / (pressure * force.force_scale(width) * motion.motion_scale(width));
             for (which, g) in [
                 (Part::Real, stiffness[(i, j)]),
                 (Part::Imaginary, omega * damping[(i, j)]),

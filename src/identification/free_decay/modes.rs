@@ -92,13 +92,19 @@ pub fn identify_modes(
             return Err(Error::input(place, "a finite number", x[k].to_string()));
         }
     }
-    let every = (sampling_hz / (SAMPLES_A_PERIOD * options.highest_hz)).floor().max(1.0) as usize;
+    let every = (sampling_hz / (SAMPLES_A_PERIOD * options.highest_hz))
+        .floor()
+        .max(1.0) as usize;
     let step_s = every as f64 / sampling_hz;
     let first = (options.discard_s * sampling_hz).ceil().max(0.0) as usize;
     // channels of one size, so that the Hankel matrix does not see one alone
     let scales: Vec<f64> = channels
         .iter()
-        .map(|x| x.iter().fold(0.0_f64, |m, v| m.max(v.abs())).max(f64::MIN_POSITIVE))
+        .map(|x| {
+            x.iter()
+                .fold(0.0_f64, |m, v| m.max(v.abs()))
+                .max(f64::MIN_POSITIVE)
+        })
         .collect();
     let y: Vec<Vec<f64>> = channels
         .iter()
@@ -135,9 +141,8 @@ fn poles(y: &[Vec<f64>], count: usize, order: usize) -> Result<Vec<Complex<f64>>
     let n = y.len();
     let rows = (count / 3).max(order);
     let columns = count - rows;
-    let hankel = |late: usize| {
-        DMatrix::from_fn(n * rows, columns, |i, j| y[i % n][i / n + j + late])
-    };
+    let hankel =
+        |late: usize| DMatrix::from_fn(n * rows, columns, |i, j| y[i % n][i / n + j + late]);
     let svd = hankel(0)
         .try_svd(true, true, f64::EPSILON, 10_000)
         .ok_or_else(|| Error::Numerical("free decay: no singular values".into()))?;

@@ -32,7 +32,9 @@ fn decay(noise: f64) -> Record {
             // twelve uniform numbers make a normal one
             let normal: f64 = (0..12)
                 .map(|_| {
-                    random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+                    random = random
+                        .wrapping_mul(6_364_136_223_846_793_005)
+                        .wrapping_add(1);
                     (random >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
                 })
                 .sum();
@@ -75,7 +77,10 @@ fn modes_and_modal_forces_of_a_clean_decay_are_exact() {
     let truth = section.at(SPEED).unwrap().eigenvalues().unwrap();
     for (m, mode) in found.modes.iter().enumerate() {
         let lambda = mode.eigenvalue();
-        let off = truth.iter().map(|z| (z - lambda).norm()).fold(f64::MAX, f64::min);
+        let off = truth
+            .iter()
+            .map(|z| (z - lambda).norm())
+            .fold(f64::MAX, f64::min);
         // singular values span 1e-8 of the memory terms: half the digits are left
         assert!(off < 1e-6 * lambda.norm(), "{lambda}: {off}");
         let force = found.modal_force(&structure, m);
@@ -86,7 +91,12 @@ fn modes_and_modal_forces_of_a_clean_decay_are_exact() {
         let size = expected.norm();
         for i in 0..2 {
             // the force is a small difference of inertia and stiffness
-            assert!((force[i] - expected[i]).norm() < 1e-4 * size, "{} {}", force[i], expected[i]);
+            assert!(
+                (force[i] - expected[i]).norm() < 1e-4 * size,
+                "{} {}",
+                force[i],
+                expected[i]
+            );
         }
     }
 }
@@ -109,7 +119,8 @@ fn derivatives_of_a_decay_are_those_at_its_frequencies() {
             let truth = match d.derivative.part() {
                 Part::Real => z.re,
                 Part::Imaginary => z.im,
-            } * d.v_hat * d.v_hat;
+            } * d.v_hat
+                * d.v_hat;
             let size = z.norm() * d.v_hat * d.v_hat;
             assert!((d.value - truth).abs() < tolerance * size, "{d:?}: {truth}");
         }

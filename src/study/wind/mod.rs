@@ -7,7 +7,6 @@ pub use buffeting::{BuffetingStudy, SpectrumCurve, TimeDomain, buffeting_study};
 pub use quasi_steady::{QuasiSteadyStudy, SimulatedMotion, quasi_steady_study, simulated_motion};
 
 use super::FlutterBlock;
-use crate::toml_lines;
 use crate::aerodynamics::derivatives::{
     DerivativeTable, Extrapolation, InterpolatedTable, embedded as decks, read_table,
 };
@@ -17,6 +16,7 @@ use crate::aerodynamics::quasi_steady::{
 use crate::buffeting::{TimePlan, Turbulence};
 use crate::error::{Error, Result, positive};
 use crate::section::SectionModel;
+use crate::toml_lines;
 use crate::trained_model::TrainedModel;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -140,7 +140,9 @@ impl WindStudy {
         let mut study: Self =
             toml::from_str(text).map_err(|e| toml_lines::syntax_error("a wind file", text, &e))?;
         study.directory = directory;
-        study.validate().map_err(|e| toml_lines::with_line(text, e))?;
+        study
+            .validate()
+            .map_err(|e| toml_lines::with_line(text, e))?;
         Ok(study)
     }
 

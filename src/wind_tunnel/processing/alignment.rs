@@ -84,7 +84,9 @@ pub fn align(
     };
     // an offset of rounding costs no sample
     let first = (-found.samples - ROUNDING).ceil().max(0.0) as usize;
-    let end = (still_air.len() as f64 - found.samples + ROUNDING).floor().max(0.0) as usize;
+    let end = (still_air.len() as f64 - found.samples + ROUNDING)
+        .floor()
+        .max(0.0) as usize;
     let covered = first.min(count)..end.min(count);
     let aligned_motion = moved(&compared, found.samples, count);
     let inside = |x: &[f64]| x[covered.clone()].to_vec();

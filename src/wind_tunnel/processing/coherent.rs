@@ -93,10 +93,10 @@ impl Regressors {
                 gram[(i, i)] += 1.0;
             }
         }
-        let solution: DVector<f64> = gram
-            .cholesky()
-            .map(|c| c.solve(&moments))
-            .ok_or_else(|| Error::Numerical("drift: too few samples to tell it from the motion".into()))?;
+        let solution: DVector<f64> =
+            gram.cholesky().map(|c| c.solve(&moments)).ok_or_else(|| {
+                Error::Numerical("drift: too few samples to tell it from the motion".into())
+            })?;
         let mut parts = Parts {
             coherent: vec![0.0; self.count],
             drift: vec![0.0; self.count],

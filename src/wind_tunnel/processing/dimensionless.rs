@@ -74,7 +74,9 @@ impl DimensionlessRecord {
         let one = |x: &Vec<f64>| -> Result<Vec<f64>> {
             let smooth = filter.zero_phase(x)?;
             let count = ((x.len() as f64 - 1.0) / ratio) as usize + 1;
-            Ok((0..count).map(|m| value_at(&smooth, m as f64 * ratio)).collect())
+            Ok((0..count)
+                .map(|m| value_at(&smooth, m as f64 * ratio))
+                .collect())
         };
         let all = |channels: &[Vec<f64>]| channels.iter().map(one).collect::<Result<Vec<_>>>();
         Ok(Self {
@@ -96,7 +98,10 @@ impl DimensionlessRecord {
 /// # Errors
 /// [`Error::Input`] for no records, or records of different degrees of freedom.
 pub fn stack(records: &[Record]) -> Result<DimensionlessRecord> {
-    let all = records.iter().map(dimensionless).collect::<Result<Vec<_>>>()?;
+    let all = records
+        .iter()
+        .map(dimensionless)
+        .collect::<Result<Vec<_>>>()?;
     let longest = all.iter().map(|r| r.delta_s).fold(0.0, f64::max);
     let mut parts = all.iter();
     let Some(first) = parts.next() else {
@@ -112,7 +117,9 @@ pub fn stack(records: &[Record]) -> Result<DimensionlessRecord> {
             ));
         }
         let part = part.resampled(longest)?;
-        stacked.starts.push(stacked.motion.first().map_or(0, Vec::len));
+        stacked
+            .starts
+            .push(stacked.motion.first().map_or(0, Vec::len));
         for (to, from) in stacked.motion.iter_mut().zip(part.motion) {
             to.extend(from);
         }

@@ -90,7 +90,11 @@ pub fn still_air_inertia(
         {
             return Err(Error::input(
                 format!("run {run}, still air"),
-                format!("inertia of the {} motion in the {} force", dof.name(), dof.name()),
+                format!(
+                    "inertia of the {} motion in the {} force",
+                    dof.name(),
+                    dof.name()
+                ),
                 format!(
                     "{:.4} kg there and {:.4} kg in the {} force: force or motion channels are exchanged",
                     result.inertia,

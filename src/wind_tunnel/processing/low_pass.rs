@@ -44,15 +44,14 @@ pub fn design(
     if options.order == 0 || (options.cutoff_hz.is_none() && segments.is_empty()) {
         return Ok(None);
     }
-    let filter = ButterworthLowPass::new(options.order, cutoff_hz, sampling_hz).map_err(|e| {
-        match e {
+    let filter =
+        ButterworthLowPass::new(options.order, cutoff_hz, sampling_hz).map_err(|e| match e {
             Error::Input(mut input) => {
                 input.place = format!("run {run}, {}", input.place);
                 Error::Input(input)
             }
             other => other,
-        }
-    })?;
+        })?;
     let applied = AppliedLowPass {
         order: options.order,
         cutoff_hz,

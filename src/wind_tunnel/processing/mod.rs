@@ -47,8 +47,8 @@ pub use signals::{SectionSignals, force_unit, index};
 use super::{RawCampaign, Record};
 use crate::error::{Error, Result};
 use crate::section::Dof;
-use rayon::prelude::*;
 use prepare::Prepared;
+use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Records of a campaign, what was done to get them, and the forces stage by stage.
@@ -82,7 +82,10 @@ pub fn process(
         .map(|run| Prepared::new(run, &campaign.rig, options))
         .collect::<Result<Vec<_>>>()?;
     let dofs = options.dofs.clone().unwrap_or_else(|| dofs_of(&prepared));
-    let estimates: Vec<_> = prepared.iter().filter_map(|p| p.still_air.clone()).collect();
+    let estimates: Vec<_> = prepared
+        .iter()
+        .filter_map(|p| p.still_air.clone())
+        .collect();
     let sampling_hz = campaign.runs[0].in_wind.sampling_hz;
     let estimated = lag::common_lag(&estimates, sampling_hz);
     let lag_s = options

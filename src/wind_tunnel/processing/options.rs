@@ -136,7 +136,11 @@ impl ProcessingOptions {
         if let Some(dofs) = &self.dofs {
             let twice = (1..dofs.len()).any(|i| dofs[..i].contains(&dofs[i]));
             if dofs.is_empty() || twice {
-                return wrong("dofs", "each at most once, at least one", format!("{dofs:?}"));
+                return wrong(
+                    "dofs",
+                    "each at most once, at least one",
+                    format!("{dofs:?}"),
+                );
             }
         }
         if let Some(lag) = self.lag_s
@@ -156,7 +160,11 @@ impl ProcessingOptions {
         }
         let share = self.segments.full_amplitude;
         if !(share > 0.0 && share < 1.0) {
-            return wrong("segments.full_amplitude", "between 0 and 1", share.to_string());
+            return wrong(
+                "segments.full_amplitude",
+                "between 0 and 1",
+                share.to_string(),
+            );
         }
         let s = &self.spikes;
         for (key, value) in [
@@ -183,7 +191,10 @@ mod tests {
         assert!(options.validate().is_ok());
         options.low_pass.cutoff_hz = Some(-1.0);
         let message = options.validate().unwrap_err().to_string();
-        assert!(message.starts_with("processing.low_pass.cutoff_hz"), "{message}");
+        assert!(
+            message.starts_with("processing.low_pass.cutoff_hz"),
+            "{message}"
+        );
         options = ProcessingOptions::default();
         options.dofs = Some(vec![Dof::Torsion, Dof::Torsion]);
         assert!(options.validate().is_err());

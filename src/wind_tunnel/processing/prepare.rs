@@ -71,7 +71,10 @@ impl<'a> Prepared<'a> {
                             "a recording as long as the motion at {:.3} Hz (samples {} to {})",
                             s.segment.frequency_hz, p.start, p.end
                         ),
-                        format!("one that covers samples {} to {}", covered.start, covered.end),
+                        format!(
+                            "one that covers samples {} to {}",
+                            covered.start, covered.end
+                        ),
                     ));
                 }
                 let mut moved = *s;

@@ -137,7 +137,11 @@ impl ProcessingReport {
     pub fn warnings(&self) -> Vec<String> {
         self.runs
             .iter()
-            .flat_map(|r| r.warnings.iter().map(move |w| format!("run {}: {w}", r.run)))
+            .flat_map(|r| {
+                r.warnings
+                    .iter()
+                    .map(move |w| format!("run {}: {w}", r.run))
+            })
             .collect()
     }
 }

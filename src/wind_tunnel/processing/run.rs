@@ -154,7 +154,14 @@ pub(super) fn process_run(
     };
     warnings::warn(&mut report, options);
     Ok(ProcessedRun {
-        records: records::records(campaign, dofs, &signals, &segments, run, options.segments.ramps),
+        records: records::records(
+            campaign,
+            dofs,
+            &signals,
+            &segments,
+            run,
+            options.segments.ramps,
+        ),
         report,
         stages: stages.signals,
     })

@@ -202,8 +202,8 @@ fn first_motion(motion: &[f64], first: f64, quiet: f64, sampling_hz: f64) -> usi
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::wind_tunnel::TunnelPlan;
     use crate::aerodynamics::FlatPlate;
+    use crate::wind_tunnel::TunnelPlan;
 
     #[test]
     fn segments_of_the_tunnel_are_found() {
@@ -220,7 +220,10 @@ mod tests {
         for (found, truth) in found.iter().zip(truth) {
             let s = found.segment;
             // the part of the ramps above 0.99 is not quite harmonic: 4e-5 at 0.25 Hz, where five periods are steady
-            assert!((s.frequency_hz / truth.frequency_hz - 1.0).abs() < 1e-4, "{s:?}");
+            assert!(
+                (s.frequency_hz / truth.frequency_hz - 1.0).abs() < 1e-4,
+                "{s:?}"
+            );
             // the rest between two smooth ramps is found to within a part of a second
             assert!((s.start_s - truth.start_s).abs() < 0.7, "{s:?} {truth:?}");
             assert!((s.end_s - truth.end_s).abs() < 0.7, "{s:?} {truth:?}");
@@ -232,7 +235,9 @@ mod tests {
 
     #[test]
     fn noise_has_no_segments_and_stated_frequencies_are_kept_only() {
-        let wild: Vec<f64> = (0..2000).map(|k| f64::from((k * k * 7919) % 1009) - 504.0).collect();
+        let wild: Vec<f64> = (0..2000)
+            .map(|k| f64::from((k * k * 7919) % 1009) - 504.0)
+            .collect();
         assert!(find_segments(&wild, 200.0, &SegmentOptions::default()).is_empty());
         let sine: Vec<f64> = (0..4000).map(|k| (0.05 * f64::from(k)).sin()).collect();
         let stated = |f| SegmentOptions {

@@ -5,7 +5,8 @@ use crate::aerodynamics::FlatPlate;
 use crate::wind_tunnel::virtual_campaign::{VirtualCampaign, VirtualCampaignPlan};
 
 fn campaign(plan: &VirtualCampaignPlan) -> VirtualCampaign {
-    plan.from_model(&FlatPlate::default(), "plate", 0.5).unwrap()
+    plan.from_model(&FlatPlate::default(), "plate", 0.5)
+        .unwrap()
 }
 
 /// Three frequencies at 8 m/s, heave and rotation.
@@ -53,7 +54,12 @@ fn a_campaign_without_disturbances_gives_the_truth_back() {
         assert!(run.warnings.is_empty(), "{:?}", run.warnings);
         assert!(run.replaced.is_empty() && run.clipped.is_empty());
         // the plan: lift −0.12, drag 0.08, moment 0.02; the transform behind the truth leaks 3e-9 into the rest
-        for (found, stated) in run.means.static_coefficients.iter().zip([-0.12, 0.08, 0.02]) {
+        for (found, stated) in run
+            .means
+            .static_coefficients
+            .iter()
+            .zip([-0.12, 0.08, 0.02])
+        {
             assert!((found - stated).abs() < 1e-7, "{found}");
         }
         // weight of 2 kg/m × 2.68 m, rounding of the sums
@@ -108,7 +114,10 @@ fn lag_offset_drift_and_spike_are_found() {
         assert!(worst(&processed, &made.truth.records, force) < 0.05);
     }
     let text = serde_json::to_string(report).unwrap();
-    assert_eq!(serde_json::from_str::<ProcessingReport>(&text).unwrap(), *report);
+    assert_eq!(
+        serde_json::from_str::<ProcessingReport>(&text).unwrap(),
+        *report
+    );
 }
 
 /// Without correction the same campaign is wrong: each stage is needed.
@@ -153,7 +162,11 @@ fn recordings_of_unequal_length() {
     let cut = |raw: &mut RawCampaign, count: usize| {
         let still = &mut raw.runs[0].still_air;
         still.motion.iter_mut().for_each(|x| x.truncate(count));
-        still.cells.iter_mut().flatten().for_each(|x| x.truncate(count));
+        still
+            .cells
+            .iter_mut()
+            .flatten()
+            .for_each(|x| x.truncate(count));
         still.wind_speed_m_s.truncate(count);
     };
     let whole = made.raw.runs[0].in_wind.len();
@@ -163,7 +176,10 @@ fn recordings_of_unequal_length() {
     assert!(processed.report.warnings()[0].contains("only the part that both cover"));
     cut(&mut made.raw, whole - 4000);
     let message = refused(&made.raw);
-    assert!(message.contains("still air: expected a recording as long as the motion at 2.000 Hz"), "{message}");
+    assert!(
+        message.contains("still air: expected a recording as long as the motion at 2.000 Hz"),
+        "{message}"
+    );
     made.raw.runs[0].still_air.motion[0].pop();
     assert!(refused(&made.raw).contains("samples, as the first force channel"));
 }
@@ -184,7 +200,10 @@ fn channels_of_the_wrong_sign_or_place_are_named() {
     }
     // x of the near cell points up: the lift of one cell turned round
     let message = with(&|raw| both(raw, |r| r.cells[1][0].iter_mut().for_each(|x| *x = -*x)));
-    assert!(message.contains("still air, cell far: expected a vertical force in antiphase"), "{message}");
+    assert!(
+        message.contains("still air, cell far: expected a vertical force in antiphase"),
+        "{message}"
+    );
     // all of it
     let message = with(&|raw| {
         both(raw, |r| {
@@ -193,7 +212,10 @@ fn channels_of_the_wrong_sign_or_place_are_named() {
             }
         });
     });
-    assert!(message.contains("sum of the cells: expected a vertical force in antiphase"), "{message}");
+    assert!(
+        message.contains("sum of the cells: expected a vertical force in antiphase"),
+        "{message}"
+    );
     assert!(message.contains("turned round"), "{message}");
     // lift and drag exchanged
     let message = with(&|raw| {
@@ -223,9 +245,13 @@ fn bad_recordings_name_run_channel_and_sample() {
         "run plate-torsion-8.00, in wind, cell near, mx, sample 812: expected a finite number, found NaN"
     );
     let message = with(&|raw| raw.runs[0].mean_speed_m_s = 0.0);
-    assert!(message.contains("run plate-vertical-8.00, mean wind speed: expected a positive number"));
+    assert!(
+        message.contains("run plate-vertical-8.00, mean wind speed: expected a positive number")
+    );
     let message = with(&|raw| raw.runs[0].still_air.sampling_hz = 250.0);
-    assert!(message.contains("still air: expected the sampling frequency of the recording in wind"));
+    assert!(
+        message.contains("still air: expected the sampling frequency of the recording in wind")
+    );
     let message = with(&|raw| {
         let x = &mut raw.runs[0].in_wind.cells[0][0];
         let limit = 0.7 * x.iter().fold(f64::MIN, |m, v| m.max(*v))
@@ -233,11 +259,19 @@ fn bad_recordings_name_run_channel_and_sample() {
         x.iter_mut().for_each(|v| *v = v.min(limit));
     });
     assert!(message.contains("cell near, fx, sample "), "{message}");
-    assert!(message.contains("a channel that is not clipped"), "{message}");
+    assert!(
+        message.contains("a channel that is not clipped"),
+        "{message}"
+    );
     let mut options = ProcessingOptions::default();
     options.low_pass.cutoff_hz = Some(120.0);
-    let message = process(&made.raw, &options, &|_| {}).unwrap_err().to_string();
-    assert!(message.contains("below the Nyquist frequency, 100 Hz at 200 Hz"), "{message}");
+    let message = process(&made.raw, &options, &|_| {})
+        .unwrap_err()
+        .to_string();
+    assert!(
+        message.contains("below the Nyquist frequency, 100 Hz at 200 Hz"),
+        "{message}"
+    );
     let message = with(&|raw| raw.runs.clear());
     assert!(message.contains("at least one run"));
 }
@@ -259,6 +293,10 @@ fn a_short_clip_is_replaced() {
     let processed = done(&made.raw, &ProcessingOptions::default());
     let run = &processed.report.runs[0];
     assert!(!run.clipped.is_empty());
-    assert!(run.replaced.iter().any(|r| r.reason == "clipped"), "{:?}", run.replaced);
+    assert!(
+        run.replaced.iter().any(|r| r.reason == "clipped"),
+        "{:?}",
+        run.replaced
+    );
     assert!(worst(&processed, &made.truth.records, 0) < 0.05);
 }
