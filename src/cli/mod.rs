@@ -11,6 +11,7 @@ mod flutter;
 mod fmu;
 mod monte_carlo;
 mod output;
+mod process;
 mod progress;
 mod quasi_steady;
 mod routes;
@@ -56,6 +57,7 @@ enum Command {
     Tunnel(tunnel::Args),
     #[command(subcommand)]
     Campaign(campaign::Campaign),
+    Process(process::Args),
     Train(train::Args),
     Flutter(flutter::Args),
     MonteCarlo(monte_carlo::Args),
@@ -97,6 +99,7 @@ fn run(command: &Command, progress: &progress::Progress) -> Result<Answer> {
         Command::Study(args) => study::run(args, progress),
         Command::Tunnel(args) => tunnel::run(args, progress),
         Command::Campaign(command) => campaign::run(command, progress),
+        Command::Process(args) => process::run(args, progress),
         Command::Train(args) => train::run(args, progress),
         Command::Flutter(args) => flutter::run(args, progress),
         Command::MonteCarlo(args) => monte_carlo::run(args, progress),
