@@ -36,15 +36,23 @@ fn main() {
     );
     let spread = |low: f64, high: f64| -> Vec<f64> {
         let last = VALUES as f64 - 1.0;
-        (0..VALUES).map(|i| low + (high - low) * i as f64 / last).collect()
+        (0..VALUES)
+            .map(|i| low + (high - low) * i as f64 / last)
+            .collect()
     };
     let fit = TimeFit {
         weights: TimeWeights::None,
         ..TimeFit::default()
     };
     for (name, axis) in [
-        ("discrete, L and α", GridAxis::Discrete(spread(0.3, 0.95), TimeWeights::None)),
-        ("continuous, L and p", GridAxis::Continuous(spread(0.05, 1.9), Box::new(fit))),
+        (
+            "discrete, L and α",
+            GridAxis::Discrete(spread(0.3, 0.95), TimeWeights::None),
+        ),
+        (
+            "continuous, L and p",
+            GridAxis::Continuous(spread(0.05, 1.9), Box::new(fit)),
+        ),
     ] {
         compare(name, &records, &sources, &axis, &python);
     }

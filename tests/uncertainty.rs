@@ -34,7 +34,10 @@ fn repeated(truth: Truth, noise_correlation_s: f64, poles: &[f64]) -> CoverageRe
 fn intervals_hold_a_truth_within_the_class() {
     for correlation_s in [0.0, 0.1] {
         let report = repeated(Truth::Jones, correlation_s, &[0.091, 0.6]);
-        assert!(report.holds_truth.inside >= 88, "{correlation_s}: {report:?}");
+        assert!(
+            report.holds_truth.inside >= 88,
+            "{correlation_s}: {report:?}"
+        );
         let ratio = report.stated_standard_error_m_s / report.scatter_m_s;
         assert!((ratio - 1.0).abs() < 0.21, "{correlation_s}: {ratio}");
         // no bias: the class holds the truth, and the fit without noise is exact up to the images above Nyquist
@@ -64,7 +67,10 @@ fn every_onset_has_an_interval_or_a_reason() {
     let trained = succeeds(at, &["train", "study.toml"]);
     assert!(trained.contains("95 % interval"), "{trained}");
     let text = succeeds(at, &["flutter", "study.toml"]);
-    assert!(text.contains("no interval: interpolated table (determinant)"), "{text}");
+    assert!(
+        text.contains("no interval: interpolated table (determinant)"),
+        "{text}"
+    );
     let json: Value =
         serde_json::from_str(&succeeds(at, &["flutter", "study.toml", "--json"])).unwrap();
     let saved: Value = serde_json::from_str(

@@ -6,8 +6,8 @@ use crate::aerodynamics::derivatives::{TransferSample, embedded};
 use crate::aerodynamics::{FlatPlate, RationalModel};
 use crate::flutter::{Onset, OnsetSearch, find_onset};
 use crate::identification::{
-    CoefficientUncertainty, DiscreteFit, FeedThrough, Form, FrequencyFit, FrequencyWeights, PoleSearch,
-    discrete_uncertainty, fit_discrete, fit_table, sample_model, table_uncertainty,
+    CoefficientUncertainty, DiscreteFit, FeedThrough, Form, FrequencyFit, FrequencyWeights,
+    PoleSearch, discrete_uncertainty, fit_discrete, fit_table, sample_model, table_uncertainty,
 };
 use crate::section::{Dof, SectionModel, Structure};
 use crate::trained_model::Model;
@@ -122,7 +122,10 @@ fn stated_errors_are_the_scatter_of_repeated_tables() {
         start: Some(vec![0.091, 0.6]),
         ..PoleSearch::default()
     };
-    for fit in [two_poles(PoleSearch::fixed(&[0.091, 0.6])), two_poles(searched)] {
+    for fit in [
+        two_poles(PoleSearch::fixed(&[0.091, 0.6])),
+        two_poles(searched),
+    ] {
         let (mut speeds, mut stated) = (Vec::new(), 0.0);
         let runs = 120;
         for seed in 0..runs {
@@ -154,9 +157,14 @@ fn three_routes_give_one_standard_error() {
             search: OnsetSearch::default(),
             tested: None,
         };
-        let once = resample_onset(&estimate, &structure(), &at, &plan).unwrap().unwrap();
+        let once = resample_onset(&estimate, &structure(), &at, &plan)
+            .unwrap()
+            .unwrap();
         assert_eq!(once.without_onset, 0);
-        assert_eq!(Some(once.clone()), resample_onset(&estimate, &structure(), &at, &plan).unwrap());
+        assert_eq!(
+            Some(once.clone()),
+            resample_onset(&estimate, &structure(), &at, &plan).unwrap()
+        );
         once.standard_deviation_m_s / error.standard_error_m_s
     };
     // 600 draws tell a standard deviation to 3 %
@@ -176,14 +184,24 @@ fn saved_uncertainty_gives_the_same_interval() {
         min: ReducedFrequency::from_full_width(0.1),
         max: ReducedFrequency::from_full_width(1.9),
     };
-    let all =
-        ModelUncertainty::new(estimate, &structure(), Some(&at), OnsetSearch::default(), tested)
-            .unwrap();
+    let all = ModelUncertainty::new(
+        estimate,
+        &structure(),
+        Some(&at),
+        OnsetSearch::default(),
+        tested,
+    )
+    .unwrap();
     let again = ModelUncertainty::from_json(&all.to_json().unwrap()).unwrap();
     assert_eq!(again.derivatives, all.derivatives);
     assert_eq!(
         again.interval(&model, &structure(), &at).unwrap(),
         all.interval(&model, &structure(), &at).unwrap()
     );
-    assert!(ModelUncertainty::from_json("{}").unwrap_err().to_string().contains("line 1"));
+    assert!(
+        ModelUncertainty::from_json("{}")
+            .unwrap_err()
+            .to_string()
+            .contains("line 1")
+    );
 }
