@@ -1,5 +1,6 @@
 //! Forced-vibration records: what they are, reading and writing them, and a virtual tunnel that makes them.
 
+mod broadband;
 #[cfg(feature = "campaigns")]
 pub mod campaign;
 #[cfg(feature = "campaigns")]
@@ -14,6 +15,7 @@ pub mod virtual_campaign;
 mod virtual_forces;
 mod virtual_tunnel;
 
+pub use broadband::TrainingMotion;
 pub use raw::{CELL_CHANNELS, LoadCell, RawCampaign, RawRecording, RawRun, Rig};
 pub use record_file::{RecordFile, SAMPLES_AT_LEAST, read_record, write_record};
 pub use records::{Record, RecordBlock, RecordHeader, RecordSource, Segment};
