@@ -2,6 +2,8 @@
 
 mod basis;
 #[cfg(test)]
+mod broadband_tests;
+#[cfg(test)]
 mod deck_tests;
 pub mod derivatives;
 mod discrete;

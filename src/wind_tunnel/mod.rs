@@ -6,6 +6,7 @@ pub mod campaign;
 #[cfg(feature = "campaigns")]
 pub mod lab_files;
 mod motion;
+mod prediction;
 pub mod processing;
 mod raw;
 mod record_file;
@@ -16,6 +17,7 @@ mod virtual_forces;
 mod virtual_tunnel;
 
 pub use broadband::TrainingMotion;
+pub use prediction::predicted_forces;
 pub use raw::{CELL_CHANNELS, LoadCell, RawCampaign, RawRecording, RawRun, Rig};
 pub use record_file::{RecordFile, SAMPLES_AT_LEAST, read_record, write_record};
 pub use records::{Record, RecordBlock, RecordHeader, RecordSource, Segment};
