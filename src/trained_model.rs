@@ -8,8 +8,11 @@ use crate::section::{Dof, SectionModel};
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use serde::{Deserialize, Serialize};
 
-/// Version of the file layout; raised when a field or a model kind is added or changed.
+/// Version of the file layout of models that need nothing newer, so that programs of that version read them; raised when
+/// a field of all files is added or changed.
 pub const SCHEMA_VERSION: u32 = 1;
+/// Newest version that is read and written. Version 2: discrete Laguerre filters of single transfer functions.
+pub const NEWEST_SCHEMA_VERSION: u32 = 2;
 
 /// The models that can be saved and exported.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -30,6 +33,14 @@ impl Model {
             Self::Laguerre(_) => "continuous Laguerre",
             Self::DiscreteLaguerre(_) => "discrete Laguerre",
             Self::Rational(_) => "rational functions",
+        }
+    }
+
+    /// Lowest version of the file layout that can hold the model.
+    pub fn schema_version(&self) -> u32 {
+        match self {
+            Self::DiscreteLaguerre(m) if m.shared_parameters().is_none() => NEWEST_SCHEMA_VERSION,
+            _ => SCHEMA_VERSION,
         }
     }
 
@@ -101,7 +112,7 @@ pub struct Experiment {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TrainedModel {
-    /// [`SCHEMA_VERSION`] at writing.
+    /// Version of the file layout, at least [`Model::schema_version`].
     pub schema_version: u32,
     /// Name of the deck or study.
     pub name: String,
@@ -124,10 +135,10 @@ impl TrainedModel {
     /// [`Error::Input`] with line and column for text that is not such a file, and for every value that cannot be.
     pub fn from_json(text: &str) -> Result<Self> {
         let version: SchemaOnly = serde_json::from_str(text).map_err(|e| json_error(&e))?;
-        if version.schema_version != SCHEMA_VERSION {
+        if !(SCHEMA_VERSION..=NEWEST_SCHEMA_VERSION).contains(&version.schema_version) {
             return Err(Error::input(
                 "schema_version",
-                SCHEMA_VERSION.to_string(),
+                format!("{SCHEMA_VERSION} to {NEWEST_SCHEMA_VERSION}"),
                 version.schema_version.to_string(),
             ));
         }
@@ -155,6 +166,13 @@ impl TrainedModel {
     pub fn validate(&self) -> Result<()> {
         self.section.structure()?;
         self.model.validate()?;
+        if self.schema_version < self.model.schema_version() {
+            return Err(Error::input(
+                "schema_version",
+                format!("at least {} for this model", self.model.schema_version()),
+                self.schema_version.to_string(),
+            ));
+        }
         if self.model.dofs() != self.section.dofs() {
             return Err(Error::input(
                 "model.dofs",
@@ -252,13 +270,38 @@ mod tests {
         assert_eq!(text, again.to_json().unwrap());
     }
 
+    /// Filters of single transfer functions need the newer layout and survive it; shared ones stay in the older one.
+    #[test]
+    fn own_filters_take_the_newer_layout() {
+        let shared = DiscreteLaguerre::shared(
+            Dof::TWO.to_vec(),
+            0.6,
+            0.0817,
+            vec![nalgebra::DMatrix::from_element(2, 3, 0.1); 2],
+            vec![0.0; 2],
+        );
+        let mut own = shared.clone();
+        own.terms[1].alpha = 0.8;
+        for (model, version) in [(shared, 1), (own, 2)] {
+            let mut trained = jones();
+            trained.model = Model::DiscreteLaguerre(model);
+            assert_eq!(trained.model.schema_version(), version);
+            let error = trained.to_json().err().map(|e| e.to_string());
+            let expected = "schema_version: expected at least 2 for this model, found 1";
+            assert_eq!(error.as_deref(), (version == 2).then_some(expected));
+            trained.schema_version = version;
+            let again = TrainedModel::from_json(&trained.to_json().unwrap()).unwrap();
+            assert_eq!(again, trained);
+        }
+    }
+
     #[test]
     fn damaged_files_are_refused_with_their_place() {
         let text = jones().to_json().unwrap();
         let newer = text.replace("\"schema_version\": 1", "\"schema_version\": 99");
         assert_eq!(
             TrainedModel::from_json(&newer).unwrap_err().to_string(),
-            "schema_version: expected 1, found 99"
+            "schema_version: expected 1 to 2, found 99"
         );
         let cut = &text[..text.len() / 2];
         assert!(

@@ -5,6 +5,7 @@ mod answer;
 mod buffeting;
 mod campaign;
 mod common;
+mod compare;
 mod coverage;
 mod demo;
 mod flutter;
@@ -70,6 +71,8 @@ enum Command {
     Thesis(thesis::Args),
     Select(select::Args),
     Coverage(coverage::Args),
+    #[command(subcommand)]
+    Compare(compare::Compare),
 }
 
 /// Runs the command line of this process.
@@ -111,6 +114,7 @@ fn run(command: &Command, progress: &progress::Progress) -> Result<Answer> {
         Command::Thesis(args) => thesis::run(args, progress),
         Command::Select(args) => select::run(args, progress),
         Command::Coverage(args) => coverage::run(args, progress),
+        Command::Compare(command) => compare::run(command, progress),
     }
 }
 

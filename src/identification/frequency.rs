@@ -2,6 +2,8 @@
 
 use super::basis::{Basis, assemble};
 use super::options::{Form, FrequencyFit, FrequencyWeights};
+use super::own::{EntryForm, entry_forms, search_for, searched_together};
+use super::records::describe_own;
 use super::report::{EntryReport, FitReport, SearchReport, variance};
 use super::samples::{Entry, sort_by_entry};
 use super::search::{Bounds, search_poles};
@@ -28,7 +30,8 @@ pub fn fit_table(
     let (entries, notes) = sort_by_entry(samples, dofs, fit.weights)?;
     let tested_range = ReducedFrequencyRange::spanning(samples.iter().map(|s| s.k))
         .ok_or_else(|| Error::input("samples", "at least one", "none"))?;
-    let (poles, search) = choose_poles(&entries, fit, tested_range)?;
+    let forms = entry_forms(dofs, &fit.form, &fit.poles, &fit.own)?;
+    let (poles, search) = choose_poles(&entries, &forms, fit, tested_range)?;
     let mut reports = Vec::with_capacity(entries.len());
     let mut coefficients = Vec::with_capacity(entries.len());
     for (entry, poles) in entries.iter().zip(&poles) {
@@ -44,8 +47,9 @@ pub fn fit_table(
     let model = assemble(&fit.form, dofs, &by_row(&poles), &by_row(&coefficients))?;
     let mut report = FitReport {
         method: format!(
-            "{}, fitted to {} numbers of the transfer matrix",
+            "{}{}, fitted to {} numbers of the transfer matrix",
             fit.form.describe(),
+            describe_own(fit.own.len()),
             samples.len()
         ),
         weights: describe(fit.weights).into(),
@@ -56,6 +60,8 @@ pub fn fit_table(
         search,
         orders: Vec::new(),
         alpha_guideline: None,
+        static_terms: Vec::new(),
+        memory: Vec::new(),
         covariance_assumption:
             "weighted residuals are independent and of one variance; the poles count as known"
                 .into(),
@@ -76,27 +82,27 @@ fn describe(weights: FrequencyWeights) -> &'static str {
 /// Poles of every entry, one a filter, and how they were found.
 fn choose_poles(
     entries: &[Entry],
+    forms: &[EntryForm],
     fit: &FrequencyFit,
     tested: ReducedFrequencyRange,
 ) -> Result<(Vec<Vec<f64>>, Vec<SearchReport>)> {
-    let form = &fit.form;
-    if let Some(fixed) = &fit.poles.fixed {
-        return Ok((vec![form.expand(fixed); entries.len()], Vec::new()));
-    }
-    let count = form.free_poles();
-    let bounds = Bounds::resolve(&fit.poles, tested, count)?;
-    let groups: Vec<&[Entry]> = if form.pole_per_transfer_function() {
-        entries.chunks(1).collect()
-    } else {
-        vec![entries]
-    };
-    let mut poles = Vec::new();
+    let stated = |f: &EntryForm| f.fixed.as_ref().map(|fixed| f.form.expand(fixed));
+    let mut poles: Vec<Vec<f64>> = forms
+        .iter()
+        .map(|f| stated(f).unwrap_or_default())
+        .collect();
     let mut reports = Vec::new();
-    for group in groups {
-        let name = (group.len() == 1).then(|| (group[0].force, group[0].motion));
-        let residuals = |free: &[f64]| relative_residuals(group, form, &form.expand(free));
-        let report = search_poles(count, (&fit.poles, bounds), name, &residuals)?;
-        poles.extend(vec![form.expand(&report.chosen.poles); group.len()]);
+    for members in searched_together(forms) {
+        let EntryForm { form, alone, .. } = &forms[members[0]];
+        let options = search_for(&fit.poles, form);
+        let bounds = Bounds::resolve(&options, tested, form.free_poles())?;
+        let group: Vec<&Entry> = members.iter().map(|&e| &entries[e]).collect();
+        let name = alone.then(|| (group[0].force, group[0].motion));
+        let residuals = |free: &[f64]| relative_residuals(&group, form, &form.expand(free));
+        let report = search_poles(form.free_poles(), (&options, bounds), name, &residuals)?;
+        for e in members {
+            poles[e] = form.expand(&report.chosen.poles);
+        }
         reports.push(report);
     }
     Ok((poles, reports))
@@ -104,7 +110,7 @@ fn choose_poles(
 
 /// Weighted residuals of all entries with the best coefficients for these poles, each entry relative to its weighted
 /// data: whatever the weights, the poles do not follow the largest entry alone. The norm is the objective.
-fn relative_residuals(entries: &[Entry], form: &Form, poles: &[f64]) -> Result<DVector<f64>> {
+fn relative_residuals(entries: &[&Entry], form: &Form, poles: &[f64]) -> Result<DVector<f64>> {
     let basis = Basis::orthonormal(form, poles)?;
     let mut all = Vec::new();
     for entry in entries {

@@ -2,6 +2,8 @@
 
 mod basis;
 #[cfg(test)]
+mod broadband_tests;
+#[cfg(test)]
 mod deck_tests;
 pub mod derivatives;
 mod discrete;
@@ -10,6 +12,7 @@ mod frequency;
 mod grid;
 mod least_squares;
 mod options;
+mod own;
 mod records;
 mod report;
 mod samples;
@@ -17,20 +20,22 @@ mod search;
 #[cfg(test)]
 mod testing;
 mod time;
+#[cfg(test)]
+mod training_tests;
 mod uncertainty;
 
-pub use discrete::fit_discrete;
+pub use discrete::{DiscreteFit, fit_discrete};
 pub use frequency::fit_table;
 pub use grid::{CellFit, Grid, GridAxis, StretchLabel};
 pub use least_squares::{Factor, StreamingQr};
 pub use options::{
-    DiscreteFit, FeedThrough, Form, FrequencyFit, FrequencyWeights, PoleSearch, TimeFit,
-    TimeWeights,
+    FeedThrough, Form, FrequencyFit, FrequencyWeights, PoleSearch, TimeFit, TimeWeights,
 };
+pub use own::{OwnDecay, OwnFilters, StaticTerm};
 pub use records::{OnProgress, Progress, fit_records};
 pub use report::{
     AlphaGuideline, CANCELLATION_LIMIT, CONDITION_LIMIT, Coefficient, EntryReport, FitReport,
-    OrderReport, SearchPoint, SearchReport,
+    MemoryReport, OrderReport, SearchPoint, SearchReport, StaticReport,
 };
 pub use samples::sample_model;
 pub use uncertainty::{

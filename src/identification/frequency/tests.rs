@@ -178,6 +178,7 @@ fn standard_errors_are_the_scatter_of_repeated_fits() {
         form: laguerre(1),
         poles: PoleSearch::fixed(&[0.3]),
         weights: FrequencyWeights::None,
+        own: Vec::new(),
     };
     let clean = flat_plate();
     let mut state = 1u64;
