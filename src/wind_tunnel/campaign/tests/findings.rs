@@ -11,15 +11,15 @@ fn findings(a: &str, b: &str) -> Vec<String> {
 fn what_does_not_stop_reading_is_a_finding() {
     let (a, b) = (recording(200, |_, _| {}), recording(200, still));
     let clipped = recording(200, |_, r| r[1] = r[1].min(0.05));
-    // above half of the amplitude for a third of a period of 50 samples: 9 at the start, 17 three times, 8 at the end
+    // above half of the amplitude for a third of a period of 50 samples, three whole times in the record
     assert_eq!(
         findings(&clipped, &b),
         [
-            "run `one`, in wind, `d`, sample 0: stays at its highest value 0.050000 for 9 samples (clipped? 68 such samples in all)"
+            "run `one`, in wind, `d`, sample 42: stays at its highest value 0.050000 for 17 samples (clipped? 51 such samples in all)"
         ]
     );
-    // digitised in steps of a tenth of its amplitude it dwells at its peaks for 5 samples and is not taken for clipped
-    let digitised = recording(200, |_, r| r[1] = (r[1] * 100.0).round() / 100.0);
+    // digitised in steps of half of its amplitude it dwells at its peaks for 11 samples and is not taken for clipped
+    let digitised = recording(200, |_, r| r[1] = (r[1] * 20.0).round() / 20.0);
     assert_eq!(findings(&digitised, &b), Vec::<String>::new());
     let stuck = recording(200, |_, r| r[3] = 0.25);
     assert_eq!(
