@@ -25,8 +25,9 @@ pub use reference_lines::derivative_lines;
 pub use routes::{Route, RouteTable, low_frequency_limit, route_table};
 pub use stepped::{SteppedOnset, stepped_onset};
 pub use wind::{
-    BuffetingStudy, QuasiSteadyStudy, SimulatedMotion, SpectrumCurve, TimeDomain, WindStudy,
-    buffeting_study, example_wind_study_text, quasi_steady_study, simulated_motion,
+    BuffetingStudy, CoefficientsBlock, QuasiSteadyStudy, SimulatedMotion, SpectrumCurve,
+    TimeDomain, WindStudy, buffeting_study, example_wind_study_text, quasi_steady_study,
+    simulated_motion,
 };
 
 use crate::error::{Error, Result, positive};
@@ -62,6 +63,9 @@ pub struct Study {
     /// Where to look for the onset.
     #[serde(default)]
     pub flutter: FlutterBlock,
+    /// Static coefficients, for quasi-steady theory beside the other routes to the onset.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub coefficients: Option<CoefficientsBlock>,
     /// What to export.
     #[serde(default)]
     pub export: ExportBlock,
@@ -241,6 +245,9 @@ impl Study {
             }
         }
         self.flutter.validate("flutter")?;
+        if let Some(block) = &self.coefficients {
+            block.validate("coefficients")?;
+        }
         self.export.validate()?;
         self.exported().map(|_| ())
     }
