@@ -10,6 +10,9 @@ use crate::error::{Error, Result};
 use rust_xlsxwriter::{Workbook, Worksheet, XlsxError};
 use std::path::Path;
 
+/// One of the numbers of a test point.
+type ValueOf = fn(&DerivativePoint) -> f64;
+
 /// The bytes of a workbook with the figures of `table`.
 ///
 /// # Errors
@@ -27,7 +30,7 @@ pub fn workbook_bytes(table: &DerivativeTable) -> Result<Vec<u8>> {
     }
     let failed = |e: XlsxError| Error::Numerical(format!("workbook: {e}"));
     let mut book = Workbook::new();
-    let columns: [(_, fn(&DerivativePoint) -> f64); 3] = [
+    let columns: [(_, ValueOf); 3] = [
         (SPEEDS, |p| p.mean_speed_m_s.unwrap_or(f64::NAN)),
         (REDUCED_VELOCITIES, |p| p.v_hat),
         (DERIVATIVES, |p| p.value),
