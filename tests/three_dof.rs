@@ -154,7 +154,7 @@ fn a_study_with_a_lateral_support_ends_in_an_fmu() {
     );
     assert!((eigenvalues / 36.804 - 1.0).abs() < 0.03);
     assert!((speed("interpolated table", "determinant") - 36.804_490).abs() < 1e-5);
-    let fmu = Fmu::open(&at.join("deck_section.fmu")).unwrap();
+    let fmu = Fmu::open(at.join("deck_section.fmu")).unwrap();
     for name in [
         "sway",
         "sway_rate",

@@ -9,7 +9,6 @@ use crate::aerodynamics::AerodynamicModel;
 use crate::error::{Error, Result};
 use crate::identification::{FitReport, TimeFit, fit_discrete, fit_records, fit_table};
 use crate::section::Dof;
-use crate::trained_model::Model;
 use crate::wind_tunnel::{Record, RecordSource, predicted_forces};
 use rayon::prelude::*;
 use serde::Serialize;
