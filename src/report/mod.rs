@@ -4,6 +4,7 @@
 //! machine. The same data always give the same bytes. Colours are those of Okabe and Ito, told apart by colour-blind
 //! readers; what differs in colour only also differs in a line style or a marker where two kinds of thing meet.
 
+mod axes_sketch;
 mod axis;
 mod derivatives_figure;
 mod figure;
@@ -24,6 +25,7 @@ mod sheet;
 mod style;
 mod wind_figures;
 
+pub use axes_sketch::axes_sketch;
 pub use derivatives_figure::{DerivativePlot, DerivativesPlot, derivatives_figure};
 pub use figure::{Figure, PNG_SCALE};
 pub use flutter_figures::{VfVgOptions, vf_vg_figure};

@@ -163,7 +163,10 @@ fn a_stated_convention_is_obeyed() {
     }
     let polimi = StatedConvention::notation(Notation::Polimi);
     let message = workbook_convention(polimi).unwrap_err().to_string();
-    assert!(message.starts_with("argument: expected it stated"), "{message}");
+    assert!(
+        message.starts_with("argument: expected it stated"),
+        "{message}"
+    );
     let polimi = StatedConvention {
         argument: Some(Argument::VStar),
         ..polimi

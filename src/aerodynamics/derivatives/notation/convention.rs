@@ -145,6 +145,11 @@ impl StatedConvention {
         }
     }
 
+    /// Whether nothing is stated.
+    pub fn is_empty(&self) -> bool {
+        *self == Self::default()
+    }
+
     /// For writing: what is not stated is as usual for the notation, the notation itself as in the crate.
     pub fn or_usual(self) -> Convention {
         let usual = Convention::usual(self.notation.unwrap_or_default());
