@@ -1,15 +1,21 @@
 //! From records and tables to models: regressors, fits, reports.
 
 mod basis;
+mod constrained;
 #[cfg(test)]
 mod deck_tests;
+mod degenerate;
+mod descent;
 pub mod derivatives;
 mod discrete;
 pub mod free_decay;
 mod frequency;
+mod frequency_options;
 mod grid;
 mod least_squares;
+mod minimum_state;
 mod options;
+mod rational_forms;
 mod records;
 mod report;
 mod samples;
@@ -21,12 +27,10 @@ mod uncertainty;
 
 pub use discrete::fit_discrete;
 pub use frequency::fit_table;
+pub use frequency_options::{FrequencyFit, FrequencyWeights, QuasiSteadyLimit};
 pub use grid::{CellFit, Grid, GridAxis, StretchLabel};
 pub use least_squares::{Factor, StreamingQr};
-pub use options::{
-    DiscreteFit, FeedThrough, Form, FrequencyFit, FrequencyWeights, PoleSearch, TimeFit,
-    TimeWeights,
-};
+pub use options::{DiscreteFit, FeedThrough, Form, PoleSearch, TimeFit, TimeWeights};
 pub use records::{OnProgress, Progress, fit_records};
 pub use report::{
     AlphaGuideline, CANCELLATION_LIMIT, CONDITION_LIMIT, Coefficient, EntryReport, FitReport,

@@ -1,6 +1,7 @@
 //! Continuous models fitted to forced-vibration records.
 
 use super::basis::{Basis, assemble};
+use super::degenerate::note_lags;
 use super::least_squares::Factor;
 use super::options::{Form, TimeFit, TimeWeights};
 use super::report::{EntryReport, FitReport, OrderReport, enough_rows, variance};
@@ -86,6 +87,7 @@ pub fn fit_records(
         .map(|e| e.condition)
         .fold(1.0, f64::max);
     report.judge(&fit.poles);
+    note_lags(&model, &mut report.notes);
     Ok((model, report))
 }
 

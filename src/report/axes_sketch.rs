@@ -43,7 +43,7 @@ fn panel(svg: &mut String, axes: Axes) {
             "Scanlan with ½ (this program), PoliMi",
             "y or z, lift",
             "x, drag",
-            "θ, moment",
+            "θ, moment, nose-up",
             -1.0,
         ),
         Axes::HeaveDown => (
@@ -51,7 +51,7 @@ fn panel(svg: &mut String, axes: Axes) {
             "classical, Küssner/Starossek",
             "h, lift",
             "p, drag",
-            "α, moment",
+            "α, moment, nose-up",
             1.0,
         ),
     };
@@ -80,7 +80,7 @@ fn panel(svg: &mut String, axes: Axes) {
     let beside = if down > 0.0 { cy + 96.0 } else { cy - 90.0 };
     text(svg, (cx + 10.0, beside), motion, "", heave);
     text(svg, (cx + 118.0, cy - 12.0), motion, "", sway);
-    text(svg, (cx - 122.0, cy - 62.0), motion, "", turn);
+    text(svg, (cx - 132.0, cy - 62.0), motion, "", turn);
     dimension(svg);
 }
 
@@ -181,4 +181,16 @@ fn text(svg: &mut String, at: (f64, f64), colour: &str, style: &str, words: &str
         "<text x=\"{}\" y=\"{}\" fill=\"{colour}\" {style}>{words}</text>",
         at.0, at.1
     );
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The picture of the page on notations is what `aerodeck derivatives notations --sketch` draws.
+    #[test]
+    fn the_page_shows_this_sketch() {
+        assert_eq!(axes_sketch().svg(), include_str!("../../docs/axes.svg"));
+        assert!(axes_sketch().png(1.0).is_ok());
+    }
 }

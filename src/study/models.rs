@@ -8,7 +8,7 @@ use crate::identification::{
     FitReport, OnProgress, discrete_uncertainty, fit_discrete, fit_records, fit_table,
     record_uncertainty, table_uncertainty,
 };
-use crate::trained_model::{Experiment, Model, Provenance, SCHEMA_VERSION, TrainedModel};
+use crate::trained_model::{Experiment, Model, Provenance, TrainedModel};
 use crate::uncertainty::ModelUncertainty;
 
 /// A model with the account of its fit.
@@ -81,7 +81,7 @@ pub fn train_one(
         .map_err(|e| e.to_string());
     let experiment = experiment(study, &search);
     let trained = TrainedModel {
-        schema_version: SCHEMA_VERSION,
+        schema_version: model.schema_version(),
         name: block.name.clone(),
         section: study.section.clone(),
         tested_range: report.tested_range,
