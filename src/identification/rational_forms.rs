@@ -11,13 +11,19 @@ impl Form {
 
     /// A rational form in words.
     pub(super) fn describe_rational(&self) -> String {
-        let (lags, with) = (self.filters(), self.feed_through().e2);
-        let lags = count_lags(lags, with);
-        match self {
-            Self::RationalPerForce { .. } => format!("rational functions, {lags} of each force"),
-            Self::MinimumState { .. } => format!("minimum-state rational functions, {lags}"),
-            _ => format!("rational functions, {lags}"),
-        }
+        let (kind, whose) = match self {
+            Self::RationalPerForce { .. } => ("rational functions", " of each force"),
+            Self::MinimumState { .. } => ("minimum-state rational functions", ""),
+            _ => ("rational functions", ""),
+        };
+        let count = self.filters();
+        let plural = if count == 1 { "" } else { "s" };
+        let with = if self.feed_through().e2 {
+            "with"
+        } else {
+            "without"
+        };
+        format!("{kind}, {count} lag{plural}{whose}, {with} added mass")
     }
 
     /// Checks the form for a fit to records.
@@ -37,10 +43,4 @@ impl Form {
         }
         self.validate()
     }
-}
-
-fn count_lags(lags: usize, added_mass: bool) -> String {
-    let plural = if lags == 1 { "" } else { "s" };
-    let with = if added_mass { "with" } else { "without" };
-    format!("{lags} lag{plural}, {with} added mass")
 }

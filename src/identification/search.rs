@@ -62,8 +62,10 @@ impl Bounds {
     /// Ordered poles from free variables.
     pub fn poles(&self, free: &[f64]) -> Vec<f64> {
         let slack = self.slack(free.len());
-        let shares: Vec<f64> = free.iter().map(|x| x.exp()).collect();
-        let total: f64 = 1.0 + shares.iter().sum::<f64>();
+        // the largest share is scaled to one, so that none overflows
+        let top = free.iter().copied().fold(0.0, f64::max);
+        let shares: Vec<f64> = free.iter().map(|x| (x - top).exp()).collect();
+        let total: f64 = (-top).exp() + shares.iter().sum::<f64>();
         let mut at = self.min.ln() - self.min_ratio.ln();
         shares
             .iter()
@@ -262,7 +264,7 @@ mod tests {
                 assert!((a / b - 1.0).abs() < 1e-12);
             }
         }
-        for free in [[-40.0, 40.0, 0.0], [9.0, -9.0, -30.0]] {
+        for free in [[-40.0, 40.0, 0.0], [9.0, -9.0, -30.0], [900.0, 2.0, 800.0]] {
             assert!(BOUNDS.admits(&BOUNDS.poles(&free)));
         }
         for count in 1..4 {
