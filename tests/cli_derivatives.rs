@@ -66,12 +66,39 @@ fn tables_are_converted_there_and_back() {
     refused(
         at,
         &["derivatives", "convert", "LN21-5200", "x.txt"],
-        &["a file name that ends in .csv"],
+        &["a file name that ends in .csv or .xlsx"],
     );
     refused(
         at,
         &["derivatives", "show", "LN21-5200", "--to", "milan"],
         &["scanlan, classical, polimi, starossek"],
+    );
+}
+
+/// A workbook in another notation states it in its notes and comes back without being told.
+#[test]
+fn workbooks_are_written_in_any_notation() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    let convert = |from: &str, to: &str, more: &[&str]| {
+        succeeds(at, &[&["derivatives", "convert", from, to], more].concat())
+    };
+    convert("LN21-5200", "p.xlsx", &["--to", "polimi"]);
+    assert!(convert("p.xlsx", "back.csv", &[]).contains("from PoliMi, over v_star"));
+    let deck = embedded::deck("LN21-5200").unwrap();
+    let again = read_csv(at.join("back.csv")).unwrap();
+    for d in Derivative::ALL {
+        for (p, q) in deck.points(d).iter().zip(again.points(d)) {
+            assert!((p.value - q.value).abs() <= 1e-12 * p.value.abs());
+        }
+    }
+    refused(
+        at,
+        &["derivatives", "show", "p.xlsx", "--from", "classical"],
+        &[
+            "p.xlsx",
+            "expected `classical` as stated on import, found `polimi`",
+        ],
     );
 }
 

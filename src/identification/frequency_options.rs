@@ -107,6 +107,16 @@ impl FrequencyFit {
         Ok(())
     }
 
+    /// Whether every entry is an unconstrained linear fit whose poles are shared by all or its own.
+    pub(super) fn is_plain(&self) -> bool {
+        let rational_only = matches!(
+            self.form,
+            Form::RationalPerForce { .. } | Form::MinimumState { .. }
+        );
+        let weighted = self.entry_weights.is_some() || self.regularization > 0.0;
+        !rational_only && !weighted && self.limits.is_empty()
+    }
+
     /// The weight of entry `(i, j)` of an n×n matrix.
     ///
     /// # Errors

@@ -5,8 +5,8 @@ mod constrained;
 #[cfg(test)]
 mod deck_tests;
 mod degenerate;
-mod descent;
 pub mod derivatives;
+mod descent;
 mod discrete;
 pub mod free_decay;
 mod frequency;

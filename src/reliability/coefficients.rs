@@ -9,6 +9,7 @@ pub(super) fn linear(model: &Model, tested: ReducedFrequencyRange) -> Option<Lin
     match model {
         Model::Laguerre(m) => Some(LinearForces::of_laguerre(m, Some(tested))),
         Model::Rational(m) => Some(LinearForces::of_rational(m, Some(tested))),
+        Model::MinimumState(m) => Some(LinearForces::of_rational(&m.to_roger(), Some(tested))),
         Model::DiscreteLaguerre(_) => None,
     }
 }
@@ -18,6 +19,7 @@ pub(super) fn of(model: &Model) -> (Vec<f64>, Vec<String>) {
     let forces = match model {
         Model::Laguerre(m) => LinearForces::of_laguerre(m, None),
         Model::Rational(m) => LinearForces::of_rational(m, None),
+        Model::MinimumState(m) => LinearForces::of_rational(&m.to_roger(), None),
         Model::DiscreteLaguerre(m) => {
             let (mut values, mut names) = (Vec::new(), Vec::new());
             for (j, matrix) in m.coefficients.iter().enumerate() {
@@ -34,8 +36,12 @@ pub(super) fn of(model: &Model) -> (Vec<f64>, Vec<String>) {
     (forces.coefficients().to_vec(), forces.names().to_vec())
 }
 
-/// Puts `values`, in the order of [`of`], into the model.
+/// Puts `values`, in the order of [`of`], into the model. Coefficients of their own have no place in the minimum-state
+/// form, which becomes the same function in Roger's.
 pub(super) fn replace(model: &mut Model, values: &[f64]) {
+    if let Model::MinimumState(m) = model {
+        *model = Model::Rational(m.to_roger());
+    }
     let mut next = values.iter().copied();
     let mut put = |place: &mut f64| {
         if let Some(value) = next.next() {
@@ -58,11 +64,20 @@ pub(super) fn replace(model: &mut Model, values: &[f64]) {
                 for matrix in [&mut m.a1, &mut m.a2, &mut m.a3] {
                     matrix.column_mut(j).iter_mut().for_each(&mut put);
                 }
-                for term in &mut m.lag_terms {
-                    term.column_mut(j).iter_mut().for_each(&mut put);
+                for l in 0..m.lag_terms.len() {
+                    for (_, own) in m.lag_groups(l) {
+                        let column = m.lag_terms[l].column_mut(j);
+                        let mut elsewhere = 0.0;
+                        column
+                            .into_iter()
+                            .zip(own)
+                            .for_each(|(x, own)| put(if own { x } else { &mut elsewhere }));
+                    }
                 }
             }
         }
+        // became Roger's above
+        Model::MinimumState(_) => {}
         Model::DiscreteLaguerre(m) => {
             let all = m.coefficients.iter_mut().flat_map(|c| c.iter_mut());
             all.for_each(&mut put);

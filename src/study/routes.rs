@@ -7,7 +7,7 @@
 
 use super::onsets::coupled;
 use super::{Deck, Study};
-use crate::aerodynamics::{AerodynamicModel, FlatPlate, RationalModel, Realization};
+use crate::aerodynamics::{AerodynamicModel, FlatPlate, Lags, RationalModel, Realization};
 use crate::error::Result;
 use crate::flutter::{
     FlutterCurves, FlutterSearch, ModeAtOnset, OnsetMethod, SanityLines, classify,
@@ -380,7 +380,7 @@ pub fn low_frequency_limit(
         a1: g.map(|z| z.re),
         a2: g.map(|z| z.im / k.full_width()),
         a3: DMatrix::zeros(n, n),
-        lags: Vec::new(),
+        lags: Lags::Shared(Vec::new()),
         lag_terms: Vec::new(),
     })
 }
@@ -401,7 +401,7 @@ fn steady_flat_plate() -> RationalModel {
         ],
     );
     plate.a3 = DMatrix::zeros(2, 2);
-    plate.lags.clear();
+    plate.lags = Lags::Shared(Vec::new());
     plate.lag_terms.clear();
     plate
 }

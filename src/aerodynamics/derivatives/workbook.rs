@@ -103,10 +103,7 @@ fn notes(book: &mut Xlsx<std::io::BufReader<std::fs::File>>) -> Result<BTreeMap<
 }
 
 /// What the notes and the caller say of the convention; when neither says anything, it is NTNU's, this project's own.
-fn convention_of(
-    stated: StatedConvention,
-    notes: &BTreeMap<String, String>,
-) -> Result<Convention> {
+fn convention_of(stated: StatedConvention, notes: &BTreeMap<String, String>) -> Result<Convention> {
     let mut file = StatedConvention {
         notation: parse_note(notes, "notation")?,
         argument: parse_note(notes, "argument")?,
@@ -171,7 +168,11 @@ fn read_sheets(
     if held.is_empty() {
         let found = format!("`{}`", titles(&sheets[2].0).join("`, `"));
         let expected = format!("columns named {}", convention.notation.names());
-        return Err(Error::input(format!("sheet {}, first row", DERIVATIVES.0), expected, found));
+        return Err(Error::input(
+            format!("sheet {}, first row", DERIVATIVES.0),
+            expected,
+            found,
+        ));
     }
     let columns = |i: usize| read_columns(&sheets[i].0, sheets[i].1, &held, convention);
     let (speeds, arguments, values) = (columns(0)?, columns(1)?, columns(2)?);

@@ -162,7 +162,7 @@ fn a_stated_convention_is_obeyed() {
         }
     }
     let polimi = StatedConvention::notation(Notation::Polimi);
-    let message = workbook_convention(polimi).unwrap_err().to_string();
+    let message = refused("workbook.xlsx", &options(polimi));
     assert!(
         message.starts_with("argument: expected it stated"),
         "{message}"

@@ -72,6 +72,21 @@ impl RationalModel {
         Ok(())
     }
 
+    /// The different values of the `l`-th lag, each with the forces (rows) that have it: one for shared lags.
+    pub fn lag_groups(&self, l: usize) -> Vec<(f64, Vec<bool>)> {
+        let mut groups: Vec<(f64, Vec<bool>)> = Vec::new();
+        for i in 0..self.dofs.len() {
+            let lag = self.lags.of_force(i)[l];
+            let at = groups.iter().position(|(d, _)| *d == lag);
+            let at = at.unwrap_or_else(|| {
+                groups.push((lag, vec![false; self.dofs.len()]));
+                groups.len() - 1
+            });
+            groups[at].1[i] = true;
+        }
+        groups
+    }
+
     /// The flat plate with R. T. Jones's approximation of Theodorsen's function,
     /// `C(k) ≈ 1 − 0.165 p/(p + 0.091) − 0.335 p/(p + 0.6)` (NACA Report 681, 1940): exact as a rational function.
     pub fn jones_flat_plate() -> Self {

@@ -1,13 +1,13 @@
 //! `aerodeck derivatives convert`: the same derivatives in another notation.
 
 use super::TableArgs;
-use crate::aerodynamics::derivatives::write_csv_in;
+use crate::aerodynamics::derivatives::{workbook_bytes_in, write_csv_in};
 use crate::cli::answer::Answer;
 use crate::cli::output::{OutputDir, list};
 use crate::error::{Error, Result};
 use std::path::{Path, PathBuf};
 
-/// Write a table of derivatives in another notation, argument or axes; the header of the result states them
+/// Write a table of derivatives in another notation, argument or axes; the result states them
 ///
 /// Example: aerodeck derivatives convert LN21-5200 polimi.csv --to polimi
 #[derive(clap::Args)]
@@ -15,27 +15,31 @@ use std::path::{Path, PathBuf};
 pub struct Args {
     #[command(flatten)]
     table: TableArgs,
-    /// The result (.csv).
+    /// The result (.csv, .xlsx).
     out: PathBuf,
 }
 
 /// Runs the command.
 pub fn run(args: &Args) -> Result<Answer> {
-    let is_csv = args
+    let extension = args
         .out
         .extension()
-        .is_some_and(|e| e.eq_ignore_ascii_case("csv"));
-    let name = args.out.file_name().filter(|_| is_csv).ok_or_else(|| {
-        Error::input(
-            "out",
-            "a file name that ends in .csv",
-            args.out.display().to_string(),
-        )
+        .map(|e| e.to_string_lossy().to_lowercase());
+    let is_workbook = extension.as_deref() == Some("xlsx");
+    let known = is_workbook || extension.as_deref() == Some("csv");
+    let name = args.out.file_name().filter(|_| known).ok_or_else(|| {
+        let found = args.out.display().to_string();
+        Error::input("out", "a file name that ends in .csv or .xlsx", found)
     })?;
     let (table, from) = args.table.read()?;
     let to = args.table.target();
-    let mut bytes = Vec::new();
-    write_csv_in(&table, &to, &mut bytes).map_err(|e| Error::io(&args.out, e))?;
+    let bytes = if is_workbook {
+        workbook_bytes_in(&table, &to)?
+    } else {
+        let mut bytes = Vec::new();
+        write_csv_in(&table, &to, &mut bytes).map_err(|e| Error::io(&args.out, e))?;
+        bytes
+    };
     let folder = match args.out.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
         _ => Path::new("."),

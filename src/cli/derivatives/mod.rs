@@ -9,7 +9,7 @@ use crate::aerodynamics::derivatives::notation::{
     Argument, Axes, Convention, Notation, StatedConvention,
 };
 use crate::aerodynamics::derivatives::{
-    DerivativeTable, WorkbookOptions, embedded, read_csv_in, read_workbook, workbook_convention,
+    DerivativeTable, WorkbookOptions, embedded, read_csv_in, read_workbook_in,
 };
 use crate::error::Result;
 use clap::Subcommand;
@@ -98,15 +98,14 @@ impl TableArgs {
     }
 
     fn read_workbook(&self, stated: StatedConvention) -> Result<(DerivativeTable, Convention)> {
-        let convention = workbook_convention(stated).map_err(|e| e.in_file(&self.table))?;
         let mut options = WorkbookOptions {
             width_m: self.width_m,
-            convention,
+            convention: stated,
             ..WorkbookOptions::default()
         };
         if !self.frequencies_hz.is_empty() {
             options.frequencies_hz.clone_from(&self.frequencies_hz);
         }
-        Ok((read_workbook(&self.table, &options)?, convention))
+        read_workbook_in(&self.table, &options)
     }
 }
