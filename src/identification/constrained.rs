@@ -156,7 +156,7 @@ impl LinearProblem {
             .fill_with_identity();
         let (q, r) = wide.qr().unpack();
         let triangle = r.view((0, 0), (m, m)).into_owned();
-        if (0..m).any(|i| !(triangle[(i, i)].abs() > RANK_TOLERANCE)) {
+        if !(0..m).all(|i| triangle[(i, i)].abs() > RANK_TOLERANCE) {
             return Err(failed());
         }
         let along = triangle

@@ -84,3 +84,47 @@ pub(super) fn replace(model: &mut Model, values: &[f64]) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::aerodynamics::{AerodynamicModel, Lags, MinimumStateModel, RationalModel};
+    use crate::units::ReducedFrequency;
+    use nalgebra::DMatrix;
+
+    /// Own lags and minimum states survive the way through a row of numbers, also one that is changed: the model moves as
+    /// its linear combination says.
+    #[test]
+    fn newer_rational_forms_are_rows_of_numbers() {
+        let roger = RationalModel::jones_flat_plate();
+        let mut own = roger.clone();
+        own.lags = Lags::PerForce(vec![vec![0.08, 0.7], vec![0.08, 0.5]]);
+        let small = MinimumStateModel {
+            dofs: roger.dofs.clone(),
+            a1: roger.a1.clone(),
+            a2: roger.a2.clone(),
+            a3: roger.a3.clone(),
+            lags: vec![0.15, 0.7],
+            d: DMatrix::from_row_slice(2, 2, &[1.0, -0.5, 0.1, 0.6]),
+            e: DMatrix::from_row_slice(2, 2, &[0.3, 1.0, -1.2, 0.4]),
+        };
+        let k = ReducedFrequency::from_full_width(0.3);
+        for model in [Model::Rational(own), Model::MinimumState(small)] {
+            let (mut values, names) = of(&model);
+            assert_eq!(values.len(), names.len());
+            let mut same = model.clone();
+            replace(&mut same, &values);
+            let before = model.transfer(k).unwrap();
+            // the same terms in another order
+            assert!((same.transfer(k).unwrap() - &before).camax() < 1e-14);
+            let at = names
+                .iter()
+                .position(|n| n == "torsion.vertical.a4")
+                .unwrap();
+            values[at] += 0.1;
+            replace(&mut same, &values);
+            let moved = same.transfer(k).unwrap() - before;
+            assert!(moved[(1, 0)].norm() > 0.05 && moved[(0, 0)].norm() < 1e-14);
+        }
+    }
+}

@@ -11,6 +11,9 @@ use crate::error::{Error, Result};
 use rust_xlsxwriter::{Workbook, Worksheet, XlsxError};
 use std::path::Path;
 
+/// One number of a test point.
+type Number = fn(&ExpressedPoint) -> f64;
+
 /// The bytes of a workbook with the figures of `table`, in this project's convention, which is NTNU's.
 ///
 /// # Errors
@@ -38,7 +41,7 @@ pub fn workbook_bytes_in(table: &DerivativeTable, convention: &Convention) -> Re
     let failed = |e: XlsxError| Error::Numerical(format!("workbook: {e}"));
     let mut book = Workbook::new();
     let expressed = convention.express(table);
-    let columns: [(_, fn(&ExpressedPoint) -> f64); 3] = [
+    let columns: [(_, Number); 3] = [
         (SPEEDS, |p| p.mean_speed_m_s.unwrap_or(f64::NAN)),
         (REDUCED_VELOCITIES, |p| p.argument),
         (DERIVATIVES, |p| p.value),
@@ -65,7 +68,7 @@ fn write_sheet(
     name: &str,
     prefix: &str,
     table: &ExpressedTable,
-    value: fn(&ExpressedPoint) -> f64,
+    value: Number,
 ) -> std::result::Result<(), XlsxError> {
     sheet.set_name(name)?;
     for (column, derivative) in (0_u16..).zip(&table.derivatives) {
