@@ -6,6 +6,7 @@
 
 mod buffeting;
 mod decks;
+mod first_order;
 mod fits;
 mod flat_plate;
 mod jones;
@@ -14,6 +15,7 @@ mod table;
 #[cfg(feature = "campaigns")]
 mod user_case;
 
+pub use first_order::{FirstOrderExample, FirstOrderResults, SampledTransfer};
 pub use table::validation_table;
 #[cfg(feature = "campaigns")]
 pub use user_case::{CASE_SCHEMA, Quantity, UserAerodynamics, UserCase, UserFigure};

@@ -12,7 +12,8 @@ use serde::{Deserialize, Serialize};
 /// Version of the file layout of models that need nothing newer, so that programs of that version read them; raised when
 /// a field of all files is added or changed.
 pub const SCHEMA_VERSION: u32 = 1;
-/// Newest version that is read and written. Version 2: rational functions with lags of each force, minimum-state form.
+/// Newest version that is read and written. Version 2: discrete Laguerre filters of single transfer functions, rational
+/// functions with lags of each force, minimum-state form.
 pub const NEWEST_SCHEMA_VERSION: u32 = 2;
 
 /// The models that can be saved and exported.
@@ -45,6 +46,7 @@ impl Model {
         match self {
             Self::Rational(m) if matches!(m.lags, Lags::PerForce(_)) => NEWEST_SCHEMA_VERSION,
             Self::MinimumState(_) => NEWEST_SCHEMA_VERSION,
+            Self::DiscreteLaguerre(m) if m.shared_parameters().is_none() => NEWEST_SCHEMA_VERSION,
             _ => SCHEMA_VERSION,
         }
     }
@@ -275,6 +277,31 @@ mod tests {
         let again = TrainedModel::from_json(&text).unwrap();
         assert_eq!(model, again);
         assert_eq!(text, again.to_json().unwrap());
+    }
+
+    /// Filters of single transfer functions need the newer layout and survive it; shared ones stay in the older one.
+    #[test]
+    fn own_filters_take_the_newer_layout() {
+        let shared = DiscreteLaguerre::shared(
+            Dof::TWO.to_vec(),
+            0.6,
+            0.0817,
+            vec![nalgebra::DMatrix::from_element(2, 3, 0.1); 2],
+            vec![0.0; 2],
+        );
+        let mut own = shared.clone();
+        own.terms[1].alpha = 0.8;
+        for (model, version) in [(shared, 1), (own, 2)] {
+            let mut trained = jones();
+            trained.model = Model::DiscreteLaguerre(model);
+            assert_eq!(trained.model.schema_version(), version);
+            let error = trained.to_json().err().map(|e| e.to_string());
+            let expected = "schema_version: expected at least 2 for this model, found 1";
+            assert_eq!(error.as_deref(), (version == 2).then_some(expected));
+            trained.schema_version = version;
+            let again = TrainedModel::from_json(&trained.to_json().unwrap()).unwrap();
+            assert_eq!(again, trained);
+        }
     }
 
     #[test]

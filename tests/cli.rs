@@ -313,6 +313,8 @@ fn every_command_explains_itself_with_an_example() {
         "fmu check",
         "validate",
         "thesis",
+        "compare decks",
+        "compare models",
     ] {
         let mut arguments: Vec<&str> = command.split(' ').collect();
         arguments.push("--help");

@@ -247,6 +247,38 @@ fn the_flat_plate_as_a_deck() {
     );
 }
 
+/// Static coefficients in the study: the thin plate of quasi-steady theory (without its arms), which is not far above
+/// the limit of its derivatives.
+#[test]
+fn static_coefficients_bring_a_row() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    let study = aerodeck::study::demo_study_text().replace(
+        "[flutter]",
+        "[coefficients]\nsource = \"flat plate\"\n\n[flutter]",
+    );
+    fs::write(at.join("study.toml"), &study).unwrap();
+    for command in ["tunnel", "train"] {
+        succeeds(at, &[command, "study.toml"]);
+    }
+    let said = succeeds(at, &["flutter", "study.toml", "--all", "--json"]);
+    let json: Value = serde_json::from_str(&said).unwrap();
+    let theory = route(&json, "quasi-steady theory", "eigenvalues");
+    assert_eq!(theory["low_frequency_limit"], true);
+    // slopes 2π and π/2: static divergence as in closed form for the plate, 50.343 m/s, where it is reached
+    if let Some(divergence) = theory["divergence_m_s"].as_f64() {
+        near(divergence, 50.343, 0.01);
+    }
+    let plate = route(&json, "flat plate, same structure", "determinant");
+    near(plate["divergence_m_s"].as_f64().unwrap(), 50.343, 5e-4);
+    fs::write(
+        at.join("study.toml"),
+        study.replace("source = \"flat plate\"", "source = \"none\""),
+    )
+    .unwrap();
+    refused(at, &["flutter", "study.toml", "--all"], &["none"]);
+}
+
 const PLAN: &str = "schema = 1\nmodel = \"model.json\"\nsamples = 3000\nspeed_max_m_s = 60.0\ndesign_speed_m_s = 35.0\n\
     [aerodynamics]\ncovariance = \"fits/laguerre.json\"\n\
     [[parameter]]\nname = \"torsion.damping_ratio\"\n\

@@ -14,16 +14,16 @@ fn jones() -> Stepper {
 
 fn discrete() -> Stepper {
     let structure = SectionModel::table_4_1().structure().unwrap();
-    let model = DiscreteLaguerre {
-        dofs: Dof::TWO.to_vec(),
-        alpha: 0.6,
-        delta_s: 0.08,
-        coefficients: vec![
+    let model = DiscreteLaguerre::shared(
+        Dof::TWO.to_vec(),
+        0.6,
+        0.08,
+        vec![
             DMatrix::from_row_slice(2, 3, &[-2.0, 0.5, 0.8, -0.4, 0.1, 0.1]),
             DMatrix::from_row_slice(2, 3, &[4.0, 0.6, -0.3, 1.0, 0.2, -0.1]),
         ],
-        static_term: vec![0.0; 2],
-    };
+        vec![0.0; 2],
+    );
     Stepper::new(CoupledSection::new(structure, model.realize().unwrap()).unwrap())
 }
 

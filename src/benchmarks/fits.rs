@@ -3,7 +3,7 @@
 use super::jones::{by_eigenvalues, couple};
 use super::{Case, Figure};
 use crate::aerodynamics::FlatPlate;
-use crate::aerodynamics::laguerre::{alpha_lower_bound, impulse_response};
+use crate::aerodynamics::laguerre::{alpha_lower_bound, alpha_upper_bound, impulse_response};
 use crate::error::{Error, Result};
 use crate::identification::{FeedThrough, Form, FrequencyFit, PoleSearch, fit_table, sample_model};
 use crate::section::{Dof, SectionModel};
@@ -16,11 +16,19 @@ const THESIS_2_26: &str = "thesis, section 2.5, example (2.26) with α = 0.889";
 pub const CASES: &[Case] = &[
     Case {
         name: "alpha-guideline",
-        what: "Discrete Laguerre filters: lower bound of α by (2.36), memory of the filters",
+        what: "Discrete Laguerre filters: bounds of α by (2.36) and (2.37), memory of the filters",
         figures: &[
             Figure::new("bound of α for 3 Hz sampled at 200 Hz", 0.8283, 4, ""),
             Figure::new("bound of α for 2.5 Hz sampled at 200 Hz", 0.8547, 4, ""),
             Figure::new("|g₃| at sample 176, α = 0.889", 0.0096, 4, "").published(THESIS_2_26),
+            Figure::new(
+                "upper bound of α for a memory of 176 samples, filters up to g₃",
+                0.889,
+                3,
+                "",
+            )
+            .published(THESIS_2_26)
+            .within(0.001, "printed α puts |g₃| at 0.0096, the bound at 0.01"),
         ],
         compute: guideline,
     },
@@ -49,6 +57,7 @@ fn guideline() -> Result<Vec<f64>> {
         alpha_lower_bound(3.0, 200.0),
         alpha_lower_bound(2.5, 200.0),
         g[(3, 176)].abs(),
+        alpha_upper_bound(4, 176),
     ])
 }
 

@@ -5,6 +5,7 @@ mod answer;
 mod buffeting;
 mod campaign;
 mod common;
+mod compare;
 mod coverage;
 mod demo;
 mod derivatives;
@@ -12,6 +13,7 @@ mod flutter;
 mod fmu;
 mod monte_carlo;
 mod output;
+mod process;
 mod progress;
 mod quasi_steady;
 mod routes;
@@ -57,6 +59,7 @@ enum Command {
     Tunnel(tunnel::Args),
     #[command(subcommand)]
     Campaign(campaign::Campaign),
+    Process(process::Args),
     Train(train::Args),
     Flutter(flutter::Args),
     MonteCarlo(monte_carlo::Args),
@@ -71,6 +74,8 @@ enum Command {
     Thesis(thesis::Args),
     Select(select::Args),
     Coverage(coverage::Args),
+    #[command(subcommand)]
+    Compare(compare::Compare),
 }
 
 /// Runs the command line of this process.
@@ -100,6 +105,7 @@ fn run(command: &Command, progress: &progress::Progress) -> Result<Answer> {
         Command::Study(args) => study::run(args, progress),
         Command::Tunnel(args) => tunnel::run(args, progress),
         Command::Campaign(command) => campaign::run(command, progress),
+        Command::Process(args) => process::run(args, progress),
         Command::Train(args) => train::run(args, progress),
         Command::Flutter(args) => flutter::run(args, progress),
         Command::MonteCarlo(args) => monte_carlo::run(args, progress),
@@ -112,6 +118,7 @@ fn run(command: &Command, progress: &progress::Progress) -> Result<Answer> {
         Command::Thesis(args) => thesis::run(args, progress),
         Command::Select(args) => select::run(args, progress),
         Command::Coverage(args) => coverage::run(args, progress),
+        Command::Compare(command) => compare::run(command, progress),
     }
 }
 

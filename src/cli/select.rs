@@ -225,14 +225,14 @@ fn figures(
     let mut maps = Vec::new();
     type Pick = fn(&CellMetrics) -> f64;
     let kinds: [(&str, Pick); 3] = [
-        ("Phase M_φ", |m| m.phase),
-        ("Peak M_p", |m| m.peak),
-        ("Magnitude, warped M_m", |m| m.magnitude_warped),
+        ("Phase", |m| m.phase),
+        ("Peak", |m| m.peak),
+        ("Warped magnitude", |m| m.magnitude_warped),
     ];
     for grid in metrics {
         for (name, pick) in kinds {
             let title = format!(
-                "{name}: {} force and motion, {:.2} Hz",
+                "{name} metric: {} force and motion, {:.2} Hz",
                 grid.force.name(),
                 grid.frequency_hz
             );

@@ -163,7 +163,7 @@ impl Problem<'_> {
         let omega = root_at(k)?.re;
         let s = self.structure;
         let speed = omega * s.width_m / k;
-        let shape = null_vector(&impedance(s, self.model, speed, omega)?)?;
+        let shape = null_vector(s, &impedance(s, self.model, speed, omega)?, omega)?;
         let (method, at) = (OnsetMethod::Determinant, (speed, omega));
         let mut onset = Onset::new(name, method, s, at, &shape, branch);
         onset.damping_slope_s_m = damping_slope(s, self.model, speed, omega);
@@ -227,20 +227,29 @@ impl AerodynamicModel for OneDof<'_> {
     }
 }
 
-/// Right singular vector of the smallest singular value; rows are scaled first, forces and moments have different units.
-pub(super) fn null_vector(m: &DMatrix<Complex<f64>>) -> Result<DVector<Complex<f64>>> {
-    let mut scaled = m.clone();
-    for mut row in scaled.row_iter_mut() {
-        let size = row.norm();
-        if size > 0.0 {
-            row.unscale_mut(size);
-        }
-    }
+/// The motion (m, rad) that the impedance at `omega` resists least: the right singular vector of the smallest singular
+/// value. Rows and columns are scaled by the root of the typical impedance of each degree of freedom, `K_ii + ω² M_ii`,
+/// since heave and rotation have different units; a row by its own size would hide a degree of freedom that is alone.
+pub(super) fn null_vector(
+    structure: &Structure,
+    impedance: &DMatrix<Complex<f64>>,
+    omega: f64,
+) -> Result<DVector<Complex<f64>>> {
+    let scale = |i: usize| {
+        let typical = structure.stiffness[(i, i)] + omega * omega * structure.mass[(i, i)];
+        typical.sqrt().recip()
+    };
+    let n = impedance.nrows();
+    let scaled = DMatrix::from_fn(n, n, |i, j| impedance[(i, j)] * (scale(i) * scale(j)));
     let singular = || Error::Numerical("determinant: no mode shape at the onset".into());
     let svd = scaled
         .try_svd(false, true, f64::EPSILON, MAX_SCHUR_SWEEPS)
         .ok_or_else(singular)?;
     let v_t = svd.v_t.ok_or_else(singular)?;
     let smallest = svd.singular_values.imin();
-    Ok(v_t.row(smallest).adjoint())
+    let mut shape = v_t.row(smallest).adjoint();
+    for (i, z) in shape.iter_mut().enumerate() {
+        *z *= Complex::from(scale(i));
+    }
+    Ok(shape)
 }

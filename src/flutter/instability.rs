@@ -88,7 +88,8 @@ pub fn classify(
 ) -> Result<ModeAtOnset> {
     let k = onset.reduced_frequency;
     let omega = k.circular(structure.width_m, onset.speed_m_s);
-    let shape = null_vector(&impedance(structure, model, onset.speed_m_s, omega)?)?;
+    let resistance = impedance(structure, model, onset.speed_m_s, omega)?;
+    let shape = null_vector(structure, &resistance, omega)?;
     let velocity = shape.map(|z| z * Complex::new(0.0, omega));
     let momentum = structure.mass.map(|x| Complex::new(x, 0.0)) * &velocity;
     let energy: Vec<f64> = (0..shape.len())

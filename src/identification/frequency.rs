@@ -5,6 +5,8 @@ use super::degenerate::note_lags;
 use super::frequency_options::{FrequencyFit, FrequencyWeights};
 use super::minimum_state::fit_minimum_state;
 use super::options::Form;
+use super::own::{EntryForm, entry_forms, search_for, searched_together};
+use super::records::describe_own;
 use super::report::{EntryReport, FitReport, SearchReport, variance};
 use super::samples::{Entry, sort_by_entry, state_wishes};
 use super::search::{Bounds, search_poles};
@@ -51,8 +53,9 @@ pub fn fit_table(
     } = fitted;
     let mut report = FitReport {
         method: format!(
-            "{}, fitted to {} numbers of the transfer matrix",
+            "{}{}, fitted to {} numbers of the transfer matrix",
             fit.form.describe(),
+            describe_own(fit.own.len()),
             samples.len()
         ),
         weights: describe(fit.weights).into(),
@@ -63,6 +66,8 @@ pub fn fit_table(
         search,
         orders: Vec::new(),
         alpha_guideline: None,
+        static_terms: Vec::new(),
+        memory: Vec::new(),
         covariance_assumption:
             "weighted residuals are independent and of one variance; the poles count as known"
                 .into(),
@@ -87,7 +92,8 @@ fn fit_linear(
     fit: &FrequencyFit,
     tested: ReducedFrequencyRange,
 ) -> Result<Fitted> {
-    let (poles, search) = choose_poles(entries, fit, tested)?;
+    let forms = entry_forms(dofs, &fit.form, &fit.poles, &fit.own)?;
+    let (poles, search) = choose_poles(entries, &forms, fit, tested)?;
     let mut reports = Vec::with_capacity(entries.len());
     let mut coefficients = Vec::with_capacity(entries.len());
     for (entry, poles) in entries.iter().zip(&poles) {
@@ -118,48 +124,67 @@ fn describe(weights: FrequencyWeights) -> &'static str {
 /// Poles of every entry, one a filter, and how they were found.
 fn choose_poles(
     entries: &[Entry],
+    forms: &[EntryForm],
     fit: &FrequencyFit,
     tested: ReducedFrequencyRange,
 ) -> Result<(Vec<Vec<f64>>, Vec<SearchReport>)> {
-    let form = &fit.form;
-    let n = (1..=entries.len())
-        .find(|n| n * n == entries.len())
-        .unwrap_or(1);
-    let count = form.free_poles();
-    if let Some(fixed) = &fit.poles.fixed {
-        let lists: Vec<Vec<f64>> = fixed.chunks(count).map(|list| form.expand(list)).collect();
-        if lists.len() != 1 && lists.len() != n {
-            return Err(Error::input(
-                "poles.fixed",
-                format!("{count} number(s), or {} for the {n} forces", n * count),
-                fixed.len().to_string(),
-            ));
-        }
-        let of_entry = |e: usize| lists[if lists.len() == 1 { 0 } else { e / n }].clone();
-        return Ok(((0..entries.len()).map(of_entry).collect(), Vec::new()));
+    let mut forms = forms.to_vec();
+    let mut groups = searched_together(&forms);
+    if fit.form.poles_per_force() {
+        let n = (1..=entries.len())
+            .find(|n| n * n == entries.len())
+            .unwrap_or(1);
+        state_lags_of_forces(&mut forms, fit, n)?;
+        groups = (0..n).map(|i| (i * n..(i + 1) * n).collect()).collect();
+        groups.retain(|group: &Vec<usize>| forms[group[0]].fixed.is_none());
     }
-    let bounds = Bounds::resolve(&fit.poles, tested, count)?;
-    let together = match (form.pole_per_transfer_function(), form.poles_per_force()) {
-        (true, _) => 1,
-        (_, true) => n,
-        _ => entries.len(),
-    };
-    let mut poles = Vec::new();
+    let stated = |f: &EntryForm| f.fixed.as_ref().map(|fixed| f.form.expand(fixed));
+    let mut poles: Vec<Vec<f64>> = forms
+        .iter()
+        .map(|f| stated(f).unwrap_or_default())
+        .collect();
     let mut reports = Vec::new();
-    for group in entries.chunks(together) {
-        let name = (group.len() == 1).then(|| (group[0].force, group[0].motion));
-        let residuals = |free: &[f64]| relative_residuals(group, form, &form.expand(free));
-        let mut report = search_poles(count, (&fit.poles, bounds), name, &residuals)?;
+    for members in groups {
+        let EntryForm { form, alone, .. } = &forms[members[0]];
+        let options = search_for(&fit.poles, form);
+        let bounds = Bounds::resolve(&options, tested, form.free_poles())?;
+        let group: Vec<&Entry> = members.iter().map(|&e| &entries[e]).collect();
+        let name = alone.then(|| (group[0].force, group[0].motion));
+        let residuals = |free: &[f64]| relative_residuals(&group, form, &form.expand(free));
+        let mut report = search_poles(form.free_poles(), (&options, bounds), name, &residuals)?;
         report.force = form.poles_per_force().then_some(group[0].force);
-        poles.extend(vec![form.expand(&report.chosen.poles); group.len()]);
+        for e in members {
+            poles[e] = form.expand(&report.chosen.poles);
+        }
         reports.push(report);
     }
     Ok((poles, reports))
 }
 
+/// Lags that are given: one list for all forces, or those of the forces one after the other.
+fn state_lags_of_forces(forms: &mut [EntryForm], fit: &FrequencyFit, n: usize) -> Result<()> {
+    let Some(fixed) = &fit.poles.fixed else {
+        return Ok(());
+    };
+    let count = fit.form.free_poles();
+    let lists: Vec<&[f64]> = fixed.chunks(count).collect();
+    if lists.len() != 1 && lists.len() != n {
+        return Err(Error::input(
+            "poles.fixed",
+            format!("{count} number(s), or {} for the {n} forces", n * count),
+            fixed.len().to_string(),
+        ));
+    }
+    for (e, form) in forms.iter_mut().enumerate() {
+        let list = lists[if lists.len() == 1 { 0 } else { e / n }];
+        form.fixed = Some(list.to_vec());
+    }
+    Ok(())
+}
+
 /// Weighted residuals of all entries with the best coefficients for these poles, each entry relative to its weighted
 /// data: whatever the weights, the poles do not follow the largest entry alone. The norm is the objective.
-fn relative_residuals(entries: &[Entry], form: &Form, poles: &[f64]) -> Result<DVector<f64>> {
+fn relative_residuals(entries: &[&Entry], form: &Form, poles: &[f64]) -> Result<DVector<f64>> {
     let mut all = Vec::new();
     for (entry, scale) in entries.iter().zip(shares(entries)) {
         // a ridge weighs the terms of the model themselves, else only the space counts
@@ -179,8 +204,8 @@ fn relative_residuals(entries: &[Entry], form: &Form, poles: &[f64]) -> Result<D
 
 /// What the weighted residuals of each entry are multiplied with where entries share something: its weight over its
 /// weighted size.
-pub(super) fn shares(entries: &[Entry]) -> Vec<f64> {
-    let share = |entry: &Entry| {
+pub(super) fn shares(entries: &[&Entry]) -> Vec<f64> {
+    let share = |entry: &&Entry| {
         let total = entry.total();
         let size = if total > 0.0 {
             (total * entries.len() as f64).sqrt()

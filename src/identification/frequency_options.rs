@@ -1,6 +1,7 @@
 //! What a fit to a transfer matrix is asked to do.
 
 use super::options::{Form, PoleSearch};
+use super::own::{OwnFilters, validate_own};
 use crate::error::{Error, Result, non_negative};
 use crate::section::Dof;
 use nalgebra::DMatrix;
@@ -64,6 +65,9 @@ pub struct FrequencyFit {
     pub poles: PoleSearch,
     /// Weighting of the points of an entry.
     pub weights: FrequencyWeights,
+    /// Transfer functions with a number of filters or poles of their own.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub own: Vec<OwnFilters>,
     /// Weight of each entry besides, rows and columns in the order of the degrees of freedom; left out, one. It matters
     /// where entries share something: poles, or the states of the minimum-state form.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -84,6 +88,7 @@ impl FrequencyFit {
     pub fn validate(&self) -> Result<()> {
         self.form.validate()?;
         self.poles.validate(&self.form)?;
+        validate_own(&self.form, &self.own)?;
         non_negative("regularization", self.regularization)?;
         for row in self.entry_weights.iter().flatten() {
             for weight in row {

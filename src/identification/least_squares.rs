@@ -206,6 +206,23 @@ impl Factor {
         self.rows
     }
 
+    /// The system of some of its columns, in the given order.
+    pub(crate) fn select(&self, columns: &[usize]) -> Self {
+        let sides = self.qtb.ncols();
+        let mut qr = StreamingQr::new(columns.len(), sides);
+        for i in 0..self.columns() {
+            let regressors = columns.iter().map(|&c| self.r[(i, c)]);
+            let row: Vec<f64> = regressors.chain(self.qtb.row(i).iter().copied()).collect();
+            qr.push_row(&row);
+        }
+        let mut factor = qr.finish();
+        factor.rows = self.rows;
+        for (rest, before) in factor.rest.iter_mut().zip(&self.rest) {
+            *rest += before;
+        }
+        factor
+    }
+
     /// First of the `leading` columns that the data do not determine: zero, or a combination of those before it.
     pub fn undetermined(&self, leading: usize) -> Option<usize> {
         (0..leading).find(|&j| {
@@ -349,6 +366,12 @@ mod tests {
                 assert!((factor.residual_sum(leading, m) - residual).abs() < 1e-10 * residual);
             }
         }
+        let two = factor.select(&[4, 1]);
+        let some = DMatrix::from_columns(&[a.column(4), a.column(1)]);
+        let dense = some.clone().svd(true, true).solve(&b, 0.0).unwrap();
+        assert!((two.solve(2).unwrap() - &dense).amax() < 1e-12);
+        let residual = (b.column(1) - &some * dense.column(1)).norm_squared();
+        assert!((two.residual_sum(2, 1) / residual - 1.0).abs() < 1e-10);
         let gram = (a.transpose() * &a).try_inverse().unwrap();
         assert!((factor.inverse_gram(6).unwrap() - gram).amax() < 1e-12);
     }

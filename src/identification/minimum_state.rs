@@ -54,7 +54,7 @@ pub(super) fn fit_minimum_state(
     let states = fit.form.filters();
     let task = Task {
         entries,
-        shares: shares(entries),
+        shares: shares(&entries.iter().collect::<Vec<_>>()),
         n: dofs.len(),
         states,
         feed: fit.form.feed_through(),

@@ -1,6 +1,8 @@
 //! From records and tables to models: regressors, fits, reports.
 
 mod basis;
+#[cfg(test)]
+mod broadband_tests;
 mod constrained;
 #[cfg(test)]
 mod deck_tests;
@@ -15,6 +17,7 @@ mod grid;
 mod least_squares;
 mod minimum_state;
 mod options;
+mod own;
 mod rational_forms;
 mod records;
 mod report;
@@ -23,18 +26,21 @@ mod search;
 #[cfg(test)]
 mod testing;
 mod time;
+#[cfg(test)]
+mod training_tests;
 mod uncertainty;
 
-pub use discrete::fit_discrete;
+pub use discrete::{DiscreteFit, fit_discrete};
 pub use frequency::fit_table;
 pub use frequency_options::{FrequencyFit, FrequencyWeights, QuasiSteadyLimit};
 pub use grid::{CellFit, Grid, GridAxis, StretchLabel};
 pub use least_squares::{Factor, StreamingQr};
-pub use options::{DiscreteFit, FeedThrough, Form, PoleSearch, TimeFit, TimeWeights};
+pub use options::{FeedThrough, Form, PoleSearch, TimeFit, TimeWeights};
+pub use own::{OwnDecay, OwnFilters, StaticTerm};
 pub use records::{OnProgress, Progress, fit_records};
 pub use report::{
     AlphaGuideline, CANCELLATION_LIMIT, CONDITION_LIMIT, Coefficient, EntryReport, FitReport,
-    OrderReport, SearchPoint, SearchReport,
+    MemoryReport, OrderReport, SearchPoint, SearchReport, StaticReport,
 };
 pub use samples::sample_model;
 pub use uncertainty::{

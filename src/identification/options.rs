@@ -1,6 +1,7 @@
 //! What a fit is asked to do. The fields are keys of a study file; units are in their names, the rest is
 //! dimensionless.
 
+use super::own::{OwnFilters, StaticTerm, validate_own};
 use crate::error::{Error, Result, positive};
 use serde::{Deserialize, Serialize};
 
@@ -27,6 +28,14 @@ impl Default for FeedThrough {
 }
 
 impl FeedThrough {
+    pub(crate) fn none() -> Self {
+        Self {
+            e0: false,
+            e1: false,
+            e2: false,
+        }
+    }
+
     /// Derivative orders that are on.
     pub(crate) fn orders(self) -> impl Iterator<Item = usize> {
         [self.e0, self.e1, self.e2]
@@ -211,7 +220,19 @@ impl Form {
         }
     }
 
-    pub(super) fn validate(&self) -> Result<()> {
+    /// The same with another number of filters; `None` for rational functions, whose lags are common to all entries.
+    pub(crate) fn with_filters(&self, count: usize) -> Option<Self> {
+        let mut form = self.clone();
+        match &mut form {
+            Self::Laguerre { filters, .. } | Self::TakenakaMalmquist { filters, .. } => {
+                *filters = count;
+            }
+            _ => return None,
+        }
+        Some(form)
+    }
+
+    pub(crate) fn validate(&self) -> Result<()> {
         at_least_one("form.filters (or form.lags)", self.filters())
     }
 }
@@ -262,7 +283,7 @@ impl PoleSearch {
         }
     }
 
-    pub(super) fn validate(&self, form: &Form) -> Result<()> {
+    pub(crate) fn validate(&self, form: &Form) -> Result<()> {
         for (key, list) in [("fixed", &self.fixed), ("start", &self.start)] {
             let Some(list) = list else { continue };
             let place = format!("poles.{key}");
@@ -342,6 +363,11 @@ pub struct TimeFit {
     pub low_pass_hz: Option<f64>,
     /// Seconds at the start of each record that only settle the filters.
     pub discard_s: f64,
+    /// What is done about a constant in the forces.
+    pub static_term: StaticTerm,
+    /// Transfer functions with a number of filters or poles of their own.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub own: Vec<OwnFilters>,
 }
 
 impl TimeFit {
@@ -352,6 +378,7 @@ impl TimeFit {
     pub fn validate(&self) -> Result<()> {
         self.form.validate_for_records()?;
         self.poles.validate(&self.form)?;
+        validate_own(&self.form, &self.own)?;
         if let Some(cutoff) = self.low_pass_hz {
             positive("low_pass_hz", cutoff)?;
         }
@@ -359,49 +386,7 @@ impl TimeFit {
     }
 }
 
-/// Fit of the thesis's discrete Laguerre model to records.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct DiscreteFit {
-    /// Number of filters `L`.
-    pub filters: usize,
-    /// Decay factor, `0 < α < 1`.
-    pub alpha: f64,
-    /// Weighting; the thesis has none.
-    pub weights: TimeWeights,
-}
-
-impl Default for DiscreteFit {
-    /// The thesis's choice: three filters, α = 0.6.
-    fn default() -> Self {
-        Self {
-            filters: 3,
-            alpha: 0.6,
-            weights: TimeWeights::None,
-        }
-    }
-}
-
-impl DiscreteFit {
-    /// Checks every value.
-    ///
-    /// # Errors
-    /// [`Error::Input`] naming the key.
-    pub fn validate(&self) -> Result<()> {
-        at_least_one("filters", self.filters)?;
-        if self.alpha > 0.0 && self.alpha < 1.0 {
-            Ok(())
-        } else {
-            Err(Error::input(
-                "alpha",
-                "0 < alpha < 1",
-                self.alpha.to_string(),
-            ))
-        }
-    }
-}
-
-fn at_least_one(place: &str, count: usize) -> Result<()> {
+pub(crate) fn at_least_one(place: &str, count: usize) -> Result<()> {
     if count == 0 {
         return Err(Error::input(place, "at least 1", "0"));
     }

@@ -1,19 +1,24 @@
 //! Continuous models fitted to forced-vibration records.
 
+mod fitted;
+
 use super::basis::{Basis, assemble};
 use super::degenerate::note_lags;
-use super::least_squares::Factor;
-use super::options::{Form, TimeFit, TimeWeights};
-use super::report::{EntryReport, FitReport, OrderReport, enough_rows, variance};
-use super::time::accumulate::{Factored, Layout, Plan, accumulate};
+use super::options::{TimeFit, TimeWeights};
+use super::own::{EntryForm, StaticTerm, entry_forms};
+use super::report::{FitReport, StaticReport, variance};
+use super::time::accumulate::{Accumulated, Plan, accumulate};
 use super::time::filters::{ContinuousColumns, NOISE_BANDWIDTH};
+use super::time::layout::Layout;
 use super::time::search::choose_poles;
+use super::time::selection::Selection;
 use super::time::slices::{Scaled, scale_all};
 use crate::error::{Error, Result};
 use crate::section::Dof;
 use crate::trained_model::Model;
 use crate::units::ReducedFrequencyRange;
 use crate::wind_tunnel::RecordSource;
+use fitted::Fitted;
 
 /// Default cut-off of the low-pass over the sampling frequency.
 const CUTOFF_OVER_SAMPLING: f64 = 1.0 / 20.0;
@@ -48,33 +53,42 @@ pub fn fit_records(
     progress: OnProgress<'_>,
 ) -> Result<(Model, FitReport)> {
     fit.validate()?;
-    let (dofs, scaled) = scale_all(records)?;
+    let (dofs, mut scaled) = scale_all(records)?;
+    let means = removed_means(fit.static_term, &dofs, &mut scaled)?;
     let tested = tested_range(&scaled)?;
+    let entries = entry_forms(&dofs, &fit.form, &fit.poles, &fit.own)?;
     let task = Task {
         fit,
         dofs: &dofs,
         records: &scaled,
+        entries: &entries,
         progress,
     };
     let (poles, search) = choose_poles(&task, tested)?;
-    let chains: Vec<Vec<f64>> = poles.iter().map(|free| fit.form.expand(free)).collect();
-    let fitted = Fitted::new(&task, chains)?;
+    let chains = poles.iter().zip(&entries).map(|(p, e)| e.form.expand(p));
+    let fitted = Fitted::new(&task, chains.collect())?;
     let model = assemble(&fit.form, &dofs, &fitted.poles(), &fitted.coefficients()?)?;
-    let factored = &fitted.systems[0];
     let mut report = FitReport {
         method: format!(
-            "{}, fitted to {} record(s) in the time domain",
+            "{}{}, fitted to {} record(s) in the time domain",
             fit.form.describe(),
+            describe_own(fit.own.len()),
             records.len()
         ),
         weights: describe(fit.weights).into(),
-        samples: factored.whole[0].rows(),
+        samples: fitted.selection.whole(0).rows(),
         tested_range: tested,
         condition: 1.0,
         entries: fitted.reports()?,
         search,
         orders: fitted.orders(),
         alpha_guideline: None,
+        static_terms: if fit.static_term == StaticTerm::Estimated {
+            estimated_constants(&fitted.selection, &dofs, task.noise_ratio())?
+        } else {
+            means
+        },
+        memory: fitted.memory()?,
         covariance_assumption:
             "noise of the forces is white before the low-pass, motions are exact, the poles count \
                                 as known"
@@ -89,6 +103,65 @@ pub fn fit_records(
     report.judge(&fit.poles);
     note_lags(&model, &mut report.notes);
     Ok((model, report))
+}
+
+/// Removes the means where that is asked for, and reports them.
+///
+/// # Errors
+/// Those of reading.
+pub(crate) fn removed_means(
+    wanted: StaticTerm,
+    dofs: &[Dof],
+    records: &mut [Scaled<'_>],
+) -> Result<Vec<StaticReport>> {
+    let mut reports = Vec::new();
+    if wanted == StaticTerm::Removed {
+        for record in records {
+            for (value, &force) in record.remove_means()?.into_iter().zip(dofs) {
+                reports.push(StaticReport {
+                    force,
+                    record: Some(record.name().to_owned()),
+                    value,
+                    standard_error: None,
+                });
+            }
+        }
+    }
+    Ok(reports)
+}
+
+/// The constants in front of the other columns; `noise_ratio` takes the variance of the residuals to that of white noise.
+///
+/// # Errors
+/// Systems without a solution.
+pub(crate) fn estimated_constants(
+    selection: &Selection,
+    dofs: &[Dof],
+    noise_ratio: f64,
+) -> Result<Vec<StaticReport>> {
+    let constant = |(i, &force): (usize, &Dof)| {
+        let whole = selection.whole(i);
+        let columns = whole.columns();
+        let residual = variance(whole.residual_sum(columns, 0), whole.rows(), columns);
+        let error = |v: f64| {
+            let gram = whole.inverse_gram(columns)?;
+            Ok::<_, Error>((v * noise_ratio * gram[(0, 0)]).sqrt())
+        };
+        Ok(StaticReport {
+            force,
+            record: None,
+            value: whole.solve(columns)?[(0, 0)],
+            standard_error: residual.map(error).transpose()?,
+        })
+    };
+    dofs.iter().enumerate().map(constant).collect()
+}
+
+pub(crate) fn describe_own(count: usize) -> String {
+    match count {
+        0 => String::new(),
+        n => format!(", filters of their own for {n} transfer function(s)"),
+    }
 }
 
 /// Range of all records together.
@@ -119,6 +192,8 @@ pub(crate) struct Task<'a> {
     pub fit: &'a TimeFit,
     pub dofs: &'a [Dof],
     pub records: &'a [Scaled<'a>],
+    /// Form and poles of every transfer function, row by row.
+    pub entries: &'a [EntryForm],
     pub progress: OnProgress<'a>,
 }
 
@@ -130,29 +205,37 @@ impl Task<'_> {
             .unwrap_or(CUTOFF_OVER_SAMPLING / record.step_s)
     }
 
-    /// One pass with the given chains; `thinned` takes only as many rows as the low-passed signals need.
+    /// Largest number of filters of a transfer function.
+    pub fn most_filters(&self) -> usize {
+        let all = self.entries.iter().map(|e| e.form.filters());
+        all.max().unwrap_or(0)
+    }
+
+    /// One pass with the given candidates, a chain of filters for each input, all of one length; `thinned` takes only as
+    /// many rows as the low-passed signals need.
     pub fn pass(
         &self,
-        chains: &[Vec<f64>],
+        candidates: &[Vec<Vec<f64>>],
         thinned: bool,
         (pass, passes): (usize, usize),
-    ) -> Result<Vec<Factored>> {
-        let bases = chains
+    ) -> Result<Accumulated> {
+        let basis = |poles: &Vec<f64>| {
+            if thinned {
+                Basis::orthonormal(&self.fit.form, poles)
+            } else {
+                Basis::new(&self.fit.form, poles)
+            }
+        };
+        let bases = candidates
             .iter()
-            .map(|poles| {
-                if thinned {
-                    Basis::orthonormal(&self.fit.form, poles)
-                } else {
-                    Basis::new(&self.fit.form, poles)
-                }
-            })
-            .collect::<Result<Vec<_>>>()?;
-        let per_input = bases.first().map_or(0, Basis::len);
+            .map(|chains| chains.iter().map(basis).collect())
+            .collect::<Result<Vec<Vec<_>>>>()?;
+        let constant = self.fit.static_term == StaticTerm::Estimated;
         let plan = Plan {
             layout: Layout {
                 inputs: self.dofs.len(),
-                per_input,
-                constant: false,
+                per_input: bases.first().map_or(0, |b| b[0].len()),
+                constant,
             },
             weights: self.fit.weights,
             delta_s: None,
@@ -163,9 +246,7 @@ impl Task<'_> {
         accumulate(
             self.records,
             &plan,
-            &|record| {
-                ContinuousColumns::new(record, self.dofs.len(), &bases, self.cutoff_hz(record))
-            },
+            &|record| ContinuousColumns::new(record, &bases, self.cutoff_hz(record), constant),
             &|records_done| {
                 (self.progress)(Progress {
                     pass,
@@ -191,153 +272,6 @@ impl Task<'_> {
             .iter()
             .map(|r| 2.0 * NOISE_BANDWIDTH * self.cutoff_hz(r) * r.step_s);
         1.0 / passed.fold(0.0, f64::max).min(1.0)
-    }
-}
-
-/// The last pass: systems with all rows, one a chain of poles.
-struct Fitted<'a> {
-    task: &'a Task<'a>,
-    /// Chains in use: one, or one a transfer function, row by row.
-    chains: Vec<Vec<f64>>,
-    systems: Vec<Factored>,
-}
-
-impl<'a> Fitted<'a> {
-    fn new(task: &'a Task<'a>, chains: Vec<Vec<f64>>) -> Result<Self> {
-        let systems = task.pass(
-            &chains,
-            false,
-            (super::time::search::PASSES, super::time::search::PASSES),
-        )?;
-        let fitted = Self {
-            task,
-            chains,
-            systems,
-        };
-        fitted.check()?;
-        Ok(fitted)
-    }
-
-    /// Every column must be determined: an input that never moves is told by its name.
-    fn check(&self) -> Result<()> {
-        for system in &self.systems {
-            let factor = &system.whole[0];
-            enough_rows("records", factor.rows(), factor.columns())?;
-            if let Some(column) = factor.undetermined(factor.columns()) {
-                let dof = self.task.dofs[column % self.task.dofs.len()];
-                return Err(Error::input(
-                    "records",
-                    format!(
-                        "a {} motion rich enough for {}",
-                        dof.name(),
-                        self.task.fit.form.describe()
-                    ),
-                    "none that determines its coefficients",
-                ));
-            }
-        }
-        Ok(())
-    }
-
-    fn of_entry(&self, i: usize, j: usize) -> usize {
-        if self.chains.len() == 1 {
-            0
-        } else {
-            i * self.task.dofs.len() + j
-        }
-    }
-
-    fn each<T>(&self, f: impl Fn(usize, usize) -> T) -> Vec<Vec<T>> {
-        let n = self.task.dofs.len();
-        (0..n).map(|i| (0..n).map(|j| f(i, j)).collect()).collect()
-    }
-
-    fn poles(&self) -> Vec<Vec<Vec<f64>>> {
-        self.each(|i, j| self.chains[self.of_entry(i, j)].clone())
-    }
-
-    fn coefficients(&self) -> Result<Vec<Vec<Vec<f64>>>> {
-        self.each(|i, j| {
-            let system = &self.systems[self.of_entry(i, j)];
-            let factor = &system.whole[i];
-            let all = factor.solve(factor.columns())?;
-            Ok((0..system.layout.per_input)
-                .map(|c| all[(system.layout.index(c, j), 0)])
-                .collect())
-        })
-        .into_iter()
-        .map(|row| row.into_iter().collect())
-        .collect()
-    }
-
-    fn reports(&self) -> Result<Vec<EntryReport>> {
-        let coefficients = self.coefficients()?;
-        let mut reports = Vec::new();
-        for (i, row) in coefficients.iter().enumerate() {
-            for (j, values) in row.iter().enumerate() {
-                reports.push(self.report(i, j, values)?);
-            }
-        }
-        Ok(reports)
-    }
-
-    fn report(&self, i: usize, j: usize, values: &[f64]) -> Result<EntryReport> {
-        let which = self.of_entry(i, j);
-        let system = &self.systems[which];
-        let basis = Basis::new(&self.task.fit.form, &self.chains[which])?;
-        // with single motions the entry has rows of its own
-        let own = system.alone(i, j).filter(|_| system.single_motions());
-        let whole = &system.whole[i];
-        let columns = whole.columns();
-        let residual = variance(whole.residual_sum(columns, 0), whole.rows(), columns);
-        let covariance = residual
-            .map(|v| {
-                let gram = whole.inverse_gram(columns)?;
-                let n = values.len();
-                Ok::<_, Error>(nalgebra::DMatrix::from_fn(n, n, |a, b| {
-                    let at = (system.layout.index(a, j), system.layout.index(b, j));
-                    gram[at] * v * self.task.noise_ratio()
-                }))
-            })
-            .transpose()?;
-        let relative = |f: &Factor| (f.residual_sum_of(values, 0) / f.total_sum(0)).sqrt();
-        let (condition, cancellation) = match own {
-            Some(f) => (f.condition(f.columns()), f.cancellation(values, 0)),
-            None => {
-                let all = whole.solve(columns)?;
-                (
-                    whole.condition(columns),
-                    whole.cancellation(all.as_slice(), 0),
-                )
-            }
-        };
-        Ok(EntryReport {
-            force: self.task.dofs[i],
-            motion: self.task.dofs[j],
-            relative_rms: own.filter(|f| f.total_sum(0) > 0.0).map(relative),
-            worst_relative: None,
-            poles: self.chains[which].clone(),
-            coefficients: Vec::new(),
-            covariance: Vec::new(),
-            condition,
-            cancellation,
-        }
-        .with_coefficients(basis.names(), values, covariance))
-    }
-
-    /// Fewer filters, from the same factorisation (shared poles only).
-    fn orders(&self) -> Vec<OrderReport> {
-        let form = &self.task.fit.form;
-        if self.chains.len() > 1 || matches!(form, Form::Rational { .. }) {
-            return Vec::new();
-        }
-        let feed = form.feed_through().count();
-        (1..=form.filters())
-            .map(|filters| OrderReport {
-                filters,
-                objective: self.systems[0].objective(feed + filters),
-            })
-            .collect()
     }
 }
 

@@ -33,10 +33,48 @@ pub struct FitReport {
     pub orders: Vec<OrderReport>,
     /// The guideline for `α` (2.36), for the discrete model.
     pub alpha_guideline: Option<AlphaGuideline>,
+    /// The constant part of the forces, as far as the fit dealt with it; empty when it did not.
+    pub static_terms: Vec<StaticReport>,
+    /// Memory of the filters against the rest before the motion starts, one account a record; empty for fits to a table.
+    pub memory: Vec<MemoryReport>,
     /// Under which assumption standard errors and covariances hold.
     pub covariance_assumption: String,
     /// What a user of the model should know.
     pub notes: Vec<String>,
+}
+
+/// The constant part of one force.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct StaticReport {
+    /// Force.
+    pub force: Dof,
+    /// Record whose mean was removed; `None` for a constant estimated from all records.
+    pub record: Option<String>,
+    /// The constant, dimensionless as the forces.
+    pub value: f64,
+    /// Standard error of an estimated constant; `None` when there are no residual degrees of freedom, and for a mean.
+    pub standard_error: Option<f64>,
+}
+
+/// Whether a record is at rest for longer than the filters remember (thesis, section 3.3): otherwise forces of a motion
+/// before the record enter the fit.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MemoryReport {
+    /// Name of the record.
+    pub record: String,
+    /// Memory of the slowest filters in samples of the fit, see [`crate::aerodynamics::laguerre::MEMORY_LIMIT`].
+    pub memory_samples: usize,
+    /// Samples before the motion starts, or before the first row of the fit when that is later.
+    pub available_samples: usize,
+    /// Sampling step of the fit in this record, s.
+    pub step_s: f64,
+}
+
+impl MemoryReport {
+    /// Whether nothing before the record is remembered when the motion starts.
+    pub fn is_sufficient(&self) -> bool {
+        self.available_samples >= self.memory_samples
+    }
 }
 
 /// Account of one transfer function.
@@ -153,6 +191,17 @@ impl FitReport {
     /// Adds the notes that follow from the numbers: poles at their bounds, cancelling terms, bad conditioning.
     pub(crate) fn judge(&mut self, poles: &PoleSearch) {
         let mut notes = Vec::new();
+        for memory in self.memory.iter().filter(|m| !m.is_sufficient()) {
+            notes.push(format!(
+                "record {}: the filters remember {} samples ({:.2} s), but the motion starts after {} ({:.2} s): forces of \
+                 a motion before the record may have entered the fit; record more rest, or discard_s",
+                memory.record,
+                memory.memory_samples,
+                memory.memory_samples as f64 * memory.step_s,
+                memory.available_samples,
+                memory.available_samples as f64 * memory.step_s,
+            ));
+        }
         for search in &self.search {
             search.judge(poles.min_ratio, &mut notes);
         }

@@ -22,11 +22,12 @@ pub(super) fn of(model: &Model) -> (Vec<f64>, Vec<String>) {
         Model::MinimumState(m) => LinearForces::of_rational(&m.to_roger(), None),
         Model::DiscreteLaguerre(m) => {
             let (mut values, mut names) = (Vec::new(), Vec::new());
-            for (j, matrix) in m.coefficients.iter().enumerate() {
-                for (l, column) in matrix.column_iter().enumerate() {
+            for term in &m.terms {
+                for (l, column) in term.coefficients.column_iter().enumerate() {
                     for (i, value) in column.iter().enumerate() {
+                        let (force, motion) = (m.dofs[i].name(), m.dofs[term.input].name());
                         values.push(*value);
-                        names.push(format!("{}.{}.c{l}", m.dofs[i].name(), m.dofs[j].name()));
+                        names.push(format!("{force}.{motion}.c{l}"));
                     }
                 }
             }
@@ -79,7 +80,7 @@ pub(super) fn replace(model: &mut Model, values: &[f64]) {
         // became Roger's above
         Model::MinimumState(_) => {}
         Model::DiscreteLaguerre(m) => {
-            let all = m.coefficients.iter_mut().flat_map(|c| c.iter_mut());
+            let all = m.terms.iter_mut().flat_map(|t| t.coefficients.iter_mut());
             all.for_each(&mut put);
         }
     }

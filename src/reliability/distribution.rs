@@ -181,7 +181,8 @@ fn truncated(
     let mirrored = low > 0.0;
     let (a, b) = if mirrored { (-high, -low) } else { (low, high) };
     let (from, to) = (normal::cdf(a), normal::cdf(b));
-    if !(to - from > SMALLEST_PROBABILITY) {
+    let probable = to - from > SMALLEST_PROBABILITY;
+    if !probable {
         let end = |e: Option<f64>| e.map_or("open".to_owned(), |e| e.to_string());
         return Err(Error::input(
             format!(

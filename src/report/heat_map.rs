@@ -92,7 +92,7 @@ pub fn heat_map_figure(title: &str, maps: &[HeatMap], columns: usize) -> Result<
     }
     scene.add(text(
         (LEFT, top + 10.0),
-        "dot: refused model     frame: recommended model",
+        "dot: refused model · frame: recommended model",
         SMALL,
         GREY,
     ));

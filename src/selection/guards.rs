@@ -40,6 +40,12 @@ pub(super) fn judge(
         verdict
             .rejected
             .push(format!("its modes cannot be followed ({error})"));
+        // what happens at lower speeds is told all the same
+        let lower = OnsetSearch {
+            speed_max_m_s: 0.5 * search.speed_max_m_s,
+            ..*search
+        };
+        let _ = onset(fit, structure, &lower, tested, &mut verdict);
     }
     verdict
 }

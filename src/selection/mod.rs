@@ -15,3 +15,6 @@ pub use cells::{Cell, Selection, SelectionPlan, select};
 pub use folds::CrossValidation;
 pub use metrics::{CellMetrics, MetricGrid, metric_grid};
 pub use recommend::Recommendation;
+
+#[cfg(test)]
+mod tests;

@@ -81,7 +81,7 @@ pub(super) fn recommend(selection: &Selection) -> (Option<Recommendation>, Strin
             " {symbol} lies at the edge of the grid: widen it to see whether the error falls further."
         ));
     }
-    for refused in better_but_refused(selection, chosen.2) {
+    for refused in free_but_refused(selection) {
         reason.push_str(&format!(
             " {} fits the records {}, but is refused: {}.",
             name(refused, symbol),
@@ -104,7 +104,7 @@ pub(super) fn recommend(selection: &Selection) -> (Option<Recommendation>, Strin
 }
 
 /// What a free search would have taken for each number of filters, where it is refused.
-fn better_but_refused(selection: &Selection, _: f64) -> Vec<&Cell> {
+fn free_but_refused(selection: &Selection) -> Vec<&Cell> {
     selection
         .free
         .iter()

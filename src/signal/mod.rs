@@ -4,6 +4,7 @@
 //! are those of fitted harmonics.
 
 mod butterworth;
+mod clipping;
 mod correlation;
 mod delay;
 mod differences;
@@ -14,6 +15,7 @@ mod robust;
 mod zero_phase;
 
 pub use butterworth::{ButterworthLowPass, Section};
+pub use clipping::clipped_stretches;
 pub use correlation::CrossCorrelation;
 pub use delay::{Delay, delay};
 pub use differences::{acceleration, rate};

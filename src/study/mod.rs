@@ -3,6 +3,7 @@
 //! Every stage of the chain is a function from values to values, so that each command of the program, the demo and a
 //! script of somebody else run the same code.
 
+pub mod compare;
 mod deck;
 mod defaults;
 mod intervals;
@@ -24,8 +25,9 @@ pub use reference_lines::derivative_lines;
 pub use routes::{Route, RouteTable, low_frequency_limit, route_table};
 pub use stepped::{SteppedOnset, stepped_onset};
 pub use wind::{
-    BuffetingStudy, QuasiSteadyStudy, SimulatedMotion, SpectrumCurve, TimeDomain, WindStudy,
-    buffeting_study, example_wind_study_text, quasi_steady_study, simulated_motion,
+    BuffetingStudy, CoefficientsBlock, QuasiSteadyStudy, SimulatedMotion, SpectrumCurve,
+    TimeDomain, WindStudy, buffeting_study, example_wind_study_text, quasi_steady_study,
+    simulated_motion,
 };
 
 use crate::aerodynamics::derivatives::notation::StatedConvention;
@@ -62,6 +64,9 @@ pub struct Study {
     /// Where to look for the onset.
     #[serde(default)]
     pub flutter: FlutterBlock,
+    /// Static coefficients, for quasi-steady theory beside the other routes to the onset.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub coefficients: Option<CoefficientsBlock>,
     /// What to export.
     #[serde(default)]
     pub export: ExportBlock,
@@ -244,6 +249,9 @@ impl Study {
             }
         }
         self.flutter.validate("flutter")?;
+        if let Some(block) = &self.coefficients {
+            block.validate("coefficients")?;
+        }
         self.export.validate()?;
         self.exported().map(|_| ())
     }

@@ -1,13 +1,18 @@
 //! The onset of a study by every route, side by side.
 //!
 //! Eigenvalues of each realisation, the determinant and the p-k iteration on the same `G(K)`, both on the deck itself
-//! (interpolated table or exact flat plate), the low-frequency (quasi-steady) limit, the flat plate with the same
+//! (interpolated table or exact flat plate), the low-frequency (quasi-steady) limit or static coefficients, the flat plate with the same
 //! structure, and handbook formulas. Two routes on one force model must agree to rounding; between force models the
 //! table shows what the choice of the model does.
 
+mod steady;
+
+pub use steady::low_frequency_limit;
+use steady::{limit_onset, steady_flat_plate};
+
 use super::onsets::coupled;
 use super::{Deck, Study};
-use crate::aerodynamics::{AerodynamicModel, FlatPlate, Lags, RationalModel, Realization};
+use crate::aerodynamics::{AerodynamicModel, FlatPlate, Realization};
 use crate::error::Result;
 use crate::flutter::{
     FlutterCurves, FlutterSearch, ModeAtOnset, OnsetMethod, SanityLines, classify,
@@ -17,7 +22,6 @@ use crate::flutter::{
 use crate::section::{Dof, Structure};
 use crate::trained_model::TrainedModel;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
-use nalgebra::DMatrix;
 use serde::Serialize;
 
 /// Reduced frequencies from still air to nearly steady flow.
@@ -100,6 +104,10 @@ pub fn route_table(study: &Study, deck: &Deck, trained: &[TrainedModel]) -> Resu
     if deck.table().is_some() {
         table.add_flat_plate(study, &structure)?;
     }
+    if let Some(block) = &study.coefficients {
+        let theory = block.theory(&study.directory, &study.section.dofs())?;
+        table.add_static_coefficients(study, &structure, &theory)?;
+    }
     if table.sanity.is_none() {
         table.left_out.push(
             "Selberg, Rocard: the formulas are for sections whose rotation is faster than their heave".into(),
@@ -136,7 +144,7 @@ impl RouteTable {
             structure,
             tested: Some(model.tested_range),
             divergence_m_s: divergence_speed(structure, &steady)?,
-            quasi_steady_m_s: quasi_steady(study, structure, &limit)?,
+            quasi_steady_m_s: limit_onset(study, structure, &limit)?,
         };
         let found = find_onset(&model.name, &section, &search, forces.tested)?;
         let mut by_eigenvalues = forces.route(study, OnsetMethod::Eigenvalues, found)?;
@@ -196,7 +204,7 @@ impl RouteTable {
             structure,
             tested,
             divergence_m_s: divergence_speed(structure, &static_transfer)?,
-            quasi_steady_m_s: quasi_steady(study, structure, &limit)?,
+            quasi_steady_m_s: limit_onset(study, structure, &limit)?,
         };
         let from = self.routes.len();
         self.add_transfer_routes(study, &forces, false)?;
@@ -217,42 +225,6 @@ impl RouteTable {
         self.add_quasi_steady(study, structure, &limit, tested.map(|range| range.min))
     }
 
-    /// The affine limit of the deck's own forces.
-    fn add_quasi_steady(
-        &mut self,
-        study: &Study,
-        structure: &Structure,
-        limit: &RationalModel,
-        from: Option<ReducedFrequency>,
-    ) -> Result<()> {
-        let steady = limit.transfer(ReducedFrequency::from_full_width(0.0))?;
-        let forces = Forces {
-            name: "quasi-steady limit".into(),
-            model: limit,
-            structure,
-            tested: None,
-            divergence_m_s: divergence_speed(structure, &steady)?,
-            quasi_steady_m_s: quasi_steady(study, structure, limit)?,
-        };
-        let section = coupled(structure, limit)?;
-        let found = find_onset(&forces.name, &section, &study.flutter.search(), None)?;
-        let mut route = forces.route(study, OnsetMethod::Eigenvalues, found)?;
-        route.low_frequency_limit = true;
-        route.warnings.push(match from {
-            Some(k) => format!(
-                "no static coefficients given: slopes and rates from the derivatives at K = {:.3}, good for K well below \
-                 that only",
-                k.full_width()
-            ),
-            None => "circulation without lag, C = 1".into(),
-        });
-        self.routes.push(route);
-        let speeds = study.flutter.curve_speeds_m_s();
-        self.curves
-            .push(trace_modes(&forces.name, &section, &speeds)?);
-        Ok(())
-    }
-
     fn add_flat_plate(&mut self, study: &Study, structure: &Structure) -> Result<()> {
         let two = structure.only(&Dof::TWO);
         let plate = FlatPlate::default();
@@ -263,7 +235,7 @@ impl RouteTable {
             structure: &two,
             tested: None,
             divergence_m_s: divergence_speed(&two, &steady)?,
-            quasi_steady_m_s: quasi_steady(study, &two, &steady_flat_plate())?,
+            quasi_steady_m_s: limit_onset(study, &two, &steady_flat_plate())?,
         };
         let from = self.routes.len();
         self.add_transfer_routes(study, &forces, false)?;
@@ -363,56 +335,4 @@ fn keep_tested(curves: &mut FlutterCurves, width_m: f64, range: ReducedFrequency
             ))
         });
     }
-}
-
-/// `G ≈ Re G(K) + iK · Im G(K)/K` at a low `K`: affine in `iK`, the form of quasi-steady theory.
-///
-/// # Errors
-/// Those of [`AerodynamicModel::transfer`].
-pub fn low_frequency_limit(
-    model: &dyn AerodynamicModel,
-    k: ReducedFrequency,
-) -> Result<RationalModel> {
-    let g = model.transfer(k)?;
-    let n = g.nrows();
-    Ok(RationalModel {
-        dofs: model.dofs().to_vec(),
-        a1: g.map(|z| z.re),
-        a2: g.map(|z| z.im / k.full_width()),
-        a3: DMatrix::zeros(n, n),
-        lags: Lags::Shared(Vec::new()),
-        lag_terms: Vec::new(),
-    })
-}
-
-/// The flat plate with `C = 1` and without apparent mass; its own limit has a logarithm in `K`.
-fn steady_flat_plate() -> RationalModel {
-    let mut plate = RationalModel::jones_flat_plate();
-    let (pi, quarter) = (std::f64::consts::PI, 0.25);
-    // the part of the rates that is apparent mass, and what the circulation gives at once
-    plate.a2 = DMatrix::from_row_slice(
-        2,
-        2,
-        &[
-            -2.0 * pi,
-            pi / 2.0 + 2.0 * pi * quarter,
-            -pi / 2.0,
-            -pi / 8.0 + pi / 2.0 * quarter,
-        ],
-    );
-    plate.a3 = DMatrix::zeros(2, 2);
-    plate.lags = Lags::Shared(Vec::new());
-    plate.lag_terms.clear();
-    plate
-}
-
-/// Onset of an affine model, m/s.
-fn quasi_steady(
-    study: &Study,
-    structure: &Structure,
-    limit: &RationalModel,
-) -> Result<Option<f64>> {
-    let section = coupled(structure, limit)?;
-    let found = find_onset("", &section, &study.flutter.search(), None)?;
-    Ok(found.onset().map(|o| o.speed_m_s))
 }

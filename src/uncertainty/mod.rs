@@ -18,3 +18,6 @@ pub use onset::{
     CONFIDENCE, OnsetError, ResampledOnset, Resampling, ResamplingPlan, onset_error, resample_onset,
 };
 pub use sensitivity::onset_gradient;
+
+#[cfg(test)]
+mod tests;

@@ -1,10 +1,12 @@
 //! Forced-vibration records: what they are, reading and writing them, and a virtual tunnel that makes them.
 
+mod broadband;
 #[cfg(feature = "campaigns")]
 pub mod campaign;
 #[cfg(feature = "campaigns")]
 pub mod lab_files;
 mod motion;
+mod prediction;
 pub mod processing;
 mod raw;
 mod record_file;
@@ -14,6 +16,8 @@ pub mod virtual_campaign;
 mod virtual_forces;
 mod virtual_tunnel;
 
+pub use broadband::TrainingMotion;
+pub use prediction::predicted_forces;
 pub use raw::{CELL_CHANNELS, LoadCell, RawCampaign, RawRecording, RawRun, Rig};
 pub use record_file::{RecordFile, SAMPLES_AT_LEAST, read_record, write_record};
 pub use records::{Record, RecordBlock, RecordHeader, RecordSource, Segment};

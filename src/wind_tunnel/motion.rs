@@ -17,7 +17,7 @@ pub(super) struct RampedSine {
 impl RampedSine {
     /// Displacement, velocity (1/s) and acceleration (1/s²) at `t` from the beginning of the stretch.
     pub fn at(&self, t_s: f64) -> [f64; 3] {
-        let [w, w_rate, w_second] = self.window(t_s);
+        let [w, w_rate, w_second] = window(t_s, self.duration_s, self.ramp_s);
         let omega = self.omega_rad_s;
         let (sin, cos) = (omega * t_s).sin_cos();
         [
@@ -26,25 +26,26 @@ impl RampedSine {
             w_second * sin + omega * (2.0 * w_rate * cos - w * omega * sin),
         ]
     }
+}
 
-    fn window(&self, t_s: f64) -> [f64; 3] {
-        if t_s <= 0.0 || t_s >= self.duration_s {
-            return [0.0; 3];
-        }
-        let to_end = self.duration_s - t_s;
-        let (u, sign) = if t_s < to_end {
-            (t_s / self.ramp_s, 1.0)
-        } else {
-            (to_end / self.ramp_s, -1.0)
-        };
-        if u >= 1.0 {
-            return [1.0, 0.0, 0.0];
-        }
-        let rise = u * u * u * (10.0 + u * (6.0 * u - 15.0));
-        let slope = 30.0 * u * u * (1.0 - u) * (1.0 - u) / self.ramp_s;
-        let bend = 60.0 * u * (1.0 - u) * (1.0 - 2.0 * u) / (self.ramp_s * self.ramp_s);
-        [rise, sign * slope, bend]
+/// The window of a stretch of motion, its rate (1/s) and second rate (1/s²) at `t` from the beginning of the stretch.
+pub(super) fn window(t_s: f64, duration_s: f64, ramp_s: f64) -> [f64; 3] {
+    if t_s <= 0.0 || t_s >= duration_s {
+        return [0.0; 3];
     }
+    let to_end = duration_s - t_s;
+    let (u, sign) = if t_s < to_end {
+        (t_s / ramp_s, 1.0)
+    } else {
+        (to_end / ramp_s, -1.0)
+    };
+    if u >= 1.0 {
+        return [1.0, 0.0, 0.0];
+    }
+    let rise = u * u * u * (10.0 + u * (6.0 * u - 15.0));
+    let slope = 30.0 * u * u * (1.0 - u) * (1.0 - u) / ramp_s;
+    let bend = 60.0 * u * (1.0 - u) * (1.0 - 2.0 * u) / (ramp_s * ramp_s);
+    [rise, sign * slope, bend]
 }
 
 /// A whole run at unit amplitude.

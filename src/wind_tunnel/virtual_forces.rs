@@ -1,14 +1,15 @@
 //! Dimensionless forces of the virtual tunnel: from test points of a table, or as the response of a model.
 
 use super::motion::UnitMotion;
-use crate::aerodynamics::AerodynamicModel;
 use crate::aerodynamics::derivatives::{Derivative, DerivativePoint, DerivativeTable, Part};
+use crate::aerodynamics::{AerodynamicModel, TransferMatrix};
 use crate::error::{Error, Result};
 use crate::section::Dof;
 use crate::units::ReducedFrequency;
 use nalgebra::Complex;
-use rustfft::FftPlanner;
+use rustfft::{Fft, FftPlanner};
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 /// Derivatives of one motion at one test point may differ by this fraction in `K` and still be one run.
 const SAME_K: f64 = 0.02;
@@ -83,36 +84,106 @@ pub(super) fn unit_response(
     sampling_hz: f64,
     scale_s: f64,
 ) -> Result<Vec<Vec<Vec<f64>>>> {
-    let samples = unit.displacement.len();
-    let length = (2 * samples).next_power_of_two();
-    let mut planner = FftPlanner::new();
-    let mut spectrum: Vec<Complex<f64>> = unit.displacement.iter().map(|x| (*x).into()).collect();
-    spectrum.resize(length, Complex::default());
-    planner.plan_fft_forward(length).process(&mut spectrum);
+    let transforms = Transforms::new(unit.displacement.len());
+    let spectrum = transforms.spectrum(&unit.displacement);
     let n = model.dofs().len();
-    let mut forces = vec![vec![vec![Complex::default(); length]; n]; n];
-    for bin in 0..=length / 2 {
-        let omega = TAU * sampling_hz * bin as f64 / length as f64;
-        let g = model.transfer(ReducedFrequency::from_full_width(omega * scale_s))?;
+    let mut forces = vec![vec![transforms.nothing(); n]; n];
+    transforms.for_each_bin(model, sampling_hz, scale_s, &mut |bin, g| {
         for (i, row) in forces.iter_mut().enumerate() {
             for (j, entry) in row.iter_mut().enumerate() {
-                let q = g[(i, j)] * spectrum[bin];
-                // Real motions give real forces: the other half is the conjugate.
-                entry[(length - bin) % length] = q.conj();
-                entry[bin] = q;
+                transforms.set(entry, bin, g[(i, j)] * spectrum[bin]);
             }
         }
+    })?;
+    let in_time = |row: Vec<Vec<_>>| row.into_iter().map(|q| transforms.in_time(q)).collect();
+    Ok(forces.into_iter().map(in_time).collect())
+}
+
+/// Dimensionless force of each row, `[row][sample]`, to dimensionless motions that were zero before their first sample:
+/// the sum over the columns of `model`. `scale_s` is `B/V`.
+///
+/// # Errors
+/// Those of the model.
+pub(super) fn response(
+    model: &dyn AerodynamicModel,
+    motion: &[Vec<f64>],
+    sampling_hz: f64,
+    scale_s: f64,
+) -> Result<Vec<Vec<f64>>> {
+    let transforms = Transforms::new(motion.first().map_or(0, Vec::len));
+    let spectra: Vec<_> = motion.iter().map(|r| transforms.spectrum(r)).collect();
+    let mut forces = vec![transforms.nothing(); model.dofs().len()];
+    transforms.for_each_bin(model, sampling_hz, scale_s, &mut |bin, g| {
+        for (i, force) in forces.iter_mut().enumerate() {
+            let q = spectra.iter().enumerate().map(|(j, r)| g[(i, j)] * r[bin]);
+            transforms.set(force, bin, q.sum());
+        }
+    })?;
+    Ok(forces.into_iter().map(|q| transforms.in_time(q)).collect())
+}
+
+/// Fourier transforms of records of one length, padded with at least as many zeros.
+struct Transforms {
+    samples: usize,
+    length: usize,
+    forward: Arc<dyn Fft<f64>>,
+    inverse: Arc<dyn Fft<f64>>,
+}
+
+impl Transforms {
+    fn new(samples: usize) -> Self {
+        let length = (2 * samples.max(1)).next_power_of_two();
+        let mut planner = FftPlanner::new();
+        Self {
+            samples,
+            length,
+            forward: planner.plan_fft_forward(length),
+            inverse: planner.plan_fft_inverse(length),
+        }
     }
-    let inverse = planner.plan_fft_inverse(length);
-    let to_time = |mut q: Vec<Complex<f64>>| {
-        inverse.process(&mut q);
-        q.iter()
-            .take(samples)
-            .map(|x| x.re / length as f64)
+
+    fn nothing(&self) -> Vec<Complex<f64>> {
+        vec![Complex::default(); self.length]
+    }
+
+    fn spectrum(&self, samples: &[f64]) -> Vec<Complex<f64>> {
+        let mut spectrum: Vec<Complex<f64>> = samples.iter().map(|x| (*x).into()).collect();
+        spectrum.resize(self.length, Complex::default());
+        self.forward.process(&mut spectrum);
+        spectrum
+    }
+
+    /// Calls `f` with every bin from zero to half the sampling frequency and `G` there.
+    fn for_each_bin(
+        &self,
+        model: &dyn AerodynamicModel,
+        sampling_hz: f64,
+        scale_s: f64,
+        f: &mut dyn FnMut(usize, &TransferMatrix),
+    ) -> Result<()> {
+        for bin in 0..=self.length / 2 {
+            let omega = TAU * sampling_hz * bin as f64 / self.length as f64;
+            f(
+                bin,
+                &model.transfer(ReducedFrequency::from_full_width(omega * scale_s))?,
+            );
+        }
+        Ok(())
+    }
+
+    /// Real motions give real forces: the other half of the spectrum is the conjugate.
+    fn set(&self, spectrum: &mut [Complex<f64>], bin: usize, q: Complex<f64>) {
+        spectrum[(self.length - bin) % self.length] = q.conj();
+        spectrum[bin] = q;
+    }
+
+    fn in_time(&self, mut spectrum: Vec<Complex<f64>>) -> Vec<f64> {
+        self.inverse.process(&mut spectrum);
+        let scale = 1.0 / self.length as f64;
+        spectrum
+            .iter()
+            .take(self.samples)
+            .map(|x| scale * x.re)
             .collect()
-    };
-    Ok(forces
-        .into_iter()
-        .map(|row| row.into_iter().map(to_time).collect())
-        .collect())
+    }
 }

@@ -8,10 +8,14 @@
 //! - from any transfer matrix `G(K)`: the exact linear response to the whole ramped motion, by Fourier transform
 //!   of the motion padded with zeros.
 //!
+//! Broadband motions ([`TrainingMotion`]) need `G` at every frequency: a table then has to be interpolated, which the plan
+//! must ask for.
+//!
 //! A table has a slightly different mean speed at each point, a record has one: that of the speed group. The
 //! frequency of the segment is therefore `f = K V/(2πB)` with the point's own `K` and the record's `V`, within a
 //! per cent of the frequency that was driven, and the dimensionless force is exactly `G` at the point's own `K`.
 
+use super::broadband::TrainingMotion;
 use super::motion::{Timing, UnitMotion};
 use super::records::{Record, RecordHeader};
 use super::virtual_forces::{TestPoints, unit_response};
@@ -29,6 +33,11 @@ use std::f64::consts::TAU;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct TunnelPlan {
+    /// How the section is moved.
+    pub motion: TrainingMotion,
+    /// Whether records of broadband motions may be made from a table, its derivatives taken as linear in `V̂` between the
+    /// test points of a speed and as constant beyond them.
+    pub interpolate_table: bool,
     /// Frequencies of motion in test order, Hz. Records from a table take the frequencies of its points instead.
     pub frequencies_hz: Vec<f64>,
     /// Mean wind speeds, m/s. Records from a table take its speeds instead.
@@ -54,13 +63,15 @@ pub struct TunnelPlan {
     pub noise_fraction: f64,
     /// Correlation time of the noise, s: its correlation falls as `e^(−|t|/τ)`; 0 for white noise.
     pub noise_correlation_s: f64,
-    /// Seed of the noise.
+    /// Seed of the noise and of broadband motions.
     pub seed: u64,
 }
 
 impl Default for TunnelPlan {
     fn default() -> Self {
         Self {
+            motion: TrainingMotion::Harmonic,
+            interpolate_table: false,
             frequencies_hz: TABLE_3_2_FREQUENCIES_HZ.to_vec(),
             speeds_m_s: vec![8.17, 4.0],
             vertical_amplitude_m: 0.010,
@@ -103,6 +114,7 @@ impl TunnelPlan {
         positive("air_density_kg_m3", self.air_density_kg_m3)?;
         non_negative("noise_fraction", self.noise_fraction)?;
         non_negative("noise_correlation_s", self.noise_correlation_s)?;
+        self.motion.validate(self.timing(0.0))?;
         if 2.0 * self.ramp_s > self.segment_s {
             let expected = format!("at most half of segment_s ({} s)", self.segment_s);
             return Err(Error::input("ramp_s", expected, self.ramp_s.to_string()));
@@ -141,6 +153,10 @@ impl TunnelPlan {
         let mut records = Vec::new();
         for (i, speed) in speeds.iter().enumerate() {
             let group = table.at_speed_group(i)?;
+            if self.motion != TrainingMotion::Harmonic {
+                records.extend(self.interpolated_records(&group, dofs, *speed, delay_s)?);
+                continue;
+            }
             for motion in dofs {
                 let points = TestPoints::new(&group, dofs, *motion)?;
                 records
@@ -175,20 +191,34 @@ impl TunnelPlan {
     ) -> Result<Vec<Record>> {
         self.validate()?;
         positive("width_m", width_m)?;
-        let unit = UnitMotion::new(&self.frequencies_hz, self.timing(delay_s));
         let mut records = Vec::new();
         for speed in &self.speeds_m_s {
-            let response = unit_response(model, &unit, self.sampling_hz, width_m / speed)?;
-            for (j, motion) in model.dofs().iter().enumerate() {
-                let header = RecordHeader {
-                    source: format!("virtual tunnel: linear response of {name}"),
-                    licence: String::new(),
-                    ..self.header(name, model.dofs(), *motion, width_m, *speed, &unit)
-                };
-                records.push(self.record(header, *motion, &unit, |i, k| response[i][j][k]));
-            }
+            records.extend(self.records_at_speed(model, name, width_m, *speed, delay_s)?);
         }
         Ok(records)
+    }
+
+    /// One record a motion at one speed, without noise.
+    pub(super) fn records_at_speed(
+        &self,
+        model: &dyn AerodynamicModel,
+        name: &str,
+        width_m: f64,
+        speed_m_s: f64,
+        delay_s: f64,
+    ) -> Result<Vec<Record>> {
+        let unit = self.unit_motion(&self.frequencies_hz, delay_s);
+        let response = unit_response(model, &unit, self.sampling_hz, width_m / speed_m_s)?;
+        let dofs = model.dofs();
+        let record = |(j, motion): (usize, &Dof)| {
+            let header = RecordHeader {
+                source: format!("virtual tunnel: linear response of {name}"),
+                licence: String::new(),
+                ..self.header(name, dofs, *motion, width_m, speed_m_s, &unit)
+            };
+            self.record(header, *motion, &unit, |i, k| response[i][j][k])
+        };
+        Ok(dofs.iter().enumerate().map(record).collect())
     }
 
     pub(super) fn timing(&self, delay_s: f64) -> Timing {
@@ -293,7 +323,7 @@ impl TunnelPlan {
             .map(|k| k.circular(group.width_m, speed_m_s) / TAU)
             .collect();
         self.check_sampling(&frequencies)?;
-        let unit = UnitMotion::new(&frequencies, self.timing(delay_s));
+        let unit = self.unit_motion(&frequencies, delay_s);
         let header = RecordHeader {
             source: format!(
                 "virtual tunnel: derivatives of {} at their test points ({})",

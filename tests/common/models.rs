@@ -127,13 +127,7 @@ fn discrete_laguerre() -> DiscreteLaguerre {
     let single = |l: usize| {
         let mut coefficients = vec![DMatrix::zeros(1, 3)];
         coefficients[0][(0, l)] = 1.0;
-        DiscreteLaguerre {
-            dofs: vec![Dof::Vertical],
-            alpha: 0.6,
-            delta_s,
-            coefficients,
-            static_term: vec![0.0],
-        }
+        DiscreteLaguerre::shared(vec![Dof::Vertical], 0.6, delta_s, coefficients, vec![0.0])
     };
     let terms = fit(|k| {
         let k = ReducedFrequency::from_full_width(k);
@@ -141,11 +135,11 @@ fn discrete_laguerre() -> DiscreteLaguerre {
             .map(|l| single(l).transfer(k).unwrap()[(0, 0)])
             .collect()
     });
-    DiscreteLaguerre {
-        dofs: Dof::TWO.to_vec(),
-        alpha: 0.6,
+    DiscreteLaguerre::shared(
+        Dof::TWO.to_vec(),
+        0.6,
         delta_s,
-        coefficients: (0..2).map(|motion| column_of(&terms, motion)).collect(),
-        static_term: vec![0.0; 2],
-    }
+        (0..2).map(|motion| column_of(&terms, motion)).collect(),
+        vec![0.0; 2],
+    )
 }

@@ -1,26 +1,39 @@
 //! The discrete Laguerre model of the thesis (2.16, 2.33, 4.2): filters advancing by one `Δs`, no feed-through.
 
+use super::discrete_layout::Layout;
 use crate::aerodynamics::{AerodynamicModel, DiscreteRealization, Realization, TransferMatrix};
 use crate::error::{Error, Result, positive};
 use crate::section::Dof;
 use crate::units::ReducedFrequency;
 use nalgebra::{Complex, DMatrix, DVector};
 use serde::{Deserialize, Serialize};
-use std::f64::consts::TAU;
 
-/// Discrete Laguerre model, one bank of `L` filters a motion.
+/// One chain of filters driven by one motion, with its coefficients for every force.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
+pub struct DiscreteTerm {
+    /// Index into the model's degrees of freedom of the motion that drives the chain.
+    pub input: usize,
+    /// Decay factor `0 < α < 1`; it belongs to one `Δs`.
+    pub alpha: f64,
+    /// `c`, one row a force, one column a filter (n×L); rows of zeros where another chain serves the force.
+    #[serde(with = "crate::state_space::rows")]
+    pub coefficients: DMatrix<f64>,
+}
+
+/// Discrete Laguerre model.
+///
+/// One [`DiscreteTerm`] a motion when the parameters are shared, as in the thesis; more where a transfer function has a
+/// decay factor or a number of filters of its own.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Layout", into = "Layout")]
 pub struct DiscreteLaguerre {
     /// Degrees of freedom of rows and columns.
     pub dofs: Vec<Dof>,
-    /// Decay factor `0 < α < 1`; it belongs to one `Δs`.
-    pub alpha: f64,
     /// Step in dimensionless time, `Δs = VΔt/B`.
     pub delta_s: f64,
-    /// `c`, one n×L matrix a motion: `coefficients[j][(i, l)]` is filter `l` of motion `j` in force `i`.
-    #[serde(with = "crate::state_space::rows::list")]
-    pub coefficients: Vec<DMatrix<f64>>,
+    /// Filter chains.
+    pub terms: Vec<DiscreteTerm>,
     /// Static term of each force (the constant of 2.23), dimensionless; a deviation from equilibrium leaves it out.
     pub static_term: Vec<f64>,
 }
@@ -57,16 +70,39 @@ pub fn impulse_response(alpha: f64, count: usize, samples: usize) -> DMatrix<f64
     g
 }
 
-/// Lower bound of `α` for signals up to `f_max` sampled at `f_s` (guideline 2.36), both in Hz.
-pub fn alpha_lower_bound(f_max_hz: f64, sampling_hz: f64) -> f64 {
-    let c = (TAU * f_max_hz / sampling_hz).cos();
-    (2.0 - c - (c * c - 4.0 * c + 3.0).sqrt()).powi(2)
-}
-
 impl DiscreteLaguerre {
-    /// Number of filters `L`.
-    pub fn filters(&self) -> usize {
-        self.coefficients.first().map_or(0, DMatrix::ncols)
+    /// A model whose transfer functions share `α` and the number of filters: `coefficients[j][(i, l)]` is filter `l` of
+    /// motion `j` in force `i` (one n×L matrix a motion).
+    pub fn shared(
+        dofs: Vec<Dof>,
+        alpha: f64,
+        delta_s: f64,
+        coefficients: Vec<DMatrix<f64>>,
+        static_term: Vec<f64>,
+    ) -> Self {
+        let term = |(input, coefficients)| DiscreteTerm {
+            input,
+            alpha,
+            coefficients,
+        };
+        Self {
+            dofs,
+            delta_s,
+            terms: coefficients.into_iter().enumerate().map(term).collect(),
+            static_term,
+        }
+    }
+
+    /// `α` and the number of filters `L` when all transfer functions share them.
+    pub fn shared_parameters(&self) -> Option<(f64, usize)> {
+        let first = self.terms.first()?;
+        let filters = first.coefficients.ncols();
+        let one_a_motion = self.terms.len() == self.dofs.len();
+        let alike = |(j, t): (usize, &DiscreteTerm)| {
+            t.input == j && t.alpha == first.alpha && t.coefficients.ncols() == filters
+        };
+        let shared = one_a_motion && self.terms.iter().enumerate().all(alike);
+        shared.then_some((first.alpha, filters))
     }
 
     /// Checks ranges and shapes.
@@ -75,21 +111,34 @@ impl DiscreteLaguerre {
     /// [`Error::Input`] naming the field that does not fit.
     pub fn validate(&self) -> Result<()> {
         let place = |field: &str| format!("discrete Laguerre model: {field}");
-        if !(self.alpha > 0.0 && self.alpha < 1.0) {
-            return Err(Error::input(
-                place("alpha"),
-                "0 < alpha < 1",
-                self.alpha.to_string(),
-            ));
-        }
         positive(&place("delta_s"), self.delta_s)?;
-        let (n, filters) = (self.dofs.len(), self.filters());
-        let fits = |m: &DMatrix<f64>| m.shape() == (n, filters) && m.iter().all(|x| x.is_finite());
-        if self.coefficients.len() != n || filters == 0 || !self.coefficients.iter().all(fits) {
+        let n = self.dofs.len();
+        for (i, term) in self.terms.iter().enumerate() {
+            let place = |field: &str| place(&format!("terms[{i}].{field}"));
+            if !(term.alpha > 0.0 && term.alpha < 1.0) {
+                return Err(Error::input(
+                    place("alpha"),
+                    "0 < alpha < 1",
+                    term.alpha.to_string(),
+                ));
+            }
+            let c = &term.coefficients;
+            let fits = c.nrows() == n && c.ncols() > 0 && c.iter().all(|x| x.is_finite());
+            if term.input >= n || !fits {
+                return Err(Error::input(
+                    place("coefficients"),
+                    format!(
+                        "an input below {n} and {n} rows of finite numbers, at least one filter"
+                    ),
+                    format!("input {}, shape {:?}", term.input, c.shape()),
+                ));
+            }
+        }
+        if !(0..n).all(|j| self.terms.iter().any(|t| t.input == j)) {
             return Err(Error::input(
-                place("coefficients"),
-                format!("{n} finite matrices of {n} rows and one width, at least one filter"),
-                "another shape or a number that is not finite",
+                place("terms"),
+                "filters for every motion",
+                "a motion without any",
             ));
         }
         if self.static_term.len() != n || !self.static_term.iter().all(|x| x.is_finite()) {
@@ -111,35 +160,38 @@ impl AerodynamicModel for DiscreteLaguerre {
     /// `G_0 = √(1−α)/(1 − √α z⁻¹)`, `G_l = G_{l−1} (√α − z⁻¹)/(1 − √α z⁻¹)` at `z = e^{iKΔs}` (2.17).
     fn transfer(&self, k: ReducedFrequency) -> Result<TransferMatrix> {
         let back = Complex::new(0.0, -k.full_width() * self.delta_s).exp();
-        let root = self.alpha.sqrt();
-        let denominator = -back * root + 1.0;
         let n = self.dofs.len();
         let mut g = DMatrix::zeros(n, n);
-        let mut filter = denominator.inv() * (1.0 - self.alpha).sqrt();
-        for l in 0..self.filters() {
-            for (j, c) in self.coefficients.iter().enumerate() {
-                for i in 0..n {
-                    g[(i, j)] += filter * c[(i, l)];
+        for term in &self.terms {
+            let root = term.alpha.sqrt();
+            let denominator = -back * root + 1.0;
+            let mut filter = denominator.inv() * (1.0 - term.alpha).sqrt();
+            for column in term.coefficients.column_iter() {
+                for (i, c) in column.iter().enumerate() {
+                    g[(i, term.input)] += filter * *c;
                 }
+                filter *= (-back + root) / denominator;
             }
-            filter *= (-back + root) / denominator;
         }
         Ok(g)
     }
 
-    /// Two (three) banks, one a motion: the four banks of the thesis repeat the same states.
+    /// One bank a term: the four banks of the thesis repeat the same states.
     fn realize(&self) -> Option<Realization> {
-        let (n, filters) = (self.dofs.len(), self.filters());
-        let (chain, drive) = discrete_filter_matrices(self.alpha, filters);
-        let mut a = DMatrix::zeros(n * filters, n * filters);
-        let mut b = DMatrix::zeros(n * filters, n);
-        let mut c = DMatrix::zeros(n, n * filters);
-        for j in 0..n {
-            let at = j * filters;
+        let n = self.dofs.len();
+        let states = self.terms.iter().map(|t| t.coefficients.ncols()).sum();
+        let mut a = DMatrix::zeros(states, states);
+        let mut b = DMatrix::zeros(states, n);
+        let mut c = DMatrix::zeros(n, states);
+        let mut at = 0;
+        for term in &self.terms {
+            let filters = term.coefficients.ncols();
+            let (chain, drive) = discrete_filter_matrices(term.alpha, filters);
             a.view_mut((at, at), (filters, filters)).copy_from(&chain);
-            b.view_mut((at, j), (filters, 1)).copy_from(&drive);
+            b.view_mut((at, term.input), (filters, 1)).copy_from(&drive);
             c.view_mut((0, at), (n, filters))
-                .copy_from(&self.coefficients[j]);
+                .copy_from(&term.coefficients);
+            at += filters;
         }
         Some(Realization::Discrete(DiscreteRealization {
             a,
@@ -166,33 +218,74 @@ mod tests {
         assert!((b[2] - 0.4_f64.sqrt() * 0.6).abs() < 1e-15);
     }
 
-    /// Section 2.5: at α = 0.889 the last of four filters has decayed to 0.0096 at sample 176; bounds of (2.36).
-    #[test]
-    fn memory_and_alpha_guidelines() {
-        let g = impulse_response(0.889, 4, 400);
-        assert!((g[(3, 176)].abs() - 0.0096).abs() < 5e-5, "{}", g[(3, 176)]);
-        assert!((176..400).all(|k| g[(3, k)].abs() <= 0.01));
-        assert!((alpha_lower_bound(3.0, 200.0) - 0.8283).abs() < 5e-5);
-        assert!((alpha_lower_bound(2.5, 200.0) - 0.8547).abs() < 5e-5);
+    fn model(own: bool) -> DiscreteLaguerre {
+        let coefficients = (0..2)
+            .map(|j| DMatrix::from_fn(2, 3, |i, l| 1.0 + i as f64 - 0.5 * l as f64 * j as f64));
+        let mut model = DiscreteLaguerre::shared(
+            Dof::TWO.to_vec(),
+            0.6,
+            0.08,
+            coefficients.collect(),
+            vec![0.1, -0.2],
+        );
+        if own {
+            // the moment due to rotation gets two slower filters of its own
+            model.terms[1].coefficients.row_mut(1).fill(0.0);
+            model.terms.push(DiscreteTerm {
+                input: 1,
+                alpha: 0.9,
+                coefficients: DMatrix::from_row_slice(2, 2, &[0.0, 0.0, 0.7, -0.3]),
+            });
+        }
+        model.validate().unwrap();
+        model
     }
 
     #[test]
     fn realisation_and_closed_form_agree() {
-        let model = DiscreteLaguerre {
-            dofs: Dof::TWO.to_vec(),
-            alpha: 0.6,
-            delta_s: 0.08,
-            coefficients: (0..2)
-                .map(|j| DMatrix::from_fn(2, 3, |i, l| 1.0 + i as f64 - 0.5 * l as f64 * j as f64))
-                .collect(),
-            static_term: vec![0.0; 2],
-        };
-        model.validate().unwrap();
-        let realization = model.realize().unwrap();
-        for k in [0.1, 0.7, 1.4] {
-            let k = ReducedFrequency::from_full_width(k);
-            let difference = model.transfer(k).unwrap() - realization.transfer(k).unwrap();
-            assert!(difference.iter().all(|z| z.norm() < 1e-12));
+        for own in [false, true] {
+            let model = model(own);
+            assert_eq!(model.shared_parameters(), (!own).then_some((0.6, 3)));
+            let realization = model.realize().unwrap();
+            assert_eq!(realization.states(), if own { 8 } else { 6 });
+            for k in [0.1, 0.7, 1.4] {
+                let k = ReducedFrequency::from_full_width(k);
+                let difference = model.transfer(k).unwrap() - realization.transfer(k).unwrap();
+                assert!(difference.iter().all(|z| z.norm() < 1e-12));
+            }
         }
+    }
+
+    #[test]
+    fn both_layouts_survive_the_round_trip() {
+        for own in [false, true] {
+            let model = model(own);
+            let text = serde_json::to_string(&model).unwrap();
+            assert_eq!(text.contains("terms"), own, "{text}");
+            assert_eq!(text.contains("\"alpha\":0.6,\"delta_s\""), !own, "{text}");
+            assert_eq!(
+                serde_json::from_str::<DiscreteLaguerre>(&text).unwrap(),
+                model
+            );
+        }
+        let shared = serde_json::to_string(&model(false)).unwrap();
+        let both = shared.replacen('{', "{\"terms\":[],", 1);
+        let message = serde_json::from_str::<DiscreteLaguerre>(&both).unwrap_err();
+        assert!(message.to_string().contains("either"), "{message}");
+    }
+
+    #[test]
+    fn impossible_models_are_refused() {
+        let message = |change: fn(&mut DiscreteLaguerre)| {
+            let mut model = model(true);
+            change(&mut model);
+            model.validate().unwrap_err().to_string()
+        };
+        assert!(
+            message(|m| m.terms[2].alpha = 1.0).contains("terms[2].alpha: expected 0 < alpha < 1")
+        );
+        assert!(message(|m| m.terms[0].input = 2).contains("input below 2"));
+        assert!(message(|m| drop(m.terms.remove(0))).contains("a motion without any"));
+        assert!(message(|m| m.static_term.clear()).contains("static_term"));
     }
 }

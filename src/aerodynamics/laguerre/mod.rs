@@ -4,9 +4,10 @@
 mod bank;
 mod continuous;
 mod discrete;
+mod discrete_layout;
+mod guidelines;
 
 pub use bank::FilterBank;
 pub use continuous::{FilterTerm, LaguerreModel};
-pub use discrete::{
-    DiscreteLaguerre, alpha_lower_bound, discrete_filter_matrices, impulse_response,
-};
+pub use discrete::{DiscreteLaguerre, DiscreteTerm, discrete_filter_matrices, impulse_response};
+pub use guidelines::{MEMORY_LIMIT, alpha_lower_bound, alpha_upper_bound, discrete_memory};

@@ -267,12 +267,11 @@ impl<'a, const N: usize> Sweep<'a, N> {
         let count = forces.count();
         let row = &self.sweep.table[i * count..][..count];
         let mut g = [[Complex64::new(0.0, 0.0); N]; N];
-        for j in 0..N {
-            for b in forces.starts[j]..forces.starts[j + 1] {
-                let theta = &self.coefficients[b * N..][..N];
-                for (row_of_g, theta) in g.iter_mut().zip(theta) {
-                    row_of_g[j] += row[b] * *theta;
-                }
+        let values = row.iter().zip(self.coefficients.chunks_exact(N));
+        for (b, (value, thetas)) in values.enumerate() {
+            let j = usize::from(b >= forces.starts[1]) + usize::from(b >= forces.starts[2]);
+            for (row_of_g, theta) in g.iter_mut().zip(thetas) {
+                row_of_g[j] += value * theta;
             }
         }
         g
@@ -283,12 +282,11 @@ impl<'a, const N: usize> Sweep<'a, N> {
         let advance = (k / from.k).ln();
         let mut next = Roots { k, ..*from };
         let mut predicted = from.omega;
-        for i in 0..N {
-            predicted[i] = from.omega[i] + from.slope[i] * advance;
-            if !from.alive[i] {
-                continue;
+        for (i, start) in predicted.iter_mut().enumerate() {
+            *start += from.slope[i] * advance;
+            if from.alive[i] {
+                next.omega[i] = pencil.root(*start)?;
             }
-            next.omega[i] = pencil.root(predicted[i])?;
         }
         for i in (0..N).filter(|i| from.alive[*i]) {
             let nearest = (0..N)

@@ -59,7 +59,7 @@ fn discrete_model_is_recovered() {
     };
     for (j, c) in c.iter().enumerate() {
         for (l, expected) in c.iter().enumerate() {
-            assert!((model.coefficients[j][(0, l)] - expected).abs() < 1e-10);
+            assert!((model.terms[j].coefficients[(0, l)] - expected).abs() < 1e-10);
         }
     }
     assert!((model.static_term[0] - static_lift).abs() < 1e-12);

@@ -9,8 +9,9 @@ use super::basis::{Basis, assemble};
 use super::least_squares::Factor;
 use super::options::{Form, TimeFit, TimeWeights};
 use super::records::{OnProgress, Progress, Task, tested_range};
-use super::time::accumulate::{Factored, Layout, Plan};
+use super::time::accumulate::{Factored, Plan};
 use super::time::filters::ContinuousColumns;
+use super::time::layout::Layout;
 use super::time::slices::{Scaled, scale_all};
 use super::time::stretches::{Closed, stretches};
 use crate::aerodynamics::DiscreteLaguerre;
@@ -99,6 +100,8 @@ impl Grid {
                     fit,
                     dofs: &dofs,
                     records: &scaled,
+                    // the grid itself says which filters there are
+                    entries: &[],
                     progress,
                 };
                 continuous_pass(&task, poles, filters_max)?
@@ -200,7 +203,7 @@ impl Grid {
         }
         Ok(CellFit {
             model: self.model(value, filters, &coefficients)?,
-            objective: systems.objective(per_input),
+            objective: systems.objective(per_input, &|_, _| true),
             cancellation,
             coefficients,
         })
@@ -218,17 +221,15 @@ impl Grid {
         let per_input = self.leading(filters);
         match &self.axis {
             GridAxis::Discrete(alphas, _) => {
-                let model = DiscreteLaguerre {
-                    dofs: self.dofs.clone(),
-                    alpha: alphas[value],
-                    delta_s: self.delta_s,
-                    coefficients: (0..n)
-                        .map(|j| {
-                            DMatrix::from_fn(n, filters, |i, l| all[i][self.layout.index(l, j)])
-                        })
-                        .collect(),
-                    static_term: all.iter().map(|c| c[0]).collect(),
-                };
+                let of_motion =
+                    |j| DMatrix::from_fn(n, filters, |i, l| all[i][self.layout.index(l, j)]);
+                let model = DiscreteLaguerre::shared(
+                    self.dofs.clone(),
+                    alphas[value],
+                    self.delta_s,
+                    (0..n).map(of_motion).collect(),
+                    all.iter().map(|c| c[0]).collect(),
+                );
                 model.validate()?;
                 Ok(Model::DiscreteLaguerre(model))
             }
@@ -309,13 +310,14 @@ fn continuous_pass(
     filters: usize,
 ) -> Result<(Layout, Vec<Closed>)> {
     let form = with_filters(&task.fit.form, filters);
+    let inputs = task.dofs.len();
     let bases = poles
         .iter()
-        .map(|p| Basis::orthonormal(&form, &vec![*p; filters]))
+        .map(|p| Ok(vec![Basis::orthonormal(&form, &vec![*p; filters])?; inputs]))
         .collect::<Result<Vec<_>>>()?;
     let layout = Layout {
-        inputs: task.dofs.len(),
-        per_input: bases.first().map_or(0, Basis::len),
+        inputs,
+        per_input: form.feed_through().count() + filters,
         constant: false,
     };
     let plan = Plan {
@@ -326,9 +328,8 @@ fn continuous_pass(
         stride: task.thinning(),
         stretches: 1,
     };
-    let make = |record: &Scaled<'_>| {
-        ContinuousColumns::new(record, task.dofs.len(), &bases, task.cutoff_hz(record))
-    };
+    let make =
+        |record: &Scaled<'_>| ContinuousColumns::new(record, &bases, task.cutoff_hz(record), false);
     let done = report(task.progress, task.records.len());
     Ok((layout, stretches(task.records, &plan, &make, &done)?))
 }

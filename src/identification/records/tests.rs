@@ -1,6 +1,6 @@
 use super::*;
 use crate::aerodynamics::{AerodynamicModel, FlatPlate, RationalModel};
-use crate::identification::options::{FeedThrough, PoleSearch};
+use crate::identification::options::{FeedThrough, Form, PoleSearch};
 use crate::identification::testing::{onset_m_s, records, sources};
 use crate::units::ReducedFrequency;
 use crate::wind_tunnel::{Record, RecordBlock, RecordHeader};
@@ -79,9 +79,11 @@ fn simultaneous_motions_are_told_apart() {
         fit_records(&[&both], &jones_fit(TimeWeights::PerRecord), &quiet).unwrap();
     assert_jones(&model, 4e-3);
     assert!(report.entries.iter().all(|e| e.relative_rms.is_none()));
-    // without segments the range is the characteristic K of the motion
-    let k = report.tested_range.min.full_width();
-    assert!(0.1 < k && k < 0.96, "{k}");
+    // without segments the range is the band of the motion, 0.25 to 2.5 Hz, to the resolution of its spectrum
+    let k = |hz| ReducedFrequency::from_hertz(hz, 0.5, 8.17).full_width();
+    let range = report.tested_range;
+    assert!((range.min.full_width() - k(0.25)).abs() < k(0.05));
+    assert!((range.max.full_width() - k(2.5)).abs() < k(0.05));
     let own = TimeFit {
         form: Form::Laguerre {
             filters: 1,

@@ -1,6 +1,8 @@
 //! Accumulation of regressor rows over records: only the inputs that move take columns, weights are applied to whole
 //! chunks after they have been factored, and one pass serves many candidate models.
 
+use super::layout::Layout;
+use super::motion_start::MotionStart;
 use super::slices::{Event, Scaled, Slice};
 use super::stretches::{Closed, settle, stretch_ends, weight};
 use crate::error::{Error, Result};
@@ -8,40 +10,6 @@ use crate::identification::least_squares::{Factor, StreamingQr};
 use crate::identification::options::TimeWeights;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
-
-/// Columns of the whole system: an optional constant, then every column of one input for all inputs, interleaved so
-/// that fewer filters are a leading subset.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Layout {
-    pub inputs: usize,
-    pub per_input: usize,
-    pub constant: bool,
-}
-
-impl Layout {
-    /// Number of columns with `active` inputs.
-    pub fn width(&self, active: usize) -> usize {
-        usize::from(self.constant) + self.per_input * active
-    }
-
-    /// Column `c` of input `j` in the whole system.
-    pub fn index(&self, c: usize, j: usize) -> usize {
-        usize::from(self.constant) + c * self.inputs + j
-    }
-
-    /// Number of columns of the whole system that the first `per_input` columns of every input take.
-    pub fn leading(&self, per_input: usize) -> usize {
-        usize::from(self.constant) + per_input * self.inputs
-    }
-
-    /// Columns of the whole system that a set of inputs takes, in the order of its own system.
-    pub fn map(&self, active: &[usize]) -> Vec<usize> {
-        let constant = self.constant.then_some(0);
-        let columns =
-            (0..self.per_input).flat_map(|c| active.iter().map(move |&j| self.index(c, j)));
-        constant.into_iter().chain(columns).collect()
-    }
-}
 
 /// Makes the columns of one record, slice after slice.
 pub(crate) trait Columns {
@@ -83,7 +51,15 @@ pub(crate) struct Factored {
     pub whole: Vec<Factor>,
 }
 
-/// One pass over all records; one result a candidate. `make` builds the columns of a record, `done` is called after
+/// Result of one pass.
+pub(crate) struct Accumulated {
+    /// One a candidate.
+    pub systems: Vec<Factored>,
+    /// Samples before the motion starts, one number a record, at the step of the pass.
+    pub still_samples: Vec<usize>,
+}
+
+/// One pass over all records; one system a candidate. `make` builds the columns of a record, `done` is called after
 /// each record with the number of those that are through.
 ///
 /// # Errors
@@ -93,26 +69,35 @@ pub(crate) fn accumulate<'a, C: Columns>(
     plan: &Plan,
     make: &(dyn Fn(&Scaled<'a>) -> Result<C> + Sync),
     done: &(dyn Fn(usize) + Sync),
-) -> Result<Vec<Factored>> {
+) -> Result<Accumulated> {
     let parts = each_record(records, plan, make, done)?;
     // merged in the order of the records, whatever the order in which they were done
     let mut by_candidate: Vec<Vec<Totals>> = Vec::new();
+    let mut still_samples = Vec::with_capacity(records.len());
     for part in parts {
-        for (c, totals) in part.0.into_iter().enumerate() {
+        still_samples.push(part.still_samples);
+        for (c, totals) in part.totals.into_iter().enumerate() {
             if by_candidate.len() <= c {
                 by_candidate.push(Vec::new());
             }
             by_candidate[c].push(totals);
         }
     }
-    Ok(by_candidate
-        .into_iter()
-        .map(|parts| Factored::merge(plan.layout, parts))
-        .collect())
+    Ok(Accumulated {
+        systems: by_candidate
+            .into_iter()
+            .map(|parts| Factored::merge(plan.layout, parts))
+            .collect(),
+        still_samples,
+    })
 }
 
-/// What one record yields: its totals, or its stretches where they are kept.
-type Part = (Vec<Totals>, Vec<Closed>);
+/// What one record yields: its totals, or its stretches where they are kept, and the samples before its motion starts.
+pub(super) struct Part {
+    totals: Vec<Totals>,
+    pub closed: Vec<Closed>,
+    still_samples: usize,
+}
 
 pub(super) fn each_record<'a, C: Columns>(
     records: &[Scaled<'a>],
@@ -149,11 +134,13 @@ fn one_record<C: Columns>(record: &Scaled<'_>, plan: &Plan, make: &mut C) -> Res
     let mut chunk = Chunk::new(plan.layout.inputs);
     let mut active: Vec<usize> = Vec::new();
     let mut closed: Vec<Closed> = Vec::new();
+    let mut start = MotionStart::default();
     let mut rows = 0;
     record.stream(plan.delta_s, &boundaries, &mut |event| {
         match event {
             Event::Boundary => chunk.close(plan, &mut totals, &mut closed),
             Event::Samples(slice) => {
+                start.take(&slice);
                 let moving = activate(&slice, &mut active);
                 make.advance(&slice, &active);
                 if slice.first >= discard {
@@ -175,7 +162,11 @@ fn one_record<C: Columns>(record: &Scaled<'_>, plan: &Plan, make: &mut C) -> Res
         ));
     }
     settle(&mut closed, record, plan.weights);
-    Ok((totals, closed))
+    Ok(Part {
+        totals,
+        closed,
+        still_samples: start.still_samples(),
+    })
 }
 
 /// Adds the inputs that begin to move in this slice to `active`; returns from which row on something has moved.
@@ -383,14 +374,17 @@ impl Factored {
     }
 
     /// Root mean square, over forces and sets of inputs, of the weighted residual relative to the weighted data, with the
-    /// first `per_input` columns of each input.
-    pub fn objective(&self, per_input: usize) -> f64 {
+    /// first `per_input` columns of each input. Where one input moves alone, only the transfer functions `among` count.
+    pub fn objective(&self, per_input: usize, among: &dyn Fn(usize, usize) -> bool) -> f64 {
         let (mut sum, mut count) = (0.0, 0.0);
         for (set, factors) in self.sets.iter().filter(|(set, _)| !set.is_empty()) {
             let leading = usize::from(self.layout.constant) + per_input * set.len();
-            for factor in factors.iter().filter(|f| f.total_sum(0) > 0.0) {
-                sum += factor.residual_sum(leading, 0) / factor.total_sum(0);
-                count += 1.0;
+            for (i, factor) in factors.iter().enumerate() {
+                let wanted = set.len() > 1 || among(i, set[0]);
+                if wanted && factor.total_sum(0) > 0.0 {
+                    sum += factor.residual_sum(leading, 0) / factor.total_sum(0);
+                    count += 1.0;
+                }
             }
         }
         (sum / f64::max(count, 1.0)).sqrt()

@@ -1,5 +1,5 @@
-//! Regressor columns of one record: low-pass and orthonormal filters as one exactly discretised linear system, and the
-//! recursion of the discrete model.
+//! Regressor columns of the continuous models for one record: low-pass and orthonormal filters as one exactly discretised
+//! linear system.
 //!
 //! Motion and force go through the same fourth-order Butterworth low-pass, whose states are the filtered motion and its
 //! derivatives: no sample is differentiated. Low-pass and filters advance together by the exact response to a motion that
@@ -12,6 +12,7 @@ use super::slices::{Scaled, Slice};
 use crate::error::{Error, Result};
 use crate::identification::basis::Basis;
 use crate::identification::least_squares::BLOCK_ROWS;
+use crate::identification::options::FeedThrough;
 use crate::state_space::{StepMatrices, step_matrices};
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::TAU;
@@ -168,31 +169,34 @@ impl FilterStep {
     }
 }
 
-/// Columns of the continuous models, one candidate a basis.
+/// Columns of the continuous models; a candidate is a basis for each input, all of one length.
 pub(crate) struct ContinuousColumns<'a> {
-    bases: &'a [Basis],
+    bases: &'a [Vec<Basis>],
     low_pass: LowPassStep,
-    steps: Vec<FilterStep>,
+    /// One step a candidate and input.
+    steps: Vec<Vec<FilterStep>>,
     motion: Vec<Filtered>,
     force: Vec<Filtered>,
     /// Filter states, one vector a candidate and input.
     states: Vec<Vec<Vec<f64>>>,
     /// Filter columns of the candidate asked for last, one stretch an input.
     filters: Vec<Vec<f64>>,
+    /// The constant, if there is one.
+    ones: Option<Vec<f64>>,
     starting: Vec<bool>,
     rows: usize,
 }
 
 impl<'a> ContinuousColumns<'a> {
-    /// For one record, with the cut-off in Hz.
+    /// For one record, with the cut-off in Hz; `constant` puts a column of ones in front.
     ///
     /// # Errors
     /// [`Error::Input`] for a cut-off at or above half the sampling frequency.
     pub fn new(
         record: &Scaled<'_>,
-        inputs: usize,
-        bases: &'a [Basis],
+        bases: &'a [Vec<Basis>],
         cutoff_hz: f64,
+        constant: bool,
     ) -> Result<Self> {
         if cutoff_hz * record.step_s >= 0.5 {
             return Err(Error::input(
@@ -207,11 +211,18 @@ impl<'a> ContinuousColumns<'a> {
         let step = record.delta_s();
         let (a, b) = low_pass(TAU * cutoff_hz / record.rate);
         let hold = Hold::new(&a, &b, step)?;
-        let steps = bases
-            .iter()
-            .map(|basis| filter_step(basis, &a, &b, step))
-            .collect::<Result<Vec<_>>>()?;
-        let longest = bases.iter().map(|b| b.poles().len()).max().unwrap_or(0);
+        let of_candidate = |bases: &Vec<Basis>| {
+            let each = bases.iter().map(|basis| filter_step(basis, &a, &b, step));
+            each.collect::<Result<Vec<_>>>()
+        };
+        let steps = bases.iter().map(of_candidate).collect::<Result<Vec<_>>>()?;
+        let inputs = bases.first().map_or(0, Vec::len);
+        let every = bases.iter().flatten();
+        let longest = every.map(|b| b.poles().len()).max().unwrap_or(0);
+        let at_rest = |of_inputs: &Vec<FilterStep>| {
+            let each = of_inputs.iter().map(|s| vec![0.0; s.count]);
+            each.collect::<Vec<_>>()
+        };
         Ok(Self {
             bases,
             low_pass: LowPassStep {
@@ -219,14 +230,12 @@ impl<'a> ContinuousColumns<'a> {
                 g0: std::array::from_fn(|m| hold.g0[m]),
                 g1: std::array::from_fn(|m| hold.g1[m]),
             },
-            states: steps
-                .iter()
-                .map(|s| vec![vec![0.0; s.count]; inputs])
-                .collect(),
+            states: steps.iter().map(at_rest).collect(),
             steps,
             motion: (0..inputs).map(|_| Filtered::new()).collect(),
             force: (0..inputs).map(|_| Filtered::new()).collect(),
             filters: vec![vec![0.0; longest * BLOCK_ROWS]; inputs],
+            ones: constant.then(|| vec![1.0; BLOCK_ROWS]),
             starting: vec![false; inputs],
             rows: 0,
         })
@@ -293,102 +302,35 @@ impl Columns for ContinuousColumns<'_> {
         for (filter, samples) in self.force.iter_mut().zip(&slice.force) {
             filter.advance(&self.low_pass, samples);
         }
-        for (step, states) in self.steps.iter().zip(&mut self.states) {
+        for (steps, states) in self.steps.iter().zip(&mut self.states) {
             for &j in active {
                 if self.starting[j] {
                     let first = slice.motion[j][0];
-                    states[j] = step.rest.iter().map(|x| x * first).collect();
+                    states[j] = steps[j].rest.iter().map(|x| x * first).collect();
                 }
             }
         }
     }
 
     fn columns(&mut self, candidate: usize, active: &[usize]) -> Vec<&[f64]> {
-        let step = &self.steps[candidate];
         for &j in active {
             let state = &mut self.states[candidate][j];
-            step.advance(&self.motion[j], state, &mut self.filters[j]);
+            self.steps[candidate][j].advance(&self.motion[j], state, &mut self.filters[j]);
         }
         let rows = self.rows;
-        let feed = self.bases[candidate].feed();
+        let (feed, count) = self.bases[candidate]
+            .first()
+            .map_or((FeedThrough::none(), 0), |b| (b.feed(), b.poles().len()));
         let mut columns: Vec<&[f64]> = Vec::new();
+        columns.extend(self.ones.as_ref().map(|ones| &ones[..rows]));
         for order in feed.orders() {
             columns.extend(active.iter().map(|&j| &self.motion[j].states[order][1..]));
         }
-        for l in 0..step.count {
+        for l in 0..count {
             let stretch = l * BLOCK_ROWS..l * BLOCK_ROWS + rows;
             columns.extend(active.iter().map(|&j| &self.filters[j][stretch.clone()]));
         }
         columns.extend(self.force.iter().map(|f| &f.states[0][1..]));
-        columns
-    }
-}
-
-/// Columns of the discrete model (2.33) after a column of ones.
-pub(crate) struct DiscreteColumns {
-    root: f64,
-    gain: f64,
-    filters: usize,
-    ones: Vec<f64>,
-    /// Filter states at the last sample, one vector an input.
-    states: Vec<Vec<f64>>,
-    columns: Vec<Vec<f64>>,
-    force: Vec<Vec<f64>>,
-    rows: usize,
-}
-
-impl DiscreteColumns {
-    pub fn new(inputs: usize, filters: usize, alpha: f64) -> Self {
-        Self {
-            root: alpha.sqrt(),
-            gain: (1.0 - alpha).sqrt(),
-            filters,
-            ones: vec![1.0; BLOCK_ROWS],
-            states: vec![vec![0.0; filters]; inputs],
-            columns: vec![vec![0.0; filters * BLOCK_ROWS]; inputs],
-            force: vec![Vec::with_capacity(BLOCK_ROWS); inputs],
-            rows: 0,
-        }
-    }
-}
-
-impl Columns for DiscreteColumns {
-    fn candidates(&self) -> usize {
-        1
-    }
-
-    fn advance(&mut self, slice: &Slice<'_>, active: &[usize]) {
-        self.rows = slice.rows();
-        for &j in active {
-            let state = &mut self.states[j];
-            let out = &mut self.columns[j];
-            for (k, v) in slice.motion[j].iter().enumerate() {
-                let mut before = state[0];
-                let mut new = self.root * before + self.gain * v;
-                state[0] = new;
-                out[k] = new;
-                for l in 1..self.filters {
-                    let old = state[l];
-                    new = self.root * (old + new) - before;
-                    before = old;
-                    state[l] = new;
-                    out[l * BLOCK_ROWS + k] = new;
-                }
-            }
-        }
-        for (copy, samples) in self.force.iter_mut().zip(&slice.force) {
-            copy.clear();
-            copy.extend_from_slice(samples);
-        }
-    }
-
-    fn columns(&mut self, _: usize, active: &[usize]) -> Vec<&[f64]> {
-        let mut columns: Vec<&[f64]> = vec![&self.ones[..self.rows]];
-        for l in 0..self.filters {
-            let stretch = l * BLOCK_ROWS..l * BLOCK_ROWS + self.rows;
-            columns.extend(active.iter().map(|&j| &self.columns[j][stretch.clone()]));
-        }
-        columns.extend(self.force.iter().map(Vec::as_slice));
         columns
     }
 }

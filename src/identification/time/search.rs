@@ -2,6 +2,8 @@
 
 use super::accumulate::Factored;
 use crate::error::{Error, Result};
+use crate::identification::options::{Form, PoleSearch};
+use crate::identification::own::{search_for, searched_together};
 use crate::identification::records::Task;
 use crate::identification::report::{SearchPoint, SearchReport};
 use crate::identification::search::{Bounds, best_of};
@@ -12,15 +14,21 @@ pub(crate) const PASSES: usize = 5;
 /// Points of the first grid for one pole: a factor 1.4 apart over the widest usual range.
 const FIRST_POINTS: usize = 13;
 
-/// A set of poles that is searched: of all transfer functions, or of one.
+/// A set of poles that is searched: of the transfer functions that share it, or of one.
 struct Group {
+    /// Places of its transfer functions, row by row.
+    members: Vec<usize>,
+    /// Force and motion, when it is one with poles of its own.
     entry: Option<(usize, usize)>,
+    form: Form,
+    options: PoleSearch,
+    bounds: Bounds,
     points: Vec<SearchPoint>,
     /// Logarithmic distance of neighbours in the last grid.
     step: f64,
 }
 
-/// Free poles — one set, or one a transfer function, row by row — and how they were found.
+/// Free poles of every transfer function, row by row, and how they were found.
 ///
 /// # Errors
 /// [`Error::Input`] for bounds without room, and for poles per transfer function from records that move two degrees of
@@ -29,89 +37,114 @@ pub(crate) fn choose_poles(
     task: &Task<'_>,
     tested: ReducedFrequencyRange,
 ) -> Result<(Vec<Vec<f64>>, Vec<SearchReport>)> {
-    let (form, options) = (&task.fit.form, &task.fit.poles);
-    if let Some(fixed) = &options.fixed {
-        return Ok((vec![fixed.clone()], Vec::new()));
-    }
-    let count = form.free_poles();
-    let bounds = Bounds::resolve(options, tested, count)?;
-    let n = task.dofs.len();
-    let entries: Vec<Option<(usize, usize)>> = if form.pole_per_transfer_function() {
-        (0..n * n).map(|e| Some((e / n, e % n))).collect()
-    } else {
-        vec![None]
-    };
-    let range = (bounds.max / bounds.min).ln();
-    let mut groups: Vec<Group> = entries
+    let mut groups = searched_together(task.entries)
         .into_iter()
-        .map(|entry| Group {
-            entry,
-            points: Vec::new(),
-            step: range / (FIRST_POINTS as f64 - 1.0),
-        })
-        .collect();
-    for pass in 1..PASSES {
-        let mut candidates: Vec<Vec<f64>> = Vec::new();
-        let mut owners: Vec<Vec<usize>> = Vec::new();
-        for (g, group) in groups.iter_mut().enumerate() {
-            let wanted = match (&options.start, pass) {
-                (Some(start), 1) => {
-                    group.step = range / 4.0;
-                    vec![start.clone()]
-                }
-                (None, 1) => bounds.grid(count, FIRST_POINTS),
-                _ => group.refine(&bounds)?,
-            };
-            for poles in wanted {
-                match candidates.iter().position(|c| *c == poles) {
-                    Some(at) => owners[at].push(g),
-                    None => {
-                        candidates.push(poles);
-                        owners.push(vec![g]);
-                    }
-                }
-            }
-        }
-        let chains: Vec<Vec<f64>> = candidates.iter().map(|c| form.expand(c)).collect();
-        let systems = task.pass(&chains, true, (pass, PASSES))?;
-        for ((poles, owners), system) in candidates.iter().zip(owners).zip(&systems) {
-            for g in owners {
-                let objective = objective(system, groups[g].entry)?;
-                groups[g].points.push(SearchPoint {
-                    poles: poles.clone(),
-                    objective,
-                });
-            }
-        }
-    }
-    let reports = groups
-        .into_iter()
-        .map(|g| g.report(task, &bounds))
+        .map(|members| Group::new(task, tested, members))
         .collect::<Result<Vec<_>>>()?;
-    let chosen = reports.iter().map(|r| r.chosen.poles.clone()).collect();
+    let longest = task.most_filters();
+    for pass in 1..PASSES {
+        if groups.is_empty() {
+            break;
+        }
+        let mut candidates: Vec<Vec<f64>> = Vec::new();
+        let mut trials: Vec<(usize, Vec<f64>, usize)> = Vec::new();
+        for (g, group) in groups.iter_mut().enumerate() {
+            for poles in group.wanted(pass)? {
+                let chain = padded(&group.form.expand(&poles), longest);
+                let known = candidates.iter().position(|c| *c == chain);
+                let at = known.unwrap_or(candidates.len());
+                if known.is_none() {
+                    candidates.push(chain);
+                }
+                trials.push((g, poles, at));
+            }
+        }
+        let everywhere = |chain: Vec<f64>| vec![chain; task.dofs.len()];
+        let chains: Vec<_> = candidates.into_iter().map(everywhere).collect();
+        let systems = task.pass(&chains, true, (pass, PASSES))?.systems;
+        for (g, poles, at) in trials {
+            let objective = groups[g].objective(&systems[at])?;
+            groups[g].points.push(SearchPoint { poles, objective });
+        }
+    }
+    let fixed = task.entries.iter().map(|e| e.fixed.clone());
+    let mut chosen: Vec<Vec<f64>> = fixed.map(Option::unwrap_or_default).collect();
+    let mut reports = Vec::with_capacity(groups.len());
+    for group in groups {
+        let members = group.members.clone();
+        let report = group.report(task)?;
+        for e in members {
+            chosen[e] = report.chosen.poles.clone();
+        }
+        reports.push(report);
+    }
     Ok((chosen, reports))
 }
 
-fn objective(system: &Factored, entry: Option<(usize, usize)>) -> Result<f64> {
-    let Some((i, j)) = entry else {
-        return Ok(system.objective(system.layout.per_input));
-    };
-    let own = system
-        .alone(i, j)
-        .filter(|_| system.single_motions())
-        .ok_or_else(|| {
-            Error::input(
-                "form.pole_per_transfer_function",
-                "records that move one degree of freedom each, and every one of them",
-                "records that move several at once, or a degree of freedom that never moves",
-            )
-        })?;
-    Ok((own.residual_sum(own.columns(), 0) / own.total_sum(0)).sqrt())
+/// A chain made as long as the longest; its first filters stay what they are.
+pub(crate) fn padded(chain: &[f64], longest: usize) -> Vec<f64> {
+    let last = chain.last().copied().unwrap_or(1.0);
+    let mut padded = chain.to_vec();
+    padded.resize(longest, last);
+    padded
 }
 
 impl Group {
+    fn new(task: &Task<'_>, tested: ReducedFrequencyRange, members: Vec<usize>) -> Result<Self> {
+        let first = &task.entries[members[0]];
+        let options = search_for(&task.fit.poles, &first.form);
+        let bounds = Bounds::resolve(&options, tested, first.form.free_poles())?;
+        let n = task.dofs.len();
+        let range = (bounds.max / bounds.min).ln();
+        Ok(Self {
+            entry: first.alone.then_some((members[0] / n, members[0] % n)),
+            form: first.form.clone(),
+            points: Vec::new(),
+            step: if options.start.is_some() {
+                range / 4.0
+            } else {
+                range / (FIRST_POINTS as f64 - 1.0)
+            },
+            members,
+            options,
+            bounds,
+        })
+    }
+
+    /// Poles to be tried in a pass.
+    fn wanted(&mut self, pass: usize) -> Result<Vec<Vec<f64>>> {
+        match (&self.options.start, pass) {
+            (Some(start), 1) => Ok(vec![start.clone()]),
+            (None, 1) => Ok(self.bounds.grid(self.form.free_poles(), FIRST_POINTS)),
+            _ => self.refine(),
+        }
+    }
+
+    /// Relative weighted residual of its transfer functions with the first columns of a system.
+    fn objective(&self, system: &Factored) -> Result<f64> {
+        let columns = self.form.feed_through().count() + self.form.filters();
+        let Some((i, j)) = self.entry else {
+            let n = system.layout.inputs;
+            let among = |i: usize, j: usize| self.members.contains(&(i * n + j));
+            return Ok(system.objective(columns, &among));
+        };
+        let own = system
+            .alone(i, j)
+            .filter(|_| system.single_motions())
+            .ok_or_else(|| {
+                Error::input(
+                    "form.pole_per_transfer_function, own",
+                    "records that move one degree of freedom each, and every one of them",
+                    "records that move several at once, or a degree of freedom that never moves",
+                )
+            })?;
+        let leading = system.layout.leading_alone(columns);
+        Ok((own.residual_sum(leading, 0) / own.total_sum(0)).sqrt())
+    }
+
     /// Points around the best, on a grid that is finer than the last.
-    fn refine(&mut self, bounds: &Bounds) -> Result<Vec<Vec<f64>>> {
+    fn refine(&mut self) -> Result<Vec<Vec<f64>>> {
+        let bounds = &self.bounds;
         let best = best_of(&self.points)?;
         let count = best.poles.len();
         let (offsets, shrink): (&[f64], f64) = if count == 1 {
@@ -138,7 +171,8 @@ impl Group {
         Ok(sets)
     }
 
-    fn report(self, task: &Task<'_>, bounds: &Bounds) -> Result<SearchReport> {
+    fn report(self, task: &Task<'_>) -> Result<SearchReport> {
+        let bounds = self.bounds;
         let mut chosen = best_of(&self.points)?;
         if let Some(vertex) = self.vertex(&chosen) {
             chosen.poles = vec![vertex.clamp(bounds.min, bounds.max)];

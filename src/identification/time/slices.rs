@@ -1,5 +1,6 @@
 //! A record as a stream of dimensionless slices: checked, scaled, resampled where asked, cut where its chunks end.
 
+use super::spectrum::BandEstimate;
 use crate::error::{Error, Result, positive};
 use crate::identification::basis::index_of;
 use crate::identification::least_squares::BLOCK_ROWS;
@@ -15,6 +16,8 @@ pub(crate) struct Scaled<'a> {
     channels: Vec<usize>,
     motion_scale: Vec<f64>,
     force_scale: Vec<f64>,
+    /// Subtracted from each dimensionless force.
+    offset: Vec<f64>,
     /// `V/B`, 1/s.
     pub rate: f64,
     /// Sampling step, s.
@@ -94,6 +97,7 @@ impl<'a> Scaled<'a> {
                 .iter()
                 .map(|d| 1.0 / (pressure * d.force_scale(width)))
                 .collect(),
+            offset: vec![0.0; dofs.len()],
             rate: speed / width,
             step_s: 1.0 / sampling,
         })
@@ -120,7 +124,7 @@ impl<'a> Scaled<'a> {
         segments.iter().skip(1).map(|s| s.start_s).collect()
     }
 
-    /// Reduced frequencies of the segments; for other motions the characteristic one, `rms(r')/rms(r)`.
+    /// Reduced frequencies of the segments; for other motions the band that holds their power.
     ///
     /// # Errors
     /// Those of reading.
@@ -133,27 +137,40 @@ impl<'a> Scaled<'a> {
                 segments.iter().map(|s| k(s.frequency_hz)),
             ));
         }
-        let mut before: Option<Vec<f64>> = None;
-        let (mut motion, mut change) = (0.0, 0.0);
+        let mut estimate = BandEstimate::new(self.channels.len());
         self.stream(None, &[], &mut |event| {
-            let Event::Samples(slice) = event else {
-                return Ok(());
-            };
-            let last = before.get_or_insert_with(|| slice.motion.iter().map(|m| m[0]).collect());
-            for (last, samples) in last.iter_mut().zip(&slice.motion) {
-                for x in *samples {
-                    motion += x * x;
-                    change += (x - *last).powi(2);
-                    *last = *x;
+            if let Event::Samples(slice) = event {
+                estimate.take(&slice);
+            }
+            Ok(())
+        })?;
+        let k = |per_sample: f64| ReducedFrequency::from_full_width(per_sample / self.delta_s());
+        Ok(estimate
+            .band()
+            .and_then(|(low, high)| ReducedFrequencyRange::spanning([k(low), k(high)])))
+    }
+
+    /// Subtracts the mean of each force over the record from now on; returns the means, dimensionless.
+    ///
+    /// # Errors
+    /// Those of reading.
+    pub fn remove_means(&mut self) -> Result<Vec<f64>> {
+        let mut sums = vec![0.0; self.channels.len()];
+        let mut rows = 0;
+        self.stream(None, &[], &mut |event| {
+            if let Event::Samples(slice) = event {
+                rows += slice.rows();
+                for (sum, force) in sums.iter_mut().zip(&slice.force) {
+                    *sum += force.iter().sum::<f64>();
                 }
             }
             Ok(())
         })?;
-        let k = (change / motion).sqrt() / self.delta_s();
-        let moved = k.is_finite() && k > 0.0;
-        Ok(moved
-            .then(|| ReducedFrequency::from_full_width(k))
-            .and_then(|k| ReducedFrequencyRange::spanning([k])))
+        self.offset = sums
+            .iter()
+            .map(|s| s / f64::max(rows as f64, 1.0))
+            .collect();
+        Ok(self.offset.clone())
     }
 
     /// Streams the record at its own step, or at the dimensionless step `delta_s` if that is longer; `boundaries_s`
@@ -227,12 +244,14 @@ impl<'a> Scaled<'a> {
     ) -> Result<()> {
         let n = self.channels.len();
         for (i, &channel) in self.channels.iter().enumerate() {
-            for (to, from, factor, what) in [
-                (i, &block.motion[channel], self.motion_scale[i], "motion"),
-                (n + i, &block.force[channel], self.force_scale[i], "force"),
+            let (motion, force) = (&block.motion[channel], &block.force[channel]);
+            for (to, from, (factor, offset), what) in [
+                (i, motion, (self.motion_scale[i], 0.0), "motion"),
+                (n + i, force, (self.force_scale[i], self.offset[i]), "force"),
             ] {
                 out[to].clear();
-                out[to].extend(from[at..at + count].iter().map(|x| factor * x));
+                let samples = &from[at..at + count];
+                out[to].extend(samples.iter().map(|x| factor * x - offset));
                 if let Some(bad) = out[to].iter().position(|x| !x.is_finite()) {
                     return Err(Error::input(
                         format!("record {}, {what}, sample {}", self.name(), read + at + bad),

@@ -47,8 +47,8 @@ pub(crate) fn stretches<'a, C: Columns>(
 ) -> Result<Vec<Closed>> {
     let mut all = Vec::new();
     let parts = each_record(records, plan, make, done)?;
-    for (record, (_, closed)) in parts.into_iter().enumerate() {
-        all.extend(closed.into_iter().map(|c| Closed { record, ..c }));
+    for (record, part) in parts.into_iter().enumerate() {
+        all.extend(part.closed.into_iter().map(|c| Closed { record, ..c }));
     }
     Ok(all)
 }

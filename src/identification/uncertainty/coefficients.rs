@@ -164,19 +164,16 @@ impl CoefficientUncertainty {
                 filters,
             } => {
                 let each = 1 + n * filters;
-                let model = DiscreteLaguerre {
-                    dofs: self.dofs.clone(),
-                    alpha: *alpha,
-                    delta_s: *delta_s,
-                    coefficients: (0..n)
-                        .map(|j| {
-                            DMatrix::from_fn(n, *filters, |i, l| {
-                                values[i * each + 1 + j * filters + l]
-                            })
-                        })
-                        .collect(),
-                    static_term: (0..n).map(|i| values[i * each]).collect(),
+                let of_motion = |j| {
+                    DMatrix::from_fn(n, *filters, |i, l| values[i * each + 1 + j * filters + l])
                 };
+                let model = DiscreteLaguerre::shared(
+                    self.dofs.clone(),
+                    *alpha,
+                    *delta_s,
+                    (0..n).map(of_motion).collect(),
+                    (0..n).map(|i| values[i * each]).collect(),
+                );
                 model.validate()?;
                 Ok(Model::DiscreteLaguerre(model))
             }

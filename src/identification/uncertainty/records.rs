@@ -6,12 +6,17 @@ use super::columns::Expansion;
 use super::poles::{FreePoles, free_poles};
 use super::segments::{Part, Stretched, gather, sandwich};
 use crate::error::{Error, Result};
+use crate::identification::DiscreteFit;
 use crate::identification::basis::Basis;
-use crate::identification::options::{DiscreteFit, Form, TimeFit};
-use crate::identification::records::{OnProgress, Progress, Task};
+use crate::identification::options::{Form, TimeFit};
+use crate::identification::own::StaticTerm;
+use crate::identification::records::{OnProgress, Progress, Task, removed_means};
 use crate::identification::report::FitReport;
-use crate::identification::time::accumulate::{Layout, Plan};
-use crate::identification::time::filters::{ContinuousColumns, DiscreteColumns};
+use crate::identification::time::accumulate::Plan;
+use crate::identification::time::discrete_columns::DiscreteColumns;
+use crate::identification::time::filters::ContinuousColumns;
+use crate::identification::time::layout::Layout;
+use crate::identification::time::search::padded;
 use crate::identification::time::slices::{Scaled, scale_all};
 use crate::identification::time::stretches::{Closed, stretches};
 use crate::section::Dof;
@@ -33,11 +38,21 @@ pub fn record_uncertainty(
     report: &FitReport,
     progress: OnProgress<'_>,
 ) -> Result<CoefficientUncertainty> {
-    let (dofs, scaled) = scale_all(records)?;
+    let (dofs, mut scaled) = scale_all(records)?;
+    removed_means(fit.static_term, &dofs, &mut scaled)?;
+    let together = report.search.iter().any(|s| s.entry.is_none());
+    if fit.static_term == StaticTerm::Estimated || (together && !fit.own.is_empty()) {
+        return Err(Error::Numerical(
+            "covariance: not known for a constant estimated along, nor where some transfer functions share a searched \
+             pole and others have their own"
+                .into(),
+        ));
+    }
     let task = Task {
         fit,
         dofs: &dofs,
         records: &scaled,
+        entries: &[],
         progress,
     };
     let poles = free_poles(&fit.form, &fit.poles, report);
@@ -66,14 +81,21 @@ pub fn record_uncertainty(
 impl Task<'_> {
     /// One pass in which every segment is factored by itself.
     fn stretches(&self, chains: &[Vec<f64>]) -> Result<Vec<Closed>> {
+        let inputs = self.dofs.len();
+        let longest = chains.iter().map(Vec::len).max().unwrap_or(0);
         let bases = chains
             .iter()
-            .map(|poles| Basis::orthonormal(&self.fit.form, poles))
+            .map(|c| {
+                Ok(vec![
+                    Basis::orthonormal(&self.fit.form, &padded(c, longest))?;
+                    inputs
+                ])
+            })
             .collect::<Result<Vec<_>>>()?;
         let plan = Plan {
             layout: Layout {
-                inputs: self.dofs.len(),
-                per_input: bases.first().map_or(0, Basis::len),
+                inputs,
+                per_input: self.fit.form.feed_through().count() + longest,
                 constant: false,
             },
             weights: self.fit.weights,
@@ -83,7 +105,7 @@ impl Task<'_> {
             stretches: STRETCHES,
         };
         let make = |record: &Scaled<'_>| {
-            ContinuousColumns::new(record, self.dofs.len(), &bases, self.cutoff_hz(record))
+            ContinuousColumns::new(record, &bases, self.cutoff_hz(record), false)
         };
         stretches(self.records, &plan, &make, &|records_done| {
             (self.progress)(Progress {
@@ -254,12 +276,20 @@ pub fn discrete_uncertainty(
             model.kind(),
         ));
     };
+    let Some((alpha, filters)) = model
+        .shared_parameters()
+        .filter(|_| fit.static_term == StaticTerm::Estimated)
+    else {
+        return Err(Error::Numerical(
+            "covariance: known for discrete models whose filters are shared and whose constant was estimated along".into(),
+        ));
+    };
     let (dofs, scaled) = scale_all(records)?;
     let n = dofs.len();
     let plan = Plan {
         layout: Layout {
             inputs: n,
-            per_input: fit.filters,
+            per_input: filters,
             constant: true,
         },
         weights: fit.weights,
@@ -276,9 +306,10 @@ pub fn discrete_uncertainty(
             records: scaled.len(),
         });
     };
-    let make = |_: &Scaled<'_>| Ok(DiscreteColumns::new(n, fit.filters, fit.alpha));
+    let alphas = [vec![alpha; n]];
+    let make = |_: &Scaled<'_>| Ok(DiscreteColumns::new(&alphas, filters, true));
     let closed = stretches(&scaled, &plan, &make, &done)?;
-    let each = 1 + n * fit.filters;
+    let each = 1 + n * filters;
     let mut parameters = Vec::with_capacity(n * each);
     for (i, &force) in dofs.iter().enumerate() {
         let mut push = |name: String, motion, value| {
@@ -292,8 +323,12 @@ pub fn discrete_uncertainty(
         };
         push("static".into(), None, model.static_term[i]);
         for (j, &motion) in dofs.iter().enumerate() {
-            for l in 0..fit.filters {
-                push(format!("c{l}"), Some(motion), model.coefficients[j][(i, l)]);
+            for l in 0..filters {
+                push(
+                    format!("c{l}"),
+                    Some(motion),
+                    model.terms[j].coefficients[(i, l)],
+                );
             }
         }
     }
@@ -301,16 +336,16 @@ pub fn discrete_uncertainty(
     let parts = closed
         .iter()
         .flat_map(|stretch| (0..n).map(move |i| (stretch, i)))
-        .map(|(stretch, i)| discrete_part(stretch, i, each, fit.filters, &values))
+        .map(|(stretch, i)| discrete_part(stretch, i, each, filters, &values))
         .collect();
     let (design, blocks) = sandwich(gather(&scaled, parts))?;
     Ok(CoefficientUncertainty::new(
         format!("{blocks}; motions are exact; α is given"),
         dofs,
         Coordinates::Discrete {
-            alpha: model.alpha,
+            alpha,
             delta_s: model.delta_s,
-            filters: fit.filters,
+            filters,
         },
         parameters,
         design,

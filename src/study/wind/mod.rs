@@ -15,7 +15,7 @@ use crate::aerodynamics::quasi_steady::{
 };
 use crate::buffeting::{TimePlan, Turbulence};
 use crate::error::{Error, Result, positive};
-use crate::section::SectionModel;
+use crate::section::{Dof, SectionModel};
 use crate::toml_lines;
 use crate::trained_model::TrainedModel;
 use serde::{Deserialize, Serialize};
@@ -164,15 +164,8 @@ impl WindStudy {
         for (i, speed) in self.time.speeds_m_s.iter().enumerate() {
             positive(&format!("time.speeds_m_s[{i}]"), *speed)?;
         }
-        if let Some(block) = &self.coefficients
-            && block.arms.is_some()
-            && block.arms_from.is_some()
-        {
-            return Err(Error::input(
-                "coefficients.arms_from",
-                "`arms` or `arms_from`",
-                "both",
-            ));
+        if let Some(block) = &self.coefficients {
+            block.validate("coefficients")?;
         }
         if let Some(run) = &self.simulation {
             positive("simulation.wind_speed_m_s", run.wind_speed_m_s)?;
@@ -228,12 +221,7 @@ impl WindStudy {
     /// # Errors
     /// [`Error::Input`] when the file names none; those of reading.
     pub fn static_coefficients(&self) -> Result<StaticCoefficients> {
-        let block = self.coefficients_block()?;
-        if block.source.to_lowercase().ends_with(".csv") {
-            read_coefficients(self.directory.join(&block.source))
-        } else {
-            embedded::coefficients(&block.source)
-        }
+        self.coefficients_block()?.table(&self.directory)
     }
 
     fn coefficients_block(&self) -> Result<&CoefficientsBlock> {
@@ -248,27 +236,57 @@ impl WindStudy {
     /// Those of the coefficients and of the derivatives that give the arms.
     pub fn quasi_steady(&self) -> Result<QuasiSteady> {
         let dofs = self.section()?.dofs();
-        let block = self.coefficients_block()?;
-        let arms = match (&block.arms, &block.arms_from) {
+        self.coefficients_block()?.theory(&self.directory, &dofs)
+    }
+}
+
+impl CoefficientsBlock {
+    /// The table of static coefficients; paths are read against `directory`.
+    fn table(&self, directory: &Path) -> Result<StaticCoefficients> {
+        if self.source.to_lowercase().ends_with(".csv") {
+            read_coefficients(directory.join(&self.source))
+        } else {
+            embedded::coefficients(&self.source)
+        }
+    }
+
+    /// Quasi-steady theory with its arms for these degrees of freedom; paths are read against `directory`.
+    ///
+    /// # Errors
+    /// Those of the coefficients and of the derivatives that give the arms.
+    pub fn theory(&self, directory: &Path, dofs: &[Dof]) -> Result<QuasiSteady> {
+        let arms = match (&self.arms, &self.arms_from) {
             (Some(arms), _) => *arms,
             (None, Some(source)) => {
-                let table = self.derivatives(source)?;
-                let model = InterpolatedTable::new(&table, &dofs, Extrapolation::Refuse)?;
+                let table = derivatives(source, directory)?;
+                let model = InterpolatedTable::new(&table, dofs, Extrapolation::Refuse)?;
                 Arms::from_model(&model, model.tested_range().min)?
             }
             (None, None) => Arms::default(),
         };
-        QuasiSteady::new(self.static_coefficients()?, arms, &dofs)
+        QuasiSteady::new(self.table(directory)?, arms, dofs)
     }
 
-    fn derivatives(&self, source: &str) -> Result<DerivativeTable> {
-        let is_file = [".csv", ".xlsx"]
-            .iter()
-            .any(|end| source.to_lowercase().ends_with(end));
-        if is_file {
-            read_table(self.directory.join(source))
-        } else {
-            decks::deck(source)
+    /// Refuses arms from two sources; `place` is the key of the block.
+    pub(in crate::study) fn validate(&self, place: &str) -> Result<()> {
+        if self.arms.is_some() && self.arms_from.is_some() {
+            return Err(Error::input(
+                format!("{place}.arms_from"),
+                "`arms` or `arms_from`",
+                "both",
+            ));
         }
+        Ok(())
+    }
+}
+
+fn derivatives(source: &str, directory: &Path) -> Result<DerivativeTable> {
+    let is_file = [".csv", ".xlsx"]
+        .iter()
+        .any(|end| source.to_lowercase().ends_with(end));
+    if is_file {
+        read_table(directory.join(source))
+    } else {
+        decks::deck(source)
     }
 }

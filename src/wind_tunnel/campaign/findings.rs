@@ -1,15 +1,11 @@
 //! What is odd in a recording but does not stop reading it, and where a channel is no number.
 
 use crate::section::Dof;
+use crate::signal::clipped_stretches;
 use crate::wind_tunnel::RawRun;
 use serde::Serialize;
 use std::fmt;
 
-/// This many equal samples at the extreme of a channel are taken for clipping.
-const CLIPPED_AT_LEAST: usize = 5;
-/// A channel that was digitised dwells at a peak; one that is clipped gets there in a step of more than this many of
-/// its smallest steps.
-const STEPS_AT_LEAST: f64 = 3.0;
 /// A motion that should not be there may have this part of the one that should, both dimensionless.
 const OTHER_MOTION_AT_MOST: f64 = 0.05;
 /// Stated and measured mean speed may differ by this part.
@@ -97,41 +93,17 @@ pub(super) fn channel_findings(
             Vec::new()
         };
     }
-    [(high, "highest"), (low, "lowest")]
-        .into_iter()
-        .filter_map(|(extreme, word)| {
-            let (first, longest, total) = clipped(samples, extreme)?;
-            let what = format!(
-                "stays at its {word} value {extreme:.6} for {longest} samples (clipped? {total} such samples in all)"
-            );
-            Some(finding(Some(first), Some(longest), what))
-        })
-        .collect()
-}
-
-/// Stretches at `extreme`: begin and length of the first, and samples in all of them.
-fn clipped(samples: &[f64], extreme: f64) -> Option<(usize, usize, usize)> {
-    let finest = samples
-        .windows(2)
-        .map(|w| (w[1] - w[0]).abs())
-        .filter(|step| *step > 0.0)
-        .fold(f64::INFINITY, f64::min);
-    let mut found: Option<(usize, usize, usize)> = None;
-    let mut at = 0;
-    for stretch in samples.chunk_by(|a, b| a == b) {
-        let behind = at + stretch.len();
-        if stretch[0] == extreme && stretch.len() >= CLIPPED_AT_LEAST {
-            let before = at.checked_sub(1).and_then(|i| samples.get(i));
-            let sides = before.into_iter().chain(samples.get(behind));
-            let steep = sides.fold(0.0_f64, |m, x| m.max((x - extreme).abs()));
-            if steep > STEPS_AT_LEAST * finest {
-                let (first, length, total) = found.unwrap_or((at, stretch.len(), 0));
-                found = Some((first, length, total + stretch.len()));
-            }
-        }
-        at = behind;
-    }
-    found
+    let stretches = clipped_stretches(samples);
+    let Some((first, longest)) = stretches.first().copied() else {
+        return Vec::new();
+    };
+    let total: usize = stretches.iter().map(|s| s.1).sum();
+    let limit = samples[first];
+    let word = if limit == high { "highest" } else { "lowest" };
+    let what = format!(
+        "stays at its {word} value {limit:.6} for {longest} samples (clipped? {total} such samples in all)"
+    );
+    vec![finding(Some(first), Some(longest), what)]
 }
 
 /// What is odd about a run: lengths, speeds, motions.

@@ -10,6 +10,7 @@ mod findings;
 mod load;
 mod ntnu;
 mod quantity;
+mod recording;
 mod write;
 
 pub use air::Air;

@@ -2,6 +2,8 @@
 //!
 //! Recordings are those of `tests/data/lab/make_lab_files.py` and small ones made here.
 
+mod findings;
+
 use super::*;
 use crate::error::Result;
 use crate::section::Dof;
@@ -96,11 +98,6 @@ fn complaint(text: &str, a: &str, b: &str) -> String {
         .unwrap();
     let name = said[..file].rfind('/').unwrap() + 1;
     said[name..].to_owned()
-}
-
-fn findings(a: &str, b: &str) -> Vec<String> {
-    let reading = load(&small(), a, b).unwrap();
-    reading.findings.iter().map(Finding::to_string).collect()
 }
 
 #[test]
@@ -362,59 +359,6 @@ fn channels_of_unequal_length_and_uneven_time_are_refused() {
     assert!((even.raw.runs[0].in_wind.sampling_hz - 100.0).abs() < 1e-9);
     let said = complaint(&map, &timed(&a, 57), &timed(&b, 1000));
     assert!(said.contains("run `one`, in wind, `t`, sample 58: expected 0.010202 s after the sample before, as on average, found 0.030000 s"), "{said}");
-}
-
-#[test]
-fn what_does_not_stop_reading_is_a_finding() {
-    let (a, b) = (recording(200, |_, _| {}), recording(200, still));
-    let clipped = recording(200, |_, r| r[1] = r[1].min(0.05));
-    // above half of the amplitude for a third of a period of 50 samples: 9 at the start, 17 three times, 8 at the end
-    assert_eq!(
-        findings(&clipped, &b),
-        [
-            "run `one`, in wind, `d`, sample 0: stays at its highest value 0.050000 for 9 samples (clipped? 68 such samples in all)"
-        ]
-    );
-    // digitised in steps of a tenth of its amplitude it dwells at its peaks for 5 samples and is not taken for clipped
-    let digitised = recording(200, |_, r| r[1] = (r[1] * 100.0).round() / 100.0);
-    assert_eq!(findings(&digitised, &b), Vec::<String>::new());
-    let stuck = recording(200, |_, r| r[3] = 0.25);
-    assert_eq!(
-        findings(&stuck, &b),
-        ["run `one`, in wind, `m`: is 0.25 all the time"]
-    );
-    assert_eq!(
-        findings(&a, &recording(180, still)),
-        ["run `one`: 200 samples in wind, 180 in still air; only the first 180 have both"]
-    );
-    assert_eq!(
-        findings(
-            &a,
-            &recording(200, |i, r| if i > 90 {
-                r[4] = f64::NAN
-            })
-        ),
-        [
-            "run `one`, still air, `v`, sample 91: wind speed that is no number or of another length, not used"
-        ]
-    );
-    let found = findings(&a, &a);
-    assert!(
-        found.len() == 1
-            && found[0].starts_with("run `one`: the still-air recording has a wind of 8.0"),
-        "{found:?}"
-    );
-    assert_eq!(
-        findings(&recording(200, |_, r| r[0] = 0.0), &b),
-        ["run `one`: in wind: no vertical motion"]
-    );
-    let off = small().replace("name = \"one\"", "name = \"one\"\nmean_speed_m_s = 9");
-    let found = load(&off, &a, &b).unwrap().findings;
-    assert!(
-        found[0]
-            .to_string()
-            .contains("the mean speed is 9 m/s, its channel says 8.0")
-    );
 }
 
 #[test]

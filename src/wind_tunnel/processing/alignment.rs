@@ -55,7 +55,7 @@ pub fn align(
     still_air: &RawRecording,
     dof: Dof,
 ) -> Result<Aligned> {
-    let of = |r: &RawRecording| without_mean(&r.motion[super::index(dof)]);
+    let of = |r: &RawRecording| from_rest(&r.motion[super::index(dof)]);
     let (reference, compared) = (of(in_wind), of(still_air));
     let place = || format!("run {run}, still air, {} motion", dof.name());
     let found = delay(&reference, &compared).map_err(|_| {
@@ -120,8 +120,8 @@ fn moved(x: &[f64], samples: f64, count: usize) -> Vec<f64> {
     y
 }
 
-fn without_mean(x: &[f64]) -> Vec<f64> {
-    // the model rests most often at its middle: the median is where it rests, whatever the motion is
+/// The motion counted from where the model rests: the middle of its motion is where it is most often.
+pub fn from_rest(x: &[f64]) -> Vec<f64> {
     let rest = crate::signal::median(x);
     x.iter().map(|v| v - rest).collect()
 }

@@ -3,7 +3,7 @@
 //! In still air a resting model leaves gravity and the offsets of the cells, in wind the static wind force on top: each
 //! recording loses its own mean, and the difference of the two is the static wind force. The part of the gravity moment that
 //! turns with the model (its centre of gravity swings by θ) is no mean: it is the same in both recordings and leaves with the
-//! inertia. When the model never rests, the mean over the whole recording is taken.
+//! inertia. When the model never rests, the mean over the whole recording is taken. The motion, too, counts from where it rests.
 
 use super::segmentation::HarmonicSegment;
 use super::signals::SectionSignals;
@@ -40,13 +40,17 @@ pub fn rest(segments: &[HarmonicSegment], signals: &SectionSignals) -> (Range<us
     }
 }
 
-/// Removes from each force its mean over `range`; returns the means.
+/// Removes from each force and each motion its mean over `range`; returns those of the forces.
 pub fn remove_means(signals: &mut SectionSignals, range: &Range<usize>) -> [f64; 3] {
-    std::array::from_fn(|d| {
-        let force = &mut signals.force[d];
-        let stretch = &force[range.start.min(force.len())..range.end.min(force.len())];
-        let mean = stretch.iter().sum::<f64>() / stretch.len().max(1) as f64;
-        force.iter_mut().for_each(|f| *f -= mean);
-        mean
-    })
+    for motion in &mut signals.motion {
+        remove_mean(motion, range);
+    }
+    std::array::from_fn(|d| remove_mean(&mut signals.force[d], range))
+}
+
+fn remove_mean(x: &mut [f64], range: &Range<usize>) -> f64 {
+    let stretch = &x[range.start.min(x.len())..range.end.min(x.len())];
+    let mean = stretch.iter().sum::<f64>() / stretch.len().max(1) as f64;
+    x.iter_mut().for_each(|v| *v -= mean);
+    mean
 }

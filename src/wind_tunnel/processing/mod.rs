@@ -11,7 +11,8 @@
 //! 7. [`inertia`]: still air subtracted: inertia `F_I` and the turning part of gravity are gone;
 //! 8. [`spikes`] and drift, by the [`coherent`] regression;
 //! 9. [`low_pass`]: noise and buffeting `F_B` above the cut-off are gone, `F_Se` is left;
-//! 10. [`dimensionless`]: per unit length; dimensionless, one step, stacked where a discrete model needs it.
+//! 10. [`rest`]: what is no motion is set to zero;
+//! 11. [`dimensionless`]: per unit length; dimensionless, one step, stacked where a discrete model needs it.
 
 pub mod alignment;
 pub mod axes;
@@ -24,11 +25,15 @@ pub mod lag;
 pub mod low_pass;
 pub mod means;
 mod options;
+mod prepare;
+mod records;
 mod report;
+pub mod rest;
 mod run;
 pub mod segmentation;
 mod signals;
 pub mod spikes;
+mod warnings;
 
 pub use dimensionless::{DimensionlessRecord, stack};
 pub use options::{LowPassOptions, ProcessingOptions, Ramps, SegmentOptions, SpikeOptions};
@@ -42,8 +47,8 @@ pub use signals::{SectionSignals, force_unit, index};
 use super::{RawCampaign, Record};
 use crate::error::{Error, Result};
 use crate::section::Dof;
+use prepare::Prepared;
 use rayon::prelude::*;
-use run::Prepared;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Records of a campaign, what was done to get them, and the forces stage by stage.
@@ -90,7 +95,7 @@ pub fn process(
     let runs = prepared
         .into_par_iter()
         .map(|p| {
-            let run = p.process(campaign, &dofs, lag_s, options)?;
+            let run = run::process_run(&p, campaign, &dofs, lag_s, options)?;
             progress(1 + done.fetch_add(1, Ordering::Relaxed));
             Ok(run)
         })

@@ -18,6 +18,9 @@ pub struct ProcessingOptions {
     /// Degree of the polynomial that is taken for drift over a whole recording; default 4: half a wave over the
     /// recording to 1e-3 of its height, and nothing that could take a period of the slowest motion away.
     pub drift_degree: usize,
+    /// A motion that nobody drives is set to zero when its RMS is below this part of the driven one, both without dimensions;
+    /// default 0.01: it is noise of the sensor, or too little to learn from.
+    pub negligible_motion: f64,
     /// The low-pass; left out, the default.
     pub low_pass: LowPassOptions,
     /// Finding the stretches of harmonic motion.
@@ -81,6 +84,7 @@ impl Default for ProcessingOptions {
             dofs: None,
             lag_s: None,
             drift_degree: 4,
+            negligible_motion: 0.01,
             low_pass: LowPassOptions::default(),
             segments: SegmentOptions::default(),
             spikes: SpikeOptions::default(),
@@ -164,6 +168,7 @@ impl ProcessingOptions {
         }
         let s = &self.spikes;
         for (key, value) in [
+            ("negligible_motion", self.negligible_motion),
             ("spikes.deviations", s.deviations),
             ("spikes.least_part", s.least_part),
             ("spikes.guard_s", s.guard_s),

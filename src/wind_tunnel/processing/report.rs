@@ -8,6 +8,7 @@ use super::lag::StillAirInertia;
 use super::low_pass::AppliedLowPass;
 use super::means::RemovedMeans;
 use super::options::ProcessingOptions;
+use super::rest::CrossTalk;
 use super::segmentation::HarmonicSegment;
 use super::signals::{SectionSignals, peak_and_rms};
 use super::spikes::Replaced;
@@ -102,6 +103,8 @@ pub struct RunReport {
     pub drift: RemovedDrift,
     /// The low-pass, if any.
     pub low_pass: Option<AppliedLowPass>,
+    /// Motions that nobody drives.
+    pub cross_talk: CrossTalk,
     /// Signal and noise.
     pub signal_to_noise: SignalToNoise,
     /// Factors of the dimensionless form.

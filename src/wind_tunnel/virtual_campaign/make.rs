@@ -11,7 +11,6 @@ use crate::aerodynamics::{AerodynamicModel, TransferMatrix};
 use crate::error::Result;
 use crate::section::Dof;
 use crate::units::ReducedFrequency;
-use crate::wind_tunnel::motion::UnitMotion;
 use crate::wind_tunnel::virtual_forces::TestPoints;
 use crate::wind_tunnel::{RawCampaign, RawRecording, RawRun, Record};
 use rand::SeedableRng;
@@ -124,10 +123,14 @@ fn push_points(
     column: &[nalgebra::Complex<f64>],
 ) {
     let header = &record.header;
+    // broadband motions have no test points
+    let Some(frequency_hz) = header.segments.get(segment).map(|s| s.frequency_hz) else {
+        return;
+    };
     for (force, g) in header.dofs.iter().zip(column) {
         points.push(TruthPoint {
             run: header.name.clone(),
-            frequency_hz: header.segments[segment].frequency_hz,
+            frequency_hz,
             k: k.full_width(),
             force: *force,
             motion,
@@ -221,7 +224,7 @@ impl<'a> RunInMaking<'a> {
         let header = &self.record.header;
         let frequencies: Vec<f64> = header.segments.iter().map(|s| s.frequency_hz).collect();
         let tunnel = &self.plan.tunnel;
-        let unit = UnitMotion::new(&frequencies, tunnel.timing(delay_s));
+        let unit = tunnel.unit_motion(&frequencies, delay_s);
         let moving = header.dofs[self.index % header.dofs.len()];
         let amplitude = tunnel.amplitude(moving);
         let one = |x: &Vec<f64>, i: usize| {

@@ -144,6 +144,27 @@ fn newer_rational_forms_move_as_in_process() {
 }
 
 /// Its lateral support is stated as a stiffness, which the unit keeps to the last bit.
+/// One transfer function with slower filters of its own: two states more than the shared ones.
+#[test]
+fn filters_of_one_transfer_function_move_as_in_process() {
+    use crate::aerodynamics::laguerre::DiscreteTerm;
+    use crate::trained_model::Model;
+    let mut model = Archive::fixture("discrete_laguerre").resources.model;
+    let Model::DiscreteLaguerre(discrete) = &mut model.model else {
+        panic!("not discrete");
+    };
+    discrete.terms[0].coefficients.row_mut(1).fill(0.0);
+    discrete.terms.push(DiscreteTerm {
+        input: 0,
+        alpha: 0.8,
+        coefficients: nalgebra::DMatrix::from_row_slice(2, 2, &[0.0, 0.0, -0.9, -0.6]),
+    });
+    model.schema_version = model.model.schema_version();
+    let states = model.model.realize().unwrap().states();
+    assert_eq!(states, 8);
+    compare(Archive::of(&model.to_json().unwrap()));
+}
+
 #[test]
 fn three_degrees_of_freedom_move_as_in_process() {
     let mut archive = Archive::three_dof();

@@ -1,0 +1,108 @@
+//! `aerodeck compare decks`: one model on several girders.
+
+use super::figures::metrics_of;
+use super::{Common, beside_the_thesis, draw, metrics_table};
+use crate::cli::answer::Answer;
+use crate::cli::output::{OutputDir, list};
+use crate::cli::progress::Progress;
+use crate::error::Result;
+use crate::study::compare::{DecksComparison, THESIS_DECKS, compare_decks, score_table};
+use std::fmt::Write as _;
+
+/// Several girders, a Laguerre model each: metrics of the predicted forces side by side (thesis, section 3.5.4)
+///
+/// Example: aerodeck compare decks --out decks
+#[derive(clap::Args)]
+#[command(verbatim_doc_comment)]
+pub struct Args {
+    /// Embedded decks to compare.
+    #[arg(long, value_delimiter = ',', default_values_t = THESIS_DECKS.map(str::to_owned))]
+    decks: Vec<String>,
+    /// Train on this deck only and predict the forces of all.
+    #[arg(long)]
+    trained_on: Option<String>,
+    #[command(flatten)]
+    common: Common,
+}
+
+/// Runs the command.
+pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+    let options = args
+        .common
+        .options(args.decks.clone(), args.trained_on.clone());
+    let mut out = OutputDir::new(&args.common.out)?;
+    let stage = progress.steps("records");
+    let results = compare_decks(&options, &|done, of| stage.at(done as u64, of as u64))?;
+    drop(stage);
+    out.write("decks_metrics.csv", score_table(&results.scores))?;
+    for &motion in &options.dofs {
+        for held_out in [false, true] {
+            let chosen: Vec<_> = results
+                .scores
+                .iter()
+                .filter(|s| s.motion == motion && s.held_out == held_out)
+                .collect();
+            if chosen.is_empty() {
+                continue;
+            }
+            let which = if held_out {
+                "other speed"
+            } else {
+                "speed of the training"
+            };
+            let title = format!(
+                "Metrics of the predicted forces, {} motion, {which}, L = {}, α = {}",
+                motion.name(),
+                options.laguerre.filters,
+                options.laguerre.alpha
+            );
+            let label = |s: &crate::study::compare::Score| {
+                if options.trained_on.is_some() || held_out {
+                    format!("{} {:.2} m/s", s.deck, s.speed_m_s)
+                } else {
+                    s.deck.clone()
+                }
+            };
+            let stem = format!(
+                "decks_{}{}",
+                motion.name(),
+                if held_out { "_held_out" } else { "" }
+            );
+            draw(
+                &mut out,
+                &stem,
+                &metrics_of(&title, &options.dofs, &chosen, &label)?,
+            )?;
+        }
+    }
+    let mut text = account(&results);
+    let written = out.commit()?;
+    text.push_str(&list(&written));
+    Answer::new(
+        text,
+        &serde_json::json!({ "comparison": results, "files": written }),
+    )
+}
+
+fn account(results: &DecksComparison) -> String {
+    let mut text = String::from("Predicted against measured forces of several girders\n\n");
+    for deck in &results.decks {
+        let speeds: Vec<String> = deck.speeds_m_s.iter().map(|v| format!("{v:.2}")).collect();
+        let _ = writeln!(
+            text,
+            "{:<11} B {:.4} m, tested at {} m/s, model of {} at {:.2} m/s",
+            deck.deck,
+            deck.width_m,
+            speeds.join(" and "),
+            deck.trained_on.0,
+            deck.trained_on.1
+        );
+    }
+    text.push_str(
+        "Forces are those of the measured derivatives (virtual tunnel), without the disturbances of the thesis's records.\n\n",
+    );
+    text.push_str(&metrics_table(&results.summaries, |s| s.deck.clone()));
+    text.push('\n');
+    text.push_str(&beside_the_thesis(&results.statements));
+    text
+}

@@ -1,0 +1,134 @@
+//! `aerodeck compare models`: Laguerre models against rational functions on one girder.
+
+use super::figures::{derivatives, histories, metrics_of, transfer_functions};
+use super::{Common, beside_the_thesis, draw, metrics_table};
+use crate::cli::answer::Answer;
+use crate::cli::output::{OutputDir, list};
+use crate::cli::progress::Progress;
+use crate::error::Result;
+use crate::study::compare::{ModelsComparison, compare_models, inside, score_table};
+use std::fmt::Write as _;
+
+/// Laguerre models against rational functions on one girder, in time and frequency (thesis, sections 3.5.5, 3.5.6)
+///
+/// Example: aerodeck compare models --deck LN21-5200
+#[derive(clap::Args)]
+#[command(verbatim_doc_comment)]
+pub struct Args {
+    /// Embedded deck.
+    #[arg(long, default_value = "LN21-5200")]
+    deck: String,
+    #[command(flatten)]
+    common: Common,
+}
+
+/// Runs the command.
+pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+    let options = args.common.options(vec![args.deck.clone()], None);
+    let mut out = OutputDir::new(&args.common.out)?;
+    let stage = progress.steps("records");
+    let results = compare_models(&options, &|done, of| stage.at(done as u64, of as u64))?;
+    drop(stage);
+    out.write("models_metrics.csv", score_table(&results.scores))?;
+    out.write("models_transfer.csv", transfer_table(&results))?;
+    draw(&mut out, "models_transfer", &transfer_functions(&results)?)?;
+    draw(&mut out, "models_derivatives", &derivatives(&results)?)?;
+    for &motion in &options.dofs {
+        let chosen: Vec<_> = results
+            .scores
+            .iter()
+            .filter(|s| s.motion == motion)
+            .collect();
+        let title = format!(
+            "{} at {:.2} m/s: metrics of the predicted forces, {} motion",
+            results.deck,
+            results.speed_m_s,
+            motion.name()
+        );
+        let figure = metrics_of(&title, &options.dofs, &chosen, &|s| s.model.clone())?;
+        draw(
+            &mut out,
+            &format!("models_metrics_{}", motion.name()),
+            &figure,
+        )?;
+    }
+    for (stem, figure) in histories(&results)? {
+        draw(&mut out, &stem, &figure)?;
+    }
+    let mut text = account(&results);
+    let written = out.commit()?;
+    text.push_str(&list(&written));
+    Answer::new(
+        text,
+        &serde_json::json!({ "comparison": results, "files": written }),
+    )
+}
+
+fn account(results: &ModelsComparison) -> String {
+    let mut text = format!(
+        "Models of {} at {:.2} m/s against what was measured\n\n",
+        results.deck, results.speed_m_s
+    );
+    for model in &results.models {
+        let poles: Vec<String> = model.poles.iter().map(|p| format!("{p:.3}")).collect();
+        let _ = writeln!(
+            text,
+            "{}: {}; {} coefficients a transfer function{}",
+            model.name,
+            model.method,
+            model.coefficients,
+            if poles.is_empty() {
+                String::new()
+            } else {
+                format!(", poles {}", poles.join(", "))
+            }
+        );
+    }
+    text.push_str(
+        "\nFrequency domain, bands of the thesis (±15 %, ±5°) around the measured derivatives\n",
+    );
+    for entry in &results.entries {
+        let _ = writeln!(
+            text,
+            "{} force due to {} motion",
+            entry.force.name(),
+            entry.motion.name()
+        );
+        for (m, model) in results.models.iter().enumerate() {
+            let _ = writeln!(text, "  {:<34} {}", model.name, entry.describe(m));
+        }
+    }
+    text.push_str("\nTime domain\n");
+    text.push_str(&metrics_table(&results.summaries, |s| s.model.clone()));
+    text.push('\n');
+    text.push_str(&beside_the_thesis(&results.statements));
+    text
+}
+
+/// Every test point of every transfer function with the deviations of the models.
+fn transfer_table(results: &ModelsComparison) -> String {
+    let mut text = String::from(
+        "force,motion,frequency_hz,K,magnitude,phase_deg,model,magnitude_off_percent,phase_off_deg,inside_15_percent,inside_5_deg\n",
+    );
+    for entry in &results.entries {
+        for model in &entry.models {
+            for (point, off) in entry.points.iter().zip(&model.points) {
+                let (magnitude, phase) = inside(off);
+                let _ = writeln!(
+                    text,
+                    "{},{},{:.4},{:.5},{:.6},{:.3},\"{}\",{:.3},{:.3},{magnitude},{phase}",
+                    entry.force.name(),
+                    entry.motion.name(),
+                    point.frequency_hz,
+                    point.k,
+                    point.magnitude,
+                    point.phase_deg,
+                    model.model,
+                    off.0,
+                    off.1
+                );
+            }
+        }
+    }
+    text
+}

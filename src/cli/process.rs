@@ -1,0 +1,360 @@
+//! `aerodeck process`: from the raw runs of a campaign to records, derivatives and a study.
+
+use super::answer::Answer;
+use super::output::{OutputDir, list};
+use super::progress::Progress;
+use super::stages::RECORDS;
+use crate::aerodynamics::FlatPlate;
+use crate::aerodynamics::derivatives::{Derivative, TableHeader, workbook_bytes, write_csv};
+use crate::aerodynamics::quasi_steady::{
+    Arms, LinearQuasiSteady, QuasiSteady, embedded, read_coefficients,
+};
+use crate::error::{Error, Result};
+use crate::identification::derivatives::{
+    DerivativeOptions, IdentifiedDerivatives, identify_derivatives,
+};
+use crate::report::{
+    DerivativePlot, DerivativesPlot, Figure, PNG_SCALE, PlottedSeries, derivatives_figure,
+    processing_figure,
+};
+use crate::section::Dof;
+use crate::study::{Study, derivative_lines, processed_study_text};
+use crate::toml_lines;
+use crate::wind_tunnel::campaign::Campaign;
+use crate::wind_tunnel::processing::{Processed, ProcessingOptions, RunReport, process};
+use crate::wind_tunnel::{RawCampaign, RecordSource, write_record};
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+/// File of the table of derivatives.
+const TABLE: &str = "derivatives.csv";
+/// File of the study.
+const STUDY: &str = "study.toml";
+
+/// Process the raw runs of a campaign into records, derivatives and a study that `aerodeck study` can run
+///
+/// Example: aerodeck process campaign.toml --out results
+#[derive(clap::Args)]
+#[command(verbatim_doc_comment)]
+pub struct Args {
+    /// The campaign file.
+    campaign: PathBuf,
+    /// Folder of the results.
+    #[arg(long)]
+    out: PathBuf,
+    /// Options of processing (TOML; see docs/processing.md); left out, the defaults.
+    #[arg(long)]
+    options: Option<PathBuf>,
+    /// Cut-off of the low-pass, Hz; before the options file.
+    #[arg(long)]
+    cutoff_hz: Option<f64>,
+    /// Lag of the force channels, s, instead of an estimate; before the options file.
+    #[arg(long, allow_negative_numbers = true)]
+    lag_s: Option<f64>,
+    /// A study whose section, models and search go into the new one; left out, the section of Table 4.1 of the thesis.
+    #[arg(long)]
+    study: Option<PathBuf>,
+    /// Static coefficients, whose quasi-steady limits are drawn beside the derivatives: an embedded table or a .csv file.
+    #[arg(long)]
+    static_coefficients: Option<String>,
+}
+
+/// Runs the command.
+pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+    let options = args.options()?;
+    let base = args.study.as_ref().map(|p| Study::read(p)).transpose()?;
+    let stage = progress.stage("reading the campaign");
+    let reading = Campaign::read(&args.campaign)?.load()?;
+    drop(stage);
+    let raw = reading.raw;
+    let stage = progress.steps("processing");
+    let total = raw.runs.len() as u64;
+    let processed = process(&raw, &options, &|done| stage.at(done as u64, total))
+        .map_err(|e| e.in_file(&args.campaign))?;
+    drop(stage);
+    let mut out = OutputDir::new(&args.out)?;
+    let names = write_records(&processed, &mut out)?;
+    let sources: Vec<&dyn RecordSource> = processed.records.iter().map(|r| r as _).collect();
+    let stage = progress.stage("derivatives");
+    let mut notes: Vec<String> = reading.findings.iter().map(ToString::to_string).collect();
+    notes.extend(processed.report.warnings());
+    let derivatives = identify_derivatives(&sources, &DerivativeOptions::default());
+    drop(stage);
+    let stage = progress.steps("figures");
+    let count = processed.stages.len() as u64;
+    for (i, (run, stages)) in processed
+        .report
+        .runs
+        .iter()
+        .zip(&processed.stages)
+        .enumerate()
+    {
+        let figure = processing_figure(run, stages, run.dof)?;
+        write_figure(
+            &figure,
+            &format!("processing/{}", file_name(&run.run)),
+            &mut out,
+        )?;
+        stage.at(i as u64 + 1, count);
+    }
+    drop(stage);
+    out.write("processing.json", json(&processed.report)?)?;
+    let derivatives = match derivatives {
+        Ok(found) => {
+            notes.extend(found.warnings.iter().cloned());
+            Some(found)
+        }
+        Err(Error::Input(e)) => {
+            notes.push(format!("no derivatives: {e}"));
+            None
+        }
+        Err(e) => return Err(e),
+    };
+    if let Some(found) = &derivatives {
+        out.write("derivatives.json", json(found)?)?;
+        let figure = derivatives_figure(&plot(
+            &raw,
+            found,
+            args.quasi_steady(&found.dofs)?.as_ref(),
+        )?)?;
+        write_figure(&figure, "derivatives", &mut out)?;
+        match write_table(&raw, found, &mut out) {
+            Ok(()) => {
+                let text = processed_study_text(&raw, base.as_ref(), TABLE, &names, &found.dofs)?;
+                out.write(STUDY, text)?;
+            }
+            Err(Error::Input(e)) => notes.push(format!("no table and no study: {e}")),
+            Err(e) => return Err(e),
+        }
+    }
+    let mut text = account(&raw, &processed, derivatives.as_ref());
+    for note in &notes {
+        let _ = writeln!(text, "  note: {note}");
+    }
+    let written = out.commit()?;
+    text.push_str(&list(&written));
+    Answer::new(
+        text,
+        &serde_json::json!({
+            "report": processed.report,
+            "derivatives": derivatives,
+            "notes": notes,
+            "files": written,
+        }),
+    )
+}
+
+impl Args {
+    fn options(&self) -> Result<ProcessingOptions> {
+        let mut options = match &self.options {
+            None => ProcessingOptions::default(),
+            Some(path) => {
+                let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, e))?;
+                toml::from_str(&text).map_err(|e| {
+                    toml_lines::syntax_error("options of processing", &text, &e).in_file(path)
+                })?
+            }
+        };
+        options.low_pass.cutoff_hz = self.cutoff_hz.or(options.low_pass.cutoff_hz);
+        options.lag_s = self.lag_s.or(options.lag_s);
+        options.validate()?;
+        Ok(options)
+    }
+}
+
+impl Args {
+    /// Quasi-steady theory about no rotation, without arms.
+    fn quasi_steady(&self, dofs: &[Dof]) -> Result<Option<LinearQuasiSteady>> {
+        let Some(name) = &self.static_coefficients else {
+            return Ok(None);
+        };
+        let coefficients = if name.to_lowercase().ends_with(".csv") {
+            read_coefficients(name)?
+        } else {
+            embedded::coefficients(name)?
+        };
+        QuasiSteady::new(coefficients, Arms::default(), dofs)?
+            .linearised(0.0)
+            .map(Some)
+    }
+}
+
+/// A name that can be part of a path everywhere.
+fn file_name(name: &str) -> String {
+    let plain = |c: char| c.is_alphanumeric() || matches!(c, '-' | '_' | '.');
+    let text: String = name
+        .chars()
+        .map(|c| if plain(c) { c } else { '_' })
+        .collect();
+    let trimmed = text.trim_matches('.');
+    if trimmed.is_empty() { "run" } else { trimmed }.to_owned()
+}
+
+/// Writes the records; their paths from the folder of the results.
+fn write_records(processed: &Processed, out: &mut OutputDir) -> Result<Vec<PathBuf>> {
+    let mut names = Vec::with_capacity(processed.records.len());
+    for record in &processed.records {
+        let name = Path::new(RECORDS).join(format!("{}.csv", file_name(&record.header.name)));
+        if names.contains(&name) {
+            return Err(Error::input(
+                "campaign",
+                "a name of its own for every run",
+                format!("`{}` a second time", record.header.name),
+            ));
+        }
+        let path = out.stage(&name)?;
+        let file = std::fs::File::create(&path).map_err(|e| Error::io(&path, e))?;
+        write_record(record, &mut std::io::BufWriter::new(file)).map_err(|e| e.in_file(&path))?;
+        names.push(name);
+    }
+    Ok(names)
+}
+
+fn write_table(
+    raw: &RawCampaign,
+    found: &IdentifiedDerivatives,
+    out: &mut OutputDir,
+) -> Result<()> {
+    let header = TableHeader {
+        source: raw.source.clone(),
+        licence: raw.licence.clone(),
+        generator: concat!("aerodeck ", env!("CARGO_PKG_VERSION")).to_owned(),
+        model_length_m: Some(raw.rig.model_length_m),
+    };
+    let table = found.table(&raw.section, header)?;
+    let mut text = Vec::new();
+    write_csv(&table, &mut text).map_err(|e| Error::io(TABLE, e))?;
+    out.write(TABLE, text)?;
+    out.write(
+        format!("AerodynamicDerivatives_{}.xlsx", file_name(&raw.section)),
+        workbook_bytes(&table)?,
+    )
+}
+
+fn write_figure(figure: &Figure, stem: &str, out: &mut OutputDir) -> Result<()> {
+    out.write(format!("{stem}.svg"), figure.svg())?;
+    out.write(format!("{stem}.png"), figure.png(PNG_SCALE)?)
+}
+
+fn json(value: &impl serde::Serialize) -> Result<String> {
+    let mut text =
+        serde_json::to_string_pretty(value).map_err(|e| Error::Numerical(e.to_string()))?;
+    text.push('\n');
+    Ok(text)
+}
+
+/// Measured points of each speed with the lines of the flat plate and of quasi-steady theory.
+fn plot(
+    raw: &RawCampaign,
+    found: &IdentifiedDerivatives,
+    quasi_steady: Option<&LinearQuasiSteady>,
+) -> Result<DerivativesPlot> {
+    let largest = found.estimates.iter().map(|e| e.v_hat).fold(0.0, f64::max);
+    let mut theories = vec![(
+        "flat plate",
+        derivative_lines(&FlatPlate::default(), largest)?,
+    )];
+    if let Some(model) = quasi_steady {
+        theories.push(("quasi-steady", derivative_lines(model, largest)?));
+    }
+    let mut derivatives = Vec::new();
+    for d in Derivative::ALL {
+        let mut measured: Vec<PlottedSeries> = Vec::new();
+        let mut speed = f64::NEG_INFINITY;
+        for e in found.of(d) {
+            if e.mean_speed_m_s > 1.05 * speed {
+                speed = e.mean_speed_m_s;
+                measured.push(PlottedSeries::new(format!("{speed:.1} m/s"), Vec::new()));
+            }
+            if let Some(series) = measured.last_mut() {
+                series.points.push((e.v_hat, e.value));
+            }
+        }
+        if measured.is_empty() {
+            continue;
+        }
+        let line = |(name, lines): &(
+            &str,
+            std::collections::BTreeMap<Derivative, Vec<(f64, f64)>>,
+        )| {
+            lines
+                .get(&d)
+                .map(|points| PlottedSeries::new(*name, points.clone()))
+        };
+        derivatives.push(DerivativePlot {
+            name: d.name().to_owned(),
+            measured,
+            fitted: Vec::new(),
+            reference: theories.iter().filter_map(line).collect(),
+        });
+    }
+    Ok(DerivativesPlot {
+        title: format!("{}: aerodynamic derivatives", raw.section),
+        velocity_label: "V̂ = V/(ωB)".to_owned(),
+        derivatives,
+    })
+}
+
+fn account(
+    raw: &RawCampaign,
+    processed: &Processed,
+    derivatives: Option<&IdentifiedDerivatives>,
+) -> String {
+    let report = &processed.report;
+    let mut text = format!("{}\n", raw.section);
+    let error = report
+        .lag_standard_error_s
+        .map_or_else(String::new, |e| format!(" ± {:.3}", 1e3 * e));
+    let _ = writeln!(
+        text,
+        "  lag of the force channels {:.3}{error} ms",
+        1e3 * report.lag_s
+    );
+    for run in &report.runs {
+        let _ = writeln!(text, "  {}", line(run));
+    }
+    if let Some(found) = derivatives {
+        let median = {
+            let relative: Vec<f64> = found
+                .estimates
+                .iter()
+                .map(|e| (e.standard_error / e.value).abs())
+                .collect();
+            crate::signal::median(&relative)
+        };
+        let _ = writeln!(
+            text,
+            "  {} derivatives at {} test points, median standard error {:.2} %",
+            Derivative::ALL
+                .iter()
+                .filter(|d| found.of(**d).next().is_some())
+                .count(),
+            found.estimates.len(),
+            100.0 * median
+        );
+    }
+    text
+}
+
+fn line(run: &RunReport) -> String {
+    let at = crate::wind_tunnel::processing::index(run.dof);
+    let replaced: usize = run.replaced.iter().map(|r| r.samples).sum();
+    let unit = if run.dof == Dof::Torsion {
+        "kg·m²"
+    } else {
+        "kg"
+    };
+    let inertia = run.still_air.as_ref().map_or_else(
+        || "no inertia seen".to_owned(),
+        |s| format!("inertia {:.4} {unit}", s.inertia),
+    );
+    format!(
+        "{}: {} at {:.2} m/s, {} test points, still air {:+.2} samples, {inertia}, {:.0} dB, {replaced} samples replaced",
+        run.run,
+        run.dof.name(),
+        run.dimensionless.speed_m_s,
+        run.segments.len(),
+        run.alignment.offset_samples,
+        run.signal_to_noise.after_low_pass_db[at],
+    )
+}

@@ -1,0 +1,63 @@
+//! Metrics of goodness of fit over the frequency of the motion, side by side.
+
+use super::axis::Axis;
+use super::figure::Figure;
+use super::legend::Entry;
+use super::panel::Panel;
+use super::series::{PlottedSeries, index_of, labels_of};
+use super::sheet::Sheet;
+use super::style::{Ink, Shape, colour, dash};
+use crate::error::Result;
+
+/// One metric of one force.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MetricPanel {
+    /// Name of metric and force.
+    pub title: String,
+    /// Frequency (Hz) and metric (0 to 1), one series a deck or model.
+    pub series: Vec<PlottedSeries>,
+}
+
+/// Panels row by row with the ordinate from 0 to 1 in common; series of one label share ink and legend entry.
+///
+/// # Errors
+/// [`crate::Error::Input`] for no data, numbers that are not finite, and more labels than colours.
+pub fn metrics_figure(title: &str, panels: &[MetricPanel], columns: usize) -> Result<Figure> {
+    const PLACE: &str = "metrics";
+    let labels = labels_of(panels.iter().flat_map(|p| &p.series));
+    let line = |i: usize| -> Result<Ink> { Ok(Ink::line(colour(PLACE, i)?, dash(i))) };
+    let mut drawn = Vec::with_capacity(panels.len());
+    for (i, panel) in panels.iter().enumerate() {
+        let lowest = i + columns >= panels.len();
+        let mut y = Axis::new("");
+        y.range = Some((0.0, 1.05));
+        let x = Axis::new(if lowest { "Frequency (Hz)" } else { "" });
+        let mut drawing = Panel::new(x.zero_based(), y);
+        drawing.title = Some(panel.title.clone());
+        for series in &panel.series {
+            let i = index_of(&labels, &series.label);
+            drawing.add(&series.label, series.points.clone(), line(i)?);
+        }
+        for series in &panel.series {
+            let i = index_of(&labels, &series.label);
+            let dots = Ink::dots(colour(PLACE, i)?, SHAPES[i % SHAPES.len()]);
+            drawing.add(&series.label, series.points.clone(), dots);
+        }
+        drawn.push(drawing);
+    }
+    let mut legend = Vec::with_capacity(labels.len());
+    for (i, label) in labels.iter().enumerate() {
+        legend.push(Entry::new(label, line(i)?));
+    }
+    Sheet {
+        name: PLACE,
+        title: Some(title.to_owned()).filter(|t| !t.is_empty()),
+        panels: drawn,
+        columns: columns.max(1),
+        axes: (230.0, 160.0),
+        legend: vec![legend],
+    }
+    .draw()
+}
+
+const SHAPES: [Shape; 4] = [Shape::Circle, Shape::Square, Shape::Diamond, Shape::Cross];

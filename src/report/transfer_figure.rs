@@ -1,0 +1,142 @@
+//! Transfer functions over frequency: magnitude and phase, models against a reference with its tolerance bands.
+
+use super::axis::Axis;
+use super::figure::Figure;
+use super::legend::Entry;
+use super::panel::Panel;
+use super::series::index_of;
+use super::sheet::Sheet;
+use super::style::{BLACK, GREY, Ink, Shape, colour, dash};
+use crate::error::Result;
+
+/// A transfer function at several frequencies.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TransferCurve {
+    /// Name in the legend.
+    pub label: String,
+    /// Abscissa, magnitude, phase in degrees.
+    pub points: Vec<(f64, f64, f64)>,
+}
+
+/// One transfer function: two panels side by side.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TransferPlot {
+    /// Name above the panels.
+    pub name: String,
+    /// What the models are compared with.
+    pub reference: TransferCurve,
+    /// Whether the reference is a few test points rather than a line.
+    pub reference_is_points: bool,
+    /// Band around the reference, as a part of its magnitude and in degrees.
+    pub tolerance: Option<(f64, f64)>,
+    /// The models.
+    pub models: Vec<TransferCurve>,
+}
+
+/// Magnitude and phase of transfer functions, one a row.
+///
+/// Curves of one label share ink and legend entry.
+///
+/// # Errors
+/// [`crate::Error::Input`] for no data, numbers that are not finite, and more models than colours.
+pub fn transfer_figure(title: &str, x_label: &str, plots: &[TransferPlot]) -> Result<Figure> {
+    const PLACE: &str = "transfer functions";
+    let mut labels: Vec<String> = Vec::new();
+    for curve in plots.iter().flat_map(|p| &p.models) {
+        if !labels.contains(&curve.label) {
+            labels.push(curve.label.clone());
+        }
+    }
+    let ink = |label: &str| -> Result<Ink> {
+        let i = index_of(&labels, label);
+        Ok(Ink::line(colour(PLACE, i)?, dash(i)))
+    };
+    let mut panels = Vec::with_capacity(2 * plots.len());
+    for (row, plot) in plots.iter().enumerate() {
+        let last = row + 1 == plots.len();
+        for phase in [false, true] {
+            let y = if phase {
+                "Phase (°)"
+            } else {
+                "Magnitude (–)"
+            };
+            let x = Axis::new(if last { x_label } else { "" });
+            let mut panel = Panel::new(x.tight(), Axis::new(y));
+            panel.title = Some(plot.name.clone());
+            for (band, points) in bands(plot, phase) {
+                panel.add(band, points, BAND);
+            }
+            let value = |p: &(f64, f64, f64)| (p.0, if phase { p.2 } else { p.1 });
+            let reference = plot.reference.points.iter().map(value).collect();
+            panel.add(&plot.reference.label, reference, reference_ink(plot));
+            for curve in &plot.models {
+                let points = curve.points.iter().map(value).collect();
+                panel.add(&curve.label, points, ink(&curve.label)?);
+            }
+            panels.push(panel);
+        }
+    }
+    let mut legend = Vec::new();
+    if let Some(plot) = plots.first() {
+        legend.push(Entry::new(&plot.reference.label, reference_ink(plot)));
+        if let Some((part, degrees)) = plot.tolerance {
+            let band = format!("±{:.0} %, ±{degrees:.0}° of it", 100.0 * part);
+            legend.push(Entry::new(band, BAND));
+        }
+    }
+    for label in &labels {
+        legend.push(Entry::new(label, ink(label)?));
+    }
+    Sheet {
+        name: PLACE,
+        title: Some(title.to_owned()).filter(|t| !t.is_empty()),
+        panels,
+        columns: 2,
+        axes: (330.0, if plots.len() > 2 { 150.0 } else { 240.0 }),
+        legend: vec![legend],
+    }
+    .draw()
+}
+
+const BAND: Ink = Ink::Line {
+    colour: GREY,
+    dash: Some("4 3"),
+    width: 0.9,
+};
+
+fn reference_ink(plot: &TransferPlot) -> Ink {
+    if plot.reference_is_points {
+        Ink::dots(BLACK, Shape::Circle)
+    } else {
+        Ink::Line {
+            colour: BLACK,
+            dash: None,
+            width: 2.6,
+        }
+    }
+}
+
+/// Lower and upper edge of the band.
+fn bands(plot: &TransferPlot, phase: bool) -> Vec<(&'static str, Vec<(f64, f64)>)> {
+    let Some((part, degrees)) = plot.tolerance else {
+        return Vec::new();
+    };
+    let edge = |sign: f64| {
+        let at = |p: &(f64, f64, f64)| {
+            let magnitude = p.1 * (1.0 + sign * part);
+            (
+                p.0,
+                if phase {
+                    p.2 + sign * degrees
+                } else {
+                    magnitude
+                },
+            )
+        };
+        plot.reference.points.iter().map(at).collect()
+    };
+    vec![
+        ("lower edge of the band", edge(-1.0)),
+        ("upper edge of the band", edge(1.0)),
+    ]
+}

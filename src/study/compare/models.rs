@@ -1,0 +1,202 @@
+//! Several models on one girder, in the time and the frequency domain (sections 3.5.5 and 3.5.6 of the thesis).
+
+use super::decks::score_forces;
+use super::entries::{DerivativeComparison, EntryComparison, compare_derivatives, compare_entries};
+use super::score::{Score, ScoreSummary, summaries};
+use super::statements::{Statement, on_models};
+use super::{CompareOptions, TestedDeck, thesis_rational_functions};
+use crate::aerodynamics::AerodynamicModel;
+use crate::error::{Error, Result};
+use crate::identification::{FitReport, TimeFit, fit_discrete, fit_records, fit_table};
+use crate::section::Dof;
+use crate::trained_model::Model;
+use crate::wind_tunnel::{Record, RecordSource, predicted_forces};
+use rayon::prelude::*;
+use serde::Serialize;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Frequencies whose histories the thesis shows (Figures 3.29 to 3.32), Hz.
+const SHOWN_HZ: [f64; 2] = [0.5, 2.0];
+/// Periods of a history.
+const SHOWN_PERIODS: f64 = 3.0;
+
+/// A model that takes part.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Rival {
+    /// Name in tables and figures.
+    pub name: String,
+    /// The fit in words.
+    pub method: String,
+    /// Coefficients of one transfer function.
+    pub coefficients: usize,
+    /// Poles or lags, dimensionless; none for the discrete model.
+    pub poles: Vec<f64>,
+    /// Remarks of the fit.
+    pub notes: Vec<String>,
+}
+
+/// A few periods of the forces due to one motion.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct History {
+    /// Motion.
+    pub motion: Dof,
+    /// Force.
+    pub force: Dof,
+    /// Frequency of the motion, Hz.
+    pub frequency_hz: f64,
+    /// Time from the start of the record, s.
+    pub time_s: Vec<f64>,
+    /// Measured force, N/m or N·m/m.
+    pub measured: Vec<f64>,
+    /// Predicted forces, one vector a model in the order of [`ModelsComparison::models`].
+    pub predicted: Vec<Vec<f64>>,
+}
+
+/// Models of one deck side by side.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ModelsComparison {
+    /// What was asked for.
+    pub options: CompareOptions,
+    /// Deck.
+    pub deck: String,
+    /// Mean wind speed, m/s.
+    pub speed_m_s: f64,
+    /// The models: the thesis's two first.
+    pub models: Vec<Rival>,
+    /// Transfer functions, row by row.
+    pub entries: Vec<EntryComparison>,
+    /// Derivatives.
+    pub derivatives: Vec<DerivativeComparison>,
+    /// One entry a model, motion, force and frequency.
+    pub scores: Vec<Score>,
+    /// Over the frequencies.
+    pub summaries: Vec<ScoreSummary>,
+    /// Histories at the frequencies that the thesis shows.
+    pub histories: Vec<History>,
+    /// What the thesis says, and what is found here.
+    pub statements: Vec<Statement>,
+}
+
+/// Fits the thesis's discrete Laguerre model, its rational functions and the continuous Laguerre model of this program to
+/// one deck at one speed, and compares them with what was measured. `progress` hears how many of how many records are done.
+///
+/// # Errors
+/// [`Error::Input`] for anything but one deck; those of fits and metrics.
+pub fn compare_models(
+    options: &CompareOptions,
+    progress: &(dyn Fn(usize, usize) + Sync),
+) -> Result<ModelsComparison> {
+    let [name] = options.decks.as_slice() else {
+        return Err(Error::input(
+            "decks",
+            "one deck",
+            options.decks.len().to_string(),
+        ));
+    };
+    let deck = TestedDeck::new(name, options)?;
+    let speed = deck.speeds_m_s[deck.training_group];
+    let group = deck.table.at_speed_group(deck.training_group)?;
+    let records = deck.at_speed(deck.training_group);
+    let sources: Vec<&dyn RecordSource> = records.iter().map(|r| r as &dyn RecordSource).collect();
+    let fits = [
+        (
+            format!(
+                "Laguerre, L = {}, α = {}",
+                options.laguerre.filters, options.laguerre.alpha
+            ),
+            fit_discrete(&sources, &options.laguerre, &|_| ())?,
+        ),
+        (
+            "rational functions, one lag".to_owned(),
+            fit_table(
+                &group.samples(&options.dofs),
+                &options.dofs,
+                &thesis_rational_functions(),
+            )?,
+        ),
+        (
+            "Laguerre with feed-through, L = 3".to_owned(),
+            fit_records(&sources, &TimeFit::default(), &|_| ())?,
+        ),
+    ];
+    let models: Vec<(String, &dyn AerodynamicModel)> = fits
+        .iter()
+        .map(|(name, (model, _))| (name.clone(), model as &dyn AerodynamicModel))
+        .collect();
+    let pairs: Vec<(&(String, (Model, FitReport)), &Record)> = fits
+        .iter()
+        .flat_map(|fit| records.iter().map(move |r| (fit, r)))
+        .collect();
+    let done = AtomicUsize::new(0);
+    let compared = pairs
+        .par_iter()
+        .map(|((model, (fitted, _)), record)| {
+            let predicted = predicted_forces(fitted, record)?;
+            let label = (deck.table.name.as_str(), model.as_str(), false);
+            let scores = score_forces(label, deck.plan.ramp_s, record, &predicted, options)?;
+            progress(1 + done.fetch_add(1, Ordering::Relaxed), pairs.len());
+            Ok((predicted, scores))
+        })
+        .collect::<Result<Vec<_>>>()?;
+    let (predicted, scores): (Vec<_>, Vec<_>) = compared.into_iter().unzip();
+    let scores = scores.concat();
+    let entries = compare_entries(&group, speed, &options.dofs, &models)?;
+    Ok(ModelsComparison {
+        deck: deck.table.name.clone(),
+        speed_m_s: speed,
+        derivatives: compare_derivatives(&group, &options.dofs, &models)?,
+        histories: histories(&deck, records, &predicted),
+        summaries: summaries(&scores),
+        statements: on_models(&entries, &scores),
+        models: fits
+            .iter()
+            .map(|(name, (_, report))| rival(name, report))
+            .collect(),
+        entries,
+        scores,
+        options: options.clone(),
+    })
+}
+
+fn rival(name: &str, report: &FitReport) -> Rival {
+    let entry = report.entries.first();
+    Rival {
+        name: name.to_owned(),
+        method: report.method.clone(),
+        coefficients: entry.map_or(0, |e| e.coefficients.len()),
+        poles: entry.map_or_else(Vec::new, |e| e.poles.clone()),
+        notes: report.notes.clone(),
+    }
+}
+
+/// `predicted` holds the forces of every model and record, model by model.
+fn histories(deck: &TestedDeck, records: &[Record], predicted: &[Vec<Vec<f64>>]) -> Vec<History> {
+    let mut all = Vec::new();
+    for (r, record) in records.iter().enumerate() {
+        let h = &record.header;
+        for shown in SHOWN_HZ {
+            let nearest = h.segments.iter().min_by(|a, b| {
+                let distance = |f: f64| (f - shown).abs();
+                distance(a.frequency_hz).total_cmp(&distance(b.frequency_hz))
+            });
+            let Some(segment) = nearest else { continue };
+            let first = segment.start_s + deck.plan.ramp_s;
+            let last = first + SHOWN_PERIODS / segment.frequency_hz;
+            let samples = record.motion.first().map_or(0, Vec::len);
+            let at = |t: f64| ((t * h.sampling_hz).round() as usize).min(samples);
+            let range = at(first)..at(last);
+            for (i, &force) in h.dofs.iter().enumerate() {
+                let of_models = predicted.iter().skip(r).step_by(records.len().max(1));
+                all.push(History {
+                    motion: h.dofs[r],
+                    force,
+                    frequency_hz: segment.frequency_hz,
+                    time_s: range.clone().map(|k| k as f64 / h.sampling_hz).collect(),
+                    measured: record.force[i][range.clone()].to_vec(),
+                    predicted: of_models.map(|f| f[i][range.clone()].to_vec()).collect(),
+                });
+            }
+        }
+    }
+    all
+}

@@ -1,0 +1,237 @@
+//! Metrics of predicted against measured forces, one set a frequency of the motion.
+
+use crate::comparison::{
+    DensityParameters, PhaseParameters, SignalPair, WarpingParameters, WaveletParameters,
+    magnitude, magnitude_warped, peak, phase, probability_density, rms, wavelet,
+};
+use crate::error::{Error, Result, positive};
+use crate::section::Dof;
+use crate::wind_tunnel::{Record, Segment};
+use serde::{Deserialize, Serialize};
+use std::fmt::Write as _;
+
+/// How the metrics are taken.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Scoring {
+    /// Phase lag that brings the phase metric to 1/e, degrees of the frequency of the motion.
+    pub significant_phase_deg: f64,
+    /// The metrics see at most this much of the steady motion of a frequency, s: as many whole periods as fit.
+    pub window_s: f64,
+}
+
+impl Default for Scoring {
+    /// The 5° of the thesis; 12 s hold three periods of its lowest frequency.
+    fn default() -> Self {
+        Self {
+            significant_phase_deg: 5.0,
+            window_s: 12.0,
+        }
+    }
+}
+
+/// How alike two forces are: 1 for equal ones.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct ForceMetrics {
+    /// `M_φ`.
+    pub phase: f64,
+    /// `M_p`.
+    pub peak: f64,
+    /// `M_rms`.
+    pub rms: f64,
+    /// `M_muw`, unwarped.
+    pub magnitude: f64,
+    /// `M_mw`, after dynamic time warping.
+    pub magnitude_warped: f64,
+    /// `M_w`, wavelet, from half to twice the frequency of the motion.
+    pub wavelet: f64,
+    /// `M_pdf`.
+    pub probability_density: f64,
+    /// Lag behind the phase metric, degrees of the frequency of the motion; positive if the prediction is late.
+    pub lag_deg: f64,
+}
+
+impl ForceMetrics {
+    /// Names of the metrics as the thesis and the toolbox write them, in the order of [`ForceMetrics::values`].
+    pub const NAMES: [&str; 7] = ["M_phi", "M_p", "M_rms", "M_muw", "M_mw", "M_w", "M_pdf"];
+
+    /// The metrics without the lag.
+    pub fn values(&self) -> [f64; 7] {
+        [
+            self.phase,
+            self.peak,
+            self.rms,
+            self.magnitude,
+            self.magnitude_warped,
+            self.wavelet,
+            self.probability_density,
+        ]
+    }
+}
+
+/// Metrics of one force at one frequency of one motion.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Score {
+    /// Deck.
+    pub deck: String,
+    /// Model that predicts.
+    pub model: String,
+    /// Mean wind speed, m/s.
+    pub speed_m_s: f64,
+    /// Whether the model was not trained on this record.
+    pub held_out: bool,
+    /// Motion.
+    pub motion: Dof,
+    /// Force.
+    pub force: Dof,
+    /// Frequency of the motion, Hz.
+    pub frequency_hz: f64,
+    /// The metrics.
+    pub metrics: ForceMetrics,
+}
+
+impl Scoring {
+    /// Samples of the steady motion that are compared: whole periods in the middle between the ramps.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a window or a steady part that holds no period.
+    pub fn window(
+        &self,
+        record: &Record,
+        segment: &Segment,
+        ramp_s: f64,
+    ) -> Result<(usize, usize)> {
+        let length = positive("window_s", self.window_s)?;
+        let (start, end) = (segment.start_s + ramp_s, segment.end_s - ramp_s);
+        let periods = ((end - start).min(length) * segment.frequency_hz + 1e-6).floor();
+        if periods < 1.0 {
+            return Err(Error::input(
+                format!("record {}, {} Hz", record.header.name, segment.frequency_hz),
+                "a window and a steady motion of at least one period",
+                format!("{:.2} s", (end - start).min(length)),
+            ));
+        }
+        let half = 0.5 * periods / segment.frequency_hz;
+        let at = |t: f64| (t * record.header.sampling_hz).round() as usize;
+        let middle = 0.5 * (start + end);
+        Ok((at(middle - half), at(middle + half)))
+    }
+
+    /// Metrics of one force in a window of samples.
+    ///
+    /// # Errors
+    /// Those of the metrics, such as a measured force that is zero throughout.
+    pub fn metrics(
+        &self,
+        measured: &[f64],
+        predicted: &[f64],
+        sampling_hz: f64,
+        frequency_hz: f64,
+    ) -> Result<ForceMetrics> {
+        let pair = SignalPair::new(measured, predicted, 1.0 / sampling_hz)?;
+        let lag = PhaseParameters {
+            significant_delay_s: self.significant_phase_deg / (360.0 * frequency_hz),
+            ..PhaseParameters::default()
+        };
+        let phase = phase(&pair, &lag)?;
+        // a mother wavelet of one cycle: its cone leaves room in a window of three periods
+        let levels = WaveletParameters {
+            level_count: 24,
+            frequency_min_hz: 0.5 * frequency_hz,
+            frequency_max_hz: 2.0 * frequency_hz,
+            central_frequency: 1.0,
+            ..WaveletParameters::default()
+        };
+        Ok(ForceMetrics {
+            phase: phase.value,
+            peak: peak(&pair)?.value,
+            rms: rms(&pair)?.value,
+            magnitude: magnitude(&pair)?.value,
+            magnitude_warped: magnitude_warped(&pair, &WarpingParameters::default())?.value,
+            wavelet: wavelet(&pair, &levels)?.value,
+            probability_density: probability_density(&pair, &DensityParameters::default())?.value,
+            lag_deg: phase.details.lag_s * frequency_hz * 360.0,
+        })
+    }
+}
+
+/// Mean and lowest metrics over the frequencies of one motion.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ScoreSummary {
+    /// Deck.
+    pub deck: String,
+    /// Model.
+    pub model: String,
+    /// Mean wind speed, m/s.
+    pub speed_m_s: f64,
+    /// Whether the model was not trained at this speed.
+    pub held_out: bool,
+    /// Motion.
+    pub motion: Dof,
+    /// Force.
+    pub force: Dof,
+    /// Mean of each metric, in the order of [`ForceMetrics::NAMES`].
+    pub mean: [f64; 7],
+    /// Lowest value of each metric.
+    pub lowest: [f64; 7],
+}
+
+/// One summary a deck, model, speed, motion and force, in the order of the scores.
+pub fn summaries(scores: &[Score]) -> Vec<ScoreSummary> {
+    let same = |a: &Score, b: &Score| {
+        (&a.deck, &a.model, a.motion, a.force) == (&b.deck, &b.model, b.motion, b.force)
+            && a.speed_m_s == b.speed_m_s
+    };
+    let mut all: Vec<Vec<&Score>> = Vec::new();
+    for score in scores {
+        match all.iter_mut().find(|group| same(group[0], score)) {
+            Some(group) => group.push(score),
+            None => all.push(vec![score]),
+        }
+    }
+    let summary = |group: Vec<&Score>| {
+        let of = |m: usize| group.iter().map(move |s| s.metrics.values()[m]);
+        let first = group[0];
+        ScoreSummary {
+            deck: first.deck.clone(),
+            model: first.model.clone(),
+            speed_m_s: first.speed_m_s,
+            held_out: first.held_out,
+            motion: first.motion,
+            force: first.force,
+            mean: std::array::from_fn(|m| of(m).sum::<f64>() / group.len() as f64),
+            lowest: std::array::from_fn(|m| of(m).fold(f64::INFINITY, f64::min)),
+        }
+    };
+    all.into_iter().map(summary).collect()
+}
+
+/// The scores as a CSV table.
+pub fn score_table(scores: &[Score]) -> String {
+    let mut text = format!(
+        "deck,model,speed_m_s,held_out,motion,force,frequency_hz,{},lag_deg\n",
+        ForceMetrics::NAMES.join(",")
+    );
+    for s in scores {
+        let values: Vec<String> = s
+            .metrics
+            .values()
+            .iter()
+            .map(|v| format!("{v:.6}"))
+            .collect();
+        let _ = writeln!(
+            text,
+            "{},\"{}\",{:.3},{},{},{},{:.4},{},{:.4}",
+            s.deck,
+            s.model,
+            s.speed_m_s,
+            s.held_out,
+            s.motion.name(),
+            s.force.name(),
+            s.frequency_hz,
+            values.join(","),
+            s.metrics.lag_deg
+        );
+    }
+    text
+}

@@ -1,0 +1,173 @@
+//! What the thesis says of its comparisons in words and numbers, beside what is found here.
+
+use super::entries::{EntryComparison, inside};
+use super::score::Score;
+use crate::section::Dof;
+use serde::Serialize;
+
+/// A sentence of the thesis and its counterpart.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Statement {
+    /// Section of the thesis.
+    pub section: &'static str,
+    /// What it says of its own records.
+    pub thesis: &'static str,
+    /// What is found here.
+    pub here: String,
+}
+
+fn found<'a>(
+    scores: &'a [Score],
+    wanted: impl Fn(&Score) -> bool + 'a,
+) -> impl Iterator<Item = &'a Score> {
+    scores.iter().filter(move |s| wanted(s))
+}
+
+/// Section 3.5.4 on the scores of several decks.
+pub(super) fn on_decks(scores: &[Score]) -> Vec<Statement> {
+    let rotating =
+        |force: Dof| move |s: &Score| s.motion == Dof::Torsion && s.force == force && !s.held_out;
+    let spread = |force: Dof, metric: usize| {
+        let mut worst: Option<(f64, f64)> = None;
+        for one in found(scores, rotating(force)) {
+            let same = found(scores, rotating(force))
+                .filter(|s| (s.frequency_hz / one.frequency_hz - 1.0).abs() < 0.08);
+            let values: Vec<f64> = same.map(|s| s.metrics.values()[metric]).collect();
+            let high = values.iter().copied().fold(0.0, f64::max);
+            let low = values.iter().copied().fold(1.0, f64::min);
+            if worst.is_none_or(|(w, _)| high - low > w) {
+                worst = Some((high - low, one.frequency_hz));
+            }
+        }
+        worst.unwrap_or((0.0, 0.0))
+    };
+    let parts = [(0, "M_phi"), (1, "M_p"), (4, "M_mw")].map(|(m, name)| {
+        let ((lift, at_lift), (moment, at_moment)) =
+            (spread(Dof::Vertical, m), spread(Dof::Torsion, m));
+        format!(
+            "{name} differs by up to {lift:.2} in lift (near {at_lift:.2} Hz) and {moment:.2} in moment (near \
+             {at_moment:.2} Hz)"
+        )
+    });
+    let lowest = scores
+        .iter()
+        .filter(|s| s.motion == Dof::Torsion && !s.held_out)
+        .min_by(|a, b| a.metrics.peak.total_cmp(&b.metrics.peak));
+    vec![
+        Statement {
+            section: "3.5.4",
+            thesis: "very similar metrics on the four girders under rotation, with small discrepancies, most of them in the \
+                     lift (LN21-6100 at the first and last frequency)",
+            here: parts.join("; "),
+        },
+        Statement {
+            section: "3.5.4",
+            thesis: "M_p plunges at 0.5 Hz on LN21-6100 and LN21-5800, an error of the measurement",
+            here: lowest.map_or_else(String::new, |s| {
+                format!(
+                    "no spike in these records: lowest M_p {:.3} ({}, {} force, {:.2} Hz)",
+                    s.metrics.peak,
+                    s.deck,
+                    s.force.name(),
+                    s.frequency_hz
+                )
+            }),
+        },
+    ]
+}
+
+/// Sections 3.5.2, 3.5.5 and 3.5.6 on the comparison of models; the first model is the thesis's Laguerre model.
+pub(super) fn on_models(entries: &[EntryComparison], scores: &[Score]) -> Vec<Statement> {
+    let entry = |force, motion| {
+        let mut all = entries.iter();
+        all.find(move |e| (e.force, e.motion) == (force, motion))
+    };
+    let (y, t) = (Dof::Vertical, Dof::Torsion);
+    let mut statements = Vec::new();
+    if let Some(e) = entry(y, y) {
+        statements.push(Statement {
+            section: "3.5.5",
+            thesis: "heave: magnitude of the lift slightly overestimated at high frequency, its phase never more than 5° off",
+            here: e.describe(0),
+        });
+    }
+    if let Some(e) = entry(t, y) {
+        let beyond: Vec<String> = e
+            .points
+            .iter()
+            .zip(&e.models[0].points)
+            .filter(|(_, m)| !inside(m).1)
+            .map(|(p, _)| format!("{:.2}", p.frequency_hz))
+            .collect();
+        let list = if beyond.is_empty() {
+            "none".into()
+        } else {
+            format!("{} Hz", beyond.join(", "))
+        };
+        statements.push(Statement {
+            section: "3.5.5",
+            thesis: "heave: phase of the moment badly reconstructed above 1.4 Hz",
+            here: format!("{}; beyond ±5° at {list}", e.describe(0)),
+        });
+    }
+    if let (Some(lift), Some(moment)) = (entry(y, t), entry(t, t)) {
+        statements.push(Statement {
+            section: "3.5.5",
+            thesis: "rotation: magnitudes within ±15 % and phases within ±5° at all tested frequencies",
+            here: format!("lift: {}; moment: {}", lift.describe(0), moment.describe(0)),
+        });
+    }
+    let at_2_hz = |motion: Dof| {
+        found(scores, move |s: &Score| {
+            s.motion == motion && s.force == t && (s.frequency_hz / 2.0 - 1.0).abs() < 0.05
+        })
+        .next()
+        .map(|s| {
+            let delay = s.metrics.lag_deg / 360.0 / s.frequency_hz;
+            format!(
+                "{} motion {:.1}° ({delay:.4} s)",
+                motion.name(),
+                s.metrics.lag_deg
+            )
+        })
+    };
+    statements.push(Statement {
+        section: "3.5.2",
+        thesis: "the moment at 2.0 Hz is 0.015 s late, 10°",
+        here: [y, t]
+            .into_iter()
+            .filter_map(at_2_hz)
+            .collect::<Vec<_>>()
+            .join(", "),
+    });
+    statements.push(better(scores));
+    statements
+}
+
+/// How often each model is ahead in each of the thesis's three metrics.
+fn better(scores: &[Score]) -> Statement {
+    let mut models: Vec<&str> = scores.iter().map(|s| s.model.as_str()).collect();
+    models.dedup();
+    models.sort_unstable();
+    models.dedup();
+    let means = models.iter().map(|model| {
+        let own: Vec<&Score> = scores.iter().filter(|s| s.model == *model).collect();
+        let mean = |m: usize| {
+            own.iter().map(|s| s.metrics.values()[m]).sum::<f64>() / own.len().max(1) as f64
+        };
+        format!(
+            "{model}: M_phi {:.3}, M_p {:.3}, M_mw {:.3}",
+            mean(0),
+            mean(1),
+            mean(4)
+        )
+    });
+    Statement {
+        section: "3.5.6",
+        thesis: "both models have really similar capability in the time domain, with three coefficients a transfer function",
+        here: format!(
+            "means over motions, forces and frequencies: {}",
+            means.collect::<Vec<_>>().join("; ")
+        ),
+    }
+}

@@ -1,0 +1,141 @@
+//! Quasi-steady theory beside the other routes: from static coefficients where the study gives them, else the
+//! low-frequency limit of the derivatives.
+
+use super::super::Study;
+use super::super::onsets::coupled;
+use super::{Forces, RouteTable};
+use crate::aerodynamics::quasi_steady::QuasiSteady;
+use crate::aerodynamics::{AerodynamicModel, Lags, RationalModel};
+use crate::aeroelastic::{EquilibriumEnd, static_equilibria};
+use crate::error::Result;
+use crate::flutter::{
+    OnsetMethod, divergence_speed, find_onset, quasi_steady_modes, quasi_steady_onset, trace_modes,
+};
+use crate::section::Structure;
+use crate::units::ReducedFrequency;
+use nalgebra::DMatrix;
+
+impl RouteTable {
+    /// Quasi-steady theory with static coefficients, each wind speed about its own equilibrium (1.31).
+    pub(super) fn add_static_coefficients(
+        &mut self,
+        study: &Study,
+        structure: &Structure,
+        theory: &QuasiSteady,
+    ) -> Result<()> {
+        let name = "quasi-steady theory";
+        let found = quasi_steady_onset(name, structure, theory, &study.flutter.search())?;
+        // the mode at onset belongs to the linear forces about the equilibrium there
+        let speed = found.search.onset().map(|o| o.speed_m_s);
+        let path = static_equilibria(structure, theory, speed.as_slice())?;
+        let rotation = path.points.first().map_or(0.0, |p| p.rotation_rad);
+        let linear = theory.linearised(rotation)?;
+        let divergence_m_s = match found.equilibrium_end {
+            Some(end @ EquilibriumEnd::Divergence { .. }) => Some(end.speed_m_s()),
+            _ => None,
+        };
+        let forces = Forces {
+            name: name.into(),
+            model: &linear,
+            structure,
+            tested: None,
+            divergence_m_s,
+            quasi_steady_m_s: speed,
+        };
+        let mut route = forces.route(study, OnsetMethod::Eigenvalues, found.search)?;
+        route.low_frequency_limit = true;
+        self.routes.push(route);
+        let path = static_equilibria(structure, theory, &study.flutter.curve_speeds_m_s())?;
+        self.curves
+            .push(quasi_steady_modes(name, structure, theory, &path)?);
+        Ok(())
+    }
+
+    /// The affine limit of the deck's own forces.
+    pub(super) fn add_quasi_steady(
+        &mut self,
+        study: &Study,
+        structure: &Structure,
+        limit: &RationalModel,
+        from: Option<ReducedFrequency>,
+    ) -> Result<()> {
+        let steady = limit.transfer(ReducedFrequency::from_full_width(0.0))?;
+        let forces = Forces {
+            name: "quasi-steady limit".into(),
+            model: limit,
+            structure,
+            tested: None,
+            divergence_m_s: divergence_speed(structure, &steady)?,
+            quasi_steady_m_s: limit_onset(study, structure, limit)?,
+        };
+        let section = coupled(structure, limit)?;
+        let found = find_onset(&forces.name, &section, &study.flutter.search(), None)?;
+        let mut route = forces.route(study, OnsetMethod::Eigenvalues, found)?;
+        route.low_frequency_limit = true;
+        route.warnings.push(match from {
+            Some(k) => format!(
+                "no static coefficients given: slopes and rates from the derivatives at K = {:.3}, good for K well below \
+                 that only",
+                k.full_width()
+            ),
+            None => "circulation without lag, C = 1".into(),
+        });
+        self.routes.push(route);
+        let speeds = study.flutter.curve_speeds_m_s();
+        self.curves
+            .push(trace_modes(&forces.name, &section, &speeds)?);
+        Ok(())
+    }
+}
+
+/// `G ≈ Re G(K) + iK · Im G(K)/K` at a low `K`: affine in `iK`, the form of quasi-steady theory.
+///
+/// # Errors
+/// Those of [`AerodynamicModel::transfer`].
+pub fn low_frequency_limit(
+    model: &dyn AerodynamicModel,
+    k: ReducedFrequency,
+) -> Result<RationalModel> {
+    let g = model.transfer(k)?;
+    let n = g.nrows();
+    Ok(RationalModel {
+        dofs: model.dofs().to_vec(),
+        a1: g.map(|z| z.re),
+        a2: g.map(|z| z.im / k.full_width()),
+        a3: DMatrix::zeros(n, n),
+        lags: Lags::Shared(Vec::new()),
+        lag_terms: Vec::new(),
+    })
+}
+
+/// The flat plate with `C = 1` and without apparent mass; its own limit has a logarithm in `K`.
+pub(super) fn steady_flat_plate() -> RationalModel {
+    let mut plate = RationalModel::jones_flat_plate();
+    let (pi, quarter) = (std::f64::consts::PI, 0.25);
+    // the part of the rates that is apparent mass, and what the circulation gives at once
+    plate.a2 = DMatrix::from_row_slice(
+        2,
+        2,
+        &[
+            -2.0 * pi,
+            pi / 2.0 + 2.0 * pi * quarter,
+            -pi / 2.0,
+            -pi / 8.0 + pi / 2.0 * quarter,
+        ],
+    );
+    plate.a3 = DMatrix::zeros(2, 2);
+    plate.lags = Lags::Shared(Vec::new());
+    plate.lag_terms.clear();
+    plate
+}
+
+/// Onset of an affine model, m/s.
+pub(super) fn limit_onset(
+    study: &Study,
+    structure: &Structure,
+    limit: &RationalModel,
+) -> Result<Option<f64>> {
+    let section = coupled(structure, limit)?;
+    let found = find_onset("", &section, &study.flutter.search(), None)?;
+    Ok(found.onset().map(|o| o.speed_m_s))
+}

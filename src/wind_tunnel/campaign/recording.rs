@@ -1,0 +1,266 @@
+//! One recording: channels taken out of a file by the map, in SI units, of one length, all of it numbers.
+
+use super::channel_map::{
+    CellChannel, ChannelMap, ChannelRef, cell_quantity, described, sampling_of,
+};
+use super::file::{Campaign, FileRef, RunBlock};
+use super::findings::{Finding, channel_findings, first_gap};
+use super::quantity::Quantity;
+use crate::error::{Error, Result};
+use crate::section::Dof;
+use crate::wind_tunnel::lab_files::ChannelSet;
+use crate::wind_tunnel::{CELL_CHANNELS, RawRecording, SAMPLES_AT_LEAST};
+
+/// Two statements of one sampling frequency may differ by this part.
+pub(super) const SAME_RATE: f64 = 1e-3;
+
+/// One recording with what was found on the way.
+pub(super) struct Loading {
+    pub recording: RawRecording,
+    pub channels: Vec<String>,
+    /// Density, temperature, pressure as the file has them.
+    pub air: [Option<f64>; 3],
+    pub findings: Vec<Finding>,
+}
+
+impl Loading {
+    /// Reads the file, or the group of it.
+    pub fn new(
+        campaign: &Campaign,
+        map: &ChannelMap,
+        run: &RunBlock,
+        file: &FileRef,
+        what: &'static str,
+    ) -> Result<Self> {
+        let path = campaign.directory.join(file.file());
+        let place = format!("run `{}`, {what}", run.name);
+        let read = || {
+            let set = ChannelSet::read(&path, file.group()).map_err(|e| below(&place, e))?;
+            let mut taking = Taking {
+                map,
+                set: &set,
+                place: &place,
+                of: (&run.name, what),
+                first: None,
+                channels: Vec::new(),
+                findings: Vec::new(),
+            };
+            let recording = taking.recording(campaign, file.to_string())?;
+            Ok(Self {
+                recording,
+                air: taking.air(what == "in wind")?,
+                channels: taking.channels,
+                findings: taking.findings,
+            })
+        };
+        read().map_err(|e: Error| e.in_file(&path))
+    }
+}
+
+/// The same error with the run in front of its place.
+fn below(place: &str, error: Error) -> Error {
+    match error {
+        Error::Input(mut input) => {
+            input.place = if input.place.is_empty() {
+                place.to_owned()
+            } else {
+                format!("{place}, {}", input.place)
+            };
+            Error::Input(input)
+        }
+        other => other,
+    }
+}
+
+/// Channels being taken out of a file.
+struct Taking<'a> {
+    map: &'a ChannelMap,
+    set: &'a ChannelSet,
+    place: &'a str,
+    of: (&'a str, &'static str),
+    /// Length and description of the first channel; all others must have it.
+    first: Option<(usize, String)>,
+    channels: Vec<String>,
+    findings: Vec<Finding>,
+}
+
+impl Taking<'_> {
+    fn recording(&mut self, campaign: &Campaign, source: String) -> Result<RawRecording> {
+        let map = self.map;
+        let mut motion: [Vec<f64>; 3] = Default::default();
+        for (samples, dof) in motion.iter_mut().zip(Dof::THREE) {
+            if let Some(channel) = map.motion(dof) {
+                let quantity = if dof == Dof::Torsion {
+                    Quantity::Angle
+                } else {
+                    Quantity::Length
+                };
+                *samples = self.take(
+                    &format!("channels.{}", dof.name()),
+                    channel,
+                    quantity,
+                    false,
+                )?;
+            }
+        }
+        let mut cells = Vec::new();
+        for cell in &campaign.rig.cells {
+            cells.push(self.cell(&cell.name)?);
+        }
+        let wind_speed_m_s = self.wind_speed()?;
+        let samples = self.first.as_ref().map_or(0, |(length, _)| *length);
+        if samples < SAMPLES_AT_LEAST {
+            let expected = format!("at least {SAMPLES_AT_LEAST} samples");
+            return Err(Error::input(self.place, expected, samples.to_string()));
+        }
+        for cell in &mut cells {
+            // those not measured
+            cell.iter_mut()
+                .filter(|c: &&mut Vec<f64>| c.is_empty())
+                .for_each(|c| *c = vec![0.0; samples]);
+        }
+        Ok(RawRecording {
+            source,
+            sampling_hz: self.sampling(campaign.recording.sampling_hz)?,
+            motion,
+            cells,
+            wind_speed_m_s,
+        })
+    }
+
+    fn cell(&mut self, cell: &str) -> Result<[Vec<f64>; 6]> {
+        let map = self.map;
+        let mut channels: [Vec<f64>; 6] = Default::default();
+        for (samples, key) in channels.iter_mut().zip(CELL_CHANNELS) {
+            let channel = map.cells.get(cell).and_then(|channels| channels.get(key));
+            if let Some(CellChannel::Measured(channel)) = channel {
+                let place = format!("channels.cells.{cell}.{key}");
+                *samples = self.take(&place, channel, cell_quantity(key), true)?;
+            }
+        }
+        Ok(channels)
+    }
+
+    /// The wind speed; in still air, where a Pitot tube need not give a number, only if it is there and sound.
+    fn wind_speed(&mut self) -> Result<Vec<f64>> {
+        let Some(channel) = &self.map.wind_speed else {
+            return Ok(Vec::new());
+        };
+        if self.of.1 == "in wind" {
+            return self.take("channels.wind_speed", channel, Quantity::Speed, false);
+        }
+        let found = self.set.channel(&channel.name);
+        let length = self.first.as_ref().map(|(length, _)| *length);
+        match found {
+            Some(c) if first_gap(&c.samples).is_none() && Some(c.samples.len()) == length => {
+                self.take("channels.wind_speed", channel, Quantity::Speed, false)
+            }
+            Some(c) => {
+                let (run, recording) = self.of;
+                self.findings.push(Finding {
+                    run: run.to_owned(),
+                    recording: recording.to_owned(),
+                    channel: Some(channel.name.clone()),
+                    sample: first_gap(&c.samples).map(|gap| gap.0),
+                    samples: first_gap(&c.samples).map(|gap| gap.1),
+                    what: "wind speed that is no number or of another length, not used".to_owned(),
+                });
+                Ok(Vec::new())
+            }
+            None => Ok(Vec::new()),
+        }
+    }
+
+    /// One channel in SI units, of the length of those before, all of it numbers.
+    fn take(
+        &mut self,
+        key: &str,
+        channel: &ChannelRef,
+        quantity: Quantity,
+        must_change: bool,
+    ) -> Result<Vec<f64>> {
+        let samples = channel
+            .samples(key, quantity, self.set)
+            .map_err(|e| below(self.place, e))?;
+        let own = self.set.channel(&channel.name).map(described);
+        let own = own.unwrap_or_default();
+        match &self.first {
+            Some((length, first)) if *length != samples.len() => {
+                return Err(Error::input(
+                    self.place,
+                    format!("channels of one length ({first} samples)"),
+                    own,
+                ));
+            }
+            Some(_) => {}
+            None => self.first = Some((samples.len(), own)),
+        }
+        if let Some((first, length)) = first_gap(&samples) {
+            return Err(Error::input(
+                format!("{}, `{}`, sample {first}", self.place, channel.name),
+                "a finite number",
+                format!("{} for {length} samples", samples[first]),
+            ));
+        }
+        let found = channel_findings(self.of, &channel.name, &samples, must_change);
+        self.findings.extend(found);
+        self.channels.push(channel.name.clone());
+        Ok(samples)
+    }
+
+    /// The one sampling frequency of campaign file, recording and time channel, Hz.
+    fn sampling(&self, stated: Option<f64>) -> Result<f64> {
+        let by_time = match &self.map.time {
+            None => None,
+            Some(channel) => {
+                let time = channel
+                    .samples("channels.time", Quantity::Time, self.set)
+                    .map_err(|e| below(self.place, e))?;
+                let place = format!("{}, `{}`", self.place, channel.name);
+                Some(sampling_of(&place, &time)?)
+            }
+        };
+        let known = [
+            (stated, "the campaign file"),
+            (self.set.sampling_hz, "the file"),
+            (by_time, "the time channel"),
+        ];
+        let mut known = known.iter().filter_map(|(hz, who)| hz.map(|hz| (hz, *who)));
+        let Some((hz, who)) = known.next() else {
+            return Err(Error::input(
+                self.place,
+                "a sampling frequency: `recording.sampling_hz`, `channels.time` or one in the file",
+                "none",
+            ));
+        };
+        match known.find(|(other, _)| (other / hz - 1.0).abs() > SAME_RATE) {
+            None => Ok(hz),
+            Some((other, says)) => Err(Error::input(
+                self.place,
+                format!("the sampling frequency {hz} Hz of {who}"),
+                format!("{other:.4} Hz by {says}"),
+            )),
+        }
+    }
+
+    fn air(&self, is_needed: bool) -> Result<[Option<f64>; 3]> {
+        let map = self.map;
+        let mut air = [None; 3];
+        let channels = [
+            ("channels.air_density", &map.air_density, Quantity::Density),
+            (
+                "channels.temperature",
+                &map.temperature,
+                Quantity::Temperature,
+            ),
+            ("channels.pressure", &map.pressure, Quantity::Pressure),
+        ];
+        for (value, (key, channel, quantity)) in air.iter_mut().zip(channels) {
+            if let Some(channel) = channel.as_ref().filter(|_| is_needed) {
+                let number = channel.number(key, quantity, self.set);
+                *value = Some(number.map_err(|e| below(self.place, e))?);
+            }
+        }
+        Ok(air)
+    }
+}

@@ -1,0 +1,76 @@
+//! The comparisons on the embedded decks from the command line.
+
+#[path = "common/command.rs"]
+#[allow(dead_code)] // each test file needs a part of it
+mod command;
+
+use command::{listing, refused, succeeds};
+use serde_json::Value;
+use tempfile::TempDir;
+
+#[test]
+fn models_are_compared_in_both_domains() {
+    let folder = TempDir::new().unwrap();
+    let text = succeeds(folder.path(), &["compare", "models", "--out", "m"]);
+    for word in [
+        "rational functions, one lag",
+        "within ±15 % at",
+        "M_phi",
+        "thesis 3.5.5: rotation",
+        "models_transfer.png",
+    ] {
+        assert!(text.contains(word), "`{word}` is not in:\n{text}");
+    }
+    let files = listing(folder.path());
+    for name in [
+        "m/models_metrics.csv",
+        "m/models_transfer.csv",
+        "m/models_transfer.svg",
+        "m/models_derivatives.png",
+        "m/models_metrics_vertical.svg",
+        "m/models_metrics_torsion.svg",
+        "m/models_history_vertical_0.5_hz.svg",
+        "m/models_history_torsion_2.0_hz.png",
+    ] {
+        assert!(
+            files.iter().any(|f| f == name),
+            "{name} is not in {files:?}"
+        );
+    }
+    let table = std::fs::read_to_string(folder.path().join("m/models_transfer.csv")).unwrap();
+    // four transfer functions, three models, eight test points
+    assert_eq!(table.lines().count(), 1 + 4 * 3 * 8);
+}
+
+#[test]
+fn decks_are_compared_with_the_model_of_one() {
+    let folder = TempDir::new().unwrap();
+    let arguments = [
+        "--json",
+        "compare",
+        "decks",
+        "--decks",
+        "LN21-5200,LN21-5800",
+        "--trained-on",
+        "LN21-5200",
+        "--lateral",
+        "--out",
+        "d",
+    ];
+    let answer: Value = serde_json::from_str(&succeeds(folder.path(), &arguments)).unwrap();
+    let results = &answer["comparison"];
+    // two decks, two speeds, three motions, three forces, eight frequencies
+    assert_eq!(results["scores"].as_array().unwrap().len(), 2 * 2 * 9 * 8);
+    assert_eq!(results["decks"][1]["trained_on"][0], "LN21-5200");
+    assert!(listing(folder.path()).contains(&"d/decks_lateral.svg".to_owned()));
+    refused(
+        folder.path(),
+        &["compare", "decks", "--decks", "LN99"],
+        &["LN20-5500", "LN99"],
+    );
+    refused(
+        folder.path(),
+        &["compare", "models", "--alpha", "1.5"],
+        &["alpha", "1.5"],
+    );
+}
