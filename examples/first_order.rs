@@ -1,5 +1,5 @@
 //! The first-order example of section 2.5 of the thesis: trains discrete Laguerre filters on six sines, predicts a seventh,
-//! varies `α` and `L`, and writes Figures 2.6 to 2.11 as SVG.
+//! varies `α` and `L`, and writes Figures 2.6 to 2.11 as SVG and PNG.
 //!
 //! `cargo run --release --example first_order -- OUT_FOLDER`
 
@@ -16,9 +16,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     std::fs::create_dir_all(&folder)?;
     let results = FirstOrderExample::default().run()?;
     for (number, figure) in first_order_figures(&results)? {
-        let path = folder.join(format!("figure_{}.svg", number.replace('.', "_")));
-        std::fs::write(&path, figure.svg())?;
-        println!("{}", path.display());
+        let [svg, _png] = figure.write(&folder, &format!("figure_{}", number.replace('.', "_")))?;
+        println!("{}", svg.display());
     }
     let (lower, upper) = results.alpha_bounds;
     println!(

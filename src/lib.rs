@@ -21,9 +21,11 @@
 //! # Map
 //!
 //! [`aerodynamics`] holds the force models, [`section`] the structure, [`aeroelastic`] their coupling, [`flutter`] modes and
-//! onsets, [`response`] the exact steps, `buffeting` the response to turbulence, [`trained_model`] what is saved, [`fmu`] the co-simulation slave with its
-//! packing and importer. `wind_tunnel` and `identification` lead from records and tables to models, `comparison` compares
-//! time histories, `reliability` draws random sections, `study` runs the whole chain, `report` draws it and `cli` is the program.
+//! onsets, [`response`] the exact steps, [`trained_model`] what is saved, [`fmu`] the co-simulation slave with its
+//! packing and importer. `wind_tunnel` leads from load cells to records, `identification` from records and tables to
+//! derivatives and models, `uncertainty` from their scatter to intervals, `selection` to one model among many;
+//! `comparison` compares time histories, `buffeting` adds gusts, `reliability` scatters the section. `study` runs the
+//! whole chain, `report` draws it and `cli` is the program.
 #![deny(unsafe_code, missing_docs)]
 
 pub mod aerodynamics;

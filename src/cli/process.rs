@@ -23,8 +23,12 @@ use crate::toml_lines;
 use crate::wind_tunnel::campaign::Campaign;
 use crate::wind_tunnel::processing::{Processed, ProcessingOptions, RunReport, process};
 use crate::wind_tunnel::{RawCampaign, RecordSource, write_record};
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
+
+/// Points of a line over V̂, for each derivative.
+type Lines = BTreeMap<Derivative, Vec<(f64, f64)>>;
 
 /// File of the table of derivatives.
 const TABLE: &str = "derivatives.csv";
@@ -273,10 +277,7 @@ fn plot(
         if measured.is_empty() {
             continue;
         }
-        let line = |(name, lines): &(
-            &str,
-            std::collections::BTreeMap<Derivative, Vec<(f64, f64)>>,
-        )| {
+        let line = |(name, lines): &(&str, Lines)| {
             lines
                 .get(&d)
                 .map(|points| PlottedSeries::new(*name, points.clone()))

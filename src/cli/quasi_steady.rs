@@ -153,6 +153,9 @@ fn in_words(study: &WindStudy, results: &QuasiSteadyStudy) -> String {
     match &results.onset.search {
         FlutterSearch::Onset(onset) => {
             text.push_str(&account::onsets(std::slice::from_ref(onset.as_ref()), &[]));
+            if let Some(mode) = &results.onset.mode {
+                let _ = writeln!(text, "kind: {}", mode.kind.name());
+            }
         }
         FlutterSearch::StableUpTo(speed) => {
             let _ = writeln!(text, "no flutter up to {speed:.3} m/s");

@@ -2,18 +2,26 @@
 //! equilibrium of that speed, so that the linear model itself changes with the speed.
 
 use super::curves::{FlutterCurves, ModeBranch, damping_ratio, trace_modes};
+use super::instability::{ModeAtOnset, classify};
 use super::onset::{FlutterSearch, Onset, OnsetMethod};
 use super::search::{OnsetSearch, root};
 use super::tracking::{TrackedMode, Tracker, branch_name, oscillates};
 use crate::aerodynamics::AerodynamicModel;
-use crate::aerodynamics::quasi_steady::QuasiSteady;
+use crate::aerodynamics::quasi_steady::{LinearQuasiSteady, QuasiSteady};
 use crate::aeroelastic::{CoupledSection, EquilibriumEnd, EquilibriumPath, static_equilibria};
 use crate::error::{Error, Result, positive};
 use crate::section::Structure;
+use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use serde::Serialize;
 
 /// Reduced velocity below which quasi-steady theory does not hold: ten transits of the deck in a period.
 const LEAST_REDUCED_VELOCITY: f64 = 10.0;
+
+/// Reduced frequencies in which single degrees of freedom are searched for an onset of their own.
+const SEARCHED: ReducedFrequencyRange = ReducedFrequencyRange {
+    min: ReducedFrequency::from_full_width(0.02),
+    max: ReducedFrequency::from_full_width(10.0),
+};
 
 /// Relative distance of the second speed of a slope.
 const NEARBY: f64 = 1e-5;
@@ -23,6 +31,8 @@ const NEARBY: f64 = 1e-5;
 pub struct QuasiSteadyOnset {
     /// The lowest onset, or up to where there is none: the highest speed, or the end of the equilibrium.
     pub search: FlutterSearch,
+    /// What kind of instability the onset is, if there is one.
+    pub mode: Option<ModeAtOnset>,
     /// Where the static equilibrium ends, if it does below the highest speed.
     pub equilibrium_end: Option<EquilibriumEnd>,
 }
@@ -49,26 +59,31 @@ pub fn quasi_steady_onset(
         .map(|i| speed_max * i as f64 / search.speeds as f64)
         .collect();
     let path = static_equilibria(structure, theory, &speeds)?;
-    let found = |search| QuasiSteadyOnset {
+    let found = |search, mode| QuasiSteadyOnset {
         search,
+        mode,
         equilibrium_end: path.end,
     };
     // in still air the structure's own damping, at least no growth
     let mut before = (0.0, -f64::MIN_POSITIVE);
     for point in &path.points {
-        let frozen = frozen(structure, theory, point.rotation_rad)?;
-        let growth = fastest_growth(&frozen, point.speed_m_s)?;
+        let linear = theory.linearised(point.rotation_rad)?;
+        let growth = fastest_growth(&coupled(structure, &linear)?, point.speed_m_s)?;
         if growth >= 0.0 {
             let speed = root(before, (point.speed_m_s, growth), |speed| {
-                fastest_growth(&at_equilibrium(structure, theory, speed)?, speed)
+                let linear = at_equilibrium(structure, theory, speed)?;
+                fastest_growth(&coupled(structure, &linear)?, speed)
             })?;
             let onset = described(name, structure, theory, speed)?;
-            return Ok(found(FlutterSearch::Onset(Box::new(onset))));
+            let linear = at_equilibrium(structure, theory, speed)?;
+            let mode = classify(structure, &linear, &onset, SEARCHED, speed_max)?;
+            let onset = FlutterSearch::Onset(Box::new(onset));
+            return Ok(found(onset, Some(mode)));
         }
         before = (point.speed_m_s, growth);
     }
     let stable_up_to = path.end.map_or(speed_max, |end| end.speed_m_s());
-    Ok(found(FlutterSearch::StableUpTo(stable_up_to)))
+    Ok(found(FlutterSearch::StableUpTo(stable_up_to), None))
 }
 
 /// Frequencies and damping over rising wind speeds, about the equilibrium of each; ends with the equilibrium.
@@ -90,8 +105,8 @@ pub fn quasi_steady_modes(
         })
         .collect();
     for point in &path.points {
-        let frozen = frozen(structure, theory, point.rotation_rad)?;
-        let at = trace_modes(name, &frozen, &[point.speed_m_s])?;
+        let linear = theory.linearised(point.rotation_rad)?;
+        let at = trace_modes(name, &coupled(structure, &linear)?, &[point.speed_m_s])?;
         for (all, one) in branches.iter_mut().zip(at.branches) {
             all.points.extend(one.points);
         }
@@ -103,12 +118,7 @@ pub fn quasi_steady_modes(
 }
 
 /// The section with the forces linear about one rotation, at whatever speed.
-fn frozen(
-    structure: &Structure,
-    theory: &QuasiSteady,
-    rotation_rad: f64,
-) -> Result<CoupledSection> {
-    let linear = theory.linearised(rotation_rad)?;
+fn coupled(structure: &Structure, linear: &LinearQuasiSteady) -> Result<CoupledSection> {
     let realization = linear.realize().ok_or_else(|| {
         Error::Numerical("quasi-steady theory: the linear model has no realisation".into())
     })?;
@@ -119,14 +129,14 @@ fn at_equilibrium(
     structure: &Structure,
     theory: &QuasiSteady,
     speed_m_s: f64,
-) -> Result<CoupledSection> {
+) -> Result<LinearQuasiSteady> {
     let path = static_equilibria(structure, theory, &[speed_m_s])?;
     let point = path.points.first().ok_or_else(|| {
         Error::Numerical(format!(
             "quasi-steady onset: no equilibrium at {speed_m_s} m/s"
         ))
     })?;
-    frozen(structure, theory, point.rotation_rad)
+    theory.linearised(point.rotation_rad)
 }
 
 /// Largest real part of the eigenvalues that oscillate, 1/s; divergence is the end of the equilibrium.
@@ -155,9 +165,12 @@ fn least_damped(section: &CoupledSection, speed_m_s: f64) -> Result<TrackedMode>
 }
 
 fn described(name: &str, structure: &Structure, theory: &QuasiSteady, speed: f64) -> Result<Onset> {
-    let mode = least_damped(&at_equilibrium(structure, theory, speed)?, speed)?;
-    let below = speed * (1.0 - NEARBY);
-    let nearby = least_damped(&at_equilibrium(structure, theory, below)?, below)?;
+    let mode_at = |speed: f64| {
+        let linear = at_equilibrium(structure, theory, speed)?;
+        least_damped(&coupled(structure, &linear)?, speed)
+    };
+    let mode = mode_at(speed)?;
+    let nearby = mode_at(speed * (1.0 - NEARBY))?;
     let mut onset = Onset::new(
         name,
         OnsetMethod::Eigenvalues,
@@ -259,6 +272,10 @@ mod tests {
             onset.speed_m_s
         );
         assert_eq!(onset.branch, "vertical");
+        assert_eq!(
+            found.mode.unwrap().kind,
+            crate::flutter::Instability::Galloping
+        );
     }
 
     /// With a quasi-steady plate without arms the twist diverges before anything flutters, or the other way round: both

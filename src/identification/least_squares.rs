@@ -208,8 +208,7 @@ impl Factor {
 
     /// The system of some of its columns, in the given order.
     pub(crate) fn select(&self, columns: &[usize]) -> Self {
-        let sides = self.qtb.ncols();
-        let mut qr = StreamingQr::new(columns.len(), sides);
+        let mut qr = StreamingQr::new(columns.len(), self.qtb.ncols());
         for i in 0..self.columns() {
             let regressors = columns.iter().map(|&c| self.r[(i, c)]);
             let row: Vec<f64> = regressors.chain(self.qtb.row(i).iter().copied()).collect();
@@ -217,9 +216,8 @@ impl Factor {
         }
         let mut factor = qr.finish();
         factor.rows = self.rows;
-        for (rest, before) in factor.rest.iter_mut().zip(&self.rest) {
-            *rest += before;
-        }
+        let rests = factor.rest.iter_mut().zip(&self.rest);
+        rests.for_each(|(rest, before)| *rest += before);
         factor
     }
 

@@ -81,7 +81,7 @@ pub fn processing_figure(run: &RunReport, stages: &[StageSignals], dof: Dof) -> 
     panels.extend([left, right]);
     let legend = vec![
         Entry::new(force_of(dof), line(0)?),
-        Entry::new(&format!("{} motion", run.dof.name()), line(1)?),
+        Entry::new(format!("{} motion", run.dof.name()), line(1)?),
     ];
     Sheet {
         name: PLACE,

@@ -8,11 +8,14 @@ use crate::section::Dof;
 /// Poles closer than this to a bound, relatively, are held by it.
 const AT_BOUND: f64 = 0.01;
 
+/// Name of a pole and its transfer function (force, motion); none when all share it.
+pub(super) type PoleName = (String, Option<(Dof, Dof)>);
+
 /// Poles among the parameters.
 pub(super) struct FreePoles {
     pub searched: Vec<SearchedPole>,
     /// Name, transfer function and value of each.
-    pub values: Vec<((String, Option<(Dof, Dof)>), f64)>,
+    pub values: Vec<(PoleName, f64)>,
     /// Poles that the bounds or the least ratio of the search hold.
     pub held: usize,
 }

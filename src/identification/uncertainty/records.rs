@@ -3,7 +3,7 @@
 use super::coefficients::{CoefficientUncertainty, Coordinates, Parameter};
 use super::columns::Expansion;
 
-use super::poles::{FreePoles, free_poles};
+use super::poles::{FreePoles, PoleName, free_poles};
 use super::segments::{Part, Stretched, gather, sandwich};
 use crate::error::{Error, Result};
 use crate::identification::DiscreteFit;
@@ -19,7 +19,6 @@ use crate::identification::time::layout::Layout;
 use crate::identification::time::search::padded;
 use crate::identification::time::slices::{Scaled, scale_all};
 use crate::identification::time::stretches::{Closed, stretches};
-use crate::section::Dof;
 use crate::trained_model::Model;
 use crate::wind_tunnel::RecordSource;
 use nalgebra::{DMatrix, DVector};
@@ -235,7 +234,7 @@ impl Entries {
         Ok((rows, residual, factor.total_sum(i) * weight * weight))
     }
 
-    fn parameters(&self, report: &FitReport, poles: &[(FreeName, f64)]) -> Vec<Parameter> {
+    fn parameters(&self, report: &FitReport, poles: &[(PoleName, f64)]) -> Vec<Parameter> {
         let coefficients = report.entries.iter().flat_map(|entry| {
             entry.coefficients.iter().map(|c| Parameter {
                 name: c.name.clone(),
@@ -255,8 +254,6 @@ impl Entries {
         coefficients.chain(poles).collect()
     }
 }
-
-type FreeName = (String, Option<(Dof, Dof)>);
 
 /// Covariance of the coefficients of the discrete model that [`crate::identification::fit_discrete`] fitted to the same
 /// records with the same options, from one more pass over them.

@@ -123,7 +123,7 @@ pub fn compare_models(
         .iter()
         .map(|(name, (model, _))| (name.clone(), model as &dyn AerodynamicModel))
         .collect();
-    let pairs: Vec<(&(String, (Model, FitReport)), &Record)> = fits
+    let pairs: Vec<_> = fits
         .iter()
         .flat_map(|fit| records.iter().map(move |r| (fit, r)))
         .collect();

@@ -13,7 +13,8 @@ pub type GlobalCell = [Vec<f64>; 6];
 pub fn to_global(recording: &RawRecording, rig: &Rig, rotation_rad: &[f64]) -> Vec<GlobalCell> {
     let turn = |(cell, channels): (&LoadCell, &[Vec<f64>; 6])| {
         let mut global: GlobalCell = std::array::from_fn(|_| Vec::with_capacity(recording.len()));
-        for k in 0..recording.len() {
+        let samples = channels.iter().map(Vec::len).min().unwrap_or(0);
+        for k in 0..samples {
             let axes = cell.axes_at(rotation_rad.get(k).copied().unwrap_or(0.0));
             for triple in [0, 3] {
                 let local = nalgebra::Vector3::from_fn(|i, _| channels[triple + i][k]);
