@@ -11,8 +11,10 @@
 //! corrected; the force is held over each step `Δt = Δs B/V`.
 
 mod equilibrium;
+mod rational_form;
 
 pub use equilibrium::{EquilibriumEnd, EquilibriumPath, StaticEquilibrium, static_equilibria};
+pub use rational_form::{RationalDescriptor, RationalForces};
 
 use crate::aerodynamics::{ContinuousRealization, DiscreteRealization, Realization};
 use crate::error::{Error, Result, non_negative, positive};

@@ -1,7 +1,8 @@
 //! What is saved after training: section, model, tested range, provenance, as JSON with a schema version.
 
 use crate::aerodynamics::{
-    AerodynamicModel, DiscreteLaguerre, LaguerreModel, RationalModel, Realization, TransferMatrix,
+    AerodynamicModel, DiscreteLaguerre, Lags, LaguerreModel, MinimumStateModel, RationalModel,
+    Realization, TransferMatrix,
 };
 use crate::error::{Error, Result, positive};
 use crate::section::{Dof, SectionModel};
@@ -11,7 +12,8 @@ use serde::{Deserialize, Serialize};
 /// Version of the file layout of models that need nothing newer, so that programs of that version read them; raised when
 /// a field of all files is added or changed.
 pub const SCHEMA_VERSION: u32 = 1;
-/// Newest version that is read and written. Version 2: discrete Laguerre filters of single transfer functions.
+/// Newest version that is read and written. Version 2: discrete Laguerre filters of single transfer functions, rational
+/// functions with lags of each force, minimum-state form.
 pub const NEWEST_SCHEMA_VERSION: u32 = 2;
 
 /// The models that can be saved and exported.
@@ -24,6 +26,8 @@ pub enum Model {
     DiscreteLaguerre(DiscreteLaguerre),
     /// Rational functions in Roger's form.
     Rational(RationalModel),
+    /// Rational functions in Karpel's minimum-state form.
+    MinimumState(MinimumStateModel),
 }
 
 impl Model {
@@ -33,12 +37,15 @@ impl Model {
             Self::Laguerre(_) => "continuous Laguerre",
             Self::DiscreteLaguerre(_) => "discrete Laguerre",
             Self::Rational(_) => "rational functions",
+            Self::MinimumState(_) => "minimum-state rational functions",
         }
     }
 
     /// Lowest version of the file layout that can hold the model.
     pub fn schema_version(&self) -> u32 {
         match self {
+            Self::Rational(m) if matches!(m.lags, Lags::PerForce(_)) => NEWEST_SCHEMA_VERSION,
+            Self::MinimumState(_) => NEWEST_SCHEMA_VERSION,
             Self::DiscreteLaguerre(m) if m.shared_parameters().is_none() => NEWEST_SCHEMA_VERSION,
             _ => SCHEMA_VERSION,
         }
@@ -49,6 +56,7 @@ impl Model {
             Self::Laguerre(m) => m,
             Self::DiscreteLaguerre(m) => m,
             Self::Rational(m) => m,
+            Self::MinimumState(m) => m,
         }
     }
 
@@ -57,6 +65,7 @@ impl Model {
             Self::Laguerre(m) => m.validate(),
             Self::DiscreteLaguerre(m) => m.validate(),
             Self::Rational(m) => m.validate(),
+            Self::MinimumState(m) => m.validate(),
         }
     }
 }
@@ -317,5 +326,39 @@ mod tests {
                 .to_string()
                 .contains("mass_kg_m")
         );
+    }
+
+    /// Newer forms take the newer layout and survive it; a file of the older layout cannot hold them.
+    #[test]
+    fn newer_forms_take_the_newer_layout() {
+        let shared = jones();
+        assert_eq!(shared.model.schema_version(), SCHEMA_VERSION);
+        let mut own = RationalModel::jones_flat_plate();
+        own.lags = Lags::PerForce(vec![vec![0.08, 0.7], vec![0.1, 0.5]]);
+        let roger = RationalModel::jones_flat_plate();
+        let small = MinimumStateModel {
+            dofs: roger.dofs,
+            a1: roger.a1,
+            a2: roger.a2,
+            a3: roger.a3,
+            lags: vec![0.2],
+            d: nalgebra::DMatrix::from_element(2, 1, 0.5),
+            e: nalgebra::DMatrix::from_element(1, 2, -1.5),
+        };
+        for model in [Model::Rational(own), Model::MinimumState(small)] {
+            let trained = TrainedModel {
+                schema_version: model.schema_version(),
+                model,
+                ..jones()
+            };
+            assert_eq!(trained.schema_version, 2);
+            let text = trained.to_json().unwrap();
+            assert_eq!(TrainedModel::from_json(&text).unwrap(), trained);
+            let older = text.replace("\"schema_version\": 2", "\"schema_version\": 1");
+            assert_eq!(
+                TrainedModel::from_json(&older).unwrap_err().to_string(),
+                "schema_version: expected at least 2 for this model, found 1"
+            );
+        }
     }
 }

@@ -47,7 +47,7 @@ pub fn read_gusts(path: impl AsRef<Path>) -> Result<GustSeries> {
 /// [`Error::Input`] naming the line: wrong header or columns, text or NaN in numbers, times that do not start at zero or
 /// are not equally spaced, fewer than two samples.
 pub fn parse_gusts(text: &str) -> Result<GustSeries> {
-    let mut header = CommentHeader::new(FORMAT, &KEYS, &[]);
+    let mut header = CommentHeader::new(&[FORMAT], &KEYS, &[]);
     for line in text.lines() {
         if !header.take(line)? {
             break;

@@ -19,7 +19,7 @@ pub use gust::GustSeries;
 #[cfg(feature = "identification")]
 pub use gust_file::{GUST_COLUMNS, parse_gusts, read_gusts, write_gusts};
 pub use laguerre::{DiscreteLaguerre, FilterBank, FilterTerm, LaguerreModel};
-pub use rational::RationalModel;
+pub use rational::{Lags, MinimumStateModel, RationalModel};
 pub use realization::{ContinuousRealization, DiscreteRealization, Realization};
 
 use crate::error::Result;

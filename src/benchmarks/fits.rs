@@ -103,7 +103,7 @@ fn onset(model: &Model) -> Result<f64> {
 
 fn lags(model: &Model) -> Vec<f64> {
     match model {
-        Model::Rational(m) => m.lags.clone(),
+        Model::Rational(m) => m.lags.of_force(0).to_vec(),
         _ => Vec::new(),
     }
 }

@@ -8,6 +8,7 @@ mod common;
 mod compare;
 mod coverage;
 mod demo;
+mod derivatives;
 mod flutter;
 mod fmu;
 mod monte_carlo;
@@ -67,6 +68,8 @@ enum Command {
     Buffeting(buffeting::Args),
     #[command(subcommand)]
     Fmu(fmu::Fmu),
+    #[command(subcommand)]
+    Derivatives(derivatives::Derivatives),
     Validate(validate::Args),
     Thesis(thesis::Args),
     Select(select::Args),
@@ -110,6 +113,7 @@ fn run(command: &Command, progress: &progress::Progress) -> Result<Answer> {
         Command::QuasiSteady(args) => quasi_steady::run(args, progress),
         Command::Buffeting(args) => buffeting::run(args, progress),
         Command::Fmu(command) => fmu::run(command, progress),
+        Command::Derivatives(command) => derivatives::run(command),
         Command::Validate(args) => validate::run(args, progress),
         Command::Thesis(args) => thesis::run(args, progress),
         Command::Select(args) => select::run(args, progress),

@@ -5,7 +5,7 @@
 
 use super::options::{FeedThrough, Form};
 use crate::aerodynamics::laguerre::FilterTerm;
-use crate::aerodynamics::{FilterBank, LaguerreModel, RationalModel};
+use crate::aerodynamics::{FilterBank, Lags, LaguerreModel, RationalModel};
 use crate::error::{Error, Result};
 use crate::section::Dof;
 use crate::trained_model::Model;
@@ -38,7 +38,9 @@ impl Basis {
     pub fn new(form: &Form, poles: &[f64]) -> Result<Self> {
         let orthonormal = || FilterBank::new(poles.to_vec()).map(Chain::Orthonormal);
         let chain = match form {
-            Form::Rational { .. } => Chain::Lags(FilterBank::new(poles.to_vec())?.poles().to_vec()),
+            Form::Rational { .. } | Form::RationalPerForce { .. } | Form::MinimumState { .. } => {
+                Chain::Lags(FilterBank::new(poles.to_vec())?.poles().to_vec())
+            }
             Form::Laguerre { .. } | Form::TakenakaMalmquist { .. } => orthonormal()?,
         };
         Ok(Self {
@@ -82,6 +84,36 @@ impl Basis {
             Chain::Lags(lags) => columns.extend(lags.iter().map(|d| p / (p + d))),
         }
         columns
+    }
+
+    /// Value and slope `d/dp` of all columns at `p = 0`.
+    pub fn at_zero(&self) -> [Vec<f64>; 2] {
+        let feed = |order: usize| {
+            self.feed
+                .orders()
+                .map(move |o| if o == order { 1.0 } else { 0.0 })
+        };
+        let (mut value, mut slope): (Vec<f64>, Vec<f64>) = (feed(0).collect(), feed(1).collect());
+        match &self.chain {
+            Chain::Orthonormal(bank) => {
+                // the logarithmic derivative of Λ_l: −1/π_l from its own pole, −2/π_j from every all-pass before it
+                let mut before = 0.0;
+                for (filter, pole) in bank
+                    .response(Complex::new(0.0, 0.0))
+                    .iter()
+                    .zip(bank.poles())
+                {
+                    value.push(filter.re);
+                    slope.push(filter.re * (before - 1.0 / pole));
+                    before -= 2.0 / pole;
+                }
+            }
+            Chain::Lags(lags) => {
+                value.extend(lags.iter().map(|_| 0.0));
+                slope.extend(lags.iter().map(|d| 1.0 / d));
+            }
+        }
+        [value, slope]
     }
 
     /// Names of the columns as in the equations: `e0 … c0 …`, or `a1 … a4 …`.
@@ -138,14 +170,19 @@ pub(crate) fn assemble(
         DMatrix::from_fn(n, n, |i, j| column.map_or(0.0, |c| coefficients[i][j][c]))
     };
     let filter = |i: usize, j: usize, l: usize| coefficients[i][j][feed.count() + l];
-    if let Form::Rational { .. } = form {
-        let lags = poles[0][0].clone();
+    if let Form::Rational { .. } | Form::RationalPerForce { .. } = form {
+        let count = poles[0][0].len();
+        let lags = if form.poles_per_force() {
+            Lags::PerForce(poles.iter().map(|row| row[0].clone()).collect())
+        } else {
+            Lags::Shared(poles[0][0].clone())
+        };
         let model = RationalModel {
             dofs: dofs.to_vec(),
             a1: part(0),
             a2: part(1),
             a3: part(2),
-            lag_terms: (0..lags.len())
+            lag_terms: (0..count)
                 .map(|l| DMatrix::from_fn(n, n, |i, j| filter(i, j, l)))
                 .collect(),
             lags,
@@ -191,4 +228,38 @@ pub(crate) fn index_of(dofs: &[Dof], dof: Dof, place: &str) -> Result<usize> {
         let known: Vec<_> = dofs.iter().map(|d| d.name()).collect();
         Error::input(place, known.join(" or "), dof.name())
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::identification::options::FeedThrough;
+
+    /// Value and slope at zero against the columns at ±1e-5: central differences err by the square of that times third
+    /// derivatives of up to 1e4.
+    #[test]
+    fn slopes_at_zero_are_those_of_the_columns() {
+        let step = 1e-5;
+        for form in [
+            Form::TakenakaMalmquist {
+                filters: 3,
+                feed_through: FeedThrough::default(),
+                pole_per_transfer_function: false,
+            },
+            Form::Rational {
+                lags: 3,
+                added_mass: true,
+            },
+        ] {
+            let basis = Basis::new(&form, &[0.2, 0.5, 0.9]).unwrap();
+            let [value, slope] = basis.at_zero();
+            // the columns are real on the real axis
+            let at = |p: f64| basis.columns(Complex::new(p, 0.0));
+            for c in 0..basis.len() {
+                assert!((at(0.0)[c].re - value[c]).abs() < 1e-14);
+                let difference = (at(step)[c].re - at(-step)[c].re) / (2.0 * step);
+                assert!((difference - slope[c]).abs() < 1e-6, "{c}");
+            }
+        }
+    }
 }

@@ -39,7 +39,7 @@ fn broadband_motions_train_models() {
                 lags: 2,
                 added_mass: true,
             },
-            poles: PoleSearch::fixed(&truth.lags),
+            poles: PoleSearch::fixed(truth.lags.of_force(0)),
             ..TimeFit::default()
         };
         let (model, report) = fit_records(&sources(&all), &fit, &|_| ()).unwrap();

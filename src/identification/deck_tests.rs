@@ -1,8 +1,9 @@
 //! Fits to the measured decks, against figures computed independently with NumPy and SciPy (Table 4.1 structure).
 
-use super::options::{FeedThrough, Form, FrequencyFit, FrequencyWeights};
+use super::options::{FeedThrough, Form};
 use super::testing::{onset_above, onset_m_s};
 use super::{FitReport, fit_table};
+use super::{FrequencyFit, FrequencyWeights};
 use crate::aerodynamics::derivatives::{DerivativeTable, embedded};
 use crate::section::Dof;
 use crate::trained_model::Model;

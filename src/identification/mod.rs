@@ -3,16 +3,22 @@
 mod basis;
 #[cfg(test)]
 mod broadband_tests;
+mod constrained;
 #[cfg(test)]
 mod deck_tests;
+mod degenerate;
 pub mod derivatives;
+mod descent;
 mod discrete;
 pub mod free_decay;
 mod frequency;
+mod frequency_options;
 mod grid;
 mod least_squares;
+mod minimum_state;
 mod options;
 mod own;
+mod rational_forms;
 mod records;
 mod report;
 mod samples;
@@ -26,11 +32,10 @@ mod uncertainty;
 
 pub use discrete::{DiscreteFit, fit_discrete};
 pub use frequency::fit_table;
+pub use frequency_options::{FrequencyFit, FrequencyWeights, QuasiSteadyLimit};
 pub use grid::{CellFit, Grid, GridAxis, StretchLabel};
 pub use least_squares::{Factor, StreamingQr};
-pub use options::{
-    FeedThrough, Form, FrequencyFit, FrequencyWeights, PoleSearch, TimeFit, TimeWeights,
-};
+pub use options::{FeedThrough, Form, PoleSearch, TimeFit, TimeWeights};
 pub use own::{OwnDecay, OwnFilters, StaticTerm};
 pub use records::{OnProgress, Progress, fit_records};
 pub use report::{

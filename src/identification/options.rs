@@ -85,6 +85,28 @@ pub enum Form {
         #[serde(default = "yes")]
         added_mass: bool,
     },
+    /// The same with lags of each force (row of `G`): the `d_l^y` of the thesis. For tables only.
+    RationalPerForce {
+        /// Number of lags of a force.
+        #[serde(default = "one")]
+        lags: usize,
+        /// Whether there is an `a₃`.
+        #[serde(default = "yes")]
+        added_mass: bool,
+    },
+    /// Karpel's `a₁ + a₂ p + a₃ p² + D (pI − R)⁻¹ E p` with one state a lag. For tables only.
+    MinimumState {
+        /// Number of lag states.
+        #[serde(default = "two")]
+        states: usize,
+        /// Whether there is an `a₃`.
+        #[serde(default = "yes")]
+        added_mass: bool,
+    },
+}
+
+fn two() -> usize {
+    2
 }
 
 fn one() -> usize {
@@ -114,7 +136,8 @@ impl Form {
     pub fn filters(&self) -> usize {
         match self {
             Self::Laguerre { filters, .. } | Self::TakenakaMalmquist { filters, .. } => *filters,
-            Self::Rational { lags, .. } => *lags,
+            Self::Rational { lags, .. } | Self::RationalPerForce { lags, .. } => *lags,
+            Self::MinimumState { states, .. } => *states,
         }
     }
 
@@ -124,7 +147,9 @@ impl Form {
             Self::Laguerre { feed_through, .. } | Self::TakenakaMalmquist { feed_through, .. } => {
                 *feed_through
             }
-            Self::Rational { added_mass, .. } => FeedThrough {
+            Self::Rational { added_mass, .. }
+            | Self::RationalPerForce { added_mass, .. }
+            | Self::MinimumState { added_mass, .. } => FeedThrough {
                 e2: *added_mass,
                 ..FeedThrough::default()
             },
@@ -150,7 +175,7 @@ impl Form {
                 pole_per_transfer_function,
                 ..
             } => *pole_per_transfer_function,
-            Self::Rational { .. } => false,
+            _ => false,
         }
     }
 
@@ -191,11 +216,7 @@ impl Form {
             Self::TakenakaMalmquist { filters, .. } => {
                 format!("Takenaka–Malmquist, L = {filters}, {with}{own}")
             }
-            Self::Rational { lags, added_mass } => format!(
-                "rational functions, {lags} lag{}, {} added mass",
-                if *lags == 1 { "" } else { "s" },
-                if *added_mass { "with" } else { "without" }
-            ),
+            _ => self.describe_rational(),
         }
     }
 
@@ -206,7 +227,7 @@ impl Form {
             Self::Laguerre { filters, .. } | Self::TakenakaMalmquist { filters, .. } => {
                 *filters = count;
             }
-            Self::Rational { .. } => return None,
+            _ => return None,
         }
         Some(form)
     }
@@ -220,7 +241,8 @@ impl Form {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct PoleSearch {
-    /// Poles to be used as they are; one for Laguerre filters, else one a filter.
+    /// Poles to be used as they are; one for Laguerre filters, else one a filter. For lags of each force either one list
+    /// for all of them, or the lists of the forces one after the other.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fixed: Option<Vec<f64>>,
     /// Where the nonlinear step starts; left out, the best point of a grid.
@@ -265,7 +287,13 @@ impl PoleSearch {
         for (key, list) in [("fixed", &self.fixed), ("start", &self.start)] {
             let Some(list) = list else { continue };
             let place = format!("poles.{key}");
-            if list.len() != form.free_poles() {
+            let several = key == "fixed" && form.poles_per_force();
+            let fits = if several {
+                !list.is_empty() && list.len().is_multiple_of(form.free_poles())
+            } else {
+                list.len() == form.free_poles()
+            };
+            if !fits {
                 let expected = format!("{} number(s) for {}", form.free_poles(), form.describe());
                 return Err(Error::input(place, expected, list.len().to_string()));
             }
@@ -302,47 +330,6 @@ impl PoleSearch {
             ));
         }
         Ok(())
-    }
-}
-
-/// What the residuals of a fit to a transfer matrix are divided by. In the search of poles that several entries share,
-/// each entry counts in proportion to its own weighted size besides.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum FrequencyWeights {
-    /// Nothing: residuals of `G`; large entries at high `K` dominate.
-    None,
-    /// `K²`: residuals of the derivatives themselves; low `K` dominates.
-    Derivatives,
-    /// `|G|` of that entry at that point: relative errors.
-    #[default]
-    Relative,
-}
-
-/// Fit of a continuous model to a table or any other transfer matrix.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct FrequencyFit {
-    /// Form of the model.
-    pub form: Form,
-    /// Its poles.
-    pub poles: PoleSearch,
-    /// Weighting.
-    pub weights: FrequencyWeights,
-    /// Transfer functions with a number of filters or poles of their own.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub own: Vec<OwnFilters>,
-}
-
-impl FrequencyFit {
-    /// Checks every value.
-    ///
-    /// # Errors
-    /// [`Error::Input`] naming the key.
-    pub fn validate(&self) -> Result<()> {
-        self.form.validate()?;
-        self.poles.validate(&self.form)?;
-        validate_own(&self.form, &self.own)
     }
 }
 
@@ -389,7 +376,7 @@ impl TimeFit {
     /// # Errors
     /// [`Error::Input`] naming the key.
     pub fn validate(&self) -> Result<()> {
-        self.form.validate()?;
+        self.form.validate_for_records()?;
         self.poles.validate(&self.form)?;
         validate_own(&self.form, &self.own)?;
         if let Some(cutoff) = self.low_pass_hz {

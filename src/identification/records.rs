@@ -3,6 +3,7 @@
 mod fitted;
 
 use super::basis::{Basis, assemble};
+use super::degenerate::note_lags;
 use super::options::{TimeFit, TimeWeights};
 use super::own::{EntryForm, StaticTerm, entry_forms};
 use super::report::{FitReport, StaticReport, variance};
@@ -100,6 +101,7 @@ pub fn fit_records(
         .map(|e| e.condition)
         .fold(1.0, f64::max);
     report.judge(&fit.poles);
+    note_lags(&model, &mut report.notes);
     Ok((model, report))
 }
 

@@ -118,6 +118,9 @@ pub struct Coefficient {
 pub struct SearchReport {
     /// Transfer function (force, motion) it belongs to; `None` when the poles are shared by all.
     pub entry: Option<(Dof, Dof)>,
+    /// Force whose entries share it, when every force has poles of its own.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub force: Option<Dof>,
     /// Lower bound.
     pub min: f64,
     /// Upper bound.
@@ -228,9 +231,11 @@ impl FitReport {
 
 impl SearchReport {
     fn judge(&self, min_ratio: f64, notes: &mut Vec<String>) {
-        let whose = self.entry.map_or(String::new(), |(f, m)| {
-            format!("{} force due to {} motion: ", f.name(), m.name())
-        });
+        let whose = match (self.entry, self.force) {
+            (Some((f, m)), _) => format!("{} force due to {} motion: ", f.name(), m.name()),
+            (None, Some(f)) => format!("{} force: ", f.name()),
+            (None, None) => String::new(),
+        };
         for (bound, value) in [("lower", self.min), ("upper", self.max)] {
             if let Some(p) = self
                 .chosen

@@ -1,15 +1,14 @@
 //! Samples of a transfer matrix, sorted by entry and weighted, and the linear fit to them.
 
 use super::basis::{Basis, index_of};
-use super::least_squares::{Factor, StreamingQr};
-use super::options::FrequencyWeights;
-use super::report::enough_rows;
+use super::constrained::{LinearProblem, LinearSolution};
+use super::frequency_options::{FrequencyFit, FrequencyWeights};
 use crate::aerodynamics::AerodynamicModel;
 use crate::aerodynamics::derivatives::{Part, TransferSample};
 use crate::error::{Error, Result};
 use crate::section::Dof;
 use crate::units::ReducedFrequency;
-use nalgebra::{Complex, DMatrix};
+use nalgebra::Complex;
 
 /// Real and imaginary part belong to one test point when their `K` agree within this fraction: each derivative of a
 /// measured table has its own.
@@ -52,6 +51,12 @@ pub(crate) struct Entry {
     pub force: Dof,
     pub motion: Dof,
     pub rows: Vec<Row>,
+    /// Weight of the entry where it shares something with others.
+    pub weight: f64,
+    /// Factor of the ridge on its filters.
+    pub ridge: f64,
+    /// Value and slope at K → 0, where they are given.
+    pub limit: [Option<f64>; 2],
 }
 
 /// One sample: value and weight, and the magnitude of `G` at its point.
@@ -64,15 +69,6 @@ pub(crate) struct Row {
     pub magnitude: f64,
     /// Mean speed of the test, m/s, where it is known.
     pub mean_speed_m_s: Option<f64>,
-}
-
-/// Linear fit of one entry.
-pub(crate) struct EntryFit {
-    pub factor: Factor,
-    /// Coefficients of all columns of the basis, zero for those the samples cannot see.
-    pub coefficients: Vec<f64>,
-    /// Columns that were fitted.
-    pub fitted: Vec<usize>,
 }
 
 impl Row {
@@ -101,52 +97,30 @@ impl Entry {
         self.rows.iter().map(|r| (r.weight * r.value).powi(2)).sum()
     }
 
-    /// Weighted least squares for the coefficients of `basis`.
+    /// Weighted least squares for the coefficients of `basis`, with the ridge and the limits of the entry.
     ///
     /// # Errors
-    /// Fewer samples than columns, or columns they do not determine.
-    pub fn fit(&self, basis: &Basis) -> Result<EntryFit> {
-        let values: Vec<Vec<f64>> = self
-            .rows
-            .iter()
-            .map(|row| {
-                row.of(&basis.columns(Complex::new(0.0, row.k)))
-                    .map(|x| row.weight * x)
-                    .collect()
-            })
-            .collect();
-        // with one part only (say, no H4*), columns that have no such part are out of reach
-        let fitted: Vec<usize> = (0..basis.len())
-            .filter(|&c| values.iter().any(|row| row[c] != 0.0))
-            .collect();
-        enough_rows(&self.name(), self.rows.len(), fitted.len())?;
-        let mut qr = StreamingQr::new(fitted.len(), 1);
-        let mut line = vec![0.0; fitted.len() + 1];
-        for (row, values) in self.rows.iter().zip(&values) {
-            for (to, &c) in line.iter_mut().zip(&fitted) {
-                *to = values[c];
+    /// Fewer samples than columns, columns they do not determine, limits that the basis cannot meet.
+    pub fn fit(&self, basis: &Basis) -> Result<LinearSolution> {
+        let feed = basis.feed().count();
+        let mut problem = LinearProblem {
+            ridge: (0..basis.len())
+                .map(|c| if c < feed { 0.0 } else { self.ridge })
+                .collect(),
+            ..LinearProblem::default()
+        };
+        for row in &self.rows {
+            let columns = basis.columns(Complex::new(0.0, row.k));
+            let weighted = row.of(&columns).map(|x| row.weight * x).collect();
+            problem.rows.push(weighted);
+            problem.right.push(row.weight * row.value);
+        }
+        for (functional, target) in basis.at_zero().into_iter().zip(self.limit) {
+            if let Some(target) = target {
+                problem.constraints.push((functional, target));
             }
-            line[fitted.len()] = row.weight * row.value;
-            qr.push_row(&line);
         }
-        let factor = qr.finish();
-        if let Some(c) = factor.undetermined(fitted.len()) {
-            return Err(Error::input(
-                self.name(),
-                "samples at enough different K for the number of filters",
-                format!("nothing that determines {}", basis.names()[fitted[c]]),
-            ));
-        }
-        let solution = factor.solve(fitted.len())?;
-        let mut coefficients = vec![0.0; basis.len()];
-        for (value, &c) in solution.iter().zip(&fitted) {
-            coefficients[c] = *value;
-        }
-        Ok(EntryFit {
-            factor,
-            coefficients,
-            fitted,
-        })
+        problem.solve(&self.name(), &|c| basis.names()[c].clone())
     }
 
     /// Residuals of given coefficients, unweighted, in the order of the rows.
@@ -159,21 +133,6 @@ impl Entry {
                 row.value - fit
             })
             .collect()
-    }
-}
-
-impl EntryFit {
-    /// `(RᵀR)⁻¹` spread over all columns of the basis (zero for those that were not fitted).
-    pub fn inverse_gram(&self) -> Result<DMatrix<f64>> {
-        let small = self.factor.inverse_gram(self.fitted.len())?;
-        let n = self.coefficients.len();
-        let mut full = DMatrix::zeros(n, n);
-        for (a, &i) in self.fitted.iter().enumerate() {
-            for (b, &j) in self.fitted.iter().enumerate() {
-                full[(i, j)] = small[(a, b)];
-            }
-        }
-        Ok(full)
     }
 }
 
@@ -193,6 +152,9 @@ pub(crate) fn sort_by_entry(
             force,
             motion,
             rows: Vec::new(),
+            weight: 1.0,
+            ridge: 0.0,
+            limit: [None; 2],
         })
         .collect();
     for (at, s) in samples.iter().enumerate() {
@@ -227,6 +189,25 @@ pub(crate) fn sort_by_entry(
         weigh(&mut entry.rows, weights);
     }
     Ok((entries, notes))
+}
+
+/// Gives the entries what `fit` says of single ones: weights, ridge, limits.
+///
+/// # Errors
+/// [`Error::Input`] for weights of another shape and limits of degrees of freedom that are not there.
+pub(crate) fn state_wishes(entries: &mut [Entry], dofs: &[Dof], fit: &FrequencyFit) -> Result<()> {
+    let n = dofs.len();
+    for (at, entry) in entries.iter_mut().enumerate() {
+        entry.weight = fit.entry_weight(n, at / n, at % n)?;
+        entry.ridge = fit.regularization;
+    }
+    for (at, limit) in fit.limits.iter().enumerate() {
+        let place = format!("limits[{at}]");
+        let i = index_of(dofs, limit.force, &place)?;
+        let j = index_of(dofs, limit.motion, &place)?;
+        entries[i * n + j].limit = [limit.value, limit.slope];
+    }
+    Ok(())
 }
 
 /// Sets the magnitude of `G` from the nearest sample of the other part; returns how many have none.

@@ -5,18 +5,16 @@
 //! legal — the logarithmic gaps between lower bound, poles and upper bound are shares of what the least ratio of
 //! neighbours leaves, and the shares are a softmax of free numbers — from the best points of a grid.
 
+use super::descent::descend;
 use super::options::PoleSearch;
 use super::report::{SearchPoint, SearchReport};
 use crate::error::{Error, Result};
 use crate::section::Dof;
 use crate::units::ReducedFrequencyRange;
-use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
-use nalgebra::{DMatrix, DVector, Dyn, Owned};
+use nalgebra::DVector;
 
 /// Widest bracket left by golden sections, in `ln p`: the root of the rounding error of the objective.
 const GOLDEN_TOLERANCE: f64 = 1e-8;
-/// Step of the central differences of the residuals; error about its square.
-const DIFFERENCE_STEP: f64 = 1e-5;
 /// Grid points from which Levenberg–Marquardt starts.
 const STARTS: usize = 3;
 
@@ -62,10 +60,12 @@ impl Bounds {
     }
 
     /// Ordered poles from free variables.
-    fn poles(&self, free: &[f64]) -> Vec<f64> {
+    pub fn poles(&self, free: &[f64]) -> Vec<f64> {
         let slack = self.slack(free.len());
-        let shares: Vec<f64> = free.iter().map(|x| x.exp()).collect();
-        let total: f64 = 1.0 + shares.iter().sum::<f64>();
+        // the largest share is scaled to one, so that none overflows
+        let top = free.iter().copied().fold(0.0, f64::max);
+        let shares: Vec<f64> = free.iter().map(|x| (x - top).exp()).collect();
+        let total: f64 = (-top).exp() + shares.iter().sum::<f64>();
         let mut at = self.min.ln() - self.min_ratio.ln();
         shares
             .iter()
@@ -77,7 +77,7 @@ impl Bounds {
     }
 
     /// Free variables of ordered poles; poles on or beyond a bound are taken a little inside.
-    fn free(&self, poles: &[f64]) -> Vec<f64> {
+    pub fn free(&self, poles: &[f64]) -> Vec<f64> {
         let slack = self.slack(poles.len());
         let mut before = self.min.ln() - self.min_ratio.ln();
         let mut shares: Vec<f64> = poles
@@ -168,6 +168,7 @@ pub(crate) fn search_poles(
     };
     Ok(SearchReport {
         entry,
+        force: None,
         min: bounds.min,
         max: bounds.max,
         points: search.points,
@@ -225,15 +226,10 @@ impl Search<'_> {
         let mut starts = self.points.clone();
         starts.sort_by(|a, b| a.objective.total_cmp(&b.objective));
         for start in starts.iter().take(STARTS) {
-            let problem = Projected {
-                free: DVector::from_vec(bounds.free(&start.poles)),
-                bounds: *bounds,
-                residuals: self.residuals,
-            };
-            // whatever the reason it stopped for, the point is judged by its objective
-            let (problem, _) = LevenbergMarquardt::new().minimize(problem);
-            if problem.free.iter().all(|x| x.is_finite()) {
-                self.evaluate(&bounds.poles(problem.free.as_slice()))?;
+            let free = DVector::from_vec(bounds.free(&start.poles));
+            let found = descend(free, &|free| (self.residuals)(&bounds.poles(free)).ok());
+            if found.iter().all(|x| x.is_finite()) {
+                self.evaluate(&bounds.poles(found.as_slice()))?;
             }
         }
         self.best()
@@ -248,50 +244,6 @@ pub(crate) fn best_of(points: &[SearchPoint]) -> Result<SearchPoint> {
         .min_by(|a, b| a.objective.total_cmp(&b.objective))
         .cloned()
         .ok_or_else(|| Error::Numerical("pole search: no point has a finite objective".into()))
-}
-
-/// Variable projection as a least-squares problem in the free variables.
-struct Projected<'a> {
-    free: DVector<f64>,
-    bounds: Bounds,
-    residuals: &'a dyn Fn(&[f64]) -> Result<DVector<f64>>,
-}
-
-impl Projected<'_> {
-    fn at(&self, free: &DVector<f64>) -> Option<DVector<f64>> {
-        (self.residuals)(&self.bounds.poles(free.as_slice())).ok()
-    }
-}
-
-impl LeastSquaresProblem<f64, Dyn, Dyn> for Projected<'_> {
-    type ResidualStorage = Owned<f64, Dyn>;
-    type JacobianStorage = Owned<f64, Dyn, Dyn>;
-    type ParameterStorage = Owned<f64, Dyn>;
-
-    fn set_params(&mut self, x: &DVector<f64>) {
-        self.free.copy_from(x);
-    }
-
-    fn params(&self) -> DVector<f64> {
-        self.free.clone()
-    }
-
-    fn residuals(&self) -> Option<DVector<f64>> {
-        self.at(&self.free)
-    }
-
-    fn jacobian(&self) -> Option<DMatrix<f64>> {
-        let columns: Option<Vec<_>> = (0..self.free.len())
-            .map(|c| {
-                let mut x = self.free.clone();
-                x[c] += DIFFERENCE_STEP;
-                let ahead = self.at(&x)?;
-                x[c] -= 2.0 * DIFFERENCE_STEP;
-                Some((ahead - self.at(&x)?) / (2.0 * DIFFERENCE_STEP))
-            })
-            .collect();
-        Some(DMatrix::from_columns(&columns?))
-    }
 }
 
 #[cfg(test)]
@@ -312,7 +264,7 @@ mod tests {
                 assert!((a / b - 1.0).abs() < 1e-12);
             }
         }
-        for free in [[-40.0, 40.0, 0.0], [9.0, -9.0, -30.0]] {
+        for free in [[-40.0, 40.0, 0.0], [9.0, -9.0, -30.0], [900.0, 2.0, 800.0]] {
             assert!(BOUNDS.admits(&BOUNDS.poles(&free)));
         }
         for count in 1..4 {

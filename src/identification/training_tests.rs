@@ -251,7 +251,7 @@ fn static_terms_are_estimated_or_removed() {
                 lags: 2,
                 added_mass: true,
             },
-            poles: PoleSearch::fixed(&truth.lags),
+            poles: PoleSearch::fixed(truth.lags.of_force(0)),
             static_term,
             ..TimeFit::default()
         };

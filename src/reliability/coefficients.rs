@@ -9,6 +9,7 @@ pub(super) fn linear(model: &Model, tested: ReducedFrequencyRange) -> Option<Lin
     match model {
         Model::Laguerre(m) => Some(LinearForces::of_laguerre(m, Some(tested))),
         Model::Rational(m) => Some(LinearForces::of_rational(m, Some(tested))),
+        Model::MinimumState(m) => Some(LinearForces::of_rational(&m.to_roger(), Some(tested))),
         Model::DiscreteLaguerre(_) => None,
     }
 }
@@ -18,6 +19,7 @@ pub(super) fn of(model: &Model) -> (Vec<f64>, Vec<String>) {
     let forces = match model {
         Model::Laguerre(m) => LinearForces::of_laguerre(m, None),
         Model::Rational(m) => LinearForces::of_rational(m, None),
+        Model::MinimumState(m) => LinearForces::of_rational(&m.to_roger(), None),
         Model::DiscreteLaguerre(m) => {
             let (mut values, mut names) = (Vec::new(), Vec::new());
             for term in &m.terms {
@@ -35,8 +37,12 @@ pub(super) fn of(model: &Model) -> (Vec<f64>, Vec<String>) {
     (forces.coefficients().to_vec(), forces.names().to_vec())
 }
 
-/// Puts `values`, in the order of [`of`], into the model.
+/// Puts `values`, in the order of [`of`], into the model. Coefficients of their own have no place in the minimum-state
+/// form, which becomes the same function in Roger's.
 pub(super) fn replace(model: &mut Model, values: &[f64]) {
+    if let Model::MinimumState(m) = model {
+        *model = Model::Rational(m.to_roger());
+    }
     let mut next = values.iter().copied();
     let mut put = |place: &mut f64| {
         if let Some(value) = next.next() {
@@ -59,14 +65,67 @@ pub(super) fn replace(model: &mut Model, values: &[f64]) {
                 for matrix in [&mut m.a1, &mut m.a2, &mut m.a3] {
                     matrix.column_mut(j).iter_mut().for_each(&mut put);
                 }
-                for term in &mut m.lag_terms {
-                    term.column_mut(j).iter_mut().for_each(&mut put);
+                for l in 0..m.lag_terms.len() {
+                    for (_, own) in m.lag_groups(l) {
+                        let column = m.lag_terms[l].column_mut(j);
+                        let mut elsewhere = 0.0;
+                        column
+                            .into_iter()
+                            .zip(own)
+                            .for_each(|(x, own)| put(if own { x } else { &mut elsewhere }));
+                    }
                 }
             }
         }
+        // became Roger's above
+        Model::MinimumState(_) => {}
         Model::DiscreteLaguerre(m) => {
             let all = m.terms.iter_mut().flat_map(|t| t.coefficients.iter_mut());
             all.for_each(&mut put);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::aerodynamics::{AerodynamicModel, Lags, MinimumStateModel, RationalModel};
+    use crate::units::ReducedFrequency;
+    use nalgebra::DMatrix;
+
+    /// Own lags and minimum states survive the way through a row of numbers, also one that is changed: the model moves as
+    /// its linear combination says.
+    #[test]
+    fn newer_rational_forms_are_rows_of_numbers() {
+        let roger = RationalModel::jones_flat_plate();
+        let mut own = roger.clone();
+        own.lags = Lags::PerForce(vec![vec![0.08, 0.7], vec![0.08, 0.5]]);
+        let small = MinimumStateModel {
+            dofs: roger.dofs.clone(),
+            a1: roger.a1.clone(),
+            a2: roger.a2.clone(),
+            a3: roger.a3.clone(),
+            lags: vec![0.15, 0.7],
+            d: DMatrix::from_row_slice(2, 2, &[1.0, -0.5, 0.1, 0.6]),
+            e: DMatrix::from_row_slice(2, 2, &[0.3, 1.0, -1.2, 0.4]),
+        };
+        let k = ReducedFrequency::from_full_width(0.3);
+        for model in [Model::Rational(own), Model::MinimumState(small)] {
+            let (mut values, names) = of(&model);
+            assert_eq!(values.len(), names.len());
+            let mut same = model.clone();
+            replace(&mut same, &values);
+            let before = model.transfer(k).unwrap();
+            // the same terms in another order
+            assert!((same.transfer(k).unwrap() - &before).camax() < 1e-14);
+            let at = names
+                .iter()
+                .position(|n| n == "torsion.vertical.a4")
+                .unwrap();
+            values[at] += 0.1;
+            replace(&mut same, &values);
+            let moved = same.transfer(k).unwrap() - before;
+            assert!(moved[(1, 0)].norm() > 0.05 && moved[(0, 0)].norm() < 1e-14);
         }
     }
 }

@@ -4,6 +4,7 @@
 //! machine. The same data always give the same bytes. Colours are those of Okabe and Ito, told apart by colour-blind
 //! readers; what differs in colour only also differs in a line style or a marker where two kinds of thing meet.
 
+mod axes_sketch;
 mod axis;
 mod derivatives_figure;
 mod figure;
@@ -28,6 +29,7 @@ mod style;
 mod transfer_figure;
 mod wind_figures;
 
+pub use axes_sketch::axes_sketch;
 pub use derivatives_figure::{DerivativePlot, DerivativesPlot, derivatives_figure};
 pub use figure::{Figure, PNG_SCALE};
 #[cfg(feature = "identification")]

@@ -13,7 +13,7 @@ pub(super) const SHADE: &str = "#8c8c8c";
 pub(super) const SHADE_OPACITY: f64 = 0.18;
 
 /// Okabe and Ito's colours without yellow, which is too light for lines on white.
-const COLOURS: [&str; 7] = [
+pub(super) const COLOURS: [&str; 7] = [
     "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000",
 ];
 const DASHES: [Option<&str>; 5] = [

@@ -3,7 +3,7 @@
 use super::Study;
 use crate::aerodynamics::derivatives::TransferSample;
 use crate::aerodynamics::derivatives::{
-    DerivativeTable, Extrapolation, InterpolatedTable, embedded, read_table,
+    DerivativeTable, Extrapolation, InterpolatedTable, embedded, read_table_in,
 };
 use crate::aerodynamics::{AerodynamicModel, FlatPlate};
 use crate::error::{Error, Result};
@@ -50,10 +50,18 @@ impl Deck {
         let source = if name.eq_ignore_ascii_case(FLAT_PLATE) {
             Source::FlatPlate
         } else if is_file {
-            Source::Table(read_table(study.directory.join(name))?)
+            let stated = study.deck.convention;
+            Source::Table(read_table_in(study.directory.join(name), stated)?.0)
         } else {
             Source::Table(embedded::deck(name)?)
         };
+        if !is_file && !study.deck.convention.is_empty() {
+            return Err(Error::input(
+                "deck.convention",
+                "a table in a file (.csv, .xlsx) as deck.source",
+                format!("`{name}`, whose convention is known"),
+            ));
+        }
         if let Source::Table(table) = &source {
             table.require(&dofs)?;
         } else if dofs != Dof::TWO {

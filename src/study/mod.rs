@@ -30,6 +30,7 @@ pub use wind::{
     simulated_motion,
 };
 
+use crate::aerodynamics::derivatives::notation::StatedConvention;
 use crate::error::{Error, Result, positive};
 use crate::flutter::OnsetSearch;
 use crate::identification::{DiscreteFit, FrequencyFit, TimeFit};
@@ -80,6 +81,9 @@ pub struct Study {
 pub struct DeckSource {
     /// Name of an embedded deck, `flat plate`, or the path of a derivative table (`.csv`, `.xlsx`).
     pub source: String,
+    /// Notation, argument and axes of the table; a CSV file states them itself and must not be contradicted.
+    #[serde(default, skip_serializing_if = "StatedConvention::is_empty")]
+    pub convention: StatedConvention,
     /// Mean speeds of the table to be used, numbered from 1 for the lowest; left out, all.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub speed_groups: Option<Vec<usize>>,

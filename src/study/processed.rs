@@ -1,6 +1,7 @@
 //! The study that goes with the records of a processed campaign.
 
 use super::{DeckSource, Study};
+use crate::aerodynamics::derivatives::notation::StatedConvention;
 use crate::error::{Error, Result};
 use crate::section::{Dof, SectionModel, Translation};
 use crate::wind_tunnel::RawCampaign;
@@ -31,6 +32,7 @@ pub fn processed_study_text(
     };
     study.name.clone_from(&raw.section);
     study.deck = DeckSource {
+        convention: StatedConvention::default(),
         source: table.to_owned(),
         speed_groups: None,
         records: records.iter().map(|p| slashes(p)).collect(),

@@ -37,7 +37,7 @@ fn two_poles(poles: PoleSearch) -> FrequencyFit {
         },
         poles,
         weights: FrequencyWeights::Relative,
-        own: Vec::new(),
+        ..FrequencyFit::default()
     }
 }
 

@@ -108,7 +108,7 @@ fn column_names(dofs: &[Dof]) -> Vec<&'static str> {
 /// # Errors
 /// [`Error::Input`] with the line that is wrong; [`Error::Io`].
 pub(super) fn read_head(path: &Path, reader: &mut dyn BufRead) -> Result<(RecordHeader, Layout)> {
-    let mut head = CommentHeader::new(FORMAT, &KEYS, &["segment"]);
+    let mut head = CommentHeader::new(&[FORMAT], &KEYS, &["segment"]);
     let (mut start, mut line) = (0, Vec::new());
     let names = loop {
         line.clear();

@@ -14,7 +14,7 @@ pub(crate) struct Entry {
 /// The header of one file.
 #[derive(Debug)]
 pub(crate) struct CommentHeader {
-    format: &'static str,
+    formats: &'static [&'static str],
     keys: &'static [&'static str],
     repeated: &'static [&'static str],
     entries: Vec<Entry>,
@@ -22,14 +22,14 @@ pub(crate) struct CommentHeader {
 }
 
 impl CommentHeader {
-    /// A header that allows `keys`, those in `repeated` more than once; `format` is what the first line says.
+    /// A header that allows `keys`, those in `repeated` more than once; the first line says one of `formats`.
     pub fn new(
-        format: &'static str,
+        formats: &'static [&'static str],
         keys: &'static [&'static str],
         repeated: &'static [&'static str],
     ) -> Self {
         Self {
-            format,
+            formats,
             keys,
             repeated,
             entries: Vec::new(),
@@ -43,7 +43,7 @@ impl CommentHeader {
             return Ok(false);
         };
         self.lines += 1;
-        if comment.is_empty() || comment == self.format {
+        if comment.is_empty() || self.formats.contains(&comment) {
             return Ok(true);
         }
         let place = format!("line {}", self.lines);

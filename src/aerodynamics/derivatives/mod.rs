@@ -12,21 +12,27 @@ pub(crate) mod comment_header;
 #[cfg(feature = "identification")]
 pub(in crate::aerodynamics) mod csv_file;
 #[cfg(feature = "identification")]
+mod csv_header;
+#[cfg(feature = "identification")]
 pub mod embedded;
+#[cfg(feature = "identification")]
+pub mod notation;
 #[cfg(feature = "identification")]
 mod workbook;
 #[cfg(feature = "campaigns")]
 mod workbook_writer;
 
 #[cfg(feature = "identification")]
-pub use csv_file::{CSV_COLUMNS, parse_csv, read_csv, write_csv};
+pub use csv_file::{
+    CSV_COLUMNS, parse_csv, parse_csv_in, read_csv, read_csv_in, write_csv, write_csv_in,
+};
 pub use derivative::{Derivative, Part};
 pub use interpolated::{Extrapolation, InterpolatedTable};
 pub use table::{DerivativePoint, DerivativeTable, SIGN_CONVENTION, TableHeader, UNITS};
 #[cfg(feature = "identification")]
-pub use workbook::{TABLE_3_2_FREQUENCIES_HZ, WorkbookOptions, read_workbook};
+pub use workbook::{TABLE_3_2_FREQUENCIES_HZ, WorkbookOptions, read_workbook, read_workbook_in};
 #[cfg(feature = "campaigns")]
-pub use workbook_writer::{workbook_bytes, write_workbook};
+pub use workbook_writer::{workbook_bytes, workbook_bytes_in, write_workbook};
 
 use crate::section::Dof;
 
@@ -53,13 +59,28 @@ pub struct TransferSample {
 /// Those of [`read_workbook`] and [`read_csv`].
 #[cfg(feature = "identification")]
 pub fn read_table(path: impl AsRef<std::path::Path>) -> crate::Result<DerivativeTable> {
+    read_table_in(path, notation::StatedConvention::default()).map(|(table, _)| table)
+}
+
+/// The same with what the caller states about the convention of the file; the second value is the one the file is in.
+///
+/// # Errors
+/// Those of [`read_workbook`] and [`read_csv_in`].
+#[cfg(feature = "identification")]
+pub fn read_table_in(
+    path: impl AsRef<std::path::Path>,
+    stated: notation::StatedConvention,
+) -> crate::Result<(DerivativeTable, notation::Convention)> {
     let path = path.as_ref();
     let is_workbook = path
         .extension()
         .is_some_and(|e| e.eq_ignore_ascii_case("xlsx"));
-    if is_workbook {
-        read_workbook(path, &WorkbookOptions::default())
-    } else {
-        read_csv(path)
+    if !is_workbook {
+        return read_csv_in(path, stated);
     }
+    let options = WorkbookOptions {
+        convention: stated,
+        ..WorkbookOptions::default()
+    };
+    read_workbook_in(path, &options)
 }

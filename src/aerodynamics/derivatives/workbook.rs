@@ -4,8 +4,12 @@
 //! row of names and below it one row a test point; one column a derivative, named `MeanWind_H1`, `Vred_H1`, `H1`.
 //! Derivatives of sway may be left out, in all three sheets alike; other sheets are not looked at.
 //! Every derivative has its own `V̂ = V/(ωB)`. The width is not written down; it follows from the frequencies,
-//! `B = V/(2πf V̂)`. The sign convention is that of this project ([`super::SIGN_CONVENTION`]).
+//! `B = V/(2πf V̂)`. NTNU's workbooks do not state their convention, which is that of this project
+//! ([`super::SIGN_CONVENTION`]). Any other is stated by the reader or by a sheet `Notes` (keys `notation`, `argument`,
+//! `axes` beside their values); the columns are then called as in that notation (`MeanWind_h1`, `Vred_h1`, `h1`),
+//! whatever the sheet `Reduced Velocities` holds.
 
+use super::notation::{Convention, ExpressedPoint, StatedConvention};
 use super::{Derivative, DerivativePoint, DerivativeTable, TableHeader};
 use crate::error::{Error, Result, positive};
 use calamine::{Data, Range, Reader, Xlsx, open_workbook};
@@ -15,6 +19,9 @@ use std::path::Path;
 
 /// Frequencies of the tests, Hz, in test order at each speed (Table 3.2 of the thesis).
 pub const TABLE_3_2_FREQUENCIES_HZ: [f64; 8] = [0.25, 0.5, 0.8, 1.1, 1.4, 1.7, 2.0, 2.5];
+
+/// Name of the sheet of notes.
+pub(super) const NOTES: &str = "Notes";
 
 /// The same width must follow from every point to within this fraction.
 const WIDTH_TOLERANCE: f64 = 0.01;
@@ -31,6 +38,8 @@ pub struct WorkbookOptions {
     pub name: Option<String>,
     /// Width of the section model, m; `None` derives it from `frequencies_hz`.
     pub width_m: Option<f64>,
+    /// What is known about notation, argument and axes of the figures; a sheet `Notes` must not contradict it.
+    pub convention: StatedConvention,
     /// Frequencies of motion, Hz, in test order; repeated for every further speed.
     pub frequencies_hz: Vec<f64>,
     /// Provenance; an empty `source` is filled with the file name, an empty `generator` with this program.
@@ -42,6 +51,7 @@ impl Default for WorkbookOptions {
         Self {
             name: None,
             width_m: None,
+            convention: StatedConvention::default(),
             frequencies_hz: TABLE_3_2_FREQUENCIES_HZ.to_vec(),
             header: TableHeader::default(),
         }
@@ -54,19 +64,84 @@ impl Default for WorkbookOptions {
 /// [`Error::Input`] with file, sheet and cell: not a workbook, a missing sheet or column, an empty cell or text in
 /// place of a number, sheets of unequal length, no common width, and those of [`DerivativeTable::new`].
 pub fn read_workbook(path: impl AsRef<Path>, options: &WorkbookOptions) -> Result<DerivativeTable> {
+    read_workbook_in(path, options).map(|(table, _)| table)
+}
+
+/// The same; the second value is the convention that the workbook is in.
+///
+/// # Errors
+/// Those of [`read_workbook`].
+pub fn read_workbook_in(
+    path: impl AsRef<Path>,
+    options: &WorkbookOptions,
+) -> Result<(DerivativeTable, Convention)> {
     let path = path.as_ref();
     // Asked for first, because the reader reports a missing file like a damaged one.
     std::fs::metadata(path).map_err(|e| Error::io(path, e))?;
-    read_sheets(path)
-        .and_then(|points| table_from(path, options, points))
-        .map_err(|e| e.in_file(path))
+    let read = || {
+        let mut book: Xlsx<_> = open_workbook(path).map_err(|e: calamine::XlsxError| {
+            Error::input("", "an .xlsx workbook", e.to_string())
+        })?;
+        let convention = convention_of(options.convention, &notes(&mut book)?)?;
+        let points = read_sheets(&mut book, &convention)?;
+        Ok((table_from(path, options, points)?, convention))
+    };
+    read().map_err(|e: Error| e.in_file(path))
+}
+
+/// Keys and values of the sheet `Notes`; empty when there is none.
+fn notes(book: &mut Xlsx<std::io::BufReader<std::fs::File>>) -> Result<BTreeMap<String, String>> {
+    if !book.sheet_names().iter().any(|n| n == NOTES) {
+        return Ok(BTreeMap::new());
+    }
+    let range = book
+        .worksheet_range(NOTES)
+        .map_err(|e| Error::input(format!("sheet {NOTES}"), "readable cells", e.to_string()))?;
+    let cell = |row: usize, column: usize| range.get((row, column)).map(ToString::to_string);
+    let line = |row| Some((cell(row, 0)?, cell(row, 1)?));
+    Ok((0..range.height()).filter_map(line).collect())
+}
+
+/// What the notes and the caller say of the convention; when neither says anything, it is NTNU's, this project's own.
+fn convention_of(stated: StatedConvention, notes: &BTreeMap<String, String>) -> Result<Convention> {
+    let mut file = StatedConvention {
+        notation: parse_note(notes, "notation")?,
+        argument: parse_note(notes, "argument")?,
+        axes: parse_note(notes, "axes")?,
+    };
+    if file.is_empty() && stated.notation.is_none() {
+        // without a notation the workbook is NTNU's in all that is not stated otherwise
+        let own = Convention::default();
+        file = StatedConvention {
+            notation: Some(own.notation),
+            argument: stated.argument.or(Some(own.argument)),
+            axes: stated.axes.or(Some(own.axes)),
+        };
+    }
+    stated.with_file(file)
+}
+
+fn parse_note<T: std::str::FromStr<Err = Error>>(
+    notes: &BTreeMap<String, String>,
+    key: &str,
+) -> Result<Option<T>> {
+    let parse = |text: &String| {
+        text.parse().map_err(|e| match e {
+            Error::Input(input) => {
+                Error::input(format!("sheet {NOTES}, {key}"), input.expected, input.found)
+            }
+            other => other,
+        })
+    };
+    notes.get(key).map(parse).transpose()
 }
 
 type Points = BTreeMap<Derivative, Vec<DerivativePoint>>;
 
-fn read_sheets(path: &Path) -> Result<Points> {
-    let mut book: Xlsx<_> = open_workbook(path)
-        .map_err(|e: calamine::XlsxError| Error::input("", "an .xlsx workbook", e.to_string()))?;
+fn read_sheets(
+    book: &mut Xlsx<std::io::BufReader<std::fs::File>>,
+    convention: &Convention,
+) -> Result<Points> {
     let mut range = |kind: (&str, &str)| -> Result<Range<Data>> {
         let names = book.sheet_names();
         let wanted = names.iter().find(|n| n.trim().eq_ignore_ascii_case(kind.0));
@@ -83,32 +158,43 @@ fn read_sheets(path: &Path) -> Result<Points> {
         (range(DERIVATIVES)?, DERIVATIVES),
     ];
     // tests without sway have no columns for what it couples; a column in one sheet must be in all
+    let names = |d| convention.notation.name_of(d);
     let is_held = |d: &Derivative| {
         sheets
             .iter()
-            .any(|(range, kind)| column_of(&titles(range), kind.1, *d).is_some())
+            .any(|(range, kind)| column_of(&titles(range), kind.1, names(*d)).is_some())
     };
     let held: Vec<Derivative> = Derivative::ALL.into_iter().filter(is_held).collect();
-    let columns = |i: usize| read_columns(&sheets[i].0, sheets[i].1, &held);
-    let (speeds, v_hats, values) = (columns(0)?, columns(1)?, columns(2)?);
-    let point = |((speed, v_hat), value): ((&f64, &f64), &f64)| DerivativePoint {
-        mean_speed_m_s: Some(*speed),
-        v_hat: *v_hat,
-        value: *value,
-    };
+    if held.is_empty() {
+        let found = format!("`{}`", titles(&sheets[2].0).join("`, `"));
+        let expected = format!("columns named {}", convention.notation.names());
+        return Err(Error::input(
+            format!("sheet {}, first row", DERIVATIVES.0),
+            expected,
+            found,
+        ));
+    }
+    let columns = |i: usize| read_columns(&sheets[i].0, sheets[i].1, &held, convention);
+    let (speeds, arguments, values) = (columns(0)?, columns(1)?, columns(2)?);
     let points = held.iter().map(|&d| {
-        let (speeds, v_hats, values) = (&speeds[&d], &v_hats[&d], &values[&d]);
-        for (sheet, column) in [(REDUCED_VELOCITIES, v_hats), (DERIVATIVES, values)] {
+        let (speeds, arguments, values) = (&speeds[&d], &arguments[&d], &values[&d]);
+        for (sheet, column) in [(REDUCED_VELOCITIES, arguments), (DERIVATIVES, values)] {
             if column.len() != speeds.len() {
                 let expected = format!("{} test points as in sheet {}", speeds.len(), SPEEDS.0);
                 let found = column.len().to_string();
                 return Err(Error::input(format!("sheet {}", sheet.0), expected, found));
             }
         }
-        Ok((
-            d,
-            speeds.iter().zip(v_hats).zip(values).map(point).collect(),
-        ))
+        let point = |((speed, argument), value): ((&f64, &f64), &f64)| {
+            let point = ExpressedPoint {
+                mean_speed_m_s: Some(*speed),
+                argument: *argument,
+                value: *value,
+            };
+            convention.read_point(d, &point)
+        };
+        let columns = speeds.iter().zip(arguments).zip(values);
+        Ok((d, columns.map(point).collect()))
     });
     points.collect()
 }
@@ -124,11 +210,13 @@ fn titles(range: &Range<Data>) -> Vec<String> {
     (0..range.width()).map(title).collect()
 }
 
-fn column_of(titles: &[String], prefix: &str, d: Derivative) -> Option<usize> {
-    let wanted = format!("{prefix}{d}");
-    titles
-        .iter()
-        .position(|t| t.trim().trim_end_matches('*').eq_ignore_ascii_case(&wanted))
+/// The column of the derivative of this name. Capitals count in it: h1 and H1 are different numbers.
+fn column_of(titles: &[String], prefix: &str, name: &str) -> Option<usize> {
+    let wanted = format!("{prefix}{name}");
+    titles.iter().position(|t| {
+        let title = t.trim().trim_end_matches('*');
+        title.eq_ignore_ascii_case(&wanted) && title.ends_with(name)
+    })
 }
 
 /// The columns of one sheet that belong to the derivatives `held`.
@@ -136,14 +224,16 @@ fn read_columns(
     range: &Range<Data>,
     (sheet, prefix): (&str, &str),
     held: &[Derivative],
+    convention: &Convention,
 ) -> Result<BTreeMap<Derivative, Vec<f64>>> {
     let titles = titles(range);
     let column = |d: Derivative| {
-        let at = column_of(&titles, prefix, d).ok_or_else(|| {
+        let name = convention.notation.name_of(d);
+        let at = column_of(&titles, prefix, name).ok_or_else(|| {
             let place = format!("sheet {sheet}, first row");
             Error::input(
                 place,
-                format!("a column `{prefix}{d}`"),
+                format!("a column `{prefix}{name}`"),
                 format!("`{}`", titles.join("`, `")),
             )
         })?;

@@ -1,5 +1,6 @@
 //! Tests on the workbooks of `tests/data/make_workbook.py`.
 
+use super::super::notation::{Argument, Axes, Notation};
 use super::super::{parse_csv, write_csv};
 use super::*;
 use std::path::PathBuf;
@@ -132,4 +133,47 @@ fn files_that_are_no_workbooks_are_refused() {
 fn columns_are_lettered_as_in_a_spreadsheet() {
     let names: Vec<_> = [0, 25, 26, 701, 702].map(column_letters).to_vec();
     assert_eq!(names, ["A", "Z", "AA", "ZZ", "AAA"]);
+}
+
+/// The same cells stated to be over V* with heave down: arguments divided by 2π, coupling signs turned; a notation needs
+/// its argument stated, and columns are looked for by its names.
+#[test]
+fn a_stated_convention_is_obeyed() {
+    let options = |stated| WorkbookOptions {
+        width_m: Some(0.5),
+        convention: stated,
+        ..WorkbookOptions::default()
+    };
+    let stated = StatedConvention {
+        argument: Some(Argument::VStar),
+        axes: Some(Axes::HeaveDown),
+        ..StatedConvention::default()
+    };
+    let plain = read_workbook(
+        fixture("workbook.xlsx"),
+        &options(StatedConvention::default()),
+    )
+    .unwrap();
+    let other = read_workbook(fixture("workbook.xlsx"), &options(stated)).unwrap();
+    for d in Derivative::ALL {
+        for (p, q) in plain.points(d).iter().zip(other.points(d)) {
+            assert!((p.v_hat / q.v_hat - TAU).abs() < 1e-14);
+            assert_eq!(q.value, p.value * Axes::HeaveDown.sign(d));
+        }
+    }
+    let polimi = StatedConvention::notation(Notation::Polimi);
+    let message = refused("workbook.xlsx", &options(polimi));
+    assert!(
+        message.starts_with("argument: expected it stated"),
+        "{message}"
+    );
+    let polimi = StatedConvention {
+        argument: Some(Argument::VStar),
+        ..polimi
+    };
+    let message = refused("workbook.xlsx", &options(polimi));
+    assert!(
+        message.contains("first row: expected columns named one of p1 to p6"),
+        "{message}"
+    );
 }

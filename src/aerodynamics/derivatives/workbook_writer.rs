@@ -1,23 +1,33 @@
 //! Workbooks of derivatives written as NTNU keeps them; [`super::read_workbook`] reads them.
 //!
 //! Three sheets, each with a row of names and one row a test point; see [`super::workbook`] for the layout. Derivatives that the
-//! table does not hold have no columns. A fourth sheet, `Notes`, which readers of the layout do not look at, says where the
-//! figures come from, in which convention they are, and which width belongs to them.
+//! table does not hold have no columns. A fourth sheet, `Notes`, which other readers of the layout do not look at, says where
+//! the figures come from, in which convention they are, and which width belongs to them.
 
-use super::workbook::{DERIVATIVES, REDUCED_VELOCITIES, SPEEDS};
-use super::{Derivative, DerivativePoint, DerivativeTable, SIGN_CONVENTION, UNITS};
+use super::notation::{Convention, ExpressedPoint, ExpressedTable};
+use super::workbook::{DERIVATIVES, NOTES, REDUCED_VELOCITIES, SPEEDS};
+use super::{Derivative, DerivativeTable};
 use crate::error::{Error, Result};
 use rust_xlsxwriter::{Workbook, Worksheet, XlsxError};
 use std::path::Path;
 
-/// One of the numbers of a test point.
-type ValueOf = fn(&DerivativePoint) -> f64;
+/// One number of a test point.
+type Number = fn(&ExpressedPoint) -> f64;
 
-/// The bytes of a workbook with the figures of `table`.
+/// The bytes of a workbook with the figures of `table`, in this project's convention, which is NTNU's.
+///
+/// # Errors
+/// Those of [`workbook_bytes_in`].
+pub fn workbook_bytes(table: &DerivativeTable) -> Result<Vec<u8>> {
+    workbook_bytes_in(table, &Convention::default())
+}
+
+/// The bytes of a workbook with the figures of `table` in `convention`: columns called as in the notation, the argument
+/// in the sheet of reduced velocities; the notes state it, and the reader obeys them.
 ///
 /// # Errors
 /// [`Error::Input`] when a point has no mean speed, which the layout needs; [`Error::Numerical`] when the workbook cannot be made.
-pub fn workbook_bytes(table: &DerivativeTable) -> Result<Vec<u8>> {
+pub fn workbook_bytes_in(table: &DerivativeTable, convention: &Convention) -> Result<Vec<u8>> {
     let place = |d: Derivative| format!("table {}, {d}", table.name);
     for d in table.derivatives() {
         if table.points(d).iter().any(|p| p.mean_speed_m_s.is_none()) {
@@ -30,16 +40,17 @@ pub fn workbook_bytes(table: &DerivativeTable) -> Result<Vec<u8>> {
     }
     let failed = |e: XlsxError| Error::Numerical(format!("workbook: {e}"));
     let mut book = Workbook::new();
-    let columns: [(_, ValueOf); 3] = [
+    let expressed = convention.express(table);
+    let columns: [(_, Number); 3] = [
         (SPEEDS, |p| p.mean_speed_m_s.unwrap_or(f64::NAN)),
-        (REDUCED_VELOCITIES, |p| p.v_hat),
+        (REDUCED_VELOCITIES, |p| p.argument),
         (DERIVATIVES, |p| p.value),
     ];
     for ((name, prefix), value) in columns {
         let sheet = book.add_worksheet();
-        write_sheet(sheet, name, prefix, table, value).map_err(failed)?;
+        write_sheet(sheet, name, prefix, &expressed, value).map_err(failed)?;
     }
-    write_notes(book.add_worksheet(), table).map_err(failed)?;
+    write_notes(book.add_worksheet(), table, convention).map_err(failed)?;
     book.save_to_buffer().map_err(failed)
 }
 
@@ -56,13 +67,13 @@ fn write_sheet(
     sheet: &mut Worksheet,
     name: &str,
     prefix: &str,
-    table: &DerivativeTable,
-    value: fn(&DerivativePoint) -> f64,
+    table: &ExpressedTable,
+    value: Number,
 ) -> std::result::Result<(), XlsxError> {
     sheet.set_name(name)?;
-    for (column, derivative) in (0_u16..).zip(table.derivatives()) {
-        sheet.write_string(0, column, format!("{prefix}{derivative}"))?;
-        for (row, point) in (1_u32..).zip(table.points(derivative)) {
+    for (column, derivative) in (0_u16..).zip(&table.derivatives) {
+        sheet.write_string(0, column, format!("{prefix}{}", derivative.name))?;
+        for (row, point) in (1_u32..).zip(&derivative.points) {
             sheet.write_number(row, column, value(point))?;
         }
     }
@@ -72,8 +83,9 @@ fn write_sheet(
 fn write_notes(
     sheet: &mut Worksheet,
     table: &DerivativeTable,
+    convention: &Convention,
 ) -> std::result::Result<(), XlsxError> {
-    sheet.set_name("Notes")?;
+    sheet.set_name(NOTES)?;
     let header = &table.header;
     let lines = [
         ("name", table.name.clone()),
@@ -81,8 +93,10 @@ fn write_notes(
         ("source", header.source.clone()),
         ("licence", header.licence.clone()),
         ("generator", header.generator.clone()),
-        ("units", UNITS.to_owned()),
-        ("sign_convention", SIGN_CONVENTION.to_owned()),
+        ("notation", convention.notation.name().to_owned()),
+        ("argument", convention.argument.definition().to_owned()),
+        ("axes", convention.axes.words().to_owned()),
+        ("definition", convention.notation.definition().to_owned()),
     ];
     for (row, (key, value)) in (0_u32..).zip(lines) {
         sheet.write_string(row, 0, key)?;
@@ -150,5 +164,29 @@ mod tests {
             .collect();
         let table = DerivativeTable::new("eight", 0.5, Default::default(), eight).unwrap();
         same(&table, &round_trip(&table));
+    }
+
+    /// In every notation, with nothing stated: the notes are obeyed, and a contradiction is refused.
+    #[test]
+    fn notes_state_the_convention() {
+        use super::super::notation::{Notation, StatedConvention};
+        use super::super::read_workbook_in;
+        let table = embedded::deck("LN21-5200").unwrap();
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("w.xlsx");
+        for notation in Notation::ALL {
+            let convention = Convention::usual(notation);
+            std::fs::write(&path, workbook_bytes_in(&table, &convention).unwrap()).unwrap();
+            let (again, said) = read_workbook_in(&path, &WorkbookOptions::default()).unwrap();
+            assert_eq!(said, convention);
+            same(&table, &again);
+        }
+        let options = WorkbookOptions {
+            convention: StatedConvention::notation(Notation::Polimi),
+            ..WorkbookOptions::default()
+        };
+        let message = read_workbook(&path, &options).unwrap_err().to_string();
+        let expected = "notation: expected `polimi` as stated on import, found `starossek`";
+        assert!(message.contains(expected), "{message}");
     }
 }

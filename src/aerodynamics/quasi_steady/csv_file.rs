@@ -56,7 +56,7 @@ pub fn read_coefficients(path: impl AsRef<Path>) -> Result<StaticCoefficients> {
 /// [`Error::Input`] naming line, expectation and finding: missing or unknown header keys and columns, another sign
 /// convention or other units, text or NaN in numbers, angles that do not rise, fewer than four rows.
 pub fn parse_coefficients(text: &str) -> Result<StaticCoefficients> {
-    let mut header = CommentHeader::new(FORMAT, &KEYS, &[]);
+    let mut header = CommentHeader::new(&[FORMAT], &KEYS, &[]);
     for line in text.lines() {
         if !header.take(line)? {
             break;

@@ -2,7 +2,7 @@
 
 use super::{Quantity, UserCase, UserFigure};
 use crate::aerodynamics::derivatives::{Extrapolation, InterpolatedTable, embedded, read_table};
-use crate::aerodynamics::{AerodynamicModel, FlatPlate, RationalModel};
+use crate::aerodynamics::{AerodynamicModel, FlatPlate, Lags, RationalModel};
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
 use crate::flutter::{
@@ -61,7 +61,7 @@ impl Loaded {
                 a1: r.a1.clone(),
                 a2: r.a2.clone(),
                 a3: r.a3.clone(),
-                lags: r.lags.clone(),
+                lags: Lags::Shared(r.lags.clone()),
                 lag_terms: r.lag_terms.clone(),
             };
             model.validate()?;

@@ -69,9 +69,24 @@ impl LinearForces {
                 input,
                 [("a1", &model.a1), ("a2", &model.a2), ("a3", &model.a3)],
             );
-            for (l, (lag, term)) in model.lags.iter().zip(&model.lag_terms).enumerate() {
-                let value = |i: usize| term[(i, input)];
-                forces.add(input, Function::Lag(*lag), value, |_| format!("a{}", l + 4));
+            for (l, term) in model.lag_terms.iter().enumerate() {
+                for (lag, forces_of_it) in model.lag_groups(l) {
+                    // where every force has a lag of its own, it counts its own term only
+                    let value = |i: usize| {
+                        if forces_of_it[i] {
+                            term[(i, input)]
+                        } else {
+                            0.0
+                        }
+                    };
+                    forces.add(input, Function::Lag(lag), value, |i| {
+                        if forces_of_it[i] {
+                            format!("a{}", l + 4)
+                        } else {
+                            format!("lag{lag}.a{}", l + 4)
+                        }
+                    });
+                }
             }
             forces.starts.push(forces.functions.len());
         }

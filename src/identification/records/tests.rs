@@ -13,7 +13,7 @@ fn jones_fit(weights: TimeWeights) -> TimeFit {
             lags: 2,
             added_mass: true,
         },
-        poles: PoleSearch::fixed(&RationalModel::jones_flat_plate().lags),
+        poles: PoleSearch::fixed(RationalModel::jones_flat_plate().lags.of_force(0)),
         weights,
         ..TimeFit::default()
     }

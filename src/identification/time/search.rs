@@ -179,6 +179,7 @@ impl Group {
         }
         Ok(SearchReport {
             entry: self.entry.map(|(i, j)| (task.dofs[i], task.dofs[j])),
+            force: None,
             min: bounds.min,
             max: bounds.max,
             points: self.points,

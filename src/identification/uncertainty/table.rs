@@ -4,9 +4,10 @@ use super::coefficients::{CoefficientUncertainty, Coordinates, Parameter};
 use super::design::{Block, Design};
 use super::poles::free_poles;
 use crate::aerodynamics::derivatives::TransferSample;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::identification::basis::Basis;
-use crate::identification::options::{Form, FrequencyFit};
+use crate::identification::frequency_options::FrequencyFit;
+use crate::identification::options::Form;
 use crate::identification::report::FitReport;
 use crate::identification::samples::{Entry, Row, sort_by_entry};
 use crate::section::Dof;
@@ -24,13 +25,21 @@ const STEP: f64 = 1e-5;
 /// what the form cannot follow are counted together.
 ///
 /// # Errors
-/// [`crate::Error::Numerical`] when there are too few test runs to judge the scatter.
+/// [`Error::Numerical`] when there are too few test runs to judge the scatter, and for fits that are not plain least
+/// squares in their coefficients: limits, a ridge, weights of entries, lags of each force, minimum state.
 pub fn table_uncertainty(
     samples: &[TransferSample],
     dofs: &[Dof],
     fit: &FrequencyFit,
     report: &FitReport,
 ) -> Result<CoefficientUncertainty> {
+    if !fit.is_plain() {
+        return Err(Error::Numerical(
+            "covariance over test runs: not available for limits, regularisation, weights of entries, lags of each force \
+             and the minimum-state form"
+                .into(),
+        ));
+    }
     let (entries, _) = sort_by_entry(samples, dofs, fit.weights)?;
     let poles = free_poles(&fit.form, &fit.poles, report);
     let mut parameters = Vec::new();

@@ -5,7 +5,7 @@ use super::super::Study;
 use super::super::onsets::coupled;
 use super::{Forces, RouteTable};
 use crate::aerodynamics::quasi_steady::QuasiSteady;
-use crate::aerodynamics::{AerodynamicModel, RationalModel};
+use crate::aerodynamics::{AerodynamicModel, Lags, RationalModel};
 use crate::aeroelastic::{EquilibriumEnd, static_equilibria};
 use crate::error::Result;
 use crate::flutter::{
@@ -103,7 +103,7 @@ pub fn low_frequency_limit(
         a1: g.map(|z| z.re),
         a2: g.map(|z| z.im / k.full_width()),
         a3: DMatrix::zeros(n, n),
-        lags: Vec::new(),
+        lags: Lags::Shared(Vec::new()),
         lag_terms: Vec::new(),
     })
 }
@@ -124,7 +124,7 @@ pub(super) fn steady_flat_plate() -> RationalModel {
         ],
     );
     plate.a3 = DMatrix::zeros(2, 2);
-    plate.lags.clear();
+    plate.lags = Lags::Shared(Vec::new());
     plate.lag_terms.clear();
     plate
 }

@@ -111,6 +111,38 @@ fn every_kind_moves_as_in_process() {
     }
 }
 
+/// Lags of each force and the minimum-state form: instance and coupling follow from the model, the number of states too.
+#[test]
+fn newer_rational_forms_move_as_in_process() {
+    use crate::aerodynamics::{Lags, MinimumStateModel};
+    use crate::trained_model::Model;
+    let mut trained = Archive::fixture("rational").resources.model;
+    let Model::Rational(roger) = trained.model.clone() else {
+        panic!("the fixture is rational");
+    };
+    let mut own = roger.clone();
+    own.lags = Lags::PerForce(vec![vec![0.08, 0.7], vec![0.1, 0.5]]);
+    let row = |l: usize| roger.lag_terms[l].row(0).into_owned();
+    let small = MinimumStateModel {
+        dofs: roger.dofs.clone(),
+        a1: roger.a1.clone(),
+        a2: roger.a2.clone(),
+        a3: roger.a3.clone(),
+        lags: vec![0.091, 0.6],
+        d: nalgebra::DMatrix::from_row_slice(2, 2, &[1.0, 1.0, 0.25, 0.25]),
+        e: nalgebra::DMatrix::from_rows(&[row(0), row(1)]),
+    };
+    for (model, states) in [(Model::Rational(own), 4), (Model::MinimumState(small), 2)] {
+        trained.schema_version = model.schema_version();
+        trained.model = model;
+        let archive = Archive::of(&trained.to_json().unwrap());
+        let variable = archive.resources.table.find_name("filters").unwrap();
+        let value = &archive.resources.table.variables()[variable].value;
+        assert_eq!(*value, crate::fmu::variables::Value::Integer(Some(states)));
+        compare(archive);
+    }
+}
+
 /// Its lateral support is stated as a stiffness, which the unit keeps to the last bit.
 /// One transfer function with slower filters of its own: two states more than the shared ones.
 #[test]

@@ -1,0 +1,157 @@
+//! Head of a file of derivatives: where the table comes from, and in which convention it is written.
+
+use super::comment_header::{CommentHeader, Entry};
+use super::notation::{Argument, Axes, Convention, Notation, StatedConvention};
+use super::{SIGN_CONVENTION, TableHeader, UNITS};
+use crate::error::{Error, Result};
+use std::io::Write;
+
+/// First line of the file: the one that is written, and that of files whose convention could only be the crate's own.
+const FORMATS: [&str; 2] = ["aerodeck derivative table 2", "aerodeck derivative table 1"];
+
+/// Keys of the header; `sign_convention` stands in files of the first format only.
+const KEYS: [&str; 12] = [
+    "name",
+    "source",
+    "licence",
+    "units",
+    "sign_convention",
+    "generator",
+    "width_m",
+    "model_length_m",
+    "notation",
+    "argument",
+    "axes",
+    "definition",
+];
+
+/// Units of the columns in files of the second format.
+const UNITS_WRITTEN: &str =
+    "mean_speed_m_s in m/s; reduced velocity or frequency and value dimensionless";
+
+/// The header of a file of derivatives.
+pub(super) struct Head {
+    header: CommentHeader,
+}
+
+impl Head {
+    /// Reads the comment lines at the head of `text`.
+    pub fn read(text: &str) -> Result<Self> {
+        let mut header = CommentHeader::new(&FORMATS, &KEYS, &[]);
+        for line in text.lines() {
+            if !header.take(line)? {
+                break;
+            }
+        }
+        Ok(Self { header })
+    }
+
+    /// Number of comment lines.
+    pub fn lines(&self) -> usize {
+        self.header.lines()
+    }
+
+    /// What the header says about the convention.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with the line that says what cannot be, or contradicts another.
+    pub fn stated(&self) -> Result<StatedConvention> {
+        let head = &self.header;
+        let mut stated = StatedConvention::default();
+        if head.optional("sign_convention").is_some() {
+            head.must_say("sign_convention", SIGN_CONVENTION)?;
+            stated = Convention::default().into();
+        }
+        if let Some(entry) = head.optional("units")
+            && ![UNITS, UNITS_WRITTEN].contains(&entry.value.as_str())
+        {
+            return Err(entry.wrong(&format!("`{UNITS_WRITTEN}`")));
+        }
+        stated.notation = read_one::<Notation>(head.optional("notation"), stated.notation)?;
+        stated.argument = read_one::<Argument>(head.optional("argument"), stated.argument)?;
+        stated.axes = read_one::<Axes>(head.optional("axes"), stated.axes)?;
+        if let Some(definition) = head.optional("definition") {
+            let notation = stated.notation.ok_or_else(|| {
+                let expected = "a line `# notation: …` with it";
+                Error::input(definition.place(), expected, "none")
+            })?;
+            if definition.value != notation.definition() {
+                let expected = format!("that of {notation}, `{}`", notation.definition());
+                return Err(definition.wrong(&expected));
+            }
+        }
+        Ok(stated)
+    }
+
+    /// Name of the table.
+    pub fn name(&self) -> Result<String> {
+        Ok(self.header.required("name")?.value.clone())
+    }
+
+    /// Width `B`, m.
+    pub fn width_m(&self) -> Result<f64> {
+        self.header.required("width_m")?.positive()
+    }
+
+    /// Where the table comes from.
+    pub fn provenance(&self) -> Result<TableHeader> {
+        let head = &self.header;
+        let length = head.optional("model_length_m");
+        Ok(TableHeader {
+            source: head.text("source"),
+            licence: head.text("licence"),
+            generator: head.text("generator"),
+            model_length_m: length
+                .filter(|e| !e.value.is_empty())
+                .map(Entry::positive)
+                .transpose()?,
+        })
+    }
+}
+
+/// Reads one entry, which may not contradict what is known already.
+fn read_one<T>(entry: Option<&Entry>, known: Option<T>) -> Result<Option<T>>
+where
+    T: std::str::FromStr<Err = Error> + PartialEq + std::fmt::Display,
+{
+    let Some(entry) = entry else { return Ok(known) };
+    let value: T = entry.value.parse().map_err(|e| match e {
+        Error::Input(input) => Error::input(entry.place(), input.expected, input.found),
+        other => other,
+    })?;
+    match known {
+        Some(known) if known != value => {
+            Err(entry.wrong(&format!("`{known}` as the line sign_convention says")))
+        }
+        _ => Ok(Some(value)),
+    }
+}
+
+/// Writes the header of a table in `convention`.
+pub(super) fn write_head(
+    out: &mut dyn Write,
+    (name, width_m, header): (&str, f64, &TableHeader),
+    convention: &Convention,
+) -> std::io::Result<()> {
+    CommentHeader::write_format(out, FORMATS[0])?;
+    let length = header
+        .model_length_m
+        .map_or_else(String::new, |l| l.to_string());
+    let width = width_m.to_string();
+    for (key, value) in [
+        ("name", name),
+        ("source", &header.source),
+        ("licence", &header.licence),
+        ("notation", convention.notation.name()),
+        ("argument", convention.argument.definition()),
+        ("axes", convention.axes.words()),
+        ("definition", convention.notation.definition()),
+        ("units", UNITS_WRITTEN),
+        ("generator", &header.generator),
+        ("width_m", &width),
+        ("model_length_m", &length),
+    ] {
+        CommentHeader::write_line(out, key, value)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,333 @@
+//! Weighted linear least squares with equality constraints and a ridge.
+//!
+//! Constraints `C c = d` are met exactly by the null-space method (Golub & Van Loan, *Matrix Computations*, section
+//! 6.2.3): `c = c₀ + N z` with `C c₀ = d`, `C N = 0`, and least squares for the free `z`.
+
+use super::least_squares::{Factor, StreamingQr};
+use super::report::enough_rows;
+use crate::error::{Error, Result};
+use nalgebra::{DMatrix, DVector};
+
+/// Constraint rows whose independent part is smaller than this contradict or repeat each other.
+const RANK_TOLERANCE: f64 = 1e-10;
+
+/// `min ‖A c − b‖² + Σ (ridge_c ‖A_c‖ c)²` with `C c = d`.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct LinearProblem {
+    /// Weighted rows of `A`.
+    pub rows: Vec<Vec<f64>>,
+    /// Weighted right-hand side.
+    pub right: Vec<f64>,
+    /// Factor of the ridge of each column; zero for none.
+    pub ridge: Vec<f64>,
+    /// Rows of `C` and numbers of `d`.
+    pub constraints: Vec<(Vec<f64>, f64)>,
+}
+
+/// Its solution.
+pub(crate) struct LinearSolution {
+    /// Factorisation in the free unknowns.
+    pub factor: Factor,
+    /// Coefficients of all columns, zero for those the rows cannot see.
+    pub coefficients: Vec<f64>,
+    /// Number of free unknowns.
+    pub unknowns: usize,
+    /// Residuals of the ridge, of the columns that have one.
+    pub penalty: Vec<f64>,
+    /// Largest `‖A_c c‖` over `‖A c‖`: near one for a sound fit, large when terms cancel.
+    pub cancellation: f64,
+    /// From the free unknowns to all coefficients.
+    spread: Spread,
+}
+
+/// `c = c₀ + N z`.
+enum Spread {
+    /// `N` picks columns, `c₀ = 0`.
+    Columns(Vec<usize>),
+    /// Constrained: `c₀`, `N`.
+    Affine(DVector<f64>, DMatrix<f64>),
+}
+
+impl LinearProblem {
+    fn columns(&self) -> usize {
+        self.ridge.len()
+    }
+
+    /// Solves it; `place` and `names` of the columns are for messages.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for fewer rows than unknowns, columns that the rows do not determine and constraints that cannot
+    /// be met together.
+    pub fn solve(&self, place: &str, names: &dyn Fn(usize) -> String) -> Result<LinearSolution> {
+        let spread = self.spread(place)?;
+        let unknowns = spread.unknowns();
+        enough_rows(place, self.rows.len(), unknowns)?;
+        let mut qr = StreamingQr::new(unknowns, 1);
+        for (row, right) in self.rows.iter().zip(&self.right) {
+            qr.push_row(&spread.reduce(row, *right));
+        }
+        let norms = self.norms();
+        for (c, ridge) in self.ridge.iter().enumerate() {
+            if *ridge > 0.0 {
+                let mut row = vec![0.0; self.columns()];
+                row[c] = ridge * norms[c];
+                qr.push_row(&spread.reduce(&row, 0.0));
+            }
+        }
+        let factor = qr.finish();
+        if let Some(z) = factor.undetermined(unknowns) {
+            return Err(Error::input(
+                place,
+                "samples at enough different K for the number of filters",
+                format!("nothing that determines {}", spread.name(z, names)),
+            ));
+        }
+        let solution = factor.solve(unknowns)?;
+        let coefficients = spread.expand(solution.as_slice(), self.columns());
+        Ok(LinearSolution {
+            unknowns,
+            penalty: self
+                .ridge
+                .iter()
+                .zip(&norms)
+                .zip(&coefficients)
+                .filter(|((ridge, _), _)| **ridge > 0.0)
+                .map(|((ridge, norm), c)| ridge * norm * c)
+                .collect(),
+            cancellation: self.cancellation(&norms, &coefficients),
+            factor,
+            coefficients,
+            spread,
+        })
+    }
+
+    fn norms(&self) -> Vec<f64> {
+        let norm = |c: usize| self.rows.iter().map(|r| r[c] * r[c]).sum::<f64>().sqrt();
+        (0..self.columns()).map(norm).collect()
+    }
+
+    fn cancellation(&self, norms: &[f64], coefficients: &[f64]) -> f64 {
+        let terms = norms.iter().zip(coefficients).map(|(n, c)| (n * c).abs());
+        let largest = terms.fold(0.0, f64::max);
+        if largest == 0.0 {
+            return 0.0;
+        }
+        let dot = |row: &Vec<f64>| {
+            row.iter()
+                .zip(coefficients)
+                .map(|(a, c)| a * c)
+                .sum::<f64>()
+        };
+        let fitted: f64 = self.rows.iter().map(|r| dot(r).powi(2)).sum();
+        largest / fitted.sqrt()
+    }
+
+    fn spread(&self, place: &str) -> Result<Spread> {
+        let seen = |c: &usize| self.rows.iter().any(|row| row[*c] != 0.0);
+        let n = self.columns();
+        if self.constraints.is_empty() {
+            // with one part only (say, no H4*), columns that have no such part are out of reach
+            return Ok(Spread::Columns((0..n).filter(seen).collect()));
+        }
+        let bound = |c: &usize| self.constraints.iter().any(|(row, _)| row[*c] != 0.0);
+        let reached: Vec<usize> = (0..n).filter(|c| seen(c) || bound(c)).collect();
+        let m = self.constraints.len();
+        // rows scaled to unit norm: a slope divides by small lags
+        let scaled = DMatrix::from_fn(reached.len(), m, |c, r| {
+            let (row, _) = &self.constraints[r];
+            row[reached[c]] / norm_of(row)
+        });
+        let targets =
+            DVector::from_iterator(m, self.constraints.iter().map(|(r, d)| d / norm_of(r)));
+        let failed = || {
+            Error::input(
+                place,
+                "limits at K → 0 that the columns of the model can meet",
+                "a feed-through is missing, or one limit repeats another",
+            )
+        };
+        if reached.len() < m {
+            return Err(failed());
+        }
+        // Q of [Cᵀ I]: its first m columns span the constraints, the others what they leave free
+        let mut wide = DMatrix::identity(reached.len(), m + reached.len());
+        wide.view_mut((0, 0), scaled.shape()).copy_from(&scaled);
+        wide.view_mut((0, m), (reached.len(), reached.len()))
+            .fill_with_identity();
+        let (q, r) = wide.qr().unpack();
+        let triangle = r.view((0, 0), (m, m)).into_owned();
+        if !(0..m).all(|i| triangle[(i, i)].abs() > RANK_TOLERANCE) {
+            return Err(failed());
+        }
+        let along = triangle
+            .transpose()
+            .solve_lower_triangular(&targets)
+            .ok_or_else(failed)?;
+        let particular = q.columns(0, m) * along;
+        let free = q.columns(m, reached.len() - m);
+        let mut start = DVector::zeros(n);
+        let mut map = DMatrix::zeros(n, free.ncols());
+        for (at, &c) in reached.iter().enumerate() {
+            start[c] = particular[at];
+            map.row_mut(c).copy_from(&free.row(at));
+        }
+        Ok(Spread::Affine(start, map))
+    }
+}
+
+fn norm_of(row: &[f64]) -> f64 {
+    let norm = row.iter().map(|x| x * x).sum::<f64>().sqrt();
+    if norm > 0.0 { norm } else { 1.0 }
+}
+
+impl Spread {
+    fn unknowns(&self) -> usize {
+        match self {
+            Self::Columns(columns) => columns.len(),
+            Self::Affine(_, map) => map.ncols(),
+        }
+    }
+
+    /// A row of `A` in the free unknowns, with its right-hand side.
+    fn reduce(&self, row: &[f64], right: f64) -> Vec<f64> {
+        match self {
+            Self::Columns(columns) => {
+                let mut line: Vec<f64> = columns.iter().map(|&c| row[c]).collect();
+                line.push(right);
+                line
+            }
+            Self::Affine(start, map) => {
+                let dot = |column: &[f64]| row.iter().zip(column).map(|(a, c)| a * c).sum::<f64>();
+                let mut line: Vec<f64> = map.column_iter().map(|c| dot(c.as_slice())).collect();
+                line.push(right - dot(start.as_slice()));
+                line
+            }
+        }
+    }
+
+    fn expand(&self, free: &[f64], columns: usize) -> Vec<f64> {
+        match self {
+            Self::Columns(picked) => {
+                let mut all = vec![0.0; columns];
+                for (value, &c) in free.iter().zip(picked) {
+                    all[c] = *value;
+                }
+                all
+            }
+            Self::Affine(start, map) => {
+                let all = start + map * DVector::from_column_slice(free);
+                all.iter().copied().collect()
+            }
+        }
+    }
+
+    fn name(&self, z: usize, names: &dyn Fn(usize) -> String) -> String {
+        match self {
+            Self::Columns(columns) => names(columns[z]),
+            Self::Affine(..) => "what the limits leave free".to_owned(),
+        }
+    }
+}
+
+impl LinearSolution {
+    /// `(AᵀA)⁻¹` of the free unknowns, spread over all coefficients.
+    pub fn inverse_gram(&self) -> Result<DMatrix<f64>> {
+        let small = self.factor.inverse_gram(self.unknowns)?;
+        let n = self.coefficients.len();
+        match &self.spread {
+            Spread::Columns(columns) => {
+                let mut full = DMatrix::zeros(n, n);
+                for (a, &i) in columns.iter().enumerate() {
+                    for (b, &j) in columns.iter().enumerate() {
+                        full[(i, j)] = small[(a, b)];
+                    }
+                }
+                Ok(full)
+            }
+            Spread::Affine(_, map) => Ok(map * small * map.transpose()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn problem(constraints: Vec<(Vec<f64>, f64)>) -> LinearProblem {
+        let rows: Vec<Vec<f64>> = (0..7)
+            .map(|i| {
+                let x = f64::from(i) * 0.4 - 1.0;
+                vec![1.0, x, x * x, x * x * x]
+            })
+            .collect();
+        LinearProblem {
+            right: rows.iter().map(|r| (2.0 * r[1]).exp()).collect(),
+            rows,
+            ridge: vec![0.0; 4],
+            constraints,
+        }
+    }
+
+    fn solve(p: &LinearProblem) -> Result<LinearSolution> {
+        p.solve("test", &|c| format!("c{c}"))
+    }
+
+    /// Against the bordered normal equations `[AᵀA Cᵀ; C 0]`, whose condition costs about eight digits here.
+    #[test]
+    fn constrained_solution_is_that_of_the_bordered_system() {
+        let rows = [
+            (vec![1.0, 0.0, 0.0, 0.0], 0.9),
+            (vec![0.0, 1.0, 0.0, 2.5], 2.2),
+        ];
+        let p = problem(rows.to_vec());
+        let found = solve(&p).unwrap();
+        let a = DMatrix::from_fn(7, 4, |i, j| p.rows[i][j]);
+        let b = DVector::from_column_slice(&p.right);
+        let mut bordered = DMatrix::zeros(6, 6);
+        bordered
+            .view_mut((0, 0), (4, 4))
+            .copy_from(&(a.transpose() * &a));
+        let mut right = DVector::zeros(6);
+        right.rows_mut(0, 4).copy_from(&(a.transpose() * b));
+        for (m, (row, d)) in rows.iter().enumerate() {
+            for c in 0..4 {
+                bordered[(4 + m, c)] = row[c];
+                bordered[(c, 4 + m)] = row[c];
+            }
+            right[4 + m] = *d;
+        }
+        let expected = bordered.clone().lu().solve(&right).unwrap();
+        for c in 0..4 {
+            assert!((found.coefficients[c] - expected[c]).abs() < 1e-10);
+        }
+        // the covariance is the upper left block of the inverse of the bordered matrix
+        let inverse = bordered.try_inverse().unwrap();
+        let gram = found.inverse_gram().unwrap();
+        assert!((gram - inverse.view((0, 0), (4, 4))).amax() < 1e-10);
+        assert_eq!(found.unknowns, 2);
+    }
+
+    /// A ridge on one column against the normal equations with that number on the diagonal.
+    #[test]
+    fn ridge_is_that_of_the_normal_equations() {
+        let mut p = problem(vec![]);
+        p.ridge[3] = 0.3;
+        let found = solve(&p).unwrap();
+        let a = DMatrix::from_fn(7, 4, |i, j| p.rows[i][j]);
+        let mut normal = a.transpose() * &a;
+        normal[(3, 3)] *= 1.0 + 0.09;
+        let right = a.transpose() * DVector::from_column_slice(&p.right);
+        let expected = normal.lu().solve(&right).unwrap();
+        for c in 0..4 {
+            assert!((found.coefficients[c] - expected[c]).abs() < 1e-10);
+        }
+        assert_eq!(found.penalty.len(), 1);
+    }
+
+    #[test]
+    fn limits_that_cannot_be_met_are_refused() {
+        let twice = (vec![1.0, 0.0, 0.0, 0.0], 0.9);
+        assert!(solve(&problem(vec![twice.clone(), twice])).is_err());
+        assert!(solve(&problem(vec![(vec![0.0; 4], 1.0)])).is_err());
+    }
+}

@@ -1,0 +1,365 @@
+//! Fit of the minimum-state form.
+//!
+//! For given lags and `E` each force is linear in its row of `D` and its feed-through, so only lags and `E` are searched
+//! (variable projection), by Levenberg–Marquardt from several starts: Roger's fit with as many lags, whose lag matrices
+//! are reduced to rank one, and Karpel's choice, every state driven by one motion. Columns of `D` and rows of `E` may be
+//! scaled against each other; `E` gets rows of unit length.
+
+use super::basis::Basis;
+use super::constrained::{LinearProblem, LinearSolution};
+use super::descent::descend;
+use super::frequency::{Fitted, shares, sizes};
+use super::frequency_options::FrequencyFit;
+use super::options::{FeedThrough, Form};
+use super::report::{EntryReport, SearchPoint, SearchReport};
+use super::samples::Entry;
+use super::search::{Bounds, best_of, search_poles};
+use crate::aerodynamics::MinimumStateModel;
+use crate::error::{Error, Result};
+use crate::section::Dof;
+use crate::trained_model::Model;
+use crate::units::ReducedFrequencyRange;
+use nalgebra::{Complex, DMatrix, DVector};
+
+/// Descents that follow each other from where the last one ended: each starts with a fresh damping.
+const ROUNDS: usize = 3;
+
+/// Everything that stays the same during the search.
+struct Task<'a> {
+    entries: &'a [Entry],
+    /// Weight of the residuals of each entry.
+    shares: Vec<f64>,
+    n: usize,
+    states: usize,
+    feed: FeedThrough,
+    /// Bounds of the search, or the lags that were given.
+    lags: SearchedLags,
+}
+
+enum SearchedLags {
+    Within(Bounds),
+    Given(Vec<f64>),
+}
+
+/// Fits the minimum-state form to the entries of `G`.
+///
+/// # Errors
+/// [`Error::Input`] for bounds without room and samples that do not determine the coefficients.
+pub(super) fn fit_minimum_state(
+    entries: &[Entry],
+    dofs: &[Dof],
+    fit: &FrequencyFit,
+    tested: ReducedFrequencyRange,
+) -> Result<Fitted> {
+    let states = fit.form.filters();
+    let task = Task {
+        entries,
+        shares: shares(&entries.iter().collect::<Vec<_>>()),
+        n: dofs.len(),
+        states,
+        feed: fit.form.feed_through(),
+        lags: match &fit.poles.fixed {
+            Some(fixed) => SearchedLags::Given(fixed.clone()),
+            None => SearchedLags::Within(Bounds::resolve(&fit.poles, tested, states)?),
+        },
+    };
+    let mut points = Vec::new();
+    let mut best: Option<(f64, Vec<f64>)> = None;
+    for start in task.starts(fit)? {
+        let mut at = DVector::from_vec(start);
+        for _ in 0..ROUNDS {
+            at = descend(at, &|x| task.residuals(x).ok());
+        }
+        let Ok(residuals) = task.residuals(at.as_slice()) else {
+            continue;
+        };
+        let objective = residuals.norm();
+        points.push(SearchPoint {
+            poles: task.lags_at(at.as_slice()),
+            objective,
+        });
+        if objective.is_finite() && best.as_ref().is_none_or(|(o, _)| objective < *o) {
+            best = Some((objective, task.normalised(at.as_slice())));
+        }
+    }
+    let Some((_, best)) = best else {
+        // the first start says what is wrong
+        let start = task.starts(fit)?.swap_remove(0);
+        task.residuals(&start)?;
+        return Err(Error::Numerical(
+            "minimum-state form: no start leads to a finite fit".into(),
+        ));
+    };
+    let search = match &task.lags {
+        SearchedLags::Given(_) => Vec::new(),
+        SearchedLags::Within(bounds) => vec![SearchReport {
+            entry: None,
+            force: None,
+            min: bounds.min,
+            max: bounds.max,
+            chosen: best_of(&points)?,
+            points,
+        }],
+    };
+    task.finish(dofs, &best, search)
+}
+
+impl Task<'_> {
+    /// Points of the search: variables of the lags, if they are searched, then `E` row by row.
+    fn starts(&self, fit: &FrequencyFit) -> Result<Vec<Vec<f64>>> {
+        let roger = Form::Rational {
+            lags: self.states,
+            added_mass: self.feed.e2,
+        };
+        let mut lags = Vec::new();
+        match &self.lags {
+            SearchedLags::Given(given) => lags.push(given.clone()),
+            SearchedLags::Within(bounds) => {
+                let evenly = vec![0.0; self.states];
+                if let Some(start) = &fit.poles.start {
+                    lags.push(start.clone());
+                } else {
+                    let residuals = |poles: &[f64]| self.residuals_of_roger(&roger, poles);
+                    if let Ok(found) =
+                        search_poles(self.states, (&fit.poles, *bounds), None, &residuals)
+                    {
+                        lags.push(found.chosen.poles);
+                    }
+                    lags.push(bounds.poles(&evenly));
+                }
+            }
+        }
+        let mut starts = Vec::new();
+        for lags in &lags {
+            let variables = match &self.lags {
+                SearchedLags::Given(_) => Vec::new(),
+                SearchedLags::Within(bounds) => bounds.free(lags),
+            };
+            let mut push = |e: Vec<f64>| starts.push([variables.clone(), e].concat());
+            if let Ok(e) = self.rank_one(&roger, lags) {
+                push(e);
+            }
+            for shift in 0..self.n {
+                push(self.driven_by_one(shift));
+            }
+        }
+        Ok(starts)
+    }
+
+    fn residuals_of_roger(&self, form: &Form, poles: &[f64]) -> Result<DVector<f64>> {
+        let basis = Basis::orthonormal(form, poles)?;
+        let mut all = Vec::new();
+        for (entry, share) in self.entries.iter().zip(&self.shares) {
+            let fit = entry.fit(&basis)?;
+            let residuals = entry.residuals(&basis, &fit.coefficients);
+            let weighted = residuals.iter().zip(&entry.rows);
+            all.extend(weighted.map(|(r, row)| r * row.weight * share));
+        }
+        Ok(DVector::from_vec(all))
+    }
+
+    /// Directions in which the lag matrices of Roger's fit are strongest.
+    fn rank_one(&self, form: &Form, lags: &[f64]) -> Result<Vec<f64>> {
+        let basis = Basis::new(form, lags)?;
+        let feed = self.feed.count();
+        let mut terms = vec![DMatrix::zeros(self.n, self.n); self.states];
+        for (at, entry) in self.entries.iter().enumerate() {
+            let coefficients = entry.fit(&basis)?.coefficients;
+            for (l, term) in terms.iter_mut().enumerate() {
+                term[(at / self.n, at % self.n)] = coefficients[feed + l];
+            }
+        }
+        let mut e = Vec::new();
+        for term in terms {
+            let svd = term.svd(false, true);
+            let v = svd.v_t.ok_or_else(|| {
+                Error::Numerical("minimum-state form: no singular vectors".into())
+            })?;
+            e.extend(v.row(0).iter());
+        }
+        Ok(e)
+    }
+
+    /// State `l` driven by the motion `l + shift`, with a little of the others so that none stays zero by symmetry.
+    fn driven_by_one(&self, shift: usize) -> Vec<f64> {
+        let entry = |l: usize, j: usize| if (l + shift) % self.n == j { 1.0 } else { 0.1 };
+        (0..self.states)
+            .flat_map(|l| (0..self.n).map(move |j| entry(l, j)))
+            .collect()
+    }
+
+    fn lags_at(&self, x: &[f64]) -> Vec<f64> {
+        match &self.lags {
+            SearchedLags::Given(lags) => lags.clone(),
+            SearchedLags::Within(bounds) => bounds.poles(&x[..self.states]),
+        }
+    }
+
+    /// `E`, m×n.
+    fn e_at(&self, x: &[f64]) -> DMatrix<f64> {
+        let tail = &x[x.len() - self.states * self.n..];
+        DMatrix::from_row_slice(self.states, self.n, tail)
+    }
+
+    /// The same point with rows of `E` of unit length, the largest number of each positive.
+    fn normalised(&self, x: &[f64]) -> Vec<f64> {
+        let mut x = x.to_vec();
+        let at = x.len() - self.states * self.n;
+        for row in x[at..].chunks_mut(self.n) {
+            let norm = row.iter().map(|e| e * e).sum::<f64>().sqrt();
+            let largest = row
+                .iter()
+                .copied()
+                .fold(0.0, |a: f64, e| if e.abs() > a.abs() { e } else { a });
+            if norm > 0.0 {
+                row.iter_mut().for_each(|e| *e /= norm * largest.signum());
+            }
+        }
+        x
+    }
+
+    fn residuals(&self, x: &[f64]) -> Result<DVector<f64>> {
+        let (lags, e) = (self.lags_at(x), self.e_at(x));
+        let mut all = Vec::new();
+        for i in 0..self.n {
+            let problem = self.row(i, &lags, &e);
+            let solution = self.solve(i, &problem)?;
+            for (row, right) in problem.rows.iter().zip(&problem.right) {
+                let fitted: f64 = row
+                    .iter()
+                    .zip(&solution.coefficients)
+                    .map(|(a, c)| a * c)
+                    .sum();
+                all.push(right - fitted);
+            }
+            all.extend(&solution.penalty);
+        }
+        Ok(DVector::from_vec(all))
+    }
+
+    fn solve(&self, i: usize, problem: &LinearProblem) -> Result<LinearSolution> {
+        let place = format!(
+            "samples of the {} force",
+            self.entries[i * self.n].force.name()
+        );
+        let per_entry = self.feed.count();
+        let name = |c: usize| match c.checked_sub(self.n * per_entry) {
+            Some(l) => format!("D of state {}", l + 1),
+            None => format!("the feed-through of motion {}", c / per_entry + 1),
+        };
+        problem.solve(&place, &name)
+    }
+
+    /// Least squares for one force: the feed-through of each motion, then its row of `D`.
+    fn row(&self, i: usize, lags: &[f64], e: &DMatrix<f64>) -> LinearProblem {
+        let feed = self.feed.count();
+        let width = self.n * feed + self.states;
+        let entries = &self.entries[i * self.n..(i + 1) * self.n];
+        let mut problem = LinearProblem {
+            ridge: vec![0.0; width],
+            ..LinearProblem::default()
+        };
+        for (j, entry) in entries.iter().enumerate() {
+            let share = self.shares[i * self.n + j];
+            for row in &entry.rows {
+                let p = Complex::new(0.0, row.k);
+                let mut columns = vec![Complex::new(0.0, 0.0); width];
+                for (c, order) in self.feed.orders().enumerate() {
+                    columns[j * feed + c] = p.powu(order as u32);
+                }
+                for (l, d) in lags.iter().enumerate() {
+                    columns[self.n * feed + l] = p / (p + d) * e[(l, j)];
+                }
+                let weight = row.weight * share;
+                problem
+                    .rows
+                    .push(row.of(&columns).map(|x| weight * x).collect());
+                problem.right.push(weight * row.value);
+            }
+            for (order, target) in entry.limit.into_iter().enumerate() {
+                let Some(target) = target else { continue };
+                let mut functional = vec![0.0; width];
+                if let Some(c) = self.feed.orders().position(|o| o == order) {
+                    functional[j * feed + c] = 1.0;
+                }
+                if order == 1 {
+                    for (l, d) in lags.iter().enumerate() {
+                        functional[self.n * feed + l] = e[(l, j)] / d;
+                    }
+                }
+                problem.constraints.push((functional, target));
+            }
+            problem.ridge[self.n * feed..].fill(entry.ridge);
+        }
+        problem
+    }
+
+    fn finish(&self, dofs: &[Dof], x: &[f64], search: Vec<SearchReport>) -> Result<Fitted> {
+        let (lags, e) = (self.lags_at(x), self.e_at(x));
+        let (n, feed) = (self.n, self.feed.count());
+        let mut d = DMatrix::zeros(n, self.states);
+        let mut a = vec![DMatrix::zeros(n, n); 3];
+        let mut accounts = Vec::new();
+        for i in 0..n {
+            let solution = self.solve(i, &self.row(i, &lags, &e))?;
+            for j in 0..n {
+                for (c, order) in self.feed.orders().enumerate() {
+                    a[order][(i, j)] = solution.coefficients[j * feed + c];
+                }
+            }
+            for l in 0..self.states {
+                d[(i, l)] = solution.coefficients[n * feed + l];
+            }
+            accounts.push((
+                solution.factor.condition(solution.unknowns),
+                solution.cancellation,
+            ));
+        }
+        let basis = self.roger_basis(&lags)?;
+        let mut reports = Vec::new();
+        for (at, entry) in self.entries.iter().enumerate() {
+            let (i, j) = (at / n, at % n);
+            let mut values: Vec<f64> = self.feed.orders().map(|o| a[o][(i, j)]).collect();
+            values.extend((0..self.states).map(|l| d[(i, l)] * e[(l, j)]));
+            let (relative_rms, worst) = sizes(entry, &entry.residuals(&basis, &values));
+            let report = EntryReport {
+                force: entry.force,
+                motion: entry.motion,
+                relative_rms: Some(relative_rms),
+                worst_relative: Some(worst),
+                poles: lags.clone(),
+                coefficients: Vec::new(),
+                covariance: Vec::new(),
+                condition: accounts[i].0,
+                cancellation: accounts[i].1,
+            };
+            // the product of D and E is not linear in what was searched: no standard errors
+            reports.push(report.with_coefficients(basis.names(), &values, None));
+        }
+        let mut parts = a.into_iter();
+        let mut next = || parts.next().unwrap_or_else(|| DMatrix::zeros(n, n));
+        let model = MinimumStateModel {
+            dofs: dofs.to_vec(),
+            a1: next(),
+            a2: next(),
+            a3: next(),
+            lags,
+            d,
+            e,
+        };
+        model.validate()?;
+        Ok(Fitted {
+            model: Model::MinimumState(model),
+            reports,
+            search,
+        })
+    }
+
+    fn roger_basis(&self, lags: &[f64]) -> Result<Basis> {
+        let form = Form::Rational {
+            lags: lags.len(),
+            added_mass: self.feed.e2,
+        };
+        Basis::new(&form, lags)
+    }
+}
