@@ -27,6 +27,7 @@ mod series;
 mod sheet;
 mod style;
 mod transfer_figure;
+#[cfg(feature = "cli")]
 mod wind_figures;
 
 pub use axes_sketch::axes_sketch;
@@ -45,4 +46,5 @@ pub use response_figures::{PoleSearchPlot, TimePanel, pole_search_figure, time_h
 pub use root_locus::root_locus_figure;
 pub use series::PlottedSeries;
 pub use transfer_figure::{TransferCurve, TransferPlot, transfer_figure};
+#[cfg(feature = "cli")]
 pub use wind_figures::{buffeting_rms_figure, buffeting_spectra_figure, equilibrium_figure};
