@@ -238,20 +238,14 @@ fn csv(study: &WindStudy, run: &SimulatedMotion) -> String {
     text
 }
 
-/// Gusts, then one panel a degree of freedom.
+/// One panel a degree of freedom, then the gusts.
 fn panels(run: &SimulatedMotion) -> Vec<TimePanel> {
     let series = |label: &str, values: &mut dyn Iterator<Item = f64>| {
         let points = values.enumerate();
         let points = points.map(|(i, v)| (run.step_s * i as f64, v)).collect();
         PlottedSeries::new(label, points)
     };
-    let mut panels = vec![TimePanel {
-        y_label: "gusts (m/s)".to_owned(),
-        series: vec![
-            series("gust u", &mut run.gusts_m_s.iter().map(|g| g.0)),
-            series("gust w", &mut run.gusts_m_s.iter().map(|g| g.1)),
-        ],
-    }];
+    let mut panels = Vec::with_capacity(run.dofs.len() + 1);
     for (i, dof) in run.dofs.iter().enumerate() {
         let (factor, unit) = match dof {
             Dof::Torsion => (1f64.to_degrees(), "deg"),
@@ -266,5 +260,12 @@ fn panels(run: &SimulatedMotion) -> Vec<TimePanel> {
             ],
         });
     }
+    panels.push(TimePanel {
+        y_label: "gusts (m/s)".to_owned(),
+        series: vec![
+            series("gust u", &mut run.gusts_m_s.iter().map(|g| g.0)),
+            series("gust w", &mut run.gusts_m_s.iter().map(|g| g.1)),
+        ],
+    });
     panels
 }

@@ -130,15 +130,18 @@ fn measured_ink(i: usize, count: usize) -> Result<Ink> {
     })
 }
 
-/// The reduced velocities of all panels, from zero.
+/// The abscissae of all panels: reduced velocities from zero, angles from the lowest.
 fn velocity_range(all: &[DerivativePlot]) -> Option<(f64, f64)> {
-    let largest = all
+    let (low, high) = all
         .iter()
         .flat_map(|d| d.measured.iter().chain(&d.fitted).chain(&d.reference))
         .flat_map(|s| &s.points)
-        .map(|p| p.0)
-        .fold(0.0, f64::max);
-    (largest > 0.0 && largest.is_finite()).then_some((0.0, 1.04 * largest))
+        .fold((0.0, 0.0), |(low, high): (f64, f64), p| {
+            (low.min(p.0), high.max(p.0))
+        });
+    let margin = 0.04 * (high - low);
+    let first = if low < 0.0 { low - margin } else { 0.0 };
+    (margin > 0.0 && margin.is_finite()).then_some((first, high + margin))
 }
 
 /// `H1` and `H1*` as H₁*; everything else as it is.
