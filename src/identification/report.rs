@@ -94,7 +94,7 @@ pub struct EntryReport {
     pub poles: Vec<f64>,
     /// Coefficients by name.
     pub coefficients: Vec<Coefficient>,
-    /// Covariance of the coefficients, in their order; empty when there are no residual degrees of freedom.
+    /// Covariance of the coefficients at these poles, in their order; empty when there are no residual degrees of freedom.
     pub covariance: Vec<Vec<f64>>,
     /// Condition number of the scaled columns.
     pub condition: f64,

@@ -61,7 +61,11 @@ def test_drag_moves_the_deck_sideways(section):
     # a step force on an almost undamped spring: the mean is the static deflection F/k, k = m (2 pi f)^2
     stiffness = 15.0 * (2 * np.pi * 3.9) ** 2
     assert rows[:, 0].mean() == pytest.approx(3.0 / stiffness, rel=0.01)
-    assert abs(rows[:, 1:]).max() < 1e-2 * abs(rows[:, 0]).max()
+    # at rest only the fitted added mass couples the motions: heave and the edges of the deck (B/2 = 0.25 m) move by a
+    # few per cent of the sway
+    sideways = abs(rows[:, 0]).max()
+    assert abs(rows[:, 1]).max() < 0.05 * sideways
+    assert abs(rows[:, 2] * 0.25).max() < 0.05 * sideways
 
 
 def test_growth_at_the_onset_by_eigenvalues(section, expected):

@@ -236,24 +236,50 @@ impl CoefficientUncertainty {
     }
 
     /// Puts these standard errors and covariances in the place of those of a fit that took residuals for independent.
+    ///
+    /// Standard errors hold the scatter of searched poles. The covariance of an entry is that of its coefficients at
+    /// the poles it is written with, `C_cc − C_cp C_pp⁻¹ C_pc`: with a pole, the coefficients move together, and drawn
+    /// without it they would be another model.
     pub fn enter(&self, report: &mut FitReport) {
-        for entry in &mut report.entries {
-            let own: Vec<usize> = (0..self.parameters.len())
-                .filter(|&p| {
+        let own: Vec<Vec<usize>> = report
+            .entries
+            .iter()
+            .map(|entry| {
+                let is_own = |&p: &usize| {
                     let q = &self.parameters[p];
                     (q.force, q.motion) == (Some(entry.force), Some(entry.motion))
-                })
-                .take(entry.coefficients.len())
-                .collect();
+                };
+                let all = (0..self.parameters.len()).filter(is_own);
+                all.take(entry.coefficients.len()).collect()
+            })
+            .collect();
+        let is_pole = |p: &usize| !own.iter().any(|list| list.contains(p));
+        let poles: Vec<usize> = (0..self.parameters.len()).filter(is_pole).collect();
+        let covariance = self.covariance_given(&poles);
+        for (entry, own) in report.entries.iter_mut().zip(&own) {
             if own.len() != entry.coefficients.len() {
                 continue;
             }
-            for (coefficient, &p) in entry.coefficients.iter_mut().zip(&own) {
+            for (coefficient, &p) in entry.coefficients.iter_mut().zip(own) {
                 coefficient.standard_error = Some(self.parameters[p].standard_error);
             }
-            let row = |&p: &usize| own.iter().map(|&q| self.covariance[(p, q)]).collect();
+            let row = |&p: &usize| own.iter().map(|&q| covariance[(p, q)]).collect();
             entry.covariance = own.iter().map(row).collect();
         }
         report.covariance_assumption.clone_from(&self.assumption);
+    }
+
+    /// The covariance of all parameters when those of `held` are known.
+    fn covariance_given(&self, held: &[usize]) -> DMatrix<f64> {
+        let Some(inverse) = self
+            .covariance
+            .select_rows(held)
+            .select_columns(held)
+            .try_inverse()
+        else {
+            return self.covariance.clone();
+        };
+        let across = self.covariance.select_columns(held);
+        &self.covariance - &across * inverse * across.transpose()
     }
 }

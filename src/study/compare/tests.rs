@@ -38,8 +38,9 @@ fn metrics_of_a_harmonic_follow_the_closed_forms() {
     let same = Scoring::default()
         .metrics(&measured, &measured, 200.0, f)
         .unwrap();
+    // the search of the lag ends within a millionth of a degree, 2e-7 of the metric
     assert!(
-        same.values().iter().all(|v| (v - 1.0).abs() < 1e-9),
+        same.values().iter().all(|v| (v - 1.0).abs() < 1e-6),
         "{same:?}"
     );
     assert_eq!(
