@@ -27,7 +27,7 @@ pub struct Alignment {
     pub offset_samples: f64,
     /// The same by a parabola through the correlation alone, samples.
     pub parabolic_samples: f64,
-    /// Correlation of the motions at the whole lag.
+    /// Correlation of the aligned motions over what both recordings cover.
     pub correlation: f64,
     /// Amplitude of the motion in wind over that in still air.
     pub amplitude_ratio: f64,
@@ -62,13 +62,6 @@ pub fn align(
         let expected = "the motion of the recording in wind";
         Error::input(place(), expected, "one that is nowhere like it")
     })?;
-    if found.correlation < ALIKE {
-        return Err(Error::input(
-            place(),
-            format!("the motion of the recording in wind, correlation at least {ALIKE}"),
-            format!("correlation {:.3}", found.correlation),
-        ));
-    }
     let count = in_wind.len();
     let shift = |x: &Vec<f64>| moved(x, found.samples, count);
     let moved_still = RawRecording {
@@ -92,6 +85,15 @@ pub fn align(
     let inside = |x: &[f64]| x[covered.clone()].to_vec();
     let (a, b) = (inside(&reference), inside(&aligned_motion));
     let dot = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(p, q)| p * q).sum::<f64>();
+    // over what both cover: a recording that ends early is alike, and told to be short where it matters
+    let correlation = dot(&a, &b) / (dot(&a, &a) * dot(&b, &b)).sqrt();
+    if !correlation.is_finite() || correlation < ALIKE {
+        return Err(Error::input(
+            place(),
+            format!("the motion of the recording in wind, correlation at least {ALIKE}"),
+            format!("correlation {correlation:.3}"),
+        ));
+    }
     let difference: f64 = a.iter().zip(&b).map(|(p, q)| (p - q).powi(2)).sum();
     Ok(Aligned {
         still_air: moved_still,
@@ -100,7 +102,7 @@ pub fn align(
             offset_s: found.samples / in_wind.sampling_hz,
             offset_samples: found.samples,
             parabolic_samples: found.parabolic_samples,
-            correlation: found.correlation,
+            correlation,
             amplitude_ratio: dot(&a, &b) / dot(&b, &b),
             motion_difference: (difference / dot(&a, &a)).sqrt(),
         },
