@@ -47,9 +47,19 @@ fn constrained_fit_is_that_of_lapack() {
     let (_, report) = fit_table(&samples(), &Dof::TWO, &given).unwrap();
     let printed = [
         [0.0, -3.619493368, -1.438788960, -0.799107582],
-        [6.283185307, 2.295174660, 0.125783994, -2.373400715],
+        [
+            std::f64::consts::TAU,
+            2.295174660,
+            0.125783994,
+            -2.373400715,
+        ],
         [0.0, -0.904754748, 0.032879372, -0.199812474],
-        [1.570796327, -0.210958385, -0.018508240, -0.594120909],
+        [
+            std::f64::consts::FRAC_PI_2,
+            -0.210958385,
+            -0.018508240,
+            -0.594120909,
+        ],
     ];
     for (entry, expected) in report.entries.iter().zip(printed) {
         for (c, value) in entry.coefficients.iter().zip(expected) {
