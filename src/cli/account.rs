@@ -14,7 +14,10 @@ pub fn chain(study: &Study, deck: &Deck, summary: &Summary, files: &str) -> Stri
     let _ = writeln!(
         text,
         "Section   B {} m, m {} kg/m, J {} kg·m²/m, ρ {} kg/m³; y and lift up, θ and moment nose-up, per metre of span",
-        s.width_m, s.vertical.mass_kg_m, s.torsion.inertia_kg_m2_m, s.air_density_kg_m3
+        to_tenths_of_mm(s.width_m),
+        s.vertical.mass_kg_m,
+        s.torsion.inertia_kg_m2_m,
+        s.air_density_kg_m3
     );
     text.push('\n');
     for fit_summary in &summary.fits {
@@ -168,7 +171,7 @@ pub fn onsets(onsets: &[Onset], stable: &[OnsetSummary]) -> String {
 }
 
 /// The ends of an interval, with as many digits as it leaves meaning.
-fn interval(of: &OnsetInterval) -> String {
+pub fn interval(of: &OnsetInterval) -> String {
     match of {
         OnsetInterval::Known {
             low_m_s, high_m_s, ..
@@ -195,4 +198,9 @@ pub fn divergence(all: &[Divergence]) -> String {
 /// Deviations from the deck's own onset.
 pub fn deviations(all: &[Deviation]) -> String {
     all.iter().map(|d| d.explain() + "\n").collect()
+}
+
+/// A length without the digits that its computation left behind, m.
+pub fn to_tenths_of_mm(length_m: f64) -> f64 {
+    (length_m * 1e4).round() / 1e4
 }

@@ -7,7 +7,7 @@ use super::progress::Progress;
 use super::routes;
 use super::{account, stages};
 use crate::error::Result;
-use crate::study::{Deck, Study, route_table};
+use crate::study::{Deck, KnownUncertainty, Study, route_table, state_route_intervals};
 use crate::trained_model::TrainedModel;
 
 /// Frequencies, damping and flutter onset of the trained models of a study (see `train`)
@@ -30,11 +30,11 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     let deck = Deck::load(&study)?;
     let directory = args.study.directory();
     let models = stages::read_models(&study, &directory)?;
+    let known = stages::read_uncertainties(&study, &directory)?;
     if args.all {
         let out = OutputDir::new(&directory)?;
-        return all_routes(&study, &deck, &models, out, progress);
+        return all_routes(&study, &deck, (&models, &known), out, progress);
     }
-    let known = stages::read_uncertainties(&study, &directory)?;
     let results = stages::flutter(&study, &deck, &models, &known, progress)?;
     let mut out = OutputDir::new(&directory)?;
     stages::flutter_figure(&study, &results, &[], &mut out)?;
@@ -54,12 +54,13 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
 fn all_routes(
     study: &Study,
     deck: &Deck,
-    models: &[TrainedModel],
+    (models, known): (&[TrainedModel], &[KnownUncertainty]),
     mut out: OutputDir,
     progress: &Progress,
 ) -> Result<Answer> {
     let stage = progress.stage("onset by every route");
-    let table = route_table(study, deck, models)?;
+    let mut table = route_table(study, deck, models)?;
+    state_route_intervals(&mut table, study, models, known)?;
     drop(stage);
     stages::routes_figure(study, &table.curves, &routes::marked(&table), &mut out)?;
     let written = out.commit()?;

@@ -1,6 +1,7 @@
 //! The table of all routes and the onset cards, in words.
 
-use crate::flutter::{FlutterSearch, Onset, SanityLines};
+use super::account::interval;
+use crate::flutter::{FlutterSearch, Onset, OnsetInterval, SanityLines};
 use crate::study::{Route, RouteTable};
 use std::fmt::Write as _;
 
@@ -142,6 +143,12 @@ fn found(o: &Onset, route: &Route) -> String {
         ),
         None if route.low_frequency_limit => writeln!(text, " (a limit for K → 0)"),
         None => writeln!(text, " (exact at every K)"),
+    };
+    let _ = match &o.interval {
+        OnsetInterval::Known { .. } => {
+            writeln!(text, "  95 % interval {} m/s", interval(&o.interval))
+        }
+        OnsetInterval::None { reason } => writeln!(text, "  no interval: {reason}"),
     };
     let slope = o
         .damping_slope_s_m

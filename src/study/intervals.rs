@@ -1,8 +1,8 @@
 //! Intervals of the onsets of a study.
 
-use super::{FlutterStudy, Study};
+use super::{FlutterStudy, RouteTable, Study};
 use crate::error::Result;
-use crate::flutter::{Onset, OnsetInterval, OnsetMethod};
+use crate::flutter::{FlutterSearch, Onset, OnsetInterval, OnsetMethod};
 use crate::section::Structure;
 use crate::trained_model::TrainedModel;
 use crate::uncertainty::ModelUncertainty;
@@ -20,11 +20,40 @@ pub fn state_intervals(
     models: &[TrainedModel],
     known: &[KnownUncertainty],
 ) -> Result<()> {
+    state_each(results.onsets.iter_mut(), study, models, known)
+}
+
+/// As [`state_intervals`] for the onsets that a table of routes found by eigenvalues.
+///
+/// # Errors
+/// Those of the study's section.
+pub fn state_route_intervals(
+    table: &mut RouteTable,
+    study: &Study,
+    models: &[TrainedModel],
+    known: &[KnownUncertainty],
+) -> Result<()> {
+    let onsets = table.routes.iter_mut().filter_map(|r| match &mut r.search {
+        FlutterSearch::Onset(onset) => Some(onset.as_mut()),
+        FlutterSearch::StableUpTo(_) => None,
+    });
+    state_each(onsets, study, models, known)
+}
+
+fn state_each<'a>(
+    onsets: impl Iterator<Item = &'a mut Onset>,
+    study: &Study,
+    models: &[TrainedModel],
+    known: &[KnownUncertainty],
+) -> Result<()> {
     let structure = study.section.structure()?;
-    for onset in &mut results.onsets {
-        if onset.method == OnsetMethod::Determinant {
-            continue;
-        }
+    let by_roots = |o: &&mut Onset| {
+        !matches!(
+            o.method,
+            OnsetMethod::Determinant | OnsetMethod::PkIteration
+        )
+    };
+    for onset in onsets.filter(by_roots) {
         let own = models
             .iter()
             .zip(known)

@@ -17,7 +17,7 @@ mod wind;
 
 pub use deck::{Deck, RecordSet};
 pub use defaults::{demo_study_text, thesis_study_text};
-pub use intervals::{KnownUncertainty, interval_of, state_intervals};
+pub use intervals::{KnownUncertainty, interval_of, state_intervals, state_route_intervals};
 pub use models::{TrainedWithReport, train_one};
 pub use onsets::{Deviation, Divergence, FlutterStudy, OnsetSummary, flutter_study};
 pub use processed::processed_study_text;

@@ -1,5 +1,6 @@
 //! `aerodeck campaign check`: reads a campaign and says what is in it.
 
+use crate::cli::account::to_tenths_of_mm;
 use crate::cli::answer::Answer;
 use crate::cli::progress::Progress;
 use crate::error::Result;
@@ -41,7 +42,7 @@ fn account(reading: &CampaignReading) -> String {
         "{}: model of {} m × {} m, cells {}\n",
         reading.raw.section,
         rig.model_length_m,
-        rig.model_width_m,
+        to_tenths_of_mm(rig.model_width_m),
         cells.join(", ")
     );
     for run in &reading.runs {
