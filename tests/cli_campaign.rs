@@ -118,7 +118,15 @@ fn wrong_campaigns_are_refused() {
         "mean_speed_m_s = 0.0",
         &["campaign.toml: line ", "run[0].mean_speed_m_s", "found 0"],
     );
-    with("Jones-torsion-8.00-still", "gone", &["gone.csv"]);
+    with(
+        "Jones-torsion-8.00-still",
+        "gone",
+        &[
+            "gone.csv",
+            "run `Jones-torsion-8.00`, still air",
+            "a recording",
+        ],
+    );
     with(
         "density_kg_m3",
         "density",

@@ -68,6 +68,8 @@ fn below(place: &str, error: Error) -> Error {
             };
             Error::Input(input)
         }
+        // a file that is not there is the run's that names it
+        Error::Io { source, .. } => Error::input(place, "a recording", source.to_string()),
         other => other,
     }
 }
