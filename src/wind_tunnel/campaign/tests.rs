@@ -324,7 +324,9 @@ fn recordings_that_do_not_fit_are_refused_by_run_and_sample() {
     ));
     assert!(load(&unitless, &in_mm, &b.replacen("y,d", "y [mm],d", 1)).is_ok());
     let gone = load(&small().replace("b.csv", "c.csv"), &a, &b).unwrap_err();
-    assert!(matches!(gone, crate::Error::Io { ref path, .. } if path.ends_with("c.csv")));
+    let said = gone.to_string();
+    assert!(said.contains("c.csv: run `"), "{said}");
+    assert!(said.contains("still air: expected a recording"), "{said}");
 }
 
 #[test]
