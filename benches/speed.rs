@@ -10,7 +10,7 @@ use aerodeck::aerodynamics::{AerodynamicModel, ContinuousRealization, Realizatio
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::flutter::trace_modes;
 use aerodeck::fmu::importer::{Fmu, Slave};
-use aerodeck::fmu::package::{Overwrite, Runtime, write_fmu};
+use aerodeck::fmu::package::{Growing, Overwrite, Runtime, write_fmu};
 use aerodeck::identification::{
     FeedThrough, Form, FrequencyFit, PoleSearch, TimeFit, TimeWeights, fit_records, fit_table,
 };
@@ -39,6 +39,7 @@ fn main() {
         &model,
         &Runtime::available().expect("a runtime"),
         Overwrite::Replace,
+        Growing::Refuse,
     )
     .expect("an FMU");
     println!("medians of {ROUNDS} interleaved rounds, one thread each\n");

@@ -21,6 +21,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         licence: licence.clone(),
         generator: "examples/import_workbook.rs of aerodeck".to_owned(),
         model_length_m: length.first().map(|text| text.parse()).transpose()?,
+        ..TableHeader::default()
     };
     let options = WorkbookOptions {
         header,

@@ -1,5 +1,6 @@
 //! Structure and self-excited forces as one linear system at a wind speed.
 //!
+//! The force model is taken to the axis of the section first, `G → Tᵀ G T` (see [`Structure`]).
 //! Continuous models: with `P(G) = diag(B, B, B²) G diag(1/B, 1/B, 1)`,
 //!
 //! ```text
@@ -16,7 +17,9 @@ mod rational_form;
 pub use equilibrium::{EquilibriumEnd, EquilibriumPath, StaticEquilibrium, static_equilibria};
 pub use rational_form::{RationalDescriptor, RationalForces};
 
-use crate::aerodynamics::{ContinuousRealization, DiscreteRealization, Realization};
+use crate::aerodynamics::{
+    AerodynamicModel, ContinuousRealization, DiscreteRealization, Realization,
+};
 use crate::error::{Error, Result, non_negative, positive};
 use crate::section::Structure;
 use crate::state_space::{Continuous, Discrete, StateSpace, eigenvalues, step_matrices};
@@ -26,6 +29,7 @@ use nalgebra::{Complex, DMatrix};
 #[derive(Debug, Clone)]
 pub struct CoupledSection {
     structure: Structure,
+    /// About the axis of the section.
     aerodynamics: Realization,
     /// `(M − ½ρB² P(e₂))⁻¹`, n×n.
     inverse_mass: DMatrix<f64>,
@@ -76,6 +80,17 @@ impl CoupledSystem {
 }
 
 impl CoupledSection {
+    /// Couples a structure and a force model that has a realisation.
+    ///
+    /// # Errors
+    /// [`Error::Numerical`] for a model that is only a `G(K)`; those of [`CoupledSection::new`].
+    pub fn with_model(structure: &Structure, model: &dyn AerodynamicModel) -> Result<Self> {
+        let realization = model
+            .realize()
+            .ok_or_else(|| Error::Numerical("the model has no state-space realisation".into()))?;
+        Self::new(structure.clone(), realization)
+    }
+
     /// Couples a structure and a realisation of the same degrees of freedom.
     ///
     /// # Errors
@@ -94,10 +109,11 @@ impl CoupledSection {
                 forces.to_string(),
             ));
         }
+        let aerodynamics = at_axis(&structure, aerodynamics);
         let mut mass = structure.mass.clone();
         if let Realization::Continuous(c) = &aerodynamics {
             let half_rho_b2 = 0.5 * structure.air_density_kg_m3 * structure.width_m.powi(2);
-            mass -= structure.to_physical(&c.e2) * half_rho_b2;
+            mass -= structure.scaled(&c.e2) * half_rho_b2;
         }
         let symmetric_part = (&mass + mass.transpose()) * 0.5;
         if symmetric_part.cholesky().is_none() {
@@ -120,7 +136,7 @@ impl CoupledSection {
         &self.structure
     }
 
-    /// The realised aerodynamic model.
+    /// The realised aerodynamic model about the axis of the section.
     pub fn aerodynamics(&self) -> &Realization {
         &self.aerodynamics
     }
@@ -163,8 +179,8 @@ impl CoupledSection {
         let rate = speed / s.width_m;
         let half_rho = 0.5 * s.air_density_kg_m3;
         let q = half_rho * speed * speed;
-        let stiffness = s.to_physical(&aero.e0) * q - &s.stiffness;
-        let damping = s.to_physical(&aero.e1) * (half_rho * speed * s.width_m) - &s.damping;
+        let stiffness = s.scaled(&aero.e0) * q - &s.stiffness;
+        let damping = s.scaled(&aero.e1) * (half_rho * speed * s.width_m) - &s.damping;
         let force_of_filters = DMatrix::from_fn(n, filters, |i, l| {
             q * s.dofs[i].force_scale(s.width_m) * aero.c[(i, l)]
         });
@@ -222,10 +238,7 @@ impl CoupledSection {
         let step = aero.delta_s * s.width_m / speed;
         let (a_c, b_c) = self.structure_alone();
         let held = step_matrices(&a_c, &b_c, step)?;
-        let q = 0.5 * s.air_density_kg_m3 * speed * speed;
-        let force = DMatrix::from_fn(n, filters, |i, l| {
-            q * s.dofs[i].force_scale(s.width_m) * aero.c[(i, l)]
-        });
+        let force = self.force_of_filters(aero, speed);
         let drive = DMatrix::from_fn(filters, 2 * n, |l, j| {
             if j < n {
                 aero.b[(l, j)] * s.dofs[j].motion_scale(s.width_m)
@@ -246,23 +259,51 @@ impl CoupledSection {
         b.view_mut((0, 0), (2 * n, n)).copy_from(&held.gamma_0);
         b.view_mut((2 * n, 0), (filters, n))
             .copy_from(&(&drive * &held.gamma_0));
-        let mut rows = DMatrix::zeros(n, 2 * n + filters);
-        rows.view_mut((0, 0), (n, 2 * n))
-            .copy_from(&a_c.view((n, 0), (n, 2 * n)));
-        rows.view_mut((0, 2 * n), (n, filters))
-            .copy_from(&(&self.inverse_mass * force));
-        let (c, d) = self.outputs(&rows);
+        let (c, d) = self.sampled_outputs(&a_c, &force);
         StateSpace::new(a, b, c, d, Discrete { step })
     }
 
-    /// Output matrices without wind: the sampled system has no step there, and no force either.
-    pub(crate) fn still_air_outputs(&self) -> (DMatrix<f64>, DMatrix<f64>) {
-        let n = self.structure.dofs.len();
-        let (a, _) = self.structure_alone();
-        let mut rows = DMatrix::zeros(n, self.states());
+    /// Output matrices of `[q, q̇, q̈, F]` of the sampled system from the structure alone and the force of the filters.
+    fn sampled_outputs(
+        &self,
+        structure_alone: &DMatrix<f64>,
+        force: &DMatrix<f64>,
+    ) -> (DMatrix<f64>, DMatrix<f64>) {
+        let (n, filters) = force.shape();
+        let mut rows = DMatrix::zeros(n, 2 * n + filters);
         rows.view_mut((0, 0), (n, 2 * n))
-            .copy_from(&a.view((n, 0), (n, 2 * n)));
+            .copy_from(&structure_alone.view((n, 0), (n, 2 * n)));
+        rows.view_mut((0, 2 * n), (n, filters))
+            .copy_from(&(&self.inverse_mass * force));
         self.outputs(&rows)
+    }
+
+    /// Output matrices of `[q, q̇, q̈, F]` at the wind speed `V` (m/s). Those of the sampled system do not depend on its
+    /// step, so that still air and the lightest breeze are no special cases.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a speed that is negative or not finite.
+    pub(crate) fn output_matrices(&self, speed_m_s: f64) -> Result<(DMatrix<f64>, DMatrix<f64>)> {
+        non_negative("wind speed", speed_m_s)?;
+        match &self.aerodynamics {
+            Realization::Continuous(c) => {
+                let system = self.continuous_at(c, speed_m_s)?;
+                Ok((system.c, system.d))
+            }
+            Realization::Discrete(d) => {
+                let (a, _) = self.structure_alone();
+                Ok(self.sampled_outputs(&a, &self.force_of_filters(d, speed_m_s)))
+            }
+        }
+    }
+
+    /// `½ρV² diag(B, B, B²) C`, n×N.
+    fn force_of_filters(&self, aero: &DiscreteRealization, speed: f64) -> DMatrix<f64> {
+        let s = &self.structure;
+        let q = 0.5 * s.air_density_kg_m3 * speed * speed;
+        DMatrix::from_fn(s.dofs.len(), aero.a.nrows(), |i, l| {
+            q * s.dofs[i].force_scale(s.width_m) * aero.c[(i, l)]
+        })
     }
 
     /// `[[0, I], [−M⁻¹K, −M⁻¹R]]` and `[0; M⁻¹]` of the section without aerodynamic force.
@@ -278,6 +319,25 @@ impl CoupledSection {
         let mut b = DMatrix::zeros(2 * n, n);
         b.view_mut((n, 0), (n, n)).copy_from(&self.inverse_mass);
         (a, b)
+    }
+}
+
+/// The force model about the axis of the section.
+fn at_axis(s: &Structure, aerodynamics: Realization) -> Realization {
+    match aerodynamics {
+        Realization::Continuous(c) => Realization::Continuous(ContinuousRealization {
+            a: c.a,
+            b: s.motion_at_axis(c.b),
+            c: s.forces_at_axis(c.c),
+            e0: s.at_axis(c.e0),
+            e1: s.at_axis(c.e1),
+            e2: s.at_axis(c.e2),
+        }),
+        Realization::Discrete(d) => Realization::Discrete(DiscreteRealization {
+            b: s.motion_at_axis(d.b),
+            c: s.forces_at_axis(d.c),
+            ..d
+        }),
     }
 }
 

@@ -9,9 +9,11 @@ mod decks;
 mod first_order;
 mod fits;
 mod flat_plate;
+mod interpolation;
 mod jones;
 mod records;
 mod table;
+mod typical_section;
 #[cfg(feature = "campaigns")]
 mod user_case;
 
@@ -205,10 +207,12 @@ pub struct CaseResult {
 pub fn cases() -> impl Iterator<Item = &'static Case> {
     [
         flat_plate::CASES,
+        typical_section::CASES,
         jones::CASES,
         fits::CASES,
         records::CASES,
         decks::CASES,
+        interpolation::CASES,
         buffeting::CASES,
     ]
     .into_iter()

@@ -48,6 +48,14 @@ pub enum Error {
     /// A computation did not reach a usable result.
     #[error("{0}")]
     Numerical(String),
+    /// Several of these, in the order of what they are about; one line each.
+    #[error("{}", lines(.0))]
+    Several(Vec<Error>),
+}
+
+fn lines(errors: &[Error]) -> String {
+    let each: Vec<String> = errors.iter().map(ToString::to_string).collect();
+    format!("{} errors\n  {}", each.len(), each.join("\n  "))
 }
 
 impl Error {
@@ -59,9 +67,9 @@ impl Error {
     ) -> Self {
         Self::Input(Box::new(InputError {
             file: None,
-            place: place.into(),
-            expected: expected.into(),
-            found: found.into(),
+            place: quoted(place.into()),
+            expected: quoted(expected.into()),
+            found: quoted(found.into()),
         }))
     }
 
@@ -85,12 +93,53 @@ impl Error {
     /// The same error, naming the file it came from (a file already named is kept).
     #[must_use]
     pub fn in_file(mut self, path: impl AsRef<Path>) -> Self {
-        if let Self::Input(input) = &mut self
-            && input.file.is_none()
-        {
-            input.file = Some(path.as_ref().to_path_buf());
+        let path = path.as_ref();
+        match &mut self {
+            Self::Input(input) if input.file.is_none() => {
+                input.file = Some(path.to_path_buf());
+            }
+            Self::Several(errors) => {
+                let all = std::mem::take(errors);
+                *errors = all.into_iter().map(|e| e.in_file(path)).collect();
+            }
+            _ => {}
         }
         self
+    }
+}
+
+/// Characters of an input that a message shows at most.
+const QUOTED_AT_MOST: usize = 300;
+
+/// At most a line of what stood in an input, cut where it is long.
+fn quoted(text: String) -> String {
+    let is_short = text.len() <= QUOTED_AT_MOST && !text.contains(['\n', '\r']);
+    if is_short {
+        return text;
+    }
+    let line = text.replace(['\n', '\r'], " ");
+    match line.char_indices().nth(QUOTED_AT_MOST) {
+        None => line,
+        Some((end, _)) => format!("{} … ({} characters)", &line[..end], line.chars().count()),
+    }
+}
+
+/// All values, or all errors in their order: what is computed in parallel must not report whichever failed first.
+///
+/// # Errors
+/// The one error there is, or [`Error::Several`].
+pub fn all_or_errors<T>(results: Vec<Result<T>>) -> Result<Vec<T>> {
+    let (mut values, mut errors) = (Vec::with_capacity(results.len()), Vec::new());
+    for result in results {
+        match result {
+            Ok(value) => values.push(value),
+            Err(error) => errors.push(error),
+        }
+    }
+    match errors.len() {
+        0 => Ok(values),
+        1 => Err(errors.remove(0)),
+        _ => Err(Error::Several(errors)),
     }
 }
 
@@ -103,6 +152,22 @@ pub fn positive(place: &str, value: f64) -> Result<f64> {
         Ok(value)
     } else {
         Err(Error::input(place, "a positive number", value.to_string()))
+    }
+}
+
+/// Nothing if `value` is at most `bound`: one that no real study reaches.
+///
+/// # Errors
+/// [`Error::Input`] naming `place` otherwise.
+pub fn at_most(place: &str, value: f64, bound: f64) -> Result<()> {
+    if value <= bound {
+        Ok(())
+    } else {
+        Err(Error::input(
+            place,
+            format!("at most {bound}"),
+            value.to_string(),
+        ))
     }
 }
 

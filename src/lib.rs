@@ -43,6 +43,8 @@ pub mod flutter;
 pub mod fmu;
 #[cfg(feature = "identification")]
 pub mod identification;
+#[cfg(feature = "identification")]
+mod plausibility;
 #[cfg(feature = "campaigns")]
 pub mod reliability;
 #[cfg(feature = "report")]

@@ -21,6 +21,25 @@ use step_cache::{StepCache, apply};
 
 /// Degrees of freedom at most: heave, sway, rotation.
 const MAX_DOFS: usize = Dof::THREE.len();
+/// Samples of the force, or parts of a changing wind, that one step may take: beyond, it is refused at once. Each costs
+/// some ten microseconds.
+const MAX_SUBSTEPS: f64 = 1e5;
+/// A wind below zero by this part of the wind before it (of 1 m/s at least) is at rest: what rounding leaves of a ramp
+/// of some ten thousand steps.
+const REST: f64 = 1e-9;
+/// States smaller than this have died out. Numbers below 1e-308 are computed thirty times slower; products with the
+/// coefficients of a step stay above.
+const DIED_OUT: f64 = 1e-250;
+
+/// `speed_m_s`, or zero where rounding alone has taken a wind that comes to rest below zero; `before_m_s` is the wind
+/// it came from.
+pub fn wind_at_rest(speed_m_s: f64, before_m_s: f64) -> f64 {
+    if (-REST * before_m_s.max(1.0)..0.0).contains(&speed_m_s) {
+        0.0
+    } else {
+        speed_m_s
+    }
+}
 
 /// Wind speed and external forces at the start of a step, and their constant rates over it.
 #[derive(Debug, Clone, PartialEq)]
@@ -47,7 +66,7 @@ impl Inputs {
     }
 
     fn check(&self, dofs: usize) -> Result<()> {
-        non_negative("wind speed", self.wind_speed_m_s)?;
+        non_negative("wind speed", wind_at_rest(self.wind_speed_m_s, 0.0))?;
         let finite = |values: &[f64]| values.len() == dofs && values.iter().all(|x| x.is_finite());
         if finite(&self.force) && finite(&self.force_rate) && self.wind_speed_rate_m_s2.is_finite()
         {
@@ -150,7 +169,7 @@ impl Stepper {
     ///
     /// # Errors
     /// [`Error::Input`] for a step that is not positive or inputs that are not finite, a wind speed that becomes
-    /// negative; [`Error::Numerical`] when the motion has grown beyond what a number can hold.
+    /// negative by more than rounding, a step of more than a hundred thousand sub-steps; [`Error::Numerical`] when the motion has grown beyond what a number can hold.
     pub fn advance(
         &mut self,
         state: &mut SectionState,
@@ -159,10 +178,17 @@ impl Stepper {
     ) -> Result<()> {
         positive("step size", step_s)?;
         inputs.check(self.section.structure().dofs.len())?;
+        if inputs.wind_speed_m_s < 0.0 {
+            let mut at_rest = inputs.clone();
+            at_rest.wind_speed_m_s = 0.0;
+            return self.advance(state, &at_rest, step_s);
+        }
         if inputs.wind_speed_rate_m_s2 != 0.0 {
+            let before = inputs.wind_speed_m_s;
+            let end = before + inputs.wind_speed_rate_m_s2 * step_s;
             non_negative(
                 "wind speed at the end of the step",
-                inputs.wind_speed_m_s + inputs.wind_speed_rate_m_s2 * step_s,
+                wind_at_rest(end, before),
             )?;
         }
         if matches!(self.section.aerodynamics(), Realization::Discrete(_)) {
@@ -178,6 +204,7 @@ impl Stepper {
         let columns = active_columns(inputs, state.values.len());
         apply(&entry.step, &self.operand[..columns], &mut state.values);
         if state.values.iter().all(|x| x.is_finite()) {
+            drop_what_died_out(&mut state.values);
             return Ok(());
         }
         let before = &self.operand[..state.values.len()];
@@ -205,7 +232,7 @@ impl Stepper {
         outputs.self_excited_force.resize(n, 0.0);
         let entry = self
             .cache
-            .output_rows(&self.section, inputs.wind_speed_m_s)?;
+            .output_rows(&self.section, inputs.wind_speed_m_s.max(0.0))?;
         self.operand[..state.values.len()].copy_from_slice(&state.values);
         self.operand[state.values.len()..][..n].copy_from_slice(&inputs.force);
         let columns = state.values.len() + n;
@@ -227,14 +254,14 @@ impl Stepper {
         let z = DVector::from_column_slice(&state.values);
         let w = DVector::from_column_slice(&inputs.force);
         if let Realization::Discrete(d) = self.section.aerodynamics() {
-            let force = self.held_force(d, &state.values, inputs.wind_speed_m_s);
+            let force = self.held_force(d, &state.values, inputs.wind_speed_m_s.max(0.0));
             let (a, b) = self.section.structure_alone();
             let motion = a * z.rows(0, 2 * n) + b * (w + force);
             let mut derivative = vec![0.0; state.values.len()];
             derivative[..2 * n].copy_from_slice(motion.as_slice());
             return Ok(derivative);
         }
-        match self.section.at(inputs.wind_speed_m_s)? {
+        match self.section.at(inputs.wind_speed_m_s.max(0.0))? {
             CoupledSystem::Continuous(s) => Ok((&s.a * z + &s.b * w).as_slice().to_vec()),
             CoupledSystem::Sampled(_) => Err(Error::Numerical(
                 "state derivative: a continuous model gave a sampled system".into(),
@@ -261,6 +288,26 @@ fn active_columns(inputs: &Inputs, states: usize) -> usize {
         (false, true) => states + n,
         (true, true) => states,
     }
+}
+
+fn drop_what_died_out(values: &mut [f64]) {
+    for x in values {
+        if x.abs() < DIED_OUT {
+            *x = 0.0;
+        }
+    }
+}
+
+/// Whether a step may take so many sub-steps.
+fn check_substeps(count: f64, step: f64) -> Result<()> {
+    if count <= MAX_SUBSTEPS {
+        return Ok(());
+    }
+    Err(Error::input(
+        "step size",
+        format!("a step of at most {MAX_SUBSTEPS} sub-steps"),
+        format!("{step} s, {count:.1e} sub-steps"),
+    ))
 }
 
 fn overgrown() -> Error {

@@ -1,7 +1,13 @@
 //! The elastically suspended deck section: what the user states, and its matrices.
 //!
 //! Degrees of freedom stand in the order vertical `y` (up), lateral `x` (downwind), rotation `θ` (nose-up);
-//! everything is per unit length of span.
+//! everything is per unit length of span. Heave and rotation are those of the axis about which the section turns; the
+//! aerodynamic models speak of a reference point, mid-chord unless the data say otherwise. [`Structure`] takes their
+//! forces to the axis and the motion back, and nothing else does.
+
+mod structure;
+
+pub use structure::{Entry, Structure};
 
 use crate::error::{Error, Result, non_negative, positive};
 use nalgebra::DMatrix;
@@ -100,6 +106,14 @@ pub struct SectionModel {
     pub width_m: f64,
     /// Air density `ρ`, kg/m³.
     pub air_density_kg_m3: f64,
+    /// Distance `a` of the axis about which the section turns from the reference point of the aerodynamic forces, m,
+    /// positive downwind (towards the trailing edge); left out: zero.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub axis_offset_m: Option<f64>,
+    /// Distance `e` of the centre of mass from that axis, m, positive downwind; left out: zero. The static unbalance is
+    /// `m e`; frequencies and damping ratios of the supports stay those of each motion by itself.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mass_offset_m: Option<f64>,
     /// Vertical support.
     pub vertical: Translation,
     /// Lateral support; leaving it out gives a section of two degrees of freedom.
@@ -130,6 +144,8 @@ impl SectionModel {
         Self {
             width_m,
             air_density_kg_m3,
+            axis_offset_m: None,
+            mass_offset_m: None,
             vertical: Translation {
                 mass_kg_m: vertical.0,
                 frequency_hz: Some(vertical.1),
@@ -155,21 +171,35 @@ impl SectionModel {
         }
     }
 
-    /// Mass, damping and stiffness of the section, `R = 2ζ√(K M)` on the diagonal.
+    /// `M_yθ = −m e`, kg: with the centre of mass downwind of the axis a nose-up acceleration moves it down.
+    pub(crate) fn static_coupling(&self) -> f64 {
+        -self.vertical.mass_kg_m * self.mass_offset_m.unwrap_or(0.0)
+    }
+
+    /// Mass, damping and stiffness of the section about its axis; `R = 2ζ√(K M)` and `K` on the diagonal, `M` with the
+    /// static unbalance.
     ///
     /// # Errors
-    /// [`Error::Input`] for a value that is not finite, not positive where it must be, or for a support that states
-    /// both or neither of frequency and stiffness.
+    /// [`Error::Input`] for a value that is not finite, not positive where it must be, for a support that states
+    /// both or neither of frequency and stiffness, and for a centre of mass as far from the axis as the radius of
+    /// gyration or farther.
     pub fn structure(&self) -> Result<Structure> {
         let supports: Vec<_> = self.diagonal()?.into_iter().flatten().collect();
         let diagonal = |pick: fn(&(f64, f64, f64)) -> f64| {
             DMatrix::from_diagonal(&supports.iter().map(pick).collect::<Vec<_>>().into())
         };
+        let mut mass = diagonal(|s| s.0);
+        let torsion = supports.len() - 1;
+        if self.mass_offset_m.is_some() {
+            mass[(0, torsion)] = self.static_coupling();
+            mass[(torsion, 0)] = mass[(0, torsion)];
+        }
         Ok(Structure {
             dofs: self.dofs(),
             width_m: self.width_m,
             air_density_kg_m3: self.air_density_kg_m3,
-            mass: diagonal(|s| s.0),
+            axis_offset_m: self.axis_offset_m.unwrap_or(0.0),
+            mass,
             damping: diagonal(|s| s.1),
             stiffness: diagonal(|s| s.2),
         })
@@ -183,8 +213,30 @@ impl SectionModel {
         let sway = self.lateral.as_ref();
         let sway = sway.map(|s| translation_support("section.lateral", s));
         let twist = rotation_support("section.torsion", &self.torsion)?;
+        if let Some(a) = self.axis_offset_m {
+            finite("section.axis_offset_m", a)?;
+        }
+        if let Some(e) = self.mass_offset_m {
+            finite("section.mass_offset_m", e)?;
+            // about the axis J = J_cg + m e²
+            let radius = (twist.0 / heave.0).sqrt();
+            if e.abs() >= radius {
+                return Err(Error::input(
+                    "section.mass_offset_m",
+                    format!("less than the radius of gyration about the axis, {radius:.4} m"),
+                    e.to_string(),
+                ));
+            }
+        }
         Ok([Some(heave), sway.transpose()?, Some(twist)])
     }
+}
+
+fn finite(place: &str, value: f64) -> Result<()> {
+    if value.is_finite() {
+        return Ok(());
+    }
+    Err(Error::input(place, "a finite number", value.to_string()))
 }
 
 fn rotation_support(place: &str, s: &Rotation) -> Result<(f64, f64, f64)> {
@@ -242,62 +294,6 @@ fn support(
     ))
 }
 
-/// Matrices of the suspended section, per unit length: `M q̈ + R q̇ + K q = F`.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Structure {
-    /// Degrees of freedom, in the order of rows and columns.
-    pub dofs: Vec<Dof>,
-    /// Deck width `B`, m.
-    pub width_m: f64,
-    /// Air density `ρ`, kg/m³.
-    pub air_density_kg_m3: f64,
-    /// `M`, n×n: kg/m and kg·m²/m.
-    pub mass: DMatrix<f64>,
-    /// `R`, n×n: N·s/m² and N·m·s/(rad·m).
-    pub damping: DMatrix<f64>,
-    /// `K`, n×n: N/m² and N·m/(rad·m).
-    pub stiffness: DMatrix<f64>,
-}
-
-impl Structure {
-    /// Degrees of freedom from the lowest to the highest still-air frequency.
-    pub fn dofs_by_frequency(&self) -> Vec<Dof> {
-        let mut order: Vec<usize> = (0..self.dofs.len()).collect();
-        let square = |i: &usize| self.stiffness[(*i, *i)] / self.mass[(*i, *i)];
-        order.sort_by(|i, j| square(i).total_cmp(&square(j)));
-        order.into_iter().map(|i| self.dofs[i]).collect()
-    }
-
-    /// The same structure with only those of its degrees of freedom that are among `dofs`; the others are locked.
-    #[must_use]
-    pub fn only(&self, dofs: &[Dof]) -> Self {
-        let kept: Vec<usize> = (0..self.dofs.len())
-            .filter(|i| dofs.contains(&self.dofs[*i]))
-            .collect();
-        let part = |m: &DMatrix<f64>| m.select_rows(&kept).select_columns(&kept);
-        Self {
-            dofs: kept.iter().map(|i| self.dofs[*i]).collect(),
-            width_m: self.width_m,
-            air_density_kg_m3: self.air_density_kg_m3,
-            mass: part(&self.mass),
-            damping: part(&self.damping),
-            stiffness: part(&self.stiffness),
-        }
-    }
-
-    /// Scales a dimensionless aerodynamic matrix to physical motion and force:
-    /// `diag(B, B, B²) G diag(1/B, 1/B, 1)`, still to be multiplied by `½ρV²`.
-    pub fn to_physical<T>(&self, dimensionless: &DMatrix<T>) -> DMatrix<T>
-    where
-        T: nalgebra::Scalar + std::ops::Mul<f64, Output = T> + Copy,
-    {
-        DMatrix::from_fn(dimensionless.nrows(), dimensionless.ncols(), |i, j| {
-            dimensionless[(i, j)]
-                * (self.dofs[i].force_scale(self.width_m) * self.dofs[j].motion_scale(self.width_m))
-        })
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -333,6 +329,12 @@ mod tests {
                 .unwrap_err()
                 .to_string()
                 .contains("found both")
+        );
+        let mut section = SectionModel::table_4_1();
+        section.mass_offset_m = Some(-0.21);
+        assert_eq!(
+            section.structure().unwrap_err().to_string(),
+            "section.mass_offset_m: expected less than the radius of gyration about the axis, 0.2000 m, found -0.21"
         );
     }
 }

@@ -1,6 +1,8 @@
-//! From a key or a byte offset to the line of a TOML file.
+//! TOML files of ours: read, checked, and every complaint with its line.
 
-use crate::error::Error;
+use crate::error::{Error, Result};
+use serde::de::DeserializeOwned;
+use std::path::{Path, PathBuf};
 use toml::de::{DeTable, DeValue};
 
 fn line_of(text: &str, offset: usize) -> usize {
@@ -10,8 +12,32 @@ fn line_of(text: &str, offset: usize) -> usize {
         .count()
 }
 
-/// A reading error of the TOML library as one of ours; `what` was being read: `a study file`.
-pub(crate) fn syntax_error(what: &str, text: &str, error: &toml::de::Error) -> Error {
+/// The file at `path` by `parse`, which is given its text and its directory.
+///
+/// # Errors
+/// [`Error::Io`] when it cannot be read; those of `parse`, naming the file.
+pub(crate) fn read<T>(path: &Path, parse: impl FnOnce(&str, PathBuf) -> Result<T>) -> Result<T> {
+    let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, e))?;
+    let directory = path.parent().unwrap_or(Path::new("")).to_path_buf();
+    parse(&text, directory).map_err(|e| e.in_file(path))
+}
+
+/// The value in `text`, completed and checked by `check`; `what` it is in words: `a study file`.
+///
+/// # Errors
+/// [`Error::Input`] with line and key for text that is no such value, and for what `check` refuses by key.
+pub(crate) fn parse<T: DeserializeOwned>(
+    what: &str,
+    text: &str,
+    check: impl FnOnce(&mut T) -> Result<()>,
+) -> Result<T> {
+    let mut value = toml::from_str(text).map_err(|e| syntax_error(what, text, &e))?;
+    check(&mut value).map_err(|e| with_line(text, e))?;
+    Ok(value)
+}
+
+/// A reading error of the TOML library as one of ours.
+fn syntax_error(what: &str, text: &str, error: &toml::de::Error) -> Error {
     let (place, found) = match error.span() {
         Some(span) => {
             let line = line_of(text, span.start);

@@ -8,6 +8,7 @@ use crate::error::{Error, Result, positive};
 use crate::section::{Dof, SectionModel};
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use serde::{Deserialize, Serialize};
+use std::path::Path;
 
 /// Version of the file layout of models that need nothing newer, so that programs of that version read them; raised when
 /// a field of all files is added or changed.
@@ -15,6 +16,9 @@ pub const SCHEMA_VERSION: u32 = 1;
 /// Newest version that is read and written. Version 2: discrete Laguerre filters of single transfer functions, rational
 /// functions with lags of each force, minimum-state form.
 pub const NEWEST_SCHEMA_VERSION: u32 = 2;
+
+/// States of a realisation at most, a hundred times those of any model that was ever fitted: its matrices are full.
+const MAX_STATES: usize = 1000;
 
 /// The models that can be saved and exported.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -60,7 +64,31 @@ impl Model {
         }
     }
 
+    /// Number of states of the realisation at most, without making it.
+    fn states_at_most(&self) -> usize {
+        match self {
+            Self::Laguerre(m) => m.terms.iter().map(|t| t.poles.len()).sum(),
+            Self::DiscreteLaguerre(m) => m.terms.iter().map(|t| t.coefficients.ncols()).sum(),
+            Self::Rational(m) => {
+                let lags = match &m.lags {
+                    Lags::Shared(lags) => lags.len(),
+                    Lags::PerForce(rows) => rows.iter().map(Vec::len).sum(),
+                };
+                lags.saturating_mul(m.dofs.len())
+            }
+            Self::MinimumState(m) => m.lags.len(),
+        }
+    }
+
     fn validate(&self) -> Result<()> {
+        let states = self.states_at_most();
+        if states > MAX_STATES {
+            return Err(Error::input(
+                "model",
+                format!("filters or lags of at most {MAX_STATES} states"),
+                states.to_string(),
+            ));
+        }
         match self {
             Self::Laguerre(m) => m.validate(),
             Self::DiscreteLaguerre(m) => m.validate(),
@@ -138,6 +166,15 @@ pub struct TrainedModel {
 }
 
 impl TrainedModel {
+    /// Reads and checks the file of a model.
+    ///
+    /// # Errors
+    /// [`Error::Io`] when it cannot be read; those of [`TrainedModel::from_json`], naming the file.
+    pub fn read(path: &Path) -> Result<Self> {
+        let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, e))?;
+        Self::from_json(&text).map_err(|e| e.in_file(path))
+    }
+
     /// Reads and checks a model.
     ///
     /// # Errors

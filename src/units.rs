@@ -7,6 +7,25 @@
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
+/// Mean speeds whose neighbours are within this ratio belong to one group of test points.
+pub const SAME_SPEED: f64 = 1.05;
+
+/// `values` rising, split where one is more than `ratio` times the one before. Every value is in exactly one group (none
+/// is empty), whatever the order in which they come.
+pub fn near_groups(values: impl IntoIterator<Item = f64>, ratio: f64) -> Vec<Vec<f64>> {
+    let mut values: Vec<f64> = values.into_iter().collect();
+    values.sort_by(f64::total_cmp);
+    values
+        .chunk_by(|a, b| *b <= ratio * a)
+        .map(<[f64]>::to_vec)
+        .collect()
+}
+
+/// The group of [`near_groups`] that `value` is in, or else the one below it.
+pub fn group_of(groups: &[Vec<f64>], value: f64) -> usize {
+    groups.partition_point(|g| g[0] <= value).saturating_sub(1)
+}
+
 /// Reduced frequency `K = ωB/V` of the full deck width, dimensionless.
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd, Serialize, Deserialize)]
 #[serde(transparent)]

@@ -134,7 +134,7 @@ fn wrong_wind_files_are_refused_with_their_line() {
             "aerodynamics = \"magic\"",
             "`quasi-steady`, `flat plate`",
         ),
-        ("speeds = 56", "speeds = 1", "at least 2 speeds"),
+        ("speeds = 56", "speeds = 1", "a number from 2 to 10000"),
         (
             "torsion = 0.2 }",
             "torsion = 0.2 }\narms_from = \"LN21-5200\"",

@@ -16,7 +16,7 @@ mod python;
 mod three_dof;
 
 use aerodeck::aerodynamics::derivatives::embedded;
-use aerodeck::fmu::package::{Overwrite, Runtime, write_fmu};
+use aerodeck::fmu::package::{Growing, Overwrite, Runtime, write_fmu};
 use aerodeck::identification::{Form, FrequencyFit, fit_table};
 use aerodeck::section::{Dof, SectionModel};
 use aerodeck::trained_model::{Experiment, Provenance, SCHEMA_VERSION, TrainedModel};
@@ -66,7 +66,7 @@ fn export() -> PathBuf {
     let mut expected = Map::new();
     let mut export = |name: &str, model: &TrainedModel, golden: Option<&Path>| {
         let fmu = folder.join(format!("{name}.fmu"));
-        write_fmu(&fmu, model, &runtimes, Overwrite::Refuse).unwrap();
+        write_fmu(&fmu, model, &runtimes, Overwrite::Refuse, Growing::Allow).unwrap();
         expected.insert(name.into(), in_process::expectations(model, golden));
     };
     for kind in models::KINDS {
@@ -83,7 +83,7 @@ fn export() -> PathBuf {
     export("measured_rational", &measured_deck(lag), None);
     let lateral = three_dof::trained(Form::default(), 3.9);
     let fmu = folder.join("three_dof.fmu");
-    write_fmu(&fmu, &lateral, &runtimes, Overwrite::Refuse).unwrap();
+    write_fmu(&fmu, &lateral, &runtimes, Overwrite::Refuse, Growing::Allow).unwrap();
     let text = serde_json::to_string(&json!({
         "models": Value::Object(expected), "three_dof": in_process::three_dof(&lateral),
     }))

@@ -7,7 +7,7 @@ use aerodeck::flutter::{Onset, OnsetSearch, find_onset};
 use aerodeck::fmu::importer::{
     Fmu, Severity, Simulation, SteppingSearch, Value, onset_by_stepping, simulate,
 };
-use aerodeck::fmu::package::{Overwrite, Runtime, write_fmu};
+use aerodeck::fmu::package::{Growing, Overwrite, Runtime, write_fmu};
 use aerodeck::trained_model::TrainedModel;
 use std::path::{Path, PathBuf};
 
@@ -22,7 +22,14 @@ fn model(kind: &str) -> TrainedModel {
 fn exported(folder: &Path, kind: &str) -> PathBuf {
     let path = folder.join(format!("Brücke 100% {kind}.fmu"));
     let runtimes = [Runtime::embedded().unwrap()];
-    write_fmu(&path, &model(kind), &runtimes, Overwrite::Refuse).unwrap();
+    write_fmu(
+        &path,
+        &model(kind),
+        &runtimes,
+        Overwrite::Refuse,
+        Growing::Allow,
+    )
+    .unwrap();
     path
 }
 

@@ -172,3 +172,48 @@ fn shares_of_the_deviation_of_the_onset() {
         }
     }
 }
+
+/// Drift stands in the axes of the cells, which turn with the model: P2*, P3* and their standard errors must not notice. The deck's
+/// own errors of the ramps are a few 1e-3 of an entry, so that only the noise of a test is compared.
+#[test]
+fn drift_of_the_cells_leaves_drag_due_to_rotation_and_its_errors() {
+    let table = embedded::deck("LN21-5200").unwrap();
+    let of = |drift_n: f64, seed: u64| {
+        let mut plan = VirtualCampaignPlan::default();
+        plan.tunnel.noise_fraction = 0.02;
+        plan.tunnel.seed = seed;
+        plan.disturbances.drift_n = drift_n;
+        let made = plan.from_table(&table, &Dof::THREE).unwrap();
+        let processed = process(&made.raw, &ProcessingOptions::default(), &|_| {}).unwrap();
+        identify_derivatives(&sources(&processed.records), &DerivativeOptions::default()).unwrap()
+    };
+    use aerodeck::aerodynamics::derivatives::Derivative;
+    let mut ratios = Vec::new();
+    for seed in 1..=2 {
+        let (still, drifting) = (of(0.0, seed), of(0.6, seed));
+        for d in [
+            Derivative::P2,
+            Derivative::P3,
+            Derivative::H2,
+            Derivative::H3,
+        ] {
+            for (a, b) in still.of(d).zip(drifting.of(d)) {
+                let size = (b.value - a.value).abs() / b.standard_error;
+                ratios.push(size);
+                assert!(
+                    size < 2.0,
+                    "{d} {} {:.2} Hz: {size} standard errors",
+                    b.run,
+                    b.frequency_hz
+                );
+            }
+        }
+    }
+    let rms = (ratios.iter().map(|r| r * r).sum::<f64>() / ratios.len() as f64).sqrt();
+    println!(
+        "drift moves P2*, P3*, H2*, H3* by {rms:.3} standard errors, root mean square of {}",
+        ratios.len()
+    );
+    // same noise in both: what differs is the drift that is left
+    assert!(rms < 0.5, "{rms}");
+}

@@ -4,7 +4,7 @@
 use aerodeck::aerodynamics::{AerodynamicModel, RationalModel};
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::flutter::{
-    FlutterSearch, Onset, OnsetSearch, determinant_onset, find_onset, trace_modes,
+    FlutterSearch, Onset, OnsetSearch, StableRange, determinant_onset, find_onset, trace_modes,
 };
 use aerodeck::section::SectionModel;
 use aerodeck::units::{ReducedFrequency, ReducedFrequencyRange};
@@ -99,7 +99,7 @@ fn stable_sections_say_so() {
     };
     assert_eq!(
         find_onset("Jones", &coupled, &search, None).unwrap(),
-        FlutterSearch::StableUpTo(80.0)
+        FlutterSearch::StableUpTo(StableRange::up_to(80.0))
     );
 }
 

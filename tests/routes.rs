@@ -4,9 +4,13 @@
 #[path = "common/command.rs"]
 #[allow(dead_code)] // each test file needs a part of it
 mod command;
+#[path = "common/matrix.rs"]
+#[allow(dead_code)]
+mod matrix;
 
 use aerodeck::aerodynamics::derivatives::{
-    Derivative, DerivativePoint, DerivativeTable, Extrapolation, InterpolatedTable, TableHeader,
+    Derivative, DerivativePoint, DerivativeTable, Extrapolation, InterpolatedTable, Interpolation,
+    TableHeader, write_csv,
 };
 use aerodeck::aerodynamics::{AerodynamicModel, FlatPlate, RationalModel};
 use aerodeck::aeroelastic::CoupledSection;
@@ -116,7 +120,8 @@ fn made_up(lines: &[(Derivative, f64, f64)]) -> InterpolatedTable {
         points.insert(d, of_one);
     }
     let table = DerivativeTable::new("made up", 0.5, TableHeader::default(), points).unwrap();
-    InterpolatedTable::new(&table, &Dof::TWO, Extrapolation::Hold).unwrap()
+    let by = Interpolation::LinearVHat;
+    InterpolatedTable::by(by, &table, &Dof::TWO, Extrapolation::Hold).unwrap()
 }
 
 /// With `A2* > 0` above V̂ = 1.6 torsion flutters alone where `½ρB⁴ A2* = 2ζJ`: in closed form.
@@ -189,7 +194,11 @@ fn speed(route: &Value) -> f64 {
 fn a_deck_close_to_torsional_flutter() {
     let (folder, json) = all_routes("LN21-6100");
     let table = route(&json, "interpolated table", "determinant");
-    near(speed(table), 24.7, 0.1);
+    // modified Akima over ln K, computed with NumPy and SciPy; linear over V̂ 24.69
+    near(speed(table), 25.894, 5e-4);
+    let interval = &table["search"]["onset"]["interval"];
+    assert_eq!(interval["kind"], "spread");
+    near(interval["low_m_s"].as_f64().unwrap(), 24.691, 5e-4);
     near(
         speed(route(&json, "interpolated table", "pk_iteration")) / speed(table),
         1.0,
@@ -279,6 +288,38 @@ fn static_coefficients_bring_a_row() {
     refused(at, &["flutter", "study.toml", "--all"], &["none"]);
 }
 
+/// A deck whose section grows where its table begins: every route answers, none takes the table with it.
+#[test]
+fn all_routes_of_a_bluff_deck() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    let mut table = Vec::new();
+    write_csv(&matrix::bluff_table(), &mut table).unwrap();
+    fs::write(at.join("bluff.csv"), table).unwrap();
+    let study = aerodeck::study::demo_study_text()
+        .replace("source = \"LN21-5200\"", "source = \"bluff.csv\"");
+    fs::write(at.join("study.toml"), study).unwrap();
+    for command in ["tunnel", "train"] {
+        succeeds(at, &[command, "study.toml"]);
+    }
+    let said = succeeds(at, &["flutter", "study.toml", "--all", "--json"]);
+    let json: Value = serde_json::from_str(&said).unwrap();
+    assert_eq!(
+        json["routes"]["failed"].as_array().unwrap().len(),
+        0,
+        "{said}"
+    );
+    let speed = |method: &str| {
+        let route = route(&json, "interpolated table", method);
+        route["search"]["unstable_at_or_below"]["speed_m_s"]
+            .as_f64()
+            .unwrap()
+    };
+    near(speed("pk_iteration") / speed("determinant"), 1.0, 0.01);
+    let text = succeeds(at, &["flutter", "study.toml", "--all"]);
+    assert!(text.contains("unstable at and below"), "{text}");
+}
+
 const PLAN: &str = "schema = 1\nmodel = \"model.json\"\nsamples = 3000\nspeed_max_m_s = 60.0\ndesign_speed_m_s = 35.0\n\
     [aerodynamics]\ncovariance = \"fits/laguerre.json\"\n\
     [[parameter]]\nname = \"torsion.damping_ratio\"\n\
@@ -297,13 +338,13 @@ fn monte_carlo_from_a_trained_model() {
     let said = succeeds(at, &["monte-carlo", "scatter.toml", "--json"]);
     let json: Value = serde_json::from_str(&said).unwrap();
     let result = &json["result"];
-    near(result["nominal_m_s"].as_f64().unwrap(), 37.011, 0.02);
+    near(result["nominal_m_s"].as_f64().unwrap(), 36.875, 0.02);
     near(result["mean_m_s"].as_f64().unwrap(), 37.0, 1.0);
     assert_eq!(result["samples"], 3000);
     assert!(at.join("monte_carlo.png").exists() && at.join("monte_carlo.json").exists());
     let text = succeeds(at, &["monte-carlo", "scatter.toml", "--seed", "4"]);
     assert!(
-        text.contains("Design    onset below 35 m/s") && text.contains("seed 4"),
+        text.contains("Design    onset below 35.000 m/s") && text.contains("seed 4"),
         "{text}"
     );
     let wrong = PLAN.replace("torsion.damping_ratio", "torsion.stiffness_n");

@@ -215,3 +215,75 @@ fn refusals_leave_the_state_untouched() {
     assert!(stepper.advance(&mut state, &storm, 1e4).is_err());
     assert_eq!(state, before);
 }
+
+/// Ramps of any height in any number of steps, as an importer adds them up: rounding must not refuse the last step.
+#[test]
+fn a_wind_that_ramps_to_rest_comes_to_rest() {
+    let mut below = 0;
+    for speed in (1..=49).map(|i| 0.7 * f64::from(i)) {
+        for parts in 1..=41 {
+            for mut stepper in [jones(), discrete()] {
+                let h = 0.002;
+                let mut inputs = Inputs::steady(speed, 2);
+                inputs.wind_speed_rate_m_s2 = -speed / (h * f64::from(parts));
+                let mut state = stepper.released(&[0.01, 0.0], &[0.0, 0.0]).unwrap();
+                for _ in 0..parts {
+                    stepper.advance(&mut state, &inputs, h).unwrap();
+                    inputs.wind_speed_m_s += inputs.wind_speed_rate_m_s2 * h;
+                }
+                assert!(inputs.wind_speed_m_s.abs() < 1e-12);
+                below += u32::from(inputs.wind_speed_m_s < 0.0);
+                inputs.wind_speed_rate_m_s2 = 0.0;
+                stepper.advance(&mut state, &inputs, h).unwrap();
+                let mut outputs = Outputs::default();
+                stepper.outputs(&state, &inputs, &mut outputs).unwrap();
+            }
+        }
+    }
+    assert!(
+        below > 100,
+        "rounding ends below zero in {below} cases only"
+    );
+}
+
+#[test]
+fn steps_of_too_many_parts_are_refused_at_once() {
+    let at = |stepper: &mut Stepper, inputs: &Inputs, step: f64| {
+        let mut state = stepper.released(&[0.01, 0.0], &[0.0, 0.0]).unwrap();
+        // the fastest of five: other work on the machine does not count
+        let spent = (0..5).map(|_| {
+            let begin = std::time::Instant::now();
+            assert!(stepper.advance(&mut state, inputs, step).is_err());
+            begin.elapsed()
+        });
+        assert!(spent.min().unwrap().as_millis() < 10);
+        let message = stepper.advance(&mut state, inputs, step).unwrap_err();
+        assert!(
+            message.to_string().contains("at most 100000 sub-steps"),
+            "{message}"
+        );
+    };
+    for (wind, step) in [(30.0, 1e4), (1e9, 1.0), (1e12, 1e-3)] {
+        at(&mut discrete(), &Inputs::steady(wind, 2), step);
+    }
+    let mut rising = Inputs::steady(10.0, 2);
+    rising.wind_speed_rate_m_s2 = 1e-3;
+    at(&mut jones(), &rising, 1e5);
+}
+
+/// A decay of hours ends at zero, not among the numbers that are slow to compute with.
+#[test]
+fn what_has_died_out_is_zero() {
+    for (mut stepper, step) in [(jones(), 1.0), (discrete(), 1.0)] {
+        // most of the decay is left out
+        let release = [1e-246, 1e-246];
+        let mut state = stepper.released(&release, &[0.0, 0.0]).unwrap();
+        let inputs = Inputs::steady(15.0, 2);
+        for _ in 0..600 {
+            stepper.advance(&mut state, &inputs, step).unwrap();
+            assert!(state.values.iter().all(|x| *x == 0.0 || x.abs() >= 1e-250));
+        }
+        let largest = state.values.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        assert_eq!(largest, 0.0, "{:?}", state.values);
+    }
+}

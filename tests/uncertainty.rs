@@ -29,7 +29,8 @@ fn repeated(truth: Truth, noise_correlation_s: f64, poles: &[f64]) -> CoverageRe
 }
 
 /// The short form of `aerodeck coverage --repetitions 500`. If 95 % of the intervals hold the truth, fewer than 88 of 100
-/// do so once in 400 times; stated and observed scatter agree to `1/√(2·100)` = 7 %, three times that are allowed.
+/// do so once in 400 times. The stated scatter exceeds the observed by some 5 % (`docs/uncertainty.md`: in one campaign of ten a
+/// scatter between speeds that is not there is counted by chance), known to `1/√(2·100)` = 7 %: three times that are allowed.
 #[test]
 fn intervals_hold_a_truth_within_the_class() {
     for correlation_s in [0.0, 0.1] {
@@ -39,12 +40,29 @@ fn intervals_hold_a_truth_within_the_class() {
             "{correlation_s}: {report:?}"
         );
         let ratio = report.stated_standard_error_m_s / report.scatter_m_s;
-        assert!((ratio - 1.0).abs() < 0.21, "{correlation_s}: {ratio}");
+        assert!((ratio - 1.05).abs() < 0.21, "{correlation_s}: {ratio}");
         // no bias: the class holds the truth, and the fit without noise is exact up to the images above Nyquist
         assert!(report.bias_m_s.abs() < 1e-3, "{}", report.bias_m_s);
         assert!(report.mean_error_m_s.abs() < 4.0 * report.standard_error_of_mean_m_s);
         assert!(report.derivatives_hold_truth.percent > 92.0);
     }
+}
+
+/// The short form of `aerodeck coverage --speed-scatter 0.03 --run-scatter 0.01`: if 95 % of 80 intervals hold the truth, fewer
+/// than 68 do so once in 250 times. Intervals from the scatter within speeds alone hold it in half of the cases.
+#[test]
+fn intervals_hold_a_truth_that_differs_between_speeds_and_runs() {
+    let plan = CoveragePlan {
+        speed_scatter: 0.03,
+        run_scatter: 0.01,
+        repetitions: 80,
+        ..CoveragePlan::default()
+    };
+    let report = coverage(&plan, &|_| ()).unwrap();
+    assert!(report.holds_truth.inside >= 68, "{report:?}");
+    assert!(report.derivatives_hold_truth.percent > 90.0, "{report:?}");
+    assert!(report.speeds_differ.inside >= 78, "{report:?}");
+    assert!(report.mean_degrees_of_freedom < 8.0);
 }
 
 /// One pole cannot follow Theodorsen's function: the bias is many times the scatter, and is told apart from it.
@@ -55,9 +73,18 @@ fn bias_is_told_from_scatter_outside_the_class() {
     // noise moves the mean error from the bias by its own error, and by its square: a tenth of the scatter at most
     let difference = (report.mean_error_m_s - report.bias_m_s).abs();
     assert!(difference < 0.3 * report.scatter_m_s, "{report:?}");
+    // intervals that do not keep their word are said to do so
+    let kept = |percent: f64| (93.0..=97.0).contains(&percent);
+    let said = |what: &str| report.warnings.iter().any(|w| w.contains(what));
+    assert_eq!(said("the onset"), !kept(report.holds_truth.percent));
+    assert_eq!(
+        said("the derivatives"),
+        !kept(report.derivatives_hold_truth.percent)
+    );
+    assert!(!report.warnings.is_empty(), "{report:?}");
 }
 
-/// Training, and flutter from the saved files alone, state the same intervals; the table has none, with the reason.
+/// Training, and flutter from the saved files alone, state the same intervals; the table shows the spread between interpolations.
 #[test]
 fn every_onset_has_an_interval_or_a_reason() {
     let folder = TempDir::new().unwrap();
@@ -68,7 +95,9 @@ fn every_onset_has_an_interval_or_a_reason() {
     assert!(trained.contains("95 % interval"), "{trained}");
     let text = succeeds(at, &["flutter", "study.toml"]);
     assert!(
-        text.contains("no interval: interpolated table (determinant)"),
+        text.contains(
+            "in brackets, no 95 % interval: interpolated table (determinant): spread between"
+        ),
         "{text}"
     );
     let json: Value =
@@ -77,7 +106,13 @@ fn every_onset_has_an_interval_or_a_reason() {
         &std::fs::read_to_string(at.join("fits/laguerre.uncertainty.json")).unwrap(),
     )
     .unwrap();
-    for name in ["Laguerre", "rational functions", "thesis"] {
+    // a form whose bias is known has no interval, with the reason
+    let thesis = onset_of(&json["flutter"], "thesis", "eigenvalues");
+    assert_eq!(thesis["interval"]["kind"], "none");
+    let reason = thesis["interval"]["reason"].as_str().unwrap();
+    assert!(reason.contains("no feed-through"), "{reason}");
+    one_covariance(at, &saved);
+    for name in ["Laguerre", "rational functions"] {
         let onset = onset_of(&json["flutter"], name, "eigenvalues");
         let interval = &onset["interval"];
         assert_eq!(interval["kind"], "known", "{name}");
@@ -91,7 +126,7 @@ fn every_onset_has_an_interval_or_a_reason() {
         }
     }
     let own = onset_of(&json["flutter"], "interpolated table", "determinant");
-    assert_eq!(own["interval"]["kind"], "none");
+    assert_eq!(own["interval"]["kind"], "spread");
     // a covariance that belongs to other numbers is not used
     let file = at.join("models/laguerre.json");
     let model = std::fs::read_to_string(&file).unwrap();
@@ -101,4 +136,35 @@ fn every_onset_has_an_interval_or_a_reason() {
     std::fs::write(&file, value.to_string()).unwrap();
     let text = succeeds(at, &["flutter", "study.toml"]);
     assert!(text.contains("belongs to another training"), "{text}");
+}
+
+/// Standard errors of the fit's report are the roots of the diagonal of its covariance, and Monte Carlo with nothing but the
+/// aerodynamics random scatters as the stated standard error says. 4000 samples tell a standard deviation to 1.1 %; the
+/// onset is not quite linear in its parameters.
+fn one_covariance(at: &std::path::Path, saved: &Value) {
+    let text = std::fs::read_to_string(at.join("fits/laguerre.json")).unwrap();
+    let report: Value = serde_json::from_str(&text).unwrap();
+    let mut largest = 0.0_f64;
+    for entry in report["entries"].as_array().unwrap() {
+        for (i, c) in entry["coefficients"].as_array().unwrap().iter().enumerate() {
+            let error = c["standard_error"].as_f64().unwrap();
+            let variance = entry["covariance"][i][i].as_f64().unwrap();
+            largest = largest.max((error * error / variance - 1.0).abs());
+        }
+    }
+    assert!(largest < 1e-9, "{largest}");
+    std::fs::write(
+        at.join("scatter.toml"),
+        "schema = 1\nmodel = \"models/laguerre.json\"\nsamples = 4000\nspeed_max_m_s = 60.0\n\
+         [aerodynamics]\ncovariance = \"fits/laguerre.json\"\n",
+    )
+    .unwrap();
+    let said = succeeds(at, &["monte-carlo", "scatter.toml", "--json"]);
+    let drawn: Value = serde_json::from_str(&said).unwrap();
+    let deviation = drawn["result"]["standard_deviation_m_s"].as_f64().unwrap();
+    let stated = saved["onset"]["standard_error_m_s"].as_f64().unwrap();
+    assert!(
+        (deviation / stated - 1.0).abs() < 0.1,
+        "{deviation} {stated}"
+    );
 }

@@ -13,6 +13,7 @@ pub mod laguerre;
 pub mod quasi_steady;
 pub mod rational;
 mod realization;
+mod spline;
 
 pub use flat_plate::FlatPlate;
 pub use gust::GustSeries;
@@ -24,7 +25,7 @@ pub use realization::{ContinuousRealization, DiscreteRealization, Realization};
 
 use crate::error::Result;
 use crate::section::Dof;
-use crate::units::ReducedFrequency;
+use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use nalgebra::{Complex, DMatrix};
 
 /// `G(K)`, n×n, dimensionless.
@@ -43,4 +44,12 @@ pub trait AerodynamicModel: Send + Sync {
 
     /// State-space realisation in dimensionless time; `None` for models known only as a `G(K)`.
     fn realize(&self) -> Option<Realization>;
+
+    /// Reduced frequencies to which the model's own statements are confined; `None` when it speaks at every `K`.
+    ///
+    /// A table knows nothing beyond its points. Outside this range it refuses or holds values, so that a mode can be
+    /// followed; no answer may rest on what is held.
+    fn known_range(&self) -> Option<ReducedFrequencyRange> {
+        None
+    }
 }

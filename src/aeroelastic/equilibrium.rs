@@ -1,7 +1,7 @@
 //! Static equilibrium of the section under quasi-steady forces over wind speed (1.9).
 //!
-//! `K q = ½ρV² diag(B, B, B²) c(θ)`: only the rotation enters the forces, so that with the flexibility `K⁻¹` one equation
-//! `g(θ) = θ − ½ρV² [K⁻¹ diag(B, B, B²) c(θ)]_θ = 0` is left. It is followed from still air by Newton's method with
+//! `K q = ½ρV² diag(B, B, B²) Tᵀ c(θ)`: only the rotation enters the forces, so that with the flexibility `K⁻¹` one equation
+//! `g(θ) = θ − ½ρV² [K⁻¹ diag(B, B, B²) Tᵀ c(θ)]_θ = 0` is left. It is followed from still air by Newton's method with
 //! prediction along the tangent. The branch ends where its slope `g'` comes to zero (torsional divergence) or where
 //! the rotation leaves the table.
 
@@ -150,7 +150,7 @@ struct Place {
 struct Branch<'a> {
     structure: &'a Structure,
     theory: &'a QuasiSteady,
-    /// `K⁻¹ diag(B, B, B²)`, n×n.
+    /// `K⁻¹ diag(B, B, B²) Tᵀ`, n×n.
     flexibility: DMatrix<f64>,
     torsion: usize,
 }
@@ -170,6 +170,8 @@ impl<'a> Branch<'a> {
         for (mut column, dof) in flexibility.column_iter_mut().zip(&structure.dofs) {
             column *= dof.force_scale(structure.width_m);
         }
+        let n = structure.dofs.len();
+        flexibility *= structure.forces_at_axis(DMatrix::identity(n, n));
         let torsion = structure.dofs.iter().position(|d| *d == Dof::Torsion);
         Ok(Self {
             structure,

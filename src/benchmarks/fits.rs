@@ -1,11 +1,14 @@
 //! Models fitted to the flat plate, and the thesis's own guidelines for its discrete filters.
 
-use super::jones::{by_eigenvalues, couple};
+use super::jones::by_eigenvalues;
 use super::{Case, Figure};
 use crate::aerodynamics::FlatPlate;
 use crate::aerodynamics::laguerre::{alpha_lower_bound, alpha_upper_bound, impulse_response};
+use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
-use crate::identification::{FeedThrough, Form, FrequencyFit, PoleSearch, fit_table, sample_model};
+use crate::identification::{
+    Constraints, FeedThrough, Form, FrequencyFit, PoleSearch, fit_table, sample_model,
+};
 use crate::section::{Dof, SectionModel};
 use crate::trained_model::Model;
 use crate::units::ReducedFrequency;
@@ -75,6 +78,8 @@ fn flat_plate_fits() -> Result<Vec<f64>> {
         let options = FrequencyFit {
             form,
             poles,
+            // the reference figures are those of least squares alone
+            constraints: Constraints::None,
             ..FrequencyFit::default()
         };
         Ok::<_, Error>(fit_table(&samples, &Dof::TWO, &options)?.0)
@@ -97,7 +102,7 @@ fn flat_plate_fits() -> Result<Vec<f64>> {
 }
 
 fn onset(model: &Model) -> Result<f64> {
-    let section = couple(&SectionModel::table_4_1(), model)?;
+    let section = CoupledSection::with_model(&SectionModel::table_4_1().structure()?, model)?;
     Ok(by_eigenvalues(&section, 80.0, None)?.speed_m_s)
 }
 

@@ -2,7 +2,7 @@
 
 use super::flat_plate::{WIDE, by_determinant};
 use super::{Case, Figure};
-use crate::aerodynamics::{AerodynamicModel, RationalModel};
+use crate::aerodynamics::RationalModel;
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
 use crate::flutter::{Onset, OnsetSearch, find_onset};
@@ -86,18 +86,7 @@ fn coefficients() -> Result<Vec<f64>> {
 
 /// The section with Jones's rational function.
 fn coupled(section: &SectionModel) -> Result<CoupledSection> {
-    couple(section, &RationalModel::jones_flat_plate())
-}
-
-/// The section with a model that has a realisation.
-pub(super) fn couple(
-    section: &SectionModel,
-    model: &dyn AerodynamicModel,
-) -> Result<CoupledSection> {
-    let realization = model
-        .realize()
-        .ok_or_else(|| Error::Numerical("the model has no realisation".into()))?;
-    CoupledSection::new(section.structure()?, realization)
+    CoupledSection::with_model(&section.structure()?, &RationalModel::jones_flat_plate())
 }
 
 /// The onset by eigenvalues, inside the tested range if there is one; a section that does not flutter is a failure here.

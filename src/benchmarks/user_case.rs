@@ -3,6 +3,7 @@
 mod evaluate;
 
 use super::{CaseResult, Citation};
+use crate::aerodynamics::derivatives::Interpolation;
 use crate::error::{Error, Result, non_negative, positive};
 use crate::flutter::OnsetMethod;
 use crate::section::{Dof, SectionModel};
@@ -56,9 +57,12 @@ pub struct UserAerodynamics {
     /// Rational functions in Roger's form.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rational: Option<UserRational>,
-    /// A table of derivatives (`.csv`, `.xlsx`) or the name of an embedded deck, interpolated linearly.
+    /// A table of derivatives (`.csv`, `.xlsx`) or the name of an embedded deck.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub table: Option<String>,
+    /// How the table is read between its points.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub interpolation: Option<Interpolation>,
     /// A trained model (`.json`).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub model: Option<PathBuf>,
@@ -179,9 +183,7 @@ impl UserCase {
     /// # Errors
     /// [`Error::Io`] when it cannot be read; [`Error::Input`] with file and line for everything that is wrong in it.
     pub fn read(path: &Path) -> Result<Self> {
-        let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, e))?;
-        let directory = path.parent().unwrap_or(Path::new("")).to_path_buf();
-        Self::from_toml(&text, directory).map_err(|e| e.in_file(path))
+        toml_lines::read(path, Self::from_toml)
     }
 
     /// Reads and checks the text of a case file; paths in it are read against `directory`.
@@ -189,12 +191,10 @@ impl UserCase {
     /// # Errors
     /// [`Error::Input`] with line and key.
     pub fn from_toml(text: &str, directory: PathBuf) -> Result<Self> {
-        let mut case: Self =
-            toml::from_str(text).map_err(|e| toml_lines::syntax_error("a case file", text, &e))?;
-        case.directory = directory;
-        case.validate()
-            .map_err(|e| toml_lines::with_line(text, e))?;
-        Ok(case)
+        toml_lines::parse("a case file", text, |case: &mut Self| {
+            case.directory = directory;
+            case.validate()
+        })
     }
 
     fn validate(&self) -> Result<()> {

@@ -175,9 +175,10 @@ impl BuffetingProblem<'_> {
             GustComponent::Vertical => 1,
         };
         let half_rho_v = 0.5 * s.air_density_kg_m3 * speed_m_s;
+        let forces = s.forces_at_axis(self.forces.matrix.clone());
         DVector::from_fn(s.dofs.len(), |i, _| {
             let scale = half_rho_v * s.dofs[i].force_scale(s.width_m);
-            admittance * (scale * self.forces.matrix[(i, column)])
+            admittance * (scale * forces[(i, column)])
         })
     }
 

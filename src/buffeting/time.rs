@@ -16,6 +16,8 @@ const SAMPLES_PER_PERIOD: f64 = 40.0;
 /// Decay times of the least damped mode before the record counts, and least length of the record: what is left of the start,
 /// and the error of frequencies at a distance of 1/T, are e^(−10).
 const DECAY_TIMES: f64 = 10.0;
+/// More records than any average needs.
+const MOST_RECORDS: usize = 100_000;
 /// Decay times in a record when no length is given.
 const DECAY_TIMES_BY_DEFAULT: f64 = 40.0;
 
@@ -122,10 +124,10 @@ pub fn time_ensemble(
     progress: &(dyn Fn(usize, usize) + Sync),
 ) -> Result<Ensemble> {
     positive("wind speed", speed_m_s)?;
-    if plan.records < 2 {
+    if !(2..=MOST_RECORDS).contains(&plan.records) {
         return Err(Error::input(
             "records",
-            "at least 2",
+            format!("a number from 2 to {MOST_RECORDS}"),
             plan.records.to_string(),
         ));
     }

@@ -1,9 +1,11 @@
 //! Results in words and tables, for people.
 
 use super::study::Summary;
-use crate::flutter::{Onset, OnsetInterval};
-use crate::identification::FitReport;
-use crate::study::{Deck, Deviation, Divergence, KnownUncertainty, OnsetSummary, Study};
+use crate::flutter::{Onset, OnsetInterval, UnstableStart, UnwantedGrowth};
+use crate::identification::{ConstraintReport, FitReport};
+use crate::study::{
+    Deck, Deviation, Divergence, KnownUncertainty, ModelGrowth, OnsetSummary, StageFailure, Study,
+};
 use std::fmt::Write as _;
 
 /// The whole chain.
@@ -11,6 +13,7 @@ pub fn chain(study: &Study, deck: &Deck, summary: &Summary, files: &str) -> Stri
     let mut text = format!("{}\n\n", study.name);
     let s = &study.section;
     let _ = writeln!(text, "Deck      {}", deck.description());
+    text.push_str(&deck_warnings(deck));
     let _ = writeln!(
         text,
         "Section   B {} m, m {} kg/m, J {} kg·m²/m, ρ {} kg/m³; y and lift up, θ and moment nose-up, per metre of span",
@@ -19,6 +22,7 @@ pub fn chain(study: &Study, deck: &Deck, summary: &Summary, files: &str) -> Stri
         s.torsion.inertia_kg_m2_m,
         s.air_density_kg_m3
     );
+    let _ = writeln!(text, "Speeds    {}", study.speeds().explain());
     text.push('\n');
     for fit_summary in &summary.fits {
         text.push_str(&fit(
@@ -28,12 +32,18 @@ pub fn chain(study: &Study, deck: &Deck, summary: &Summary, files: &str) -> Stri
         ));
     }
     text.push('\n');
-    text.push_str(&onsets(&summary.onsets, &summary.stable));
+    text.push_str(&onsets(
+        (&summary.onsets, &summary.undetermined),
+        &summary.unstable,
+        &summary.stable,
+    ));
+    text.push_str(&growths(&summary.growth));
     text.push_str(&divergence(&summary.divergence));
     text.push_str(&deviations(&summary.deviations));
     if let Some(stepped) = &summary.stepped {
         let _ = writeln!(text, "{}", stepped.explain());
     }
+    text.push_str(&failures(&summary.failed));
     let _ = writeln!(text, "\nFiles");
     text.push_str(files);
     text
@@ -75,6 +85,9 @@ pub fn fit(name: &str, report: &FitReport, uncertainty: &KnownUncertainty) -> St
         std::f64::consts::TAU / report.tested_range.max.full_width(),
         std::f64::consts::TAU / report.tested_range.min.full_width(),
     );
+    if let Some(constraints) = &report.constraints {
+        text.push_str(&held(constraints));
+    }
     match uncertainty {
         Ok(known) => {
             if let Some(line) = known.explain() {
@@ -88,6 +101,33 @@ pub fn fit(name: &str, report: &FitReport, uncertainty: &KnownUncertainty) -> St
     for note in &report.notes {
         let _ = writeln!(text, "          note: {note}");
     }
+    text
+}
+
+/// What held the fit back, what that costs and what it does to the onset.
+fn held(constraints: &ConstraintReport) -> String {
+    let mut text = String::new();
+    for sentence in &constraints.sentences {
+        let _ = writeln!(text, "          held: {sentence}");
+    }
+    if let Some((cost, points)) = constraints.dearest() {
+        let _ = write!(
+            text,
+            "          constraints raise residuals by at most {points:.2} percentage points ({}{})",
+            force_symbol(cost.force),
+            cost.motion.symbol()
+        );
+    }
+    if let Some(onset) = &constraints.onset {
+        let speed = |v: Option<f64>| v.map_or("none".to_owned(), |v| format!("{v:.3} m/s"));
+        let _ = write!(
+            text,
+            "; onset {} without them, {} with them",
+            speed(onset.without_m_s),
+            speed(onset.with_m_s)
+        );
+    }
+    text.push('\n');
     text
 }
 
@@ -111,9 +151,13 @@ fn force_symbol(dof: crate::section::Dof) -> &'static str {
 }
 
 /// The onsets side by side.
-pub fn onsets(onsets: &[Onset], stable: &[OnsetSummary]) -> String {
+pub fn onsets(
+    (onsets, undetermined): (&[Onset], &[Onset]),
+    unstable: &[UnstableStart],
+    stable: &[OnsetSummary],
+) -> String {
     let mut text = format!(
-        "{:<22} {:<12} {:>9} {:>16} {:>8} {:>8} {:>8} {:>8}  {:<9} {}\n",
+        "{:<22} {:<12} {:>9} {:>19} {:>8} {:>8} {:>8} {:>8}  {:<9} {}\n",
         "Flutter onset",
         "method",
         "V m/s",
@@ -128,7 +172,7 @@ pub fn onsets(onsets: &[Onset], stable: &[OnsetSummary]) -> String {
     for o in onsets {
         let _ = writeln!(
             text,
-            "{:<22} {:<12} {:>9.3} {:>16} {:>8.4} {:>8.3} {:>8.4} {:>8.1}  {:<9} {}",
+            "{:<22} {:<12} {:>9.3} {:>19} {:>8.4} {:>8.3} {:>8.4} {:>8.1}  {:<9} {}",
             o.model,
             o.method.name(),
             o.speed_m_s,
@@ -145,54 +189,95 @@ pub fn onsets(onsets: &[Onset], stable: &[OnsetSummary]) -> String {
             }
         );
     }
+    for o in undetermined {
+        let reason = o.headline_m_s().err().unwrap_or_default();
+        let _ = writeln!(text, "{:<22} {:<12} {reason}", o.model, o.method.name());
+    }
+    for s in unstable {
+        let method = s.method.name();
+        let _ = writeln!(text, "{:<22} {method:<12} {}", s.model, s.explain());
+    }
     for s in stable {
-        let _ = writeln!(
-            text,
-            "{:<22} {:<12} no flutter up to {} m/s",
-            s.model,
-            s.method.name(),
-            s.stable_up_to_m_s
-        );
+        let method = s.method.name();
+        let _ = writeln!(text, "{:<22} {method:<12} {}", s.model, s.explain());
     }
     for o in onsets {
-        if let OnsetInterval::None { reason } = &o.interval {
-            let _ = writeln!(
-                text,
-                "no interval: {} ({}): {reason}",
-                o.model,
-                o.method.name()
-            );
-        }
+        let place = format!("{} ({})", o.model, o.method.name());
+        let _ = match &o.interval {
+            OnsetInterval::None { reason } => writeln!(text, "no interval: {place}: {reason}"),
+            OnsetInterval::Spread { of, .. } => {
+                writeln!(text, "in brackets, no 95 % interval: {place}: {of}")
+            }
+            OnsetInterval::Undetermined { reason, .. } => writeln!(text, "{place}: {reason}"),
+            OnsetInterval::Known { .. } => Ok(()),
+        };
         for warning in &o.warnings {
             let _ = writeln!(text, "warning: {}: {warning}", o.model);
+        }
+    }
+    for s in unstable {
+        for warning in &s.warnings {
+            let _ = writeln!(text, "warning: {}: {warning}", s.model);
         }
     }
     text
 }
 
-/// The ends of an interval, with as many digits as it leaves meaning.
+/// The ends of an interval.
 pub fn interval(of: &OnsetInterval) -> String {
     match of {
+        OnsetInterval::Spread {
+            low_m_s, high_m_s, ..
+        } => format!("[{low_m_s:.3} – {high_m_s:.3}]"),
         OnsetInterval::Known {
             low_m_s, high_m_s, ..
         } => {
-            let digits = if high_m_s - low_m_s < 0.2 { 3 } else { 2 };
-            format!("{low_m_s:.digits$} – {high_m_s:.digits$}")
+            format!("{low_m_s:.3} – {high_m_s:.3}")
         }
+        OnsetInterval::Undetermined { .. } => "not determined".to_owned(),
         OnsetInterval::None { .. } => "none".to_owned(),
     }
 }
 
+/// What the scan for growth below the onset found.
+pub fn growth(model: &str, growth: &UnwantedGrowth) -> String {
+    let mark = if growth.is_none() { "" } else { "warning: " };
+    format!("{mark}{model}: {}\n", growth.explain())
+}
+
+/// As [`growth`], for every model of a study.
+pub fn growths(all: &[ModelGrowth]) -> String {
+    all.iter().map(|g| growth(&g.model, &g.growth)).collect()
+}
+
+/// Stages that failed.
+pub fn failures(all: &[StageFailure]) -> String {
+    all.iter().map(|f| f.explain() + "\n").collect()
+}
+
 /// Divergence of each model.
 pub fn divergence(all: &[Divergence]) -> String {
+    let assumed: String = all
+        .iter()
+        .filter_map(|d| Some(format!("  {}: {}\n", d.model, d.assumed.as_ref()?)))
+        .collect();
     let speeds: Vec<String> = all
         .iter()
         .map(|d| match d.speed_m_s {
-            Some(v) => format!("{} {v:.2} m/s", d.model),
+            Some(v) => format!("{} {v:.3} m/s", d.model),
             None => format!("{} none", d.model),
         })
         .collect();
-    format!("Divergence: {}\n", speeds.join(", "))
+    format!("Divergence: {}\n{assumed}", speeds.join(", "))
+}
+
+/// What was assumed in reading the deck, and what looks wrong in it.
+pub fn deck_warnings(deck: &Deck) -> String {
+    let warnings = deck.warnings();
+    warnings
+        .iter()
+        .map(|w| format!("warning: deck: {w}\n"))
+        .collect()
 }
 
 /// Deviations from the deck's own onset.

@@ -88,8 +88,13 @@ fn account(study: &WindStudy, results: &BuffetingStudy) -> String {
         }
         text.push('\n');
     }
-    if let Some((speed, reason)) = &results.ends_at {
-        let _ = writeln!(text, "at {speed:.2} m/s and above: {reason}");
+    for group in results.left_out.chunk_by(|a, b| a.reason == b.reason) {
+        let speeds: Vec<String> = group
+            .iter()
+            .map(|s| format!("{:.2}", s.speed_m_s))
+            .collect();
+        let reason = group.first().map_or("", |s| s.reason.as_str());
+        let _ = writeln!(text, "at {} m/s: {reason}", speeds.join(", "));
     }
     text.push_str(&tested(results));
     text.push_str(&time_domain(results));

@@ -1,8 +1,17 @@
 //! Arguments that several commands share.
 
 use crate::error::Result;
-use crate::study::Study;
+use crate::study::{Study, study_warnings};
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
+
+/// Says at once what is hardly meant in a file, since it may be the cause of a failure to come.
+pub fn warn(file: &Path, warnings: &[String]) {
+    for warning in warnings {
+        // standard error may be closed
+        let _ = writeln!(std::io::stderr(), "warning: {}: {warning}", file.display());
+    }
+}
 
 /// A study file and the folder of its results.
 #[derive(clap::Args)]
@@ -17,16 +26,19 @@ pub struct StudyArgs {
 impl StudyArgs {
     /// Reads the study.
     pub fn read(&self) -> Result<Study> {
-        Study::read(&self.study)
+        let study = Study::read(&self.study)?;
+        warn(&self.study, &study_warnings(&study));
+        Ok(study)
     }
 
     /// Folder of the results.
     pub fn directory(&self) -> PathBuf {
-        let beside = self.study.parent().unwrap_or(Path::new(""));
-        match &self.out {
-            Some(out) => out.clone(),
-            None if beside.as_os_str().is_empty() => PathBuf::from("."),
-            None => beside.to_path_buf(),
-        }
+        self.out.clone().unwrap_or_else(|| self.beside())
+    }
+
+    /// Folder of the study file.
+    pub fn beside(&self) -> PathBuf {
+        let parent = self.study.parent().filter(|p| !p.as_os_str().is_empty());
+        parent.unwrap_or(Path::new(".")).to_path_buf()
     }
 }

@@ -31,6 +31,15 @@ pub struct Args {
     /// Correlation time of the noise, s; 0 for white noise.
     #[arg(long, default_value_t = 0.0)]
     noise_correlation: f64,
+    /// Mean speeds, m/s.
+    #[arg(long, value_delimiter = ',', default_values_t = [8.17, 4.0])]
+    speeds: Vec<f64>,
+    /// Standard deviation of every transfer function from one mean speed to the other, relative, in size and in phase.
+    #[arg(long, default_value_t = 0.0)]
+    speed_scatter: f64,
+    /// The same from run to run (one motion at one speed), for all forces of a run together.
+    #[arg(long, default_value_t = 0.0)]
+    run_scatter: f64,
     /// Seed of the first repetition; each has its own.
     #[arg(long, default_value_t = 1)]
     seed: u64,
@@ -52,7 +61,10 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
         poles: args.poles.clone(),
         search_poles: args.search,
         repetitions: args.repetitions,
+        speed_scatter: args.speed_scatter,
+        run_scatter: args.run_scatter,
         tunnel: TunnelPlan {
+            speeds_m_s: args.speeds.clone(),
             noise_fraction: args.noise,
             noise_correlation_s: args.noise_correlation,
             seed: args.seed,
@@ -80,7 +92,8 @@ fn account(r: &CoverageReport) -> String {
         "white".to_owned()
     };
     let mut text = format!(
-        "Truth {truth}; filters with poles {:?} ({}); noise {} % of each force, {noise}; {} repetitions\n\n",
+        "Truth {truth}; filters with poles {:?} ({}); noise {} % of each force, {noise}; {} repetitions\n\
+         Mean speeds {:?} m/s; truth scatters between speeds by {} %, between runs by {} %\n\n",
         r.plan.poles,
         if r.plan.search_poles {
             "searched"
@@ -89,6 +102,9 @@ fn account(r: &CoverageReport) -> String {
         },
         100.0 * r.plan.tunnel.noise_fraction,
         r.plan.repetitions,
+        r.plan.tunnel.speeds_m_s,
+        100.0 * r.plan.speed_scatter,
+        100.0 * r.plan.run_scatter,
     );
     for (what, value) in [
         ("true onset", r.true_onset_m_s),
@@ -117,11 +133,15 @@ fn account(r: &CoverageReport) -> String {
         ("intervals of the onset that hold the truth", &r.holds_truth),
         ("  with the bias taken away", &r.holds_fit_without_noise),
         ("intervals of the derivatives", &r.derivatives_hold_truth),
+        ("repetitions in which speeds differ", &r.speeds_differ),
     ] {
         let _ = writeln!(text, "{what:<42} {}", share(value));
     }
     if r.without_onset > 0 {
         let _ = writeln!(text, "repetitions without an onset: {}", r.without_onset);
+    }
+    for warning in &r.warnings {
+        let _ = writeln!(text, "warning: {warning}");
     }
     text
 }

@@ -4,7 +4,8 @@ use super::answer::Answer;
 use super::output::OutputDir;
 use super::progress::Progress;
 use super::study::run_chain;
-use crate::error::{Error, Result};
+use crate::error::Result;
+use crate::fmu::package::Growing;
 use crate::study::{Study, demo_study_text};
 use std::path::PathBuf;
 
@@ -19,24 +20,17 @@ pub struct Args {
     /// Where the results go.
     #[arg(long, default_value = "aerodeck-out")]
     out: PathBuf,
+    /// Replace a study file that differs from the demo's.
+    #[arg(long)]
+    force: bool,
 }
 
 /// Runs the command.
 pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
-    let path = args.out.join(STUDY_FILE);
-    if path.exists() {
-        let there = std::fs::read_to_string(&path).map_err(|e| Error::io(&path, e))?;
-        if there != demo_study_text() {
-            return Err(Error::input(
-                "",
-                "the demo's own study file; run yours with `aerodeck study`, or choose another --out",
-                "a file that differs, which was left as it is",
-            )
-            .in_file(&path));
-        }
-    }
     let study = Study::from_toml(demo_study_text(), args.out.clone())?;
     let mut out = OutputDir::new(&args.out)?;
     out.write(STUDY_FILE, demo_study_text())?;
-    run_chain(&study, out, progress)
+    let instead = "run yours with `aerodeck study`, choose another --out";
+    out.refuse_edited(STUDY_FILE, args.force, instead)?;
+    run_chain(&study, out, Growing::Refuse, progress)
 }

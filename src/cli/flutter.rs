@@ -7,7 +7,9 @@ use super::progress::Progress;
 use super::routes;
 use super::{account, stages};
 use crate::error::Result;
-use crate::study::{Deck, KnownUncertainty, Study, route_table, state_route_intervals};
+use crate::study::{
+    Deck, KnownUncertainty, StageFailure, Study, attempt, route_table, state_route_intervals,
+};
 use crate::trained_model::TrainedModel;
 
 /// Frequencies, damping and flutter onset of the trained models of a study (see `train`)
@@ -29,25 +31,37 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     let study = args.study.read()?;
     let deck = Deck::load(&study)?;
     let directory = args.study.directory();
-    let models = stages::read_models(&study, &directory)?;
-    let known = stages::read_uncertainties(&study, &directory)?;
+    let mut failed = Vec::new();
+    let models = stages::read_models(&study, &directory, &mut failed)?;
+    let known = stages::read_uncertainties(&models, &directory)?;
     if args.all {
         let out = OutputDir::new(&directory)?;
-        return all_routes(&study, &deck, (&models, &known), out, progress);
+        return all_routes(&study, &deck, (&models, &known), (out, &failed), progress);
     }
-    let results = stages::flutter(&study, &deck, &models, &known, progress)?;
+    let mut results = stages::flutter(&study, &deck, &models, &known, progress)?;
     let mut out = OutputDir::new(&directory)?;
-    stages::flutter_figure(&study, &results, &[], &mut out)?;
+    let figure = stages::flutter_figure(&study, &results, &[], &mut out);
+    attempt(&mut failed, "figure", figure)?;
+    results.failed.splice(0..0, failed);
     let written = out.commit()?;
-    let mut text = format!("{}\n{}\n\n", study.name, deck.description());
-    text.push_str(&account::onsets(&results.onsets, &results.stable));
+    let mut text = format!("{}\n{}\n", study.name, deck.description());
+    text.push_str(&account::deck_warnings(&deck));
+    text.push('\n');
+    text.push_str(&account::onsets(
+        (&results.onsets, &results.undetermined),
+        &results.unstable,
+        &results.stable,
+    ));
+    text.push_str(&account::growths(&results.growth));
     text.push_str(&account::divergence(&results.divergence));
     text.push_str(&account::deviations(&results.deviations));
+    text.push_str(&account::failures(&results.failed));
     text.push_str(&list(&written));
-    Answer::new(
+    let answer = Answer::new(
         text,
-        &serde_json::json!({ "flutter": results, "files": written }),
-    )
+        &serde_json::json!({ "flutter": results, "warnings": deck.warnings(), "files": written }),
+    )?;
+    Ok(answer.with_verdict(results.failed.is_empty()))
 }
 
 /// Every route in one table, with cards and a figure.
@@ -55,20 +69,29 @@ fn all_routes(
     study: &Study,
     deck: &Deck,
     (models, known): (&[TrainedModel], &[KnownUncertainty]),
-    mut out: OutputDir,
+    (mut out, failed): (OutputDir, &[StageFailure]),
     progress: &Progress,
 ) -> Result<Answer> {
     let stage = progress.stage("onset by every route");
     let mut table = route_table(study, deck, models)?;
     state_route_intervals(&mut table, study, models, known)?;
     drop(stage);
-    stages::routes_figure(study, &table.curves, &routes::marked(&table), &mut out)?;
+    // a figure that cannot be drawn does not take the table with it
+    if let Err(e) = stages::routes_figure(study, &table.curves, &routes::marked(&table), &mut out) {
+        table.left_out.push(format!("figure of all routes: {e}"));
+    }
     let written = out.commit()?;
-    let mut text = format!("{}\n{}\n\n", study.name, deck.description());
-    text.push_str(&routes::account(&table, study.flutter.speed_max_m_s));
+    let mut text = format!("{}\n{}\n", study.name, deck.description());
+    text.push_str(&account::deck_warnings(deck));
+    text.push('\n');
+    text.push_str(&routes::account(&table, study.speeds().speed_max_m_s));
+    text.push_str(&account::failures(failed));
     text.push_str(&list(&written));
-    Answer::new(
+    let answer = Answer::new(
         text,
-        &serde_json::json!({ "routes": table, "files": written }),
-    )
+        &serde_json::json!({
+            "routes": table, "failed": failed, "warnings": deck.warnings(), "files": written
+        }),
+    )?;
+    Ok(answer.with_verdict(failed.is_empty()))
 }

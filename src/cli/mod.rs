@@ -2,6 +2,7 @@
 
 mod account;
 mod answer;
+mod apology;
 mod buffeting;
 mod campaign;
 mod common;
@@ -11,6 +12,8 @@ mod demo;
 mod derivatives;
 mod flutter;
 mod fmu;
+mod interrupt;
+mod lock;
 mod monte_carlo;
 mod output;
 mod process;
@@ -31,6 +34,7 @@ pub use answer::Answer;
 
 use crate::error::{Error, Result};
 use clap::{Parser, Subcommand};
+use std::io::{ErrorKind, Write as _};
 use std::process::ExitCode;
 
 /// Exit code for wrong input, as clap uses it for wrong arguments.
@@ -80,23 +84,50 @@ enum Command {
 
 /// Runs the command line of this process.
 pub fn main() -> ExitCode {
-    let cli = Cli::parse();
-    let progress = progress::Progress::new(!cli.quiet && !cli.json);
-    match run(&cli.command, &progress) {
-        Ok(answer) => {
-            if cli.json {
-                println!("{}", answer.json());
-            } else {
-                print!("{}", answer.text());
-            }
-            if answer.passed() {
-                ExitCode::SUCCESS
-            } else {
-                ExitCode::from(FAILED)
-            }
+    apology::install();
+    interrupt::install();
+    let code = apology::guarded(|| {
+        let cli = Cli::parse();
+        let progress = progress::Progress::new(!cli.quiet && !cli.json);
+        let result = run(&cli.command, &progress);
+        // a signal that is being obeyed ends the program with a code of its own
+        let _busy = interrupt::uninterrupted();
+        match result {
+            Ok(answer) => print(&answer, cli.json),
+            Err(error) => report(&error, cli.json),
         }
-        Err(error) => report(&error, cli.json),
+    });
+    ExitCode::from(code)
+}
+
+fn print(answer: &Answer, json: bool) -> u8 {
+    let said = if json {
+        say(&format!("{}\n", answer.json()))
+    } else {
+        say(answer.text())
+    };
+    match said {
+        Err(error) => {
+            complain(&error);
+            FAILED
+        }
+        Ok(()) if answer.passed() => 0,
+        Ok(()) => FAILED,
     }
+}
+
+/// Writes to standard output. Who closes it has read enough; a full disk is an error.
+fn say(text: &str) -> Result<()> {
+    let mut out = std::io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(e) if e.kind() != ErrorKind::BrokenPipe => Err(Error::io("standard output", e)),
+        _ => Ok(()),
+    }
+}
+
+/// Writes to standard error, which may be closed: then nobody can be told.
+fn complain(error: &Error) {
+    let _ = writeln!(std::io::stderr(), "error: {error}");
 }
 
 fn run(command: &Command, progress: &progress::Progress) -> Result<Answer> {
@@ -122,13 +153,28 @@ fn run(command: &Command, progress: &progress::Progress) -> Result<Answer> {
     }
 }
 
-fn report(error: &Error, json: bool) -> ExitCode {
+fn report(error: &Error, json: bool) -> u8 {
     if json {
-        println!("{}", serde_json::json!({ "error": error.to_string() }));
+        let value = serde_json::json!({ "error": error.to_string() });
+        // the same is said below
+        let _ = say(&format!("{value}\n"));
     }
-    eprintln!("error: {error}");
-    ExitCode::from(match error {
+    complain(error);
+    code(error)
+}
+
+fn code(error: &Error) -> u8 {
+    match error {
+        Error::Io { source, .. } if no_room(source.kind()) => FAILED,
         Error::Input(_) | Error::Io { .. } => WRONG_INPUT,
         Error::Numerical(_) => FAILED,
-    })
+        Error::Several(errors) => errors.iter().map(code).max().unwrap_or(FAILED),
+    }
+}
+
+fn no_room(kind: ErrorKind) -> bool {
+    matches!(
+        kind,
+        ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::WriteZero
+    )
 }

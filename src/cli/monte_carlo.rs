@@ -68,16 +68,29 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
 
 fn account(r: &MonteCarloResult) -> String {
     let mut text = format!(
-        "{}: {} samples, seed {}: {} with an onset up to {} m/s, {} without, {} failed\n",
+        "{}: {} samples, seed {}: {} with an onset up to {:.3} m/s, {} without, {} failed\n",
         r.model, r.samples, r.seed, r.onsets, r.speed_max_m_s, r.stable, r.failed
     );
+    if let Some(speed) = r.unstable_up_to_m_s {
+        let _ = writeln!(
+            text,
+            "warning: {} samples are unstable at and below the lowest speed that could be judged (up to {speed:.3} m/s): \
+             they count as flutter, not as safe",
+            r.unstable_at_or_below
+        );
+    }
     let speed = |v: Option<f64>| match v {
         Some(v) => format!("{v:.3} m/s"),
-        None => format!("above {} m/s", r.speed_max_m_s),
+        None => format!("above {:.3} m/s", r.speed_max_m_s),
     };
     let _ = writeln!(
         text,
-        "Onset     of the model itself {}",
+        "Onset     of the model itself {}{}",
+        if r.nominal_or_below {
+            "at or below "
+        } else {
+            ""
+        },
         speed(r.nominal_m_s)
     );
     if let (Some(mean), Some(deviation)) = (r.mean_m_s, r.standard_deviation_m_s) {
@@ -97,13 +110,20 @@ fn account(r: &MonteCarloResult) -> String {
     if let Some(d) = &r.design {
         let _ = writeln!(
             text,
-            "Design    onset below {} m/s: probability {:.3e}, {} % confidence {:.3e} to {:.3e} ({} samples)",
+            "Design    onset below {:.3} m/s: probability {:.3e}, {} % confidence {:.3e} to {:.3e} ({} samples)",
             d.speed_m_s,
             d.probability,
             100.0 * d.confidence,
             d.lower,
             d.upper,
             d.below
+        );
+    }
+    if let Some(d) = r.design.filter(|d| d.undecided > 0) {
+        let _ = writeln!(
+            text,
+            "          {} more could be judged above {:.3} m/s only, where they grow: they are in the probability and its upper end",
+            d.undecided, d.speed_m_s
         );
     }
     if r.outside_tested_range > 0 {

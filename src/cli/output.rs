@@ -1,45 +1,64 @@
-//! Files of a command: written aside first, put in place together, nothing left behind on an error.
+//! Files of a command: written aside first, put in place together, nothing left behind however the command ends.
 
+use super::interrupt::{Temporary, uninterrupted};
+use super::lock::{FolderLock, LOCK_FILE};
 use crate::error::{Error, Result};
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
-use tempfile::TempDir;
+
+/// Start of the names of everything that is not a result.
+const PREFIX: &str = ".aerodeck-";
+/// Start of the name of a folder whose files are complete and on their way to their places.
+const COMPLETE: &str = ".aerodeck-complete-";
 
 /// A directory of results in the making.
+///
+/// Files are staged in a folder inside. [`OutputDir::commit`] first renames that folder, which marks it as complete, then
+/// moves its files; a process killed in between leaves a complete folder, whose files the next run puts in place. The
+/// file announced last is taken away before and moved last: where it stands, all others stand.
 pub struct OutputDir {
     directory: PathBuf,
     created: bool,
-    staging: Option<TempDir>,
+    staging: Temporary,
     files: Vec<PathBuf>,
+    kept: Vec<PathBuf>,
+    _lock: FolderLock,
 }
 
-/// One file that was put in place.
+/// One file that was put in place, or left.
 #[derive(Debug, Clone, serde::Serialize)]
 pub struct Written {
     /// Its path.
     pub path: PathBuf,
     /// Whether a file of that name was there before.
     pub replaced: bool,
+    /// Whether the file that was there was left as it is, since it differs.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub kept: bool,
 }
 
 impl OutputDir {
-    /// Prepares `directory`, which need not exist.
+    /// Prepares `directory`, which need not exist, and clears away what a killed run left there.
     ///
     /// # Errors
-    /// [`Error::Io`] when it cannot be made or written to.
+    /// [`Error::Io`] when it cannot be made or written to; [`Error::Input`] while another run writes into it.
     pub fn new(directory: &Path) -> Result<Self> {
         let created = !directory.exists();
         fs::create_dir_all(directory).map_err(|e| Error::io(directory, e))?;
+        let lock = FolderLock::take(directory)?;
+        clear(directory)?;
         let staging = tempfile::Builder::new()
-            .prefix(".aerodeck-")
+            .prefix(PREFIX)
             .tempdir_in(directory)
             .map_err(|e| Error::io(directory, e))?;
         Ok(Self {
             directory: directory.to_path_buf(),
             created,
-            staging: Some(staging),
+            staging: Temporary::new(staging.keep()),
             files: Vec::new(),
+            kept: Vec::new(),
+            _lock: lock,
         })
     }
 
@@ -61,9 +80,13 @@ impl OutputDir {
         let name = name.as_ref();
         let path = self.staged(name);
         if let Some(parent) = path.parent() {
+            // not while a signal removes what stands there
+            let _busy = uninterrupted();
             fs::create_dir_all(parent).map_err(|e| Error::io(parent, e))?;
         }
-        self.files.push(name.to_path_buf());
+        if !self.files.iter().any(|f| f == name) {
+            self.files.push(name.to_path_buf());
+        }
         Ok(path)
     }
 
@@ -76,11 +99,56 @@ impl OutputDir {
         fs::write(&path, bytes).map_err(|e| Error::io(path, e))
     }
 
-    fn staged(&self, name: &Path) -> PathBuf {
-        match &self.staging {
-            Some(staging) => staging.path().join(name),
-            None => self.directory.join(name),
+    /// Takes back a staged file.
+    pub fn discard(&mut self, name: impl AsRef<Path>) {
+        let name = name.as_ref();
+        self.files.retain(|f| f != name);
+        let _ = fs::remove_file(self.staged(name));
+    }
+
+    /// Leaves a file that users edit as it is when it differs from the staged `name`, unless `force`; says whether it
+    /// was left.
+    ///
+    /// # Errors
+    /// [`Error::Io`] when a file cannot be read.
+    pub fn keep_edited(&mut self, name: impl AsRef<Path>, force: bool) -> Result<bool> {
+        let name = name.as_ref();
+        let keep = !force && self.differs(name)?;
+        if keep {
+            self.discard(name);
+            self.kept.push(name.to_path_buf());
         }
+        Ok(keep)
+    }
+
+    /// Refuses to go on when a file that users edit differs from the staged `name`, unless `force`; `instead` is what
+    /// else they could do.
+    ///
+    /// # Errors
+    /// [`Error::Input`] naming the file; [`Error::Io`] when a file cannot be read.
+    pub fn refuse_edited(&self, name: &str, force: bool, instead: &str) -> Result<()> {
+        if force || !self.differs(Path::new(name))? {
+            return Ok(());
+        }
+        Err(Error::input(
+            "",
+            format!("the file that this command writes ({instead}, or --force to replace it)"),
+            "a file that differs, which was left as it is",
+        )
+        .in_file(self.target(name)))
+    }
+
+    fn differs(&self, name: &Path) -> Result<bool> {
+        let target = self.target(name);
+        if !target.exists() {
+            return Ok(false);
+        }
+        let read = |path: &Path| fs::read(path).map_err(|e| Error::io(path, e));
+        Ok(read(&target)? != read(&self.staged(name))?)
+    }
+
+    fn staged(&self, name: &Path) -> PathBuf {
+        self.staging.path().join(name)
     }
 
     /// Puts all files in place.
@@ -88,37 +156,162 @@ impl OutputDir {
     /// # Errors
     /// [`Error::Io`] when a file cannot be moved.
     pub fn commit(mut self) -> Result<Vec<Written>> {
-        let mut written = Vec::with_capacity(self.files.len());
-        for name in std::mem::take(&mut self.files) {
-            let (from, to) = (self.staged(&name), self.directory.join(&name));
-            if let Some(parent) = to.parent() {
-                fs::create_dir_all(parent).map_err(|e| Error::io(parent, e))?;
+        let _busy = uninterrupted();
+        self.mark_complete()?;
+        let names = std::mem::take(&mut self.files);
+        let existed: Vec<bool> = names.iter().map(|n| self.target(n).exists()).collect();
+        if let [_, .., last] = &names[..] {
+            let target = self.target(last);
+            if target.is_file() {
+                fs::remove_file(&target).map_err(|e| Error::io(&target, e))?;
             }
-            let replaced = to.exists();
-            fs::rename(&from, &to).map_err(|e| Error::io(&to, e))?;
-            written.push(Written { path: to, replaced });
         }
+        let mut written = Vec::with_capacity(names.len());
+        for (name, replaced) in names.iter().zip(existed) {
+            let path = self.target(name);
+            put(&self.staged(name), &path)?;
+            written.push(Written {
+                path,
+                replaced,
+                kept: false,
+            });
+        }
+        written.extend(self.kept.iter().map(|name| Written {
+            path: self.target(name),
+            replaced: false,
+            kept: true,
+        }));
         self.created = false;
         Ok(written)
+    }
+
+    fn mark_complete(&mut self) -> Result<()> {
+        let from = self.staging.path().to_path_buf();
+        let name = from.file_name().unwrap_or_default().to_string_lossy();
+        let to = self.directory.join(name.replacen(PREFIX, COMPLETE, 1));
+        fs::rename(&from, &to).map_err(|e| Error::io(&to, e))?;
+        self.staging.renamed(to);
+        Ok(())
     }
 }
 
 impl Drop for OutputDir {
     fn drop(&mut self) {
-        self.staging = None;
         if self.created {
             // fails when somebody else has put a file there meanwhile, which is then not ours to remove
+            let _ = fs::remove_dir_all(self.staging.path());
+            let _ = fs::remove_file(self.directory.join(LOCK_FILE));
             let _ = fs::remove_dir(&self.directory);
         }
     }
+}
+
+fn put(from: &Path, to: &Path) -> Result<()> {
+    if let Some(parent) = to.parent() {
+        fs::create_dir_all(parent).map_err(|e| Error::io(parent, e))?;
+    }
+    fs::rename(from, to).map_err(|e| Error::io(to, e))
+}
+
+/// Puts the files of complete folders in place and removes unfinished ones. The caller has the lock, so that they
+/// belong to runs that were killed.
+fn clear(directory: &Path) -> Result<()> {
+    let failed = |e| Error::io(directory, e);
+    for entry in fs::read_dir(directory).map_err(failed)? {
+        let path = entry.map_err(failed)?.path();
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        if !name.starts_with(PREFIX) || name == LOCK_FILE {
+            continue;
+        }
+        if name.starts_with(COMPLETE) {
+            put_all(&path, directory)?;
+        }
+        let removed = if path.is_dir() {
+            fs::remove_dir_all(&path)
+        } else {
+            fs::remove_file(&path)
+        };
+        removed.map_err(|e| Error::io(&path, e))?;
+    }
+    Ok(())
+}
+
+fn put_all(from: &Path, to: &Path) -> Result<()> {
+    let failed = |e| Error::io(from, e);
+    for entry in fs::read_dir(from).map_err(failed)? {
+        let path = entry.map_err(failed)?.path();
+        let target = to.join(path.file_name().unwrap_or_default());
+        if path.is_dir() {
+            put_all(&path, &target)?;
+        } else {
+            put(&path, &target)?;
+        }
+    }
+    Ok(())
 }
 
 /// The files as lines of text.
 pub fn list(written: &[Written]) -> String {
     let mut text = String::new();
     for file in written {
-        let verb = if file.replaced { "replaced" } else { "wrote" };
-        let _ = writeln!(text, "  {verb} {}", file.path.display());
+        let path = file.path.display();
+        let _ = match (file.kept, file.replaced) {
+            (true, _) => writeln!(
+                text,
+                "  kept {path}: it differs from what this command writes (--force replaces it)"
+            ),
+            (false, true) => writeln!(text, "  replaced {path}"),
+            (false, false) => writeln!(text, "  wrote {path}"),
+        };
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn complete_folders_of_killed_runs_are_put_in_place_and_others_removed() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = folder.path();
+        let make = |name: &str, text: &str| {
+            let path = at.join(name);
+            fs::create_dir_all(path.parent().unwrap()).unwrap();
+            fs::write(path, text).unwrap();
+        };
+        make("model.json", "old");
+        make(".aerodeck-abc/model.json", "half");
+        make(".aerodeck-complete-def/model.json", "new");
+        make(".aerodeck-complete-def/records/a.csv", "a");
+        drop(OutputDir::new(at).unwrap());
+        let read = |name: &str| fs::read_to_string(at.join(name)).unwrap();
+        assert_eq!(read("model.json"), "new");
+        assert_eq!(read("records/a.csv"), "a");
+        assert_eq!(fs::read_dir(at).unwrap().count(), 2);
+    }
+
+    #[test]
+    fn one_run_at_a_time() {
+        let folder = tempfile::tempdir().unwrap();
+        let first = OutputDir::new(folder.path()).unwrap();
+        let refused = OutputDir::new(folder.path()).err().unwrap().to_string();
+        let pid = std::process::id().to_string();
+        assert!(refused.contains(&pid), "{refused}");
+        first.commit().unwrap();
+        OutputDir::new(folder.path()).unwrap();
+        // a lock file that a killed run left locks nobody out
+        fs::write(folder.path().join(LOCK_FILE), "1").unwrap();
+        OutputDir::new(folder.path()).unwrap();
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+
+    #[test]
+    fn a_new_folder_goes_with_a_run_that_fails() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut out = OutputDir::new(&folder.path().join("new")).unwrap();
+        out.write("a/b.txt", "b").unwrap();
+        drop(out);
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
 }

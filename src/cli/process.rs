@@ -5,10 +5,10 @@ use super::output::{OutputDir, list};
 use super::progress::Progress;
 use super::stages::RECORDS;
 use crate::aerodynamics::FlatPlate;
-use crate::aerodynamics::derivatives::{Derivative, TableHeader, workbook_bytes, write_csv};
-use crate::aerodynamics::quasi_steady::{
-    Arms, LinearQuasiSteady, QuasiSteady, embedded, read_coefficients,
+use crate::aerodynamics::derivatives::{
+    Derivative, TableHeader, workbook_bytes, write_csv, write_points,
 };
+use crate::aerodynamics::quasi_steady::{Arms, LinearQuasiSteady, QuasiSteady, named_coefficients};
 use crate::error::{Error, Result};
 use crate::identification::derivatives::{
     DerivativeOptions, IdentifiedDerivatives, identify_derivatives,
@@ -18,8 +18,9 @@ use crate::report::{
     processing_figure,
 };
 use crate::section::Dof;
-use crate::study::{Study, derivative_lines, processed_study_text};
+use crate::study::{Study, derivative_lines, processed_study_text, read_section};
 use crate::toml_lines;
+use crate::units::group_of;
 use crate::wind_tunnel::campaign::Campaign;
 use crate::wind_tunnel::processing::{Processed, ProcessingOptions, RunReport, process};
 use crate::wind_tunnel::{RawCampaign, RecordSource, write_record};
@@ -55,9 +56,16 @@ pub struct Args {
     /// Lag of the force channels, s, instead of an estimate; before the options file.
     #[arg(long, allow_negative_numbers = true)]
     lag_s: Option<f64>,
-    /// A study whose section, models and search go into the new one; left out, the section of Table 4.1 of the thesis.
+    /// A study whose section, models and search go into the new one.
     #[arg(long)]
     study: Option<PathBuf>,
+    /// A file with the [section] that is to be built, for the new study (before that of --study); with neither, the new
+    /// study has a marked place for it.
+    #[arg(long)]
+    section: Option<PathBuf>,
+    /// Replace a study file that differs from what is written.
+    #[arg(long)]
+    force: bool,
     /// Static coefficients, whose quasi-steady limits are drawn beside the derivatives: an embedded table or a .csv file.
     #[arg(long)]
     static_coefficients: Option<String>,
@@ -67,6 +75,7 @@ pub struct Args {
 pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     let options = args.options()?;
     let base = args.study.as_ref().map(|p| Study::read(p)).transpose()?;
+    let section = args.section.as_ref().map(|p| read_section(p)).transpose()?;
     let stage = progress.stage("reading the campaign");
     let reading = Campaign::read(&args.campaign)?.load()?;
     drop(stage);
@@ -124,10 +133,18 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
         write_figure(&figure, "derivatives", &mut out)?;
         match write_table(&raw, found, &mut out) {
             Ok(()) => {
-                let text = processed_study_text(&raw, base.as_ref(), TABLE, &names, &found.dofs)?;
+                let known = (base.as_ref(), section.as_ref());
+                let text = processed_study_text(&raw, known, TABLE, &names, &found.dofs)?;
                 out.write(STUDY, text)?;
+                let kept = out.keep_edited(STUDY, args.force)?;
+                if !kept && base.is_none() && section.is_none() {
+                    notes.push(format!(
+                        "state the section that is to be built in {STUDY}, at the marked place, before `aerodeck study` (or process \
+                         with --section FILE)"
+                    ));
+                }
             }
-            Err(Error::Input(e)) => notes.push(format!("no table and no study: {e}")),
+            Err(Error::Input(e)) => notes.push(format!("no complete table and no study: {e}")),
             Err(e) => return Err(e),
         }
     }
@@ -152,12 +169,10 @@ impl Args {
     fn options(&self) -> Result<ProcessingOptions> {
         let mut options = match &self.options {
             None => ProcessingOptions::default(),
-            Some(path) => {
-                let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, e))?;
-                toml::from_str(&text).map_err(|e| {
-                    toml_lines::syntax_error("options of processing", &text, &e).in_file(path)
-                })?
-            }
+            Some(path) => toml_lines::read(path, |text, _| {
+                let check = |options: &mut ProcessingOptions| options.validate();
+                toml_lines::parse("options of processing", text, check)
+            })?,
         };
         options.low_pass.cutoff_hz = self.cutoff_hz.or(options.low_pass.cutoff_hz);
         options.lag_s = self.lag_s.or(options.lag_s);
@@ -172,11 +187,7 @@ impl Args {
         let Some(name) = &self.static_coefficients else {
             return Ok(None);
         };
-        let coefficients = if name.to_lowercase().ends_with(".csv") {
-            read_coefficients(name)?
-        } else {
-            embedded::coefficients(name)?
-        };
+        let coefficients = named_coefficients(name, Path::new(""))?;
         QuasiSteady::new(coefficients, Arms::default(), dofs)?
             .linearised(0.0)
             .map(Some)
@@ -224,8 +235,19 @@ fn write_table(
         licence: raw.licence.clone(),
         generator: concat!("aerodeck ", env!("CARGO_PKG_VERSION")).to_owned(),
         model_length_m: Some(raw.rig.model_length_m),
+        ..TableHeader::default()
     };
-    let table = found.table(&raw.section, header)?;
+    let table = match found.table(&raw.section, header.clone()) {
+        Ok(table) => table,
+        Err(e) => {
+            // one motion alone: its column, in the same columns
+            let head = (raw.section.as_str(), found.width_m, &header);
+            let mut text = Vec::new();
+            write_points(head, &found.points(), &mut text).map_err(|e| Error::io(TABLE, e))?;
+            out.write(TABLE, text)?;
+            return Err(e);
+        }
+    };
     let mut text = Vec::new();
     write_csv(&table, &mut text).map_err(|e| Error::io(TABLE, e))?;
     out.write(TABLE, text)?;
@@ -261,14 +283,15 @@ fn plot(
     if let Some(model) = quasi_steady {
         theories.push(("quasi-steady", derivative_lines(model, largest)?));
     }
+    let groups = found.speed_groups();
     let mut derivatives = Vec::new();
     for d in Derivative::ALL {
         let mut measured: Vec<PlottedSeries> = Vec::new();
-        let mut speed = f64::NEG_INFINITY;
+        let mut last = None;
         for e in found.of(d) {
-            if e.mean_speed_m_s > 1.05 * speed {
-                speed = e.mean_speed_m_s;
-                measured.push(PlottedSeries::new(format!("{speed:.1} m/s"), Vec::new()));
+            let group = group_of(&groups, e.mean_speed_m_s);
+            if last.replace(group) != Some(group) {
+                measured.push(PlottedSeries::new(speeds_label(&groups[group]), Vec::new()));
             }
             if let Some(series) = measured.last_mut() {
                 series.points.push((e.v_hat, e.value));
@@ -294,6 +317,16 @@ fn plot(
         velocity_label: "V̂ = V/(ωB)".to_owned(),
         derivatives,
     })
+}
+
+/// Speeds of one group of test points in words.
+fn speeds_label(group: &[f64]) -> String {
+    let (low, high) = (group[0], group[group.len() - 1]);
+    if high - low < 0.05 {
+        format!("{low:.1} m/s")
+    } else {
+        format!("{low:.1} to {high:.1} m/s")
+    }
 }
 
 fn account(
@@ -349,13 +382,16 @@ fn line(run: &RunReport) -> String {
         || "no inertia seen".to_owned(),
         |s| format!("inertia {:.4} {unit}", s.inertia),
     );
+    let still_air = run.alignment.as_ref().map_or_else(
+        || "no still air".to_owned(),
+        |a| format!("still air {:+.2} samples", a.offset_samples),
+    );
     format!(
-        "{}: {} at {:.2} m/s, {} test points, still air {:+.2} samples, {inertia}, {:.0} dB, {replaced} samples replaced",
+        "{}: {} at {:.2} m/s, {} test points, {still_air}, {inertia}, {:.0} dB, {replaced} samples replaced",
         run.run,
         run.dof.name(),
         run.dimensionless.speed_m_s,
         run.segments.len(),
-        run.alignment.offset_samples,
         run.signal_to_noise.after_low_pass_db[at],
     )
 }

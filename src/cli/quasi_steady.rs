@@ -152,13 +152,17 @@ fn in_words(study: &WindStudy, results: &QuasiSteadyStudy) -> String {
     text.push('\n');
     match &results.onset.search {
         FlutterSearch::Onset(onset) => {
-            text.push_str(&account::onsets(std::slice::from_ref(onset.as_ref()), &[]));
+            text.push_str(&account::onsets(
+                (std::slice::from_ref(onset.as_ref()), &[]),
+                &[],
+                &[],
+            ));
             if let Some(mode) = &results.onset.mode {
                 let _ = writeln!(text, "kind: {}", mode.kind.name());
             }
         }
-        FlutterSearch::StableUpTo(speed) => {
-            let _ = writeln!(text, "no flutter up to {speed:.3} m/s");
+        FlutterSearch::UnstableAtOrBelow(_) | FlutterSearch::StableUpTo(_) => {
+            let _ = writeln!(text, "{}", results.onset.search.explain());
         }
     }
     text

@@ -25,6 +25,14 @@ pub fn account(table: &RouteTable, speed_max_m_s: f64) -> String {
     for route in &table.routes {
         text.push_str(&row(route));
     }
+    for failed in &table.failed {
+        let method = failed.method.map_or("", |m| m.name());
+        let _ = writeln!(
+            text,
+            "{:<26} {method:<14} no answer: {}",
+            failed.model, failed.reason
+        );
+    }
     if let Some(lines) = &table.sanity {
         text.push_str(&sanity(lines));
     }
@@ -44,6 +52,10 @@ fn row(route: &Route) -> String {
         .map_or("none".to_owned(), |v| format!("{v:.3}"));
     let (name, method) = (&route.model, route.method.name());
     match &route.search {
+        FlutterSearch::Onset(o) if o.headline_m_s().is_err() => format!(
+            "{name:<26} {method:<14} {}; divergence {divergence}\n",
+            o.headline_m_s().err().unwrap_or_default()
+        ),
         FlutterSearch::Onset(o) => format!(
             "{name:<26} {method:<14} {:>8.3} {:>7.4} {:>7.3} {:>6.3} {:>8.4} {:>7.1} {:>9.5} {:<9} {divergence:>8}  {}; {}\n",
             o.speed_m_s,
@@ -57,10 +69,9 @@ fn row(route: &Route) -> String {
             kind(route),
             tested(o, route),
         ),
-        FlutterSearch::StableUpTo(speed) => {
-            format!(
-                "{name:<26} {method:<14} no flutter below {speed:.2} m/s; divergence {divergence}\n"
-            )
+        FlutterSearch::UnstableAtOrBelow(_) | FlutterSearch::StableUpTo(_) => {
+            let answer = route.search.explain();
+            format!("{name:<26} {method:<14} {answer}; divergence {divergence}\n")
         }
     }
 }
@@ -80,7 +91,7 @@ fn tested(onset: &Onset, route: &Route) -> &'static str {
 
 fn sanity(lines: &SanityLines) -> String {
     format!(
-        "sanity lines (flat plate, no damping): Selberg {:.2} m/s (3.72: {:.2}), Rocard {:.2} m/s\n",
+        "sanity lines (flat plate, no damping): Selberg {:.3} m/s (3.72: {:.3}), Rocard {:.3} m/s\n",
         lines.selberg_m_s, lines.selberg_rounded_m_s, lines.rocard_m_s
     )
 }
@@ -98,24 +109,29 @@ fn cards(table: &RouteTable) -> impl Iterator<Item = &Route> {
 fn card(route: &Route, sanity: Option<&SanityLines>, speed_max_m_s: f64) -> String {
     let mut text = format!("Onset card: {} ({})\n", route.model, route.method.name());
     match &route.search {
-        FlutterSearch::Onset(onset) => text.push_str(&found(onset, route)),
-        FlutterSearch::StableUpTo(speed) => {
-            let _ = writeln!(text, "  no flutter below {speed:.2} m/s");
+        FlutterSearch::Onset(onset) => match onset.headline_m_s() {
+            Ok(_) => text.push_str(&found(onset, route)),
+            Err(reason) => {
+                let _ = writeln!(text, "  onset {reason}");
+            }
+        },
+        FlutterSearch::UnstableAtOrBelow(_) | FlutterSearch::StableUpTo(_) => {
+            let _ = writeln!(text, "  {}", route.search.explain());
         }
     }
-    let speed = |v: Option<f64>| v.map_or("none".to_owned(), |v| format!("{v:.2} m/s"));
+    let speed = |v: Option<f64>| v.map_or("none".to_owned(), |v| format!("{v:.3} m/s"));
     let _ = write!(
         text,
         "  divergence {}; quasi-steady limit {}",
         speed(route.divergence_m_s),
         route
             .quasi_steady_m_s
-            .map_or(format!("none below {speed_max_m_s} m/s"), |v| format!(
-                "{v:.2} m/s"
+            .map_or(format!("none below {speed_max_m_s:.3} m/s"), |v| format!(
+                "{v:.3} m/s"
             )),
     );
     let _ = match sanity {
-        Some(lines) => writeln!(text, "; Selberg {:.2} m/s", lines.selberg_m_s),
+        Some(lines) => writeln!(text, "; Selberg {:.3} m/s", lines.selberg_m_s),
         None => writeln!(text),
     };
     for warning in &route.warnings {
@@ -148,6 +164,12 @@ fn found(o: &Onset, route: &Route) -> String {
         OnsetInterval::Known { .. } => {
             writeln!(text, "  95 % interval {} m/s", interval(&o.interval))
         }
+        OnsetInterval::Spread { of, .. } => writeln!(
+            text,
+            "  {} m/s, no 95 % interval: {of}",
+            interval(&o.interval)
+        ),
+        OnsetInterval::Undetermined { reason, .. } => writeln!(text, "  {reason}"),
         OnsetInterval::None { reason } => writeln!(text, "  no interval: {reason}"),
     };
     let slope = o
@@ -172,7 +194,7 @@ fn found(o: &Onset, route: &Route) -> String {
             100.0 * p.energy_share,
             p.direct_damping,
             p.alone_m_s
-                .map_or("no onset".to_owned(), |v| format!("onset at {v:.2} m/s"))
+                .map_or("no onset".to_owned(), |v| format!("onset at {v:.3} m/s"))
         );
     }
     text
@@ -182,5 +204,6 @@ fn found(o: &Onset, route: &Route) -> String {
 pub fn marked(table: &RouteTable) -> Vec<Onset> {
     cards(table)
         .filter_map(|route| route.search.onset().cloned())
+        .filter(|onset| onset.headline_m_s().is_ok())
         .collect()
 }

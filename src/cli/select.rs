@@ -1,27 +1,50 @@
 //! `aerodeck select`: how many filters, with which pole or decay factor.
 
+mod account;
+
 use super::answer::Answer;
 use super::common::StudyArgs;
-use super::output::{OutputDir, list};
+use super::output::{OutputDir, Written, list};
 use super::progress::Progress;
 use crate::error::{Error, Result};
-use crate::identification::{Grid, GridAxis, TimeFit, TimeWeights};
-use crate::report::{Figure, HeatMap, PNG_SCALE, heat_map_figure};
-use crate::selection::{
-    Cell, CellMetrics, MetricGrid, Selection, SelectionPlan, metric_grid, select,
-};
-use crate::study::{Deck, RecordSet, Study};
+use crate::identification::{DiscreteFit, Form, Grid, GridAxis, PoleSearch, TimeFit, TimeWeights};
+use crate::report::PNG_SCALE;
+use crate::selection::{Selection, SelectionPlan, metric_grid, select};
+use crate::study::{Deck, ModelBlock, RecordSet, Study};
 use crate::wind_tunnel::{Record, RecordSource};
+use account::{account, figures};
 use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+/// More values of a pole than any figure shows.
+const MOST_VALUES: usize = 2000;
+/// Name of the recommended model in a study.
+pub const SELECTED: &str = "selected";
 
 /// Choose the number of filters and their pole (or decay factor) by the error on records left out
 ///
-/// Example: aerodeck select study.toml --filters 8 --values 25
+/// Example: aerodeck select study.toml --filters 8 --values 25 --write selected.toml
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Args {
     #[command(flatten)]
     study: StudyArgs,
+    #[command(flatten)]
+    choice: Choice,
+    /// Frequency of motion at which forces are compared, Hz.
+    #[arg(long, default_value_t = 1.1)]
+    frequency: f64,
+    /// Write a study with the recommended model in front of the others under this name, beside the study.
+    #[arg(long, value_name = "NAME", num_args = 0..=1, default_missing_value = "selected.toml")]
+    write: Option<PathBuf>,
+    /// Replace a study that differs from the one of --write.
+    #[arg(long)]
+    force: bool,
+}
+
+/// Among which models is chosen.
+#[derive(clap::Args)]
+pub struct Choice {
     /// Continuous filters over `L` and `p`, or the thesis's discrete ones over `L` and `α`.
     #[arg(long, value_enum, default_value_t = Kind::Continuous)]
     kind: Kind,
@@ -37,9 +60,18 @@ pub struct Args {
     /// Highest value; by default twice the highest tested K, or α = 0.98.
     #[arg(long)]
     max: Option<f64>,
-    /// Frequency of motion at which forces are compared, Hz.
-    #[arg(long, default_value_t = 1.1)]
-    frequency: f64,
+}
+
+impl Default for Choice {
+    fn default() -> Self {
+        Self {
+            kind: Kind::Continuous,
+            filters: 8,
+            values: 25,
+            min: None,
+            max: None,
+        }
+    }
 }
 
 #[derive(Clone, Copy, PartialEq, clap::ValueEnum)]
@@ -61,20 +93,7 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
         measured = RecordSet::measured(&study)?;
         measured.select(study.deck.speed_groups.as_deref())?
     };
-    let axis = axis(args, &study, &records)?;
-    let stage = progress.steps("fitting the grid");
-    let grid = Grid::new(&records, axis, args.filters, &|p| {
-        stage.at(p.records_done as u64, p.records as u64);
-    })?;
-    drop(stage);
-    let plan = SelectionPlan {
-        structure: study.section.structure()?,
-        search: study.flutter.search(),
-    };
-    let stage = progress.steps("judging the cells");
-    let total = grid.values().len() as u64;
-    let selection = select(&grid, &plan, &|done| stage.at(done as u64, total))?;
-    drop(stage);
+    let (grid, selection) = judge(&args.choice, &study, &records, progress)?;
     let stage = progress.stage("comparing forces");
     let metrics = metric_grid(&grid, &records, args.frequency)?;
     drop(stage);
@@ -83,9 +102,17 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
         out.write(format!("{stem}.svg"), figure.svg())?;
         out.write(format!("{stem}.png"), figure.png(PNG_SCALE)?)?;
     }
-    let written = out.commit()?;
+    let mut written = out.commit()?;
     let mut text = format!("{}\n{}\n\n", study.name, deck.description());
     text.push_str(&account(&selection));
+    if let Some(name) = &args.write {
+        match recommended(&args.choice, &study, &selection) {
+            Ok(block) => written.extend(write_study(args, &study, block, name)?),
+            Err(reason) => {
+                let _ = writeln!(text, "no study is written: {reason}");
+            }
+        }
+    }
     text.push_str(&list(&written));
     Answer::new(
         text,
@@ -93,28 +120,133 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     )
 }
 
-/// Values of the pole, logarithmic over the range of the pole searches; or of the decay factor.
-fn axis(args: &Args, study: &Study, records: &[&dyn RecordSource]) -> Result<GridAxis> {
-    if args.values < 2 {
+/// All cells of the grid, judged.
+fn judge(
+    choice: &Choice,
+    study: &Study,
+    records: &[&dyn RecordSource],
+    progress: &Progress,
+) -> Result<(Grid, Selection)> {
+    let axis = axis(choice, study, records)?;
+    let stage = progress.steps("fitting the grid");
+    let grid = Grid::new(records, axis, choice.filters, &|p| {
+        stage.at(p.records_done as u64, p.records as u64);
+    })?;
+    drop(stage);
+    let plan = SelectionPlan {
+        structure: study.section.structure()?,
+        search: study.speeds().search(),
+    };
+    let stage = progress.steps("judging the cells");
+    let total = grid.values().len() as u64;
+    let selection = select(&grid, &plan, &|done| stage.at(done as u64, total))?;
+    drop(stage);
+    Ok((grid, selection))
+}
+
+/// The study with the recommended model in front, as `select = true` asks for; that key is done with.
+pub fn with_selected(study: &Study, records: &RecordSet, progress: &Progress) -> Result<Study> {
+    let chosen = records.select(study.deck.speed_groups.as_deref())?;
+    let choice = Choice::default();
+    let (_, selection) = judge(&choice, study, &chosen, progress)?;
+    let block = recommended(&choice, study, &selection).map_err(Error::Numerical)?;
+    Ok(in_front(study, block))
+}
+
+fn in_front(study: &Study, block: ModelBlock) -> Study {
+    let mut study = study.clone();
+    study.select = false;
+    study.models.retain(|m| m.slug() != block.slug());
+    study.models.insert(0, block);
+    study
+}
+
+/// The recommended model as a block of a study, or why there is none.
+fn recommended(
+    choice: &Choice,
+    study: &Study,
+    selection: &Selection,
+) -> std::result::Result<ModelBlock, String> {
+    let found = selection
+        .recommended
+        .as_ref()
+        .ok_or_else(|| selection.reason.clone())?;
+    let mut block = ModelBlock {
+        name: SELECTED.to_owned(),
+        speed_groups: None,
+        records: None,
+        table: None,
+        discrete: None,
+    };
+    if choice.kind == Kind::Discrete {
+        let given = study.models.iter().find_map(|m| m.discrete.clone());
+        block.discrete = Some(DiscreteFit {
+            filters: found.filters,
+            alpha: found.value,
+            own: Vec::new(),
+            ..given.unwrap_or_default()
+        });
+    } else {
+        let fit = records_fit(study);
+        block.records = Some(TimeFit {
+            form: Form::Laguerre {
+                filters: found.filters,
+                feed_through: fit.form.feed_through(),
+                pole_per_transfer_function: false,
+            },
+            poles: PoleSearch::fixed(&[found.value]),
+            own: Vec::new(),
+            ..fit
+        });
+    }
+    Ok(block)
+}
+
+/// How the study fits models to records.
+fn records_fit(study: &Study) -> TimeFit {
+    let given = study.models.iter().find_map(|m| m.records.clone());
+    given.unwrap_or_default()
+}
+
+/// Paths in a study are read against its folder, so that is where the new one goes.
+fn write_study(args: &Args, study: &Study, block: ModelBlock, name: &Path) -> Result<Vec<Written>> {
+    if name.components().count() != 1 {
+        let expected = "a name without a folder: paths in the study are read against its own";
         return Err(Error::input(
-            "--values",
-            "at least 2",
-            args.values.to_string(),
+            "--write",
+            expected,
+            name.display().to_string(),
         ));
     }
-    let last = args.values as f64 - 1.0;
-    if args.kind == Kind::Discrete {
-        let (low, high) = (args.min.unwrap_or(0.2), args.max.unwrap_or(0.98));
+    let text =
+        toml::to_string(&in_front(study, block)).map_err(|e| Error::Numerical(e.to_string()))?;
+    let from = args.study.study.display();
+    let mut out = OutputDir::new(&args.study.beside())?;
+    out.write(
+        name,
+        format!("# {from} with the model that `aerodeck select` recommends.\n{text}"),
+    )?;
+    out.keep_edited(name, args.force)?;
+    out.commit()
+}
+
+/// Values of the pole, logarithmic over the range of the pole searches; or of the decay factor.
+fn axis(choice: &Choice, study: &Study, records: &[&dyn RecordSource]) -> Result<GridAxis> {
+    if !(2..=MOST_VALUES).contains(&choice.values) {
+        return Err(Error::input(
+            "--values",
+            format!("a number from 2 to {MOST_VALUES}"),
+            choice.values.to_string(),
+        ));
+    }
+    let last = choice.values as f64 - 1.0;
+    if choice.kind == Kind::Discrete {
+        let (low, high) = (choice.min.unwrap_or(0.2), choice.max.unwrap_or(0.98));
         let given = study.models.iter().find_map(|m| m.discrete.as_ref());
         let weights = given.map_or(TimeWeights::None, |d| d.weights);
-        let values = (0..args.values).map(|i| low + (high - low) * i as f64 / last);
+        let values = (0..choice.values).map(|i| low + (high - low) * i as f64 / last);
         return Ok(GridAxis::Discrete(values.collect(), weights));
     }
-    let fit = study
-        .models
-        .iter()
-        .find_map(|m| m.records.clone())
-        .unwrap_or_default();
     let ks = records.iter().flat_map(|r| {
         let h = r.header();
         let rate = h.mean_speed_m_s / h.width_m;
@@ -123,8 +255,8 @@ fn axis(args: &Args, study: &Study, records: &[&dyn RecordSource]) -> Result<Gri
             .map(move |s| std::f64::consts::TAU * s.frequency_hz / rate)
     });
     let (low, high) = ks.fold((f64::INFINITY, 0.0_f64), |(a, b), k| (a.min(k), b.max(k)));
-    let low = args.min.unwrap_or(0.5 * low);
-    let high = args.max.unwrap_or(2.0 * high);
+    let low = choice.min.unwrap_or(0.5 * low);
+    let high = choice.max.unwrap_or(2.0 * high);
     if !(low > 0.0 && high > low && high.is_finite()) {
         return Err(Error::input(
             "--min, --max",
@@ -132,122 +264,9 @@ fn axis(args: &Args, study: &Study, records: &[&dyn RecordSource]) -> Result<Gri
             format!("{low} and {high}"),
         ));
     }
-    let values = (0..args.values).map(|i| low * (high / low).powf(i as f64 / last));
-    let fit: TimeFit = fit;
-    Ok(GridAxis::Continuous(values.collect(), Box::new(fit)))
-}
-
-fn account(selection: &Selection) -> String {
-    let mut text = format!(
-        "{} cells: {} values of {}, L = 1 to {}\n\nBest fit of each number of filters, as a free search of {} finds it\n",
-        selection.cells.len(),
-        selection.values.len(),
-        selection.symbol,
-        selection.filters_max,
-        selection.symbol,
-    );
-    let _ = writeln!(
-        text,
-        "{:>3} {:>7} {:>9} {:>9} {:>11} {:>11}  verdict",
-        "L", selection.symbol, "residual", "left out", "speed out", "freq. out",
-    );
-    for at in selection.free.iter().flatten() {
-        text.push_str(&line(&selection.cells[*at]));
-    }
-    let _ = writeln!(text, "\nRecommended\n{}", selection.reason);
-    if let Some(recommended) = &selection.recommended {
-        text.push_str(&line(&selection.cells[recommended.cell]));
-    }
-    text
-}
-
-fn line(cell: &Cell) -> String {
-    let percent = |x: Option<f64>| x.map_or("–".to_owned(), |x| format!("{:.2} %", 100.0 * x));
-    let cv = cell.cross_validation;
-    let onset = cell
-        .onset_m_s
-        .map_or("no onset".to_owned(), |v| format!("onset {v:.2} m/s"));
-    let verdict = if cell.rejected.is_empty() {
-        onset
-    } else {
-        format!("REFUSED: {} ({onset})", cell.rejected.join("; "))
-    };
-    format!(
-        "{:>3} {:>7.3} {:>9} {:>9} {:>11} {:>11}  {verdict}\n",
-        cell.filters,
-        cell.value,
-        percent(cell.residual),
-        percent(cv.map(|v| v.score)),
-        percent(cv.and_then(|v| v.across_speeds)),
-        percent(cv.and_then(|v| v.across_frequencies)),
-    )
-}
-
-/// Errors and onsets over the grid, and the metrics of the forces.
-fn figures(
-    study: &Study,
-    selection: &Selection,
-    metrics: &[MetricGrid],
-) -> Result<Vec<(&'static str, Figure)>> {
-    let filters = selection.filters_max;
-    let map = |title: &str, values: Vec<Option<f64>>, logarithmic: bool| HeatMap {
-        title: title.to_owned(),
-        x_label: match selection.symbol.as_str() {
-            "p" => "Pole p (–)".to_owned(),
-            other => format!("Decay factor {other} (–)"),
-        },
-        x: selection.values.clone(),
-        y_label: "Filters L".to_owned(),
-        rows: filters,
-        values,
-        logarithmic,
-        refused: selection
-            .cells
-            .iter()
-            .map(|c| !c.rejected.is_empty())
-            .collect(),
-        chosen: selection
-            .recommended
-            .as_ref()
-            .map(|r| (r.cell / filters, r.cell % filters)),
-    };
-    let of = |f: &dyn Fn(&Cell) -> Option<f64>| selection.cells.iter().map(f).collect::<Vec<_>>();
-    let errors = [
-        map("Residual of the fit", of(&|c| c.residual), true),
-        map(
-            "Error on data left out",
-            of(&|c| Some(c.cross_validation?.score)),
-            true,
-        ),
-        map("Flutter onset (m/s)", of(&|c| c.onset_m_s), false),
-        map("Largest term over the fit", of(&|c| c.cancellation), true),
-    ];
-    let mut maps = Vec::new();
-    type Pick = fn(&CellMetrics) -> f64;
-    let kinds: [(&str, Pick); 3] = [
-        ("Phase", |m| m.phase),
-        ("Peak", |m| m.peak),
-        ("Warped magnitude", |m| m.magnitude_warped),
-    ];
-    for grid in metrics {
-        for (name, pick) in kinds {
-            let title = format!(
-                "{name} metric: {} force and motion, {:.2} Hz",
-                grid.force.name(),
-                grid.frequency_hz
-            );
-            let values = grid.cells.iter().map(|c| c.as_ref().map(pick)).collect();
-            maps.push(map(&title, values, false));
-        }
-    }
-    Ok(vec![
-        (
-            "selection",
-            heat_map_figure(&format!("{}: selection", study.name), &errors, 2)?,
-        ),
-        (
-            "selection_metrics",
-            heat_map_figure(&format!("{}: metrics of the forces", study.name), &maps, 3)?,
-        ),
-    ])
+    let values = (0..choice.values).map(|i| low * (high / low).powf(i as f64 / last));
+    Ok(GridAxis::Continuous(
+        values.collect(),
+        Box::new(records_fit(study)),
+    ))
 }

@@ -4,12 +4,12 @@ use super::output::OutputDir;
 use super::progress::Progress;
 use crate::error::{Error, Result};
 use crate::flutter::{FlutterCurves, Onset};
-use crate::fmu::package::{Runtime, package};
+use crate::fmu::package::{Growing, Runtime, growth_of, package};
 use crate::identification::{self, FitReport};
 use crate::report::{PNG_SCALE, VfVgOptions, vf_vg_figure};
 use crate::study::{
-    Deck, FlutterStudy, KnownUncertainty, RecordSet, Study, TrainedWithReport, flutter_study,
-    state_intervals, train_one,
+    Deck, FlutterStudy, KnownUncertainty, ModelBlock, RecordSet, StageFailure, Study,
+    TrainedWithReport, flutter_study, is_of_a_file, slug, state_intervals, train_one,
 };
 use crate::trained_model::TrainedModel;
 use crate::uncertainty::ModelUncertainty;
@@ -55,28 +55,53 @@ pub fn tunnel(
     Ok(paths)
 }
 
-/// Trains every model and writes model and report.
+/// Trains every model and writes model and report; without records (`None`) those that are fitted to the table.
+///
+/// A model that cannot be trained is noted in `failed`.
+///
+/// # Errors
+/// Those of writing; that of the first model when none can be trained for wrong input.
 pub fn train(
     study: &Study,
     deck: &Deck,
-    records: &RecordSet,
-    out: &mut OutputDir,
+    records: Option<&RecordSet>,
+    (out, failed): (&mut OutputDir, &mut Vec<StageFailure>),
     progress: &Progress,
 ) -> Result<Vec<TrainedWithReport>> {
     let mut trained = Vec::with_capacity(study.models.len());
+    let none = RecordSet::none();
+    let mut first_error = None;
     for block in &study.models {
+        check_groups(study, block, deck, records)?;
+        if records.is_none() && block.table.is_none() {
+            let reason = "it needs records, which could not be made";
+            failed.push(StageFailure::new(
+                format!("training of {}", block.name),
+                reason,
+            ));
+            continue;
+        }
         let stage = progress.steps(&format!("training {}", block.name));
         let result = train_one(
             study,
             block,
             deck,
-            records,
+            records.unwrap_or(&none),
             &|p: identification::Progress| {
                 let total = (p.passes * p.records) as u64;
                 let done = ((p.pass - 1) * p.records + p.records_done) as u64;
                 stage.at(done, total);
             },
-        )?;
+        );
+        let result = match result {
+            Ok(result) => result,
+            Err(e) if is_of_a_file(&e) => return Err(e),
+            Err(e) => {
+                failed.push(StageFailure::new(format!("training of {}", block.name), &e));
+                first_error = first_error.or(Some(e));
+                continue;
+            }
+        };
         let file = format!("{}.json", block.slug());
         let json = result.model.to_json()?;
         out.write(Path::new(MODELS).join(&file), &json)?;
@@ -91,7 +116,26 @@ pub fn train(
         trained.push(result);
         drop(stage);
     }
-    Ok(trained)
+    match first_error {
+        Some(error @ Error::Input(_)) if trained.is_empty() => Err(error),
+        _ => Ok(trained),
+    }
+}
+
+/// Refuses speed groups that do not exist before anything is trained: that is a wrong key, no failure of a stage.
+fn check_groups(
+    study: &Study,
+    block: &ModelBlock,
+    deck: &Deck,
+    records: Option<&RecordSet>,
+) -> Result<()> {
+    let Some(groups) = block.speed_groups.as_deref() else {
+        return Ok(());
+    };
+    match records {
+        Some(records) if block.table.is_none() => records.select(Some(groups)).map(drop),
+        _ => deck.samples(study, Some(groups)).map(drop),
+    }
 }
 
 fn report_json(report: &FitReport) -> Result<String> {
@@ -101,18 +145,31 @@ fn report_json(report: &FitReport) -> Result<String> {
     Ok(text)
 }
 
-/// Reads the models that `train` wrote.
-pub fn read_models(study: &Study, directory: &Path) -> Result<Vec<TrainedModel>> {
-    study
-        .models
-        .iter()
-        .map(|block| {
-            let path = directory
-                .join(MODELS)
-                .join(format!("{}.json", block.slug()));
-            read_model(&path)
-        })
-        .collect()
+/// Reads the models that `train` wrote; one that is not there is noted in `failed`.
+///
+/// # Errors
+/// Those of reading; the first when there is no model at all.
+pub fn read_models(
+    study: &Study,
+    directory: &Path,
+    failed: &mut Vec<StageFailure>,
+) -> Result<Vec<TrainedModel>> {
+    let mut models = Vec::new();
+    let mut first_error = None;
+    for block in &study.models {
+        let file = format!("{}.json", block.slug());
+        match read_model(&directory.join(MODELS).join(file)) {
+            Ok(model) => models.push(model),
+            Err(e) => {
+                failed.push(StageFailure::new(format!("reading {}", block.name), &e));
+                first_error = first_error.or(Some(e));
+            }
+        }
+    }
+    match first_error {
+        Some(error) if models.is_empty() => Err(error),
+        _ => Ok(models),
+    }
 }
 
 /// Reads one trained model.
@@ -125,17 +182,18 @@ pub fn read_model(path: &Path) -> Result<TrainedModel> {
         )
         .in_file(path));
     }
-    let text = fs::read_to_string(path).map_err(|e| Error::io(path, e))?;
-    TrainedModel::from_json(&text).map_err(|e| e.in_file(path))
+    TrainedModel::read(path)
 }
 
 /// Reads the uncertainties that `train` wrote beside the models.
-pub fn read_uncertainties(study: &Study, directory: &Path) -> Result<Vec<KnownUncertainty>> {
-    study
-        .models
+pub fn read_uncertainties(
+    models: &[TrainedModel],
+    directory: &Path,
+) -> Result<Vec<KnownUncertainty>> {
+    models
         .iter()
-        .map(|block| {
-            let file = format!("{}.{UNCERTAINTY}", block.slug());
+        .map(|model| {
+            let file = format!("{}.{UNCERTAINTY}", slug(&model.name));
             let path = directory.join(FITS).join(file);
             if !path.exists() {
                 return Ok(Err("no covariance was saved with the model".to_owned()));
@@ -170,13 +228,17 @@ pub fn flutter_figure(
     out: &mut OutputDir,
 ) -> Result<()> {
     let onsets: Vec<Onset> = results.onsets.iter().chain(further).cloned().collect();
+    if results.curves.is_empty() {
+        return Err(Error::Numerical("no modes to draw".into()));
+    }
     let options = VfVgOptions {
         title: Some(study.name.clone()),
         ..VfVgOptions::default()
     };
     let figure = vf_vg_figure(&results.curves, &onsets, &options)?;
+    let png = figure.png(PNG_SCALE)?;
     out.write(format!("{FIGURE}.svg"), figure.svg())?;
-    out.write(format!("{FIGURE}.png"), figure.png(PNG_SCALE)?)
+    out.write(format!("{FIGURE}.png"), png)
 }
 
 /// The same figure for all routes, as far as there are colours.
@@ -199,9 +261,29 @@ pub fn routes_figure(
 }
 
 /// Packs a model with all runtimes that are there.
-pub fn export(model: &TrainedModel, progress: &Progress) -> Result<Vec<u8>> {
+pub fn export(model: &TrainedModel, growing: Growing, progress: &Progress) -> Result<Vec<u8>> {
     let stage = progress.stage("packing the FMU");
-    let bytes = package(model, &Runtime::available()?)?;
+    let bytes =
+        package(model, &Runtime::available()?, growing).map_err(|e| or_allow_unstable(e, model))?;
     drop(stage);
     Ok(bytes)
+}
+
+/// What the flag `--allow-unstable` says.
+pub fn growing(allowed: bool) -> Growing {
+    if allowed {
+        Growing::Allow
+    } else {
+        Growing::Refuse
+    }
+}
+
+/// A refused export with the flag that allows it.
+pub fn or_allow_unstable(error: Error, model: &TrainedModel) -> Error {
+    match error {
+        Error::Numerical(text) if growth_of(model).is_ok_and(|g| !g.is_none()) => {
+            Error::Numerical(format!("{text} (--allow-unstable exports it all the same)"))
+        }
+        other => other,
+    }
 }

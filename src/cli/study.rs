@@ -4,14 +4,17 @@ use super::answer::Answer;
 use super::common::StudyArgs;
 use super::output::{OutputDir, Written, list};
 use super::progress::Progress;
-use super::{account, stages};
-use crate::error::Result;
-use crate::flutter::Onset;
+use super::{account, select, stages};
+use crate::error::{Error, Result};
+use crate::flutter::{Onset, UnstableStart};
+use crate::fmu::package::Growing;
 use crate::identification::FitReport;
 use crate::study::{
-    Deck, Deviation, Divergence, KnownUncertainty, OnsetSummary, RecordSet, SteppedOnset, Study,
-    interval_of, stepped_onset,
+    Deck, Deviation, Divergence, KnownUncertainty, ModelGrowth, OnsetSummary, RecordSet,
+    SpeedRange, StageFailure, SteppedOnset, Study, TrainedWithReport, attempt, interval_of,
+    stepped_onset, study_warnings,
 };
+use crate::trained_model::TrainedModel;
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -23,6 +26,9 @@ use std::path::PathBuf;
 pub struct Args {
     #[command(flatten)]
     study: StudyArgs,
+    /// Export a model that grows below its onset, at reduced frequencies that were not tested.
+    #[arg(long)]
+    allow_unstable: bool,
 }
 
 /// What `summary.json` holds.
@@ -36,10 +42,20 @@ pub struct Summary {
     pub deck: String,
     /// Licence of the data.
     pub licence: String,
+    /// What was assumed in reading the deck, what looks wrong in it, and values of the study that are hardly meant.
+    pub warnings: Vec<String>,
+    /// Wind speeds of curves and searches.
+    pub speeds: SpeedRange,
     /// All onsets found, one entry a model and method.
     pub onsets: Vec<Onset>,
+    /// Onsets that the data leave so far open that they are no results.
+    pub undetermined: Vec<Onset>,
+    /// Growth at the lowest speed that could be judged.
+    pub unstable: Vec<UnstableStart>,
     /// Searches that found none.
     pub stable: Vec<OnsetSummary>,
+    /// Growth of each model below its onset, where nothing was tested.
+    pub growth: Vec<ModelGrowth>,
     /// Static divergence.
     pub divergence: Vec<Divergence>,
     /// Onsets against the deck's own.
@@ -48,6 +64,8 @@ pub struct Summary {
     pub fits: Vec<FitSummary>,
     /// The FMU stepped through its C interface.
     pub stepped: Option<SteppedOnset>,
+    /// Stages that failed, and why; the others are complete.
+    pub failed: Vec<StageFailure>,
     /// Files written.
     pub files: Vec<PathBuf>,
 }
@@ -68,30 +86,49 @@ pub struct FitSummary {
 pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     let study = args.study.read()?;
     let out = OutputDir::new(&args.study.directory())?;
-    run_chain(&study, out, progress)
+    run_chain(&study, out, stages::growing(args.allow_unstable), progress)
 }
 
-/// The whole chain into `out`.
-pub fn run_chain(study: &Study, mut out: OutputDir, progress: &Progress) -> Result<Answer> {
+/// The whole chain into `out`. A stage that fails is reported in its place and leaves the others as they are; then the
+/// answer did not pass.
+pub fn run_chain(
+    study: &Study,
+    mut out: OutputDir,
+    growing: Growing,
+    progress: &Progress,
+) -> Result<Answer> {
     let deck = Deck::load(study)?;
-    let records = if study.deck.records.is_empty() {
-        RecordSet::staged(stages::tunnel(study, &deck, &mut out, progress)?)?
-    } else {
-        RecordSet::measured(study)?
+    let mut failed = Vec::new();
+    let records = records(study, &deck, &mut out, progress);
+    let records_error = records.as_ref().err().map(ToString::to_string);
+    let records = attempt(&mut failed, "records", records)?;
+    let selected = match &records {
+        Some(records) if study.select => {
+            let selected = select::with_selected(study, records, progress);
+            attempt(&mut failed, "selection", selected)?
+        }
+        _ => None,
     };
-    let trained = stages::train(study, &deck, &records, &mut out, progress)?;
+    let study = selected.as_ref().unwrap_or(study);
+    let aside = (&mut out, &mut failed);
+    let trained = stages::train(study, &deck, records.as_ref(), aside, progress)?;
+    if let (true, Some(reason)) = (trained.is_empty(), records_error) {
+        return Err(Error::Numerical(format!(
+            "no model can be trained: {reason}"
+        )));
+    }
     let models: Vec<_> = trained.iter().map(|t| t.model.clone()).collect();
     let known: Vec<_> = trained.iter().map(|t| t.uncertainty.clone()).collect();
-    let results = stages::flutter(study, &deck, &models, &known, progress)?;
-    let exported = study.exported()?;
+    let mut results = stages::flutter(study, &deck, &models, &known, progress)?;
+    failed.append(&mut results.failed);
+    let exported = export(study, &models, (&mut out, &mut failed), growing, progress)?;
     let mut stepped = None;
-    for model in models.iter().filter(|m| m.name == exported.name) {
-        let bytes = stages::export(model, progress)?;
-        let path = out.stage(stages::FMU_FILE)?;
-        std::fs::write(&path, bytes).map_err(|e| crate::Error::io(&path, e))?;
+    if let Some((model, path)) = exported {
         let stage = progress.stage("stepping the FMU");
-        stepped = stepped_onset(model, &path, study.flutter.speed_max_m_s)?;
+        let found = stepped_onset(model, &path, study.speeds().speed_max_m_s);
         drop(stage);
+        stepped = attempt(&mut failed, "stepping the FMU", found)?
+            .and_then(|answer| results.take_stepped(answer, &model.name));
         let own = models
             .iter()
             .zip(&known)
@@ -101,28 +138,31 @@ pub fn run_chain(study: &Study, mut out: OutputDir, progress: &Progress) -> Resu
             stepped.onset.interval = interval_of(&structure, model, known, &stepped.onset);
         }
     }
-    let further: Vec<Onset> = stepped.iter().map(|s| s.onset.clone()).collect();
-    stages::flutter_figure(study, &results, &further, &mut out)?;
+    let further = stepped.iter().map(|s| s.onset.clone());
+    let (further, open): (Vec<Onset>, Vec<Onset>) = further.partition(|o| o.headline_m_s().is_ok());
+    results.undetermined.extend(open);
+    let figure = stages::flutter_figure(study, &results, &further, &mut out);
+    attempt(&mut failed, "figure", figure)?;
+    results.onsets.extend(further);
     let summary_file = out.target("summary.json");
     let staged_summary = out.stage("summary.json")?;
     let mut summary = Summary {
         generator: format!("aerodeck {}", env!("CARGO_PKG_VERSION")),
         study: study.name.clone(),
         deck: deck.description(),
+        warnings: [deck.warnings(), study_warnings(study)].concat(),
         licence: deck.licence(),
-        onsets: results.onsets.iter().chain(&further).cloned().collect(),
+        speeds: study.speeds(),
+        onsets: results.onsets,
+        undetermined: results.undetermined,
+        unstable: results.unstable,
         stable: results.stable,
+        growth: results.growth,
         divergence: results.divergence,
         deviations: results.deviations,
-        fits: trained
-            .into_iter()
-            .map(|t| FitSummary {
-                model: t.model.name,
-                report: t.report,
-                uncertainty: t.uncertainty,
-            })
-            .collect(),
+        fits: trained.into_iter().map(FitSummary::from).collect(),
         stepped,
+        failed,
         files: out.targets(),
     };
     summary.files.sort();
@@ -130,10 +170,57 @@ pub fn run_chain(study: &Study, mut out: OutputDir, progress: &Progress) -> Resu
         .map_err(|e| crate::Error::Numerical(e.to_string()))?;
     std::fs::write(&staged_summary, json + "\n").map_err(|e| crate::Error::io(&summary_file, e))?;
     let written = out.commit()?;
-    Answer::new(
+    let answer = Answer::new(
         account::chain(study, &deck, &summary, &shown(&written)),
         &summary,
-    )
+    )?;
+    Ok(answer.with_verdict(summary.failed.is_empty()))
+}
+
+/// The records of the study: measured, or those of the virtual tunnel.
+fn records(
+    study: &Study,
+    deck: &Deck,
+    out: &mut OutputDir,
+    progress: &Progress,
+) -> Result<RecordSet> {
+    if study.deck.records.is_empty() {
+        RecordSet::staged(stages::tunnel(study, deck, out, progress)?)
+    } else {
+        RecordSet::measured(study)
+    }
+}
+
+/// Packs the model that the study exports; it with the place of its FMU.
+fn export<'a>(
+    study: &Study,
+    models: &'a [TrainedModel],
+    (out, failed): (&mut OutputDir, &mut Vec<StageFailure>),
+    growing: Growing,
+    progress: &Progress,
+) -> Result<Option<(&'a TrainedModel, PathBuf)>> {
+    let name = &study.exported()?.name;
+    let Some(model) = models.iter().find(|m| m.name == *name) else {
+        let reason = format!("{name} was not trained");
+        failed.push(StageFailure::new("export", reason));
+        return Ok(None);
+    };
+    let bytes = stages::export(model, growing, progress);
+    let Some(bytes) = attempt(failed, "export", bytes)? else {
+        return Ok(None);
+    };
+    out.write(stages::FMU_FILE, bytes)?;
+    Ok(Some((model, out.stage(stages::FMU_FILE)?)))
+}
+
+impl From<TrainedWithReport> for FitSummary {
+    fn from(trained: TrainedWithReport) -> Self {
+        Self {
+            model: trained.model.name,
+            report: trained.report,
+            uncertainty: trained.uncertainty,
+        }
+    }
 }
 
 /// The files a reader looks for; records, models and fits are named by their folder.

@@ -1,6 +1,7 @@
 //! `aerodeck thesis`: the headline of the source document, repeated.
 
 use super::answer::Answer;
+use super::interrupt::Temporary;
 use super::output::OutputDir;
 use super::progress::Progress;
 use super::{account, stages};
@@ -22,14 +23,18 @@ pub struct Args {}
 /// Runs the command.
 pub fn run(_: &Args, progress: &Progress) -> Result<Answer> {
     let aside = tempfile::tempdir().map_err(|e| Error::io(std::env::temp_dir(), e))?;
+    let aside = Temporary::new(aside.keep());
     let study = Study::from_toml(thesis_study_text(), PathBuf::new())?;
     let deck = Deck::load(&study)?;
     let mut out = OutputDir::new(aside.path())?;
     let records = RecordSet::staged(stages::tunnel(&study, &deck, &mut out, progress)?)?;
-    let trained = stages::train(&study, &deck, &records, &mut out, progress)?;
+    let mut failed = Vec::new();
+    let aside = (&mut out, &mut failed);
+    let trained = stages::train(&study, &deck, Some(&records), aside, progress)?;
     let models: Vec<_> = trained.iter().map(|t| t.model.clone()).collect();
     let known: Vec<_> = trained.iter().map(|t| t.uncertainty.clone()).collect();
-    let results = stages::flutter(&study, &deck, &models, &known, progress)?;
+    let mut results = stages::flutter(&study, &deck, &models, &known, progress)?;
+    failed.append(&mut results.failed);
     let mut text = format!("{}\n\n", study.name);
     for result in &trained {
         text.push_str(&account::fit(
@@ -39,11 +44,17 @@ pub fn run(_: &Args, progress: &Progress) -> Result<Answer> {
         ));
     }
     text.push('\n');
-    text.push_str(&account::onsets(&results.onsets, &results.stable));
+    text.push_str(&account::onsets(
+        (&results.onsets, &results.undetermined),
+        &results.unstable,
+        &results.stable,
+    ));
     text.push_str(&account::deviations(&results.deviations));
+    text.push_str(&account::failures(&failed));
     let _ = writeln!(text, "thesis: {PRINTED_M_S} m/s for both models");
-    Answer::new(
+    let answer = Answer::new(
         text,
-        &serde_json::json!({ "printed_m_s": PRINTED_M_S, "flutter": results }),
-    )
+        &serde_json::json!({ "printed_m_s": PRINTED_M_S, "flutter": results, "failed": failed }),
+    )?;
+    Ok(answer.with_verdict(failed.is_empty()))
 }

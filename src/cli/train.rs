@@ -6,7 +6,8 @@ use super::output::{OutputDir, list};
 use super::progress::Progress;
 use super::{account, stages};
 use crate::error::Result;
-use crate::study::{Deck, RecordSet};
+use crate::fmu::package::growth_of;
+use crate::study::{Deck, ModelGrowth, RecordSet, attempt};
 
 /// Train the models of a study from its records (see `tunnel`) and tables
 ///
@@ -29,15 +30,29 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
         RecordSet::measured(&study)?
     };
     let mut out = OutputDir::new(&directory)?;
-    let trained = stages::train(&study, &deck, &records, &mut out, progress)?;
+    let mut failed = Vec::new();
+    let aside = (&mut out, &mut failed);
+    let trained = stages::train(&study, &deck, Some(&records), aside, progress)?;
     let mut text = format!("{}\n{}\n", study.name, deck.description());
+    text.push_str(&account::deck_warnings(&deck));
+    let mut growths = Vec::new();
     for result in &trained {
         text.push_str(&account::fit(
             &result.model.name,
             &result.report,
             &result.uncertainty,
         ));
+        let growth = growth_of(&result.model);
+        let stage = format!("scan for growth of {}", result.model.name);
+        if let Some(growth) = attempt(&mut failed, stage, growth)? {
+            text.push_str(&account::growth(&result.model.name, &growth));
+            growths.push(ModelGrowth {
+                model: result.model.name.clone(),
+                growth,
+            });
+        }
     }
+    text.push_str(&account::failures(&failed));
     let written = out.commit()?;
     text.push_str(&list(&written));
     let fits: Vec<_> = trained
@@ -50,8 +65,11 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
             })
         })
         .collect();
-    Answer::new(
+    let answer = Answer::new(
         text,
-        &serde_json::json!({ "trained": fits, "files": written }),
-    )
+        &serde_json::json!({
+            "trained": fits, "growth": growths, "failed": failed, "warnings": deck.warnings(), "files": written
+        }),
+    )?;
+    Ok(answer.with_verdict(failed.is_empty()))
 }

@@ -1,9 +1,10 @@
 //! What the commands on a wind file have in common.
 
+use super::common::warn;
 use super::output::OutputDir;
 use crate::error::{Error, Result};
 use crate::report::{Figure, PNG_SCALE};
-use crate::study::{WindStudy, example_wind_study_text};
+use crate::study::{WindStudy, example_wind_study_text, section_warnings};
 use std::path::{Path, PathBuf};
 
 /// Name under which the example is left with the user.
@@ -17,6 +18,9 @@ pub struct WindArgs {
     /// Folder of the results; by default that of the file, or `aerodeck-out`.
     #[arg(long)]
     pub out: Option<PathBuf>,
+    /// Replace a wind file that differs from the example, when the example is used.
+    #[arg(long)]
+    pub force: bool,
 }
 
 impl WindArgs {
@@ -31,9 +35,13 @@ impl WindArgs {
             let directory = self.out.as_deref().unwrap_or(Path::new("aerodeck-out"));
             let mut out = OutputDir::new(directory)?;
             out.write(EXAMPLE_FILE, text)?;
+            let instead = "name yours to use it, choose another --out";
+            out.refuse_edited(EXAMPLE_FILE, self.force, instead)?;
             return Ok((study, out));
         };
         let study = WindStudy::read(file)?;
+        let section = study.section.as_ref();
+        warn(file, &section.map_or_else(Vec::new, section_warnings));
         let beside = file.parent().filter(|p| !p.as_os_str().is_empty());
         let directory = self.out.as_deref().or(beside).unwrap_or(Path::new("."));
         Ok((study, OutputDir::new(directory)?))

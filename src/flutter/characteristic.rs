@@ -67,7 +67,7 @@ impl Characteristic {
             }
             out
         };
-        let air = |m: &nalgebra::DMatrix<f64>| small(&(s.to_physical(m) * half_rho));
+        let air = |m: &nalgebra::DMatrix<f64>| small(&(s.scaled(m) * half_rho));
         let filters = aero.a.nrows();
         Some(Self {
             n,

@@ -3,6 +3,8 @@
 use super::tracking::{Tracker, branch_name};
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, non_negative};
+use crate::section::Dof;
+use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use nalgebra::Complex;
 use serde::Serialize;
 use std::f64::consts::TAU;
@@ -20,6 +22,8 @@ pub struct ModePoint {
     pub damping_ratio: f64,
     /// Displacements of the mode in the order of the degrees of freedom: m, rad; unit norm in `(y/B, x/B, θ)`.
     pub shape: Vec<Complex64>,
+    /// Whether `K = ωB/V` lies in the range in which the model was tested; `None` when there is no such range.
+    pub in_tested_range: Option<bool>,
 }
 
 /// A complex number as it is written to files.
@@ -53,28 +57,43 @@ pub struct FlutterCurves {
     pub model: String,
     /// One branch a degree of freedom.
     pub branches: Vec<ModeBranch>,
+    /// Why the branches end before the highest speed, where they do because the modes cannot be followed.
+    pub ended: Option<String>,
+}
+
+impl FlutterCurves {
+    /// States of every point whether its reduced frequency lies in `tested`; `width_m` is that of the section.
+    #[must_use]
+    pub fn marked(mut self, width_m: f64, tested: Option<ReducedFrequencyRange>) -> Self {
+        for point in self.branches.iter_mut().flat_map(|b| &mut b.points) {
+            let k = ReducedFrequency::from_hertz(point.frequency_hz, width_m, point.speed_m_s);
+            point.in_tested_range = tested.map(|range| range.contains(k));
+        }
+        self
+    }
+}
+
+/// A branch for every degree of freedom, with room for its points.
+pub(super) fn empty_branches(dofs: &[Dof], points: usize) -> Vec<ModeBranch> {
+    let branch = |dof: &Dof| ModeBranch {
+        name: branch_name(*dof),
+        points: Vec::with_capacity(points),
+    };
+    dofs.iter().map(branch).collect()
 }
 
 /// Follows the structural modes of `section` from still air over the increasing `speeds_m_s`.
 ///
 /// # Errors
-/// [`Error::Input`] for speeds that do not increase; [`Error::Numerical`] when modes cannot be told apart.
+/// [`Error::Input`] for speeds that do not increase. Where modes cannot be told apart the branches end.
 pub fn trace_modes(
     model: &str,
     section: &CoupledSection,
     speeds_m_s: &[f64],
 ) -> Result<FlutterCurves> {
     let mut tracker = Tracker::start(section)?;
-    let mut branches: Vec<ModeBranch> = section
-        .structure()
-        .dofs
-        .iter()
-        .map(|dof| ModeBranch {
-            name: branch_name(*dof),
-            points: Vec::with_capacity(speeds_m_s.len()),
-        })
-        .collect();
-    let mut last = 0.0;
+    let mut branches = empty_branches(&section.structure().dofs, speeds_m_s.len());
+    let (mut last, mut ended) = (0.0, None);
     for &speed in speeds_m_s {
         if non_negative("wind speeds", speed)? < last {
             return Err(Error::input(
@@ -88,7 +107,14 @@ pub fn trace_modes(
             // below the first speed at which the sampled system resolves the modes nothing can be said
             continue;
         }
-        tracker = tracker.advance(speed)?;
+        tracker = match tracker.advance(speed) {
+            Ok(tracker) => tracker,
+            Err(Error::Numerical(why)) => {
+                ended = Some(why);
+                break;
+            }
+            other => other?,
+        };
         for mode in &tracker.modes {
             branches[mode.branch].points.push(ModePoint {
                 speed_m_s: speed,
@@ -96,12 +122,14 @@ pub fn trace_modes(
                 frequency_hz: mode.lambda.im.abs() / TAU,
                 damping_ratio: damping_ratio(mode.lambda),
                 shape: mode.shape.iter().map(|z| (*z).into()).collect(),
+                in_tested_range: None,
             });
         }
     }
     Ok(FlutterCurves {
         model: model.to_owned(),
         branches,
+        ended,
     })
 }
 

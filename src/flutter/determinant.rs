@@ -4,7 +4,8 @@
 //! problem `ω² (M + ½ρB²/K² P(G)) − iωR − K_s = 0`. Its roots are followed over `K`; where one becomes real, the
 //! section flutters (Theodorsen's method with viscous damping).
 
-use super::onset::{FlutterSearch, Onset, OnsetMethod, choose};
+use super::answer::{Findings, FlutterSearch, Reach, UnstableStart, choose, entry_reason};
+use super::onset::{Onset, OnsetMethod};
 use super::search::root;
 use super::tracking::branch_name;
 use crate::aerodynamics::{AerodynamicModel, Realization, TransferMatrix};
@@ -16,6 +17,10 @@ use nalgebra::{Complex, DMatrix, DVector, Schur};
 
 /// Reduced frequencies at which the roots are looked at, logarithmically spaced over the range.
 const GRID: usize = 600;
+/// Steps in which the air comes to its density to name the modes.
+const AIR_STEPS: usize = 40;
+/// Growth up to this part of the frequency is rounding.
+const ROUNDING: f64 = 1e-9;
 const MAX_SCHUR_SWEEPS: usize = 600;
 /// Relative step of the differences for the damping slope: truncation 1e-10 against rounding 1e-11.
 const SLOPE_STEP: f64 = 1e-5;
@@ -41,7 +46,8 @@ pub fn impedance(
 
 /// Lowest speed up to `speed_max_m_s` at which the section flutters at a reduced frequency inside `range`.
 ///
-/// Says nothing outside `range`: a table cannot be searched where it was not measured.
+/// Says nothing outside `range`: a table cannot be searched where it was not measured. A mode that grows already at the
+/// highest `K` of the range is unstable at and below the speed that belongs to it.
 ///
 /// # Errors
 /// [`Error::Input`] for an empty range; those of the model; [`Error::Numerical`] when the roots cannot be computed.
@@ -63,33 +69,71 @@ pub fn determinant_onset(
             i => k_max * (k_min / k_max).powf(i as f64 / GRID as f64),
         }
     };
-    let mut crossings = Vec::new();
-    // at the highest K the speeds are lowest: the roots are in the order of the natural frequencies
-    let mut roots = problem.frequencies(at(0))?;
-    roots.sort_by(|a, b| a.re.total_cmp(&b.re));
-    let branches = structure.dofs_by_frequency();
+    let width = structure.width_m;
+    // each root with its branch, as long as it stays in the right half plane
+    let mut roots = problem.named_roots(k_max)?;
+    let mut reach = Reach::default();
+    let mut found = Vec::new();
+    let mut starts = Vec::new();
+    for (omega, dof) in &roots {
+        let (speed, branch) = (omega.re * width / k_max, branch_name(*dof));
+        reach.entries.push((speed, branch.clone()));
+        if omega.im < -ROUNDING * omega.norm() {
+            let at = (speed, omega * Complex::i());
+            let (method, why) = (OnsetMethod::Determinant, entry_reason(range.max));
+            let mut start = UnstableStart::new(name, method, structure, at, branch, why);
+            start.in_tested_range = Some(true);
+            starts.push(start);
+        }
+    }
     for i in 1..=GRID {
         let current = problem.frequencies(at(i))?;
-        for (root, dof) in roots.iter_mut().zip(&branches) {
-            let Some(after) = nearest(*root, &current) else {
+        let before: Vec<_> = roots.iter().map(|r| r.0).collect();
+        let mut next = Vec::with_capacity(roots.len());
+        for ((root, dof), after) in roots.into_iter().zip(paired(&before, &current)) {
+            let Some(after) = after else {
                 continue;
             };
             if root.im > 0.0 && after.im <= 0.0 {
-                let (from, to) = ((at(i - 1), *root), (at(i), after));
-                let onset = problem.refine(name, from, to, branch_name(*dof))?;
+                let (from, to) = ((at(i - 1), root), (at(i), after));
+                let onset = problem.refine(name, from, to, branch_name(dof))?;
                 if onset.speed_m_s <= speed_max_m_s {
-                    crossings.push(onset);
+                    found.push(onset);
                 }
             }
-            *root = after;
+            next.push((after, dof));
         }
+        roots = next;
     }
     // at the lowest K each root has come to a speed of its own; beyond the slowest nothing was looked at
-    let searched = roots
+    let exit = |(root, dof): &(Complex<f64>, Dof)| (root.re * width / k_min, branch_name(*dof));
+    reach.exits = roots.iter().map(exit).collect();
+    let mut findings = Findings::judged(reach.judged(speed_max_m_s));
+    findings.crossings = found;
+    findings.starts = starts;
+    Ok(choose(findings, Some(range)))
+}
+
+/// For every root the nearest of `current` that is not nearer to another; `None` where there are too few.
+fn paired(roots: &[Complex<f64>], current: &[Complex<f64>]) -> Vec<Option<Complex<f64>>> {
+    let mut distances: Vec<(f64, usize, usize)> = roots
         .iter()
-        .map(|root| root.re * structure.width_m / k_min)
-        .fold(speed_max_m_s, f64::min);
-    Ok(choose(crossings, Some(range), searched))
+        .enumerate()
+        .flat_map(|(i, a)| {
+            let to = current.iter().enumerate();
+            to.map(move |(j, b)| ((a - b).norm(), i, j))
+        })
+        .collect();
+    distances.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut pairs = vec![None; roots.len()];
+    let mut taken = vec![false; current.len()];
+    for (_, i, j) in distances {
+        if pairs[i].is_none() && !taken[j] {
+            pairs[i] = Some(current[j]);
+            taken[j] = true;
+        }
+    }
+    pairs
 }
 
 fn nearest(target: Complex<f64>, among: &[Complex<f64>]) -> Option<Complex<f64>> {
@@ -105,12 +149,38 @@ struct Problem<'a> {
 }
 
 impl Problem<'_> {
+    /// Roots at the reduced frequency `k` with the degrees of freedom whose modes they are: those of the structure without
+    /// air, followed while the air comes to its density.
+    fn named_roots(&self, k: f64) -> Result<Vec<(Complex<f64>, Dof)>> {
+        let mut still = self.frequencies_in(k, 0.0)?;
+        still.sort_by(|a, b| a.re.total_cmp(&b.re));
+        let dofs = self.structure.dofs_by_frequency();
+        let mut named: Vec<_> = still.into_iter().zip(dofs).collect();
+        for i in 1..=AIR_STEPS {
+            let current = self.frequencies_in(k, i as f64 / AIR_STEPS as f64)?;
+            let before: Vec<_> = named.iter().map(|r| r.0).collect();
+            let pairs = paired(&before, &current);
+            let names = named.into_iter().map(|r| r.1);
+            named = pairs
+                .into_iter()
+                .zip(names)
+                .filter_map(|(root, dof)| Some((root?, dof)))
+                .collect();
+        }
+        Ok(named)
+    }
+
     /// Roots `ω` with positive real part at the reduced frequency `k`, rad/s.
     fn frequencies(&self, k: f64) -> Result<Vec<Complex<f64>>> {
+        self.frequencies_in(k, 1.0)
+    }
+
+    /// The same with a part of the density of the air.
+    fn frequencies_in(&self, k: f64, part: f64) -> Result<Vec<Complex<f64>>> {
         let s = self.structure;
         let n = s.dofs.len();
         let g = self.model.transfer(ReducedFrequency::from_full_width(k))?;
-        let air = 0.5 * s.air_density_kg_m3 * (s.width_m / k).powi(2);
+        let air = 0.5 * part * s.air_density_kg_m3 * (s.width_m / k).powi(2);
         let mass = complex(&s.mass) + s.to_physical(&g) * Complex::new(air, 0.0);
         let inverse = mass
             .try_inverse()
@@ -194,7 +264,8 @@ pub(super) fn damping_slope(
     slope.is_finite().then_some(slope)
 }
 
-/// Onset speed of one degree of freedom with the others locked, m/s.
+/// Onset speed of one degree of freedom with the others locked, m/s; where it grows already at the highest `K`, the speed
+/// that belongs to that.
 pub(super) fn single_dof_onset(
     structure: &Structure,
     model: &dyn AerodynamicModel,
@@ -203,13 +274,18 @@ pub(super) fn single_dof_onset(
     speed_max_m_s: f64,
 ) -> Result<Option<f64>> {
     let locked = structure.only(&[structure.dofs[dof]]);
-    let alone = OneDof { model, dof };
+    let alone = OneDof {
+        structure,
+        model,
+        dof,
+    };
     let search = determinant_onset("", &locked, &alone, range, speed_max_m_s)?;
-    Ok(search.onset().map(|o| o.speed_m_s))
+    Ok(search.critical_speed_m_s())
 }
 
-/// One diagonal entry of a model.
+/// One diagonal entry of a model about the axis of a structure.
 struct OneDof<'a> {
+    structure: &'a Structure,
     model: &'a dyn AerodynamicModel,
     dof: usize,
 }
@@ -219,11 +295,14 @@ impl AerodynamicModel for OneDof<'_> {
         &self.model.dofs()[self.dof..=self.dof]
     }
     fn transfer(&self, k: ReducedFrequency) -> Result<TransferMatrix> {
-        let g = self.model.transfer(k)?;
+        let g = self.structure.at_axis(self.model.transfer(k)?);
         Ok(DMatrix::from_element(1, 1, g[(self.dof, self.dof)]))
     }
     fn realize(&self) -> Option<Realization> {
         None
+    }
+    fn known_range(&self) -> Option<ReducedFrequencyRange> {
+        self.model.known_range()
     }
 }
 

@@ -4,7 +4,7 @@ use super::search::root;
 use crate::aerodynamics::TransferMatrix;
 use crate::aeroelastic::{CoupledSection, CoupledSystem};
 use crate::error::{Error, Result, positive};
-use crate::section::Structure;
+use crate::section::{Dof, Structure};
 use crate::state_space::{balance, eigenvalues};
 use nalgebra::DMatrix;
 
@@ -32,6 +32,16 @@ pub fn divergence_speed(
         .map(|mu| mu.re)
         .fold(0.0, f64::max);
     Ok((largest > 0.0).then(|| (2.0 / (structure.air_density_kg_m3 * largest)).sqrt()))
+}
+
+/// The static part of forces `g` (n×n) known at a low reduced frequency only: what rotation causes in phase with it
+/// (`H3*`, `A3*`, `P3*`). A displacement that is held causes no force; what a table shows for it in phase (`H4*`, `A4*`)
+/// is of the rate of motion, and left in it moved the divergence of a published section by 4 % to the unsafe side.
+pub fn static_part(dofs: &[Dof], g: &TransferMatrix) -> TransferMatrix {
+    TransferMatrix::from_fn(g.nrows(), g.ncols(), |i, j| match dofs[j] {
+        Dof::Torsion => g[(i, j)].re.into(),
+        Dof::Vertical | Dof::Lateral => 0.0.into(),
+    })
 }
 
 /// Lowest speed up to `speed_max_m_s` at which a real eigenvalue of the coupled system passes through zero, m/s: a change

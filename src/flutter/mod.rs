@@ -3,28 +3,35 @@
 //! Three independent routes: eigenvalues of the coupled state matrix (for models with a realisation); the
 //! determinant in `(V, ω)` and the p-k iteration (for any `G(K)`, tables and the flat plate included).
 
+mod answer;
 mod characteristic;
 mod curves;
 mod determinant;
 mod divergence;
 mod instability;
+mod missed;
 mod onset;
 mod pk;
+mod pk_following;
 mod quasi_pk;
 mod quasi_steady;
 mod sanity;
+mod scan;
 mod search;
 mod sweep;
 mod tracking;
+mod unwanted;
 
+pub use answer::{FlutterSearch, StableRange, UnstableStart};
 pub use curves::{FlutterCurves, ModeBranch, ModePoint, trace_modes};
 pub use determinant::{determinant_onset, impedance};
-pub use divergence::{divergence_by_eigenvalues, divergence_speed};
+pub use divergence::{divergence_by_eigenvalues, divergence_speed, static_part};
 pub use instability::{Instability, ModeAtOnset, Participation, classify};
-pub use onset::{FlutterSearch, Onset, OnsetInterval, OnsetMethod};
-pub use pk::{pk_curves, pk_onset};
-pub use quasi_pk::quasi_pk_mode;
+pub use onset::{Onset, OnsetInterval, OnsetMethod};
+pub use pk::{pk_curves, pk_onset, quasi_pk_mode};
 pub use quasi_steady::{QuasiSteadyOnset, quasi_steady_modes, quasi_steady_onset};
 pub use sanity::{SanityLines, sanity_lines};
+pub use scan::{GrowthBand, growth_scan};
 pub use search::{OnsetSearch, find_onset};
 pub use sweep::{LinearForces, OnsetSweep, SweepOutcome, SweptOnset};
+pub use unwanted::{UnwantedGrowth, unwanted_growth};

@@ -1,7 +1,7 @@
 //! The flutter onset as a result: everything a practitioner wants on the card.
 
 use crate::section::Structure;
-use crate::units::{ReducedFrequency, ReducedFrequencyRange, ReducedVelocity};
+use crate::units::{ReducedFrequency, ReducedVelocity};
 use nalgebra::{Complex, DVector};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -80,6 +80,29 @@ pub enum OnsetInterval {
         /// Degrees of freedom of the standard error.
         degrees_of_freedom: f64,
     },
+    /// The speeds that several ways of reading the same data give, e.g. of interpolating a table: no statement of
+    /// probability.
+    Spread {
+        /// Lowest, m/s.
+        low_m_s: f64,
+        /// Highest, m/s.
+        high_m_s: f64,
+        /// Spread between what, and the speed by each way.
+        of: String,
+    },
+    /// The data leave the speed so far open that it is no result: the interval contains zero or is wider than the speed.
+    Undetermined {
+        /// Lower end, m/s.
+        low_m_s: f64,
+        /// Upper end, m/s.
+        high_m_s: f64,
+        /// Standard error, m/s.
+        standard_error_m_s: f64,
+        /// Degrees of freedom of the standard error.
+        degrees_of_freedom: f64,
+        /// Which of the two, in words.
+        reason: String,
+    },
     /// There is none.
     None {
         /// Why.
@@ -88,6 +111,39 @@ pub enum OnsetInterval {
 }
 
 impl OnsetInterval {
+    /// The interval of `half_width_m_s` to both sides of a speed.
+    pub fn about(
+        speed_m_s: f64,
+        half_width_m_s: f64,
+        standard_error_m_s: f64,
+        degrees_of_freedom: f64,
+    ) -> Self {
+        let (low_m_s, high_m_s) = (speed_m_s - half_width_m_s, speed_m_s + half_width_m_s);
+        let ends = format!("its 95 % interval, {low_m_s:.3} to {high_m_s:.3} m/s,");
+        // an error that is not a number is neither, and leaves the speed undetermined
+        let above_zero = low_m_s > 0.0;
+        let narrow = 2.0 * half_width_m_s <= speed_m_s;
+        let why = if !above_zero {
+            "contains zero"
+        } else if !narrow {
+            "is wider than the speed itself"
+        } else {
+            return Self::Known {
+                low_m_s,
+                high_m_s,
+                standard_error_m_s,
+                degrees_of_freedom,
+            };
+        };
+        Self::Undetermined {
+            low_m_s,
+            high_m_s,
+            standard_error_m_s,
+            degrees_of_freedom,
+            reason: format!("not determined by these data: {ends} {why}"),
+        }
+    }
+
     /// No interval, for this reason.
     pub fn none(reason: impl Into<String>) -> Self {
         Self::None {
@@ -97,6 +153,19 @@ impl OnsetInterval {
 }
 
 impl Onset {
+    /// The speed, unless the data do not determine it: what may be printed as a result, m/s.
+    ///
+    /// # Errors
+    /// Why it may not.
+    pub fn headline_m_s(&self) -> std::result::Result<f64, &str> {
+        match &self.interval {
+            OnsetInterval::Undetermined { reason, .. } => Err(reason),
+            OnsetInterval::Known { .. }
+            | OnsetInterval::Spread { .. }
+            | OnsetInterval::None { .. } => Ok(self.speed_m_s),
+        }
+    }
+
     /// The onset at speed and frequency with a mode shape; nothing about ranges yet.
     pub(super) fn new(
         model: &str,
@@ -129,61 +198,33 @@ impl Onset {
     }
 }
 
-/// Answer of a search: an onset, or the statement that there is none.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum FlutterSearch {
-    /// The section flutters.
-    Onset(Box<Onset>),
-    /// No flutter up to this speed, m/s.
-    StableUpTo(f64),
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-impl FlutterSearch {
-    /// The onset, if there is one.
-    pub fn onset(&self) -> Option<&Onset> {
-        match self {
-            Self::Onset(onset) => Some(onset),
-            Self::StableUpTo(_) => None,
+    #[test]
+    fn a_speed_that_the_data_leave_open_is_undetermined() {
+        let about = |speed, half| OnsetInterval::about(speed, half, half / 2.0, 20.0);
+        assert!(matches!(
+            about(37.0, 1.0),
+            OnsetInterval::Known {
+                low_m_s: 36.0,
+                high_m_s: 38.0,
+                ..
+            }
+        ));
+        // the whole width may be the speed, and no more
+        assert!(matches!(about(10.0, 5.0), OnsetInterval::Known { .. }));
+        for (speed, half, why) in [
+            (10.0, 5.1, "wider than the speed itself"),
+            (9.2, 114.0, "contains zero"),
+            (9.2, f64::NAN, "contains zero"),
+        ] {
+            let OnsetInterval::Undetermined { reason, .. } = about(speed, half) else {
+                panic!("{speed} ± {half} is determined");
+            };
+            assert!(reason.starts_with("not determined by these data"));
+            assert!(reason.ends_with(why), "{reason}");
         }
     }
-}
-
-/// Picks the answer among all crossings: the lowest one inside the tested range; crossings below it are named as
-/// suspicious. Without one inside, the lowest, with a warning.
-pub(super) fn choose(
-    mut crossings: Vec<Onset>,
-    tested: Option<ReducedFrequencyRange>,
-    speed_max: f64,
-) -> FlutterSearch {
-    crossings.sort_by(|a, b| a.speed_m_s.total_cmp(&b.speed_m_s));
-    for onset in &mut crossings {
-        onset.in_tested_range = tested.map(|range| range.contains(onset.reduced_frequency));
-    }
-    let trusted = crossings
-        .iter()
-        .position(|o| o.in_tested_range != Some(false));
-    let Some(chosen) = trusted.or(if crossings.is_empty() { None } else { Some(0) }) else {
-        return FlutterSearch::StableUpTo(speed_max);
-    };
-    let mut onset = crossings.swap_remove(chosen);
-    crossings.retain(|o| o.speed_m_s < onset.speed_m_s);
-    crossings.sort_by(|a, b| a.speed_m_s.total_cmp(&b.speed_m_s));
-    for below in &crossings {
-        onset.warnings.push(format!(
-            "the model also loses damping at {:.2} m/s (V* {:.2}, {} branch), outside the tested range: \
-             probably spurious, a sign of over-fitting",
-            below.speed_m_s,
-            below.reduced_velocity.v_star(),
-            below.branch
-        ));
-        onset.spurious_speeds_m_s.push(below.speed_m_s);
-    }
-    if onset.in_tested_range == Some(false) {
-        onset.warnings.push(format!(
-            "V* {:.2} at this onset lies outside the tested range: the model is extrapolating, the onset may be spurious",
-            onset.reduced_velocity.v_star()
-        ));
-    }
-    FlutterSearch::Onset(Box::new(onset))
 }

@@ -1,7 +1,12 @@
-//! Modes in wind of models that are only a `G(K)`, by the quasi-p-k iteration.
+//! One mode at one wind speed of models that are only a `G(K)`, by the p-k iteration.
+//!
+//! The forces act as stiffness and damping at the frequency of the mode itself, `ω = Im λ`:
+//! `M q̈ + (R − ½ρV² P(Im G)/ω) q̇ + (K − ½ρV² P(Re G)) q = 0` with `G` at `K = ωB/V`. Exact at an onset, where `λ` is
+//! imaginary; for damped modes it means by frequency and damping what measured derivatives mean, not what the
+//! eigenvalues of a realisation mean.
 
 use crate::aerodynamics::AerodynamicModel;
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result};
 use crate::section::Structure;
 use crate::state_space::{eigenvalues, eigenvector};
 use crate::units::ReducedFrequency;
@@ -11,40 +16,6 @@ use nalgebra::{Complex, DMatrix, DVector};
 const MAX_ROUNDS: usize = 200;
 /// Relative change at which a mode counts as found.
 const TOLERANCE: f64 = 1e-12;
-
-/// Eigenvalue (rad/s) at one wind speed of the mode that moves the degree of freedom `dof` (its index) in still air.
-///
-/// The forces act as stiffness and damping at the frequency of the mode itself, `ω = Im λ`:
-/// `M q̈ + (R − ½ρV² P(Im G)/ω) q̇ + (K − ½ρV² P(Re G)) q = 0` with `G` at `K = ωB/V`. Exact at an onset, where `λ` is
-/// imaginary; for damped modes it means by frequency and damping what measured derivatives mean, not what the
-/// eigenvalues of a realisation mean.
-///
-/// # Errors
-/// [`Error::Input`] for a speed that is not positive or a `dof` that there is not; those of the model, e.g. outside the
-/// range of a table; [`Error::Numerical`] when the mode stops oscillating or the iteration does not settle.
-pub fn quasi_pk_mode(
-    structure: &Structure,
-    model: &dyn AerodynamicModel,
-    speed_m_s: f64,
-    dof: usize,
-) -> Result<Complex<f64>> {
-    positive("wind speed", speed_m_s)?;
-    let n = structure.dofs.len();
-    if dof >= n {
-        return Err(Error::input(
-            "degree of freedom",
-            format!("an index below {n}"),
-            dof.to_string(),
-        ));
-    }
-    let square = structure.stiffness[(dof, dof)] / structure.mass[(dof, dof)];
-    let start = Complex::new(0.0, square.sqrt());
-    settle(structure, model, speed_m_s, start)?.ok_or_else(|| {
-        Error::Numerical(format!(
-            "quasi-p-k: no mode settles and oscillates at {speed_m_s} m/s"
-        ))
-    })
-}
 
 /// An eigenvalue (rad/s, upper half plane) with its displacements (n): m, rad; of any size.
 #[derive(Debug, Clone)]
@@ -60,30 +31,43 @@ pub(super) fn pk_mode(
     speed_m_s: f64,
     start: &PkMode,
 ) -> Result<Option<PkMode>> {
-    let Some(lambda) = settle(structure, model, speed_m_s, start.lambda)? else {
-        return Ok(None);
-    };
-    let n = structure.dofs.len();
-    let vector = eigenvector(&frozen(structure, model, speed_m_s, lambda.im)?, lambda)?;
-    let shape = vector.rows(0, n).into_owned();
-    Ok(Some(PkMode { lambda, shape }))
+    settle(structure, model, |_| speed_m_s, start)
 }
 
+/// The mode at the reduced frequency `k` that the iteration reaches from `start`, with its speed (m/s).
+pub(super) fn pk_mode_at(
+    structure: &Structure,
+    model: &dyn AerodynamicModel,
+    k: ReducedFrequency,
+    start: &PkMode,
+) -> Result<Option<(f64, PkMode)>> {
+    let speed = |omega: f64| omega * structure.width_m / k.full_width();
+    let mode = settle(structure, model, speed, start)?;
+    Ok(mode.map(|mode| (speed(mode.lambda.im), mode)))
+}
+
+/// Iterates at the speed that belongs to each frequency.
 fn settle(
     structure: &Structure,
     model: &dyn AerodynamicModel,
-    speed_m_s: f64,
-    start: Complex<f64>,
-) -> Result<Option<Complex<f64>>> {
-    let mut lambda = start;
+    speed: impl Fn(f64) -> f64,
+    start: &PkMode,
+) -> Result<Option<PkMode>> {
+    let mut lambda = start.lambda;
     for _ in 0..MAX_ROUNDS {
-        let next = eigenvalues(&frozen(structure, model, speed_m_s, lambda.im)?)?
+        let matrix = frozen(structure, model, speed(lambda.im), lambda.im)?;
+        let next = eigenvalues(&matrix)?
             .into_iter()
             .filter(|z| z.im > 1e-6 * z.norm())
             .min_by(|a, b| (a - lambda).norm().total_cmp(&(b - lambda).norm()));
         let Some(next) = next else { return Ok(None) };
         if (next - lambda).norm() <= TOLERANCE * next.norm() {
-            return Ok(Some(next));
+            let n = structure.dofs.len();
+            let shape = eigenvector(&matrix, next)?.rows(0, n).into_owned();
+            return Ok(Some(PkMode {
+                lambda: next,
+                shape,
+            }));
         }
         lambda = next;
     }
@@ -98,6 +82,13 @@ fn frozen(
     omega: f64,
 ) -> Result<DMatrix<f64>> {
     let k = ReducedFrequency::from_circular(omega, s.width_m, speed);
+    // on the way to a mode a table is asked beyond its ends; no mode is taken from there
+    let k = model.known_range().map_or(k, |range| {
+        ReducedFrequency::from_full_width(
+            k.full_width()
+                .clamp(range.min.full_width(), range.max.full_width()),
+        )
+    });
     let force = s.to_physical(&model.transfer(k)?)
         * Complex::from(0.5 * s.air_density_kg_m3 * speed * speed);
     let inverse = s

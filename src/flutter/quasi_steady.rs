@@ -1,15 +1,15 @@
 //! Modes and onset of quasi-steady theory (1.31)–(1.32): at every wind speed the forces are linear about the static
 //! equilibrium of that speed, so that the linear model itself changes with the speed.
 
+use super::answer::{FlutterSearch, StableRange, UnstableStart};
 use super::curves::{FlutterCurves, ModeBranch, damping_ratio, trace_modes};
 use super::instability::{ModeAtOnset, classify};
-use super::onset::{FlutterSearch, Onset, OnsetMethod};
+use super::onset::{Onset, OnsetMethod};
 use super::search::{OnsetSearch, root};
 use super::tracking::{TrackedMode, Tracker, branch_name, oscillates};
-use crate::aerodynamics::AerodynamicModel;
 use crate::aerodynamics::quasi_steady::{LinearQuasiSteady, QuasiSteady};
 use crate::aeroelastic::{CoupledSection, EquilibriumEnd, EquilibriumPath, static_equilibria};
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result};
 use crate::section::Structure;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use serde::Serialize;
@@ -22,6 +22,9 @@ const SEARCHED: ReducedFrequencyRange = ReducedFrequencyRange {
     min: ReducedFrequency::from_full_width(0.02),
     max: ReducedFrequency::from_full_width(10.0),
 };
+
+/// The first speed looked at, as a part of the first that is asked for.
+const NEARLY_STILL: f64 = 1e-3;
 
 /// Relative distance of the second speed of a slope.
 const NEARBY: f64 = 1e-5;
@@ -47,43 +50,46 @@ pub fn quasi_steady_onset(
     theory: &QuasiSteady,
     search: &OnsetSearch,
 ) -> Result<QuasiSteadyOnset> {
-    let speed_max = positive("flutter.speed_max_m_s", search.speed_max_m_s)?;
-    if search.speeds < 2 {
-        return Err(Error::input(
-            "flutter.speeds",
-            "at least 2",
-            search.speeds.to_string(),
-        ));
-    }
-    let speeds: Vec<f64> = (1..=search.speeds)
-        .map(|i| speed_max * i as f64 / search.speeds as f64)
-        .collect();
+    let mut speeds = search.speeds_m_s()?;
+    speeds.insert(0, NEARLY_STILL * speeds[0]);
     let path = static_equilibria(structure, theory, &speeds)?;
     let found = |search, mode| QuasiSteadyOnset {
         search,
         mode,
         equilibrium_end: path.end,
     };
-    // in still air the structure's own damping, at least no growth
-    let mut before = (0.0, -f64::MIN_POSITIVE);
+    let mut before: Option<(f64, f64)> = None;
     for point in &path.points {
         let linear = theory.linearised(point.rotation_rad)?;
-        let growth = fastest_growth(&coupled(structure, &linear)?, point.speed_m_s)?;
+        let section = CoupledSection::with_model(structure, &linear)?;
+        let growth = fastest_growth(&section, point.speed_m_s)?;
+        let Some(before) = before.replace((point.speed_m_s, growth)) else {
+            if growth > 0.0 {
+                let start = grows_in_still_air(name, &section, point.speed_m_s)?;
+                return Ok(found(
+                    FlutterSearch::UnstableAtOrBelow(Box::new(start)),
+                    None,
+                ));
+            }
+            continue;
+        };
         if growth >= 0.0 {
             let speed = root(before, (point.speed_m_s, growth), |speed| {
                 let linear = at_equilibrium(structure, theory, speed)?;
-                fastest_growth(&coupled(structure, &linear)?, speed)
+                fastest_growth(&CoupledSection::with_model(structure, &linear)?, speed)
             })?;
             let onset = described(name, structure, theory, speed)?;
             let linear = at_equilibrium(structure, theory, speed)?;
-            let mode = classify(structure, &linear, &onset, SEARCHED, speed_max)?;
+            let mode = classify(structure, &linear, &onset, SEARCHED, search.speed_max_m_s)?;
             let onset = FlutterSearch::Onset(Box::new(onset));
             return Ok(found(onset, Some(mode)));
         }
-        before = (point.speed_m_s, growth);
     }
-    let stable_up_to = path.end.map_or(speed_max, |end| end.speed_m_s());
-    Ok(found(FlutterSearch::StableUpTo(stable_up_to), None))
+    let stable_up_to = path.end.map_or(search.speed_max_m_s, |end| end.speed_m_s());
+    Ok(found(
+        FlutterSearch::StableUpTo(StableRange::up_to(stable_up_to)),
+        None,
+    ))
 }
 
 /// Frequencies and damping over rising wind speeds, about the equilibrium of each; ends with the equilibrium.
@@ -106,7 +112,11 @@ pub fn quasi_steady_modes(
         .collect();
     for point in &path.points {
         let linear = theory.linearised(point.rotation_rad)?;
-        let at = trace_modes(name, &coupled(structure, &linear)?, &[point.speed_m_s])?;
+        let at = trace_modes(
+            name,
+            &CoupledSection::with_model(structure, &linear)?,
+            &[point.speed_m_s],
+        )?;
         for (all, one) in branches.iter_mut().zip(at.branches) {
             all.points.extend(one.points);
         }
@@ -114,15 +124,8 @@ pub fn quasi_steady_modes(
     Ok(FlutterCurves {
         model: name.to_owned(),
         branches,
+        ended: None,
     })
-}
-
-/// The section with the forces linear about one rotation, at whatever speed.
-fn coupled(structure: &Structure, linear: &LinearQuasiSteady) -> Result<CoupledSection> {
-    let realization = linear.realize().ok_or_else(|| {
-        Error::Numerical("quasi-steady theory: the linear model has no realisation".into())
-    })?;
-    CoupledSection::new(structure.clone(), realization)
 }
 
 fn at_equilibrium(
@@ -150,6 +153,17 @@ fn fastest_growth(section: &CoupledSection, speed_m_s: f64) -> Result<f64> {
         .fold(f64::NEG_INFINITY, f64::max))
 }
 
+fn grows_in_still_air(name: &str, section: &CoupledSection, speed: f64) -> Result<UnstableStart> {
+    let mode = least_damped(section, speed)?;
+    let structure = section.structure();
+    let (at, branch) = (
+        (speed, mode.lambda),
+        branch_name(structure.dofs[mode.branch]),
+    );
+    let (method, why) = (OnsetMethod::Eigenvalues, "nearly still air".to_owned());
+    Ok(UnstableStart::new(name, method, structure, at, branch, why))
+}
+
 /// The mode with the least damping, followed from still air at one linearisation.
 fn least_damped(section: &CoupledSection, speed_m_s: f64) -> Result<TrackedMode> {
     Tracker::start(section)?
@@ -167,7 +181,7 @@ fn least_damped(section: &CoupledSection, speed_m_s: f64) -> Result<TrackedMode>
 fn described(name: &str, structure: &Structure, theory: &QuasiSteady, speed: f64) -> Result<Onset> {
     let mode_at = |speed: f64| {
         let linear = at_equilibrium(structure, theory, speed)?;
-        least_damped(&coupled(structure, &linear)?, speed)
+        least_damped(&CoupledSection::with_model(structure, &linear)?, speed)
     };
     let mode = mode_at(speed)?;
     let nearby = mode_at(speed * (1.0 - NEARBY))?;
@@ -220,7 +234,7 @@ mod tests {
         let found = quasi_steady_onset("plate", &structure, &theory, &search).unwrap();
         let onset = found.search.onset().unwrap();
         let linear = theory.linearised(0.0).unwrap();
-        let section = CoupledSection::new(structure.clone(), linear.realize().unwrap()).unwrap();
+        let section = CoupledSection::with_model(&structure, &linear).unwrap();
         let eigenvalues = find_onset("plate", &section, &search, None).unwrap();
         let eigenvalues = eigenvalues.onset().unwrap();
         assert!((onset.speed_m_s / eigenvalues.speed_m_s - 1.0).abs() < 1e-9);
@@ -293,9 +307,10 @@ mod tests {
         };
         let found = quasi_steady_onset("plate", &structure, &plate(Arms::default()), &search);
         let found = found.unwrap();
-        let FlutterSearch::StableUpTo(speed) = found.search else {
+        let FlutterSearch::StableUpTo(range) = found.search else {
             panic!("{found:?}")
         };
+        let speed = range.to_m_s;
         assert!((speed - 90.466).abs() < 5e-4, "{speed}");
         assert!(
             found

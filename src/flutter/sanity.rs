@@ -26,8 +26,8 @@ pub struct SanityLines {
     pub rocard_m_s: f64,
 }
 
-/// Selberg's and Rocard's onsets; `None` for a section whose rotation is not faster than its heave, for which the
-/// formulas say nothing.
+/// Selberg's and Rocard's onsets; `None` for a section whose rotation is not faster than its heave, or that does not
+/// turn about its mid-chord with the centre of mass there: the formulas say nothing of these.
 pub fn sanity_lines(structure: &Structure) -> Option<SanityLines> {
     let at = |dof: Dof| structure.dofs.iter().position(|d| *d == dof);
     let (y, theta) = (at(Dof::Vertical)?, at(Dof::Torsion)?);
@@ -35,7 +35,8 @@ pub fn sanity_lines(structure: &Structure) -> Option<SanityLines> {
     let heave_squared = structure.stiffness[(y, y)] / mass;
     let torsion_squared = structure.stiffness[(theta, theta)] / inertia;
     let separation = 1.0 - heave_squared / torsion_squared;
-    if !(separation.is_finite() && separation > 0.0) {
+    let symmetric = structure.axis_offset_m == 0.0 && structure.mass[(y, theta)] == 0.0;
+    if !(symmetric && separation.is_finite() && separation > 0.0) {
         return None;
     }
     let (width, density) = (structure.width_m, structure.air_density_kg_m3);
@@ -73,6 +74,9 @@ mod tests {
     fn slow_rotation_has_no_line() {
         let mut section = SectionModel::table_4_1();
         section.torsion.frequency_hz = Some(1.5);
+        assert_eq!(sanity_lines(&section.structure().unwrap()), None);
+        let mut section = SectionModel::table_4_1();
+        section.mass_offset_m = Some(0.01);
         assert_eq!(sanity_lines(&section.structure().unwrap()), None);
     }
 }

@@ -1,22 +1,20 @@
 //! Onset by the eigenvalues of the coupled state matrix.
 
+use super::answer::{Findings, FlutterSearch, UnstableStart, choose, entry_reason};
 use super::curves::damping_ratio;
-use super::onset::{FlutterSearch, Onset, OnsetMethod, choose};
-use super::tracking::{TrackedMode, Tracker, branch_name, mode_shape, oscillates};
+use super::onset::{Onset, OnsetMethod};
+use super::scan::{Scan, growing};
+use super::tracking::{TrackedMode, Tracker, branch_name};
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, positive};
 use crate::section::Dof;
-use crate::units::ReducedFrequencyRange;
-use nalgebra::Complex;
+use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use serde::{Deserialize, Serialize};
 
 /// Relative width of the bracket at which the root search stops: rounding of the eigenvalues.
 const ROOT_TOLERANCE: f64 = 1e-13;
 /// The secant steps converge in about ten; bisection alone in fifty.
 const MAX_ROOT_STEPS: usize = 80;
-
-/// Speeds at which all eigenvalues are looked at, not only those of the structure.
-const FILTER_CHECKS: usize = 24;
 
 /// Where and how densely to look.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -37,46 +35,149 @@ impl Default for OnsetSearch {
     }
 }
 
+impl OnsetSearch {
+    /// The wind speeds that are looked at, m/s: equally spaced, still air left out.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a highest speed that is not positive or fewer than two speeds.
+    pub(super) fn speeds_m_s(&self) -> Result<Vec<f64>> {
+        let highest = positive("flutter.speed_max_m_s", self.speed_max_m_s)?;
+        if self.speeds < 2 {
+            return Err(Error::input(
+                "flutter.speeds",
+                "at least 2",
+                self.speeds.to_string(),
+            ));
+        }
+        let speed = |i: usize| highest * i as f64 / self.speeds as f64;
+        Ok((1..=self.speeds).map(speed).collect())
+    }
+}
+
 /// First wind speed at which a mode of `section` loses its damping.
 ///
-/// Every crossing up to the highest speed is found and refined; see [`FlutterSearch`] for which one is the answer.
-/// `tested` is the range of reduced frequencies in which the model was tested.
+/// Modes are followed from nearly still air and every crossing up to the highest speed is refined; beside that all
+/// eigenvalues are looked at ([`growth_scan`](super::growth_scan)), so that growth of what is not followed, between the
+/// speeds, or of modes that cannot be told apart, is found too. See [`FlutterSearch`] for which one is the answer.
+/// `tested` is the range of reduced frequencies in which the model was tested: a mode that grows already where it
+/// enters it is unstable at and below that speed, whatever the model says outside.
 ///
 /// # Errors
-/// [`Error::Input`] for a search range that is none; [`Error::Numerical`] when modes cannot be told apart.
+/// [`Error::Input`] for a search range that is none; those of the eigenvalues.
 pub fn find_onset(
     model: &str,
     section: &CoupledSection,
     search: &OnsetSearch,
     tested: Option<ReducedFrequencyRange>,
 ) -> Result<FlutterSearch> {
-    let speed_max = positive("flutter.speed_max_m_s", search.speed_max_m_s)?;
-    if search.speeds < 2 {
-        return Err(Error::input(
-            "flutter.speeds",
-            "at least 2",
-            search.speeds.to_string(),
-        ));
+    let speeds = search.speeds_m_s()?;
+    let scan = Scan::new(model, section, tested);
+    let mut found = Findings::judged(scan.judged(search.speed_max_m_s)?);
+    let following = Following {
+        model,
+        section,
+        tested,
+    };
+    match following.run(scan.lowest(search.speed_max_m_s)?, &speeds, &mut found) {
+        // without names the answer still stands
+        Err(Error::Numerical(why)) => found.warnings.push(format!(
+            "{why}: modes beyond that were not followed but found among all eigenvalues"
+        )),
+        other => other?,
     }
-    let mut crossings = Vec::new();
-    let mut tracker = Tracker::start(section)?;
-    for i in 1..=search.speeds {
-        let speed = speed_max * i as f64 / search.speeds as f64;
-        if speed <= tracker.speed {
-            continue;
+    scan.add_missed(&mut found, search.speed_max_m_s)?;
+    Ok(choose(found, tested))
+}
+
+/// The structural modes, followed by what they are.
+struct Following<'a> {
+    model: &'a str,
+    section: &'a CoupledSection,
+    tested: Option<ReducedFrequencyRange>,
+}
+
+impl Following<'_> {
+    fn run(&self, lowest: f64, speeds: &[f64], found: &mut Findings) -> Result<()> {
+        let mut tracker = Tracker::start(self.section)?.advance(lowest)?;
+        for mode in tracker.modes.iter().filter(|m| growing(&m.lambda)) {
+            found
+                .starts
+                .push(self.start(lowest, mode, "the lowest speed looked at".to_owned()));
         }
-        let next = tracker.advance(speed)?;
-        for after in next.modes.iter().filter(|m| m.lambda.re >= 0.0) {
-            if let Some(before) = tracker.mode(after.branch).filter(|m| m.lambda.re < 0.0) {
+        for &speed in speeds.iter().filter(|v| **v > lowest) {
+            let next = tracker.advance(speed)?;
+            for after in &next.modes {
+                let Some(before) = tracker.mode(after.branch) else {
+                    continue;
+                };
                 let ends = (before.lambda.re, after.lambda.re);
-                let branch = after.branch;
-                crossings.push(structural_crossing(model, &tracker, &next, branch, ends)?);
+                if ends.0 < 0.0 && ends.1 >= 0.0 {
+                    found.crossings.push(structural_crossing(
+                        self.model,
+                        &tracker,
+                        &next,
+                        after.branch,
+                        ends,
+                    )?);
+                }
+                found
+                    .starts
+                    .extend(self.entry(&tracker, &next, before, after)?);
             }
+            tracker = next;
         }
-        tracker = next;
+        Ok(())
     }
-    crossings.extend(filter_crossings(model, section, speed_max)?);
-    Ok(choose(crossings, tested, speed_max))
+
+    fn k(&self, speed: f64, mode: &TrackedMode) -> ReducedFrequency {
+        let width = self.section.structure().width_m;
+        ReducedFrequency::from_circular(mode.lambda.im, width, speed)
+    }
+
+    fn start(&self, speed: f64, mode: &TrackedMode, reason: String) -> UnstableStart {
+        let structure = self.section.structure();
+        let at = (speed, mode.lambda);
+        let branch = branch_name(structure.dofs[mode.branch]);
+        let method = OnsetMethod::Eigenvalues;
+        let mut start = UnstableStart::new(self.model, method, structure, at, branch, reason);
+        start.in_tested_range = self.tested.map(|range| range.contains(self.k(speed, mode)));
+        start
+    }
+
+    /// A mode that comes into the tested range between two speeds and grows there.
+    fn entry(
+        &self,
+        low: &Tracker<'_>,
+        high: &Tracker<'_>,
+        before: &TrackedMode,
+        after: &TrackedMode,
+    ) -> Result<Option<UnstableStart>> {
+        let grows = before.lambda.re >= 0.0 || after.lambda.re >= 0.0;
+        let Some(range) = self.tested.filter(|_| grows) else {
+            return Ok(None);
+        };
+        let (from, to) = (self.k(low.speed, before), self.k(high.speed, after));
+        if from <= range.max || to > range.max {
+            return Ok(None);
+        }
+        let beyond = |k: ReducedFrequency| range.max.full_width() - k.full_width();
+        let mode_at = |speed: f64| lost(low.advance(speed)?.mode(after.branch).cloned(), speed);
+        let speed = root((low.speed, beyond(from)), (high.speed, beyond(to)), |v| {
+            Ok(beyond(self.k(v, &mode_at(v)?)))
+        })?;
+        let mode = mode_at(speed)?;
+        Ok(growing(&mode.lambda).then(|| {
+            let mut start = self.start(speed, &mode, entry_reason(range.max));
+            start.in_tested_range = Some(true);
+            start
+        }))
+    }
+}
+
+fn lost<T>(mode: Option<T>, speed: f64) -> Result<T> {
+    mode.ok_or_else(|| {
+        Error::Numerical(format!("onset: the mode does not oscillate at {speed} m/s"))
+    })
 }
 
 /// Refines the zero of `Re λ` of one structural mode.
@@ -88,11 +189,7 @@ fn structural_crossing(
     (before, after): (f64, f64),
 ) -> Result<Onset> {
     let structure = low.section.structure();
-    let mode_at = |speed: f64| -> Result<TrackedMode> {
-        low.advance(speed)?.mode(branch).cloned().ok_or_else(|| {
-            Error::Numerical(format!("onset: the mode does not oscillate at {speed} m/s"))
-        })
-    };
+    let mode_at = |speed: f64| lost(low.advance(speed)?.mode(branch).cloned(), speed);
     let speed = root((low.speed, before), (high.speed, after), |speed| {
         Ok(mode_at(speed)?.lambda.re)
     })?;
@@ -124,74 +221,6 @@ fn single_dof(dof: Dof, mode_ratio: f64) -> bool {
         Dof::Vertical => mode_ratio > 20.0,
         Dof::Lateral => false,
     }
-}
-
-/// The least damped oscillating eigenvalue that is none of the tracked modes.
-fn least_damped_filter(section: &CoupledSection, at: &Tracker<'_>) -> Result<Option<Complex<f64>>> {
-    let tracked = |z: &Complex<f64>| {
-        let near = |m: &TrackedMode| (m.lambda - z).norm() < 1e-6 * z.norm();
-        at.modes.iter().any(near)
-    };
-    Ok(section
-        .at(at.speed)?
-        .eigenvalues()?
-        .into_iter()
-        .filter(|z| oscillates(z) && !tracked(z))
-        .max_by(|a, b| a.re.total_cmp(&b.re)))
-}
-
-/// Filter instabilities on a coarse grid of speeds: they belong to broken fits and set in over a wide range.
-fn filter_crossings(model: &str, section: &CoupledSection, speed_max: f64) -> Result<Vec<Onset>> {
-    let mut found = Vec::new();
-    let mut tracker = Tracker::start(section)?;
-    for i in 1..=FILTER_CHECKS {
-        let speed = speed_max * i as f64 / FILTER_CHECKS as f64;
-        if speed <= tracker.speed {
-            continue;
-        }
-        let next = tracker.advance(speed)?;
-        found.extend(filter_crossing(model, section, &tracker, &next)?);
-        tracker = next;
-    }
-    Ok(found)
-}
-
-/// An oscillating eigenvalue of the filters that has become unstable between two speeds: no structural mode, hence a
-/// defect of the model. Real eigenvalues are divergence and are found in closed form elsewhere.
-fn filter_crossing(
-    model: &str,
-    section: &CoupledSection,
-    low: &Tracker<'_>,
-    high: &Tracker<'_>,
-) -> Result<Option<Onset>> {
-    let growth = |at: &Tracker<'_>| -> Result<f64> {
-        Ok(least_damped_filter(section, at)?.map_or(f64::NEG_INFINITY, |z| z.re))
-    };
-    let (before, after) = (growth(low)?, growth(high)?);
-    if before >= 0.0 || after < 0.0 {
-        return Ok(None);
-    }
-    let speed = root(
-        (low.speed, before.max(-after)),
-        (high.speed, after),
-        |speed| growth(&low.advance(speed)?),
-    )?;
-    let Some(lambda) = least_damped_filter(section, &low.advance(speed)?)? else {
-        return Ok(None);
-    };
-    let shape = mode_shape(section, &section.at(speed)?, lambda)?;
-    let mut onset = Onset::new(
-        model,
-        OnsetMethod::Eigenvalues,
-        section.structure(),
-        (speed, lambda.im),
-        &shape,
-        "aerodynamic".to_owned(),
-    );
-    onset.warnings.push(
-        "an eigenvalue of the force model itself becomes unstable: a defect of the fit".to_owned(),
-    );
-    Ok(Some(onset))
 }
 
 /// Zero of `f` in a bracket with a sign change, by secant steps kept inside (Illinois) and bisection.

@@ -301,6 +301,12 @@ fn order_by_dof(section: &CoupledSection, modes: &mut [TrackedMode]) {
     }
 }
 
+/// Lowest speed at which the system can be judged: still air, or for the sampled system the speed with enough samples a
+/// period.
+pub(super) fn lowest_speed(section: &CoupledSection) -> Result<f64> {
+    Ok(start_speed(section, &natural_modes(section)?))
+}
+
 fn start_speed(section: &CoupledSection, modes: &[TrackedMode]) -> f64 {
     let crate::aerodynamics::Realization::Discrete(d) = section.aerodynamics() else {
         return 0.0;

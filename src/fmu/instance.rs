@@ -27,6 +27,10 @@ use crate::response::{Inputs, Outputs, Stepper};
 use layout::Layout;
 use memory::{Experiment, Memory};
 
+/// Searches for growth of one instance at most: one takes as long as some thousand steps, and an importer may change
+/// parameters at every communication point.
+const GROWTH_SEARCHES: usize = 32;
+
 /// One instance; instances share nothing.
 #[derive(Debug)]
 pub struct Instance {
@@ -42,6 +46,10 @@ pub struct Instance {
     release_pending: bool,
     outputs_current: bool,
     onset_current: bool,
+    /// Whether growth below the onset has been looked for with the current parameters.
+    growth_known: bool,
+    /// Searches for growth that this instance may still do.
+    growth_searches_left: usize,
     inputs: Inputs,
     outputs: Outputs,
     notices: Vec<String>,
@@ -69,6 +77,8 @@ impl Instance {
             release_pending: true,
             outputs_current: false,
             onset_current: false,
+            growth_known: false,
+            growth_searches_left: GROWTH_SEARCHES,
             inputs: Inputs::steady(0.0, dofs),
             outputs: Outputs::default(),
             notices: Vec::new(),
@@ -77,6 +87,7 @@ impl Instance {
         };
         // a section that cannot be coupled is no model to run: say so now
         instance.stepper = Some(instance.new_stepper(&instance.memory.values)?);
+        instance.watch_growth();
         Ok(instance)
     }
 
@@ -140,20 +151,22 @@ impl Instance {
         Ok(())
     }
 
-    /// Begins the initialisation.
-    ///
-    /// # Errors
-    /// When the experiment has not been set up.
-    pub fn enter_initialization(&mut self) -> Answer<()> {
+    /// Begins the initialisation. An experiment that was not set up starts at the start time of the description, zero,
+    /// with a warning.
+    pub fn enter_initialization(&mut self) {
         if self.memory.experiment.is_none() {
-            return Err(Refusal::error(
-                "the experiment has to be set up first: its start time is not known",
-            ));
+            self.memory.experiment = Some(Experiment {
+                start: 0.0,
+                stop: None,
+            });
+            self.memory.time = 0.0;
+            self.notices.push(
+                "the experiment has not been set up: the run starts at 0 s and has no end".into(),
+            );
         }
         self.memory.state = State::Initialization;
         self.release_pending = true;
         self.outputs_current = false;
-        Ok(())
     }
 
     /// Releases the section.
@@ -162,6 +175,7 @@ impl Instance {
     /// When parameters and initial values give no section that can move.
     pub fn exit_initialization(&mut self) -> Answer<()> {
         self.prepare()?;
+        self.watch_growth();
         self.memory.state = State::StepComplete;
         Ok(())
     }
@@ -175,6 +189,31 @@ impl Instance {
     pub fn reset(&mut self) {
         let fresh = self.fresh.clone();
         self.replace_memory(fresh);
+    }
+
+    /// Says, once for each set of parameters, where the section grows although nothing was tested there.
+    fn watch_growth(&mut self) {
+        if self.growth_known || self.growth_searches_left == 0 {
+            return;
+        }
+        self.growth_known = true;
+        self.growth_searches_left -= 1;
+        match self.growth(&self.memory.values) {
+            Ok(growth) if growth.is_none() => {}
+            Ok(growth) => self.notices.push(format!(
+                "with these parameters the section {}",
+                growth.explain()
+            )),
+            // no reason to end a run
+            Err(e) => self
+                .notices
+                .push(format!("growth below the onset could not be judged: {e}")),
+        }
+        if self.growth_searches_left == 0 {
+            self.notices.push(format!(
+                "growth below the onset is no longer looked for after {GROWTH_SEARCHES} changes of parameters"
+            ));
+        }
     }
 
     fn new_stepper(&self, values: &[f64]) -> Result<Stepper> {

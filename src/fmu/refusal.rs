@@ -8,6 +8,8 @@ use std::fmt;
 pub enum Severity {
     /// Nothing has changed; other values, or a saved state, lead on.
     Discard,
+    /// The call was wrong but touches nothing: the run goes on.
+    Call,
     /// The run cannot go on; a reset or a saved state leads out.
     Error,
 }
@@ -30,6 +32,15 @@ impl Refusal {
     pub fn error(message: impl Into<String>) -> Self {
         Self {
             severity: Severity::Error,
+            message: message.into(),
+        }
+    }
+
+    /// The call was wrong but touches nothing.
+    #[cold]
+    pub fn call(message: impl Into<String>) -> Self {
+        Self {
+            severity: Severity::Call,
             message: message.into(),
         }
     }

@@ -22,13 +22,27 @@ pub struct Resources {
 }
 
 impl Resources {
-    /// Reads `model.json` from the folder that `location` names; see [`folder_of`].
+    /// Reads `model.json` from the folder that `location` names (see [`folder_of`]); where it is not there, from the
+    /// folder whose name is the location as it stands, since some importers write paths without coding them. An empty
+    /// location means the archive in which this library lies.
     ///
     /// # Errors
     /// [`Error::Input`] for a location that is none and for a file that is no trained model, [`Error::Io`] for a file
     /// that cannot be read; both name the file.
     pub fn read(location: &str) -> Result<Self> {
-        let file = folder_of(location)?.join(MODEL_FILE);
+        let folder = if location.is_empty() {
+            own_binary()
+                .and_then(|binary| beside(&binary))
+                .ok_or_else(|| refused(location))?
+        } else {
+            folder_of(location)?
+        };
+        let coded = folder.join(MODEL_FILE);
+        let raw = raw_folder(location).map(|folder| folder.join(MODEL_FILE));
+        let file = match raw {
+            Some(raw) if !coded.exists() && raw.exists() => raw,
+            _ => coded,
+        };
         let bytes = std::fs::read(&file).map_err(|e| Error::io(&file, e))?;
         Self::from_bytes(&bytes).map_err(|e| e.in_file(&file))
     }
@@ -69,10 +83,41 @@ pub fn folder_of(location: &str) -> Result<PathBuf> {
     }
 }
 
+/// The path of a file URI without decoding it; `None` where that is no path.
+fn raw_folder(location: &str) -> Option<PathBuf> {
+    let path = match scheme(location) {
+        Some("file") => without_authority(&location[5..], cfg!(windows))?,
+        _ => return None,
+    };
+    let path = PathBuf::from(path);
+    path.is_absolute().then_some(path)
+}
+
+/// `resources/` of the unpacked archive that holds `binaries/<platform>/<library>`.
+fn beside(binary: &Path) -> Option<PathBuf> {
+    let folder = binary.parent()?.parent()?.parent()?.join("resources");
+    folder.join(MODEL_FILE).exists().then_some(folder)
+}
+
+/// The file that this code was loaded from, as far as the system says so without foreign functions.
+fn own_binary() -> Option<PathBuf> {
+    let here = own_binary as *const () as usize;
+    let maps = std::fs::read_to_string("/proc/self/maps").ok()?;
+    maps.lines().find_map(|line| {
+        let (range, rest) = line.split_once(' ')?;
+        let (from, to) = range.split_once('-')?;
+        let address = |text| usize::from_str_radix(text, 16).ok();
+        let inside = (address(from)?..address(to)?).contains(&here);
+        // permissions, offset, device and inode stand before the path
+        let path = rest.find('/').map(|at| PathBuf::from(&rest[at..]));
+        path.filter(|_| inside)
+    })
+}
+
 fn refused(location: &str) -> Error {
     Error::input(
         "resource location",
-        "a file URI (file:///…) of this machine or an absolute path",
+        "a file URI (file:///…) of this machine or an absolute path, or nothing where the library lies in its archive",
         format!("`{location}`"),
     )
 }
@@ -207,6 +252,38 @@ mod tests {
             assert_eq!(local_path(location, false).unwrap(), path, "{location}");
             assert_eq!(folder_of(location).unwrap(), PathBuf::from(path));
         }
+    }
+
+    /// `%20` may be coded, or part of the folder's name.
+    #[test]
+    fn uncoded_locations_are_tried_second() {
+        let folder = tempfile::tempdir().unwrap();
+        let place = folder.path().join("a%20b");
+        std::fs::create_dir(&place).unwrap();
+        let model = format!(
+            "{}/tests/data/models/rational.json",
+            env!("CARGO_MANIFEST_DIR")
+        );
+        std::fs::copy(&model, place.join(MODEL_FILE)).unwrap();
+        let coded = location_of(&place).unwrap();
+        let raw = format!("file://{}", place.display());
+        assert_ne!(coded, raw);
+        for location in [coded, raw] {
+            assert!(Resources::read(&location).is_ok(), "{location}");
+        }
+    }
+
+    #[test]
+    fn a_library_knows_its_archive() {
+        let folder = tempfile::tempdir().unwrap();
+        let library = folder.path().join("binaries/linux64/x.so");
+        assert_eq!(beside(&library), None);
+        let resources = folder.path().join("resources");
+        std::fs::create_dir(&resources).unwrap();
+        std::fs::write(resources.join(MODEL_FILE), "{}").unwrap();
+        assert_eq!(beside(&library), Some(resources));
+        #[cfg(target_os = "linux")]
+        assert_eq!(own_binary(), std::env::current_exe().ok());
     }
 
     #[test]

@@ -58,6 +58,14 @@ impl Basis {
         })
     }
 
+    /// Whether another basis has the same columns.
+    pub fn same_columns(&self, other: &Self) -> bool {
+        let kind = std::mem::discriminant::<Chain>;
+        self.feed == other.feed
+            && kind(&self.chain) == kind(&other.chain)
+            && self.poles() == other.poles()
+    }
+
     /// Poles of the filters.
     pub fn poles(&self) -> &[f64] {
         match &self.chain {

@@ -1,6 +1,6 @@
 //! Training with broadband motions.
 
-use super::testing::sources;
+use super::testing::{records_alone, sources, table_alone};
 use super::training_tests::distance;
 use super::{
     DiscreteFit, Form, FrequencyFit, PoleSearch, StaticTerm, TimeFit, fit_discrete, fit_records,
@@ -40,7 +40,7 @@ fn broadband_motions_train_models() {
                 added_mass: true,
             },
             poles: PoleSearch::fixed(truth.lags.of_force(0)),
-            ..TimeFit::default()
+            ..records_alone()
         };
         let (model, report) = fit_records(&sources(&all), &fit, &|_| ()).unwrap();
         let error = distance(&model, &truth, &[0.12, 0.5, 0.9]);
@@ -100,12 +100,12 @@ fn a_table_is_interpolated_only_on_request() {
     assert!(all.iter().all(|r| r.header.segments.is_empty()));
     let fit = TimeFit {
         poles: PoleSearch::fixed(&[0.5]),
-        ..TimeFit::default()
+        ..records_alone()
     };
     let (noise, _) = fit_records(&sources(&all), &fit, &|_| ()).unwrap();
     let frequency = FrequencyFit {
         poles: PoleSearch::fixed(&[0.5]),
-        ..FrequencyFit::default()
+        ..table_alone()
     };
     let (table, _) = fit_table(&deck.samples(&Dof::TWO), &Dof::TWO, &frequency).unwrap();
     // measured derivatives are no smooth function between their points

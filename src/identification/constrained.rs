@@ -32,8 +32,8 @@ pub(crate) struct LinearSolution {
     pub coefficients: Vec<f64>,
     /// Number of free unknowns.
     pub unknowns: usize,
-    /// Residuals of the ridge, of the columns that have one.
-    pub penalty: Vec<f64>,
+    /// Columns that have a ridge, and what it multiplies their coefficients with.
+    ridge: Vec<(usize, f64)>,
     /// Largest `‖A_c c‖` over `‖A c‖`: near one for a sound fit, large when terms cancel.
     pub cancellation: f64,
     /// From the free unknowns to all coefficients.
@@ -86,13 +86,9 @@ impl LinearProblem {
         let coefficients = spread.expand(solution.as_slice(), self.columns());
         Ok(LinearSolution {
             unknowns,
-            penalty: self
-                .ridge
-                .iter()
-                .zip(&norms)
-                .zip(&coefficients)
-                .filter(|((ridge, _), _)| **ridge > 0.0)
-                .map(|((ridge, norm), c)| ridge * norm * c)
+            ridge: (0..self.columns())
+                .filter(|&c| self.ridge[c] > 0.0)
+                .map(|c| (c, self.ridge[c] * norms[c]))
                 .collect(),
             cancellation: self.cancellation(&norms, &coefficients),
             factor,
@@ -230,6 +226,32 @@ impl Spread {
 }
 
 impl LinearSolution {
+    /// Residuals of the ridge with given coefficients, of the columns that have one.
+    pub fn penalty<'a>(&'a self, coefficients: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
+        self.ridge
+            .iter()
+            .map(|(c, factor)| factor * coefficients[*c])
+    }
+
+    /// What the coefficients become when the free unknowns leave their best values by one unit of the weighted residual,
+    /// along each of them, n×unknowns: `N R⁻¹`.
+    ///
+    /// # Errors
+    /// [`Error::Numerical`] for a singular factor.
+    pub fn spread(&self) -> Result<DMatrix<f64>> {
+        let inverse = self.factor.inverse_upper(self.unknowns)?;
+        Ok(match &self.spread {
+            Spread::Columns(columns) => {
+                let mut all = DMatrix::zeros(self.coefficients.len(), self.unknowns);
+                for (row, &c) in columns.iter().enumerate() {
+                    all.row_mut(c).copy_from(&inverse.row(row));
+                }
+                all
+            }
+            Spread::Affine(_, map) => map * inverse,
+        })
+    }
+
     /// `(AᵀA)⁻¹` of the free unknowns, spread over all coefficients.
     pub fn inverse_gram(&self) -> Result<DMatrix<f64>> {
         let small = self.factor.inverse_gram(self.unknowns)?;
@@ -321,7 +343,7 @@ mod tests {
         for c in 0..4 {
             assert!((found.coefficients[c] - expected[c]).abs() < 1e-10);
         }
-        assert_eq!(found.penalty.len(), 1);
+        assert_eq!(found.penalty(&found.coefficients).count(), 1);
     }
 
     #[test]

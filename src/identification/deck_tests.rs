@@ -1,7 +1,7 @@
 //! Fits to the measured decks, against figures computed independently with NumPy and SciPy (Table 4.1 structure).
 
 use super::options::{FeedThrough, Form};
-use super::testing::{onset_above, onset_m_s};
+use super::testing::{onset_above, onset_m_s, table_alone};
 use super::{FitReport, fit_table};
 use super::{FrequencyFit, FrequencyWeights};
 use crate::aerodynamics::derivatives::{DerivativeTable, embedded};
@@ -35,7 +35,7 @@ fn one_lag_on_ln21_5200() {
                 added_mass,
             },
             weights,
-            ..FrequencyFit::default()
+            ..table_alone()
         };
         let (model, report) = fit(table, &options);
         let found = report.search[0].chosen.poles[0];
@@ -57,7 +57,7 @@ fn default_model_on_every_deck() {
         ("LN21-6100", 26.6),
     ] {
         let table = embedded::deck(name).unwrap();
-        let (model, report) = fit(&table, &FrequencyFit::default());
+        let (model, report) = fit(&table, &table_alone());
         let onset = onset_m_s(&model);
         assert!((onset - expected).abs() < 0.1, "{name}: {onset}");
         assert!(report.notes.is_empty(), "{name}: {:?}", report.notes);
@@ -74,7 +74,7 @@ fn overfit_of_ln21_5500_is_said() {
             feed_through: FeedThrough::default(),
             pole_per_transfer_function: false,
         },
-        ..FrequencyFit::default()
+        ..table_alone()
     };
     let (_, report) = fit(&table, &four);
     let said = |what: &str| report.notes.iter().any(|n| n.contains(what));

@@ -26,6 +26,7 @@ use crate::units::ReducedFrequencyRange;
 use crate::wind_tunnel::RecordSource;
 use nalgebra::DMatrix;
 use std::f64::consts::TAU;
+use std::rc::Rc;
 
 /// Fits the discrete Laguerre model: records of lower speeds are resampled to the longest `Δs = VΔt/B` (3.2), the filters
 /// run recursively (2.33), a constant column takes the static term, least squares gives the coefficients: `9L` of them
@@ -47,7 +48,7 @@ pub fn fit_discrete(
     let pass = one_pass(&scaled, &parameters, fit, delta_s, progress)?;
     let selection = Selection {
         counts: parameters.iter().map(|(_, filters)| *filters).collect(),
-        systems: pass.systems,
+        systems: pass.systems.into_iter().map(Rc::new).collect(),
     };
     let fitted = Fitted::new(&dofs, fit, &parameters, &selection)?;
     let model = fitted.model(delta_s)?;
@@ -74,6 +75,7 @@ pub fn fit_discrete(
             means
         },
         memory: memory(&parameters, &scaled, delta_s, &pass.still_samples),
+        constraints: None,
         covariance_assumption: "white residuals, exact motions".into(),
         notes: Vec::new(),
     };

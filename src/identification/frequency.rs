@@ -1,21 +1,27 @@
 //! Continuous models fitted to samples of a transfer matrix.
 
+mod joint;
+mod poles;
+
 use super::basis::{Basis, assemble};
+use super::constrained::LinearSolution;
 use super::degenerate::note_lags;
+use super::dissipative::{ConstraintReport, Constraints, Wishes};
 use super::frequency_options::{FrequencyFit, FrequencyWeights};
 use super::minimum_state::fit_minimum_state;
 use super::options::Form;
-use super::own::{EntryForm, entry_forms, search_for, searched_together};
+use super::own::entry_forms;
 use super::records::describe_own;
 use super::report::{EntryReport, FitReport, SearchReport, variance};
 use super::samples::{Entry, sort_by_entry, state_wishes};
-use super::search::{Bounds, search_poles};
 use crate::aerodynamics::derivatives::TransferSample;
 use crate::error::{Error, Result};
 use crate::section::Dof;
 use crate::trained_model::Model;
 use crate::units::ReducedFrequencyRange;
+use joint::{Joint, JointFit};
 use nalgebra::DVector;
+use poles::{choose_poles, choose_poles_together};
 
 /// Fits a continuous model to samples of `G`: real and imaginary parts, each at its own `K`.
 ///
@@ -50,6 +56,7 @@ pub fn fit_table(
         model,
         reports,
         search,
+        constraints,
     } = fitted;
     let mut report = FitReport {
         method: format!(
@@ -68,6 +75,7 @@ pub fn fit_table(
         alpha_guideline: None,
         static_terms: Vec::new(),
         memory: Vec::new(),
+        constraints,
         covariance_assumption:
             "weighted residuals are independent and of one variance; the poles count as known"
                 .into(),
@@ -83,9 +91,11 @@ pub(super) struct Fitted {
     pub model: Model,
     pub reports: Vec<EntryReport>,
     pub search: Vec<SearchReport>,
+    pub constraints: Option<ConstraintReport>,
 }
 
-/// Every form whose entries are linear in their coefficients once the poles are known.
+/// Every form whose entries are linear in their coefficients once the poles are known: each entry by itself, and all of
+/// them again where that breaks a constraint.
 fn fit_linear(
     entries: &[Entry],
     dofs: &[Dof],
@@ -95,22 +105,93 @@ fn fit_linear(
     let forms = entry_forms(dofs, &fit.form, &fit.poles, &fit.own)?;
     let (poles, search) = choose_poles(entries, &forms, fit, tested)?;
     let mut reports = Vec::with_capacity(entries.len());
-    let mut coefficients = Vec::with_capacity(entries.len());
     for (entry, poles) in entries.iter().zip(&poles) {
-        let (values, report) = fit_entry(entry, &fit.form, poles)?;
-        coefficients.push(values);
-        reports.push(report);
+        reports.push(fit_entry(entry, &fit.form, poles)?);
     }
-    let by_row = |list: &[Vec<f64>]| {
-        list.chunks(dofs.len())
-            .map(<[_]>::to_vec)
-            .collect::<Vec<_>>()
-    };
-    Ok(Fitted {
-        model: assemble(&fit.form, dofs, &by_row(&poles), &by_row(&coefficients))?,
+    let alone = Fitted {
+        model: model_of(dofs, fit, &reports)?,
         reports,
         search,
+        constraints: None,
+    };
+    if fit.constraints == Constraints::None {
+        return Ok(alone);
+    }
+    let joint = Joint {
+        entries,
+        form: &fit.form,
+        wishes: Wishes {
+            k_max: tested.max.full_width(),
+            constraints: fit.constraints,
+            // every entry has met its own already
+            limits: Vec::new(),
+        },
+    };
+    let bound = joint.at(&poles)?;
+    if bound.held.is_none() {
+        return Ok(alone);
+    }
+    let (poles, search) = choose_poles_together(&joint, &forms, fit, (tested, poles))?;
+    let held = joint.at(&poles)?;
+    let reports = held_reports(&held, entries, &poles)?;
+    let model = model_of(dofs, fit, &reports)?;
+    let active = held.held.map(|h| h.active).unwrap_or_default();
+    let constraints = ConstraintReport::new(
+        active,
+        dofs,
+        (&alone.reports, &bound.bases),
+        &reports,
+        alone.model,
+    );
+    Ok(Fitted {
+        model,
+        reports,
+        search,
+        constraints: Some(constraints),
     })
+}
+
+/// The model that the accounts of its entries describe.
+fn model_of(dofs: &[Dof], fit: &FrequencyFit, reports: &[EntryReport]) -> Result<Model> {
+    let rows = || reports.chunks(dofs.len());
+    let poles: Vec<Vec<_>> = rows()
+        .map(|row| row.iter().map(|r| r.poles.clone()).collect())
+        .collect();
+    let values: Vec<Vec<_>> = rows()
+        .map(|row| row.iter().map(EntryReport::values).collect())
+        .collect();
+    assemble(&fit.form, dofs, &poles, &values)
+}
+
+/// Accounts of all entries of a fit that constraints hold together.
+fn held_reports(
+    held: &JointFit<'_>,
+    entries: &[Entry],
+    poles: &[Vec<f64>],
+) -> Result<Vec<EntryReport>> {
+    let mut reports = Vec::new();
+    let mut variances = Vec::new();
+    for (e, entry) in entries.iter().enumerate() {
+        let (report, variance) = account(
+            entry,
+            &held.bases[e],
+            &held.solutions[e],
+            held.coefficients(e),
+        );
+        reports.push(report);
+        variances.push(variance);
+    }
+    let finish = |(e, report): (usize, EntryReport)| {
+        let values = held.coefficients(e);
+        let mut report = report.with_coefficients(
+            held.bases[e].names(),
+            values,
+            held.covariance(e, &variances),
+        );
+        report.poles.clone_from(&poles[e]);
+        report
+    };
+    Ok(reports.into_iter().enumerate().map(finish).collect())
 }
 
 fn describe(weights: FrequencyWeights) -> &'static str {
@@ -119,67 +200,6 @@ fn describe(weights: FrequencyWeights) -> &'static str {
         FrequencyWeights::Derivatives => "1/K²: residuals of the aerodynamic derivatives",
         FrequencyWeights::Relative => "1/|G| of the entry at its point: relative residuals",
     }
-}
-
-/// Poles of every entry, one a filter, and how they were found.
-fn choose_poles(
-    entries: &[Entry],
-    forms: &[EntryForm],
-    fit: &FrequencyFit,
-    tested: ReducedFrequencyRange,
-) -> Result<(Vec<Vec<f64>>, Vec<SearchReport>)> {
-    let mut forms = forms.to_vec();
-    let mut groups = searched_together(&forms);
-    if fit.form.poles_per_force() {
-        let n = (1..=entries.len())
-            .find(|n| n * n == entries.len())
-            .unwrap_or(1);
-        state_lags_of_forces(&mut forms, fit, n)?;
-        groups = (0..n).map(|i| (i * n..(i + 1) * n).collect()).collect();
-        groups.retain(|group: &Vec<usize>| forms[group[0]].fixed.is_none());
-    }
-    let stated = |f: &EntryForm| f.fixed.as_ref().map(|fixed| f.form.expand(fixed));
-    let mut poles: Vec<Vec<f64>> = forms
-        .iter()
-        .map(|f| stated(f).unwrap_or_default())
-        .collect();
-    let mut reports = Vec::new();
-    for members in groups {
-        let EntryForm { form, alone, .. } = &forms[members[0]];
-        let options = search_for(&fit.poles, form);
-        let bounds = Bounds::resolve(&options, tested, form.free_poles())?;
-        let group: Vec<&Entry> = members.iter().map(|&e| &entries[e]).collect();
-        let name = alone.then(|| (group[0].force, group[0].motion));
-        let residuals = |free: &[f64]| relative_residuals(&group, form, &form.expand(free));
-        let mut report = search_poles(form.free_poles(), (&options, bounds), name, &residuals)?;
-        report.force = form.poles_per_force().then_some(group[0].force);
-        for e in members {
-            poles[e] = form.expand(&report.chosen.poles);
-        }
-        reports.push(report);
-    }
-    Ok((poles, reports))
-}
-
-/// Lags that are given: one list for all forces, or those of the forces one after the other.
-fn state_lags_of_forces(forms: &mut [EntryForm], fit: &FrequencyFit, n: usize) -> Result<()> {
-    let Some(fixed) = &fit.poles.fixed else {
-        return Ok(());
-    };
-    let count = fit.form.free_poles();
-    let lists: Vec<&[f64]> = fixed.chunks(count).collect();
-    if lists.len() != 1 && lists.len() != n {
-        return Err(Error::input(
-            "poles.fixed",
-            format!("{count} number(s), or {} for the {n} forces", n * count),
-            fixed.len().to_string(),
-        ));
-    }
-    for (e, form) in forms.iter_mut().enumerate() {
-        let list = lists[if lists.len() == 1 { 0 } else { e / n }];
-        form.fixed = Some(list.to_vec());
-    }
-    Ok(())
 }
 
 /// Weighted residuals of all entries with the best coefficients for these poles, each entry relative to its weighted
@@ -197,7 +217,7 @@ fn relative_residuals(entries: &[&Entry], form: &Form, poles: &[f64]) -> Result<
         let residuals = entry.residuals(&basis, &fit.coefficients);
         let weighted = residuals.iter().zip(&entry.rows);
         all.extend(weighted.map(|(r, row)| r * row.weight * scale));
-        all.extend(fit.penalty.iter().map(|r| r * scale));
+        all.extend(fit.penalty(&fit.coefficients).map(|r| r * scale));
     }
     Ok(DVector::from_vec(all))
 }
@@ -217,33 +237,50 @@ pub(super) fn shares(entries: &[&Entry]) -> Vec<f64> {
     entries.iter().map(share).collect()
 }
 
-/// Coefficients of one entry in the columns of the model, and their account.
-fn fit_entry(entry: &Entry, form: &Form, poles: &[f64]) -> Result<(Vec<f64>, EntryReport)> {
+/// Account of one entry by itself, in the columns of the model.
+fn fit_entry(entry: &Entry, form: &Form, poles: &[f64]) -> Result<EntryReport> {
     let basis = Basis::new(form, poles)?;
     let fit = entry.fit(&basis)?;
-    let residuals = entry.residuals(&basis, &fit.coefficients);
+    let (mut report, variance) = account(entry, &basis, &fit, &fit.coefficients);
+    report.poles = poles.to_vec();
+    let covariance = variance
+        .map(|v| fit.inverse_gram().map(|gram| gram * v))
+        .transpose()?;
+    Ok(report.with_coefficients(basis.names(), &fit.coefficients, covariance))
+}
+
+/// Account of given coefficients of one entry but for their covariance, and the variance of the weighted residuals.
+fn account(
+    entry: &Entry,
+    basis: &Basis,
+    fit: &LinearSolution,
+    coefficients: &[f64],
+) -> (EntryReport, Option<f64>) {
+    let residuals = entry.residuals(basis, coefficients);
     let unknowns = fit.unknowns;
-    let covariance = variance(
-        fit.factor.residual_sum(unknowns, 0),
-        entry.rows.len(),
-        unknowns,
-    )
-    .map(|v| fit.inverse_gram().map(|gram| gram * v))
-    .transpose()?;
     let (relative_rms, worst) = sizes(entry, &residuals);
     let report = EntryReport {
         force: entry.force,
         motion: entry.motion,
         relative_rms: Some(relative_rms),
         worst_relative: Some(worst),
-        poles: poles.to_vec(),
+        poles: Vec::new(),
         coefficients: Vec::new(),
         covariance: Vec::new(),
         condition: fit.factor.condition(unknowns),
         cancellation: fit.cancellation,
-    }
-    .with_coefficients(basis.names(), &fit.coefficients, covariance);
-    Ok((fit.coefficients, report))
+    };
+    let sum = if std::ptr::eq(coefficients, fit.coefficients.as_slice()) {
+        fit.factor.residual_sum(unknowns, 0)
+    } else {
+        let weighted = residuals
+            .iter()
+            .zip(&entry.rows)
+            .map(|(r, row)| r * row.weight);
+        let squares = weighted.chain(fit.penalty(coefficients)).map(|r| r * r);
+        squares.sum()
+    };
+    (report, variance(sum, entry.rows.len(), unknowns))
 }
 
 /// Relative root mean square and worst relative size of unweighted residuals.

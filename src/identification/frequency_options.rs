@@ -1,5 +1,7 @@
 //! What a fit to a transfer matrix is asked to do.
 
+use super::basis::index_of;
+use super::dissipative::Constraints;
 use super::options::{Form, PoleSearch};
 use super::own::{OwnFilters, validate_own};
 use crate::error::{Error, Result, non_negative};
@@ -41,6 +43,49 @@ impl QuasiSteadyLimit {
     }
 }
 
+/// Checks what can be checked without the data.
+///
+/// # Errors
+/// [`Error::Input`] naming the limit.
+pub(super) fn validate_limits(limits: &[QuasiSteadyLimit]) -> Result<()> {
+    for (i, limit) in limits.iter().enumerate() {
+        let place = format!("limits[{i}]");
+        let stated = [limit.value, limit.slope];
+        if stated.iter().all(Option::is_none) {
+            return Err(Error::input(place, "a value, a slope or both", "neither"));
+        }
+        if let Some(x) = stated.iter().flatten().find(|x| !x.is_finite()) {
+            return Err(Error::input(place, "finite numbers", x.to_string()));
+        }
+        let same = |l: &&QuasiSteadyLimit| (l.force, l.motion) == (limit.force, limit.motion);
+        if limits[..i].iter().any(|l| same(&l)) {
+            return Err(Error::input(place, "each entry once", "it twice"));
+        }
+    }
+    Ok(())
+}
+
+/// Value and slope of every entry, row by row; empty when none is stated.
+///
+/// # Errors
+/// [`Error::Input`] for degrees of freedom that are not there.
+pub(super) fn limits_by_entry(
+    dofs: &[Dof],
+    limits: &[QuasiSteadyLimit],
+) -> Result<Vec<[Option<f64>; 2]>> {
+    if limits.is_empty() {
+        return Ok(Vec::new());
+    }
+    let mut all = vec![[None; 2]; dofs.len() * dofs.len()];
+    for (at, limit) in limits.iter().enumerate() {
+        let place = format!("limits[{at}]");
+        let i = index_of(dofs, limit.force, &place)?;
+        let j = index_of(dofs, limit.motion, &place)?;
+        all[i * dofs.len() + j] = [limit.value, limit.slope];
+    }
+    Ok(all)
+}
+
 /// What the residuals of a fit to a transfer matrix are divided by. In the search of poles that several entries share,
 /// each entry counts in proportion to its own weighted size besides.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -65,6 +110,8 @@ pub struct FrequencyFit {
     pub poles: PoleSearch,
     /// Weighting of the points of an entry.
     pub weights: FrequencyWeights,
+    /// What the model has to be above the tested range.
+    pub constraints: Constraints,
     /// Transfer functions with a number of filters or poles of their own.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub own: Vec<OwnFilters>,
@@ -95,21 +142,7 @@ impl FrequencyFit {
                 non_negative("entry_weights", *weight)?;
             }
         }
-        for (i, limit) in self.limits.iter().enumerate() {
-            let place = format!("limits[{i}]");
-            let stated = [limit.value, limit.slope];
-            if stated.iter().all(Option::is_none) {
-                return Err(Error::input(place, "a value, a slope or both", "neither"));
-            }
-            if let Some(x) = stated.iter().flatten().find(|x| !x.is_finite()) {
-                return Err(Error::input(place, "finite numbers", x.to_string()));
-            }
-            let same = |l: &&QuasiSteadyLimit| (l.force, l.motion) == (limit.force, limit.motion);
-            if self.limits[..i].iter().any(|l| same(&l)) {
-                return Err(Error::input(place, "each entry once", "it twice"));
-            }
-        }
-        Ok(())
+        validate_limits(&self.limits)
     }
 
     /// Whether every entry is an unconstrained linear fit whose poles are shared by all or its own.

@@ -5,9 +5,12 @@
 //! are reduced to rank one, and Karpel's choice, every state driven by one motion. Columns of `D` and rows of `E` may be
 //! scaled against each other; `E` gets rows of unit length.
 
+mod held;
+
 use super::basis::Basis;
 use super::constrained::{LinearProblem, LinearSolution};
 use super::descent::descend;
+use super::dissipative::{ActiveConstraint, Constraints, Wishes};
 use super::frequency::{Fitted, shares, sizes};
 use super::frequency_options::FrequencyFit;
 use super::options::{FeedThrough, Form};
@@ -34,6 +37,8 @@ struct Task<'a> {
     feed: FeedThrough,
     /// Bounds of the search, or the lags that were given.
     lags: SearchedLags,
+    /// What is asked besides, once least squares alone are known.
+    wishes: Option<Wishes>,
 }
 
 enum SearchedLags {
@@ -52,7 +57,7 @@ pub(super) fn fit_minimum_state(
     tested: ReducedFrequencyRange,
 ) -> Result<Fitted> {
     let states = fit.form.filters();
-    let task = Task {
+    let mut task = Task {
         entries,
         shares: shares(&entries.iter().collect::<Vec<_>>()),
         n: dofs.len(),
@@ -62,6 +67,7 @@ pub(super) fn fit_minimum_state(
             Some(fixed) => SearchedLags::Given(fixed.clone()),
             None => SearchedLags::Within(Bounds::resolve(&fit.poles, tested, states)?),
         },
+        wishes: None,
     };
     let mut points = Vec::new();
     let mut best: Option<(f64, Vec<f64>)> = None;
@@ -101,7 +107,17 @@ pub(super) fn fit_minimum_state(
             points,
         }],
     };
-    task.finish(dofs, &best, search)
+    let (alone, _) = task.finish(dofs, &best, search)?;
+    if fit.constraints == Constraints::None {
+        return Ok(alone);
+    }
+    task.wishes = Some(Wishes {
+        k_max: tested.max.full_width(),
+        constraints: fit.constraints,
+        // every force has met its own already
+        limits: Vec::new(),
+    });
+    task.constrain(dofs, best, alone)
 }
 
 impl Task<'_> {
@@ -219,20 +235,15 @@ impl Task<'_> {
     }
 
     fn residuals(&self, x: &[f64]) -> Result<DVector<f64>> {
-        let (lags, e) = (self.lags_at(x), self.e_at(x));
+        let rows = self.rows(x)?;
         let mut all = Vec::new();
-        for i in 0..self.n {
-            let problem = self.row(i, &lags, &e);
-            let solution = self.solve(i, &problem)?;
+        for (i, problem) in rows.problems.iter().enumerate() {
+            let values = &rows.values[i];
             for (row, right) in problem.rows.iter().zip(&problem.right) {
-                let fitted: f64 = row
-                    .iter()
-                    .zip(&solution.coefficients)
-                    .map(|(a, c)| a * c)
-                    .sum();
+                let fitted: f64 = row.iter().zip(values).map(|(a, c)| a * c).sum();
                 all.push(right - fitted);
             }
-            all.extend(&solution.penalty);
+            all.extend(rows.solutions[i].penalty(values));
         }
         Ok(DVector::from_vec(all))
     }
@@ -294,21 +305,27 @@ impl Task<'_> {
         problem
     }
 
-    fn finish(&self, dofs: &[Dof], x: &[f64], search: Vec<SearchReport>) -> Result<Fitted> {
+    fn finish(
+        &self,
+        dofs: &[Dof],
+        x: &[f64],
+        search: Vec<SearchReport>,
+    ) -> Result<(Fitted, Option<Vec<ActiveConstraint>>)> {
         let (lags, e) = (self.lags_at(x), self.e_at(x));
         let (n, feed) = (self.n, self.feed.count());
         let mut d = DMatrix::zeros(n, self.states);
         let mut a = vec![DMatrix::zeros(n, n); 3];
         let mut accounts = Vec::new();
-        for i in 0..n {
-            let solution = self.solve(i, &self.row(i, &lags, &e))?;
+        let rows = self.rows(x)?;
+        for (i, solution) in rows.solutions.iter().enumerate() {
+            let values = &rows.values[i];
             for j in 0..n {
                 for (c, order) in self.feed.orders().enumerate() {
-                    a[order][(i, j)] = solution.coefficients[j * feed + c];
+                    a[order][(i, j)] = values[j * feed + c];
                 }
             }
             for l in 0..self.states {
-                d[(i, l)] = solution.coefficients[n * feed + l];
+                d[(i, l)] = values[n * feed + l];
             }
             accounts.push((
                 solution.factor.condition(solution.unknowns),
@@ -348,11 +365,13 @@ impl Task<'_> {
             e,
         };
         model.validate()?;
-        Ok(Fitted {
+        let fitted = Fitted {
             model: Model::MinimumState(model),
             reports,
             search,
-        })
+            constraints: None,
+        };
+        Ok((fitted, rows.active))
     }
 
     fn roger_basis(&self, lags: &[f64]) -> Result<Basis> {

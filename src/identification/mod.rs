@@ -10,6 +10,7 @@ mod degenerate;
 pub mod derivatives;
 mod descent;
 mod discrete;
+mod dissipative;
 pub mod free_decay;
 mod frequency;
 mod frequency_options;
@@ -31,6 +32,9 @@ mod training_tests;
 mod uncertainty;
 
 pub use discrete::{DiscreteFit, fit_discrete};
+pub use dissipative::{
+    ActiveConstraint, ConstraintCost, ConstraintKind, ConstraintReport, Constraints, OnsetEffect,
+};
 pub use frequency::fit_table;
 pub use frequency_options::{FrequencyFit, FrequencyWeights, QuasiSteadyLimit};
 pub use grid::{CellFit, Grid, GridAxis, StretchLabel};
@@ -44,6 +48,7 @@ pub use report::{
 };
 pub use samples::sample_model;
 pub use uncertainty::{
-    CoefficientUncertainty, Coordinates, LinearModel, Parameter, SearchedPole,
-    discrete_uncertainty, record_uncertainty, table_uncertainty, two_sided_quantile,
+    CoefficientUncertainty, Coordinates, ForceScatter, LinearModel, Parameter, SEARCHED_POLES,
+    SearchedPole, SpeedScatter, discrete_uncertainty, record_uncertainty, table_uncertainty,
+    two_sided_quantile,
 };

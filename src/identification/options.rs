@@ -1,6 +1,8 @@
 //! What a fit is asked to do. The fields are keys of a study file; units are in their names, the rest is
 //! dimensionless.
 
+use super::dissipative::Constraints;
+use super::frequency_options::{QuasiSteadyLimit, validate_limits};
 use super::own::{OwnFilters, StaticTerm, validate_own};
 use crate::error::{Error, Result, positive};
 use serde::{Deserialize, Serialize};
@@ -233,7 +235,7 @@ impl Form {
     }
 
     pub(crate) fn validate(&self) -> Result<()> {
-        at_least_one("form.filters (or form.lags)", self.filters())
+        number_of_filters("form.filters (or form.lags)", self.filters())
     }
 }
 
@@ -357,6 +359,8 @@ pub struct TimeFit {
     pub poles: PoleSearch,
     /// Weighting.
     pub weights: TimeWeights,
+    /// What the model has to be above the tested range.
+    pub constraints: Constraints,
     /// Cut-off of the low-pass filter that motion and force go through alike, Hz; left out, a twentieth of the
     /// sampling frequency.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -365,6 +369,9 @@ pub struct TimeFit {
     pub discard_s: f64,
     /// What is done about a constant in the forces.
     pub static_term: StaticTerm,
+    /// What `G` has to be at K → 0, exactly.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub limits: Vec<QuasiSteadyLimit>,
     /// Transfer functions with a number of filters or poles of their own.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub own: Vec<OwnFilters>,
@@ -379,6 +386,7 @@ impl TimeFit {
         self.form.validate_for_records()?;
         self.poles.validate(&self.form)?;
         validate_own(&self.form, &self.own)?;
+        validate_limits(&self.limits)?;
         if let Some(cutoff) = self.low_pass_hz {
             positive("low_pass_hz", cutoff)?;
         }
@@ -386,9 +394,21 @@ impl TimeFit {
     }
 }
 
-pub(crate) fn at_least_one(place: &str, count: usize) -> Result<()> {
-    if count == 0 {
-        return Err(Error::input(place, "at least 1", "0"));
+/// Filters or lags of one chain at most: ten times what any measured deck supports, and still fitted in seconds.
+pub(crate) const MOST_FILTERS: usize = 100;
+
+/// Checks a number of filters or lags.
+///
+/// # Errors
+/// [`Error::Input`] naming `place` for none, and for more than any data could support.
+pub(crate) fn number_of_filters(place: &str, count: usize) -> Result<()> {
+    if (1..=MOST_FILTERS).contains(&count) {
+        return Ok(());
     }
-    Ok(())
+    let expected = if count == 0 {
+        "at least 1".into()
+    } else {
+        format!("at most {MOST_FILTERS}")
+    };
+    Err(Error::input(place, expected, count.to_string()))
 }

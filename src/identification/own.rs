@@ -210,6 +210,9 @@ mod tests {
         let twice = [own(y, t, None, None), own(y, t, Some(2), None)];
         assert!(message(&laguerre, &twice).contains("at most once"));
         assert!(message(&laguerre, &[own(y, t, Some(0), None)]).contains("at least 1"));
+        for many in [101, 100_000, usize::MAX] {
+            assert!(message(&laguerre, &[own(y, t, Some(many), None)]).contains("at most 100"));
+        }
         let two = [own(y, t, None, Some(vec![0.2, 0.4]))];
         assert!(message(&laguerre, &two).contains("1 number(s)"));
         let rational = Form::Rational {

@@ -1,16 +1,19 @@
 //! Continuous models fitted to forced-vibration records.
 
 mod fitted;
+mod joint;
 
-use super::basis::{Basis, assemble};
+use super::basis::Basis;
 use super::degenerate::note_lags;
+use super::dissipative::{ConstraintReport, Wishes};
+use super::frequency_options::limits_by_entry;
 use super::options::{TimeFit, TimeWeights};
 use super::own::{EntryForm, StaticTerm, entry_forms};
-use super::report::{FitReport, StaticReport, variance};
+use super::report::{FitReport, SearchReport, StaticReport, variance};
 use super::time::accumulate::{Accumulated, Plan, accumulate};
 use super::time::filters::{ContinuousColumns, NOISE_BANDWIDTH};
 use super::time::layout::Layout;
-use super::time::search::choose_poles;
+use super::time::search::{Choice, choose_poles};
 use super::time::selection::Selection;
 use super::time::slices::{Scaled, scale_all};
 use crate::error::{Error, Result};
@@ -19,6 +22,7 @@ use crate::trained_model::Model;
 use crate::units::ReducedFrequencyRange;
 use crate::wind_tunnel::RecordSource;
 use fitted::Fitted;
+pub(crate) use joint::Joint;
 
 /// Default cut-off of the low-pass over the sampling frequency.
 const CUTOFF_OVER_SAMPLING: f64 = 1.0 / 20.0;
@@ -64,10 +68,14 @@ pub fn fit_records(
         entries: &entries,
         progress,
     };
-    let (poles, search) = choose_poles(&task, tested)?;
-    let chains = poles.iter().zip(&entries).map(|(p, e)| e.form.expand(p));
-    let fitted = Fitted::new(&task, chains.collect())?;
-    let model = assemble(&fit.form, &dofs, &fitted.poles(), &fitted.coefficients()?)?;
+    let wishes = wishes(fit, &dofs, tested)?;
+    let (alone, held) = choose_poles(&task, tested, &wishes)?;
+    let Found {
+        fitted,
+        search,
+        constraints,
+    } = task.fit_at(alone, held, &wishes)?;
+    let model = fitted.model()?;
     let mut report = FitReport {
         method: format!(
             "{}{}, fitted to {} record(s) in the time domain",
@@ -84,11 +92,16 @@ pub fn fit_records(
         orders: fitted.orders(),
         alpha_guideline: None,
         static_terms: if fit.static_term == StaticTerm::Estimated {
-            estimated_constants(&fitted.selection, &dofs, task.noise_ratio())?
+            let mut constants = estimated_constants(&fitted.selection, &dofs, task.noise_ratio())?;
+            for (i, report) in constants.iter_mut().enumerate() {
+                report.value = fitted.constant(i).unwrap_or(report.value);
+            }
+            constants
         } else {
             means
         },
         memory: fitted.memory()?,
+        constraints,
         covariance_assumption:
             "noise of the forces is white before the low-pass, motions are exact, the poles count \
                                 as known"
@@ -195,6 +208,68 @@ pub(crate) struct Task<'a> {
     /// Form and poles of every transfer function, row by row.
     pub entries: &'a [EntryForm],
     pub progress: OnProgress<'a>,
+}
+
+/// What a fit is asked for besides least squares.
+///
+/// # Errors
+/// [`Error::Input`] for limits of degrees of freedom that are not there.
+pub(crate) fn wishes(fit: &TimeFit, dofs: &[Dof], tested: ReducedFrequencyRange) -> Result<Wishes> {
+    Ok(Wishes {
+        k_max: tested.max.full_width(),
+        constraints: fit.constraints,
+        limits: limits_by_entry(dofs, &fit.limits)?,
+    })
+}
+
+/// The fit that is handed out.
+struct Found<'a> {
+    fitted: Fitted<'a>,
+    search: Vec<SearchReport>,
+    constraints: Option<ConstraintReport>,
+}
+
+impl<'a> Task<'a> {
+    /// The last pass: least squares alone, and under the constraints where these are asked for and bind.
+    fn fit_at(&'a self, alone: Choice, held: Option<Choice>, wishes: &Wishes) -> Result<Found<'a>> {
+        let chains = |choice: &Choice| -> Vec<Vec<f64>> {
+            let pairs = choice.poles.iter().zip(self.entries);
+            pairs.map(|(p, e)| e.form.expand(p)).collect()
+        };
+        let mut sets = vec![chains(&alone)];
+        if let Some(held) = &held {
+            sets.push(chains(held));
+        }
+        sets.dedup();
+        let mut fits = Fitted::at_poles(self, sets)?.into_iter();
+        let none = || Error::Numerical("fit to records: no fit".into());
+        let mut fitted = fits.next().ok_or_else(none)?;
+        let (reports, model) = (fitted.reports()?, fitted.model()?);
+        let bases = fitted.bases()?;
+        if held.is_some() {
+            fitted.constrain(wishes)?;
+        }
+        let Some(held) = held.filter(|_| fitted.active().is_some()) else {
+            return Ok(Found {
+                fitted,
+                search: alone.search,
+                constraints: None,
+            });
+        };
+        if let Some(other) = fits.next() {
+            fitted = other;
+            fitted.constrain(wishes)?;
+        }
+        let active = fitted.active().unwrap_or_default();
+        let with = fitted.reports()?;
+        let compared = (reports.as_slice(), bases.as_slice());
+        let constraints = ConstraintReport::new(active, self.dofs, compared, &with, model);
+        Ok(Found {
+            fitted,
+            search: held.search,
+            constraints: Some(constraints),
+        })
+    }
 }
 
 impl Task<'_> {

@@ -1,5 +1,6 @@
 //! What a fit tells about itself.
 
+use super::dissipative::ConstraintReport;
 use super::options::PoleSearch;
 use crate::error::{Error, Result};
 use crate::section::Dof;
@@ -37,6 +38,9 @@ pub struct FitReport {
     pub static_terms: Vec<StaticReport>,
     /// Memory of the filters against the rest before the motion starts, one account a record; empty for fits to a table.
     pub memory: Vec<MemoryReport>,
+    /// What held the fit back; `None` when nothing did, or when nothing was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub constraints: Option<ConstraintReport>,
     /// Under which assumption standard errors and covariances hold.
     pub covariance_assumption: String,
     /// What a user of the model should know.
@@ -163,6 +167,11 @@ pub struct AlphaGuideline {
 }
 
 impl EntryReport {
+    /// Values of the coefficients.
+    pub(crate) fn values(&self) -> Vec<f64> {
+        self.coefficients.iter().map(|c| c.value).collect()
+    }
+
     /// `values` named, with the covariance `variance · gram`.
     pub(crate) fn with_coefficients(
         mut self,

@@ -2,7 +2,7 @@
 
 use super::basis::{Basis, index_of};
 use super::constrained::{LinearProblem, LinearSolution};
-use super::frequency_options::{FrequencyFit, FrequencyWeights};
+use super::frequency_options::{FrequencyFit, FrequencyWeights, limits_by_entry};
 use crate::aerodynamics::AerodynamicModel;
 use crate::aerodynamics::derivatives::{Part, TransferSample};
 use crate::error::{Error, Result};
@@ -201,11 +201,9 @@ pub(crate) fn state_wishes(entries: &mut [Entry], dofs: &[Dof], fit: &FrequencyF
         entry.weight = fit.entry_weight(n, at / n, at % n)?;
         entry.ridge = fit.regularization;
     }
-    for (at, limit) in fit.limits.iter().enumerate() {
-        let place = format!("limits[{at}]");
-        let i = index_of(dofs, limit.force, &place)?;
-        let j = index_of(dofs, limit.motion, &place)?;
-        entries[i * n + j].limit = [limit.value, limit.slope];
+    let limits = limits_by_entry(dofs, &fit.limits)?;
+    for (entry, limit) in entries.iter_mut().zip(limits) {
+        entry.limit = limit;
     }
     Ok(())
 }

@@ -1,11 +1,28 @@
 //! Helpers of the tests of this module: the test points and records of the thesis, and an onset by plain bisection.
 
+use super::{Constraints, FrequencyFit, TimeFit};
 use crate::aerodynamics::AerodynamicModel;
 use crate::aerodynamics::derivatives::TABLE_3_2_FREQUENCIES_HZ;
 use crate::aeroelastic::CoupledSection;
 use crate::section::SectionModel;
 use crate::units::ReducedFrequency;
 use crate::wind_tunnel::{Record, RecordSource, TunnelPlan};
+
+/// A fit to a table by least squares alone, for what is to be recovered exactly or was computed so.
+pub fn table_alone() -> FrequencyFit {
+    FrequencyFit {
+        constraints: Constraints::None,
+        ..FrequencyFit::default()
+    }
+}
+
+/// The same for records.
+pub fn records_alone() -> TimeFit {
+    TimeFit {
+        constraints: Constraints::None,
+        ..TimeFit::default()
+    }
+}
 
 /// Reduced frequencies of the eight motions at one speed, B = 0.5 m.
 pub fn eight_k(speed_m_s: f64) -> Vec<ReducedFrequency> {

@@ -1,6 +1,6 @@
 //! Training in full: three motions, filters of single transfer functions, static terms, memory.
 
-use super::testing::{records, sources};
+use super::testing::{records, records_alone, sources, table_alone};
 use super::{
     DiscreteFit, FitReport, Form, FrequencyFit, OwnDecay, OwnFilters, PoleSearch, StaticTerm,
     TimeFit, fit_discrete, fit_records, fit_table,
@@ -40,7 +40,7 @@ fn three_by_three() -> (Model, FitReport) {
     let deck = embedded::deck("LN21-5200").unwrap();
     let fit = FrequencyFit {
         poles: PoleSearch::fixed(&[0.5]),
-        ..FrequencyFit::default()
+        ..table_alone()
     };
     fit_table(&deck.samples(&Dof::THREE), &Dof::THREE, &fit).unwrap()
 }
@@ -53,7 +53,7 @@ fn three_motions_give_nine_transfer_functions() {
     assert_eq!(report.entries.len(), 9);
     let fit = TimeFit {
         poles: PoleSearch::fixed(&[0.5]),
-        ..TimeFit::default()
+        ..records_alone()
     };
     let all = records(&model, &[10.9], 0.0, 1);
     assert_eq!(all.len(), 3);
@@ -199,7 +199,7 @@ fn continuous_filters_of_one_transfer_function_are_recovered() {
         form: form.clone(),
         poles: PoleSearch::fixed(&[0.4]),
         own: own(Some(vec![0.9])),
-        ..FrequencyFit::default()
+        ..table_alone()
     };
     let (truth, report) = fit_table(&deck.samples(&Dof::TWO), &Dof::TWO, &frequency).unwrap();
     let poles: Vec<usize> = report.entries.iter().map(|e| e.poles.len()).collect();
@@ -214,7 +214,7 @@ fn continuous_filters_of_one_transfer_function_are_recovered() {
         form: form.clone(),
         poles: PoleSearch::fixed(&[0.4]),
         own: own(Some(vec![0.9])),
-        ..TimeFit::default()
+        ..records_alone()
     };
     let (found, _) = fit_records(&sources(&all), &stated, &|_| ()).unwrap();
     // images above half the sampling frequency, as for shared poles
@@ -253,7 +253,7 @@ fn static_terms_are_estimated_or_removed() {
             },
             poles: PoleSearch::fixed(truth.lags.of_force(0)),
             static_term,
-            ..TimeFit::default()
+            ..records_alone()
         };
         fit_records(&sources(&all), &fit, &|_| ()).unwrap()
     };
@@ -286,7 +286,7 @@ fn too_little_rest_before_the_motion_is_said() {
         let fit = TimeFit {
             poles: PoleSearch::fixed(&[0.3]),
             discard_s,
-            ..TimeFit::default()
+            ..records_alone()
         };
         fit_records(&sources(all), &fit, &|_| ()).unwrap().1
     };

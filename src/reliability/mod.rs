@@ -7,6 +7,7 @@
 
 mod coefficients;
 mod distribution;
+mod drawn;
 mod interval;
 mod normal;
 mod parameter;

@@ -13,6 +13,12 @@ pub enum Parameter {
     /// Air density, kg/m³.
     #[serde(rename = "air_density_kg_m3")]
     AirDensity,
+    /// Distance of the axis from the reference point of the forces, m.
+    #[serde(rename = "axis_offset_m")]
+    AxisOffset,
+    /// Distance of the centre of mass from the axis, m.
+    #[serde(rename = "mass_offset_m")]
+    MassOffset,
     /// Mass of the vertical motion, kg/m.
     #[serde(rename = "vertical.mass_kg_m")]
     VerticalMass,
@@ -64,6 +70,8 @@ impl Parameter {
         match self {
             Self::Width => Some(&mut section.width_m),
             Self::AirDensity => Some(&mut section.air_density_kg_m3),
+            Self::AxisOffset => section.axis_offset_m.as_mut(),
+            Self::MassOffset => section.mass_offset_m.as_mut(),
             Self::VerticalMass => Some(&mut section.vertical.mass_kg_m),
             Self::VerticalFrequency => frequency(&mut section.vertical),
             Self::VerticalStiffness => stiffness(&mut section.vertical),

@@ -25,8 +25,9 @@ pub struct MonteCarloPlan {
     /// Seed of the random numbers; the same seed gives the same samples on every machine and number of threads.
     #[serde(default)]
     pub seed: u64,
-    /// Onsets are searched up to this wind speed, m/s.
-    pub speed_max_m_s: f64,
+    /// Onsets are searched up to this wind speed, m/s; left out, as far as the study of the model did.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub speed_max_m_s: Option<f64>,
     /// The probability of an onset below this wind speed is asked, m/s.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub design_speed_m_s: Option<f64>,
@@ -77,8 +78,9 @@ pub struct AerodynamicScatter {
     /// Standard deviation of every coefficient over its value, Gaussian and independent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub relative_scatter: Option<f64>,
-    /// Covariance of the coefficients: a report of a fit (`.json`, as `train` writes it) or a table (`.csv`: names of the
-    /// coefficients in the first line, then the matrix).
+    /// Covariance of the coefficients: that of all parameters of a fit (`fits/<model>.uncertainty.json` as `train` writes it,
+    /// also found beside the fit's report `fits/<model>.json`), or a table (`.csv`: names of the coefficients in the first
+    /// line, then the matrix).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub covariance: Option<PathBuf>,
 }
@@ -97,9 +99,7 @@ impl MonteCarloPlan {
     /// # Errors
     /// [`Error::Io`] when it cannot be read; [`Error::Input`] with file and line for everything that is wrong in it.
     pub fn read(path: &Path) -> Result<Self> {
-        let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, e))?;
-        let directory = path.parent().unwrap_or(Path::new("")).to_path_buf();
-        Self::from_toml(&text, directory).map_err(|e| e.in_file(path))
+        toml_lines::read(path, Self::from_toml)
     }
 
     /// Reads and checks the text of a file; paths in it are read against `directory`.
@@ -107,12 +107,10 @@ impl MonteCarloPlan {
     /// # Errors
     /// [`Error::Input`] with line and key.
     pub fn from_toml(text: &str, directory: PathBuf) -> Result<Self> {
-        let mut plan: Self = toml::from_str(text)
-            .map_err(|e| toml_lines::syntax_error("a Monte Carlo file", text, &e))?;
-        plan.directory = directory;
-        plan.validate()
-            .map_err(|e| toml_lines::with_line(text, e))?;
-        Ok(plan)
+        toml_lines::parse("a Monte Carlo file", text, |plan: &mut Self| {
+            plan.directory = directory;
+            plan.validate()
+        })
     }
 
     /// The same error with the line of the key it names in `text`, for what shows only beside the model.
@@ -137,12 +135,12 @@ impl MonteCarloPlan {
                 self.samples.to_string(),
             );
         }
-        positive("speed_max_m_s", self.speed_max_m_s)?;
-        if let Some(speed) = self.design_speed_m_s
-            && positive("design_speed_m_s", speed)? > self.speed_max_m_s
-        {
-            let expected = "a speed not above speed_max_m_s, up to which onsets are searched";
-            return wrong("design_speed_m_s", expected, speed.to_string());
+        if let Some(speed) = self.speed_max_m_s {
+            positive("speed_max_m_s", speed)?;
+        }
+        if let Some(speed) = self.design_speed_m_s {
+            positive("design_speed_m_s", speed)?;
+            self.check_design_speed(self.speed_max_m_s.unwrap_or(f64::INFINITY))?;
         }
         let inside = |p: f64| p > 0.0 && p < 1.0;
         if !inside(self.confidence) {
@@ -173,6 +171,20 @@ impl MonteCarloPlan {
             );
         }
         Ok(())
+    }
+
+    /// The design speed has to lie where onsets are searched.
+    pub(super) fn check_design_speed(&self, speed_max_m_s: f64) -> Result<()> {
+        match self.design_speed_m_s {
+            Some(speed) if speed > speed_max_m_s => Err(Error::input(
+                "design_speed_m_s",
+                format!(
+                    "a speed not above speed_max_m_s ({speed_max_m_s}), up to which onsets are searched"
+                ),
+                speed.to_string(),
+            )),
+            _ => Ok(()),
+        }
     }
 
     fn validate_parameters(&self) -> Result<()> {

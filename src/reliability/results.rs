@@ -2,7 +2,7 @@
 
 use super::interval::clopper_pearson;
 use super::plan::MonteCarloPlan;
-use crate::flutter::SweptOnset;
+use crate::flutter::{SweepOutcome, SweptOnset};
 use serde::Serialize;
 
 /// Failed samples that are named one by one; of more, their number is given.
@@ -21,6 +21,10 @@ pub struct MonteCarloResult {
     pub samples: usize,
     /// Samples with an onset up to the highest speed.
     pub onsets: usize,
+    /// Samples that grow at the lowest speed that could be judged: their onset lies there or below. They fail.
+    pub unstable_at_or_below: usize,
+    /// Highest of those speeds, m/s.
+    pub unstable_up_to_m_s: Option<f64>,
     /// Samples without one.
     pub stable: usize,
     /// Samples without an answer, mostly for impossible values.
@@ -37,11 +41,14 @@ pub struct MonteCarloResult {
     pub speed_max_m_s: f64,
     /// Onset of the model itself, m/s; `null` when it has none.
     pub nominal_m_s: Option<f64>,
+    /// Whether the onset of the model itself lies at that speed or below.
+    pub nominal_or_below: bool,
     /// Mean of the onsets, m/s; samples without onset are left out.
     pub mean_m_s: Option<f64>,
     /// Standard deviation of the onsets, m/s.
     pub standard_deviation_m_s: Option<f64>,
-    /// Quantiles of the onset speed; samples without onset count as above the highest speed.
+    /// Quantiles of the onset speed; samples without onset count as above the highest speed, those that grow at the
+    /// lowest speed that could be judged with that speed.
     pub quantiles: Vec<Quantile>,
     /// Onsets counted in bins of equal width.
     pub histogram: Histogram,
@@ -65,6 +72,8 @@ pub struct Quantile {
     pub probability: f64,
     /// m/s; `null` above the highest speed searched.
     pub speed_m_s: Option<f64>,
+    /// Whether the quantile is that of samples whose onset lies there or below.
+    pub or_below: bool,
 }
 
 /// Counts in bins of equal width.
@@ -85,11 +94,14 @@ pub struct DesignCheck {
     pub speed_m_s: f64,
     /// Samples with an onset below it.
     pub below: u64,
-    /// Their part of all samples with an answer.
+    /// Samples that grow at the lowest speed that could be judged, which is not below the design speed: not counted as
+    /// safe.
+    pub undecided: u64,
+    /// Part of all samples with an answer that have an onset below the design speed, or may have.
     pub probability: f64,
-    /// Lower end of the exact (Clopper–Pearson) confidence interval.
+    /// Lower end of the exact (Clopper–Pearson) confidence interval, of the samples known to lie below.
     pub lower: f64,
-    /// Upper end.
+    /// Upper end, with the undecided ones.
     pub upper: f64,
     /// Level of the interval, two-sided.
     pub confidence: f64,
@@ -99,6 +111,8 @@ pub struct DesignCheck {
 #[derive(Debug, Default)]
 pub(super) struct Tally {
     pub(super) onsets: Vec<f64>,
+    /// Speeds at which samples grow that could not be judged below.
+    pub(super) starts: Vec<f64>,
     pub(super) stable: usize,
     pub(super) failed: usize,
     pub(super) failures: Vec<Failure>,
@@ -114,6 +128,12 @@ impl Tally {
         self.spurious += usize::from(onset.spurious > 0);
     }
 
+    /// A sample whose onset lies at the speed of `start` or below.
+    pub(super) fn unstable(&mut self, start: &SweptOnset) {
+        self.starts.push(start.speed_m_s);
+        self.outside += usize::from(!start.in_tested_range);
+    }
+
     pub(super) fn failure(&mut self, sample: usize, reason: String) {
         self.failed += 1;
         if self.failures.len() < NAMED_FAILURES {
@@ -124,6 +144,7 @@ impl Tally {
     /// Adds a later run.
     pub(super) fn add(&mut self, later: Self) {
         self.onsets.extend(later.onsets);
+        self.starts.extend(later.starts);
         self.stable += later.stable;
         self.failed += later.failed;
         let room = NAMED_FAILURES - self.failures.len().min(NAMED_FAILURES);
@@ -136,36 +157,49 @@ impl Tally {
     pub(super) fn summarise(
         mut self,
         plan: &MonteCarloPlan,
+        speed_max_m_s: f64,
         model: &str,
-        nominal_m_s: Option<f64>,
+        nominal: SweepOutcome,
     ) -> MonteCarloResult {
         self.onsets.sort_by(f64::total_cmp);
-        let answered = self.onsets.len() + self.stable;
+        self.starts.sort_by(f64::total_cmp);
+        let nominal_or_below = matches!(nominal, SweepOutcome::UnstableAtOrBelow(_));
+        let nominal_m_s = match nominal {
+            SweepOutcome::Onset(o) | SweepOutcome::UnstableAtOrBelow(o) => Some(o.speed_m_s),
+            SweepOutcome::Stable | SweepOutcome::Unresolved => None,
+        };
+        let answered = self.onsets.len() + self.starts.len() + self.stable;
+        let mut unsafe_speeds: Vec<(f64, bool)> = self.onsets.iter().map(|v| (*v, false)).collect();
+        unsafe_speeds.extend(self.starts.iter().map(|v| (*v, true)));
+        unsafe_speeds.sort_by(|a, b| a.0.total_cmp(&b.0));
         let (mean, deviation) = moments(&self.onsets);
         MonteCarloResult {
             model: model.to_owned(),
             seed: plan.seed,
             samples: plan.samples,
             onsets: self.onsets.len(),
+            unstable_at_or_below: self.starts.len(),
+            unstable_up_to_m_s: self.starts.last().copied(),
             stable: self.stable,
             failed: self.failed,
             outside_tested_range: self.outside,
             with_spurious_crossings: self.spurious,
             searched_in_full: self.in_full,
-            speed_max_m_s: plan.speed_max_m_s,
+            speed_max_m_s,
             nominal_m_s,
+            nominal_or_below,
             mean_m_s: mean,
             standard_deviation_m_s: deviation,
             quantiles: plan
                 .quantiles
                 .iter()
-                .map(|p| quantile(&self.onsets, answered, *p))
+                .map(|p| quantile(&unsafe_speeds, answered, *p))
                 .collect(),
             histogram: histogram(&self.onsets),
             design: plan
                 .design_speed_m_s
                 .filter(|_| answered > 0)
-                .map(|speed| design(&self.onsets, answered, speed, plan.confidence)),
+                .map(|speed| design(&self, answered, speed, plan.confidence)),
             failures: self.failures,
         }
     }
@@ -185,17 +219,21 @@ fn moments(sorted: &[f64]) -> (Option<f64>, Option<f64>) {
 }
 
 /// Linear between the order statistics, `(n − 1)p` from the first (Hyndman and Fan's type 7); open at the top.
-fn quantile(sorted: &[f64], answered: usize, probability: f64) -> Quantile {
+fn quantile(sorted: &[(f64, bool)], answered: usize, probability: f64) -> Quantile {
     let place = probability * (answered.max(1) - 1) as f64;
     let (below, share) = (place.floor() as usize, place.fract());
     let speed_m_s = match (sorted.get(below), sorted.get(below + 1)) {
-        (Some(a), Some(b)) => Some(a + (b - a) * share),
-        (Some(a), None) if share == 0.0 => Some(*a),
+        (Some(a), Some(b)) => Some(a.0 + (b.0 - a.0) * share),
+        (Some(a), None) if share == 0.0 => Some(a.0),
         _ => None,
     };
     Quantile {
         probability,
         speed_m_s,
+        or_below: sorted[below.min(sorted.len())..]
+            .iter()
+            .take(2)
+            .any(|s| s.1),
     }
 }
 
@@ -230,13 +268,19 @@ fn histogram(sorted: &[f64]) -> Histogram {
     }
 }
 
-fn design(sorted: &[f64], answered: usize, speed_m_s: f64, confidence: f64) -> DesignCheck {
-    let below = sorted.partition_point(|v| *v < speed_m_s) as u64;
-    let (lower, upper) = clopper_pearson(below, answered as u64, confidence);
+fn design(tally: &Tally, answered: usize, speed_m_s: f64, confidence: f64) -> DesignCheck {
+    let known = |sorted: &[f64]| sorted.partition_point(|v| *v < speed_m_s) as u64;
+    // at or below a speed that is not above the design speed
+    let starts = tally.starts.partition_point(|v| *v <= speed_m_s) as u64;
+    let below = known(&tally.onsets) + starts;
+    let undecided = tally.starts.len() as u64 - starts;
+    let (lower, _) = clopper_pearson(below, answered as u64, confidence);
+    let (_, upper) = clopper_pearson(below + undecided, answered as u64, confidence);
     DesignCheck {
         speed_m_s,
         below,
-        probability: below as f64 / answered as f64,
+        undecided,
+        probability: (below + undecided) as f64 / answered as f64,
         lower,
         upper,
         confidence,

@@ -1,13 +1,16 @@
 //! All samples, over all cores.
 
 use super::coefficients;
+use super::drawn::drawn_model;
 use super::plan::MonteCarloPlan;
 use super::results::{MonteCarloResult, Tally};
 use super::sampler::{Sample, Sampler};
 use crate::aerodynamics::AerodynamicModel;
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
-use crate::flutter::{OnsetSearch, OnsetSweep, SweepOutcome, SweptOnset, find_onset};
+use crate::flutter::{
+    FlutterSearch, OnsetSearch, OnsetSweep, SweepOutcome, SweptOnset, find_onset,
+};
 use crate::section::SectionModel;
 use crate::trained_model::{Model, TrainedModel};
 use rayon::prelude::*;
@@ -41,9 +44,18 @@ pub fn monte_carlo(
     progress: OnSamples<'_>,
 ) -> Result<MonteCarloResult> {
     plan.validate()?;
-    let finder = Finder::new(model, plan.speed_max_m_s)?;
-    let (values, names) = coefficients::of(&model.model);
-    let sampler = Sampler::new(plan, &model.section, (&values, &names))?;
+    let limit = plan
+        .speed_max_m_s
+        .unwrap_or(model.experiment.onset_search_limit_m_s);
+    plan.check_design_speed(limit)?;
+    let (drawn, covariance) = drawn_model(plan, model)?;
+    let model = &TrainedModel {
+        model: drawn,
+        ..model.clone()
+    };
+    let finder = Finder::new(model, limit)?;
+    let (values, _) = coefficients::of(&model.model);
+    let sampler = Sampler::new(plan, &model.section, (&values, covariance))?;
     let nominal = finder.onset(&model.section, &values)?.0;
     let chunks = plan.samples.div_ceil(CHUNK);
     let done = std::sync::atomic::AtomicUsize::new(0);
@@ -62,7 +74,7 @@ pub fn monte_carlo(
     for tally in tallies {
         total.add(tally);
     }
-    Ok(total.summarise(plan, &model.name, nominal.map(|o| o.speed_m_s)))
+    Ok(total.summarise(plan, limit, &model.name, nominal))
 }
 
 impl<'a> Finder<'a> {
@@ -89,8 +101,12 @@ impl<'a> Finder<'a> {
                 Ok((onset, in_full)) => {
                     tally.in_full += usize::from(in_full);
                     match onset {
-                        Some(onset) => tally.onset(&onset),
-                        None => tally.stable += 1,
+                        SweepOutcome::Onset(onset) => tally.onset(&onset),
+                        SweepOutcome::UnstableAtOrBelow(start) => tally.unstable(&start),
+                        SweepOutcome::Stable => tally.stable += 1,
+                        SweepOutcome::Unresolved => {
+                            tally.failure(index, "its modes cannot be resolved".to_owned());
+                        }
                     }
                 }
                 Err(error) => tally.failure(index, error.to_string()),
@@ -99,19 +115,18 @@ impl<'a> Finder<'a> {
         tally
     }
 
-    /// The onset, and whether it took the search by eigenvalues.
-    fn onset(&self, section: &SectionModel, values: &[f64]) -> Result<(Option<SweptOnset>, bool)> {
+    /// The answer, and whether it took the search by eigenvalues.
+    fn onset(&self, section: &SectionModel, values: &[f64]) -> Result<(SweepOutcome, bool)> {
         if let Some(sweep) = &self.sweep {
-            match sweep.onset(section, values)? {
-                SweepOutcome::Onset(onset) => return Ok((Some(onset), false)),
-                SweepOutcome::Stable => return Ok((None, false)),
-                SweepOutcome::Unresolved => {}
+            let outcome = sweep.onset(section, values)?;
+            if outcome != SweepOutcome::Unresolved {
+                return Ok((outcome, false));
             }
         }
         Ok((self.searched(section, values)?, true))
     }
 
-    fn searched(&self, section: &SectionModel, values: &[f64]) -> Result<Option<SweptOnset>> {
+    fn searched(&self, section: &SectionModel, values: &[f64]) -> Result<SweepOutcome> {
         let mut model: Model = self.model.model.clone();
         coefficients::replace(&mut model, values);
         let realization = model
@@ -120,11 +135,22 @@ impl<'a> Finder<'a> {
         let coupled = CoupledSection::new(section.structure()?, realization)?;
         let tested = Some(self.model.tested_range);
         let found = find_onset(&self.model.name, &coupled, &self.search, tested)?;
-        Ok(found.onset().map(|o| SweptOnset {
-            speed_m_s: o.speed_m_s,
-            frequency_hz: o.frequency_hz,
-            in_tested_range: o.in_tested_range != Some(false),
-            spurious: o.spurious_speeds_m_s.len(),
-        }))
+        Ok(match found {
+            FlutterSearch::Onset(o) => SweepOutcome::Onset(SweptOnset {
+                speed_m_s: o.speed_m_s,
+                frequency_hz: o.frequency_hz,
+                in_tested_range: o.in_tested_range != Some(false),
+                spurious: o.spurious_speeds_m_s.len(),
+            }),
+            FlutterSearch::UnstableAtOrBelow(start) => {
+                SweepOutcome::UnstableAtOrBelow(SweptOnset {
+                    speed_m_s: start.speed_m_s,
+                    frequency_hz: start.frequency_hz,
+                    in_tested_range: start.in_tested_range != Some(false),
+                    spurious: 0,
+                })
+            }
+            FlutterSearch::StableUpTo(_) => SweepOutcome::Stable,
+        })
     }
 }

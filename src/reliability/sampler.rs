@@ -3,7 +3,7 @@
 use super::distribution::Transform;
 use super::parameter::Parameter;
 use super::plan::MonteCarloPlan;
-use super::scatter::{CovarianceFactor, read_covariance};
+use super::scatter::CovarianceFactor;
 use crate::error::{Error, Result};
 use crate::section::SectionModel;
 use nalgebra::DMatrix;
@@ -39,14 +39,14 @@ pub(super) struct Sample {
 }
 
 impl Sampler {
-    /// The sampler of a plan for a section and the coefficients (with names) of its force model.
+    /// The sampler of a plan for a section and the coefficients of its force model, with the factor of their covariance.
     ///
     /// # Errors
     /// [`Error::Input`] naming the key of the plan.
     pub(super) fn new(
         plan: &MonteCarloPlan,
         section: &SectionModel,
-        (coefficients, names): (&[f64], &[String]),
+        (coefficients, covariance): (&[f64], Option<CovarianceFactor>),
     ) -> Result<Self> {
         let mut parameters = Vec::with_capacity(plan.parameters.len());
         for (i, random) in plan.parameters.iter().enumerate() {
@@ -55,12 +55,9 @@ impl Sampler {
             let place = format!("{key}.distribution");
             parameters.push((random.name, random.distribution.resolve(&place, nominal)?));
         }
-        let aerodynamics = &plan.aerodynamics;
-        let scatter = match (aerodynamics.relative_scatter, &aerodynamics.covariance) {
+        let scatter = match (plan.aerodynamics.relative_scatter, covariance) {
             (Some(scatter), _) => Scatter::Relative(scatter),
-            (None, Some(path)) => {
-                Scatter::Covariance(read_covariance(&plan.directory.join(path), names)?)
-            }
+            (None, Some(factor)) => Scatter::Covariance(factor),
             (None, None) => Scatter::None,
         };
         Ok(Self {
@@ -105,8 +102,7 @@ impl Sampler {
                 }
             }
             Scatter::Covariance(covariance) => {
-                let n = covariance.places.len();
-                fill(&mut sample.normal, n, &mut random);
+                fill(&mut sample.normal, covariance.factor.ncols(), &mut random);
                 for (row, place) in covariance.places.iter().enumerate() {
                     let terms = covariance.factor.row(row);
                     let change: f64 = terms.iter().zip(&sample.normal).map(|(s, z)| s * z).sum();

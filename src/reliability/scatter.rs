@@ -17,16 +17,16 @@ pub(super) struct CovarianceFactor {
     pub(super) factor: DMatrix<f64>,
 }
 
-/// Reads a covariance of coefficients whose names are among `names`.
-pub(super) fn read_covariance(path: &Path, names: &[String]) -> Result<CovarianceFactor> {
-    let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, e))?;
+/// The covariance of coefficients whose names are among `names` from the text of a file: a table, or the report of a fit
+/// whose poles were given.
+pub(super) fn from_file(path: &Path, text: &str, names: &[String]) -> Result<CovarianceFactor> {
     let json = path
         .extension()
         .is_some_and(|e| e.eq_ignore_ascii_case("json"));
     let read = if json {
-        from_report(&text)
+        from_report(text)
     } else {
-        from_csv(&text)
+        from_csv(text)
     };
     read.and_then(|(own, matrix)| factorise(&own, matrix, names))
         .map_err(|e| e.in_file(path))
@@ -147,6 +147,14 @@ fn factorise(own: &[String], matrix: DMatrix<f64>, names: &[String]) -> Result<C
         }
         places.push(place);
     }
+    Ok(CovarianceFactor {
+        places,
+        factor: factor_of(matrix)?,
+    })
+}
+
+/// A factor `S` with `C = S Sᵀ`.
+pub(super) fn factor_of(matrix: DMatrix<f64>) -> Result<DMatrix<f64>> {
     if !matrix.iter().all(|x| x.is_finite()) {
         return Err(Error::input("covariance", "finite numbers", "others"));
     }
@@ -165,10 +173,7 @@ fn factorise(own: &[String], matrix: DMatrix<f64>, names: &[String]) -> Result<C
         ));
     }
     let roots = DMatrix::from_diagonal(&eigen.eigenvalues.map(|x| x.max(0.0).sqrt()));
-    Ok(CovarianceFactor {
-        places,
-        factor: &eigen.eigenvectors * roots,
-    })
+    Ok(&eigen.eigenvectors * roots)
 }
 
 #[cfg(test)]
@@ -185,10 +190,14 @@ mod tests {
         folder
     }
 
+    fn read(path: &Path) -> Result<CovarianceFactor> {
+        from_file(path, &std::fs::read_to_string(path).unwrap(), &names())
+    }
+
     #[test]
     fn the_factor_gives_the_covariance_back() {
         let folder = write("c.csv", "# made up\nc, a\n4.0, 1.0\n1.0, 9.0\n");
-        let read = read_covariance(&folder.path().join("c.csv"), &names()).unwrap();
+        let read = read(&folder.path().join("c.csv")).unwrap();
         assert_eq!(read.places, [2, 0]);
         let product = &read.factor * read.factor.transpose();
         let expected = DMatrix::from_row_slice(2, 2, &[4.0, 1.0, 1.0, 9.0]);
@@ -211,7 +220,7 @@ mod tests {
         ] {
             let folder = write("c.csv", text);
             let path = folder.path().join("c.csv");
-            let message = read_covariance(&path, &names()).unwrap_err().to_string();
+            let message = read(&path).unwrap_err().to_string();
             assert!(
                 message.contains(said) && message.contains("c.csv"),
                 "{message}"

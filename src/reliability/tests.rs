@@ -121,8 +121,8 @@ fn the_number_of_threads_changes_nothing() {
 fn samples_are_those_of_single_searches() {
     let plan = plan(EVERYTHING);
     let model = jones();
-    let (values, names) = coefficients::of(&model.model);
-    let sampler = sampler::Sampler::new(&plan, &model.section, (&values, &names)).unwrap();
+    let (values, _) = coefficients::of(&model.model);
+    let sampler = sampler::Sampler::new(&plan, &model.section, (&values, None)).unwrap();
     let mut sample = sampler.empty();
     let mut speeds = Vec::new();
     for index in 0..1000 {

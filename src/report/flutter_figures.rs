@@ -6,7 +6,7 @@ use super::legend::Entry;
 use super::panel::{Note, Panel};
 use super::series::index_of;
 use super::sheet::Sheet;
-use super::style::{GREY, Ink, Shape, colour, dash};
+use super::style::{GREY, Ink, PALE_GREY, Shape, colour, dash, pale};
 use crate::error::{Error, Result};
 use crate::flutter::{FlutterCurves, ModePoint, Onset, OnsetMethod};
 
@@ -26,10 +26,11 @@ pub struct VfVgOptions {
 ///
 /// A colour a model, a line style a branch; onsets are marked on both panels and stated in the legend. An onset is
 /// drawn in the colour of the curves of the same model, hollow when it lies outside the tested range; crossings
-/// suspected to be spurious are crosses on the zero line.
+/// suspected to be spurious are crosses on the zero line. Where the reduced frequency of a mode lies outside the tested
+/// range its curves are pale.
 ///
 /// # Errors
-/// [`Error::Input`] for no curves, empty or non-finite ones, and for more models than colours.
+/// [`Error::Input`] for no curves or non-finite ones, and for more models than colours.
 pub fn vf_vg_figure(
     curves: &[FlutterCurves],
     onsets: &[Onset],
@@ -50,18 +51,20 @@ pub fn vf_vg_figure(
     damping.y.within = Some(DAMPING_WINDOW_PERCENT);
     damping.y.range = options.damping_range_percent;
     let mut models = Vec::new();
+    let mut untested = false;
     for (i, model) in curves.iter().enumerate() {
         let colour = colour(PLACE, i)?;
         models.push(Entry::new(&model.model, Ink::line(colour, None)));
         for branch in &model.branches {
-            let ink = Ink::line(colour, dash(index_of(&branches, &branch.name)));
+            let dashes = dash(index_of(&branches, &branch.name));
             let name = format!("{}, {} branch", model.model, branch.name);
-            frequency.add(&name, points(&branch.points, |p| p.frequency_hz), ink);
-            damping.add(
-                &name,
-                points(&branch.points, |p| 100.0 * p.damping_ratio),
-                ink,
-            );
+            for (outside, run) in runs(&branch.points) {
+                untested |= outside;
+                let shade = if outside { pale(colour) } else { colour };
+                let ink = Ink::line(shade, dashes);
+                frequency.add(&name, points(run, |p| p.frequency_hz), ink);
+                damping.add(&name, points(run, |p| 100.0 * p.damping_ratio), ink);
+            }
         }
     }
     let mut stated = Vec::new();
@@ -95,6 +98,12 @@ pub fn vf_vg_figure(
             },
         ));
     }
+    if untested {
+        kinds.push(Entry::new(
+            "pale: K = ωB/V outside the tested range",
+            Ink::line(PALE_GREY, None),
+        ));
+    }
     if let Some(tested) = options.tested_speeds_m_s {
         shade_untested(&mut [&mut frequency, &mut damping], tested)?;
         kinds.push(Entry::new("wind speed outside the tests", Ink::Shade));
@@ -125,6 +134,29 @@ pub(super) fn branch_names(curves: &[FlutterCurves]) -> Result<Vec<String>> {
         return Err(Error::input("flutter curves", "at least one mode", "none"));
     }
     Ok(names)
+}
+
+/// Stretches of a branch outside and inside the tested range, those outside first and up to their neighbours inside.
+fn runs(points: &[ModePoint]) -> Vec<(bool, &[ModePoint])> {
+    if points.is_empty() {
+        // to be refused by name
+        return vec![(false, points)];
+    }
+    let outside = |p: &ModePoint| p.in_tested_range == Some(false);
+    let (mut pale, mut full) = (Vec::new(), Vec::new());
+    let mut from = 0;
+    for run in points.chunk_by(|a, b| outside(a) == outside(b)) {
+        let to = from + run.len();
+        if outside(&run[0]) {
+            let joined = from.saturating_sub(1)..points.len().min(to + 1);
+            pale.push((true, &points[joined]));
+        } else {
+            full.push((false, run));
+        }
+        from = to;
+    }
+    pale.extend(full);
+    pale
 }
 
 fn points(modes: &[ModePoint], value: impl Fn(&ModePoint) -> f64) -> Vec<(f64, f64)> {

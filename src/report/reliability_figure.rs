@@ -22,7 +22,8 @@ pub fn onset_distribution_figure(result: &MonteCarloResult) -> Result<Figure> {
         return Err(Error::input(PLACE, "at least one onset", "none"));
     }
     let (blue, red, green) = (colour(PLACE, 0)?, colour(PLACE, 1)?, colour(PLACE, 2)?);
-    let answered = (result.onsets + result.stable) as f64;
+    let unstable = result.unstable_at_or_below;
+    let answered = (result.onsets + unstable + result.stable) as f64;
     let mut share = Panel::new(
         Axis::new("").tight(),
         Axis::new("Samples in a bin (%)").zero_based(),
@@ -31,8 +32,12 @@ pub fn onset_distribution_figure(result: &MonteCarloResult) -> Result<Figure> {
         Axis::new("Onset speed V (m/s)").tight(),
         Axis::new("Onset at or below V (%)").zero_based(),
     );
-    let (mut outline, mut steps) = (vec![(h.from_m_s, 0.0)], vec![(h.from_m_s, 0.0)]);
-    let mut sum = 0;
+    let (mut outline, mut steps) = (
+        vec![(h.from_m_s, 0.0)],
+        vec![(h.from_m_s, 100.0 * unstable as f64 / answered)],
+    );
+    // their onsets lie somewhere below
+    let mut sum = unstable as u64;
     for (i, count) in h.counts.iter().enumerate() {
         let (low, high) = (
             h.from_m_s + h.width_m_s * i as f64,
@@ -93,7 +98,7 @@ pub fn onset_distribution_figure(result: &MonteCarloResult) -> Result<Figure> {
     Sheet {
         name: PLACE,
         title: Some(format!(
-            "{}: onset of {} random sections, {} of them stable up to {} m/s",
+            "{}: onset of {} random sections, {} of them stable up to {:.3} m/s",
             result.model, result.samples, result.stable, result.speed_max_m_s
         )),
         panels: vec![share, distribution],

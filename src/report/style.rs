@@ -16,6 +16,12 @@ pub(super) const SHADE_OPACITY: f64 = 0.18;
 pub(super) const COLOURS: [&str; 7] = [
     "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000",
 ];
+/// The same two thirds of the way to white, for what is said with reservation.
+const PALE_COLOURS: [&str; 7] = [
+    "#a6cee4", "#f0c7a6", "#a6ddce", "#edd0e0", "#f6dda6", "#c4e5f7", "#a6a6a6",
+];
+/// The grey of the legend, as pale.
+pub(super) const PALE_GREY: &str = "#c9c9c9";
 const DASHES: [Option<&str>; 5] = [
     None,
     Some("7 3"),
@@ -36,6 +42,12 @@ pub(super) fn colour(place: &str, i: usize) -> Result<&'static str> {
             format!("at least {}", i + 1),
         )
     })
+}
+
+/// The pale colour that goes with [`colour`].
+pub(super) fn pale(of: &'static str) -> &'static str {
+    let i = COLOURS.iter().position(|c| *c == of);
+    i.map_or(PALE_GREY, |i| PALE_COLOURS[i])
 }
 
 /// Dash pattern of the i-th kind of line; they come round again.

@@ -194,10 +194,12 @@ impl NonlinearSection {
         let (vertical, lateral, torsion) = self.places;
         let wind = RelativeWind {
             along_m_s: speed + u - lateral.map_or(0.0, |i| z[n + i]),
-            vertical_m_s: w - z[n + vertical],
+            // of the reference point
+            vertical_m_s: w - z[n + vertical] - s.axis_offset_m * z[n + torsion],
             rotation_m_s: s.width_m * z[n + torsion],
         };
-        let forces = self.theory.specific_forces(z[torsion], &wind)?;
+        let mut forces = self.theory.specific_forces(z[torsion], &wind)?;
+        forces[torsion] += s.axis_offset_m / s.width_m * forces[vertical];
         let mut total = DVector::from_fn(n, |i, _| {
             0.5 * s.air_density_kg_m3 * s.dofs[i].force_scale(s.width_m) * forces[i]
         });

@@ -1,7 +1,7 @@
 //! Steps of the discrete Laguerre model: force sampled and held every `Δt = Δs B/V`.
 
 use super::step_cache::apply;
-use super::{Inputs, SectionState, Stepper, overgrown};
+use super::{Inputs, SectionState, Stepper, check_substeps, drop_what_died_out, overgrown};
 use crate::aerodynamics::{DiscreteRealization, Realization};
 use crate::error::{Error, Result};
 use nalgebra::DVector;
@@ -39,6 +39,8 @@ impl Stepper {
             return Err(Error::Numerical("step: the model is not sampled".into()));
         };
         let width = self.section.structure().width_m;
+        let mean = inputs.wind_speed_m_s + 0.5 * inputs.wind_speed_rate_m_s2 * step;
+        check_substeps((mean * step / (model.delta_s * width)).ceil(), step)?;
         let mut next = state.clone();
         let mut now = inputs.clone();
         let mut remaining = step;
@@ -63,6 +65,7 @@ impl Stepper {
         if !next.values.iter().all(|x| x.is_finite()) {
             return Err(overgrown());
         }
+        drop_what_died_out(&mut next.values);
         *state = next;
         Ok(())
     }

@@ -1,10 +1,8 @@
 //! Step and output matrices, kept per wind speed and step size.
 
-use crate::aerodynamics::Realization;
 use crate::aeroelastic::{CoupledSection, CoupledSystem};
 use crate::error::{Error, Result};
 use crate::state_space::{StepMatrices, step_matrices};
-use nalgebra::DMatrix;
 
 /// Pairs of wind speed and step size that are remembered. Importers whose step jitters in the last bits come back to a
 /// handful of values; a wind speed that never repeats needs no more.
@@ -149,7 +147,7 @@ impl StepCache {
         speed: f64,
     ) -> Result<&OutputEntry> {
         self.outputs.get(speed.to_bits(), || {
-            let (c, d) = output_matrices(section, speed)?;
+            let (c, d) = section.output_matrices(speed)?;
             let (n, states) = (section.structure().dofs.len(), section.states());
             Ok(OutputEntry {
                 rows: Packed::new(2 * n, states + n, |i, j| {
@@ -177,16 +175,4 @@ fn pack(s: &StepMatrices) -> StepEntry {
             }
         }),
     }
-}
-
-/// Output matrices at a wind speed; at zero wind the sampled system has no step, but no force either.
-fn output_matrices(section: &CoupledSection, speed: f64) -> Result<(DMatrix<f64>, DMatrix<f64>)> {
-    let still_sampled = speed == 0.0 && matches!(section.aerodynamics(), Realization::Discrete(_));
-    if still_sampled {
-        return Ok(section.still_air_outputs());
-    }
-    Ok(match section.at(speed)? {
-        CoupledSystem::Continuous(s) => (s.c, s.d),
-        CoupledSystem::Sampled(s) => (s.c, s.d),
-    })
 }

@@ -3,7 +3,7 @@
 //! With `y = [z, w, ẇ]` and `y' = M(t) y`, one sub-step is `y(t+τ) = exp(½τ(M₁ + M₂) + (√3/12)τ²[M₂, M₁]) y(t)`,
 //! `M₁`, `M₂` at the two Gauss points (Iserles and Nørsett 1999). Exact again when the speed is constant.
 
-use super::{Inputs, SectionState, Stepper, load, overgrown};
+use super::{Inputs, SectionState, Stepper, check_substeps, drop_what_died_out, load, overgrown};
 use crate::aeroelastic::{CoupledSection, CoupledSystem};
 use crate::error::{Error, Result};
 use crate::state_space::matrix_exponential;
@@ -27,13 +27,7 @@ impl Stepper {
                 .max(inputs.wind_speed_m_s + rate * step),
         );
         let count = (step * fastest / ANGLE_PER_SUBSTEP).ceil().max(1.0);
-        if count > 1e7 {
-            return Err(Error::input(
-                "step size",
-                "a step of at most 1e7 sub-steps while the wind speed changes",
-                format!("{step} s"),
-            ));
-        }
+        check_substeps(count, step)?;
         load(&mut self.operand, &state.values, inputs);
         let mut y = DVector::from_column_slice(&self.operand);
         let tau = step / count;
@@ -46,6 +40,7 @@ impl Stepper {
             return Err(overgrown());
         }
         state.values.copy_from_slice(new.as_slice());
+        drop_what_died_out(&mut state.values);
         Ok(())
     }
 }

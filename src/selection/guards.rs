@@ -1,8 +1,7 @@
 //! What makes a model unfit however well it fits: spurious onsets, cancelling terms, unstable closed loops.
 
-use crate::aerodynamics::AerodynamicModel;
 use crate::aeroelastic::CoupledSection;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::flutter::{FlutterSearch, OnsetSearch, find_onset};
 use crate::identification::{CANCELLATION_LIMIT, CellFit};
 use crate::section::Structure;
@@ -57,35 +56,36 @@ fn onset(
     tested: ReducedFrequencyRange,
     verdict: &mut Verdict,
 ) -> Result<()> {
-    let realization = fit
-        .model
-        .realize()
-        .ok_or_else(|| Error::Numerical("no state-space realisation".into()))?;
-    let section = CoupledSection::new(structure.clone(), realization)?;
+    let section = CoupledSection::with_model(structure, &fit.model)?;
     let found = find_onset("", &section, search, Some(tested))?;
     let limit = match &found {
         FlutterSearch::Onset(onset) => {
             verdict.onset_m_s = Some(onset.speed_m_s);
             for speed in &onset.spurious_speeds_m_s {
                 verdict.rejected.push(format!(
-                    "spurious onset at {speed:.1} m/s outside the tested range"
+                    "spurious onset at {speed:.3} m/s outside the tested range"
                 ));
             }
             if onset.in_tested_range == Some(false) {
                 verdict.rejected.push(format!(
-                    "spurious onset at {:.1} m/s outside the tested range, and none inside",
+                    "spurious onset at {:.3} m/s outside the tested range, and none inside",
                     onset.speed_m_s
                 ));
             }
             onset.speed_m_s
         }
-        FlutterSearch::StableUpTo(speed) => *speed,
+        FlutterSearch::UnstableAtOrBelow(start) => {
+            verdict.onset_m_s = Some(start.speed_m_s);
+            verdict.rejected.push(start.explain());
+            start.speed_m_s
+        }
+        FlutterSearch::StableUpTo(range) => range.to_m_s,
     };
     if verdict.rejected.is_empty()
         && let Some(speed) = unstable_below(&section, limit)?
     {
         verdict.rejected.push(format!(
-            "the coupled system is unstable at {speed:.1} m/s, where no mode flutters"
+            "the coupled system is unstable at {speed:.3} m/s, where no mode flutters"
         ));
     }
     Ok(())

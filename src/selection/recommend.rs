@@ -70,7 +70,7 @@ pub(super) fn recommend(selection: &Selection) -> (Option<Recommendation>, Strin
         )
     };
     if let Some(onset) = chosen.1.onset_m_s {
-        reason.push_str(&format!("; onset {onset:.2} m/s"));
+        reason.push_str(&format!("; onset {onset:.3} m/s"));
     }
     reason.push('.');
     let filters_max = selection.filters_max;

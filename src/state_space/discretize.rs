@@ -19,9 +19,18 @@ pub struct StepMatrices {
 /// `e^M`.
 ///
 /// # Errors
-/// [`Error::Numerical`] when an entry is not finite (the scaling loop would not end) or the result overflows.
+/// [`Error::Numerical`] when an entry is not finite or so large that no digit of the result would be right (scaling and
+/// squaring would take for ever), or when the result overflows.
 pub fn matrix_exponential(m: &DMatrix<f64>) -> Result<DMatrix<f64>> {
+    let column = |c: nalgebra::DVectorView<'_, f64>| c.iter().map(|x| x.abs()).sum::<f64>();
+    let norm = m.column_iter().map(column).fold(0.0, f64::max);
+    // a number that is none is not greater than any
     if m.iter().all(|x| x.is_finite()) {
+        if norm > f64::EPSILON.recip() {
+            return Err(Error::Numerical(format!(
+                "matrix exponential: a step so long or rates so fast (norm {norm:.1e}) that no digit would be right"
+            )));
+        }
         let e = m.exp();
         if e.iter().all(|x| x.is_finite()) {
             return Ok(e);
@@ -75,5 +84,15 @@ mod tests {
     fn non_finite_matrices_are_refused() {
         let a = DMatrix::from_element(2, 2, f64::NAN);
         assert!(matrix_exponential(&a).is_err());
+    }
+
+    /// Finite but huge: scaling and squaring would square 2⁶⁴ times.
+    #[test]
+    fn huge_matrices_are_refused_at_once() {
+        for size in [1e20, 1e40, 1e300, f64::MAX] {
+            let a = DMatrix::from_element(2, 2, -size);
+            let message = matrix_exponential(&a).unwrap_err().to_string();
+            assert!(message.contains("no digit"), "{message}");
+        }
     }
 }

@@ -1,6 +1,7 @@
 //! Linear systems in state space, their poles, frequency responses and exact discretisation.
 
 mod discretize;
+mod francis;
 mod poles;
 pub mod rows;
 

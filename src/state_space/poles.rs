@@ -1,8 +1,9 @@
 //! Eigenvalues of balanced matrices and single eigenvectors.
 
 use super::complex;
+use super::francis::hessenberg_eigenvalues;
 use crate::error::{Error, Result};
-use nalgebra::{Complex, DMatrix, DVector, Schur};
+use nalgebra::{Complex, DMatrix, DVector, Hessenberg, Schur};
 
 /// More QR sweeps than any well-posed matrix needs; without a limit a few matrices never end.
 const MAX_SCHUR_SWEEPS_PER_ROW: usize = 60;
@@ -58,9 +59,12 @@ pub fn eigenvalues(a: &DMatrix<f64>) -> Result<Vec<Complex<f64>>> {
         ));
     }
     let sweeps = MAX_SCHUR_SWEEPS_PER_ROW * a.nrows();
-    let schur = Schur::try_new(balance(a), f64::EPSILON, sweeps)
-        .ok_or_else(|| Error::Numerical("eigenvalues: the QR iteration did not converge".into()))?;
-    Ok(schur.complex_eigenvalues().iter().copied().collect())
+    let balanced = balance(a);
+    if let Some(schur) = Schur::try_new(balanced.clone(), f64::EPSILON, sweeps) {
+        return Ok(schur.complex_eigenvalues().iter().copied().collect());
+    }
+    hessenberg_eigenvalues(Hessenberg::new(balanced).unpack_h())
+        .ok_or_else(|| Error::Numerical("eigenvalues: the QR iteration did not converge".into()))
 }
 
 /// Eigenvector of `a` for the known eigenvalue `lambda`, by inverse iteration, scaled to unit norm.

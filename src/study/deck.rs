@@ -1,23 +1,25 @@
 //! The deck of a study: a measured table or the flat plate, and the records made from it or measured.
 
+mod onset;
+
 use super::Study;
 use crate::aerodynamics::derivatives::TransferSample;
+use crate::aerodynamics::derivatives::notation::Convention;
 use crate::aerodynamics::derivatives::{
-    DerivativeTable, Extrapolation, InterpolatedTable, embedded, read_table_in,
+    DerivativeTable, Extrapolation, InterpolatedTable, Interpolation, ReadOptions, embedded,
+    is_table_file, read_table_with,
 };
 use crate::aerodynamics::{AerodynamicModel, FlatPlate};
 use crate::error::{Error, Result};
-use crate::flutter::{FlutterSearch, OnsetInterval, determinant_onset};
 use crate::identification::sample_model;
-use crate::section::{Dof, Structure};
-use crate::units::{ReducedFrequency, ReducedFrequencyRange};
+use crate::section::Dof;
+use crate::units::{ReducedFrequency, ReducedFrequencyRange, SAME_SPEED, group_of, near_groups};
 use crate::wind_tunnel::{Record, RecordFile, RecordSource};
 use std::path::{Path, PathBuf};
 
 /// Name of the exact flat plate as a source.
 const FLAT_PLATE: &str = "flat plate";
-/// Mean speeds less than this ratio apart belong to one group, as in the tables.
-const GROUP_RATIO: f64 = 1.05;
+
 /// Reduced frequencies in which the onset of the flat plate is searched: still air to nearly steady flow.
 const EXACT_RANGE: (f64, f64) = (0.02, 10.0);
 
@@ -25,6 +27,8 @@ const EXACT_RANGE: (f64, f64) = (0.02, 10.0);
 #[derive(Debug, Clone)]
 pub struct Deck {
     source: Source,
+    interpolation: Interpolation,
+    warnings: Vec<String>,
     /// Whether the table is part of this program.
     built_in: bool,
     dofs: Vec<Dof>,
@@ -44,14 +48,20 @@ impl Deck {
     pub fn load(study: &Study) -> Result<Self> {
         let name = study.deck.source.trim();
         let dofs = study.section.dofs();
-        let is_file = [".csv", ".xlsx"]
-            .iter()
-            .any(|e| name.to_lowercase().ends_with(e));
+        let is_file = is_table_file(name);
+        let mut convention = Convention::default();
         let source = if name.eq_ignore_ascii_case(FLAT_PLATE) {
             Source::FlatPlate
         } else if is_file {
-            let stated = study.deck.convention;
-            Source::Table(read_table_in(study.directory.join(name), stated)?.0)
+            let options = ReadOptions {
+                convention: study.deck.convention,
+                width_m: study.deck.width_m,
+                missing: study.deck.missing,
+                ..ReadOptions::default()
+            };
+            let (table, stated) = read_table_with(study.directory.join(name), &options)?;
+            convention = stated;
+            Source::Table(table)
         } else {
             Source::Table(embedded::deck(name)?)
         };
@@ -60,6 +70,13 @@ impl Deck {
                 "deck.convention",
                 "a table in a file (.csv, .xlsx) as deck.source",
                 format!("`{name}`, whose convention is known"),
+            ));
+        }
+        if !is_file && (study.deck.width_m.is_some() || study.deck.missing.is_some()) {
+            return Err(Error::input(
+                "deck",
+                "`width_m` and `missing` for a table in a file (.csv, .xlsx) only",
+                format!("source `{name}`"),
             ));
         }
         if let Source::Table(table) = &source {
@@ -71,9 +88,19 @@ impl Deck {
                 FLAT_PLATE,
             ));
         }
+        let mut warnings = Vec::new();
+        if let (Source::Table(table), true) = (&source, is_file) {
+            warnings.extend(table.header.notes.iter().cloned());
+            warnings.extend(table.hints(&convention));
+            if study.deck.records.is_empty() && study.models.iter().any(|m| m.table.is_none()) {
+                warnings.extend(study.tunnel.assumption(table));
+            }
+        }
         let built_in = matches!(source, Source::Table(_)) && !is_file;
         Ok(Self {
             source,
+            warnings,
+            interpolation: study.deck.interpolation,
             built_in,
             dofs,
         })
@@ -163,60 +190,26 @@ impl Deck {
         }
     }
 
+    /// What was assumed in reading the table, and what looks wrong in it.
+    pub fn warnings(&self) -> Vec<String> {
+        self.warnings.clone()
+    }
+
     /// The deck as a force model that answers at every reduced frequency, and where it was tested (everywhere when
-    /// `None`). Outside, a table keeps the values of its nearest points.
+    /// `None`). Outside, a table holds values, from which nothing may be concluded
+    /// ([`AerodynamicModel::known_range`]).
     ///
     /// # Errors
     /// [`Error::Input`] when the table lacks a derivative of the section.
     pub fn model(&self) -> Result<(Box<dyn AerodynamicModel>, Option<ReducedFrequencyRange>)> {
         match &self.source {
             Source::Table(table) => {
-                let model = InterpolatedTable::new(table, &self.dofs, Extrapolation::Hold)?;
+                let by = self.interpolation;
+                let model = InterpolatedTable::by(by, table, &self.dofs, Extrapolation::Hold)?;
                 let range = model.tested_range();
                 Ok((Box::new(model), Some(range)))
             }
             Source::FlatPlate => Ok((Box::new(FlatPlate::default()), None)),
-        }
-    }
-
-    /// Onset of the deck itself by the determinant.
-    ///
-    /// # Errors
-    /// Those of the search.
-    pub fn own_onset(&self, structure: &Structure, speed_max_m_s: f64) -> Result<FlutterSearch> {
-        let name = self.own_model_name();
-        match &self.source {
-            Source::Table(table) => {
-                let model = InterpolatedTable::new(table, &self.dofs, Extrapolation::Refuse)?;
-                let range = model.tested_range();
-                let mut search = determinant_onset(&name, structure, &model, range, speed_max_m_s)?;
-                if let FlutterSearch::Onset(onset) = &mut search {
-                    onset.interval = OnsetInterval::none(
-                        "the table states no errors, and interpolation leaves no residuals to judge them by",
-                    );
-                }
-                Ok(search)
-            }
-            Source::FlatPlate => {
-                let range = ReducedFrequencyRange {
-                    min: ReducedFrequency::from_full_width(EXACT_RANGE.0),
-                    max: ReducedFrequency::from_full_width(EXACT_RANGE.1),
-                };
-                let mut search = determinant_onset(
-                    &name,
-                    structure,
-                    &FlatPlate::default(),
-                    range,
-                    speed_max_m_s,
-                )?;
-                if let FlutterSearch::Onset(onset) = &mut search {
-                    // exact at every K: there is no tested range to leave
-                    onset.in_tested_range = None;
-                    onset.interval =
-                        OnsetInterval::none("a closed formula, without data that scatter");
-                }
-                Ok(search)
-            }
         }
     }
 }
@@ -253,7 +246,7 @@ fn chosen(groups: Option<&[usize]>, count: usize) -> Result<Vec<usize>> {
 pub struct RecordSet {
     records: Vec<RecordFile>,
     /// Mean speeds of the groups, m/s, rising.
-    speeds_m_s: Vec<f64>,
+    groups_m_s: Vec<Vec<f64>>,
 }
 
 impl RecordSet {
@@ -302,17 +295,24 @@ impl RecordSet {
         Self::open(paths)
     }
 
+    /// No records at all: enough for models that are fitted to tables.
+    pub fn none() -> Self {
+        Self {
+            records: Vec::new(),
+            groups_m_s: Vec::new(),
+        }
+    }
+
     fn open(paths: Vec<PathBuf>) -> Result<Self> {
         let records = paths
             .iter()
             .map(RecordFile::open)
             .collect::<Result<Vec<_>>>()?;
-        let mut speeds: Vec<f64> = records.iter().map(|r| r.header().mean_speed_m_s).collect();
-        speeds.sort_by(f64::total_cmp);
-        speeds.dedup_by(|next, kept| *next < *kept * GROUP_RATIO);
+        let speeds = records.iter().map(|r| r.header().mean_speed_m_s);
+        let groups_m_s = near_groups(speeds, SAME_SPEED);
         Ok(Self {
             records,
-            speeds_m_s: speeds,
+            groups_m_s,
         })
     }
 
@@ -321,13 +321,10 @@ impl RecordSet {
     /// # Errors
     /// [`Error::Input`] for a group that does not exist.
     pub fn select(&self, groups: Option<&[usize]>) -> Result<Vec<&dyn RecordSource>> {
-        let chosen = chosen(groups, self.speeds_m_s.len())?;
+        let chosen = chosen(groups, self.groups_m_s.len())?;
         let inside = |record: &&RecordFile| {
             let speed = record.header().mean_speed_m_s;
-            chosen.iter().any(|i| {
-                let low = self.speeds_m_s[*i];
-                low <= speed && speed < low * GROUP_RATIO
-            })
+            chosen.contains(&group_of(&self.groups_m_s, speed))
         };
         Ok(self
             .records

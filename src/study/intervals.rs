@@ -10,7 +10,8 @@ use crate::uncertainty::ModelUncertainty;
 /// Uncertainty of one model, or why it is not known.
 pub type KnownUncertainty = std::result::Result<Box<ModelUncertainty>, String>;
 
-/// Gives every onset of a trained model its interval, in the order of `models`.
+/// Gives every onset of a trained model its interval, in the order of `models`; onsets that the data do not determine are
+/// no onsets any more (see [`FlutterStudy::undetermined`]).
 ///
 /// # Errors
 /// Those of the study's section.
@@ -20,7 +21,9 @@ pub fn state_intervals(
     models: &[TrainedModel],
     known: &[KnownUncertainty],
 ) -> Result<()> {
-    state_each(results.onsets.iter_mut(), study, models, known)
+    state_each(results.onsets.iter_mut(), study, models, known)?;
+    results.separate_undetermined();
+    Ok(())
 }
 
 /// As [`state_intervals`] for the onsets that a table of routes found by eigenvalues.
@@ -35,7 +38,7 @@ pub fn state_route_intervals(
 ) -> Result<()> {
     let onsets = table.routes.iter_mut().filter_map(|r| match &mut r.search {
         FlutterSearch::Onset(onset) => Some(onset.as_mut()),
-        FlutterSearch::StableUpTo(_) => None,
+        FlutterSearch::UnstableAtOrBelow(_) | FlutterSearch::StableUpTo(_) => None,
     });
     state_each(onsets, study, models, known)
 }
@@ -60,6 +63,9 @@ fn state_each<'a>(
             .find(|(m, _)| m.name == onset.model);
         if let Some((model, known)) = own {
             onset.interval = interval_of(&structure, model, known, onset);
+            onset
+                .warnings
+                .extend(known.iter().filter_map(|k| k.warning()));
         }
     }
     Ok(())

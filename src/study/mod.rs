@@ -6,33 +6,39 @@
 pub mod compare;
 mod deck;
 mod defaults;
+mod failures;
 mod intervals;
 mod models;
 mod onsets;
+mod plausibility;
 mod processed;
 mod reference_lines;
 mod routes;
+mod speeds;
 mod stepped;
 mod wind;
 
 pub use deck::{Deck, RecordSet};
 pub use defaults::{demo_study_text, thesis_study_text};
+pub use failures::{StageFailure, attempt, is_of_a_file};
 pub use intervals::{KnownUncertainty, interval_of, state_intervals, state_route_intervals};
 pub use models::{TrainedWithReport, train_one};
-pub use onsets::{Deviation, Divergence, FlutterStudy, OnsetSummary, flutter_study};
-pub use processed::processed_study_text;
+pub use onsets::{Deviation, Divergence, FlutterStudy, ModelGrowth, OnsetSummary, flutter_study};
+pub use plausibility::{section_warnings, study_warnings};
+pub use processed::{processed_study_text, read_section};
 pub use reference_lines::derivative_lines;
-pub use routes::{Route, RouteTable, low_frequency_limit, route_table};
-pub use stepped::{SteppedOnset, stepped_onset};
+pub use routes::{FailedRoute, Route, RouteTable, low_frequency_limit, route_table};
+pub use speeds::{FlutterBlock, SpeedRange};
+pub use stepped::{SteppedAnswer, SteppedOnset, stepped_onset};
 pub use wind::{
     BuffetingStudy, CoefficientsBlock, QuasiSteadyStudy, SimulatedMotion, SpectrumCurve,
-    TimeDomain, WindStudy, buffeting_study, example_wind_study_text, quasi_steady_study,
-    simulated_motion,
+    SpeedLeftOut, TimeDomain, WindStudy, buffeting_study, example_wind_study_text,
+    quasi_steady_study, simulated_motion,
 };
 
 use crate::aerodynamics::derivatives::notation::StatedConvention;
+use crate::aerodynamics::derivatives::{Interpolation, Missing};
 use crate::error::{Error, Result, positive};
-use crate::flutter::OnsetSearch;
 use crate::identification::{DiscreteFit, FrequencyFit, TimeFit};
 use crate::section::SectionModel;
 use crate::toml_lines;
@@ -58,6 +64,9 @@ pub struct Study {
     /// Virtual wind tunnel; not used when the deck states records of its own.
     #[serde(default)]
     pub tunnel: TunnelPlan,
+    /// Whether the model that `aerodeck select` recommends is trained first, under the name `selected`.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub select: bool,
     /// The models to train.
     #[serde(rename = "model")]
     pub models: Vec<ModelBlock>,
@@ -84,12 +93,27 @@ pub struct DeckSource {
     /// Notation, argument and axes of the table; a CSV file states them itself and must not be contradicted.
     #[serde(default, skip_serializing_if = "StatedConvention::is_empty")]
     pub convention: StatedConvention,
+    /// How the table is read between its points.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub interpolation: Interpolation,
+    /// Width of the section model, m, for a table that does not state it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub width_m: Option<f64>,
+    /// What stands for H4*, A4* in a table without them: `zero` (as when nothing is stated, with a warning) or
+    /// `quasi_steady`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub missing: Option<Missing>,
     /// Mean speeds of the table to be used, numbered from 1 for the lowest; left out, all.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub speed_groups: Option<Vec<usize>>,
     /// Measured records (`.csv`) to be used instead of the virtual tunnel.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub records: Vec<PathBuf>,
+}
+
+/// Whether a key may be left out of a written study.
+fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
 }
 
 /// One model and how it is fitted: exactly one of `records`, `table`, `discrete`.
@@ -110,62 +134,6 @@ pub struct ModelBlock {
     /// The thesis's discrete Laguerre model, fitted to records.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub discrete: Option<DiscreteFit>,
-}
-
-/// Wind speeds of curves and search.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct FlutterBlock {
-    /// Highest wind speed of curves and search, m/s.
-    pub speed_max_m_s: f64,
-    /// Lowest wind speed of the curves, m/s.
-    pub speed_min_m_s: f64,
-    /// Number of wind speeds.
-    pub speeds: usize,
-}
-
-impl Default for FlutterBlock {
-    fn default() -> Self {
-        Self {
-            speed_max_m_s: 60.0,
-            speed_min_m_s: 5.0,
-            speeds: 120,
-        }
-    }
-}
-
-impl FlutterBlock {
-    /// The same as a search range.
-    pub fn search(&self) -> OnsetSearch {
-        OnsetSearch {
-            speed_max_m_s: self.speed_max_m_s,
-            speeds: self.speeds,
-        }
-    }
-
-    /// Checks the range; `place` is the table it stands in.
-    pub(super) fn validate(&self, place: &str) -> Result<()> {
-        positive(&format!("{place}.speed_max_m_s"), self.speed_max_m_s)?;
-        positive(&format!("{place}.speed_min_m_s"), self.speed_min_m_s)?;
-        if self.speed_min_m_s >= self.speed_max_m_s || self.speeds < 2 {
-            return Err(Error::input(
-                place,
-                "speed_min_m_s below speed_max_m_s and at least 2 speeds",
-                format!("{self:?}"),
-            ));
-        }
-        Ok(())
-    }
-
-    /// Wind speeds of the curves, m/s.
-    pub fn curve_speeds_m_s(&self) -> Vec<f64> {
-        let last = (self.speeds - 1) as f64;
-        (0..self.speeds)
-            .map(|i| {
-                self.speed_min_m_s + (self.speed_max_m_s - self.speed_min_m_s) * i as f64 / last
-            })
-            .collect()
-    }
 }
 
 /// Which model goes into the FMU, and its default experiment.
@@ -206,9 +174,7 @@ impl Study {
     /// # Errors
     /// [`Error::Io`] when it cannot be read; [`Error::Input`] with file and line for everything that is wrong in it.
     pub fn read(path: &Path) -> Result<Self> {
-        let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, e))?;
-        let directory = path.parent().unwrap_or(Path::new("")).to_path_buf();
-        Self::from_toml(&text, directory).map_err(|e| e.in_file(path))
+        toml_lines::read(path, Self::from_toml)
     }
 
     /// Reads and checks the text of a study file; paths in it are read against `directory`.
@@ -216,13 +182,11 @@ impl Study {
     /// # Errors
     /// [`Error::Input`] with line and key for everything that is wrong in it.
     pub fn from_toml(text: &str, directory: PathBuf) -> Result<Self> {
-        let mut study: Self =
-            toml::from_str(text).map_err(|e| toml_lines::syntax_error("a study file", text, &e))?;
-        study.directory = directory;
-        study
-            .validate()
-            .map_err(|e| toml_lines::with_line(text, e))?;
-        Ok(study)
+        require_section(text)?;
+        toml_lines::parse("a study file", text, |study: &mut Self| {
+            study.directory = directory;
+            study.validate()
+        })
     }
 
     fn validate(&self) -> Result<()> {
@@ -256,6 +220,11 @@ impl Study {
         self.exported().map(|_| ())
     }
 
+    /// Wind speeds of curves, searches, Monte Carlo analysis and FMU.
+    pub fn speeds(&self) -> SpeedRange {
+        self.flutter.range(&self.section)
+    }
+
     /// The model that goes into the FMU.
     ///
     /// # Errors
@@ -278,18 +247,39 @@ impl Study {
     }
 }
 
+/// Refuses a file whose section is still to be stated, as `process` leaves it.
+fn require_section(text: &str) -> Result<()> {
+    let stated = text
+        .parse::<toml::Table>()
+        .map_or(true, |values| values.contains_key("section"));
+    if stated {
+        return Ok(());
+    }
+    Err(Error::input(
+        "section",
+        "a [section] with width_m, air_density_kg_m3, vertical and torsion: the structure that is to be built, which no \
+         campaign or table knows",
+        "none",
+    ))
+}
+
+/// The name of a model as part of a file name.
+pub fn slug(name: &str) -> String {
+    let mut slug = String::new();
+    for c in name.chars() {
+        if c.is_alphanumeric() {
+            slug.extend(c.to_lowercase());
+        } else if !slug.ends_with('_') && !slug.is_empty() {
+            slug.push('_');
+        }
+    }
+    slug.trim_end_matches('_').to_owned()
+}
+
 impl ModelBlock {
     /// The name as part of a file name.
     pub fn slug(&self) -> String {
-        let mut slug = String::new();
-        for c in self.name.chars() {
-            if c.is_alphanumeric() {
-                slug.extend(c.to_lowercase());
-            } else if !slug.ends_with('_') && !slug.is_empty() {
-                slug.push('_');
-            }
-        }
-        slug.trim_end_matches('_').to_owned()
+        slug(&self.name)
     }
 
     fn validate(&self, place: &str) -> Result<()> {

@@ -1,15 +1,16 @@
 //! Training the models of a study.
 
-use super::onsets::coupled;
 use super::{Deck, KnownUncertainty, ModelBlock, RecordSet, Study};
+use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
-use crate::flutter::{FlutterSearch, find_onset};
+use crate::flutter::{FlutterSearch, StableRange, find_onset};
 use crate::identification::{
-    FitReport, OnProgress, discrete_uncertainty, fit_discrete, fit_records, fit_table,
+    FitReport, OnProgress, OnsetEffect, discrete_uncertainty, fit_discrete, fit_records, fit_table,
     record_uncertainty, table_uncertainty,
 };
 use crate::trained_model::{Experiment, Model, Provenance, TrainedModel};
 use crate::uncertainty::ModelUncertainty;
+use crate::units::ReducedFrequencyRange;
 
 /// A model with the account of its fit.
 #[derive(Debug, Clone)]
@@ -65,7 +66,29 @@ pub fn train_one(
             }
         }
     };
-    let search = onset_of(study, block, &model, &report)?;
+    // a search that fails takes no trained model with it
+    let search = onset_of(study, block, &model, &report).unwrap_or_else(|e| {
+        report.notes.push(format!("onset: {e}"));
+        FlutterSearch::StableUpTo(StableRange {
+            from_m_s: 0.0,
+            to_m_s: 0.0,
+            not_judged: Some(e.to_string()),
+        })
+    });
+    if let Some(constraints) = &mut report.constraints {
+        // an account only: a search that fails without constraints is no reason to refuse the model with them
+        let alone = find_onset_of(
+            study,
+            block,
+            &constraints.unconstrained,
+            report.tested_range,
+        );
+        let speed = |search: &FlutterSearch| search.onset().map(|o| o.speed_m_s);
+        constraints.onset = Some(OnsetEffect {
+            without_m_s: alone.ok().as_ref().and_then(speed),
+            with_m_s: speed(&search),
+        });
+    }
     let uncertainty = estimate
         .and_then(|estimate| {
             estimate.enter(&mut report);
@@ -73,12 +96,18 @@ pub fn train_one(
                 estimate,
                 &study.section.structure()?,
                 search.onset(),
-                study.flutter.search(),
+                study.speeds().search(),
                 report.tested_range,
             )
         })
         .map(Box::new)
         .map_err(|e| e.to_string());
+    if let Ok(known) = &uncertainty {
+        let speeds = known.coefficients.speeds.as_ref();
+        report.notes.extend(speeds.map(|s| s.describe()));
+        report.notes.extend(known.speeds.explain());
+        report.notes.extend(known.warning());
+    }
     let experiment = experiment(study, &search);
     let trained = TrainedModel {
         schema_version: model.schema_version(),
@@ -110,19 +139,28 @@ fn onset_of(
     model: &Model,
     report: &FitReport,
 ) -> Result<FlutterSearch> {
-    let section = coupled(&study.section.structure()?, model)?;
+    find_onset_of(study, block, model, report.tested_range)
+}
+
+fn find_onset_of(
+    study: &Study,
+    block: &ModelBlock,
+    model: &Model,
+    tested: ReducedFrequencyRange,
+) -> Result<FlutterSearch> {
+    let section = CoupledSection::with_model(&study.section.structure()?, model)?;
     find_onset(
         &block.name,
         &section,
-        &study.flutter.search(),
-        Some(report.tested_range),
+        &study.speeds().search(),
+        Some(tested),
     )
 }
 
 /// A released section just below the onset, so that an importer that merely runs the FMU sees something.
 fn experiment(study: &Study, search: &FlutterSearch) -> Experiment {
-    let limit = study.flutter.speed_max_m_s;
-    let onset = search.onset().map_or(limit, |o| o.speed_m_s);
+    let limit = study.speeds().speed_max_m_s;
+    let onset = search.critical_speed_m_s().unwrap_or(limit);
     let export = &study.export;
     // a round number of decimetres per second reads better in an importer
     let speed = (10.0 * export.part_of_onset * onset).floor() / 10.0;

@@ -1,12 +1,12 @@
 //! Curves, onsets and divergence of all models of a study, side by side.
 
-use super::{Deck, Study};
+use super::{Deck, StageFailure, SteppedAnswer, SteppedOnset, Study, attempt};
 use crate::aerodynamics::{AerodynamicModel, Realization};
 use crate::aeroelastic::CoupledSection;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::flutter::{
-    FlutterCurves, FlutterSearch, Onset, OnsetMethod, determinant_onset, divergence_speed,
-    find_onset, trace_modes,
+    FlutterCurves, FlutterSearch, Onset, OnsetMethod, StableRange, UnstableStart, UnwantedGrowth,
+    determinant_onset, divergence_speed, find_onset, trace_modes, unwanted_growth,
 };
 use crate::section::Structure;
 use crate::trained_model::TrainedModel;
@@ -20,12 +20,31 @@ pub struct FlutterStudy {
     pub curves: Vec<FlutterCurves>,
     /// Onsets found.
     pub onsets: Vec<Onset>,
+    /// Searches that found growth at the lowest speed that could be judged.
+    pub unstable: Vec<UnstableStart>,
     /// Searches that found none.
     pub stable: Vec<OnsetSummary>,
-    /// Static divergence of each trained model, m/s; `null` where there is none.
+    /// Static divergence of each trained model and of the deck itself, m/s; `null` where there is none.
     pub divergence: Vec<Divergence>,
     /// Each model's onset against the deck's own (exact, or interpolated table).
     pub deviations: Vec<Deviation>,
+    /// Onsets that the data leave so far open that they are no results; see [`Onset::headline_m_s`].
+    pub undetermined: Vec<Onset>,
+    /// Growth of each trained model below its onset, by extrapolation alone.
+    pub growth: Vec<ModelGrowth>,
+    /// What could not be computed, and why.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub failed: Vec<StageFailure>,
+}
+
+/// Growth of one model where nothing was tested.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ModelGrowth {
+    /// Force model.
+    pub model: String,
+    /// What the scan found.
+    #[serde(flatten)]
+    pub growth: UnwantedGrowth,
 }
 
 /// A search without an onset.
@@ -35,8 +54,12 @@ pub struct OnsetSummary {
     pub model: String,
     /// Route.
     pub method: OnsetMethod,
+    /// Lowest wind speed at which every mode could be judged, m/s; 0 from still air.
+    pub stable_from_m_s: f64,
     /// Highest wind speed searched, m/s.
     pub stable_up_to_m_s: f64,
+    /// Why nothing is known outside, where a speed that was asked for is.
+    pub not_judged: Option<String>,
 }
 
 /// Divergence of one model.
@@ -46,6 +69,9 @@ pub struct Divergence {
     pub model: String,
     /// Divergence speed, m/s.
     pub speed_m_s: Option<f64>,
+    /// What was assumed about steady flow.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub assumed: Option<String>,
 }
 
 /// Difference of a model's onset from the deck's own.
@@ -63,74 +89,147 @@ pub struct Deviation {
     pub from_held_force_percent: Option<f64>,
 }
 
-/// Traces and searches every trained model, and the deck itself by the determinant.
+/// Traces and searches every trained model, and the deck itself by the determinant. What cannot be computed is noted and
+/// leaves the rest as it is.
 ///
 /// # Errors
-/// Those of tracking and search.
+/// Those of the section, and [`Error::Io`](crate::Error::Io).
 pub fn flutter_study(study: &Study, deck: &Deck, trained: &[TrainedModel]) -> Result<FlutterStudy> {
     let structure = study.section.structure()?;
     let mut results = FlutterStudy {
         curves: Vec::new(),
         onsets: Vec::new(),
+        unstable: Vec::new(),
         stable: Vec::new(),
         divergence: Vec::new(),
         deviations: Vec::new(),
+        undetermined: Vec::new(),
+        growth: Vec::new(),
+        failed: Vec::new(),
     };
-    let own = deck.own_onset(&structure, study.flutter.speed_max_m_s)?;
-    for model in trained {
-        let section = coupled(&structure, &model.model)?;
-        results.curves.push(trace_modes(
-            &model.name,
-            &section,
-            &study.flutter.curve_speeds_m_s(),
-        )?);
-        let search = find_onset(
-            &model.name,
-            &section,
-            &study.flutter.search(),
-            Some(model.tested_range),
-        )?;
-        if let (Some(reference), Some(onset)) = (own.onset(), search.onset()) {
-            results
-                .deviations
-                .push(deviation(study, &structure, model, onset, reference)?);
-        }
-        results.take(search, &model.name, OnsetMethod::Eigenvalues);
-        let still = model
-            .model
-            .transfer(ReducedFrequency::from_full_width(0.0))?;
-        results.divergence.push(Divergence {
-            model: model.name.clone(),
-            speed_m_s: divergence_speed(&structure, &still)?,
-        });
-    }
     let name = deck.own_model_name();
-    results.take(own, &name, OnsetMethod::Determinant);
+    let own = deck.own_onset(&structure, study.speeds().speed_max_m_s);
+    let own = attempt(&mut results.failed, format!("onset of the {name}"), own)?;
+    let reference = own.as_ref().and_then(FlutterSearch::onset);
+    for model in trained {
+        results.add(study, &structure, model, reference)?;
+    }
+    let still = deck.static_transfer().and_then(|(still, assumed)| {
+        Ok(Divergence {
+            model: name.clone(),
+            speed_m_s: divergence_speed(&structure, &still)?,
+            assumed,
+        })
+    });
+    let still = attempt(
+        &mut results.failed,
+        format!("divergence of the {name}"),
+        still,
+    )?;
+    results.divergence.extend(still);
+    if let Some(own) = own {
+        results.take(own, &name, OnsetMethod::Determinant);
+    }
     Ok(results)
 }
 
-impl FlutterStudy {
-    fn take(&mut self, search: FlutterSearch, model: &str, method: OnsetMethod) {
-        match search {
-            FlutterSearch::Onset(onset) => self.onsets.push(*onset),
-            FlutterSearch::StableUpTo(speed) => self.stable.push(OnsetSummary {
-                model: model.to_owned(),
-                method,
-                stable_up_to_m_s: speed,
-            }),
+impl OnsetSummary {
+    /// The answer in words.
+    pub fn explain(&self) -> String {
+        StableRange {
+            from_m_s: self.stable_from_m_s,
+            to_m_s: self.stable_up_to_m_s,
+            not_judged: self.not_judged.clone(),
         }
+        .explain()
     }
 }
 
-/// The section of a study with one of its models.
-pub(super) fn coupled(
-    structure: &Structure,
-    model: &dyn AerodynamicModel,
-) -> Result<CoupledSection> {
-    let realization = model
-        .realize()
-        .ok_or_else(|| Error::Numerical("the model has no state-space realisation".into()))?;
-    CoupledSection::new(structure.clone(), realization)
+impl FlutterStudy {
+    /// Everything about one trained model.
+    fn add(
+        &mut self,
+        study: &Study,
+        structure: &Structure,
+        model: &TrainedModel,
+        reference: Option<&Onset>,
+    ) -> Result<()> {
+        let (name, speeds) = (&model.name, study.speeds());
+        let tested = Some(model.tested_range);
+        let failed = &mut self.failed;
+        let section = CoupledSection::with_model(structure, &model.model);
+        let Some(section) = attempt(failed, format!("coupling of {name}"), section)? else {
+            return Ok(());
+        };
+        let curves = trace_modes(name, &section, &speeds.curve_speeds_m_s());
+        let curves = attempt(failed, format!("modes over wind speed of {name}"), curves)?;
+        self.curves
+            .extend(curves.map(|c| c.marked(structure.width_m, tested)));
+        let growth = unwanted_growth(&section, &speeds.search(), tested);
+        let growth = attempt(failed, format!("scan for growth of {name}"), growth)?;
+        self.growth.extend(growth.map(|growth| ModelGrowth {
+            model: name.clone(),
+            growth,
+        }));
+        let steady = model
+            .model
+            .transfer(ReducedFrequency::from_full_width(0.0))
+            .and_then(|still| divergence_speed(structure, &still));
+        if let Some(speed_m_s) = attempt(failed, format!("divergence of {name}"), steady)? {
+            self.divergence.push(Divergence {
+                model: name.clone(),
+                speed_m_s,
+                assumed: None,
+            });
+        }
+        let search = find_onset(name, &section, &speeds.search(), tested);
+        let Some(search) = attempt(failed, format!("onset of {name}"), search)? else {
+            return Ok(());
+        };
+        if let (Some(reference), Some(onset)) = (reference, search.onset()) {
+            let deviation = deviation(study, structure, model, onset, reference);
+            let deviation = attempt(failed, format!("deviation of {name}"), deviation)?;
+            self.deviations.extend(deviation);
+        }
+        self.take(search, name, OnsetMethod::Eigenvalues);
+        Ok(())
+    }
+
+    /// Takes onsets that the data do not determine from the others, with what was said about them.
+    pub(super) fn separate_undetermined(&mut self) {
+        let all = std::mem::take(&mut self.onsets);
+        let (onsets, undetermined): (Vec<_>, Vec<_>) =
+            all.into_iter().partition(|o| o.headline_m_s().is_ok());
+        self.deviations
+            .retain(|d| !undetermined.iter().any(|o| o.model == d.model));
+        self.onsets = onsets;
+        self.undetermined.extend(undetermined);
+    }
+
+    /// Puts the answer of the stepped FMU of `model` beside the others; returns the onset, if it was found.
+    pub fn take_stepped(&mut self, answer: SteppedAnswer, model: &str) -> Option<SteppedOnset> {
+        let search = match answer {
+            SteppedAnswer::Onset(onset) => return Some(*onset),
+            SteppedAnswer::UnstableAtOrBelow(start) => FlutterSearch::UnstableAtOrBelow(start),
+            SteppedAnswer::StableUpTo(range) => FlutterSearch::StableUpTo(range),
+        };
+        self.take(search, model, OnsetMethod::FmuStepping);
+        None
+    }
+
+    fn take(&mut self, search: FlutterSearch, model: &str, method: OnsetMethod) {
+        match search {
+            FlutterSearch::Onset(onset) => self.onsets.push(*onset),
+            FlutterSearch::UnstableAtOrBelow(start) => self.unstable.push(*start),
+            FlutterSearch::StableUpTo(range) => self.stable.push(OnsetSummary {
+                model: model.to_owned(),
+                method,
+                stable_from_m_s: range.from_m_s,
+                stable_up_to_m_s: range.to_m_s,
+                not_judged: range.not_judged,
+            }),
+        }
+    }
 }
 
 /// The sampled model's deviation is split by asking its transfer matrix without the hold: what is left comes from the
@@ -151,7 +250,7 @@ fn deviation(
             structure,
             &model.model,
             model.tested_range,
-            study.flutter.speed_max_m_s,
+            study.speeds().speed_max_m_s,
         )?;
         from_fit = unheld.onset().map(|o| percent(o.speed_m_s));
     }

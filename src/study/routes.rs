@@ -7,12 +7,12 @@
 
 mod steady;
 
+use crate::aeroelastic::CoupledSection;
 pub use steady::low_frequency_limit;
 use steady::{limit_onset, steady_flat_plate};
 
-use super::onsets::coupled;
 use super::{Deck, Study};
-use crate::aerodynamics::{AerodynamicModel, FlatPlate, Realization};
+use crate::aerodynamics::{AerodynamicModel, FlatPlate, RationalModel, Realization};
 use crate::error::Result;
 use crate::flutter::{
     FlutterCurves, FlutterSearch, ModeAtOnset, OnsetMethod, SanityLines, classify,
@@ -44,8 +44,21 @@ pub struct RouteTable {
     pub sanity: Option<SanityLines>,
     /// Modes over wind speed of one route a force model.
     pub curves: Vec<FlutterCurves>,
+    /// Routes that failed, with the reason.
+    pub failed: Vec<FailedRoute>,
     /// Routes that were left out, and why.
     pub left_out: Vec<String>,
+}
+
+/// A route without an answer.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FailedRoute {
+    /// Force model.
+    pub model: String,
+    /// How the onset was looked for; `null` where the force model itself could not be used.
+    pub method: Option<OnsetMethod>,
+    /// Why there is no answer.
+    pub reason: String,
 }
 
 /// The answer of one route: everything on the onset card.
@@ -85,32 +98,38 @@ struct Forces<'a> {
     quasi_steady_m_s: Option<f64>,
 }
 
-/// Compares all routes for the trained models of a study and its deck.
+/// Compares all routes for the trained models of a study and its deck. A route that fails is listed with its reason and
+/// takes no other with it.
 ///
 /// # Errors
-/// Those of tracking and search.
+/// Those of the study's section.
 pub fn route_table(study: &Study, deck: &Deck, trained: &[TrainedModel]) -> Result<RouteTable> {
     let structure = study.section.structure()?;
     let mut table = RouteTable {
         routes: Vec::new(),
         sanity: sanity_lines(&structure),
         curves: Vec::new(),
+        failed: Vec::new(),
         left_out: Vec::new(),
     };
     for model in trained {
-        table.add_trained(study, &structure, model)?;
+        let added = table.add_trained(study, &structure, model);
+        table.note_failure(&model.name, None, added);
     }
-    table.add_deck(study, deck, &structure)?;
+    let added = table.add_deck(study, deck, &structure);
+    table.note_failure(&deck.own_model_name(), None, added);
     if deck.table().is_some() {
-        table.add_flat_plate(study, &structure)?;
+        let added = table.add_flat_plate(study, &structure);
+        table.note_failure(FLAT_PLATE, None, added);
     }
     if let Some(block) = &study.coefficients {
         let theory = block.theory(&study.directory, &study.section.dofs())?;
-        table.add_static_coefficients(study, &structure, &theory)?;
+        let added = table.add_static_coefficients(study, &structure, &theory);
+        table.note_failure(steady::THEORY, None, added);
     }
     if table.sanity.is_none() {
         table.left_out.push(
-            "Selberg, Rocard: the formulas are for sections whose rotation is faster than their heave".into(),
+            "Selberg, Rocard: the formulas are for sections whose rotation is faster than their heave, about mid-chord with the centre of mass there".into(),
         );
     }
     table
@@ -123,14 +142,60 @@ pub fn route_table(study: &Study, deck: &Deck, trained: &[TrainedModel]) -> Resu
 }
 
 impl RouteTable {
+    /// What was found, or a line among those that failed.
+    fn note_failure<T>(
+        &mut self,
+        model: &str,
+        method: Option<OnsetMethod>,
+        found: Result<T>,
+    ) -> Option<T> {
+        found
+            .map_err(|e| {
+                self.failed.push(FailedRoute {
+                    model: model.to_owned(),
+                    method,
+                    reason: e.to_string(),
+                });
+            })
+            .ok()
+    }
+
+    /// The route of what a search found, if it found an answer.
+    fn answered(
+        &mut self,
+        study: &Study,
+        forces: &Forces<'_>,
+        method: OnsetMethod,
+        found: Result<FlutterSearch>,
+    ) -> Option<Route> {
+        let route = found.and_then(|search| forces.route(study, method, search));
+        self.note_failure(&forces.name, Some(method), route)
+    }
+
+    /// Curves over wind speed, with the points inside the tested range marked; or why there are none.
+    fn draw(&mut self, forces: &Forces<'_>, curves: Result<FlutterCurves>) {
+        match curves {
+            Ok(curves) => {
+                let ended = curves.ended.iter();
+                self.left_out
+                    .extend(ended.map(|why| format!("curves of {} end: {why}", forces.name)));
+                self.curves
+                    .push(curves.marked(forces.structure.width_m, forces.tested));
+            }
+            Err(e) => self
+                .left_out
+                .push(format!("curves of {}: {e}", forces.name)),
+        }
+    }
+
     fn add_trained(
         &mut self,
         study: &Study,
         structure: &Structure,
         model: &TrainedModel,
     ) -> Result<()> {
-        let section = coupled(structure, &model.model)?;
-        let search = study.flutter.search();
+        let section = CoupledSection::with_model(structure, &model.model)?;
+        let search = study.speeds().search();
         let steady = model
             .model
             .transfer(ReducedFrequency::from_full_width(0.0))?;
@@ -146,37 +211,33 @@ impl RouteTable {
             divergence_m_s: divergence_speed(structure, &steady)?,
             quasi_steady_m_s: limit_onset(study, structure, &limit)?,
         };
-        let found = find_onset(&model.name, &section, &search, forces.tested)?;
-        let mut by_eigenvalues = forces.route(study, OnsetMethod::Eigenvalues, found)?;
-        by_eigenvalues.divergence_m_s =
-            divergence_by_eigenvalues(&section, study.flutter.speed_max_m_s.max(beyond(&forces)))?;
-        self.routes.push(by_eigenvalues);
-        self.curves.push(trace_modes(
-            &model.name,
-            &section,
-            &study.flutter.curve_speeds_m_s(),
-        )?);
+        let found = find_onset(&model.name, &section, &search, forces.tested);
+        if let Some(mut route) = self.answered(study, &forces, OnsetMethod::Eigenvalues, found) {
+            let highest = study.speeds().speed_max_m_s.max(beyond(&forces));
+            route.divergence_m_s = divergence_by_eigenvalues(&section, highest)?;
+            self.routes.push(route);
+        }
+        let speeds = study.speeds().curve_speeds_m_s();
+        self.draw(&forces, trace_modes(&model.name, &section, &speeds));
         let sampled = matches!(model.model.realize(), Some(Realization::Discrete(_)));
-        self.add_transfer_routes(study, &forces, sampled)
+        self.add_transfer_routes(study, &forces, sampled);
+        Ok(())
     }
 
     /// Determinant and p-k iteration on one `G(K)`.
-    fn add_transfer_routes(
-        &mut self,
-        study: &Study,
-        forces: &Forces<'_>,
-        sampled: bool,
-    ) -> Result<()> {
-        let speed_max = study.flutter.speed_max_m_s;
+    fn add_transfer_routes(&mut self, study: &Study, forces: &Forces<'_>, sampled: bool) {
+        let speed_max = study.speeds().speed_max_m_s;
         let (name, s, model) = (&forces.name, forces.structure, forces.model);
-        let inside = determinant_onset(name, s, model, forces.range(), speed_max)?;
-        let search = study.flutter.search();
-        let iterated = pk_onset(name, s, model, &search, forces.tested)?;
+        let inside = determinant_onset(name, s, model, forces.range(), speed_max);
+        let search = study.speeds().search();
+        let iterated = pk_onset(name, s, model, &search, forces.tested);
         for (method, found) in [
             (OnsetMethod::Determinant, inside),
             (OnsetMethod::PkIteration, iterated),
         ] {
-            let mut route = forces.route(study, method, found)?;
+            let Some(mut route) = self.answered(study, forces, method, found) else {
+                continue;
+            };
             if sampled {
                 route.warnings.push(
                     "the transfer matrix without the hold of the force over each step".into(),
@@ -184,7 +245,6 @@ impl RouteTable {
             }
             self.routes.push(route);
         }
-        Ok(())
     }
 
     fn add_deck(&mut self, study: &Study, deck: &Deck, structure: &Structure) -> Result<()> {
@@ -192,12 +252,15 @@ impl RouteTable {
         let steady_k = tested.map_or(ReducedFrequency::from_full_width(NEARLY_STEADY), |range| {
             range.min
         });
+        let (static_transfer, assumed) = deck.static_transfer()?;
         let limit = if tested.is_some() {
-            low_frequency_limit(model.as_ref(), steady_k)?
+            RationalModel {
+                a1: static_transfer.map(|z| z.re),
+                ..low_frequency_limit(model.as_ref(), steady_k)?
+            }
         } else {
             steady_flat_plate()
         };
-        let static_transfer = limit.transfer(ReducedFrequency::from_full_width(0.0))?;
         let forces = Forces {
             name: deck.own_model_name(),
             model: model.as_ref(),
@@ -207,21 +270,22 @@ impl RouteTable {
             quasi_steady_m_s: limit_onset(study, structure, &limit)?,
         };
         let from = self.routes.len();
-        self.add_transfer_routes(study, &forces, false)?;
-        if tested.is_some() {
-            for route in &mut self.routes[from..] {
-                route.warnings.push(format!(
-                    "divergence and quasi-steady limit from the derivatives at the lowest tested K, {:.3}",
-                    steady_k.full_width()
-                ));
+        self.add_transfer_routes(study, &forces, false);
+        let own = deck.own_onset(structure, study.speeds().speed_max_m_s).ok();
+        for route in &mut self.routes[from..] {
+            if let (FlutterSearch::Onset(onset), Some(own)) = (
+                &mut route.search,
+                own.as_ref().and_then(FlutterSearch::onset),
+            ) {
+                onset.interval = own.interval.clone();
             }
+            route
+                .warnings
+                .extend(assumed.iter().map(|a| format!("divergence: {a}")));
         }
-        let speeds = study.flutter.curve_speeds_m_s();
-        let mut curves = pk_curves(&forces.name, structure, model.as_ref(), &speeds)?;
-        if let Some(range) = tested {
-            keep_tested(&mut curves, structure.width_m, range);
-        }
-        self.curves.push(curves);
+        let speeds = study.speeds().curve_speeds_m_s();
+        let curves = pk_curves(&forces.name, structure, model.as_ref(), &speeds);
+        self.draw(&forces, curves);
         self.add_quasi_steady(study, structure, &limit, tested.map(|range| range.min))
     }
 
@@ -238,7 +302,7 @@ impl RouteTable {
             quasi_steady_m_s: limit_onset(study, &two, &steady_flat_plate())?,
         };
         let from = self.routes.len();
-        self.add_transfer_routes(study, &forces, false)?;
+        self.add_transfer_routes(study, &forces, false);
         if structure.dofs.len() > two.dofs.len() {
             for route in &mut self.routes[from..] {
                 route
@@ -246,9 +310,8 @@ impl RouteTable {
                     .push("heave and rotation only: a plate has no drag".into());
             }
         }
-        let speeds = study.flutter.curve_speeds_m_s();
-        self.curves
-            .push(pk_curves(FLAT_PLATE, &two, &plate, &speeds)?);
+        let speeds = study.speeds().curve_speeds_m_s();
+        self.draw(&forces, pk_curves(FLAT_PLATE, &two, &plate, &speeds));
         Ok(())
     }
 }
@@ -273,21 +336,27 @@ impl Forces<'_> {
         method: OnsetMethod,
         mut search: FlutterSearch,
     ) -> Result<Route> {
-        if let (FlutterSearch::Onset(onset), None) = (&mut search, self.tested) {
-            // exact at every K: there is no tested range to leave
-            onset.in_tested_range = None;
+        // exact at every K: there is no tested range to leave
+        match (&mut search, self.tested) {
+            (FlutterSearch::Onset(onset), None) => onset.in_tested_range = None,
+            (FlutterSearch::UnstableAtOrBelow(start), None) => start.in_tested_range = None,
+            _ => {}
         }
         let onset = search.onset();
-        let speed_max = study.flutter.speed_max_m_s;
+        let speed_max = study.speeds().speed_max_m_s;
         let mode = onset
             .map(|o| classify(self.structure, self.model, o, self.range(), speed_max))
             .transpose()?;
-        let mut warnings: Vec<String> = onset.map_or(Vec::new(), |o| o.warnings.clone());
+        let mut warnings = match &search {
+            FlutterSearch::Onset(onset) => onset.warnings.clone(),
+            FlutterSearch::UnstableAtOrBelow(start) => start.warnings.clone(),
+            FlutterSearch::StableUpTo(_) => Vec::new(),
+        };
         if let (Some(onset), Some(divergence)) = (onset, self.divergence_m_s)
             && divergence < onset.speed_m_s
         {
             warnings.push(format!(
-                "static divergence at {divergence:.2} m/s comes before flutter"
+                "static divergence at {divergence:.3} m/s comes before flutter"
             ));
         }
         warnings.extend(
@@ -316,23 +385,10 @@ fn nearly_single(mode: &ModeAtOnset, onset_m_s: f64) -> Option<String> {
     })?;
     (!mode.kind.single_dof()).then(|| {
         format!(
-            "nearly a one-degree-of-freedom instability: {} carries {:.0} % of the kinetic energy and flutters alone at {:.2} m/s",
+            "nearly a one-degree-of-freedom instability: {} carries {:.0} % of the kinetic energy and flutters alone at {:.3} m/s",
             near.dof.name(),
             100.0 * near.energy_share,
             near.alone_m_s.unwrap_or(f64::NAN)
         )
     })
-}
-
-/// Leaves out the points at which a table was asked outside its range.
-fn keep_tested(curves: &mut FlutterCurves, width_m: f64, range: ReducedFrequencyRange) {
-    for branch in &mut curves.branches {
-        branch.points.retain(|p| {
-            range.contains(ReducedFrequency::from_hertz(
-                p.frequency_hz,
-                width_m,
-                p.speed_m_s,
-            ))
-        });
-    }
 }

@@ -1,15 +1,22 @@
 //! Onset of an exported FMU, found by stepping it through its C interface: the third route.
 
-use crate::error::Result;
-use crate::flutter::{Onset, OnsetInterval, OnsetMethod};
-use crate::fmu::importer::{Fmu, SteppedOnset as Found, SteppingSearch, onset_by_stepping};
+use crate::error::{Error, Result};
+use crate::flutter::{Onset, OnsetInterval, OnsetMethod, StableRange, UnstableStart};
+use crate::fmu::importer::{
+    Fmu, GrowthPoint, SteppedOnset as Found, SteppedSearch, SteppingSearch, growth_by_stepping,
+    onset_by_stepping,
+};
 use crate::trained_model::TrainedModel;
 use crate::units::ReducedFrequency;
 use serde::Serialize;
+use std::f64::consts::TAU;
 use std::path::Path;
 
 /// Communication steps that are tried, as parts of the shortest still-air period; a factor of ten apart.
 const STEPS_PER_PERIOD: [f64; 2] = [40.0, 4.0];
+/// Relative change of the speed at which a motion counts as being at the end of the tested range, and rounds to it.
+const ENTRY_TOLERANCE: f64 = 1e-4;
+const MAX_ROUNDS: usize = 12;
 /// The search starts at this part of its highest wind speed.
 const LOWEST_PART: f64 = 0.15;
 
@@ -50,8 +57,39 @@ impl SteppedOnset {
     }
 }
 
-/// Onset of the FMU at `path`, packed from `model`, by the growth of its released section; `None` when it is stable up
-/// to the highest speed.
+/// Answer of stepping an FMU.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SteppedAnswer {
+    /// It flutters.
+    Onset(Box<SteppedOnset>),
+    /// It grows at the lowest speed stepped, or where its motion comes into the tested range.
+    UnstableAtOrBelow(Box<UnstableStart>),
+    /// It does not between these speeds.
+    StableUpTo(StableRange),
+}
+
+impl SteppedAnswer {
+    /// The onset, if it was found.
+    pub fn onset(&self) -> Option<&SteppedOnset> {
+        match self {
+            Self::Onset(onset) => Some(onset),
+            Self::UnstableAtOrBelow(_) | Self::StableUpTo(_) => None,
+        }
+    }
+
+    /// In words.
+    pub fn explain(&self) -> String {
+        match self {
+            Self::Onset(onset) => onset.explain(),
+            Self::UnstableAtOrBelow(start) => format!("FMU stepped: {}", start.explain()),
+            Self::StableUpTo(range) => format!("FMU stepped: {}", range.explain()),
+        }
+    }
+}
+
+/// Onset of the FMU at `path`, packed from `model`, by the growth of its released section. The second communication step
+/// is tried only where the first finds an onset.
 ///
 /// # Errors
 /// Those of the importer and of the search.
@@ -59,20 +97,24 @@ pub fn stepped_onset(
     model: &TrainedModel,
     path: &Path,
     speed_max_m_s: f64,
-) -> Result<Option<SteppedOnset>> {
+) -> Result<SteppedAnswer> {
     let fmu = Fmu::open(path)?;
     let structure = model.section.structure()?;
     let fastest_hz = (0..structure.dofs.len())
         .map(|i| (structure.stiffness[(i, i)] / structure.mass[(i, i)]).sqrt())
         .fold(0.0, f64::max)
-        / std::f64::consts::TAU;
+        / TAU;
     let mut found: Vec<Found> = Vec::with_capacity(STEPS_PER_PERIOD.len());
     for steps in STEPS_PER_PERIOD {
         let step = 1.0 / (steps * fastest_hz);
         let search = SteppingSearch::between(LOWEST_PART * speed_max_m_s, speed_max_m_s, step);
-        match onset_by_stepping(&fmu, &search)?.onset() {
-            Some(onset) => found.push(onset.clone()),
-            None => return Ok(None),
+        match onset_by_stepping(&fmu, &search)? {
+            SteppedSearch::Onset(onset) => found.push(*onset),
+            SteppedSearch::UnstableAtOrBelow(at) => {
+                let reason = "the lowest speed stepped".to_owned();
+                return Ok(unstable(model, at, reason));
+            }
+            SteppedSearch::StableUpTo(range) => return Ok(SteppedAnswer::StableUpTo(range)),
         }
     }
     let runs = found
@@ -83,9 +125,66 @@ pub fn stepped_onset(
             steps: f.steps,
         })
         .collect();
-    Ok(found.first().map(|first| SteppedOnset {
+    let Some(first) = found.first() else {
+        return Err(Error::Numerical("FMU stepped: no run".into()));
+    };
+    if let Some(start) = enters_growing(&fmu, model, first)? {
+        return Ok(start);
+    }
+    Ok(SteppedAnswer::Onset(Box::new(SteppedOnset {
         onset: as_onset(model, first),
         runs,
+    })))
+}
+
+/// An onset above the tested `K` whose motion still grows where it comes into the tested range, stepped there.
+fn enters_growing(fmu: &Fmu, model: &TrainedModel, found: &Found) -> Result<Option<SteppedAnswer>> {
+    let limit = model.tested_range.max;
+    let width = model.section.width_m;
+    if ReducedFrequency::from_hertz(found.frequency_hz, width, found.speed_m_s) <= limit {
+        return Ok(None);
+    }
+    let speed_of = |frequency_hz: f64| TAU * frequency_hz * width / limit.full_width();
+    let mut speed = speed_of(found.frequency_hz);
+    let mut at = growth_by_stepping(fmu, speed, found.communication_step_s)?;
+    for _ in 0..MAX_ROUNDS {
+        let next = speed_of(at.frequency_hz);
+        if (next / speed - 1.0).abs() < ENTRY_TOLERANCE {
+            break;
+        }
+        speed = next;
+        at = growth_by_stepping(fmu, speed, found.communication_step_s)?;
+    }
+    let reason = format!(
+        "there its motion comes into the range that could be judged, whose end is K {:.4}; outside, the FMU grows from \
+         {:.3} m/s on",
+        limit.full_width(),
+        found.speed_m_s
+    );
+    Ok((at.growth_rate_per_s > 0.0).then(|| {
+        let mut answer = unstable(model, at, reason);
+        if let SteppedAnswer::UnstableAtOrBelow(start) = &mut answer {
+            start.in_tested_range = Some(true);
+        }
+        answer
+    }))
+}
+
+fn unstable(model: &TrainedModel, at: GrowthPoint, reason: String) -> SteppedAnswer {
+    let speed_m_s = at.speed_m_s;
+    let k = ReducedFrequency::from_hertz(at.frequency_hz, model.section.width_m, speed_m_s);
+    SteppedAnswer::UnstableAtOrBelow(Box::new(UnstableStart {
+        model: model.name.clone(),
+        method: OnsetMethod::FmuStepping,
+        speed_m_s,
+        frequency_hz: at.frequency_hz,
+        reduced_velocity: k.into(),
+        reduced_frequency: k,
+        growth_rate_per_s: at.growth_rate_per_s,
+        branch: "dominant".to_owned(),
+        in_tested_range: Some(model.tested_range.contains(k)),
+        reason,
+        warnings: Vec::new(),
     }))
 }
 

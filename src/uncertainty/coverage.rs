@@ -2,14 +2,15 @@
 
 use super::derivatives::{derivative_intervals, spread_over};
 use super::onset::onset_error;
-use super::sensitivity::coupled;
+use super::scattered::ScatteredTunnel;
 use crate::aerodynamics::derivatives::Part;
 use crate::aerodynamics::{AerodynamicModel, FlatPlate, RationalModel};
-use crate::error::{Error, Result, positive};
+use crate::aeroelastic::CoupledSection;
+use crate::error::{Error, Result, non_negative, positive};
 use crate::flutter::{Onset, OnsetSearch, determinant_onset, find_onset};
 use crate::identification::{
-    CoefficientUncertainty, FeedThrough, Form, PoleSearch, TimeFit, TimeWeights, fit_records,
-    record_uncertainty,
+    CoefficientUncertainty, Constraints, FeedThrough, Form, PoleSearch, TimeFit, TimeWeights,
+    fit_records, record_uncertainty,
 };
 use crate::section::SectionModel;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
@@ -22,6 +23,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 const SPEED_MAX_M_S: f64 = 80.0;
 /// Reduced frequencies at which derivatives are compared.
 const DERIVATIVE_POINTS: usize = 8;
+
+/// Shares of held truths with which 95 % intervals keep their word, percent.
+const KEPT_PERCENT: std::ops::RangeInclusive<f64> = 93.0..=97.0;
 
 /// What the forces of the virtual tunnel follow.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -47,6 +51,10 @@ pub struct CoveragePlan {
     pub weights: TimeWeights,
     /// The tunnel; noise and seed among it.
     pub tunnel: TunnelPlan,
+    /// Standard deviation of every transfer function between mean speeds, relative, in size and in phase.
+    pub speed_scatter: f64,
+    /// The same between runs (one motion at one speed), for all forces of a run together.
+    pub run_scatter: f64,
     /// Number of repetitions.
     pub repetitions: usize,
 }
@@ -62,6 +70,8 @@ impl Default for CoveragePlan {
                 noise_fraction: 0.05,
                 ..TunnelPlan::default()
             },
+            speed_scatter: 0.0,
+            run_scatter: 0.0,
             repetitions: 500,
         }
     }
@@ -119,8 +129,44 @@ pub struct CoverageReport {
     pub holds_fit_without_noise: Share,
     /// The same as the first for all derivatives at eight `K` over the tested range.
     pub derivatives_hold_truth: Share,
+    /// Repetitions in which the speeds differed by more than chance, so that their scatter was counted.
+    pub speeds_differ: Share,
     /// Repetitions without an onset.
     pub without_onset: usize,
+    /// What must be said of the intervals; empty if they keep their word.
+    pub warnings: Vec<String>,
+}
+
+impl CoverageReport {
+    /// Says where intervals do not hold the truth as often as 95 % promise.
+    fn judge(&mut self) {
+        let biased = self.bias_m_s.abs() > self.scatter_m_s;
+        let reason = if biased {
+            format!(
+                "the form of the model cannot follow the truth (bias {:.3} m/s, scatter {:.3} m/s), and an interval holds \
+                 scatter, not bias",
+                self.bias_m_s, self.scatter_m_s
+            )
+        } else {
+            "the stated scatter is not that of the repetitions".to_owned()
+        };
+        for (what, share) in [
+            ("the onset", &self.holds_truth),
+            ("the derivatives", &self.derivatives_hold_truth),
+        ] {
+            if !KEPT_PERCENT.contains(&share.percent) {
+                self.warnings.push(format!(
+                    "the 95 % intervals of {what} hold the truth in {:.1} %: {}",
+                    share.percent,
+                    match (share.percent > 95.0, biased) {
+                        (true, true) => "what the form cannot follow counts as scatter",
+                        (true, false) => "wider than they need be",
+                        (false, _) => &reason,
+                    }
+                ));
+            }
+        }
+    }
 }
 
 /// Runs the campaign over and over, each time with noise of its own, in parallel.
@@ -146,7 +192,7 @@ pub fn coverage(plan: &CoveragePlan, done: &(dyn Fn(usize) + Sync)) -> Result<Co
 struct Campaign {
     section: SectionModel,
     model: Box<dyn AerodynamicModel + Sync>,
-    clean: Vec<Record>,
+    records: ScatteredTunnel,
     tunnel: TunnelPlan,
     fit: TimeFit,
     tested: ReducedFrequencyRange,
@@ -161,6 +207,7 @@ struct Run {
     half_width_m_s: f64,
     degrees_of_freedom: f64,
     derivatives_inside: Vec<bool>,
+    speeds_differ: bool,
 }
 
 impl Campaign {
@@ -172,6 +219,8 @@ impl Campaign {
         plan.poles
             .iter()
             .try_for_each(|p| positive("poles", *p).map(drop))?;
+        non_negative("speed_scatter", plan.speed_scatter)?;
+        non_negative("run_scatter", plan.run_scatter)?;
         let section = SectionModel::table_4_1();
         let model: Box<dyn AerodynamicModel + Sync> = match plan.truth {
             Truth::Jones => Box::new(RationalModel::jones_flat_plate()),
@@ -181,12 +230,15 @@ impl Campaign {
             noise_fraction: 0.0,
             ..plan.tunnel.clone()
         };
-        let clean = quiet.records_from_model(model.as_ref(), "truth", section.width_m)?;
+        let scatter = (plan.speed_scatter, plan.run_scatter);
+        let records = ScatteredTunnel::new(&quiet, model.as_ref(), section.width_m, scatter)?;
         let given = PoleSearch {
             start: Some(plan.poles.clone()),
             ..PoleSearch::default()
         };
         let fit = TimeFit {
+            // −(e₁ + e₁ᵀ) of a flat plate is singular: the truth lies on a constraint, which would bind now and then
+            constraints: Constraints::None,
             form: Form::TakenakaMalmquist {
                 filters: plan.poles.len(),
                 feed_through: FeedThrough::default(),
@@ -205,7 +257,7 @@ impl Campaign {
             bias_m_s: 0.0,
             section,
             model,
-            clean,
+            records,
             tunnel: plan.tunnel.clone(),
             fit,
             tested: ReducedFrequencyRange {
@@ -225,7 +277,7 @@ impl Campaign {
             .onset()
             .ok_or_else(|| Error::Numerical("coverage: the truth does not flutter".into()))?
             .speed_m_s;
-        let (_, onset, tested) = campaign.fitted(&campaign.clean)?;
+        let (_, onset, tested) = campaign.fitted(campaign.records.straight())?;
         campaign.tested = tested;
         let onset = onset
             .ok_or_else(|| Error::Numerical("coverage: the fit without noise is stable".into()))?;
@@ -241,7 +293,7 @@ impl Campaign {
         let sources: Vec<&dyn RecordSource> = records.iter().map(|r| r as _).collect();
         let (model, report) = fit_records(&sources, &self.fit, &|_| ())?;
         let estimate = record_uncertainty(&sources, &self.fit, &report, &|_| ())?;
-        let section = coupled(&self.section.structure()?, &model)?;
+        let section = CoupledSection::with_model(&self.section.structure()?, &model)?;
         let search = OnsetSearch {
             speed_max_m_s: SPEED_MAX_M_S,
             ..OnsetSearch::default()
@@ -251,9 +303,10 @@ impl Campaign {
     }
 
     fn repeat(&self, repetition: usize) -> Result<Option<Run>> {
-        let mut records = self.clean.clone();
+        let seed = self.tunnel.seed.wrapping_add(repetition as u64);
+        let mut records = self.records.draw(seed);
         let plan = TunnelPlan {
-            seed: self.tunnel.seed.wrapping_add(repetition as u64),
+            seed,
             ..self.tunnel.clone()
         };
         for (index, record) in records.iter_mut().enumerate() {
@@ -270,6 +323,7 @@ impl Campaign {
             half_width_m_s: error.half_width_m_s(),
             degrees_of_freedom: error.degrees_of_freedom,
             derivatives_inside: self.derivatives(&estimate)?,
+            speeds_differ: estimate.speeds.as_ref().is_some_and(|s| s.counted),
         }))
     }
 
@@ -309,7 +363,7 @@ impl Campaign {
                     .map(|r| (r.onset_m_s - target).abs() <= r.half_width_m_s),
             )
         };
-        Ok(CoverageReport {
+        let mut report = CoverageReport {
             plan: plan.clone(),
             true_onset_m_s: self.true_onset_m_s,
             bias_m_s: self.bias_m_s,
@@ -327,7 +381,11 @@ impl Campaign {
                 good.iter()
                     .flat_map(|r| r.derivatives_inside.iter().copied()),
             ),
+            speeds_differ: Share::count(good.iter().map(|r| r.speeds_differ)),
             without_onset: runs.len() - good.len(),
-        })
+            warnings: Vec::new(),
+        };
+        report.judge();
+        Ok(report)
     }
 }

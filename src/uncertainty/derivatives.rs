@@ -1,15 +1,12 @@
 //! Aerodynamic derivatives of a fitted model with their intervals.
 
 use super::onset::CONFIDENCE;
+use crate::aerodynamics::TransferMatrix;
 use crate::aerodynamics::derivatives::{Derivative, Part};
-use crate::aerodynamics::{AerodynamicModel, TransferMatrix};
 use crate::error::Result;
 use crate::identification::{CoefficientUncertainty, two_sided_quantile};
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use serde::{Deserialize, Serialize};
-
-/// Relative step of the differences with respect to the parameters.
-const STEP: f64 = 1e-5;
 
 /// One derivative at one reduced frequency.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -37,25 +34,8 @@ pub fn derivative_intervals(
     estimate: &CoefficientUncertainty,
     ks: &[ReducedFrequency],
 ) -> Result<Vec<DerivativeInterval>> {
-    let values = estimate.values();
-    let model = estimate.model_at(&values)?;
-    let mut pairs = Vec::with_capacity(values.len());
-    for p in 0..values.len() {
-        let step = STEP * values[p].abs().max(1e-2);
-        let moved = |by: f64| {
-            let mut moved = values.clone();
-            moved[p] += by;
-            estimate.model_at(&moved)
-        };
-        pairs.push((moved(step)?, moved(-step)?, step));
-    }
     let mut intervals = Vec::new();
-    for &k in ks {
-        let here = model.transfer(k)?;
-        let mut slopes = Vec::with_capacity(pairs.len());
-        for (up, down, step) in &pairs {
-            slopes.push((up.transfer(k)? - down.transfer(k)?).unscale(2.0 * step));
-        }
+    for (&k, (here, slopes)) in ks.iter().zip(estimate.transfer_slopes(ks)?) {
         for (i, &force) in estimate.dofs.iter().enumerate() {
             for (j, &motion) in estimate.dofs.iter().enumerate() {
                 for part in [Part::Imaginary, Part::Real] {

@@ -9,7 +9,9 @@ mod coverage;
 mod derivatives;
 mod model;
 mod onset;
+mod scattered;
 mod sensitivity;
+mod speeds;
 
 pub use coverage::{CoveragePlan, CoverageReport, Share, Truth, coverage};
 pub use derivatives::{DerivativeInterval, derivative_intervals, spread_over};
@@ -18,6 +20,7 @@ pub use onset::{
     CONFIDENCE, OnsetError, ResampledOnset, Resampling, ResamplingPlan, onset_error, resample_onset,
 };
 pub use sensitivity::onset_gradient;
+pub use speeds::{Contradiction, SpeedOnset, SpeedOnsets, speed_onsets};
 
 #[cfg(test)]
 mod tests;

@@ -4,6 +4,7 @@ use super::derivatives::{DerivativeInterval, derivative_intervals, spread_over};
 use super::onset::{
     OnsetError, ResampledOnset, Resampling, ResamplingPlan, onset_error, resample_onset,
 };
+use super::speeds::{Contradiction, SpeedOnsets, speed_onsets};
 use crate::aerodynamics::AerodynamicModel;
 use crate::error::{Error, Result};
 use crate::flutter::{Onset, OnsetInterval, OnsetMethod, OnsetSearch};
@@ -33,6 +34,9 @@ pub struct ModelUncertainty {
     pub block_bootstrap: Option<ResampledOnset>,
     /// The same onset by coefficients drawn from their covariance.
     pub drawn_coefficients: Option<ResampledOnset>,
+    /// Onsets by the tests at each mean speed alone.
+    #[serde(default)]
+    pub speeds: SpeedOnsets,
     /// Derivatives over the tested range.
     pub derivatives: Vec<DerivativeInterval>,
 }
@@ -58,6 +62,7 @@ impl ModelUncertainty {
             onset: None,
             block_bootstrap: None,
             drawn_coefficients: None,
+            speeds: SpeedOnsets::default(),
         };
         let Some(onset) = onset else {
             return Ok(uncertainty);
@@ -76,9 +81,11 @@ impl ModelUncertainty {
         let error = onset_error(estimate, structure, onset, None)?;
         let blocks = resampled(Resampling::Blocks)?;
         let drawn = resampled(Resampling::Normal)?;
+        let speeds = speed_onsets(estimate, structure, onset, (&search, tested))?;
         uncertainty.onset = Some(error);
         uncertainty.block_bootstrap = blocks;
         uncertainty.drawn_coefficients = drawn;
+        uncertainty.speeds = speeds;
         Ok(uncertainty)
     }
 
@@ -101,7 +108,14 @@ impl ModelUncertainty {
             ));
         }
         let known = self.onset.as_ref().map(|o| o.degrees_of_freedom);
-        Ok(onset_error(&self.coefficients, structure, onset, known)?.interval())
+        let error = onset_error(&self.coefficients, structure, onset, known)?;
+        Ok(match self.coefficients.known_bias() {
+            Some(bias) => OnsetInterval::none(format!(
+                "{bias} (standard error of the scatter alone {:.3} m/s)",
+                error.standard_error_m_s
+            )),
+            None => error.interval(),
+        })
     }
 
     fn belongs_to(&self, model: &dyn AerodynamicModel, k: ReducedFrequency) -> Result<bool> {
@@ -137,9 +151,20 @@ impl ModelUncertainty {
         Ok(text + "\n")
     }
 
+    /// What a reader must know of the onset: that the mean speeds contradict each other.
+    pub fn warning(&self) -> Option<String> {
+        self.speeds
+            .contradiction
+            .as_ref()
+            .map(Contradiction::explain)
+    }
+
     /// The onset's interval with its two checks, in words.
     pub fn explain(&self) -> Option<String> {
         let onset = self.onset.as_ref()?;
+        if let OnsetInterval::Undetermined { reason, .. } = onset.interval() {
+            return Some(format!("onset {reason}"));
+        }
         let half = onset.half_width_m_s();
         let other = |r: &Option<ResampledOnset>| {
             r.as_ref().map_or_else(
@@ -147,13 +172,19 @@ impl ModelUncertainty {
                 |r| format!("{:.3}", r.standard_deviation_m_s),
             )
         };
+        let interval = match self.coefficients.known_bias() {
+            Some(bias) => format!("no 95 % interval, since {bias}"),
+            None => format!(
+                "95 % interval {:.3} to {:.3} ({:.1} degrees of freedom)",
+                onset.speed_m_s - half,
+                onset.speed_m_s + half,
+                onset.degrees_of_freedom
+            ),
+        };
         Some(format!(
-            "onset {:.3} m/s, 95 % interval {:.3} to {:.3} ({:.1} degrees of freedom); standard error by sensitivities \
+            "onset {:.3} m/s, {interval}; standard error by sensitivities \
              {:.3}, by block bootstrap {}, by drawn coefficients {} m/s",
             onset.speed_m_s,
-            onset.speed_m_s - half,
-            onset.speed_m_s + half,
-            onset.degrees_of_freedom,
             onset.standard_error_m_s,
             other(&self.block_bootstrap),
             other(&self.drawn_coefficients),

@@ -1,7 +1,8 @@
 //! Interval of an onset: by its gradient, and by re-solving it for other weights of the blocks.
 
-use super::sensitivity::{coupled, onset_gradient, onset_nearby};
+use super::sensitivity::{onset_gradient, onset_nearby};
 use crate::aerodynamics::AerodynamicModel;
+use crate::aeroelastic::CoupledSection;
 use crate::error::Result;
 use crate::flutter::{FlutterSearch, Onset, OnsetInterval, OnsetSearch, find_onset};
 use crate::identification::{CoefficientUncertainty, two_sided_quantile};
@@ -42,9 +43,19 @@ pub fn onset_error(
     degrees_of_freedom: Option<f64>,
 ) -> Result<OnsetError> {
     let at = (onset.speed_m_s, TAU * onset.frequency_hz);
+    error_at(estimate, structure, at, degrees_of_freedom)
+}
+
+/// The same for an onset at a speed and circular frequency.
+pub(super) fn error_at(
+    estimate: &CoefficientUncertainty,
+    structure: &Structure,
+    at: (f64, f64),
+    degrees_of_freedom: Option<f64>,
+) -> Result<OnsetError> {
     let gradient = onset_gradient(estimate, structure, at)?;
     Ok(OnsetError {
-        speed_m_s: onset.speed_m_s,
+        speed_m_s: at.0,
         standard_error_m_s: estimate.standard_error(&gradient)?,
         degrees_of_freedom: estimate
             .degrees_of_freedom(&gradient)
@@ -61,13 +72,12 @@ impl OnsetError {
 
     /// The interval for a card.
     pub fn interval(&self) -> OnsetInterval {
-        let half = self.half_width_m_s();
-        OnsetInterval::Known {
-            low_m_s: self.speed_m_s - half,
-            high_m_s: self.speed_m_s + half,
-            standard_error_m_s: self.standard_error_m_s,
-            degrees_of_freedom: self.degrees_of_freedom,
-        }
+        OnsetInterval::about(
+            self.speed_m_s,
+            self.half_width_m_s(),
+            self.standard_error_m_s,
+            self.degrees_of_freedom,
+        )
     }
 }
 
@@ -173,7 +183,7 @@ fn solve(
     at: (f64, f64),
     plan: &ResamplingPlan,
 ) -> Option<f64> {
-    let section = coupled(structure, model).ok()?;
+    let section = CoupledSection::with_model(structure, model).ok()?;
     if let Ok(Some(speed)) = onset_nearby(&section, at) {
         return Some(speed);
     }
@@ -219,7 +229,11 @@ impl Draw {
         match self {
             Self::Blocks(count) => {
                 let weights: Vec<f64> = (0..*count).map(|_| Exp1.sample(&mut random)).collect();
-                estimate.reweighted(&weights)
+                let mut drawn = estimate.reweighted(&weights)?;
+                if let Some(values) = &mut drawn {
+                    estimate.scatter_speeds(values, &mut || StandardNormal.sample(&mut random));
+                }
+                Ok(drawn)
             }
             Self::Normal(root) => {
                 let normal = nalgebra::DVector::from_fn(root.ncols(), |_, _| {

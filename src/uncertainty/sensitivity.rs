@@ -5,7 +5,6 @@
 //! `dλ = uᴴ dA v / uᴴ v` (Murthy & Haftka, "Derivatives of eigenvalues and eigenvectors of a general complex matrix",
 //! IJNME 26, 1988). At the onset `Re λ = 0`, so `dV_F/dθ = −Re(∂λ/∂θ)/Re(∂λ/∂V)`.
 
-use crate::aerodynamics::AerodynamicModel;
 use crate::aeroelastic::{CoupledSection, CoupledSystem};
 use crate::error::{Error, Result};
 use crate::identification::CoefficientUncertainty;
@@ -31,21 +30,7 @@ fn section_at(
     estimate: &CoefficientUncertainty,
     values: &[f64],
 ) -> Result<CoupledSection> {
-    coupled(structure, &estimate.model_at(values)?)
-}
-
-/// The section with a model.
-///
-/// # Errors
-/// A model without a realisation, or one that cannot be coupled.
-pub(super) fn coupled(
-    structure: &Structure,
-    model: &dyn AerodynamicModel,
-) -> Result<CoupledSection> {
-    let realization = model
-        .realize()
-        .ok_or_else(|| Error::Numerical("the model has no state-space realisation".into()))?;
-    CoupledSection::new(structure.clone(), realization)
+    CoupledSection::with_model(structure, &estimate.model_at(values)?)
 }
 
 /// Gradient of the onset speed (m/s) with respect to the parameters.

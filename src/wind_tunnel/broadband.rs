@@ -7,7 +7,9 @@
 use super::motion::{Timing, UnitMotion, window};
 use super::records::Record;
 use super::virtual_tunnel::TunnelPlan;
-use crate::aerodynamics::derivatives::{DerivativeTable, Extrapolation, InterpolatedTable};
+use crate::aerodynamics::derivatives::{
+    DerivativeTable, Extrapolation, InterpolatedTable, Interpolation,
+};
 use crate::error::{Error, Result, positive};
 use crate::section::Dof;
 use nalgebra::Complex;
@@ -151,7 +153,9 @@ impl TunnelPlan {
                 self.motion.describe(),
             ));
         }
-        let model = InterpolatedTable::new(group, dofs, Extrapolation::Hold)?;
+        // as the plan's key says
+        let by = Interpolation::LinearVHat;
+        let model = InterpolatedTable::by(by, group, dofs, Extrapolation::Hold)?;
         let mut records =
             self.records_at_speed(&model, &group.name, group.width_m, speed_m_s, delay_s)?;
         for record in &mut records {

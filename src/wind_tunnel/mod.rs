@@ -6,6 +6,7 @@ pub mod campaign;
 #[cfg(feature = "campaigns")]
 pub mod lab_files;
 mod motion;
+mod plan_checks;
 mod prediction;
 pub mod processing;
 mod raw;

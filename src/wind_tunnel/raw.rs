@@ -11,6 +11,7 @@
 //! that inertia of an accelerating model of mass m shows as −m ẍ.
 
 use crate::error::{Error, Result, positive};
+use crate::section::Dof;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use serde::{Deserialize, Serialize};
 
@@ -39,6 +40,12 @@ pub struct Rig {
     pub model_length_m: f64,
     /// Width of the model B, m.
     pub model_width_m: f64,
+    /// Mass of the model with all that moves with it, kg, to be compared with what the still-air runs show.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub model_mass_kg: Option<f64>,
+    /// Its moment of inertia about the centre of rotation, kg·m², likewise.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub model_inertia_kg_m2: Option<f64>,
     /// The cells that carry the model.
     pub cells: Vec<LoadCell>,
 }
@@ -51,6 +58,12 @@ impl Rig {
     pub fn validate(&self) -> Result<()> {
         positive("rig.model_length_m", self.model_length_m)?;
         positive("rig.model_width_m", self.model_width_m)?;
+        for (key, stated) in [
+            ("rig.model_mass_kg", self.model_mass_kg),
+            ("rig.model_inertia_kg_m2", self.model_inertia_kg_m2),
+        ] {
+            stated.map_or(Ok(0.0), |x| positive(key, x))?;
+        }
         if self.cells.is_empty() {
             return Err(Error::input("rig.cells", "at least one load cell", "none"));
         }
@@ -133,8 +146,9 @@ pub struct RawRun {
     pub name: String,
     /// Recording in wind.
     pub in_wind: RawRecording,
-    /// Recording of the same motion in still air.
-    pub still_air: RawRecording,
+    /// Recording of the same motion in still air; `None` where the forces are those of the wind alone, without inertia,
+    /// as those of a computation are.
+    pub still_air: Option<RawRecording>,
     /// Mean wind speed, m/s: stated, or the mean of its channel.
     pub mean_speed_m_s: f64,
     /// Air density, kg/m³: stated, or from temperature and pressure.
@@ -152,6 +166,8 @@ pub struct RawCampaign {
     pub licence: String,
     /// The rig.
     pub rig: Rig,
+    /// Forces that were measured or computed; `None` for all.
+    pub forces: Option<Vec<Dof>>,
     /// The runs, in the order of the campaign file.
     pub runs: Vec<RawRun>,
 }

@@ -1,7 +1,9 @@
 //! Dimensionless forces of the virtual tunnel: from test points of a table, or as the response of a model.
 
 use super::motion::UnitMotion;
-use crate::aerodynamics::derivatives::{Derivative, DerivativePoint, DerivativeTable, Part};
+use crate::aerodynamics::derivatives::{
+    Derivative, DerivativePoint, DerivativeTable, Extrapolation, InterpolatedTable, Part,
+};
 use crate::aerodynamics::{AerodynamicModel, TransferMatrix};
 use crate::error::{Error, Result};
 use crate::section::Dof;
@@ -20,13 +22,15 @@ pub(super) struct TestPoints {
     pub k: Vec<ReducedFrequency>,
     /// `G` of each row, then point.
     pub g: Vec<Vec<Complex<f64>>>,
+    /// Whether derivatives were tested at different points and all but one were interpolated.
+    pub interpolated: bool,
 }
 
 impl TestPoints {
     /// The column of `motion` from a table of one speed group.
     ///
     /// # Errors
-    /// [`Error::Input`] when derivatives of the column were tested at different points.
+    /// [`Error::Input`] when derivatives of the column were tested in ranges of `K` that share no test point.
     pub fn new(group: &DerivativeTable, dofs: &[Dof], motion: Dof) -> Result<Self> {
         let column = |part| {
             dofs.iter()
@@ -34,18 +38,15 @@ impl TestPoints {
         };
         let all: Vec<Derivative> = column(Part::Real).chain(column(Part::Imaginary)).collect();
         let reference = group.points(all[0]);
-        for derivative in &all {
+        let same_points = |derivative: &Derivative| {
             let own = group.points(*derivative);
             let same = |(a, b): (&DerivativePoint, &DerivativePoint)| {
                 (a.v_hat / b.v_hat - 1.0).abs() < SAME_K
             };
-            if own.len() != reference.len() || !own.iter().zip(reference).all(same) {
-                return Err(Error::input(
-                    format!("table {}, {derivative}", group.name),
-                    format!("the test points of {} at the same speed", all[0]),
-                    "others: no one run gives both",
-                ));
-            }
+            own.len() == reference.len() && own.iter().zip(reference).all(same)
+        };
+        if !all.iter().all(same_points) {
+            return Self::interpolated(group, dofs, motion);
         }
         let mean_k = |i: usize| {
             let sum: f64 = all
@@ -67,6 +68,35 @@ impl TestPoints {
         Ok(Self {
             k: (0..reference.len()).map(mean_k).collect(),
             g: dofs.iter().map(row).collect(),
+            interpolated: false,
+        })
+    }
+
+    /// The same where derivatives have test points of their own: `G` at those of the first derivative that lie in the
+    /// range of all.
+    fn interpolated(group: &DerivativeTable, dofs: &[Dof], motion: Dof) -> Result<Self> {
+        let model = InterpolatedTable::new(group, dofs, Extrapolation::Refuse)?;
+        let range = model.tested_range();
+        let first = Derivative::of(dofs[0], motion, Part::Real);
+        let points = group.points(first).iter().map(DerivativePoint::k);
+        let k: Vec<ReducedFrequency> = points.filter(|k| range.contains(*k)).collect();
+        if k.is_empty() {
+            return Err(Error::input(
+                format!("table {}", group.name),
+                format!("a test point of {first} in the range of all other derivatives"),
+                "none: no record can show all of them",
+            ));
+        }
+        let j = dofs.iter().position(|d| *d == motion).unwrap_or(0);
+        let at: Vec<_> = k
+            .iter()
+            .map(|k| model.transfer(*k))
+            .collect::<Result<_>>()?;
+        let row = |i: usize| at.iter().map(|g| g[(i, j)]).collect();
+        Ok(Self {
+            g: (0..dofs.len()).map(row).collect(),
+            k,
+            interpolated: true,
         })
     }
 }

@@ -21,7 +21,7 @@ use super::records::{Record, RecordHeader};
 use super::virtual_forces::{TestPoints, unit_response};
 use crate::aerodynamics::AerodynamicModel;
 use crate::aerodynamics::derivatives::{DerivativeTable, TABLE_3_2_FREQUENCIES_HZ};
-use crate::error::{Error, Result, non_negative, positive};
+use crate::error::{Result, positive};
 use crate::section::Dof;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -90,43 +90,11 @@ impl Default for TunnelPlan {
 }
 
 impl TunnelPlan {
-    /// Checks that the plan can be carried out.
-    ///
-    /// # Errors
-    /// [`Error::Input`] naming the key.
-    pub fn validate(&self) -> Result<()> {
-        for (key, list) in [
-            ("frequencies_hz", &self.frequencies_hz),
-            ("speeds_m_s", &self.speeds_m_s),
-        ] {
-            if list.is_empty() {
-                return Err(Error::input(key, "at least one number", "none"));
-            }
-            list.iter().try_for_each(|x| positive(key, *x).map(drop))?;
-        }
-        positive("vertical_amplitude_m", self.vertical_amplitude_m)?;
-        positive("lateral_amplitude_m", self.lateral_amplitude_m)?;
-        positive("torsion_amplitude_deg", self.torsion_amplitude_deg)?;
-        positive("sampling_hz", self.sampling_hz)?;
-        non_negative("still_s", self.still_s)?;
-        positive("segment_s", self.segment_s)?;
-        positive("ramp_s", self.ramp_s)?;
-        positive("air_density_kg_m3", self.air_density_kg_m3)?;
-        non_negative("noise_fraction", self.noise_fraction)?;
-        non_negative("noise_correlation_s", self.noise_correlation_s)?;
-        self.motion.validate(self.timing(0.0))?;
-        if 2.0 * self.ramp_s > self.segment_s {
-            let expected = format!("at most half of segment_s ({} s)", self.segment_s);
-            return Err(Error::input("ramp_s", expected, self.ramp_s.to_string()));
-        }
-        self.check_sampling(&self.frequencies_hz)
-    }
-
     /// One record a motion and speed group of `table`, forces from its derivatives at its own test points.
     ///
     /// # Errors
-    /// [`Error::Input`] for an impossible plan, or a table that lacks a derivative of `dofs`, has no mean speeds, or
-    /// has other test points for other derivatives of the same motion.
+    /// [`Error::Input`] for an impossible plan, or a table that lacks a derivative of `dofs`. Where derivatives of one motion
+    /// were tested at different points, those of the first are taken and the others interpolated; the record says so.
     pub fn records_from_table(&self, table: &DerivativeTable, dofs: &[Dof]) -> Result<Vec<Record>> {
         let records = self.clean_from_table(table, dofs, 0.0)?;
         Ok(self.with_noise(records))
@@ -141,15 +109,7 @@ impl TunnelPlan {
     ) -> Result<Vec<Record>> {
         self.validate()?;
         table.require(dofs)?;
-        let speeds = table.speed_groups();
-        if speeds.is_empty() {
-            let place = format!("table {}", table.name);
-            return Err(Error::input(
-                place,
-                "the mean speed of every test point",
-                "none",
-            ));
-        }
+        let speeds = self.speeds_of(table);
         let mut records = Vec::new();
         for (i, speed) in speeds.iter().enumerate() {
             let group = table.at_speed_group(i)?;
@@ -221,6 +181,29 @@ impl TunnelPlan {
         Ok(dofs.iter().enumerate().map(record).collect())
     }
 
+    /// Mean speeds of the records of a table, m/s. For a table without speeds the first of the plan is taken: its
+    /// dimensionless forces are the same at every speed.
+    fn speeds_of(&self, table: &DerivativeTable) -> Vec<f64> {
+        let speeds = table.speed_groups();
+        if speeds.is_empty() {
+            self.speeds_m_s.first().copied().into_iter().collect()
+        } else {
+            speeds
+        }
+    }
+
+    /// What records of `table` take for granted; `None` when it says all that they need.
+    pub fn assumption(&self, table: &DerivativeTable) -> Option<String> {
+        table.speed_groups().is_empty().then(|| {
+            let speed = self.speeds_m_s.first().copied().unwrap_or(f64::NAN);
+            format!(
+                "the table states no mean wind speeds: records of the virtual tunnel take {speed} m/s \
+                 (tunnel.speeds_m_s) and the width {} m",
+                table.width_m
+            )
+        })
+    }
+
     pub(super) fn timing(&self, delay_s: f64) -> Timing {
         Timing {
             delay_s,
@@ -228,18 +211,6 @@ impl TunnelPlan {
             segment_s: self.segment_s,
             ramp_s: self.ramp_s,
             sampling_hz: self.sampling_hz,
-        }
-    }
-
-    /// A fifth of the sampling frequency leaves room for the ramps' side bands.
-    fn check_sampling(&self, frequencies_hz: &[f64]) -> Result<()> {
-        let limit = 0.2 * self.sampling_hz;
-        match frequencies_hz.iter().find(|f| **f > limit) {
-            None => Ok(()),
-            Some(f) => {
-                let expected = format!("at most a fifth of sampling_hz ({limit} Hz)");
-                Err(Error::input("frequencies_hz", expected, f.to_string()))
-            }
         }
     }
 
@@ -326,8 +297,16 @@ impl TunnelPlan {
         let unit = self.unit_motion(&frequencies, delay_s);
         let header = RecordHeader {
             source: format!(
-                "virtual tunnel: derivatives of {} at their test points ({})",
-                group.name, group.header.source
+                "virtual tunnel: derivatives of {} at {} ({}){}",
+                group.name,
+                if points.interpolated {
+                    "the test points of the first, the others interpolated"
+                } else {
+                    "their test points"
+                },
+                group.header.source,
+                self.assumption(group)
+                    .map_or_else(String::new, |a| format!("; {a}"))
             ),
             licence: group.header.licence.clone(),
             ..self.header(&group.name, dofs, motion, group.width_m, speed_m_s, &unit)

@@ -31,9 +31,17 @@ pub const ARROWS: &[Row] = &[
     row("section", &["units"]),
     row("aerodynamics", &["units", "section", "state_space"]),
     row("toml_lines", &[]),
+    row("plausibility", &[]),
     row(
         "wind_tunnel",
-        &["units", "section", "aerodynamics", "signal", "toml_lines"],
+        &[
+            "units",
+            "section",
+            "aerodynamics",
+            "signal",
+            "toml_lines",
+            "plausibility",
+        ],
     ),
     row("trained_model", &["units", "section", "aerodynamics"]),
     row(
@@ -56,7 +64,10 @@ pub const ARROWS: &[Row] = &[
     row("buffeting", &["flutter+", "response+"]),
     row("fmu", &["flutter+", "response+", "trained_model+"]),
     row("fmu::fmi2", &["fmu"]),
-    row("reliability", &["flutter+", "trained_model+", "toml_lines"]),
+    row(
+        "reliability",
+        &["flutter+", "trained_model+", "toml_lines", "identification"],
+    ),
     row(
         "uncertainty",
         &["flutter+", "identification+", "wind_tunnel+"],

@@ -48,10 +48,14 @@ def _log(environment, instance, status, category, text):
 _LOGGER = fmi2CallbackLoggerTYPE(_log)
 
 
+# the resource location is the one that FMPy states
+STATED = object()
+
+
 class Section:
     """One instance of an unpacked FMU; a context manager that frees it."""
 
-    def __init__(self, unpacked, description, name="deck", guid=None, logging=True):
+    def __init__(self, unpacked, description, name="deck", guid=None, logging=True, location=STATED):
         self.description = description
         self.variables = {v.name: v for v in description.modelVariables}
         self.handle = next(_handles)
@@ -69,6 +73,11 @@ class Section:
             modelIdentifier=description.coSimulation.modelIdentifier,
             instanceName=name,
         )
+        if location is not STATED:
+            instantiate = self.fmu.fmi2Instantiate
+            self.fmu.fmi2Instantiate = lambda name, kind, guid, _, *rest: instantiate(
+                name, kind, guid, location, *rest
+            )
         try:
             self.fmu.instantiate(callbacks=callbacks, loggingOn=logging)
         except Exception as refusal:

@@ -290,9 +290,12 @@ def test_no_step_is_ever_pending(any_model):
         section.steps(1, 0.01, start=1)
 
 
-def test_initialisation_needs_a_start_time(any_model):
+def test_initialisation_without_a_start_time(any_model):
     with any_model.section() as section:
-        fails(section, ERROR, "set up", section.fmu.enterInitializationMode)
+        section.fmu.enterInitializationMode()
+        assert any("has not been set up" in m.text for m in section.log)
+        section.fmu.exitInitializationMode()
+        section.steps(3, 0.01)
 
 
 def test_outputs_before_initialisation(any_model):
@@ -307,6 +310,33 @@ def test_debug_logging_by_category(any_model):
         section.initialize()
         assert section.log and {m.category for m in section.log} == {"logEvents"}
         fails(section, ERROR, "noSuchCategory", section.fmu.setDebugLogging, True, ["noSuchCategory"])
+        section.steps(3, 0.01)  # the run goes on
+
+
+def test_resource_locations_of_careless_importers(any_model, tmp_path):
+    folder = shutil.copytree(any_model.unpacked, tmp_path / "a%20b")
+    raw = f"file://{folder}/resources".encode()
+    # a path that was not encoded; none at all: the archive that the library lies in
+    for location in [raw, b"", None]:
+        with Section(folder, any_model.description, location=location) as section:
+            section.initialize().steps(3, 0.01)
+
+
+def test_getters_answer_for_every_legal_parameter(any_model):
+    for parameters in [
+        {"heave_frequency": 0.0},
+        {"torsion_frequency": 0.0},
+        {"heave_damping_ratio": 1.2},
+        {"torsion_frequency": 2.0},
+    ]:
+        with any_model.section() as section:
+            section.initialize(**parameters)
+            speed, limit = section.get("onset_speed", "onset_search_limit")
+            assert 0.0 < speed <= limit
+            if not section.flag("onset_found"):
+                assert speed == limit
+            section.get("divergence_speed", "onset_frequency", "onset_reduced_velocity")
+            section.steps(3, 0.01)
 
 
 def test_percent_signs_reach_the_user_as_they_are(any_model, copy):

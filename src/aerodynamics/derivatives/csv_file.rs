@@ -23,9 +23,11 @@
 //! axes but with a `sign_convention`, are read as what they are: Scanlan with ½ over V̂, heave up.
 
 use super::csv_header::{Head, write_head};
+use super::csv_wide;
+use super::missing::fill_in;
 use super::notation::{Argument, Convention, ExpressedPoint, StatedConvention};
-use super::table::check_points;
-use super::{Derivative, DerivativePoint, DerivativeTable};
+use super::table::{check_point_count, check_points};
+use super::{Derivative, DerivativePoint, DerivativeTable, ReadOptions, TableHeader};
 use crate::error::{Error, Result};
 use std::collections::BTreeMap;
 use std::io::Write;
@@ -35,6 +37,9 @@ use std::path::Path;
 pub const CSV_COLUMNS: [&str; 5] = ["derivative", "point", "mean_speed_m_s", "v_hat", "value"];
 /// Place of the argument among them.
 const ARGUMENT: usize = 3;
+
+/// A file of tables, bytes: 18 derivatives at ten thousand points in full precision.
+const BYTES_AT_MOST: u64 = 100 << 20;
 
 /// Points of one derivative and the lines they stand on.
 type Rows = BTreeMap<Derivative, (Vec<DerivativePoint>, Vec<u64>)>;
@@ -51,14 +56,44 @@ pub fn read_csv(path: impl AsRef<Path>) -> Result<DerivativeTable> {
 /// the convention that the file is in.
 ///
 /// # Errors
-/// Those of [`read_csv`], and a header that contradicts what the caller states.
+/// Those of [`read_csv_with`].
 pub fn read_csv_in(
     path: impl AsRef<Path>,
     stated: StatedConvention,
 ) -> Result<(DerivativeTable, Convention)> {
+    let options = ReadOptions {
+        convention: stated,
+        ..ReadOptions::default()
+    };
+    read_csv_with(path, &options)
+}
+
+/// Reads a CSV table, this project's or a wide one (one row a reduced velocity, one column a derivative), with what the
+/// caller states.
+///
+/// # Errors
+/// Those of [`read_csv`], and a header that contradicts what the caller states.
+pub fn read_csv_with(
+    path: impl AsRef<Path>,
+    options: &ReadOptions,
+) -> Result<(DerivativeTable, Convention)> {
     let path = path.as_ref();
+    let size = std::fs::metadata(path)
+        .map_err(|e| Error::io(path, e))?
+        .len();
+    if size > BYTES_AT_MOST {
+        let expected = format!("a table of at most {} MiB", BYTES_AT_MOST >> 20);
+        let found = format!("{} MiB", size >> 20);
+        return Err(Error::input("", expected, found).in_file(path));
+    }
     let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, e))?;
-    parse_csv_in(&text, stated).map_err(|e| e.in_file(path))
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let table = if csv_wide::is_wide(&text) {
+        csv_wide::parse(&text, &stem, options)
+    } else {
+        parse_long(&text, options)
+    };
+    table.map_err(|e| e.in_file(path))
 }
 
 /// The table in `text`, which is the content of a file in this project's CSV.
@@ -76,6 +111,14 @@ pub fn parse_csv(text: &str) -> Result<DerivativeTable> {
 /// # Errors
 /// Those of [`parse_csv`], and a header that contradicts what the caller states.
 pub fn parse_csv_in(text: &str, stated: StatedConvention) -> Result<(DerivativeTable, Convention)> {
+    let options = ReadOptions {
+        convention: stated,
+        ..ReadOptions::default()
+    };
+    parse_long(text, &options)
+}
+
+fn parse_long(text: &str, options: &ReadOptions) -> Result<(DerivativeTable, Convention)> {
     let head = Head::read(text)?;
     let mut reader = csv::ReaderBuilder::new()
         .comment(Some(b'#'))
@@ -93,7 +136,7 @@ pub fn parse_csv_in(text: &str, stated: StatedConvention) -> Result<(DerivativeT
         ));
     }
     in_file.argument = Some(column);
-    let convention = stated.with_file(in_file)?;
+    let convention = options.convention.with_file(in_file)?;
     let mut wanted = CSV_COLUMNS;
     wanted[ARGUMENT] = column.name();
     let columns = find_columns(&names, wanted, line)?;
@@ -105,11 +148,14 @@ pub fn parse_csv_in(text: &str, stated: StatedConvention) -> Result<(DerivativeT
             return Err(Error::input(place, problem.expected, problem.found));
         }
     }
-    let points = rows
+    let mut points = rows
         .into_iter()
         .map(|(d, (points, _))| (d, points))
         .collect();
-    let table = DerivativeTable::new(head.name()?, head.width_m()?, head.provenance()?, points)?;
+    let mut header = head.provenance()?;
+    header.notes.extend(fill_in(&mut points, options.missing));
+    let width = head.width_m(options.width_m)?;
+    let table = DerivativeTable::new(head.name()?, width, header, points)?;
     Ok((table, convention))
 }
 
@@ -119,6 +165,32 @@ pub fn parse_csv_in(text: &str, stated: StatedConvention) -> Result<(DerivativeT
 /// Those of `out`.
 pub fn write_csv(table: &DerivativeTable, out: &mut dyn Write) -> std::io::Result<()> {
     write_csv_in(table, &Convention::default(), out)
+}
+
+/// Writes points of a few derivatives, too few for a table, in the columns and convention of [`write_csv`]: what one motion alone tells.
+///
+/// # Errors
+/// Those of `out`.
+pub fn write_points(
+    (name, width_m, header): (&str, f64, &TableHeader),
+    points: &BTreeMap<Derivative, Vec<DerivativePoint>>,
+    out: &mut dyn Write,
+) -> std::io::Result<()> {
+    write_head(out, (name, width_m, header), &Convention::default())?;
+    writeln!(out, "{}", CSV_COLUMNS.join(","))?;
+    for (derivative, of_one) in points {
+        for (i, p) in of_one.iter().enumerate() {
+            let speed = p.mean_speed_m_s.map_or_else(String::new, |v| v.to_string());
+            writeln!(
+                out,
+                "{derivative},{},{speed},{},{}",
+                i + 1,
+                p.v_hat,
+                p.value
+            )?;
+        }
+    }
+    Ok(())
 }
 
 /// Writes a table in this project's CSV in `convention`, which its header states.
@@ -186,6 +258,7 @@ fn read_rows(
             argument,
             value,
         };
+        check_point_count(&place(0), points.len() + 1)?;
         points.push(convention.read_point(derivative, &point));
         lines.push(line);
     }

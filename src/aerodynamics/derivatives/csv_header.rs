@@ -10,7 +10,7 @@ use std::io::Write;
 const FORMATS: [&str; 2] = ["aerodeck derivative table 2", "aerodeck derivative table 1"];
 
 /// Keys of the header; `sign_convention` stands in files of the first format only.
-const KEYS: [&str; 12] = [
+const KEYS: [&str; 13] = [
     "name",
     "source",
     "licence",
@@ -23,7 +23,11 @@ const KEYS: [&str; 12] = [
     "argument",
     "axes",
     "definition",
+    "note",
 ];
+
+/// Keys that may stand more than once.
+const REPEATED: [&str; 1] = ["note"];
 
 /// Units of the columns in files of the second format.
 const UNITS_WRITTEN: &str =
@@ -37,7 +41,7 @@ pub(super) struct Head {
 impl Head {
     /// Reads the comment lines at the head of `text`.
     pub fn read(text: &str) -> Result<Self> {
-        let mut header = CommentHeader::new(&FORMATS, &KEYS, &[]);
+        let mut header = CommentHeader::new(&FORMATS, &KEYS, &REPEATED);
         for line in text.lines() {
             if !header.take(line)? {
                 break;
@@ -88,9 +92,29 @@ impl Head {
         Ok(self.header.required("name")?.value.clone())
     }
 
-    /// Width `B`, m.
-    pub fn width_m(&self) -> Result<f64> {
-        self.header.required("width_m")?.positive()
+    /// Width `B`, m, of a file that must state it unless the caller does.
+    pub fn width_m(&self, stated: Option<f64>) -> Result<f64> {
+        match self.width_stated(stated)? {
+            Some(width) => Ok(width),
+            None => self.header.required("width_m")?.positive(),
+        }
+    }
+
+    /// Width `B`, m, if the file or the caller states it; they may not contradict each other.
+    pub fn width_stated(&self, stated: Option<f64>) -> Result<Option<f64>> {
+        let stated = stated
+            .map(|width| crate::error::positive("width_m", width))
+            .transpose()?;
+        let Some(entry) = self.header.optional("width_m") else {
+            return Ok(stated);
+        };
+        let width = entry.positive()?;
+        match stated {
+            Some(other) if other != width => {
+                Err(entry.wrong(&format!("{other} as stated on import")))
+            }
+            _ => Ok(Some(width)),
+        }
     }
 
     /// Where the table comes from.
@@ -105,6 +129,7 @@ impl Head {
                 .filter(|e| !e.value.is_empty())
                 .map(Entry::positive)
                 .transpose()?,
+            notes: head.all("note").map(|e| e.value.clone()).collect(),
         })
     }
 }
@@ -152,6 +177,9 @@ pub(super) fn write_head(
         ("model_length_m", &length),
     ] {
         CommentHeader::write_line(out, key, value)?;
+    }
+    for note in &header.notes {
+        CommentHeader::write_line(out, "note", note)?;
     }
     Ok(())
 }

@@ -1,6 +1,7 @@
-//! A derivative table as a model: each derivative interpolated linearly in its own `V̂`.
+//! A derivative table as a model: `G` between the points of each derivative.
 
-use super::{Derivative, DerivativeTable, Part};
+use super::interpolation::{Curve, Interpolation};
+use super::{Derivative, DerivativePoint, DerivativeTable, Part};
 use crate::aerodynamics::{AerodynamicModel, Realization, TransferMatrix};
 use crate::error::{Error, Result};
 use crate::section::Dof;
@@ -15,18 +16,12 @@ pub enum Extrapolation {
     /// Nothing: an error.
     #[default]
     Refuse,
-    /// Each derivative keeps the value of its nearest point.
+    /// What is interpolated keeps its value at the nearest point: to move a section or to follow a mode through, not to
+    /// answer from (see [`AerodynamicModel::known_range`]).
     Hold,
 }
 
-/// One derivative as a polygon over rising `V̂`.
-#[derive(Debug, Clone, PartialEq)]
-struct Polygon {
-    v_hat: Vec<f64>,
-    value: Vec<f64>,
-}
-
-/// A measured table between its points. Each derivative is linear in its own `V̂`; `G` follows from (1.17).
+/// A measured table between its points. Each derivative is interpolated at its own points; `G` follows from (1.17).
 #[derive(Debug, Clone, PartialEq)]
 pub struct InterpolatedTable {
     name: String,
@@ -34,27 +29,48 @@ pub struct InterpolatedTable {
     extrapolation: Extrapolation,
     tested_range: ReducedFrequencyRange,
     /// Real and imaginary part of each entry, row by row.
-    entries: Vec<(Polygon, Polygon)>,
+    entries: Vec<(Curve, Curve)>,
 }
 
 impl InterpolatedTable {
-    /// The table among `dofs`. Points of one derivative with exactly the same `V̂` (at two speeds) count with
-    /// their mean value.
+    /// The table among `dofs`, interpolated as by default.
     ///
     /// # Errors
-    /// [`Error::Input`] when the table lacks a derivative of `dofs`.
+    /// Those of [`InterpolatedTable::by`].
     pub fn new(
         table: &DerivativeTable,
         dofs: &[Dof],
         extrapolation: Extrapolation,
     ) -> Result<Self> {
+        Self::by(Interpolation::default(), table, dofs, extrapolation)
+    }
+
+    /// The table among `dofs`. Points of one derivative at the same `V̂` (at two speeds), and for all but the polygon over
+    /// `V̂` those of different speed groups within 10 % in `K`, count with their mean.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when the table lacks a derivative of `dofs`.
+    pub fn by(
+        interpolation: Interpolation,
+        table: &DerivativeTable,
+        dofs: &[Dof],
+        extrapolation: Extrapolation,
+    ) -> Result<Self> {
         table.require(dofs)?;
-        let polygon =
-            |force, motion, part| Polygon::new(table, Derivative::of(force, motion, part));
+        let groups = table.speed_groups_end();
+        let curve = |force, motion, part| {
+            let points = table.points(Derivative::of(force, motion, part)).iter();
+            let with_group = |p: &DerivativePoint| {
+                let speed = p.mean_speed_m_s.unwrap_or(0.0);
+                (*p, groups.partition_point(|end| *end < speed))
+            };
+            let points: Vec<_> = points.map(with_group).collect();
+            Curve::new(interpolation, part, &points)
+        };
         let entries = dofs
             .iter()
             .flat_map(|force| dofs.iter().map(move |motion| (*force, *motion)))
-            .map(|(f, m)| (polygon(f, m, Part::Real), polygon(f, m, Part::Imaginary)))
+            .map(|(f, m)| (curve(f, m, Part::Real), curve(f, m, Part::Imaginary)))
             .collect();
         Ok(Self {
             name: table.name.clone(),
@@ -68,35 +84,6 @@ impl InterpolatedTable {
     /// The range of `K` in which every derivative was tested; outside it the policy of extrapolation holds.
     pub fn tested_range(&self) -> ReducedFrequencyRange {
         self.tested_range
-    }
-}
-
-impl Polygon {
-    fn new(table: &DerivativeTable, derivative: Derivative) -> Self {
-        let mut points = table.points(derivative).to_vec();
-        points.sort_by(|a, b| a.v_hat.total_cmp(&b.v_hat));
-        let (v_hat, value) = points
-            .chunk_by(|a, b| a.v_hat == b.v_hat)
-            .map(|same| {
-                let mean = same.iter().map(|p| p.value).sum::<f64>() / same.len() as f64;
-                (same[0].v_hat, mean)
-            })
-            .unzip();
-        Self { v_hat, value }
-    }
-
-    /// Linear between the points, constant outside them.
-    fn at(&self, v_hat: f64) -> f64 {
-        let above = self.v_hat.partition_point(|v| *v < v_hat);
-        if above == 0 {
-            return self.value[0];
-        }
-        if above == self.v_hat.len() {
-            return self.value[above - 1];
-        }
-        let (x0, x1) = (self.v_hat[above - 1], self.v_hat[above]);
-        let t = (v_hat - x0) / (x1 - x0);
-        self.value[above - 1] * (1.0 - t) + self.value[above] * t
     }
 }
 
@@ -126,13 +113,17 @@ impl AerodynamicModel for InterpolatedTable {
         let n = self.dofs.len();
         let entry = |i: usize, j: usize| {
             let (re, im) = &self.entries[i * n + j];
-            Complex::new(re.at(k.v_hat()), im.at(k.v_hat())) * (k_full * k_full)
+            Complex::new(re.at(k), im.at(k))
         };
         Ok(DMatrix::from_fn(n, n, entry))
     }
 
     fn realize(&self) -> Option<Realization> {
         None
+    }
+
+    fn known_range(&self) -> Option<ReducedFrequencyRange> {
+        Some(self.tested_range)
     }
 }
 
@@ -142,17 +133,31 @@ mod tests {
     use super::*;
     use crate::aerodynamics::FlatPlate;
 
+    fn plate(v_hat: f64) -> TransferMatrix {
+        let k = ReducedFrequency::from_v_hat(v_hat);
+        FlatPlate::default().transfer(k).unwrap()
+    }
+
     #[test]
-    fn exact_at_the_points_and_linear_in_v_hat_between_them() {
+    fn every_way_is_exact_at_the_points() {
+        let v_hats = [10.0, 7.0, 5.0, 3.0, 2.0];
+        let table = flat_plate_table(&[4.0], &v_hats);
+        for by in Interpolation::ALL {
+            let model =
+                InterpolatedTable::by(by, &table, &Dof::TWO, Extrapolation::Refuse).unwrap();
+            for v in v_hats {
+                let found = model.transfer(ReducedFrequency::from_v_hat(v)).unwrap();
+                assert!((found - plate(v)).camax() < 1e-13, "{by} at {v}");
+            }
+        }
+    }
+
+    #[test]
+    fn linear_in_v_hat_between_the_points_when_asked() {
         let table = flat_plate_table(&[4.0], &[10.0, 5.0, 2.0]);
-        let model = InterpolatedTable::new(&table, &Dof::TWO, Extrapolation::Refuse).unwrap();
-        let plate = |v| {
-            FlatPlate::default()
-                .transfer(ReducedFrequency::from_v_hat(v))
-                .unwrap()
-        };
+        let by = Interpolation::LinearVHat;
+        let model = InterpolatedTable::by(by, &table, &Dof::TWO, Extrapolation::Refuse).unwrap();
         let at = |v| model.transfer(ReducedFrequency::from_v_hat(v)).unwrap();
-        assert!((at(5.0) - plate(5.0)).camax() < 1e-15);
         // Half way between V̂ = 5 and 10 every derivative G V̂² is the mean of the two.
         let expected = (plate(5.0) * Complex::from(25.0) + plate(10.0) * Complex::from(100.0))
             * Complex::from(0.5 / (7.5 * 7.5));
@@ -168,24 +173,31 @@ mod tests {
             refusing.transfer(k).unwrap_err().to_string(),
             "table flat plate: expected a reduced frequency K in the tested range 0.1000 to 0.5000, found K = 1.0000"
         );
-        let holding = InterpolatedTable::new(&table, &Dof::TWO, Extrapolation::Hold).unwrap();
-        let edge = holding
-            .transfer(ReducedFrequency::from_full_width(0.5))
-            .unwrap();
+        let edge = |m: &InterpolatedTable| {
+            let k = ReducedFrequency::from_full_width(0.5);
+            m.transfer(k).unwrap()
+        };
+        let by = Interpolation::LinearVHat;
+        let holding = InterpolatedTable::by(by, &table, &Dof::TWO, Extrapolation::Hold).unwrap();
         let outside = holding.transfer(k).unwrap();
-        assert!((outside - edge * Complex::from(4.0)).camax() < 1e-14);
-        let still = holding
-            .transfer(ReducedFrequency::from_full_width(0.0))
-            .unwrap();
-        assert_eq!(still.camax(), 0.0);
+        assert!((outside - edge(&holding) * Complex::from(4.0)).camax() < 1e-14);
+        let still = ReducedFrequency::from_full_width(0.0);
+        assert_eq!(holding.transfer(still).unwrap().camax(), 0.0);
+        // stiffness and damping instead of derivatives: G is affine in iK beyond the points
+        let holding = InterpolatedTable::new(&table, &Dof::TWO, Extrapolation::Hold).unwrap();
+        let expected = edge(&holding).map(|z| Complex::new(z.re, 2.0 * z.im));
+        assert!((holding.transfer(k).unwrap() - expected).camax() < 1e-14);
+        assert_eq!(holding.known_range(), Some(holding.tested_range()));
     }
 
     #[test]
     fn points_at_equal_v_hat_are_averaged() {
         let table = flat_plate_table(&[4.0, 8.0], &[6.0, 3.0]);
-        let model = InterpolatedTable::new(&table, &Dof::TWO, Extrapolation::Refuse).unwrap();
-        let k = ReducedFrequency::from_v_hat(3.0);
-        let plate = FlatPlate::default().transfer(k).unwrap();
-        assert!((model.transfer(k).unwrap() - plate).camax() < 1e-15);
+        for by in Interpolation::ALL {
+            let model =
+                InterpolatedTable::by(by, &table, &Dof::TWO, Extrapolation::Refuse).unwrap();
+            let k = ReducedFrequency::from_v_hat(3.0);
+            assert!((model.transfer(k).unwrap() - plate(3.0)).camax() < 1e-15);
+        }
     }
 }

@@ -4,7 +4,7 @@ use super::{Derivative, Part, TransferSample};
 use crate::aerodynamics::AerodynamicModel;
 use crate::error::{Error, Result, positive};
 use crate::section::Dof;
-use crate::units::{ReducedFrequency, ReducedFrequencyRange};
+use crate::units::{ReducedFrequency, ReducedFrequencyRange, SAME_SPEED, near_groups};
 use std::collections::BTreeMap;
 
 /// Sign convention and scaling of every table of this project, as written in the header of its files.
@@ -13,8 +13,17 @@ pub const SIGN_CONVENTION: &str = "y and lift up, theta and moment nose-up, x an
 /// Units of the columns, as written in the header of the files.
 pub const UNITS: &str = "mean_speed_m_s in m/s; v_hat = V/(omega B) = 1/K and value dimensionless";
 
-/// Two mean speeds further apart than this ratio belong to different groups of test points.
-const GROUP_RATIO: f64 = 1.05;
+/// Test points of one derivative: more than any tunnel measures, few enough for every reader and fit.
+const POINTS_AT_MOST: usize = 10_000;
+
+/// Refuses more test points than a table can have.
+pub(super) fn check_point_count(place: &str, count: usize) -> Result<()> {
+    if count <= POINTS_AT_MOST {
+        return Ok(());
+    }
+    let expected = format!("at most {POINTS_AT_MOST} test points of a derivative");
+    Err(Error::input(place, expected, count.to_string()))
+}
 
 /// One test point of one derivative.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -45,6 +54,8 @@ pub struct TableHeader {
     pub generator: String,
     /// Length of the section model, m, if known.
     pub model_length_m: Option<f64>,
+    /// What was assumed in reading the table.
+    pub notes: Vec<String>,
 }
 
 /// What is wrong with one point of a derivative; the reader adds where it stands.
@@ -84,6 +95,7 @@ impl DerivativeTable {
         positive("width_m", width_m)?;
         check_complete(&points)?;
         for (derivative, of_one) in &points {
+            check_point_count(derivative.name(), of_one.len())?;
             if let Some(problem) = check_points(of_one) {
                 let place = format!("{derivative}, point {}", problem.index + 1);
                 return Err(Error::input(place, problem.expected, problem.found));
@@ -206,12 +218,22 @@ impl DerivativeTable {
             .collect()
     }
 
+    /// Highest speed of each group, m/s, rising.
+    pub(super) fn speed_groups_end(&self) -> Vec<f64> {
+        let highest = |group: &Vec<f64>| group[group.len() - 1];
+        self.grouped_speeds().iter().map(highest).collect()
+    }
+
     /// The part of the table that was measured at the `i`-th of [`DerivativeTable::speed_groups`].
     ///
     /// # Errors
-    /// [`Error::Input`] when there is no such group, or a derivative was not measured in it.
+    /// [`Error::Input`] when there is no such group, or a derivative was not measured in it. A table without speeds is one
+    /// group.
     pub fn at_speed_group(&self, i: usize) -> Result<Self> {
         let groups = self.grouped_speeds();
+        if groups.is_empty() && i == 0 {
+            return Ok(self.clone());
+        }
         let group = groups.get(i).ok_or_else(|| {
             Error::input(
                 format!("table {}", self.name),
@@ -232,16 +254,8 @@ impl DerivativeTable {
     /// Mean speeds of all points, sorted and split into groups, none of them empty.
     fn grouped_speeds(&self) -> Vec<Vec<f64>> {
         let all = self.points.values().flatten();
-        split_by_speed(all.filter_map(|p| p.mean_speed_m_s).collect())
+        near_groups(all.filter_map(|p| p.mean_speed_m_s), SAME_SPEED)
     }
-}
-
-fn split_by_speed(mut speeds: Vec<f64>) -> Vec<Vec<f64>> {
-    speeds.sort_by(f64::total_cmp);
-    speeds
-        .chunk_by(|a, b| *b <= GROUP_RATIO * a)
-        .map(<[f64]>::to_vec)
-        .collect()
 }
 
 /// Derivatives whose force and motion are both among `dofs`.
@@ -329,8 +343,8 @@ pub(super) fn check_points(points: &[DerivativePoint]) -> Option<PointProblem> {
 
 /// Within a speed group the frequencies are tested in rising or falling order, each once.
 fn check_monotone(points: &[DerivativePoint]) -> Option<PointProblem> {
-    let speeds: Vec<f64> = points.iter().filter_map(|p| p.mean_speed_m_s).collect();
-    let mut groups = split_by_speed(speeds);
+    let speeds = points.iter().filter_map(|p| p.mean_speed_m_s);
+    let mut groups = near_groups(speeds, SAME_SPEED);
     if groups.is_empty() {
         groups.push(vec![0.0, f64::INFINITY]);
     }

@@ -57,7 +57,7 @@ fn samples_are_the_transfer_matrix() {
 
 #[test]
 fn speed_groups_split_the_table() {
-    let groups = split_by_speed(vec![8.17, 4.0, 8.21]);
+    let groups = near_groups(vec![8.17, 4.0, 8.21], SAME_SPEED);
     assert_eq!(groups, [vec![4.0], vec![8.17, 8.21]]);
     let table = flat_plate_table(&[8.17, 4.0], &[3.0]);
     assert_eq!(table.speed_groups(), [4.0, 8.17]);

@@ -1,18 +1,22 @@
 //! Workbooks of derivatives as NTNU keeps them (.xlsx).
 //!
 //! Three sheets, `Mean wind velocity`, `Reduced Velocities`, `Aerodynamic Derivatives`, in any order; in each a
-//! row of names and below it one row a test point; one column a derivative, named `MeanWind_H1`, `Vred_H1`, `H1`.
-//! Derivatives of sway may be left out, in all three sheets alike; other sheets are not looked at.
-//! Every derivative has its own `V̂ = V/(ωB)`. The width is not written down; it follows from the frequencies,
-//! `B = V/(2πf V̂)`. NTNU's workbooks do not state their convention, which is that of this project
+//! row of names and below it one row a test point; one column a derivative, named `MeanWind_H1`, `Vred_H1`, `H1`, or
+//! in all sheets `H1` or `H_1` as the laboratory's own package writes them, with a column of row numbers that is not looked
+//! at. Derivatives of sway may be left out, in all three sheets alike, likewise H4, A4 ([`super::Missing`]).
+//! Every derivative has its own `V̂ = V/(ωB)`. The width is that of a sheet `Dim section model` (names `D`, `B`, `L` over
+//! values in m) or of the notes; else it follows from the frequencies, `B = V/(2πf V̂)`; else 1 m is assumed, with a note:
+//! only the frequencies of virtual records depend on it. NTNU's workbooks do not state their convention, which is that of this project
 //! ([`super::SIGN_CONVENTION`]). Any other is stated by the reader or by a sheet `Notes` (keys `notation`, `argument`,
 //! `axes` beside their values); the columns are then called as in that notation (`MeanWind_h1`, `Vred_h1`, `h1`),
 //! whatever the sheet `Reduced Velocities` holds.
 
+use super::missing::fill_in;
 use super::notation::{Convention, ExpressedPoint, StatedConvention};
-use super::{Derivative, DerivativePoint, DerivativeTable, TableHeader};
+use super::table::check_point_count;
+use super::xlsx_cells::{Book, Cell, Sheet};
+use super::{Derivative, DerivativePoint, DerivativeTable, Missing, TableHeader};
 use crate::error::{Error, Result, positive};
-use calamine::{Data, Range, Reader, Xlsx, open_workbook};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -23,6 +27,13 @@ pub const TABLE_3_2_FREQUENCIES_HZ: [f64; 8] = [0.25, 0.5, 0.8, 1.1, 1.4, 1.7, 2
 /// Name of the sheet of notes.
 pub(super) const NOTES: &str = "Notes";
 
+/// Name of the sheet of dimensions that the laboratory's own package writes.
+const DIMENSIONS: &str = "Dim section model";
+
+/// What is said when nothing gives the width.
+pub(super) const WIDTH_ASSUMED: &str = "the width of the section model is not stated and does not follow from the table: 1 m is taken, on which only the \
+     frequencies of virtual records depend (`width_m` states it)";
+
 /// The same width must follow from every point to within this fraction.
 const WIDTH_TOLERANCE: f64 = 0.01;
 
@@ -32,30 +43,20 @@ pub(super) const REDUCED_VELOCITIES: (&str, &str) = ("Reduced Velocities", "Vred
 pub(super) const DERIVATIVES: (&str, &str) = ("Aerodynamic Derivatives", "");
 
 /// What a workbook does not say of itself.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct WorkbookOptions {
     /// Name of the deck; `None` takes the file name without `AerodynamicDerivatives_` and extension.
     pub name: Option<String>,
-    /// Width of the section model, m; `None` derives it from `frequencies_hz`.
+    /// Width of the section model, m; `None` takes it from the workbook or derives it from `frequencies_hz`.
     pub width_m: Option<f64>,
     /// What is known about notation, argument and axes of the figures; a sheet `Notes` must not contradict it.
     pub convention: StatedConvention,
-    /// Frequencies of motion, Hz, in test order; repeated for every further speed.
-    pub frequencies_hz: Vec<f64>,
+    /// Frequencies of motion, Hz, in test order, repeated for every further speed; `None` tries those of Table 3.2.
+    pub frequencies_hz: Option<Vec<f64>>,
+    /// What stands for H4*, A4* when there are none.
+    pub missing: Option<Missing>,
     /// Provenance; an empty `source` is filled with the file name, an empty `generator` with this program.
     pub header: TableHeader,
-}
-
-impl Default for WorkbookOptions {
-    fn default() -> Self {
-        Self {
-            name: None,
-            width_m: None,
-            convention: StatedConvention::default(),
-            frequencies_hz: TABLE_3_2_FREQUENCIES_HZ.to_vec(),
-            header: TableHeader::default(),
-        }
-    }
 }
 
 /// Reads an NTNU workbook of derivatives.
@@ -76,30 +77,49 @@ pub fn read_workbook_in(
     options: &WorkbookOptions,
 ) -> Result<(DerivativeTable, Convention)> {
     let path = path.as_ref();
-    // Asked for first, because the reader reports a missing file like a damaged one.
-    std::fs::metadata(path).map_err(|e| Error::io(path, e))?;
     let read = || {
-        let mut book: Xlsx<_> = open_workbook(path).map_err(|e: calamine::XlsxError| {
-            Error::input("", "an .xlsx workbook", e.to_string())
-        })?;
-        let convention = convention_of(options.convention, &notes(&mut book)?)?;
-        let points = read_sheets(&mut book, &convention)?;
-        Ok((table_from(path, options, points)?, convention))
+        let mut book = Book::open(path)?;
+        let notes = pairs(&book.sheet(NOTES)?.unwrap_or_default());
+        let convention = convention_of(options.convention, &notes)?;
+        let mut points = read_sheets(&mut book, &convention)?;
+        let mut header = options.header.clone();
+        header.notes.extend(fill_in(&mut points, options.missing));
+        let stated = width_in_book(&mut book, &notes)?;
+        let table = table_from(path, options, header, points, stated)?;
+        Ok((table, convention))
     };
     read().map_err(|e: Error| e.in_file(path))
 }
 
-/// Keys and values of the sheet `Notes`; empty when there is none.
-fn notes(book: &mut Xlsx<std::io::BufReader<std::fs::File>>) -> Result<BTreeMap<String, String>> {
-    if !book.sheet_names().iter().any(|n| n == NOTES) {
-        return Ok(BTreeMap::new());
+/// Keys and values of the sheet `Notes`, the first two columns.
+fn pairs(sheet: &Sheet) -> BTreeMap<String, String> {
+    let cell = |row: u32, column: u32| sheet.cells.get(&(row, column)).map(Cell::text);
+    let rows = sheet.cells.keys().filter(|(_, column)| *column == 0);
+    rows.filter_map(|(row, _)| Some((cell(*row, 0)?, cell(*row, 1)?)))
+        .collect()
+}
+
+/// The width that the workbook states, m, and where.
+fn width_in_book(
+    book: &mut Book,
+    notes: &BTreeMap<String, String>,
+) -> Result<Option<(f64, String)>> {
+    if let Some(sheet) = book.sheet(DIMENSIONS)? {
+        let place = || format!("sheet {DIMENSIONS}, B");
+        let column = sheet.titles().into_iter().find(|t| t.1.trim() == "B");
+        if let Some((column, _)) = column {
+            let width = number(&sheet, DIMENSIONS, sheet.first_row() + 1, column)?;
+            return Ok(Some((positive(&place(), width)?, place())));
+        }
     }
-    let range = book
-        .worksheet_range(NOTES)
-        .map_err(|e| Error::input(format!("sheet {NOTES}"), "readable cells", e.to_string()))?;
-    let cell = |row: usize, column: usize| range.get((row, column)).map(ToString::to_string);
-    let line = |row| Some((cell(row, 0)?, cell(row, 1)?));
-    Ok((0..range.height()).filter_map(line).collect())
+    let Some(text) = notes.get("width_m") else {
+        return Ok(None);
+    };
+    let place = format!("sheet {NOTES}, width_m");
+    let width = text
+        .parse()
+        .map_err(|_| Error::input(&place, "a number", format!("`{text}`")))?;
+    Ok(Some((positive(&place, width)?, place)))
 }
 
 /// What the notes and the caller say of the convention; when neither says anything, it is NTNU's, this project's own.
@@ -138,40 +158,32 @@ fn parse_note<T: std::str::FromStr<Err = Error>>(
 
 type Points = BTreeMap<Derivative, Vec<DerivativePoint>>;
 
-fn read_sheets(
-    book: &mut Xlsx<std::io::BufReader<std::fs::File>>,
-    convention: &Convention,
-) -> Result<Points> {
-    let mut range = |kind: (&str, &str)| -> Result<Range<Data>> {
-        let names = book.sheet_names();
-        let wanted = names.iter().find(|n| n.trim().eq_ignore_ascii_case(kind.0));
-        let name = wanted.cloned().ok_or_else(|| {
+fn read_sheets(book: &mut Book, convention: &Convention) -> Result<Points> {
+    let mut sheet = |kind: (&str, &str)| -> Result<Sheet> {
+        book.sheet(kind.0)?.ok_or_else(|| {
             let expected = format!("a sheet `{}`", kind.0);
-            Error::input("workbook", expected, format!("`{}`", names.join("`, `")))
-        })?;
-        book.worksheet_range(&name)
-            .map_err(|e| Error::input(format!("sheet {name}"), "readable cells", e.to_string()))
+            let found = format!("`{}`", book.names().join("`, `"));
+            Error::input("workbook", expected, found)
+        })
     };
     let sheets = [
-        (range(SPEEDS)?, SPEEDS),
-        (range(REDUCED_VELOCITIES)?, REDUCED_VELOCITIES),
-        (range(DERIVATIVES)?, DERIVATIVES),
+        (sheet(SPEEDS)?, SPEEDS),
+        (sheet(REDUCED_VELOCITIES)?, REDUCED_VELOCITIES),
+        (sheet(DERIVATIVES)?, DERIVATIVES),
     ];
     // tests without sway have no columns for what it couples; a column in one sheet must be in all
     let names = |d| convention.notation.name_of(d);
     let is_held = |d: &Derivative| {
-        sheets
-            .iter()
-            .any(|(range, kind)| column_of(&titles(range), kind.1, names(*d)).is_some())
+        let column = |(sheet, kind): &(Sheet, (&str, &str))| column_of(sheet, kind.1, names(*d));
+        sheets.iter().any(|s| column(s).is_some())
     };
     let held: Vec<Derivative> = Derivative::ALL.into_iter().filter(is_held).collect();
     if held.is_empty() {
-        let found = format!("`{}`", titles(&sheets[2].0).join("`, `"));
         let expected = format!("columns named {}", convention.notation.names());
         return Err(Error::input(
             format!("sheet {}, first row", DERIVATIVES.0),
             expected,
-            found,
+            sheets[2].0.title_words(),
         ));
     }
     let columns = |i: usize| read_columns(&sheets[i].0, sheets[i].1, &held, convention);
@@ -199,69 +211,63 @@ fn read_sheets(
     points.collect()
 }
 
-/// The first row of a sheet.
-fn titles(range: &Range<Data>) -> Vec<String> {
-    let title = |column: usize| {
-        range
-            .get((0, column))
-            .map(ToString::to_string)
-            .unwrap_or_default()
+/// The column of the derivative of this name: with the prefix of the sheet, or bare, as `H1` or `H_1`. Capitals count in
+/// the name: h1 and H1 are different numbers.
+fn column_of(sheet: &Sheet, prefix: &str, name: &str) -> Option<u32> {
+    let underscored = name
+        .char_indices()
+        .nth(1)
+        .map(|(i, _)| format!("{}_{}", &name[..i], &name[i..]));
+    let titles = sheet.titles();
+    let named = |wanted: &str, ending: &str| {
+        let same = |title: &str| {
+            let title = title.trim().trim_end_matches('*');
+            title.eq_ignore_ascii_case(wanted) && title.ends_with(ending)
+        };
+        titles.iter().find(|t| same(&t.1)).map(|t| t.0)
     };
-    (0..range.width()).map(title).collect()
-}
-
-/// The column of the derivative of this name. Capitals count in it: h1 and H1 are different numbers.
-fn column_of(titles: &[String], prefix: &str, name: &str) -> Option<usize> {
-    let wanted = format!("{prefix}{name}");
-    titles.iter().position(|t| {
-        let title = t.trim().trim_end_matches('*');
-        title.eq_ignore_ascii_case(&wanted) && title.ends_with(name)
-    })
+    named(&format!("{prefix}{name}"), name)
+        .or_else(|| named(name, name))
+        .or_else(|| named(underscored.as_deref()?, underscored.as_deref()?))
 }
 
 /// The columns of one sheet that belong to the derivatives `held`.
 fn read_columns(
-    range: &Range<Data>,
-    (sheet, prefix): (&str, &str),
+    sheet: &Sheet,
+    (name, prefix): (&str, &str),
     held: &[Derivative],
     convention: &Convention,
 ) -> Result<BTreeMap<Derivative, Vec<f64>>> {
-    let titles = titles(range);
-    let column = |d: Derivative| {
-        let name = convention.notation.name_of(d);
-        let at = column_of(&titles, prefix, name).ok_or_else(|| {
-            let place = format!("sheet {sheet}, first row");
-            Error::input(
-                place,
-                format!("a column `{prefix}{name}`"),
-                format!("`{}`", titles.join("`, `")),
-            )
-        })?;
-        (1..range.height())
-            .map(|row| number(range, sheet, row, at))
-            .collect::<Result<Vec<f64>>>()
-            .map(|numbers| (d, numbers))
+    let column = |d: &Derivative| {
+        let derivative = convention.notation.name_of(*d);
+        column_of(sheet, prefix, derivative).ok_or_else(|| {
+            let place = format!("sheet {name}, first row");
+            let expected = format!("a column `{prefix}{derivative}`");
+            Error::input(place, expected, sheet.title_words())
+        })
     };
-    held.iter().copied().map(column).collect()
+    let columns: Vec<u32> = held.iter().map(column).collect::<Result<_>>()?;
+    let rows = sheet.first_row() + 1..sheet.last_row(&columns) + 1;
+    check_point_count(&format!("sheet {name}"), rows.len())?;
+    let numbers = |column: u32| {
+        let rows = rows.clone();
+        rows.map(|row| number(sheet, name, row, column))
+            .collect::<Result<Vec<f64>>>()
+    };
+    held.iter()
+        .zip(&columns)
+        .map(|(d, column)| Ok((*d, numbers(*column)?)))
+        .collect()
 }
 
-fn number(range: &Range<Data>, sheet: &str, row: usize, column: usize) -> Result<f64> {
-    let found = match range.get((row, column)) {
-        Some(Data::Float(x)) => return Ok(*x),
-        #[expect(
-            clippy::cast_precision_loss,
-            reason = "no measured figure has 16 digits before the point"
-        )]
-        Some(Data::Int(x)) => return Ok(*x as f64),
-        None | Some(Data::Empty) => "an empty cell".to_owned(),
-        Some(other) => format!("`{other}`"),
+fn number(sheet: &Sheet, name: &str, row: u32, column: u32) -> Result<f64> {
+    let found = match sheet.cells.get(&(row, column)) {
+        Some(Cell::Number(x)) => return Ok(*x),
+        None => "an empty cell".to_owned(),
+        Some(Cell::Text(text)) => format!("`{text}`"),
     };
-    let (first_row, first_column) = range.start().unwrap_or_default();
-    let letter = column_letters(first_column as usize + column);
-    let place = format!(
-        "sheet {sheet}, cell {letter}{}",
-        first_row as usize + row + 1
-    );
+    let letter = column_letters(column as usize);
+    let place = format!("sheet {name}, cell {letter}{}", row + 1);
     Err(Error::input(place, "a number", found))
 }
 
@@ -277,13 +283,18 @@ fn column_letters(mut column: usize) -> String {
     }
 }
 
-fn table_from(path: &Path, options: &WorkbookOptions, points: Points) -> Result<DerivativeTable> {
+fn table_from(
+    path: &Path,
+    options: &WorkbookOptions,
+    mut header: TableHeader,
+    points: Points,
+    in_book: Option<(f64, String)>,
+) -> Result<DerivativeTable> {
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     let name = options.name.clone().unwrap_or_else(|| {
         let bare = stem.trim_start_matches("AerodynamicDerivatives_");
         bare.replace('_', "-")
     });
-    let mut header = options.header.clone();
     if header.source.is_empty() {
         header.source = format!("workbook {stem}.xlsx");
     }
@@ -292,10 +303,20 @@ fn table_from(path: &Path, options: &WorkbookOptions, points: Points) -> Result<
     }
     // Impossible points are found by the table's own check; the width is asked of possible ones only.
     let mut table = DerivativeTable::new(name, 1.0, header, points)?;
-    table.width_m = match options.width_m {
-        Some(width) => positive("width_m", width)?,
-        None => width_from_frequencies(&table, &options.frequencies_hz)?,
+    let derived = |frequencies| width_from_frequencies(&table, frequencies);
+    let (width, note) = match (options.width_m, &options.frequencies_hz, in_book) {
+        (Some(width), _, _) => (positive("width_m", width)?, None),
+        (None, Some(frequencies), _) => (derived(frequencies)?, None),
+        (None, None, Some((width, place))) => {
+            (width, Some(format!("width {width} m from {place}")))
+        }
+        (None, None, None) => derived(&TABLE_3_2_FREQUENCIES_HZ).map_or_else(
+            |e| (1.0, Some(format!("{WIDTH_ASSUMED}; {e}"))),
+            |width| (width, None),
+        ),
     };
+    table.width_m = width;
+    table.header.notes.extend(note);
     Ok(table)
 }
 

@@ -13,7 +13,7 @@ fn fixture(name: &str) -> PathBuf {
 
 fn three_frequencies() -> WorkbookOptions {
     WorkbookOptions {
-        frequencies_hz: vec![0.5, 1.0, 2.0],
+        frequencies_hz: Some(vec![0.5, 1.0, 2.0]),
         ..WorkbookOptions::default()
     }
 }
@@ -105,17 +105,129 @@ fn missing_sheets_and_columns_are_named() {
 
 #[test]
 fn frequencies_that_do_not_fit_are_refused() {
-    let message = refused("workbook.xlsx", &WorkbookOptions::default());
+    let options = |frequencies_hz| WorkbookOptions {
+        frequencies_hz: Some(frequencies_hz),
+        ..WorkbookOptions::default()
+    };
+    let message = refused("workbook.xlsx", &options(TABLE_3_2_FREQUENCIES_HZ.to_vec()));
     assert!(
         message.contains("expected 8 test points a speed"),
         "{message}"
     );
-    let options = WorkbookOptions {
-        frequencies_hz: vec![0.5, 1.0, 1.5],
-        ..WorkbookOptions::default()
-    };
-    let message = refused("workbook.xlsx", &options);
+    let message = refused("workbook.xlsx", &options(vec![0.5, 1.0, 1.5]));
     assert!(message.ends_with("found 0.5000 m to 0.6667 m"), "{message}");
+}
+
+/// Three frequencies that nobody states: everything but the width is there, and a note says what was taken for it.
+#[test]
+fn other_frequencies_are_read_with_a_note_on_the_width() {
+    let table = read_workbook(fixture("workbook.xlsx"), &WorkbookOptions::default()).unwrap();
+    assert_eq!(table.width_m, 1.0);
+    let [note] = &table.header.notes[..] else {
+        panic!("{:?}", table.header.notes)
+    };
+    assert!(
+        note.contains("1 m is taken") && note.contains("found 6"),
+        "{note}"
+    );
+}
+
+/// As the laboratory's own package writes it: a sheet of dimensions, columns `H_1` in every sheet beside row numbers,
+/// two other frequencies, and no H4, A4. Also with the plain names `H1`.
+#[test]
+fn workbooks_of_the_laboratorys_package_are_read() {
+    for pattern in ["{}_{}", "{}{}"] {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("ADs_deck.xlsx");
+        let mut book = rust_xlsxwriter::Workbook::new();
+        let sheet = book.add_worksheet().set_name(DIMENSIONS).unwrap();
+        for (column, (name, value)) in (1..).zip([("D", 0.1), ("B", 0.75), ("L", 2.68)]) {
+            sheet.write_string(0, column, name).unwrap();
+            sheet.write_number(1, column, value).unwrap();
+        }
+        let names = ["H1", "H2", "H3", "A1", "A2", "A3"];
+        for (sheet, number) in [
+            ("Aerodynamic derivatives", -1.5),
+            ("Reduced velocities", 4.0),
+            ("Mean wind velocity", 9.0),
+        ] {
+            let sheet = book.add_worksheet().set_name(sheet).unwrap();
+            for row in 0..2_u32 {
+                sheet.write_number(row + 1, 0, f64::from(row)).unwrap();
+            }
+            for (column, name) in (1..).zip(names) {
+                let (letter, digit) = name.split_at(1);
+                let title = pattern.replacen("{}", letter, 1).replacen("{}", digit, 1);
+                sheet.write_string(0, column, title).unwrap();
+                for row in 1..3_u32 {
+                    let factor = if number == 4.0 { f64::from(row) } else { 1.0 };
+                    sheet.write_number(row, column, number * factor).unwrap();
+                }
+            }
+        }
+        book.save(&path).unwrap();
+        let table = read_workbook(&path, &WorkbookOptions::default()).unwrap();
+        assert_eq!(table.width_m, 0.75);
+        let notes = table.header.notes.join("; ");
+        assert!(
+            notes.contains("width 0.75 m from sheet Dim section model, B"),
+            "{notes}"
+        );
+        assert!(
+            notes.contains("does not hold H4*, A4*: taken as zero"),
+            "{notes}"
+        );
+        assert!(table.points(Derivative::A4).iter().all(|p| p.value == 0.0));
+        let quasi_steady = WorkbookOptions {
+            missing: Some(Missing::QuasiSteady),
+            ..WorkbookOptions::default()
+        };
+        let table = read_workbook(&path, &quasi_steady).unwrap();
+        let values = table.points(Derivative::H4).iter().map(|p| p.value);
+        assert_eq!(values.collect::<Vec<_>>(), [-1.5 / 4.0, -1.5 / 8.0]);
+    }
+}
+
+/// 8 kB that name a cell far away, and a shared string of 100 MB packed into 100 kB: neither fills the memory.
+#[test]
+fn workbooks_that_would_fill_the_memory_are_bounded() {
+    let dir = tempfile::tempdir().unwrap();
+    let far = dir.path().join("far.xlsx");
+    let mut book = rust_xlsxwriter::Workbook::new();
+    for (name, prefix) in [SPEEDS, REDUCED_VELOCITIES, DERIVATIVES] {
+        let sheet = book.add_worksheet().set_name(name).unwrap();
+        for (column, d) in (0..).zip(["H1", "H2", "H3", "H4", "A1", "A2", "A3", "A4"]) {
+            sheet
+                .write_string(0, column, format!("{prefix}{d}"))
+                .unwrap();
+            sheet.write_number(1, column, 2.0).unwrap();
+        }
+        sheet.write_number(1_048_575, 16_383, 1.0).unwrap();
+    }
+    book.save(&far).unwrap();
+    let table = read_workbook(&far, &WorkbookOptions::default()).unwrap();
+    assert_eq!(table.points(Derivative::A4).len(), 1);
+
+    let bomb = dir.path().join("bomb.xlsx");
+    let mut zip = zip::ZipWriter::new(std::fs::File::create(&bomb).unwrap());
+    zip.start_file(
+        "xl/sharedStrings.xml",
+        zip::write::SimpleFileOptions::default(),
+    )
+    .unwrap();
+    let zeros = vec![b'0'; 1 << 20];
+    for _ in 0..100 {
+        std::io::Write::write_all(&mut zip, &zeros).unwrap();
+    }
+    zip.finish().unwrap();
+    assert!(std::fs::metadata(&bomb).unwrap().len() < 200_000);
+    let message = read_workbook(&bomb, &WorkbookOptions::default())
+        .unwrap_err()
+        .to_string();
+    assert!(
+        message.contains("part xl/sharedStrings.xml: expected parts of at most 64 MiB"),
+        "{message}"
+    );
 }
 
 #[test]

@@ -7,9 +7,23 @@ use serde::{Deserialize, Serialize};
 /// Takenaka–Malmquist filters `Λ_l(p) = √(2p_l)/(p + p_l) Π_{j<l} (p − p_j)/(p + p_j)`; equal poles give the
 /// Laguerre filters.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(transparent)]
+#[serde(try_from = "Vec<f64>", into = "Vec<f64>")]
 pub struct FilterBank {
     poles: Vec<f64>,
+}
+
+impl TryFrom<Vec<f64>> for FilterBank {
+    type Error = Error;
+
+    fn try_from(poles: Vec<f64>) -> Result<Self> {
+        Self::new(poles)
+    }
+}
+
+impl From<FilterBank> for Vec<f64> {
+    fn from(bank: FilterBank) -> Self {
+        bank.poles
+    }
 }
 
 impl FilterBank {
@@ -92,6 +106,15 @@ impl FilterBank {
 mod tests {
     use super::*;
     use crate::state_space::complex;
+
+    #[test]
+    fn poles_of_a_file_are_checked() {
+        assert!(serde_json::from_str::<FilterBank>("[0.3, 0.5]").is_ok());
+        for text in ["[0.3, -0.5]", "[0.0]", "[]"] {
+            let message = serde_json::from_str::<FilterBank>(text).unwrap_err();
+            assert!(message.to_string().contains("filter bank"), "{message}");
+        }
+    }
 
     #[test]
     fn state_equations_realise_the_closed_form() {

@@ -1,6 +1,6 @@
 //! Static coefficients of a deck over the angle of attack, smooth between the tested angles.
 
-use super::spline::{POINTS_AT_LEAST, Spline};
+use crate::aerodynamics::spline::{POINTS_AT_LEAST, Spline};
 use crate::error::{Error, Result};
 
 /// Sign convention and scaling of every table of static coefficients, as written in the header of its files.

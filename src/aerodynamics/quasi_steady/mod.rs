@@ -8,7 +8,6 @@ mod arms;
 mod coefficients;
 mod forces;
 mod linear;
-mod spline;
 
 #[cfg(feature = "identification")]
 mod csv_file;
@@ -26,3 +25,19 @@ pub use csv_file::{
 };
 pub use forces::{QuasiSteady, RelativeWind};
 pub use linear::LinearQuasiSteady;
+
+/// The static coefficients of that name: an embedded table, or a file (`.csv`) whose path is read against `directory`.
+///
+/// # Errors
+/// Those of [`embedded::coefficients`] and [`read_coefficients`].
+#[cfg(feature = "identification")]
+pub fn named_coefficients(
+    name: &str,
+    directory: &std::path::Path,
+) -> crate::Result<StaticCoefficients> {
+    if name.to_lowercase().ends_with(".csv") {
+        read_coefficients(directory.join(name))
+    } else {
+        embedded::coefficients(name)
+    }
+}

@@ -1,13 +1,13 @@
 //! Loads the forces of a case and computes its figures.
 
 use super::{Quantity, UserCase, UserFigure};
-use crate::aerodynamics::derivatives::{Extrapolation, InterpolatedTable, embedded, read_table};
+use crate::aerodynamics::derivatives::{Extrapolation, InterpolatedTable, named_table};
 use crate::aerodynamics::{AerodynamicModel, FlatPlate, Lags, RationalModel};
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
 use crate::flutter::{
     FlutterSearch, Onset, OnsetMethod, OnsetSearch, determinant_onset, divergence_speed,
-    find_onset, pk_onset, quasi_pk_mode, sanity_lines,
+    find_onset, pk_onset, quasi_pk_mode, sanity_lines, static_part,
 };
 use crate::section::{Dof, SectionModel, Structure};
 use crate::trained_model::TrainedModel;
@@ -34,22 +34,16 @@ impl Loaded {
         let a = &case.aerodynamics;
         let mut section = case.section.clone();
         let (model, tested): (Box<dyn AerodynamicModel>, _) = if let Some(path) = &a.model {
-            let path = case.directory.join(path);
-            let text = std::fs::read_to_string(&path).map_err(|e| Error::io(&path, e))?;
-            let trained = TrainedModel::from_json(&text).map_err(|e| e.in_file(&path))?;
+            let trained = TrainedModel::read(&case.directory.join(path))?;
             section.get_or_insert(trained.section);
             (Box::new(trained.model), Some(trained.tested_range))
         } else if let Some(name) = &a.table {
-            let path = case.directory.join(name);
-            let table = if path.is_file() {
-                read_table(path)?
-            } else {
-                embedded::deck(name)?
-            };
+            let table = named_table(name, &case.directory)?;
             let dofs = section
                 .as_ref()
                 .map_or(Dof::TWO.to_vec(), SectionModel::dofs);
-            let model = InterpolatedTable::new(&table, &dofs, Extrapolation::Hold)?;
+            let by = a.interpolation.unwrap_or_default();
+            let model = InterpolatedTable::by(by, &table, &dofs, Extrapolation::Hold)?;
             let range = model.tested_range();
             (Box::new(model), Some(range))
         } else if let Some(r) = &a.rational {
@@ -92,10 +86,13 @@ impl Loaded {
         let nothing = |what: &str| Error::Numerical(format!("no {what}"));
         Ok(match figure.quantity {
             Quantity::DivergenceSpeed => {
-                // a table says nothing about steady flow; its lowest tested K is the nearest to it
+                // a table says nothing about steady flow; its static part at the lowest tested K is the nearest to it
                 let slowest = self.tested.filter(|_| self.model.realize().is_none());
                 let k = slowest.map_or(ReducedFrequency::from_full_width(0.0), |range| range.min);
-                let steady = self.model.transfer(k)?;
+                let mut steady = self.model.transfer(k)?;
+                if slowest.is_some() {
+                    steady = static_part(self.model.dofs(), &steady);
+                }
                 divergence_speed(&self.structure, &steady)?.ok_or_else(|| nothing("divergence"))?
             }
             Quantity::Selberg | Quantity::Rocard => {
@@ -137,6 +134,15 @@ impl Loaded {
             Error::input("dof", expected, format!("{:?}", figure.dof))
         })?;
         let mode = quasi_pk_mode(&self.structure, self.model.as_ref(), speed, dof)?;
+        let k = ReducedFrequency::from_circular(mode.im, self.structure.width_m, speed);
+        if let Some(known) = self.model.known_range().filter(|range| !range.contains(k)) {
+            return Err(Error::Numerical(format!(
+                "the mode at {speed} m/s has K = {:.4}; the table knows {:.4} to {:.4} only",
+                k.full_width(),
+                known.min.full_width(),
+                known.max.full_width()
+            )));
+        }
         Ok(if figure.quantity == Quantity::ModeFrequency {
             mode.im / TAU
         } else {
@@ -175,6 +181,6 @@ impl Loaded {
         found
             .onset()
             .cloned()
-            .ok_or_else(|| Error::Numerical(format!("no onset up to {} m/s", self.speed_max)))
+            .ok_or_else(|| Error::Numerical(found.explain()))
     }
 }

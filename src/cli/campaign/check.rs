@@ -55,7 +55,8 @@ fn account(reading: &CampaignReading) -> String {
             run.mean_speed_m_s,
             run.air_density_kg_m3
         );
-        for (what, recording) in [("in wind", &run.in_wind), ("still air", &run.still_air)] {
+        let still = run.still_air.iter().map(|r| ("still air", r));
+        for (what, recording) in std::iter::once(("in wind", &run.in_wind)).chain(still) {
             let _ = writeln!(text, "    {what:<9} {}", described(recording));
         }
     }

@@ -1,6 +1,6 @@
 //! `aerodeck campaign virtual`: a raw campaign with a known truth.
 
-use crate::aerodynamics::derivatives::{embedded, read_table};
+use crate::aerodynamics::derivatives::named_table;
 use crate::aerodynamics::{FlatPlate, RationalModel};
 use crate::cli::answer::Answer;
 use crate::cli::output::{OutputDir, list};
@@ -10,7 +10,7 @@ use crate::section::Dof;
 use crate::wind_tunnel::campaign::{FileFormat, write_virtual_campaign};
 use crate::wind_tunnel::virtual_campaign::{VirtualCampaign, VirtualCampaignPlan};
 use std::fmt::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Invent the raw campaign of a known deck: two load cells, gravity, inertia, wind, noise, drift, a spike, lags
 ///
@@ -45,6 +45,9 @@ pub struct Args {
     /// How the recordings are written.
     #[arg(long, value_enum, default_value_t = Format::Csv)]
     format: Format,
+    /// Replace a campaign file and a plan that differ from what is written.
+    #[arg(long)]
+    force: bool,
 }
 
 /// How the recordings are written.
@@ -70,6 +73,9 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
         Format::Ntnu => FileFormat::Ntnu,
     };
     write_virtual_campaign(&made, format, &mut |name| out.stage(name))?;
+    for name in ["plan.toml", "campaign.toml"] {
+        out.refuse_edited(name, args.force, "choose another --out")?;
+    }
     drop(stage);
     let written = out.commit()?;
     let mut text = format!("{}: {}\n", made.raw.section, made.raw.source);
@@ -82,6 +88,9 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
             run.in_wind.len(),
             run.in_wind.sampling_hz
         );
+    }
+    for hint in plan.tunnel.hints() {
+        let _ = writeln!(text, "  note: {hint}");
     }
     text.push_str(&list(&written));
     let answer = serde_json::json!({
@@ -131,13 +140,8 @@ fn make(args: &Args, plan: &VirtualCampaignPlan) -> Result<VirtualCampaign> {
             refuse_lateral()?;
             plan.from_model(&RationalModel::jones_flat_plate(), "Jones", args.width)
         }
-        lower => {
-            let is_file = [".csv", ".xlsx"].iter().any(|end| lower.ends_with(end));
-            let table = if is_file {
-                read_table(name)?
-            } else {
-                embedded::deck(name)?
-            };
+        _ => {
+            let table = named_table(name, Path::new(""))?;
             let dofs: &[Dof] = if args.lateral { &Dof::THREE } else { &Dof::TWO };
             plan.from_table(&table, dofs)
         }

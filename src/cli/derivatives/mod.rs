@@ -9,11 +9,10 @@ use crate::aerodynamics::derivatives::notation::{
     Argument, Axes, Convention, Notation, StatedConvention,
 };
 use crate::aerodynamics::derivatives::{
-    DerivativeTable, WorkbookOptions, embedded, read_csv_in, read_workbook_in,
+    DerivativeTable, Missing, ReadOptions, embedded, is_table_file, read_table_with,
 };
 use crate::error::Result;
 use clap::Subcommand;
-use std::path::Path;
 
 /// Show tables of aerodynamic derivatives and convert them between notations
 #[derive(Subcommand)]
@@ -56,9 +55,12 @@ struct TableArgs {
     /// Direction of heave and lift in the result; by default what is usual for the notation.
     #[arg(long, value_name = "AXES")]
     to_axes: Option<Axes>,
-    /// Width of the section model, m, for a workbook; by default it follows from the frequencies.
+    /// Width of the section model, m; by default what the file states, and for a workbook what follows from the frequencies.
     #[arg(long)]
     width_m: Option<f64>,
+    /// What stands for H4*, A4* in a table without them: zero (as when nothing is stated), quasi_steady (K H2*, K A2*).
+    #[arg(long, value_name = "HOW")]
+    missing: Option<Missing>,
     /// Frequencies of motion of a workbook in test order, Hz, with commas between them; by default those of the NTNU
     /// tests.
     #[arg(long, value_delimiter = ',')]
@@ -83,29 +85,18 @@ impl TableArgs {
             argument: self.from_argument,
             axes: self.from_axes,
         };
-        let extension = Path::new(&self.table)
-            .extension()
-            .map(|e| e.to_string_lossy().to_lowercase());
-        match extension.as_deref() {
-            Some("xlsx") => self.read_workbook(stated),
-            Some("csv") => read_csv_in(&self.table, stated),
-            _ => {
-                let table = embedded::deck(&self.table)?;
-                let convention = stated.with_file(Convention::default().into())?;
-                Ok((table, convention))
-            }
+        if is_table_file(&self.table) {
+            let options = ReadOptions {
+                convention: stated,
+                width_m: self.width_m,
+                missing: self.missing,
+                frequencies_hz: (!self.frequencies_hz.is_empty())
+                    .then(|| self.frequencies_hz.clone()),
+            };
+            return read_table_with(&self.table, &options);
         }
-    }
-
-    fn read_workbook(&self, stated: StatedConvention) -> Result<(DerivativeTable, Convention)> {
-        let mut options = WorkbookOptions {
-            width_m: self.width_m,
-            convention: stated,
-            ..WorkbookOptions::default()
-        };
-        if !self.frequencies_hz.is_empty() {
-            options.frequencies_hz.clone_from(&self.frequencies_hz);
-        }
-        read_workbook_in(&self.table, &options)
+        let table = embedded::deck(&self.table)?;
+        let convention = stated.with_file(Convention::default().into())?;
+        Ok((table, convention))
     }
 }

@@ -25,6 +25,16 @@ pub fn run(args: &Args) -> Result<Answer> {
     let (table, from) = args.table.read()?;
     let expressed = args.table.target().express(&table);
     let mut text = head(&table, &from, &expressed.convention);
+    let warnings: Vec<String> = table
+        .header
+        .notes
+        .iter()
+        .cloned()
+        .chain(table.hints(&from))
+        .collect();
+    for warning in &warnings {
+        let _ = writeln!(text, "  warning: {warning}");
+    }
     for derivative in &expressed.derivatives {
         let symbol = expressed.convention.symbol(derivative.derivative);
         if args.points {
@@ -45,6 +55,7 @@ pub fn run(args: &Args) -> Result<Answer> {
             "source": table.header.source,
             "licence": table.header.licence,
             "in_file": from,
+            "warnings": warnings,
             "table": expressed,
         }),
     )

@@ -75,6 +75,7 @@ fn determinant<const N: usize>(
     let width = s.width;
     let p = Complex64::new(0.0, omega * width / speed);
     let (g, slope) = forces.transfer::<N>(p, coefficients);
+    let (g, slope) = (s.at_axis(g), s.at_axis(slope));
     let lambda = Complex64::new(0.0, omega);
     let air = 0.5 * s.density * width * width;
     let (pressure, lag) = (air * speed * speed, air * width);
@@ -89,6 +90,10 @@ fn determinant<const N: usize>(
         let (m, r, k) = (s.mass[i], s.damping[i], s.stiffness[i]);
         d[i][i] += Complex64::new(k - m * omega * omega, r * omega);
         by_lambda[i][i] += lambda * (2.0 * m) + r;
+    }
+    for (i, j) in [(0, N - 1), (N - 1, 0)] {
+        d[i][j] -= s.coupling * omega * omega;
+        by_lambda[i][j] += lambda * (2.0 * s.coupling);
     }
     let adjugate = adjugate(&d);
     Determinant {

@@ -1,7 +1,7 @@
 //! Onsets by the ten thousand: every crossing of a section with two or three degrees of freedom, without allocation.
 //!
 //! At a fixed reduced frequency `K` the speed follows from the frequency, `V = ωB/K`, and the determinant is a
-//! polynomial in `ω` ([`pencil`]). Its roots are followed from nearly still air (high `K`) downwards over a fixed grid
+//! polynomial in `ω` ([`pencil`]). Its roots are followed from still air (`K = 1000`) downwards over a fixed grid
 //! on which the functions of the force model are tabulated once; a root that passes the real axis is a crossing, of
 //! whatever mode, and is refined with exact derivatives ([`crossing`]). As all crossings are found, the first one is the
 //! first, and a switch of modes between samples is no special case. Where two roots come too close to be told apart the
@@ -10,22 +10,22 @@
 mod basis;
 mod crossing;
 mod pencil;
+mod setup;
 
 pub use basis::LinearForces;
 
 use crate::error::{Error, Result, positive};
-use crate::section::{Dof, SectionModel, Structure};
+use crate::section::{SectionModel, Structure};
 use crate::units::ReducedFrequency;
 use crossing::{Crossing, refine};
 use nalgebra::Complex;
 use pencil::{Pencil, Supports};
+use setup::{K_MAX, grid, supports};
 
 type Complex64 = Complex<f64>;
 
-/// Highest reduced frequency: nearly still air.
-const K_MAX: f64 = 10.0;
-/// Points of the grid for a factor e of `K`.
-const POINTS_PER_E: f64 = 10.0;
+/// Growth up to this part of the frequency is rounding.
+const ROUNDING: f64 = 1e-9;
 /// The slowest natural frequency may fall to this part before the highest speed is reached.
 const LOWEST_PART: f64 = 0.3;
 /// Roots beyond the highest speed, or the first onset, by this factor are not followed any further.
@@ -33,6 +33,8 @@ const BEYOND: f64 = 1.1;
 /// A step is halved until every root moves less than this part of the distance to its neighbour.
 const MAX_PART: f64 = 0.3;
 const MAX_HALVINGS: usize = 6;
+/// Steps from no static unbalance to all of it.
+const COUPLING_STEPS: u32 = 8;
 /// More crossings than this below the highest speed are no section that anybody would build.
 const MAX_CROSSINGS: usize = 8;
 
@@ -41,6 +43,9 @@ const MAX_CROSSINGS: usize = 8;
 pub enum SweepOutcome {
     /// The section flutters.
     Onset(SweptOnset),
+    /// A mode grows already where it enters the tested range, or in still air where there is none: the onset lies at
+    /// this speed or below.
+    UnstableAtOrBelow(SweptOnset),
     /// No flutter up to the highest speed.
     Stable,
     /// Two roots come too close, or Newton's method fails: to be searched in full.
@@ -89,10 +94,7 @@ impl OnsetSweep {
             .map(|i| (nominal.stiffness[(i, i)] / nominal.mass[(i, i)]).sqrt())
             .fold(f64::INFINITY, f64::min);
         let k_min = (LOWEST_PART * slowest * nominal.width_m / speed_max).clamp(1e-3, 0.5 * K_MAX);
-        let steps = (POINTS_PER_E * (K_MAX / k_min).ln()).ceil();
-        let grid: Vec<f64> = (0..=steps as usize)
-            .map(|i| K_MAX * (k_min / K_MAX).powf(i as f64 / steps))
-            .collect();
+        let grid = grid(k_min, forces.tested.map(|range| range.max.full_width()));
         let count = forces.count();
         let mut table = vec![Complex64::new(0.0, 0.0); count * grid.len()];
         for (k, row) in grid.iter().zip(table.chunks_mut(count)) {
@@ -130,31 +132,6 @@ impl OnsetSweep {
     }
 }
 
-/// Mass, damping, stiffness of the supports in units of the rotation. Does not allocate for values that are right.
-fn supports<const N: usize>(section: &SectionModel) -> Result<Supports<N>> {
-    let usual = section.diagonal()?;
-    let square = section.width_m * section.width_m;
-    let mut s = Supports {
-        width: section.width_m,
-        density: section.air_density_kg_m3,
-        mass: [0.0; N],
-        damping: [0.0; N],
-        stiffness: [0.0; N],
-    };
-    let mut used = 0;
-    for (dof, support) in Dof::THREE.into_iter().zip(usual) {
-        let (Some((mass, damping, stiffness)), true) = (support, used < N) else {
-            continue;
-        };
-        let scale = if dof == Dof::Torsion { 1.0 } else { square };
-        s.mass[used] = scale * mass;
-        s.damping[used] = scale * damping;
-        s.stiffness[used] = scale * stiffness;
-        used += 1;
-    }
-    Ok(s)
-}
-
 /// The roots at one reduced frequency; those that have left the right half plane are no longer followed.
 #[derive(Debug, Clone, Copy)]
 struct Roots<const N: usize> {
@@ -172,6 +149,10 @@ struct Sweep<'a, const N: usize> {
     coefficients: &'a [f64],
     crossings: [Option<Crossing>; MAX_CROSSINGS],
     found: usize,
+    /// The slowest growth where a mode was first judged, in still air and at the upper end of the tested range: speed and
+    /// circular frequency.
+    still: Option<(f64, f64)>,
+    entered: Option<(f64, f64)>,
 }
 
 impl<'a, const N: usize> Sweep<'a, N> {
@@ -182,6 +163,8 @@ impl<'a, const N: usize> Sweep<'a, N> {
             coefficients,
             crossings: [None; MAX_CROSSINGS],
             found: 0,
+            still: None,
+            entered: None,
         }
     }
 
@@ -195,6 +178,8 @@ impl<'a, const N: usize> Sweep<'a, N> {
     /// All crossings up to the highest speed; `None` when the roots cannot be followed.
     fn follow(&mut self) -> Option<()> {
         let mut roots = self.start()?;
+        self.still = self.slowest_growth(&roots);
+        let tested_max = self.sweep.forces.tested.map(|range| range.max.full_width());
         for i in 1..self.sweep.grid.len() {
             let k = self.sweep.grid[i];
             let pencil = Pencil::new(&self.supports, k, &self.tabulated(i));
@@ -205,6 +190,9 @@ impl<'a, const N: usize> Sweep<'a, N> {
                 }
                 None => self.halved(roots, k)?,
             };
+            if tested_max == Some(k) {
+                self.entered = self.slowest_growth(&roots);
+            }
             let limit = BEYOND * self.lowest().min(self.sweep.speed_max) * k / self.supports.width;
             let beyond = |i: usize| !roots.alive[i] || roots.omega[i].re > limit;
             if (0..N).all(beyond) {
@@ -214,12 +202,34 @@ impl<'a, const N: usize> Sweep<'a, N> {
         Some(())
     }
 
+    /// The lowest speed at which a mode grows at the reduced frequency of `roots`, with its frequency.
+    fn slowest_growth(&self, roots: &Roots<N>) -> Option<(f64, f64)> {
+        (0..N)
+            .filter(|i| roots.alive[*i])
+            .map(|i| roots.omega[i])
+            .filter(|omega| omega.im < -ROUNDING * omega.re)
+            .map(|omega| (omega.re * self.supports.width / roots.k, omega.re))
+            .filter(|(speed, _)| *speed <= self.sweep.speed_max)
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+    }
+
     fn start(&self) -> Option<Roots<N>> {
         let k = self.sweep.grid[0];
-        let pencil = Pencil::new(&self.supports, k, &self.tabulated(0));
-        let mut omega = pencil.uncoupled();
-        for root in &mut omega {
-            *root = pencil.root(*root)?;
+        let g = self.tabulated(0);
+        let mut omega = Pencil::new(&self.supports, k, &g).uncoupled();
+        // a static unbalance draws the roots apart: they are followed from none to all of it
+        let parts = if self.supports.coupling == 0.0 {
+            1
+        } else {
+            COUPLING_STEPS
+        };
+        for part in 1..=parts {
+            let mut supports = self.supports;
+            supports.coupling *= f64::from(part) / f64::from(parts);
+            let pencil = Pencil::new(&supports, k, &g);
+            for root in &mut omega {
+                *root = pencil.root(*root)?;
+            }
         }
         let roots = Roots {
             k,
@@ -247,6 +257,7 @@ impl<'a, const N: usize> Sweep<'a, N> {
             };
             let p = Complex64::new(0.0, next_k);
             let (g, _) = self.sweep.forces.transfer::<N>(p, self.coefficients);
+            let g = self.supports.at_axis(g);
             let pencil = Pencil::new(&self.supports, next_k, &g);
             if let Some(next) = self.step(&at, next_k, &pencil) {
                 self.look(&at, &next)?;
@@ -261,7 +272,7 @@ impl<'a, const N: usize> Sweep<'a, N> {
         Some(at)
     }
 
-    /// `G` at a point of the grid.
+    /// `G` about the axis at a point of the grid.
     fn tabulated(&self, i: usize) -> [[Complex64; N]; N] {
         let forces = &self.sweep.forces;
         let count = forces.count();
@@ -274,7 +285,7 @@ impl<'a, const N: usize> Sweep<'a, N> {
                 row_of_g[j] += value * theta;
             }
         }
-        g
+        self.supports.at_axis(g)
     }
 
     /// The roots at `k`, unless one of them is not clearly the continuation of one before.
@@ -330,7 +341,16 @@ impl<'a, const N: usize> Sweep<'a, N> {
         found
             .filter(|c| c.destabilises && self.inside(c))
             .map(|c| c.speed)
+            .chain(self.unstable().map(|(speed, _)| speed))
             .fold(f64::INFINITY, f64::min)
+    }
+
+    /// Growth where a mode was first judged, of those that are no extrapolation.
+    fn unstable(&self) -> Option<(f64, f64)> {
+        match self.sweep.forces.tested {
+            Some(_) => self.entered,
+            None => self.still,
+        }
     }
 
     fn inside(&self, c: &Crossing) -> bool {
@@ -339,7 +359,7 @@ impl<'a, const N: usize> Sweep<'a, N> {
         tested.is_none_or(|range| range.contains(k))
     }
 
-    /// The lowest crossing inside the tested range, else the lowest.
+    /// The lowest crossing inside the tested range or growth where a mode enters it, else the lowest outside.
     fn choose(&self) -> SweepOutcome {
         let all = || {
             let found = self.crossings[..self.found].iter().flatten();
@@ -347,15 +367,24 @@ impl<'a, const N: usize> Sweep<'a, N> {
         };
         let by_speed = |a: &&Crossing, b: &&Crossing| a.speed.total_cmp(&b.speed);
         let trusted = all().filter(|c| self.inside(c)).min_by(by_speed);
-        let Some(chosen) = trusted.or_else(|| all().min_by(by_speed)) else {
-            return SweepOutcome::Stable;
+        let swept = |(speed, omega): (f64, f64), in_tested_range| SweptOnset {
+            speed_m_s: speed,
+            frequency_hz: omega / std::f64::consts::TAU,
+            in_tested_range,
+            spurious: all().filter(|c| c.speed < speed).count()
+                + usize::from(self.still.is_some_and(|s| s.0 < speed)),
         };
-        SweepOutcome::Onset(SweptOnset {
-            speed_m_s: chosen.speed,
-            frequency_hz: chosen.omega / std::f64::consts::TAU,
-            in_tested_range: self.inside(chosen),
-            spurious: all().filter(|c| c.speed < chosen.speed).count(),
-        })
+        let below = |start: &(f64, f64)| trusted.is_none_or(|c| start.0 <= c.speed);
+        if let Some(start) = self.unstable().filter(below) {
+            return SweepOutcome::UnstableAtOrBelow(swept(start, true));
+        }
+        match (trusted.or_else(|| all().min_by(by_speed)), self.still) {
+            (Some(chosen), _) => {
+                SweepOutcome::Onset(swept((chosen.speed, chosen.omega), self.inside(chosen)))
+            }
+            (None, Some(still)) => SweepOutcome::UnstableAtOrBelow(swept(still, false)),
+            (None, None) => SweepOutcome::Stable,
+        }
     }
 }
 

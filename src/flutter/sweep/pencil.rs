@@ -1,7 +1,8 @@
 //! The determinant of the impedance at a fixed reduced frequency: a polynomial in `ω` with complex coefficients.
 //!
 //! With `V = ωB/K` and all rows and columns in units of the rotation, `D(ω) = −ω² A + iωR + K_s`, where
-//! `A = M + ½ρB⁴/K² G(iK)` is a full complex matrix and `R`, `K_s` are diagonal.
+//! `A = M + ½ρB⁴/K² G(iK)` is a full complex matrix and `R`, `K_s` are diagonal. A static unbalance is an entry of `M`
+//! beside the diagonal; `G` is about the axis of the section ([`Supports::at_axis`]).
 
 use nalgebra::Complex;
 
@@ -15,6 +16,26 @@ pub(super) struct Supports<const N: usize> {
     pub(super) mass: [f64; N],
     pub(super) damping: [f64; N],
     pub(super) stiffness: [f64; N],
+    /// Static unbalance, the entry of `M` that couples heave and rotation.
+    pub(super) coupling: f64,
+    /// Distance of the axis from the reference point of the forces over the width, positive downwind.
+    pub(super) axis: f64,
+}
+
+impl<const N: usize> Supports<N> {
+    /// `Tᵀ G T`: heave is the first degree of freedom, rotation the last.
+    pub(super) fn at_axis(&self, mut g: [[Complex64; N]; N]) -> [[Complex64; N]; N] {
+        if self.axis != 0.0 {
+            for row in &mut g {
+                row[N - 1] += row[0] * self.axis;
+            }
+            let lift = g[0];
+            for (moment, lift) in g[N - 1].iter_mut().zip(lift) {
+                *moment += lift * self.axis;
+            }
+        }
+        g
+    }
 }
 
 /// Coefficients of `det D(ω)` at one `K`.
@@ -30,8 +51,13 @@ pub(super) struct Pencil<const N: usize> {
 }
 
 impl<const N: usize> Pencil<N> {
+    /// At the reduced frequency `k`, with `g` about the axis.
     pub(super) fn new(s: &Supports<N>, k: f64, g: &[[Complex64; N]; N]) -> Self {
+        let mut g = *g;
         let air = 0.5 * s.density * s.width * s.width * s.width * s.width / (k * k);
+        // beside the diagonal mass and air stand together
+        g[0][N - 1] += s.coupling / air;
+        g[N - 1][0] += s.coupling / air;
         let zero = Complex64::new(0.0, 0.0);
         let mut diagonal = [zero; N];
         for i in 0..N {

@@ -97,7 +97,9 @@ fn instantiate(
             .ok_or_else(|| wrong(place, "a UTF-8 text", format!("{text:?}")))
     };
     let guid = utf8("GUID", guid)?;
-    let resources = Resources::read(&utf8("resource location", location)?)?;
+    // NULL as an empty text: the archive is looked for around the library itself
+    let location = location.map_or(Ok(String::new()), |_| utf8("resource location", location))?;
+    let resources = Resources::read(&location)?;
     let own = resources.guid.to_string();
     if guid != own {
         let expected = format!("{own} (from variables and resources/model.json)");
@@ -141,7 +143,7 @@ pub unsafe extern "C" fn fmi2SetDebugLogging(
             // SAFETY: as above
             let name = unsafe { text(*name) };
             let category = name.and_then(Category::named).ok_or_else(|| {
-                Refusal::error(format!(
+                Refusal::call(format!(
                     "log category: expected one of the description, found {name:?}"
                 ))
             })?;
@@ -179,7 +181,8 @@ pub unsafe extern "C" fn fmi2EnterInitializationMode(c: fmi2Component) -> fmi2St
     // SAFETY: by the contract of the interface
     unsafe {
         guarded(c, Call::EnterInitializationMode, |component| {
-            component.instance.enter_initialization()
+            component.instance.enter_initialization();
+            Ok(())
         })
     }
 }

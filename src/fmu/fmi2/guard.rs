@@ -44,7 +44,7 @@ impl Component {
         self.instance.note(refusal);
         let (status, category) = match refusal.severity {
             Severity::Discard => (fmi2Status::fmi2Discard, Category::Discard),
-            Severity::Error => (fmi2Status::fmi2Error, Category::Error),
+            Severity::Call | Severity::Error => (fmi2Status::fmi2Error, Category::Error),
         };
         let message = format!("fmi2{function}: {refusal}");
         self.logger.log(status, category, &message);

@@ -1,7 +1,9 @@
 //! The C functions, driven as an importer drives them.
 
 mod derivatives;
+mod leniency;
 mod logging;
+mod offsets;
 mod refusals;
 mod run;
 mod state;
@@ -9,7 +11,7 @@ mod state;
 use super::types::*;
 use super::*;
 use crate::fmu::resources::{Resources, location_of};
-use crate::trained_model::TrainedModel;
+use crate::trained_model::{Model, TrainedModel};
 use std::ffi::{CStr, CString, c_void};
 use std::path::Path;
 use std::sync::Mutex;

@@ -1,6 +1,7 @@
 //! What `modelDescription.xml` of an FMI 2.0 co-simulation FMU says, as plain values.
 
 use serde::Serialize;
+use std::collections::HashMap;
 
 /// Role of a variable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
@@ -153,6 +154,19 @@ impl ScalarVariable {
                     self.effective_initial(),
                     Some(Initial::Exact | Initial::Approx)
                 ))
+    }
+
+    /// An attribute of the variable or, when it states none, of its declared type among `types`
+    /// ([`ModelDescription::types_by_name`]).
+    pub fn attribute<T>(
+        &self,
+        types: &HashMap<&str, &SimpleType>,
+        pick: impl Fn(&TypeAttributes) -> Option<T>,
+    ) -> Option<T> {
+        pick(&self.attributes).or_else(|| {
+            let declared = types.get(self.declared_type.as_deref()?)?;
+            pick(&declared.attributes)
+        })
     }
 
     /// Place for findings.
@@ -324,15 +338,12 @@ impl ModelDescription {
         self.variables.iter().find(|v| v.name == name)
     }
 
-    /// The attribute of the variable or, when it states none, of its declared type.
-    pub fn attribute_of<T>(
-        &self,
-        variable: &ScalarVariable,
-        pick: impl Fn(&TypeAttributes) -> Option<T>,
-    ) -> Option<T> {
-        pick(&variable.attributes).or_else(|| {
-            let name = variable.declared_type.as_deref()?;
-            pick(&self.types.iter().find(|t| t.name == name)?.attributes)
-        })
+    /// The declared types by name, the first of each: to look them up for many variables.
+    pub fn types_by_name(&self) -> HashMap<&str, &SimpleType> {
+        let mut types = HashMap::new();
+        for t in &self.types {
+            types.entry(t.name.as_str()).or_insert(t);
+        }
+        types
     }
 }

@@ -25,8 +25,8 @@ pub use description::{
 };
 pub use findings::{CheckReport, Finding, Severity, Trial};
 pub use growth::{
-    Growth, GrowthPoint, SteppedOnset, SteppedSearch, SteppingSearch, growth_of_samples,
-    onset_by_stepping,
+    Growth, GrowthPoint, SteppedOnset, SteppedSearch, SteppingSearch, growth_by_stepping,
+    growth_of_samples, onset_by_stepping,
 };
 pub use log::LogMessage;
 pub use simulation::{Simulation, Table, simulate};

@@ -7,6 +7,8 @@ use quick_xml::reader::Reader;
 
 /// Elements nested deeper than this are refused; a model description needs five levels, annotations a few more.
 const MAX_DEPTH: usize = 100;
+/// Attributes of one element; the longest of the standard has about twenty, and each is compared with all others.
+const MAX_ATTRIBUTES: usize = 200;
 
 /// One element: text between children is dropped, since a model description holds none.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -83,6 +85,9 @@ impl Element {
 fn element(tag: &BytesStart<'_>, line: usize) -> Result<Element> {
     let mut attributes = Vec::new();
     for attribute in tag.attributes() {
+        if attributes.len() == MAX_ATTRIBUTES {
+            return Err(malformed(line, &"an element of more than 200 attributes"));
+        }
         let attribute = attribute.map_err(|e| malformed(line, &e))?;
         let value = attribute
             .normalized_value(XmlVersion::Implicit1_0)
@@ -159,6 +164,8 @@ mod tests {
                 "{text}: {message}"
             );
         }
+        let many: String = (0..300_000).map(|i| format!(" a{i}=''")).collect();
+        assert!(Element::parse(&format!("<a{many}/>")).is_err());
         let deep = "<a>".repeat(200_000);
         assert!(Element::parse(&deep).is_err());
     }

@@ -4,6 +4,7 @@ use crate::error::{Error, Result};
 use crate::fmu::lifecycle::{State, StateSet, gettable_in, settable_in};
 use crate::fmu::refusal::{Answer, Refusal};
 use crate::fmu::variables::{Causality, Response, Role, Value, Variable, VariableTable};
+use crate::response::wind_at_rest;
 use crate::section::Dof;
 
 /// Type of a variable.
@@ -189,7 +190,16 @@ impl Layout {
     /// Whether `value` may stand at `place` in a state read from a file.
     pub fn check_stored(&self, place: usize, value: f64, table: &VariableTable) -> Answer<()> {
         self.check_value((place, self.access[place]), value, table)
-            .map_err(|refusal| Refusal::error(format!("serialised state: {}", refusal.message)))
+            .map_err(|refusal| Refusal::call(format!("serialised state: {}", refusal.message)))
+    }
+
+    /// `value` as it is stored at `place`: a wind that rounding has taken below zero is at rest.
+    pub fn settled(&self, place: usize, value: f64) -> f64 {
+        if place == self.wind_speed {
+            wind_at_rest(value, 0.0)
+        } else {
+            value
+        }
     }
 
     /// Whether `value` may be stored at `place`: finite, and within the limits of the variable.

@@ -63,6 +63,7 @@ impl Instance {
             self.stepper = None;
         }
         self.onset_current &= same_section && same_limit;
+        self.growth_known &= same_section && same_limit;
         if self.onset_current {
             for place in 0..memory.values.len() {
                 if self.layout.source(place) == Source::Calculated {
@@ -95,7 +96,8 @@ impl Instance {
     /// Bytes that are no state of this export, or hold a value outside the limits of its variable.
     pub fn deserialize(&self, bytes: &[u8]) -> Answer<Snapshot> {
         let guid = self.resources.guid;
-        let mut memory = serialized::read(bytes, &guid, &self.fresh)?;
+        let mut memory = serialized::read(bytes, &guid, &self.fresh)
+            .map_err(|e| Refusal::call(e.to_string()))?;
         for (place, value) in memory.values.iter_mut().enumerate() {
             if self.layout.source(place) == Source::Constant {
                 *value = self.fresh.values[place];

@@ -2,8 +2,8 @@
 
 use crate::aerodynamics::{AerodynamicModel, Realization};
 use crate::aeroelastic::CoupledSection;
-use crate::error::Result;
-use crate::flutter::{OnsetSearch, divergence_speed, find_onset};
+use crate::error::{Error, Result};
+use crate::flutter::{FlutterSearch, OnsetSearch, divergence_speed, find_onset};
 use crate::fmu::variables::{Calculated, Role, SectionParameter, VariableTable};
 use crate::section::{Dof, SectionModel};
 use crate::trained_model::TrainedModel;
@@ -21,6 +21,13 @@ fn section_model(model: &TrainedModel, table: &VariableTable, values: &[f64]) ->
     };
     section.width_m = value(SectionParameter::Width);
     section.air_density_kg_m3 = value(SectionParameter::AirDensity);
+    // the variables are there where the model states them
+    if section.axis_offset_m.is_some() {
+        section.axis_offset_m = Some(value(SectionParameter::AxisOffset));
+    }
+    if section.mass_offset_m.is_some() {
+        section.mass_offset_m = Some(value(SectionParameter::MassOffset));
+    }
     for dof in model.section.dofs() {
         let parameters = [
             SectionParameter::Inertia(dof),
@@ -88,36 +95,80 @@ pub(super) struct OnsetCard {
 }
 
 impl OnsetCard {
-    /// Searches up to `limit` m/s. What is not found is the limit itself, with frequency and reduced velocity zero.
-    ///
-    /// # Errors
-    /// Those of the searches.
-    pub fn search(model: &TrainedModel, section: &CoupledSection, limit: f64) -> Result<Self> {
-        let search = OnsetSearch {
-            speed_max_m_s: limit,
-            ..OnsetSearch::default()
+    /// Searches up to `limit` m/s. What is not found is the limit itself, with frequency and reduced velocity zero; so is
+    /// what cannot be searched for, with a warning: parameters that are legal must not make a getter fail.
+    pub fn search(model: &TrainedModel, section: &CoupledSection, limit: f64) -> Self {
+        let mut warnings = Vec::new();
+        let mut or_none = |what: &str, why: Error| {
+            warnings.push(format!("{what} is not known for these parameters: {why}"));
         };
-        let found = find_onset(
-            model.model.kind(),
-            section,
-            &search,
-            Some(model.tested_range),
-        )?;
-        let steady = model
-            .model
-            .transfer(ReducedFrequency::from_full_width(0.0))?;
-        let divergence = divergence_speed(section.structure(), &steady)?.filter(|v| *v <= limit);
-        let onset = found.onset();
-        Ok(Self {
-            onset_speed: onset.map_or(limit, |o| o.speed_m_s),
-            onset_frequency: onset.map_or(0.0, |o| o.frequency_hz),
-            onset_reduced_velocity: onset.map_or(0.0, |o| o.reduced_velocity.v_star()),
-            divergence_speed: divergence.unwrap_or(limit),
-            onset_found: onset.is_some(),
-            onset_in_tested_range: onset.is_some_and(|o| o.in_tested_range == Some(true)),
-            divergence_found: divergence.is_some(),
-            warnings: onset.map_or_else(Vec::new, |o| o.warnings.clone()),
-        })
+        let divergence = divergence_of(model, section).unwrap_or_else(|e| {
+            or_none("divergence", e);
+            None
+        });
+        let found = onset_of(model, section, limit)
+            .map_err(|e| or_none("flutter onset", e))
+            .ok();
+        let mut card = Self::nothing_found(limit, warnings);
+        if let Some(speed) = divergence.filter(|v| *v <= limit) {
+            card.divergence_speed = speed;
+            card.divergence_found = true;
+        }
+        if let Some(found) = found {
+            card.take(found);
+        }
+        card
+    }
+
+    /// The card of parameters that give no section at all.
+    pub fn unknown(limit: f64, why: &Error) -> Self {
+        Self::nothing_found(
+            limit,
+            vec![format!(
+                "flutter onset and divergence are not known for these parameters: {why}"
+            )],
+        )
+    }
+
+    fn nothing_found(limit: f64, warnings: Vec<String>) -> Self {
+        Self {
+            onset_speed: limit,
+            onset_frequency: 0.0,
+            onset_reduced_velocity: 0.0,
+            divergence_speed: limit,
+            onset_found: false,
+            onset_in_tested_range: false,
+            divergence_found: false,
+            warnings,
+        }
+    }
+
+    /// Enters the answer of a search. Growth from the lowest speed on is an onset at that speed or lower.
+    fn take(&mut self, found: FlutterSearch) {
+        match found {
+            FlutterSearch::Onset(o) => {
+                self.onset_speed = o.speed_m_s;
+                self.onset_frequency = o.frequency_hz;
+                self.onset_reduced_velocity = o.reduced_velocity.v_star();
+                self.onset_found = true;
+                self.onset_in_tested_range = o.in_tested_range == Some(true);
+                self.warnings.extend(o.warnings);
+            }
+            FlutterSearch::UnstableAtOrBelow(start) => {
+                self.onset_speed = start.speed_m_s;
+                self.onset_frequency = start.frequency_hz;
+                self.onset_reduced_velocity = start.reduced_velocity.v_star();
+                self.onset_found = true;
+                self.onset_in_tested_range = start.in_tested_range == Some(true);
+                self.warnings.push(format!(
+                    "the onset lies at {:.3} m/s or lower: {}",
+                    start.speed_m_s,
+                    start.explain()
+                ));
+                self.warnings.extend(start.warnings);
+            }
+            FlutterSearch::StableUpTo(_) => {}
+        }
     }
 
     /// One of its numbers; truth values are 0 and 1.
@@ -133,4 +184,32 @@ impl OnsetCard {
             Calculated::DivergenceFound => flag(self.divergence_found),
         }
     }
+}
+
+fn onset_of(model: &TrainedModel, section: &CoupledSection, limit: f64) -> Result<FlutterSearch> {
+    let search = OnsetSearch {
+        speed_max_m_s: limit,
+        ..OnsetSearch::default()
+    };
+    let tested = Some(model.tested_range);
+    let name = model.model.kind();
+    let found = find_onset(name, section, &search, tested)?;
+    let FlutterSearch::UnstableAtOrBelow(start) = &found else {
+        return Ok(found);
+    };
+    // what is simulated grows from where the model itself says, tested or not
+    let mut own = find_onset(name, section, &search, None)?;
+    if let FlutterSearch::Onset(onset) = &mut own {
+        onset.in_tested_range = Some(false);
+        onset.warnings.push(format!(
+            "the onset of this model lies outside the tested range: {}",
+            start.explain()
+        ));
+    }
+    Ok(own)
+}
+
+fn divergence_of(model: &TrainedModel, section: &CoupledSection) -> Result<Option<f64>> {
+    let still = ReducedFrequency::from_full_width(0.0);
+    divergence_speed(section.structure(), &model.model.transfer(still)?)
 }

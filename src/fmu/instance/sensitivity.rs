@@ -5,7 +5,7 @@
 
 use super::Instance;
 use super::layout::{DataType, Source};
-use super::values::check_order;
+use super::values::{check_finite, check_order};
 use crate::aerodynamics::Realization;
 use crate::aeroelastic::CoupledSection;
 use crate::error::Result;
@@ -68,6 +68,7 @@ impl Instance {
             self.inputs.wind_speed_m_s,
         );
         add(&mut rates, &by_speed, self.inputs.wind_speed_rate_m_s2);
+        check_finite(&rates)?;
         Ok(rates)
     }
 
@@ -99,9 +100,12 @@ impl Instance {
                 *sum += seed * derivative;
             }
         }
-        for (result, sum) in results.iter_mut().zip(sums) {
-            *result = sum;
+        if !sums.iter().all(|x| x.is_finite()) {
+            return Err(Refusal::discard(
+                "directional derivative: beyond the range of numbers",
+            ));
         }
+        results.copy_from_slice(&sums);
         Ok(())
     }
 
@@ -223,7 +227,7 @@ impl Instance {
             stepper.outputs(&state, &self.inputs, &mut outputs)?;
         }
         let card = if wants(|u| matches!(u, Role::Calculated(_))) {
-            Some(self.onset_card(&values)?)
+            Some(self.onset_card(&values))
         } else {
             None
         };
@@ -282,8 +286,8 @@ fn speed_sensitivity(section: &CoupledSection, state: &SectionState, speed: f64)
     let scale = DMatrix::from_diagonal(&DVector::from_fn(n, |i, _| s.dofs[i].force_scale(width)));
     let direct = match section.aerodynamics() {
         Realization::Continuous(c) => {
-            s.to_physical(&c.e0) * part(0, n) * (rho * speed)
-                + s.to_physical(&c.e1) * part(n, n) * (0.5 * rho * width)
+            s.scaled(&c.e0) * part(0, n) * (rho * speed)
+                + s.scaled(&c.e1) * part(n, n) * (0.5 * rho * width)
                 + scale * (&c.c * filters) * (rho * speed)
         }
         Realization::Discrete(d) => scale * (&d.c * filters) * (rho * speed),

@@ -3,6 +3,7 @@
 use super::Instance;
 use crate::fmu::lifecycle::State;
 use crate::fmu::refusal::{Answer, Refusal};
+use crate::response::wind_at_rest;
 
 /// How far an importer's clock may have drifted from ours, relative to the time: sums of some 10⁶ steps.
 const CLOCK_TOLERANCE: f64 = 1e-9;
@@ -32,6 +33,10 @@ impl Instance {
         self.load_inputs();
         if let Some(stepper) = &mut self.stepper {
             stepper.advance(&mut self.memory.section, &self.inputs, step)?;
+        }
+        // after the step: one that is refused is refused at once
+        if !self.growth_known {
+            self.watch_growth();
         }
         Ok(())
     }
@@ -74,6 +79,7 @@ impl Instance {
 
     pub(super) fn run_inputs_on(&mut self, step: f64) {
         let values = &mut self.memory.values;
+        let before = values[self.layout.wind_speed];
         let inputs =
             std::iter::once(self.layout.wind_speed).chain(self.layout.force.iter().copied());
         for (place, rate) in inputs.zip(&self.memory.input_rates) {
@@ -81,5 +87,7 @@ impl Instance {
                 values[place] += rate * step;
             }
         }
+        let wind = self.layout.wind_speed;
+        values[wind] = wind_at_rest(values[wind], before);
     }
 }

@@ -4,9 +4,11 @@ use super::Instance;
 use super::layout::{DataType, Source};
 use super::section::{self, OnsetCard};
 use crate::error::Result;
+use crate::flutter::{OnsetSearch, UnwantedGrowth, unwanted_growth};
 use crate::fmu::refusal::{Answer, Refusal};
 use crate::fmu::resources::Resources;
 use crate::fmu::variables::Role;
+use crate::response::Outputs;
 
 impl Instance {
     /// Values of real variables.
@@ -61,7 +63,7 @@ impl Instance {
                 }
                 self.refresh_outputs()?;
             }
-            Source::Calculated if !self.onset_current => self.refresh_onset()?,
+            Source::Calculated if !self.onset_current => self.refresh_onset(),
             _ => {}
         }
         Ok(self.memory.values[place])
@@ -78,10 +80,12 @@ impl Instance {
             let target =
                 self.layout
                     .writable(*reference, DataType::Real, self.memory.state, table)?;
-            self.layout.check_value(target, *value, table)?;
+            let value = self.layout.settled(target.0, *value);
+            self.layout.check_value(target, value, table)?;
         }
         for (reference, value) in references.iter().zip(values) {
-            self.store(*reference as usize, *value);
+            let place = *reference as usize;
+            self.store(place, self.layout.settled(place, *value));
         }
         Ok(())
     }
@@ -109,10 +113,14 @@ impl Instance {
             Source::Section => {
                 self.stepper = None;
                 self.onset_current = false;
+                self.growth_known = false;
                 self.release_pending = true;
             }
             Source::Release => self.release_pending = true,
-            Source::Limit => self.onset_current = false,
+            Source::Limit => {
+                self.onset_current = false;
+                self.growth_known = false;
+            }
             _ => {}
         }
     }
@@ -163,6 +171,7 @@ impl Instance {
         if let Some(stepper) = &mut self.stepper {
             stepper.outputs(&self.memory.section, &self.inputs, &mut self.outputs)?;
         }
+        check_finite(&self.outputs)?;
         for (i, places) in self.layout.responses.iter().enumerate() {
             let values = &mut self.memory.values;
             values[places[0]] = self.outputs.displacement[i];
@@ -175,10 +184,8 @@ impl Instance {
     }
 
     /// Searches onset and divergence for the current parameters. A search that fails is no reason to end a run.
-    pub(super) fn refresh_onset(&mut self) -> Answer<()> {
-        let card = self
-            .onset_card(&self.memory.values)
-            .map_err(|e| Refusal::discard(format!("onset search: {e}")))?;
+    pub(super) fn refresh_onset(&mut self) {
+        let card = self.onset_card(&self.memory.values);
         for (place, variable) in self.resources.table.variables().iter().enumerate() {
             if let Role::Calculated(which) = variable.role {
                 self.memory.values[place] = card.value(which);
@@ -186,14 +193,43 @@ impl Instance {
         }
         self.notices.extend(card.warnings);
         self.onset_current = true;
-        Ok(())
     }
 
-    pub(super) fn onset_card(&self, values: &[f64]) -> Result<OnsetCard> {
+    /// Growth below the onset for the parameters in `values`.
+    pub(super) fn growth(&self, values: &[f64]) -> Result<UnwantedGrowth> {
         let Resources { model, table, .. } = &self.resources;
         let section = section::coupled_section(model, table, &self.aerodynamics, values)?;
-        OnsetCard::search(model, &section, values[self.layout.search_limit])
+        let search = OnsetSearch {
+            speed_max_m_s: values[self.layout.search_limit],
+            ..OnsetSearch::default()
+        };
+        unwanted_growth(&section, &search, Some(model.tested_range))
     }
+
+    pub(super) fn onset_card(&self, values: &[f64]) -> OnsetCard {
+        let Resources { model, table, .. } = &self.resources;
+        let limit = values[self.layout.search_limit];
+        match section::coupled_section(model, table, &self.aerodynamics, values) {
+            Ok(section) => OnsetCard::search(model, &section, limit),
+            Err(why) => OnsetCard::unknown(limit, &why),
+        }
+    }
+}
+
+/// Refuses outputs that no number holds any more.
+pub(super) fn check_finite(outputs: &Outputs) -> Answer<()> {
+    let lists = [
+        &outputs.displacement,
+        &outputs.rate,
+        &outputs.acceleration,
+        &outputs.self_excited_force,
+    ];
+    if lists.into_iter().flatten().all(|x| x.is_finite()) {
+        return Ok(());
+    }
+    Err(Refusal::discard(
+        "outputs: the motion has grown beyond the range of numbers",
+    ))
 }
 
 /// Rates are known to the first order.
@@ -201,7 +237,7 @@ pub(super) fn check_order(order: i32) -> Answer<()> {
     if order == 1 {
         Ok(())
     } else {
-        Err(Refusal::error(format!(
+        Err(Refusal::call(format!(
             "order of the derivative: expected 1, found {order}"
         )))
     }

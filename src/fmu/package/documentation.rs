@@ -4,7 +4,9 @@ use super::runtime::Runtime;
 use crate::aerodynamics::AerodynamicModel;
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
-use crate::flutter::{FlutterSearch, Onset, OnsetSearch, divergence_speed, find_onset};
+use crate::flutter::{
+    FlutterSearch, Onset, OnsetSearch, divergence_speed, find_onset, unwanted_growth,
+};
 use crate::fmu::resources::Resources;
 use crate::fmu::variables::{Causality, SectionParameter, Value, Variability, Variable, filters};
 use crate::section::Dof;
@@ -194,13 +196,23 @@ fn stability(model: &TrainedModel) -> Result<Vec<String>> {
     };
     let section = CoupledSection::new(structure.clone(), realization)?;
     let mut sentences = match find_onset(&model.name, &section, &search, Some(model.tested_range)) {
-        Ok(FlutterSearch::StableUpTo(speed)) => {
-            vec![format!("No flutter up to {} m/s.", digits(speed))]
+        Ok(FlutterSearch::StableUpTo(range)) => {
+            vec![format!("No flutter up to {} m/s.", digits(range.to_m_s))]
+        }
+        Ok(FlutterSearch::UnstableAtOrBelow(start)) => {
+            let mut sentences = vec![format!("Warning: {}.", start.explain())];
+            sentences.extend(start.warnings.iter().map(|w| format!("Warning: {w}.")));
+            sentences
         }
         Ok(FlutterSearch::Onset(onset)) => onset_sentences(&onset),
         // a page that says so is better than no FMU
         Err(e) => vec![format!("Flutter onset could not be determined: {e}.")],
     };
+    match unwanted_growth(&section, &search, Some(model.tested_range)) {
+        Ok(growth) if growth.is_none() => {}
+        Ok(growth) => sentences.push(format!("Warning: the section {}.", growth.explain())),
+        Err(e) => sentences.push(format!("Growth below the onset could not be judged: {e}.")),
+    }
     let at_rest = model
         .model
         .transfer(ReducedFrequency::from_full_width(0.0))?;

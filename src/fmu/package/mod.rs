@@ -4,9 +4,11 @@
 //! an icon. The runtime for the platform of this program is embedded in it; further ones come from a folder.
 
 mod documentation;
+mod growth;
 mod runtime;
 
 pub use documentation::documentation;
+pub use growth::{Growing, growth_of};
 pub use runtime::{RUNTIME_DIR_VARIABLE, Runtime};
 
 use super::description::model_description;
@@ -43,8 +45,10 @@ pub enum Overwrite {
 /// The FMU of a trained model as the bytes of its archive, with these runtimes in it.
 ///
 /// # Errors
-/// [`Error::Input`] for a model that cannot be exported, for no runtime at all, and for two of one platform.
-pub fn package(model: &TrainedModel, runtimes: &[Runtime]) -> Result<Vec<u8>> {
+/// [`Error::Input`] for a model that cannot be exported, for no runtime at all, and for two of one platform;
+/// [`Error::Numerical`] for a model that grows where it should not, unless that is allowed.
+pub fn package(model: &TrainedModel, runtimes: &[Runtime], growing: Growing) -> Result<Vec<u8>> {
+    growth::check(model, growing)?;
     if runtimes.is_empty() {
         let expected = "a runtime for at least one platform";
         return Err(Error::input("FMU", expected, "none"));
@@ -91,8 +95,9 @@ pub fn write_fmu(
     model: &TrainedModel,
     runtimes: &[Runtime],
     overwrite: Overwrite,
+    growing: Growing,
 ) -> Result<()> {
-    let bytes = package(model, runtimes)?;
+    let bytes = package(model, runtimes, growing)?;
     let folder = match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
         _ => Path::new("."),

@@ -12,8 +12,11 @@ fn embedded() -> Vec<Runtime> {
 
 #[test]
 fn archives_are_reproducible_and_complete() {
-    let bytes = package(&model("rational"), &embedded()).unwrap();
-    assert_eq!(bytes, package(&model("rational"), &embedded()).unwrap());
+    let bytes = package(&model("rational"), &embedded(), Growing::Refuse).unwrap();
+    assert_eq!(
+        bytes,
+        package(&model("rational"), &embedded(), Growing::Refuse).unwrap()
+    );
     let mut zip = zip::ZipArchive::new(Cursor::new(&bytes)).unwrap();
     let names: Vec<_> = (0..zip.len())
         .map(|i| zip.by_index(i).unwrap().name().unwrap().into_owned())
@@ -70,27 +73,128 @@ fn files_are_replaced_only_on_request() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a b.fmu");
     let model = model("rational");
-    write_fmu(&path, &model, &embedded(), Overwrite::Refuse).unwrap();
+    write_fmu(
+        &path,
+        &model,
+        &embedded(),
+        Overwrite::Refuse,
+        Growing::Refuse,
+    )
+    .unwrap();
     let first = std::fs::read(&path).unwrap();
     std::fs::write(&path, "mine").unwrap();
-    let refusal = write_fmu(&path, &model, &embedded(), Overwrite::Refuse).unwrap_err();
+    let refusal = write_fmu(
+        &path,
+        &model,
+        &embedded(),
+        Overwrite::Refuse,
+        Growing::Refuse,
+    )
+    .unwrap_err();
     assert!(refusal.to_string().contains("left as it is"), "{refusal}");
     assert_eq!(std::fs::read(&path).unwrap(), b"mine");
-    write_fmu(&path, &model, &embedded(), Overwrite::Replace).unwrap();
+    write_fmu(
+        &path,
+        &model,
+        &embedded(),
+        Overwrite::Replace,
+        Growing::Refuse,
+    )
+    .unwrap();
     assert_eq!(std::fs::read(&path).unwrap(), first);
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
     let nowhere = folder.path().join("missing").join("a.fmu");
-    assert!(write_fmu(&nowhere, &model, &embedded(), Overwrite::Replace).is_err());
+    assert!(
+        write_fmu(
+            &nowhere,
+            &model,
+            &embedded(),
+            Overwrite::Replace,
+            Growing::Refuse
+        )
+        .is_err()
+    );
 }
 
 #[test]
 fn impossible_packages_are_refused() {
     let model = model("rational");
-    assert!(package(&model, &[]).is_err());
+    assert!(package(&model, &[], Growing::Refuse).is_err());
     let twice = [embedded(), embedded()].concat();
-    let message = package(&model, &twice).unwrap_err().to_string();
+    let message = package(&model, &twice, Growing::Refuse)
+        .unwrap_err()
+        .to_string();
     assert!(
         message.contains("one runtime for each platform"),
         "{message}"
     );
+}
+
+/// The part `c p²/(p + d)` on heave feeds energy in at reduced frequencies above the tested ones.
+pub(crate) fn growing_model() -> TrainedModel {
+    let (c, d) = (20.0, 6.0);
+    let mut growing = model("rational");
+    let crate::trained_model::Model::Rational(rational) = &mut growing.model else {
+        panic!("no rational model");
+    };
+    rational.a2[(0, 0)] += c;
+    let mut lag = rational.a2.clone() * 0.0;
+    lag[(0, 0)] = -c * d;
+    rational.lag_terms.push(lag);
+    let crate::aerodynamics::Lags::Shared(lags) = &mut rational.lags else {
+        panic!("no shared lags");
+    };
+    lags.push(d);
+    growing
+}
+
+#[test]
+fn a_model_that_grows_where_nothing_was_tested_is_exported_only_on_request() {
+    let model = growing_model();
+    let refusal = package(&model, &embedded(), Growing::Refuse).unwrap_err();
+    let refusal = refusal.to_string();
+    for words in ["is not exported", "grows from", "m/s", "were not tested"] {
+        assert!(refusal.contains(words), "`{words}` is not in: {refusal}");
+    }
+    let bytes = package(&model, &embedded(), Growing::Allow).unwrap();
+    let mut zip = zip::ZipArchive::new(Cursor::new(&bytes)).unwrap();
+    let mut page = String::new();
+    let mut entry = zip.by_name("documentation/index.html").unwrap();
+    entry.read_to_string(&mut page).unwrap();
+    assert!(page.contains("grows where it should not"), "{page}");
+}
+
+#[test]
+fn an_instance_says_where_it_grows_when_made_and_after_its_parameters_have_changed() {
+    use crate::fmu::instance::Instance;
+    let resources =
+        |model: &TrainedModel| Resources::from_bytes(model.to_json().unwrap().as_bytes()).unwrap();
+    let growth = |notices: Vec<String>| {
+        let about = |n: &String| n.contains("grows where it should not");
+        notices.iter().filter(|n| about(n)).count()
+    };
+    let mut bad = Instance::new(resources(&growing_model())).unwrap();
+    assert_eq!(growth(bad.take_notices()), 1);
+    bad.set_up_experiment(0.0, None).unwrap();
+    bad.enter_initialization();
+    bad.exit_initialization().unwrap();
+    // said already
+    assert_eq!(growth(bad.take_notices()), 0);
+    let damping = |instance: &Instance| {
+        let variables = instance.table().variables();
+        let is_damping = |name: &str| name.contains("heave") && name.contains("damping");
+        let place = variables.iter().position(|v| is_damping(v.name)).unwrap();
+        [u32::try_from(place).unwrap()]
+    };
+    // enough structural damping beats the made-up energy; taking it away brings the growth back
+    for (ratio, said) in [(0.5, 0), (0.003, 1)] {
+        let reference = damping(&bad);
+        bad.set_reals(&reference, &[ratio]).unwrap();
+        bad.do_step(bad.time_s(), 0.01).unwrap();
+        assert_eq!(growth(bad.take_notices()), said, "{ratio}");
+        bad.do_step(bad.time_s(), 0.01).unwrap();
+        assert_eq!(growth(bad.take_notices()), 0, "{ratio}");
+    }
+    let mut good = Instance::new(resources(&model("rational"))).unwrap();
+    assert_eq!(growth(good.take_notices()), 0);
 }

@@ -7,12 +7,15 @@ use crate::trained_model::TrainedModel;
 
 /// Fills in the dependencies of every output and calculated parameter.
 pub(super) fn fill(variables: &mut [Variable], model: &TrainedModel) {
-    let added_mass = has_added_mass(model);
+    let coupling = Coupling {
+        added_mass: has_added_mass(model),
+        unbalance: model.section.mass_offset_m.is_some(),
+    };
     for i in 0..variables.len() {
         let (direct, mut initial) = match variables[i].role {
             Role::Response(response, dof) => (
-                direct_inputs(variables, response, dof, added_mass),
-                initial_knowns(variables, response, dof, added_mass),
+                direct_inputs(variables, response, dof, coupling),
+                initial_knowns(variables, response, dof, coupling),
             ),
             Role::Calculated(_) => (Vec::new(), parameters(variables)),
             _ => continue,
@@ -20,6 +23,21 @@ pub(super) fn fill(variables: &mut [Variable], model: &TrainedModel) {
         initial.sort_by_key(|d| d.on);
         variables[i].direct_inputs = direct;
         variables[i].initial_dependencies = initial;
+    }
+}
+
+/// What makes the accelerations depend on one another.
+#[derive(Clone, Copy)]
+struct Coupling {
+    /// Of the air: acts on the self-excited forces as well.
+    added_mass: bool,
+    /// Of the section itself.
+    unbalance: bool,
+}
+
+impl Coupling {
+    fn of(self, response: Response) -> bool {
+        self.added_mass || (self.unbalance && response == Response::Acceleration)
     }
 }
 
@@ -36,12 +54,13 @@ fn direct_inputs(
     variables: &[Variable],
     response: Response,
     dof: Dof,
-    added_mass: bool,
+    coupling: Coupling,
 ) -> Vec<usize> {
+    let coupled = coupling.of(response);
     let acts = |role: Role| match (response, role) {
         (Response::Acceleration | Response::SelfExcitedForce, Role::WindSpeed) => true,
-        (Response::Acceleration, Role::ExternalForce(on)) => added_mass || on == dof,
-        (Response::SelfExcitedForce, Role::ExternalForce(_)) => added_mass,
+        (Response::Acceleration, Role::ExternalForce(on)) => coupled || on == dof,
+        (Response::SelfExcitedForce, Role::ExternalForce(_)) => coupled,
         _ => false,
     };
     places(variables, acts)
@@ -51,7 +70,7 @@ fn initial_knowns(
     variables: &[Variable],
     response: Response,
     dof: Dof,
-    added_mass: bool,
+    coupling: Coupling,
 ) -> Vec<InitialDependency> {
     let release = match response {
         Response::Displacement => Some(Role::InitialDisplacement(dof)),
@@ -64,18 +83,21 @@ fn initial_knowns(
             .into_iter()
             .collect();
     }
-    let accelerates = response == Response::Acceleration;
+    let (coupled, accelerates) = (coupling.of(response), response == Response::Acceleration);
     let acts = |role: Role| match role {
         Role::InitialDisplacement(_) | Role::InitialRate(_) => true,
-        Role::Section(SectionParameter::Width | SectionParameter::AirDensity) => true,
+        Role::Section(
+            SectionParameter::Width | SectionParameter::AirDensity | SectionParameter::AxisOffset,
+        ) => true,
+        Role::Section(SectionParameter::MassOffset) => coupled || accelerates,
         Role::Section(
             SectionParameter::Inertia(of)
             | SectionParameter::Frequency(of)
             | SectionParameter::DampingRatio(of),
-        ) => added_mass || (accelerates && of == dof),
+        ) => coupled || (accelerates && of == dof),
         _ => false,
     };
-    let inputs = direct_inputs(variables, response, dof, added_mass);
+    let inputs = direct_inputs(variables, response, dof, coupling);
     dependent(inputs.into_iter().chain(places(variables, acts)))
 }
 

@@ -10,6 +10,10 @@ pub enum SectionParameter {
     Width,
     /// Air density `ρ`.
     AirDensity,
+    /// Distance of the axis from the reference point of the aerodynamic forces; only where the section states it.
+    AxisOffset,
+    /// Distance of the centre of mass from the axis; only where the section states it.
+    MassOffset,
     /// Mass or mass moment of inertia per length.
     Inertia(Dof),
     /// Still-air natural frequency.
@@ -19,13 +23,18 @@ pub enum SectionParameter {
 }
 
 impl SectionParameter {
-    /// The properties of a section with these degrees of freedom, in the order of the table.
-    pub fn all(dofs: &[Dof]) -> Vec<Self> {
-        let supports = dofs
-            .iter()
-            .flat_map(|&d| [Self::Inertia(d), Self::Frequency(d), Self::DampingRatio(d)]);
+    /// The properties of a section, in the order of the table.
+    pub fn all(section: &SectionModel) -> Vec<Self> {
+        let axis = section.axis_offset_m.map(|_| Self::AxisOffset);
+        let mass = section.mass_offset_m.map(|_| Self::MassOffset);
+        let supports = section
+            .dofs()
+            .into_iter()
+            .flat_map(|d| [Self::Inertia(d), Self::Frequency(d), Self::DampingRatio(d)]);
         [Self::Width, Self::AirDensity]
             .into_iter()
+            .chain(axis)
+            .chain(mass)
             .chain(supports)
             .collect()
     }
@@ -61,6 +70,8 @@ impl SectionParameter {
         match self {
             Self::Width => section.width_m,
             Self::AirDensity => section.air_density_kg_m3,
+            Self::AxisOffset => section.axis_offset_m.unwrap_or(0.0),
+            Self::MassOffset => section.mass_offset_m.unwrap_or(0.0),
             Self::Inertia(dof) => support(dof).0,
             Self::DampingRatio(dof) => support(dof).3,
             Self::Frequency(dof) => {

@@ -33,7 +33,7 @@ pub(super) fn variables(model: &TrainedModel) -> Result<Vec<Variable>> {
     let mut table = inputs(model, &dofs);
     table.extend(outputs(model, &dofs));
     table.extend(
-        SectionParameter::all(&dofs)
+        SectionParameter::all(&model.section)
             .into_iter()
             .map(|p| section_parameter(p, &model.section)),
     );
@@ -157,18 +157,32 @@ fn outputs(model: &TrainedModel, dofs: &[Dof]) -> Vec<Variable> {
 fn section_parameter(parameter: SectionParameter, section: &SectionModel) -> Variable {
     let (name, unit, quantity, min, description): (_, Option<&Unit>, _, _, String) = match parameter
     {
+        SectionParameter::AxisOffset => (
+            "axis_offset",
+            Some(&si::METRE),
+            "Length",
+            None,
+            "Axis about which the section turns, to which heave, lift and moment belong: distance from the reference point of the aerodynamic forces, positive downwind".into(),
+        ),
+        SectionParameter::MassOffset => (
+            "mass_offset",
+            Some(&si::METRE),
+            "Length",
+            None,
+            "Centre of mass: distance from the axis, positive downwind".into(),
+        ),
         SectionParameter::Width => (
             "width",
             Some(&si::METRE),
             "Length",
-            SMALLEST,
+            Some(SMALLEST),
             "Full deck width B".into(),
         ),
         SectionParameter::AirDensity => (
             "air_density",
             Some(&si::KILOGRAM_PER_METRE3),
             "Density",
-            SMALLEST,
+            Some(SMALLEST),
             "Air density rho".into(),
         ),
         SectionParameter::Inertia(dof) => {
@@ -187,7 +201,7 @@ fn section_parameter(parameter: SectionParameter, section: &SectionModel) -> Var
                 w.support[0],
                 Some(w.inertia_unit),
                 w.inertia_quantity,
-                min,
+                Some(min),
                 text.into(),
             )
         }
@@ -195,14 +209,14 @@ fn section_parameter(parameter: SectionParameter, section: &SectionModel) -> Var
             words(dof).support[1],
             Some(&si::HERTZ),
             "Frequency",
-            0.0,
+            Some(0.0),
             format!("Natural frequency in still air, {} motion", motion(dof)),
         ),
         SectionParameter::DampingRatio(dof) => (
             words(dof).support[2],
             None,
             "DampingRatio",
-            0.0,
+            Some(0.0),
             format!(
                 "Structural damping as a ratio to critical, {} motion",
                 motion(dof)
@@ -213,7 +227,7 @@ fn section_parameter(parameter: SectionParameter, section: &SectionModel) -> Var
         value: Value::Real(Some(parameter.value_in(section))),
         unit,
         quantity: Some(quantity),
-        min: Some(min),
+        min,
         ..real(name, Role::Section(parameter), TUNABLE, description)
     }
 }

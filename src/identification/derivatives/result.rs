@@ -3,6 +3,7 @@
 use crate::aerodynamics::derivatives::{Derivative, DerivativePoint, DerivativeTable, TableHeader};
 use crate::error::{Error, Result};
 use crate::section::Dof;
+use crate::units::{SAME_SPEED, group_of, near_groups};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -22,7 +23,7 @@ impl Default for DerivativeOptions {
     fn default() -> Self {
         Self {
             full_amplitude: 0.99,
-            same_speed: 1.05,
+            same_speed: SAME_SPEED,
             same_frequency: 1.03,
         }
     }
@@ -77,7 +78,7 @@ pub struct IdentifiedDerivatives {
     pub width_m: f64,
     /// Degrees of freedom of the forces.
     pub dofs: Vec<Dof>,
-    /// By derivative, speed and frequency, all rising.
+    /// By derivative and group of speeds, rising; in a group by frequency, rising (V̂ falls).
     pub estimates: Vec<DerivativeEstimate>,
     /// What the user should know.
     pub warnings: Vec<String>,
@@ -91,11 +92,21 @@ impl IdentifiedDerivatives {
             .filter(move |e| e.derivative == derivative)
     }
 
+    /// Mean speeds of all estimates, m/s, rising and in groups of test points.
+    pub fn speed_groups(&self) -> Vec<Vec<f64>> {
+        near_groups(self.estimates.iter().map(|e| e.mean_speed_m_s), SAME_SPEED)
+    }
+
     /// The table, without standard errors; the header says how it was made.
     ///
     /// # Errors
     /// [`Error::Input`] when the runs did not drive both heave and rotation.
     pub fn table(&self, name: &str, header: TableHeader) -> Result<DerivativeTable> {
+        DerivativeTable::new(name, self.width_m, header, self.points())
+    }
+
+    /// The points of every derivative that was identified, in the order of a table.
+    pub fn points(&self) -> BTreeMap<Derivative, Vec<DerivativePoint>> {
         let mut points = BTreeMap::<Derivative, Vec<DerivativePoint>>::new();
         for e in &self.estimates {
             points
@@ -107,21 +118,18 @@ impl IdentifiedDerivatives {
                     value: e.value,
                 });
         }
-        DerivativeTable::new(name, self.width_m, header, points)
+        points
     }
 
     pub(super) fn sort(&mut self) {
+        let groups = self.speed_groups();
+        let group = |e: &DerivativeEstimate| group_of(&groups, e.mean_speed_m_s);
+        // within a group V̂ falls steadily, as a table wants it, also when its speeds are not quite one
         self.estimates.sort_by(|a, b| {
-            // points of one group were measured at one nominal speed: their order is that of the frequency
-            let by_speed = if (a.mean_speed_m_s / b.mean_speed_m_s).ln().abs() < 1.05_f64.ln() {
-                std::cmp::Ordering::Equal
-            } else {
-                a.mean_speed_m_s.total_cmp(&b.mean_speed_m_s)
-            };
             a.derivative
                 .cmp(&b.derivative)
-                .then(by_speed)
-                .then(a.frequency_hz.total_cmp(&b.frequency_hz))
+                .then(group(a).cmp(&group(b)))
+                .then(b.v_hat.total_cmp(&a.v_hat))
         });
     }
 }

@@ -186,7 +186,7 @@ fn stretch(
     }))
 }
 
-/// Into the group of the same speed and frequency, unless that motion is there already: repeated tests are points of their own.
+/// Into the group of the same frequency and the nearest speed, unless that motion is there already: repeated tests are points of their own.
 fn insert(groups: &mut Vec<Vec<Stretch>>, stretch: Stretch, options: &DerivativeOptions) {
     let near = |a: f64, b: f64, ratio: f64| (a / b).ln().abs() <= ratio.ln();
     let fits = |group: &&mut Vec<Stretch>| {
@@ -196,7 +196,12 @@ fn insert(groups: &mut Vec<Vec<Stretch>>, stretch: Stretch, options: &Derivative
         };
         group.iter().all(same) && group.iter().all(|s| s.driven != stretch.driven)
     };
-    match groups.iter_mut().find(fits) {
+    let off = |group: &&mut Vec<Stretch>| (group[0].speed_m_s / stretch.speed_m_s).ln().abs();
+    let nearest = groups
+        .iter_mut()
+        .filter(fits)
+        .min_by(|a, b| off(a).total_cmp(&off(b)));
+    match nearest {
         Some(group) => group.push(stretch),
         None => groups.push(vec![stretch]),
     }

@@ -42,6 +42,40 @@ fn a_known_transfer_matrix_comes_back() {
     assert_eq!(table.speed_groups().len(), 2);
 }
 
+/// Neighbours within 5 %, the ends are not: one group, whatever the order of the records, and a table.
+#[test]
+fn three_speeds_close_to_each_other_are_one_group() {
+    let plan = TunnelPlan {
+        speeds_m_s: vec![8.3, 8.62, 8.0],
+        ..TunnelPlan::default()
+    };
+    let plate = RationalModel::jones_flat_plate();
+    let records = plan.records_from_model(&plate, "plate", 0.5).unwrap();
+    let found = identify_derivatives(&sources(&records), &DerivativeOptions::default()).unwrap();
+    assert_eq!(found.estimates.len(), 8 * 24);
+    let groups = found.speed_groups();
+    assert_eq!(groups.len(), 1);
+    for d in Derivative::ALL {
+        let v_hat: Vec<f64> = found.of(d).map(|e| e.v_hat).collect();
+        assert!(v_hat.windows(2).all(|w| w[1] < w[0]), "{d}: {v_hat:?}");
+    }
+    // each heave and its rotation are one test point
+    for e in &found.estimates {
+        assert!(
+            e.run.ends_with(&format!("{:.2}", e.mean_speed_m_s)),
+            "{e:?}"
+        );
+    }
+    assert_eq!(
+        found
+            .table("plate", Default::default())
+            .unwrap()
+            .speed_groups()
+            .len(),
+        1
+    );
+}
+
 #[test]
 fn all_eighteen_come_back_from_the_records_of_a_table() {
     let table = embedded::deck("LN21-5200").unwrap();

@@ -1,7 +1,7 @@
 //! What a fit of the discrete model is asked to do.
 
 use crate::error::{Error, Result};
-use crate::identification::options::{TimeWeights, at_least_one};
+use crate::identification::options::{TimeWeights, number_of_filters};
 use crate::identification::own::{OwnDecay, StaticTerm, each_once, place_of};
 use crate::section::Dof;
 use serde::{Deserialize, Serialize};
@@ -46,7 +46,7 @@ impl DiscreteFit {
         let own = self.own.iter().map(|o| ("own.", o.filters, o.alpha));
         for (key, filters, alpha) in own.chain([("", Some(self.filters), Some(self.alpha))]) {
             if let Some(filters) = filters {
-                at_least_one(&format!("{key}filters"), filters)?;
+                number_of_filters(&format!("{key}filters"), filters)?;
             }
             if let Some(alpha) = alpha.filter(|a| !(*a > 0.0 && *a < 1.0)) {
                 return Err(Error::input(

@@ -49,11 +49,11 @@ pub struct FreeDecay {
     pub dofs: Vec<Dof>,
     /// The modes, by frequency.
     pub modes: Vec<DecayMode>,
-    /// Aerodynamic damping `R_ae` of `F = R_ae q̇ + K_ae q`, row by row, per unit length.
+    /// Aerodynamic damping `R_ae` of `F = R_ae q̇ + K_ae q` about the axis of the section, row by row, per unit length.
     pub damping: Vec<Vec<f64>>,
     /// Aerodynamic stiffness `K_ae`, row by row, per unit length.
     pub stiffness: Vec<Vec<f64>>,
-    /// Derivatives, each at the mode that its motion leads.
+    /// Derivatives about the reference point of the section, each at the mode that its motion leads.
     pub derivatives: Vec<DecayDerivative>,
 }
 
@@ -151,6 +151,18 @@ fn aerodynamic_matrices(
     ))
 }
 
+/// A physical aerodynamic matrix about the axis as one about the reference point, to which derivatives refer.
+fn about_reference(structure: &Structure, about_axis: &DMatrix<f64>) -> DMatrix<f64> {
+    // the reference point lies as far from the axis as the axis from it, on the other side; a width of one metre, so
+    // that lengths stay in metres
+    let back = Structure {
+        axis_offset_m: -structure.axis_offset_m,
+        width_m: 1.0,
+        ..structure.clone()
+    };
+    back.at_axis(about_axis.clone())
+}
+
 fn derivatives(
     structure: &Structure,
     speed: f64,
@@ -159,6 +171,10 @@ fn derivatives(
     stiffness: &DMatrix<f64>,
 ) -> Vec<DecayDerivative> {
     let (dofs, width) = (&structure.dofs, structure.width_m);
+    let (damping, stiffness) = (
+        about_reference(structure, damping),
+        about_reference(structure, stiffness),
+    );
     let pressure = 0.5 * structure.air_density_kg_m3 * speed * speed;
     let part = |mode: &DecayMode, j: usize| {
         let size = |i: usize| mode.shape()[i].norm() * dofs[i].motion_scale(width);

@@ -10,7 +10,15 @@ use crate::wind_tunnel::RecordHeader;
 const SPEED: f64 = 20.0;
 
 fn coupled() -> (Structure, CoupledSection) {
-    let structure = SectionModel::table_4_1().structure().unwrap();
+    coupled_about(None)
+}
+
+/// The axis (m) downwind of mid-chord and the centre of mass half as far behind it.
+fn coupled_about(axis_m: Option<f64>) -> (Structure, CoupledSection) {
+    let mut section = SectionModel::table_4_1();
+    section.axis_offset_m = axis_m;
+    section.mass_offset_m = axis_m.map(|a| 0.5 * a);
+    let structure = section.structure().unwrap();
     let jones = RationalModel::jones_flat_plate();
     let section = CoupledSection::new(structure.clone(), jones.realize().unwrap()).unwrap();
     (structure, section)
@@ -18,7 +26,10 @@ fn coupled() -> (Structure, CoupledSection) {
 
 /// The section released from 10 mm and 1°, 200 Hz, 5 s; white noise of `noise` times each release.
 fn decay(noise: f64) -> Record {
-    let (_, section) = coupled();
+    decay_of(coupled().1, noise)
+}
+
+fn decay_of(section: CoupledSection, noise: f64) -> Record {
     let mut stepper = Stepper::new(section);
     let release = [0.01, 1.0_f64.to_radians()];
     let mut state = stepper.released(&release, &[0.0, 0.0]).unwrap();
@@ -104,12 +115,12 @@ fn modes_and_modal_forces_of_a_clean_decay_are_exact() {
 /// Read as derivatives, against `G` at the frequency of the mode: approximate even without noise.
 #[test]
 fn derivatives_of_a_decay_are_those_at_its_frequencies() {
-    let (structure, _) = coupled();
     // without noise 5 % of the entry at worst, that is what the growth of the modes and the change of G between them cost (found:
     // 4.7 %); with 1 % noise 10 % (found: 8.0 %)
     for (noise, tolerance) in [(0.0, 0.05), (0.01, 0.10)] {
-        let found =
-            identify_free_decay(&decay(noise), &structure, &DecayOptions::default()).unwrap();
+        let (structure, section) = coupled();
+        let record = decay_of(section, noise);
+        let found = identify_free_decay(&record, &structure, &DecayOptions::default()).unwrap();
         assert_eq!(found.derivatives.len(), 8);
         for d in &found.derivatives {
             let k = ReducedFrequency::from_v_hat(d.v_hat);
@@ -124,6 +135,39 @@ fn derivatives_of_a_decay_are_those_at_its_frequencies() {
             let size = z.norm() * d.v_hat * d.v_hat;
             assert!((d.value - truth).abs() < tolerance * size, "{d:?}: {truth}");
         }
+    }
+}
+
+/// One body and one decay, described by the motion of its axis and by that of its mid-chord: derivatives refer to
+/// mid-chord in both.
+#[test]
+fn derivatives_refer_to_the_reference_point() {
+    let (structure, section) = coupled_about(Some(0.04));
+    let by_axis = decay_of(section, 0.0);
+    let mut by_chord = by_axis.clone();
+    for (y, theta) in by_chord.motion[0].iter_mut().zip(&by_axis.motion[1]) {
+        *y += 0.04 * theta;
+    }
+    let mut back = DMatrix::identity(2, 2);
+    back[(0, 1)] = -0.04;
+    let congruent = |m: &DMatrix<f64>| back.transpose() * m * &back;
+    let of_chord = Structure {
+        axis_offset_m: 0.0,
+        mass: congruent(&structure.mass),
+        damping: congruent(&structure.damping),
+        stiffness: congruent(&structure.stiffness),
+        ..structure.clone()
+    };
+    let options = DecayOptions::default();
+    let axis = identify_free_decay(&by_axis, &structure, &options).unwrap();
+    let chord = identify_free_decay(&by_chord, &of_chord, &options).unwrap();
+    let sizes = chord.derivatives.iter().map(|d| d.value.abs());
+    let largest = sizes.fold(0.0, f64::max);
+    for (a, c) in axis.derivatives.iter().zip(&chord.derivatives) {
+        assert_eq!(a.derivative, c.derivative);
+        // modes of two records of one decay agree to half the digits
+        let off = (a.value - c.value).abs();
+        assert!(off < 1e-4 * largest, "{a:?} {c:?}");
     }
 }
 

@@ -3,7 +3,7 @@
 use super::*;
 use crate::aerodynamics::{AerodynamicModel, FlatPlate};
 use crate::identification::options::{FeedThrough, PoleSearch};
-use crate::identification::testing::eight_k;
+use crate::identification::testing::{eight_k, table_alone};
 use crate::identification::{QuasiSteadyLimit, sample_model};
 use crate::units::ReducedFrequency;
 use nalgebra::DMatrix;
@@ -36,7 +36,7 @@ fn one_lag(poles: PoleSearch) -> FrequencyFit {
         },
         poles,
         limits: quasi_steady(),
-        ..FrequencyFit::default()
+        ..table_alone()
     }
 }
 
@@ -109,7 +109,7 @@ fn every_form_meets_the_limits() {
         let fit = FrequencyFit {
             form,
             limits: quasi_steady(),
-            ..FrequencyFit::default()
+            ..table_alone()
         };
         let (model, report) = fit_table(&samples(), &Dof::TWO, &fit).unwrap();
         let at = |k: f64| {

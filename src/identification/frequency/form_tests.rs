@@ -4,7 +4,7 @@ use super::*;
 use crate::aerodynamics::derivatives::embedded;
 use crate::aerodynamics::{AerodynamicModel, FlatPlate, Lags, MinimumStateModel, RationalModel};
 use crate::identification::options::PoleSearch;
-use crate::identification::testing::{eight_k, onset_m_s};
+use crate::identification::testing::{eight_k, onset_m_s, records_alone, table_alone};
 use crate::identification::{TimeFit, sample_model};
 use crate::units::ReducedFrequency;
 
@@ -22,7 +22,7 @@ fn jones_samples() -> Vec<TransferSample> {
 fn with(form: Form) -> FrequencyFit {
     FrequencyFit {
         form,
-        ..FrequencyFit::default()
+        ..table_alone()
     }
 }
 
@@ -186,7 +186,7 @@ fn weights_of_entries_move_shared_lags() {
             feed_through: crate::identification::FeedThrough::default(),
             pole_per_transfer_function: true,
         },
-        ..FrequencyFit::default()
+        ..table_alone()
     };
     let (_, report) = fit_table(&samples, &Dof::TWO, &alone).unwrap();
     let expected = report.search[3].chosen.poles[0];
@@ -253,7 +253,7 @@ fn forms_for_tables_only_say_so() {
     for form in [per_force(1), minimum_state(2)] {
         let fit = TimeFit {
             form,
-            ..TimeFit::default()
+            ..records_alone()
         };
         let message = fit.validate().unwrap_err().to_string();
         assert!(

@@ -3,7 +3,7 @@ use crate::aerodynamics::{AerodynamicModel, FlatPlate, RationalModel};
 use crate::aeroelastic::CoupledSection;
 use crate::identification::options::{FeedThrough, PoleSearch};
 use crate::identification::sample_model;
-use crate::identification::testing::{eight_k, onset_m_s};
+use crate::identification::testing::{eight_k, onset_m_s, table_alone};
 use crate::section::SectionModel;
 use crate::units::ReducedFrequency;
 
@@ -22,7 +22,7 @@ fn laguerre(filters: usize) -> Form {
 fn rational(lags: usize, added_mass: bool) -> FrequencyFit {
     FrequencyFit {
         form: Form::Rational { lags, added_mass },
-        ..FrequencyFit::default()
+        ..table_alone()
     }
 }
 
@@ -37,14 +37,14 @@ fn lags(model: &Model) -> Vec<f64> {
 #[test]
 fn flat_plate_reference_onsets() {
     let samples = flat_plate();
-    let (model, report) = fit_table(&samples, &Dof::TWO, &FrequencyFit::default()).unwrap();
+    let (model, report) = fit_table(&samples, &Dof::TWO, &table_alone()).unwrap();
     // scipy.optimize.minimize_scalar on numpy.linalg.lstsq: 0.298892, weighted residual 0.00183478·√64
     assert!((report.search[0].chosen.poles[0] - 0.298_892).abs() < 1e-5);
     assert!((report.search[0].chosen.objective - 0.001_834_78 * 2f64.sqrt()).abs() < 1e-7);
     assert!((onset_m_s(&model) / 39.468 - 1.0).abs() < 1e-3);
     let given = FrequencyFit {
         poles: PoleSearch::fixed(&[0.305]),
-        ..FrequencyFit::default()
+        ..table_alone()
     };
     let (model, _) = fit_table(&samples, &Dof::TWO, &given).unwrap();
     assert!((onset_m_s(&model) - 39.473).abs() < 1e-3);
@@ -85,7 +85,7 @@ fn assert_same(a: &Model, b: &Model) {
 fn one_laguerre_filter_is_one_lag() {
     let fit = FrequencyFit {
         form: laguerre(1),
-        ..FrequencyFit::default()
+        ..table_alone()
     };
     let (a, _) = fit_table(&flat_plate(), &Dof::TWO, &fit).unwrap();
     let (b, _) = fit_table(&flat_plate(), &Dof::TWO, &rational(1, true)).unwrap();
@@ -108,7 +108,7 @@ fn takenaka_malmquist_filters_are_lags() {
         let with = |form: Form| FrequencyFit {
             form,
             poles: poles.clone(),
-            ..FrequencyFit::default()
+            ..table_alone()
         };
         let (a, _) = fit_table(&flat_plate(), &Dof::TWO, &with(form)).unwrap();
         let roger = Form::Rational {
@@ -153,11 +153,11 @@ fn own_poles_fit_at_least_as_well() {
             feed_through: FeedThrough::default(),
             pole_per_transfer_function: true,
         },
-        ..FrequencyFit::default()
+        ..table_alone()
     };
     let shared = FrequencyFit {
         form: laguerre(2),
-        ..FrequencyFit::default()
+        ..table_alone()
     };
     let (model, a) = fit_table(&flat_plate(), &Dof::TWO, &own).unwrap();
     let (_, b) = fit_table(&flat_plate(), &Dof::TWO, &shared).unwrap();
@@ -178,7 +178,7 @@ fn standard_errors_are_the_scatter_of_repeated_fits() {
         form: laguerre(1),
         poles: PoleSearch::fixed(&[0.3]),
         weights: FrequencyWeights::None,
-        ..FrequencyFit::default()
+        ..table_alone()
     };
     let clean = flat_plate();
     let mut state = 1u64;
@@ -253,7 +253,7 @@ fn impossible_options_are_refused_by_key() {
     };
     let none = FrequencyFit {
         form: laguerre(0),
-        ..FrequencyFit::default()
+        ..table_alone()
     };
     assert_eq!(
         message(none),
@@ -266,7 +266,7 @@ fn impossible_options_are_refused_by_key() {
     assert!(message(wrong_count).starts_with("poles.fixed: expected 2 number(s)"));
     let many = FrequencyFit {
         form: laguerre(14),
-        ..FrequencyFit::default()
+        ..table_alone()
     };
     assert!(message(many).contains("at least 17 numbers for 17 coefficients"));
     let unknown = r#"{"form": {"kind": "laguerre", "order": 3}}"#;

@@ -4,14 +4,16 @@
 //! segment is factored by itself, so that leaving segments out costs no further pass.
 
 mod columns;
+mod discrete_pass;
 
 use super::basis::{Basis, assemble};
 use super::least_squares::Factor;
-use super::options::{Form, TimeFit, TimeWeights};
-use super::records::{OnProgress, Progress, Task, tested_range};
+use super::options::{Form, TimeFit, TimeWeights, number_of_filters};
+use super::records::{Joint, OnProgress, Task, tested_range, wishes};
 use super::time::accumulate::{Factored, Plan};
 use super::time::filters::ContinuousColumns;
 use super::time::layout::Layout;
+use super::time::selection::Selection;
 use super::time::slices::{Scaled, scale_all};
 use super::time::stretches::{Closed, stretches};
 use crate::aerodynamics::DiscreteLaguerre;
@@ -20,8 +22,9 @@ use crate::section::Dof;
 use crate::trained_model::Model;
 use crate::units::ReducedFrequencyRange;
 use crate::wind_tunnel::RecordSource;
-use columns::DiscreteGridColumns;
+use discrete_pass::{discrete_pass, report};
 use nalgebra::DMatrix;
+use std::rc::Rc;
 
 /// What a grid is laid over.
 #[derive(Debug, Clone, PartialEq)]
@@ -84,6 +87,7 @@ impl Grid {
                 "none",
             ));
         }
+        number_of_filters("grid.filters", filters_max)?;
         let (dofs, scaled) = scale_all(records)?;
         let tested = tested_range(&scaled)?;
         let delta_s = scaled.iter().map(Scaled::delta_s).fold(0.0, f64::max);
@@ -176,6 +180,7 @@ impl Grid {
     pub fn fits(&self, value: usize, keep: &dyn Fn(usize) -> bool) -> Vec<Result<CellFit>> {
         let chosen = self.closed.iter().enumerate().filter(|(s, _)| keep(*s));
         let systems = Factored::from_stretches(self.layout, chosen.map(|(_, c)| c), value);
+        let systems = Rc::new(systems);
         (1..=self.filters_max)
             .map(|filters| self.cell(&systems, value, filters))
             .collect()
@@ -186,14 +191,25 @@ impl Grid {
         feed + filters
     }
 
-    fn cell(&self, systems: &Factored, value: usize, filters: usize) -> Result<CellFit> {
+    fn cell(&self, systems: &Rc<Factored>, value: usize, filters: usize) -> Result<CellFit> {
         let per_input = self.leading(filters);
         let leading = self.layout.leading(per_input);
-        let coefficients = systems
+        let mut coefficients = systems
             .whole
             .iter()
             .map(|factor| factor.solve(leading))
             .collect::<Result<Vec<_>>>()?;
+        let mut objective = systems.objective(per_input, &|_, _| true);
+        if let Some(held) = self.constrained(systems, value, filters)? {
+            objective = held.objective();
+            for (i, all) in coefficients.iter_mut().enumerate() {
+                for j in 0..self.dofs.len() {
+                    for (c, x) in held.values(i * self.dofs.len() + j).iter().enumerate() {
+                        all[self.layout.index(c, j)] = *x;
+                    }
+                }
+            }
+        }
         let mut cancellation: f64 = 0.0;
         for (set, factors) in systems.sets.iter().filter(|(set, _)| !set.is_empty()) {
             for (factor, all) in factors.iter().zip(&coefficients) {
@@ -203,10 +219,35 @@ impl Grid {
         }
         Ok(CellFit {
             model: self.model(value, filters, &coefficients)?,
-            objective: systems.objective(per_input, &|_, _| true),
+            objective,
             cancellation,
             coefficients,
         })
+    }
+
+    /// The fit under its constraints, where these are asked for and bind.
+    fn constrained(
+        &self,
+        systems: &Rc<Factored>,
+        value: usize,
+        filters: usize,
+    ) -> Result<Option<Joint>> {
+        let GridAxis::Continuous(poles, fit) = &self.axis else {
+            return Ok(None);
+        };
+        let wishes = wishes(fit, &self.dofs, self.tested)?;
+        if !wishes.any() {
+            return Ok(None);
+        }
+        let entries = self.dofs.len() * self.dofs.len();
+        let form = with_filters(&fit.form, filters);
+        let basis = Basis::orthonormal(&form, &vec![poles[value]; filters])?;
+        let selection = Selection {
+            counts: vec![self.leading(filters); entries],
+            systems: vec![Rc::clone(systems)],
+        };
+        let joint = Joint::new(&selection, &vec![basis; entries], &wishes)?;
+        Ok(Some(joint).filter(|j| j.held.is_some()))
     }
 
     /// Coefficients that a system of input `j` alone takes: the constant, if any, then that input's.
@@ -332,45 +373,6 @@ fn continuous_pass(
         |record: &Scaled<'_>| ContinuousColumns::new(record, &bases, task.cutoff_hz(record), false);
     let done = report(task.progress, task.records.len());
     Ok((layout, stretches(task.records, &plan, &make, &done)?))
-}
-
-fn discrete_pass(
-    records: &[Scaled<'_>],
-    inputs: usize,
-    (alphas, weights): (&[f64], TimeWeights),
-    (filters, delta_s): (usize, f64),
-    progress: OnProgress<'_>,
-) -> Result<(Layout, Vec<Closed>)> {
-    if let Some(bad) = alphas.iter().find(|a| !(**a > 0.0 && **a < 1.0)) {
-        return Err(Error::input("alpha", "0 < alpha < 1", bad.to_string()));
-    }
-    let layout = Layout {
-        inputs,
-        per_input: filters,
-        constant: true,
-    };
-    let plan = Plan {
-        layout,
-        weights,
-        delta_s: Some(delta_s),
-        discard_s: 0.0,
-        stride: 1,
-        stretches: 1,
-    };
-    let make = |_: &Scaled<'_>| Ok(DiscreteGridColumns::new(inputs, filters, alphas));
-    let done = report(progress, records.len());
-    Ok((layout, stretches(records, &plan, &make, &done)?))
-}
-
-fn report(progress: OnProgress<'_>, records: usize) -> impl Fn(usize) + Sync + '_ {
-    move |records_done| {
-        progress(Progress {
-            pass: 1,
-            passes: 1,
-            records_done,
-            records,
-        });
-    }
 }
 
 #[cfg(test)]

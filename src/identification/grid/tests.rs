@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::aerodynamics::{AerodynamicModel, FlatPlate};
-use crate::identification::testing::{records, sources};
+use crate::identification::testing::{records, records_alone, sources};
 use crate::identification::{DiscreteFit, FeedThrough, PoleSearch, fit_discrete, fit_records};
 use crate::units::ReducedFrequency;
 
@@ -48,7 +48,7 @@ fn discrete_cells_are_single_fits() {
 fn continuous_cells_are_single_fits_but_for_thinning() {
     let made = records(&FlatPlate::default(), &[8.17, 4.0], 0.0, 3);
     let sources = sources(&made);
-    let axis = GridAxis::Continuous(vec![0.3], Box::default());
+    let axis = GridAxis::Continuous(vec![0.3], Box::new(records_alone()));
     let grid = Grid::new(&sources, axis, 3, &|_| ()).unwrap();
     let cell = grid.fits(0, &|_| true).pop().unwrap().unwrap();
     let fit = TimeFit {
@@ -58,7 +58,7 @@ fn continuous_cells_are_single_fits_but_for_thinning() {
             pole_per_transfer_function: false,
         },
         poles: PoleSearch::fixed(&[0.3]),
-        ..TimeFit::default()
+        ..records_alone()
     };
     let (model, report) = fit_records(&sources, &fit, &|_| ()).unwrap();
     assert!(differ(&cell.model, &model) < 1e-3);
@@ -72,15 +72,25 @@ fn continuous_cells_are_single_fits_but_for_thinning() {
     assert!((residual / total).sqrt() < 2.0 * objective);
 }
 
-/// A fit without the low speed is the fit to the records of the high one.
+/// A fit without the low speed is the fit to the records of the high one: by least squares alone, since constraints know the
+/// whole tested range.
 #[test]
 fn leaving_stretches_out_is_a_fit_to_the_others() {
     let made = records(&FlatPlate::default(), &[8.17, 4.0], 0.02, 3);
-    let axis = || GridAxis::Continuous(vec![0.3], Box::default());
+    let axis = || GridAxis::Continuous(vec![0.3], Box::new(records_alone()));
     let both = Grid::new(&sources(&made), axis(), 2, &|_| ()).unwrap();
     let high = Grid::new(&sources(&made[..2]), axis(), 2, &|_| ()).unwrap();
     let keep = |s: usize| both.labels()[s].mean_speed_m_s > 8.0;
     let a = both.fits(0, &keep).pop().unwrap().unwrap();
     let b = high.fits(0, &|_| true).pop().unwrap().unwrap();
     assert!(differ(&a.model, &b.model) < 1e-9);
+}
+
+#[test]
+fn more_filters_than_any_data_support_are_refused() {
+    for many in [101, 100_000, usize::MAX] {
+        let axis = GridAxis::Discrete(vec![0.6], TimeWeights::None);
+        let error = Grid::new(&[], axis, many, &|_| ()).map(|_| ()).unwrap_err();
+        assert!(error.to_string().contains("at most 100"), "{error}");
+    }
 }

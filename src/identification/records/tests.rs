@@ -1,7 +1,7 @@
 use super::*;
 use crate::aerodynamics::{AerodynamicModel, FlatPlate, RationalModel};
 use crate::identification::options::{FeedThrough, Form, PoleSearch};
-use crate::identification::testing::{onset_m_s, records, sources};
+use crate::identification::testing::{onset_m_s, records, records_alone, sources};
 use crate::units::ReducedFrequency;
 use crate::wind_tunnel::{Record, RecordBlock, RecordHeader};
 
@@ -15,7 +15,7 @@ fn jones_fit(weights: TimeWeights) -> TimeFit {
         },
         poles: PoleSearch::fixed(RationalModel::jones_flat_plate().lags.of_force(0)),
         weights,
-        ..TimeFit::default()
+        ..records_alone()
     }
 }
 
@@ -90,7 +90,7 @@ fn simultaneous_motions_are_told_apart() {
             feed_through: FeedThrough::default(),
             pole_per_transfer_function: true,
         },
-        ..TimeFit::default()
+        ..records_alone()
     };
     let message = fit_records(&[&both], &own, &quiet).unwrap_err().to_string();
     assert!(
@@ -147,7 +147,7 @@ fn own_poles_from_records() {
             feed_through: FeedThrough::default(),
             pole_per_transfer_function: true,
         },
-        ..TimeFit::default()
+        ..records_alone()
     };
     let (model, report) = fit_records(&sources(&all), &fit, &quiet).unwrap();
     assert_eq!(report.search.len(), 4);
@@ -188,7 +188,7 @@ fn blocks_do_not_matter() {
     let fit = TimeFit {
         poles: PoleSearch::fixed(&[0.3]),
         weights: TimeWeights::PerSegment,
-        ..TimeFit::default()
+        ..records_alone()
     };
     let (a, _) = fit_records(&sources(&whole), &fit, &quiet).unwrap();
     let (b, _) = fit_records(&streams, &fit, &quiet).unwrap();
@@ -225,7 +225,7 @@ fn bad_records_are_refused_with_their_place() {
     assert!(one.contains("a torsion motion rich enough"), "{one}");
     let cutoff = TimeFit {
         low_pass_hz: Some(150.0),
-        ..TimeFit::default()
+        ..records_alone()
     };
     assert!(message(&good, &cutoff).starts_with("low_pass_hz: expected less than half"));
     let mut other = good.clone();

@@ -1,13 +1,17 @@
 //! Search of poles over records: every pass evaluates many candidates, the grid shrinks around the best.
 
 use super::accumulate::Factored;
+use super::selection::Selection;
 use crate::error::{Error, Result};
+use crate::identification::basis::Basis;
+use crate::identification::dissipative::Wishes;
 use crate::identification::options::{Form, PoleSearch};
 use crate::identification::own::{search_for, searched_together};
-use crate::identification::records::Task;
+use crate::identification::records::{Joint, Task};
 use crate::identification::report::{SearchPoint, SearchReport};
 use crate::identification::search::{Bounds, best_of};
 use crate::units::ReducedFrequencyRange;
+use std::rc::Rc;
 
 /// Passes over the records: a grid, its refinements, and the fit itself.
 pub(crate) const PASSES: usize = 5;
@@ -26,9 +30,19 @@ struct Group {
     points: Vec<SearchPoint>,
     /// Logarithmic distance of neighbours in the last grid.
     step: f64,
+    /// What is asked besides, where the objective is that of the fit under its constraints.
+    held: Option<Wishes>,
 }
 
-/// Free poles of every transfer function, row by row, and how they were found.
+/// Poles of every transfer function, row by row, and how they were found.
+pub(crate) struct Choice {
+    pub poles: Vec<Vec<f64>>,
+    pub search: Vec<SearchReport>,
+}
+
+/// Free poles of every transfer function, by least squares alone and under the constraints of the fit. Both searches
+/// share their passes. Poles that only some transfer functions share are those of least squares in either case: under
+/// constraints each of their candidates would have to be tried with all candidates of the others.
 ///
 /// # Errors
 /// [`Error::Input`] for bounds without room, and for poles per transfer function from records that move two degrees of
@@ -36,11 +50,21 @@ struct Group {
 pub(crate) fn choose_poles(
     task: &Task<'_>,
     tested: ReducedFrequencyRange,
-) -> Result<(Vec<Vec<f64>>, Vec<SearchReport>)> {
+    wishes: &Wishes,
+) -> Result<(Choice, Option<Choice>)> {
     let mut groups = searched_together(task.entries)
         .into_iter()
         .map(|members| Group::new(task, tested, members))
         .collect::<Result<Vec<_>>>()?;
+    let constrained = wishes.any();
+    let alone = groups.len();
+    if constrained && alone == 1 && groups[0].members.len() == task.entries.len() {
+        let members = groups[0].members.clone();
+        groups.push(Group {
+            held: Some(wishes.clone()),
+            ..Group::new(task, tested, members)?
+        });
+    }
     let longest = task.most_filters();
     for pass in 1..PASSES {
         if groups.is_empty() {
@@ -62,23 +86,41 @@ pub(crate) fn choose_poles(
         let everywhere = |chain: Vec<f64>| vec![chain; task.dofs.len()];
         let chains: Vec<_> = candidates.into_iter().map(everywhere).collect();
         let systems = task.pass(&chains, true, (pass, PASSES))?.systems;
+        let systems: Vec<Rc<Factored>> = systems.into_iter().map(Rc::new).collect();
         for (g, poles, at) in trials {
-            let objective = groups[g].objective(&systems[at])?;
+            let objective = groups[g].objective(&poles, &systems[at])?;
             groups[g].points.push(SearchPoint { poles, objective });
         }
     }
+    let held = groups.split_off(alone);
+    let by_least_squares = choice(task, groups)?;
+    let under_constraints = if !constrained {
+        None
+    } else if held.is_empty() {
+        Some(Choice {
+            poles: by_least_squares.poles.clone(),
+            search: by_least_squares.search.clone(),
+        })
+    } else {
+        Some(choice(task, held)?)
+    };
+    Ok((by_least_squares, under_constraints))
+}
+
+/// Fixed poles, and those that the groups found.
+fn choice(task: &Task<'_>, groups: Vec<Group>) -> Result<Choice> {
     let fixed = task.entries.iter().map(|e| e.fixed.clone());
-    let mut chosen: Vec<Vec<f64>> = fixed.map(Option::unwrap_or_default).collect();
-    let mut reports = Vec::with_capacity(groups.len());
+    let mut poles: Vec<Vec<f64>> = fixed.map(Option::unwrap_or_default).collect();
+    let mut search = Vec::with_capacity(groups.len());
     for group in groups {
         let members = group.members.clone();
         let report = group.report(task)?;
         for e in members {
-            chosen[e] = report.chosen.poles.clone();
+            poles[e].clone_from(&report.chosen.poles);
         }
-        reports.push(report);
+        search.push(report);
     }
-    Ok((chosen, reports))
+    Ok(Choice { poles, search })
 }
 
 /// A chain made as long as the longest; its first filters stay what they are.
@@ -108,6 +150,7 @@ impl Group {
             members,
             options,
             bounds,
+            held: None,
         })
     }
 
@@ -121,8 +164,22 @@ impl Group {
     }
 
     /// Relative weighted residual of its transfer functions with the first columns of a system.
-    fn objective(&self, system: &Factored) -> Result<f64> {
+    fn objective(&self, poles: &[f64], system: &Rc<Factored>) -> Result<f64> {
         let columns = self.form.feed_through().count() + self.form.filters();
+        // a motion that is missing is told by its name in the last pass
+        let known = system
+            .whole
+            .iter()
+            .all(|f| f.undetermined(f.columns()).is_none());
+        if let Some(wishes) = self.held.as_ref().filter(|_| known) {
+            let basis = Basis::orthonormal(&self.form, &self.form.expand(poles))?;
+            let selection = Selection {
+                counts: vec![columns; self.members.len()],
+                systems: vec![Rc::clone(system)],
+            };
+            let bases = vec![basis; self.members.len()];
+            return Ok(Joint::new(&selection, &bases, wishes)?.objective());
+        }
         let Some((i, j)) = self.entry else {
             let n = system.layout.inputs;
             let among = |i: usize, j: usize| self.members.contains(&(i * n + j));

@@ -4,12 +4,13 @@
 use super::accumulate::Factored;
 use crate::identification::least_squares::Factor;
 use std::borrow::Cow;
+use std::rc::Rc;
 
 /// Columns in use, and the systems they are taken from: one for all forces, or one a force.
 pub(crate) struct Selection {
     /// Columns of every transfer function, row by row.
     pub counts: Vec<usize>,
-    pub systems: Vec<Factored>,
+    pub systems: Vec<Rc<Factored>>,
 }
 
 impl Selection {

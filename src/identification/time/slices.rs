@@ -108,6 +108,11 @@ impl<'a> Scaled<'a> {
         &self.record.header().name
     }
 
+    /// Mean wind speed, m/s.
+    pub fn mean_speed_m_s(&self) -> f64 {
+        self.record.header().mean_speed_m_s
+    }
+
     /// Sampling step in dimensionless time.
     pub fn delta_s(&self) -> f64 {
         self.rate * self.step_s

@@ -2,15 +2,20 @@
 
 use super::columns::LinearModel;
 use super::design::Design;
-use crate::aerodynamics::DiscreteLaguerre;
+use super::speeds::{self, Effect, POINTS, Slopes, SpeedScatter};
+use crate::aerodynamics::{AerodynamicModel, DiscreteLaguerre, TransferMatrix};
 use crate::error::{Error, Result};
 use crate::identification::basis::assemble;
 use crate::identification::options::Form;
 use crate::identification::report::FitReport;
 use crate::section::Dof;
 use crate::trained_model::Model;
+use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
+
+/// Relative step of the differences with respect to the parameters.
+const STEP: f64 = 1e-5;
 
 /// One estimated number of a model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -81,31 +86,143 @@ pub struct CoefficientUncertainty {
     pub covariance: DMatrix<f64>,
     /// The independent blocks of data.
     pub blocks: Vec<String>,
+    /// Scatter between mean speeds; none for tests at one speed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub speeds: Option<SpeedScatter>,
     #[serde(skip)]
-    design: Option<Design>,
+    pub(super) design: Option<Design>,
+    #[serde(skip)]
+    effects: Vec<Effect>,
 }
 
 impl CoefficientUncertainty {
+    /// The estimates of a fit with the blocks it was made from; `tested` holds their reduced frequencies where
+    /// the scatter between mean speeds is asked.
     pub(super) fn new(
-        assumption: String,
+        (assumption, tested): (String, Option<ReducedFrequencyRange>),
         dofs: Vec<Dof>,
         coordinates: Coordinates,
-        mut parameters: Vec<Parameter>,
+        parameters: Vec<Parameter>,
         design: Design,
-    ) -> Self {
+    ) -> Result<Self> {
         let contributions = design.contributions();
-        let covariance = &contributions * contributions.transpose();
-        for (i, parameter) in parameters.iter_mut().enumerate() {
-            parameter.standard_error = covariance[(i, i)].max(0.0).sqrt();
-        }
-        Self {
+        let mut estimate = Self {
             assumption,
             dofs,
             coordinates,
             parameters,
-            covariance,
+            covariance: &contributions * contributions.transpose(),
             blocks: design.names(),
-            design: Some(design),
+            speeds: None,
+            design: None,
+            effects: Vec::new(),
+        };
+        if let Some(tested) = tested {
+            estimate.add_speeds(&design, tested)?;
+        }
+        for (i, parameter) in estimate.parameters.iter_mut().enumerate() {
+            parameter.standard_error = estimate.covariance[(i, i)].max(0.0).sqrt();
+        }
+        estimate.design = Some(design);
+        Ok(estimate)
+    }
+
+    /// Adds the scatter between mean speeds.
+    fn add_speeds(&mut self, design: &Design, tested: ReducedFrequencyRange) -> Result<()> {
+        let at = self.slopes_over(tested)?;
+        let values = DVector::from_vec(self.values());
+        let own = self.own_coefficients();
+        let found = speeds::between_speeds(design, &self.dofs, (&values, &own), &at)?;
+        let text = match &found {
+            Some((scatter, _)) => scatter.describe(),
+            None => "one mean speed: what another speed would change is not known and not in the intervals".into(),
+        };
+        self.assumption = format!("{}; {text}", self.assumption);
+        let Some((scatter, effects)) = found else {
+            return Ok(());
+        };
+        for effect in &effects {
+            self.covariance += &effect.columns * effect.columns.transpose();
+        }
+        self.effects = effects;
+        self.speeds = Some(scatter);
+        Ok(())
+    }
+
+    /// Transfer functions with their slopes at points over a range, logarithmic.
+    fn slopes_over(&self, range: ReducedFrequencyRange) -> Result<Vec<Slopes>> {
+        let (low, high) = (range.min.full_width(), range.max.full_width());
+        let step = (high / low).ln() / (POINTS as f64 - 1.0);
+        let k = |i: usize| ReducedFrequency::from_full_width(low * (step * i as f64).exp());
+        let ks: Vec<_> = (0..POINTS).map(k).collect();
+        let all = self.transfer_slopes(&ks)?;
+        let of = |(k, (value, slopes)): (&ReducedFrequency, _)| Slopes {
+            k: k.full_width(),
+            value,
+            slopes,
+        };
+        Ok(ks.iter().zip(all).map(of).collect())
+    }
+
+    /// The transfer matrix at every `K`, and its derivatives with respect to the parameters, by central differences.
+    ///
+    /// # Errors
+    /// Those of the model.
+    pub fn transfer_slopes(
+        &self,
+        ks: &[ReducedFrequency],
+    ) -> Result<Vec<(TransferMatrix, Vec<TransferMatrix>)>> {
+        let values = self.values();
+        let model = self.model_at(&values)?;
+        let mut pairs = Vec::with_capacity(values.len());
+        for p in 0..values.len() {
+            let step = STEP * values[p].abs().max(1e-2);
+            let moved = |by: f64| {
+                let mut moved = values.clone();
+                moved[p] += by;
+                self.model_at(&moved)
+            };
+            pairs.push((moved(step)?, moved(-step)?, 2.0 * step));
+        }
+        ks.iter()
+            .map(|&k| {
+                let slope = |(up, down, step): &(Model, Model, f64)| {
+                    Ok((up.transfer(k)? - down.transfer(k)?).unscale(*step))
+                };
+                let slopes = pairs.iter().map(slope).collect::<Result<_>>()?;
+                Ok((model.transfer(k)?, slopes))
+            })
+            .collect()
+    }
+
+    /// Places of the coefficients of every transfer function, row by row; poles and static terms are nobody's.
+    pub fn own_coefficients(&self) -> Vec<Vec<usize>> {
+        let coefficients = match &self.coordinates {
+            Coordinates::Continuous { searched, .. } => self.parameters.len() - searched.len(),
+            Coordinates::Discrete { .. } => self.parameters.len(),
+        };
+        let of = |force: Dof, motion: Dof| -> Vec<usize> {
+            let is_own = |p: &usize| {
+                let q = &self.parameters[*p];
+                (q.force, q.motion) == (Some(force), Some(motion))
+            };
+            (0..coefficients).filter(is_own).collect()
+        };
+        let pairs = self
+            .dofs
+            .iter()
+            .flat_map(|f| self.dofs.iter().map(move |m| (*f, *m)));
+        pairs.map(|(f, m)| of(f, m)).collect()
+    }
+
+    /// What is wrong with the form of the model whatever the data, if anything: its onset is biased, and no scatter shows it.
+    pub fn known_bias(&self) -> Option<&'static str> {
+        match &self.coordinates {
+            Coordinates::Continuous { .. } => None,
+            Coordinates::Discrete { .. } => Some(
+                "the sampled model has no feed-through and holds its force over a step: its bias is known to be there, and \
+                 not in the scatter",
+            ),
         }
     }
 
@@ -218,11 +335,22 @@ impl CoefficientUncertainty {
     /// its data.
     pub fn degrees_of_freedom(&self, gradient: &[f64]) -> Option<f64> {
         let design = self.design.as_ref()?;
-        Some(design.degrees_of_freedom(&DVector::from_column_slice(gradient)))
+        let gradient = DVector::from_column_slice(gradient);
+        Some(speeds::degrees_of_freedom(design, &self.effects, &gradient))
+    }
+
+    /// Adds a draw of the scatter between speeds to parameters that were drawn from the blocks.
+    pub fn scatter_speeds(&self, values: &mut [f64], normal: &mut dyn FnMut() -> f64) {
+        for column in self.effects.iter().flat_map(|e| e.columns.column_iter()) {
+            let z = normal();
+            for (value, change) in values.iter_mut().zip(column.iter()) {
+                *value += z * change;
+            }
+        }
     }
 
     /// Parameters of the fit in which each block counts as often as its weight says: exact for coefficients, one
-    /// Gauss–Newton step for searched poles. `None` for an estimate that was read from a file.
+    /// Gauss–Newton step for searched poles, along what active constraints leave free. `None` for an estimate that was read from a file.
     ///
     /// # Errors
     /// [`Error::Numerical`] when the weighted blocks do not determine all parameters.
@@ -237,25 +365,10 @@ impl CoefficientUncertainty {
 
     /// Puts these standard errors and covariances in the place of those of a fit that took residuals for independent.
     ///
-    /// Standard errors hold the scatter of searched poles. The covariance of an entry is that of its coefficients at
-    /// the poles it is written with, `C_cc − C_cp C_pp⁻¹ C_pc`: with a pole, the coefficients move together, and drawn
-    /// without it they would be another model.
+    /// The covariance of an entry is its block of the covariance of all parameters, so that standard errors are the roots of
+    /// its diagonal. Coefficients move with the searched poles: whoever draws models needs all parameters.
     pub fn enter(&self, report: &mut FitReport) {
-        let own: Vec<Vec<usize>> = report
-            .entries
-            .iter()
-            .map(|entry| {
-                let is_own = |&p: &usize| {
-                    let q = &self.parameters[p];
-                    (q.force, q.motion) == (Some(entry.force), Some(entry.motion))
-                };
-                let all = (0..self.parameters.len()).filter(is_own);
-                all.take(entry.coefficients.len()).collect()
-            })
-            .collect();
-        let is_pole = |p: &usize| !own.iter().any(|list| list.contains(p));
-        let poles: Vec<usize> = (0..self.parameters.len()).filter(is_pole).collect();
-        let covariance = self.covariance_given(&poles);
+        let own = self.own_coefficients();
         for (entry, own) in report.entries.iter_mut().zip(&own) {
             if own.len() != entry.coefficients.len() {
                 continue;
@@ -263,23 +376,9 @@ impl CoefficientUncertainty {
             for (coefficient, &p) in entry.coefficients.iter_mut().zip(own) {
                 coefficient.standard_error = Some(self.parameters[p].standard_error);
             }
-            let row = |&p: &usize| own.iter().map(|&q| covariance[(p, q)]).collect();
+            let row = |&p: &usize| own.iter().map(|&q| self.covariance[(p, q)]).collect();
             entry.covariance = own.iter().map(row).collect();
         }
         report.covariance_assumption.clone_from(&self.assumption);
-    }
-
-    /// The covariance of all parameters when those of `held` are known.
-    fn covariance_given(&self, held: &[usize]) -> DMatrix<f64> {
-        let Some(inverse) = self
-            .covariance
-            .select_rows(held)
-            .select_columns(held)
-            .try_inverse()
-        else {
-            return self.covariance.clone();
-        };
-        let across = self.covariance.select_columns(held);
-        &self.covariance - &across * inverse * across.transpose()
     }
 }

@@ -21,6 +21,10 @@ const LEVERAGE_TOLERANCE: f64 = 1e-9;
 pub(crate) struct Block {
     /// What the block is, in words.
     pub name: String,
+    /// Mean wind speed of its test, m/s, where it is known.
+    pub speed_m_s: Option<f64>,
+    /// Reduced frequency of its motion, where it has one.
+    pub k: Option<f64>,
     /// r×P.
     pub rows: DMatrix<f64>,
     /// r.
@@ -31,11 +35,16 @@ pub(crate) struct Block {
 
 impl Block {
     /// Rows, residuals and working variance of several forces, one below the other.
-    pub fn stacked(name: String, parts: &[(DMatrix<f64>, DVector<f64>, f64)]) -> Self {
+    pub fn stacked(
+        (name, speed_m_s, k): (String, Option<f64>, Option<f64>),
+        parts: &[(DMatrix<f64>, DVector<f64>, f64)],
+    ) -> Self {
         let blocks: Vec<Self> = parts
             .iter()
             .map(|(rows, residual, variance)| Self {
                 name: String::new(),
+                speed_m_s,
+                k,
                 rows: rows.clone(),
                 residual: residual.clone(),
                 variance: DVector::from_element(residual.len(), *variance),
@@ -44,12 +53,14 @@ impl Block {
         Self::joined(name, &blocks)
     }
 
-    /// Several blocks as one.
+    /// Several blocks as one, of the speed and frequency of the first.
     pub fn joined(name: String, blocks: &[Self]) -> Self {
         let count = blocks.iter().map(|b| b.residual.len()).sum();
         let width = blocks.first().map_or(0, |b| b.rows.ncols());
         let mut joined = Self {
             name,
+            speed_m_s: blocks.first().and_then(|b| b.speed_m_s),
+            k: blocks.first().and_then(|b| b.k),
             rows: DMatrix::zeros(count, width),
             residual: DVector::zeros(count),
             variance: DVector::zeros(count),
@@ -64,14 +75,33 @@ impl Block {
         }
         joined
     }
+
+    /// The same information in no more rows than columns, all of one working variance.
+    fn compressed(self) -> Self {
+        let mean = self.variance.mean();
+        let (rows, residual) = if self.rows.nrows() > self.rows.ncols() {
+            let qr = self.rows.qr();
+            (qr.r(), qr.q().tr_mul(&self.residual))
+        } else {
+            (self.rows, self.residual)
+        };
+        Self {
+            variance: DVector::from_element(residual.len(), mean),
+            rows,
+            residual,
+            ..self
+        }
+    }
 }
 
 /// Blocks of one fit with what is common to all of them.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Design {
     blocks: Vec<Block>,
-    /// `M⁻¹`, P×P.
+    /// `M⁻¹`, or what is left of it along the tangent, P×P.
     inverse: DMatrix<f64>,
+    /// Orthonormal directions that active constraints leave to the parameters, P×q; none where nothing holds them.
+    tangent: Option<DMatrix<f64>>,
     /// `Σ AᵀDA` with the working variances, P×P.
     working: DMatrix<f64>,
     /// Enlargement of the residuals of each block, r×r, symmetric.
@@ -79,11 +109,11 @@ pub(crate) struct Design {
 }
 
 impl Design {
-    /// Prepares the blocks of one fit.
+    /// Prepares the blocks of one fit, whose parameters active constraints leave only the directions of `tangent`.
     ///
     /// # Errors
     /// [`Error::Numerical`] when the blocks do not determine all parameters or are fewer than two.
-    pub fn new(blocks: Vec<Block>) -> Result<Self> {
+    pub fn new(blocks: Vec<Block>, tangent: Option<DMatrix<f64>>) -> Result<Self> {
         if blocks.len() < 2 {
             return Err(Error::Numerical(format!(
                 "covariance: {} independent block(s), at least two are needed",
@@ -91,11 +121,11 @@ impl Design {
             )));
         }
         let parameters = blocks[0].rows.ncols();
-        let mut qr = StreamingQr::new(parameters, 0);
+        let free = tangent.as_ref().map_or(parameters, DMatrix::ncols);
+        let mut qr = StreamingQr::new(free, 0);
         let mut working = DMatrix::zeros(parameters, parameters);
         for block in &blocks {
-            let columns: Vec<Vec<f64>> = block
-                .rows
+            let columns: Vec<Vec<f64>> = along(&block.rows, tangent.as_ref())
                 .column_iter()
                 .map(|c| c.iter().copied().collect())
                 .collect();
@@ -103,10 +133,39 @@ impl Design {
             qr.push_columns(&slices);
             working += block.rows.transpose() * scaled(&block.rows, &block.variance);
         }
-        let inverse = qr.finish().inverse_gram(parameters)?;
+        let inner = qr.finish().inverse_gram(free)?;
+        let inverse = match &tangent {
+            Some(t) => t * inner * t.transpose(),
+            None => inner,
+        };
+        Self::of(blocks, (inverse, tangent), working)
+    }
+
+    /// The same fit with its rows put together in other blocks.
+    ///
+    /// # Errors
+    /// Rows that are not finite.
+    pub fn with_blocks(&self, blocks: Vec<Block>) -> Result<Self> {
+        let p = self.inverse.nrows();
+        let working = blocks.iter().fold(DMatrix::zeros(p, p), |sum, b| {
+            sum + b.rows.tr_mul(&scaled(&b.rows, &b.variance))
+        });
+        Self::of(
+            blocks,
+            (self.inverse.clone(), self.tangent.clone()),
+            working,
+        )
+    }
+
+    fn of(
+        blocks: Vec<Block>,
+        (inverse, tangent): (DMatrix<f64>, Option<DMatrix<f64>>),
+        working: DMatrix<f64>,
+    ) -> Result<Self> {
         let mut design = Self {
             blocks,
             inverse,
+            tangent,
             working,
             enlarge: Vec::new(),
         };
@@ -171,6 +230,64 @@ impl Design {
             .collect()
     }
 
+    /// The blocks.
+    pub fn blocks(&self) -> &[Block] {
+        &self.blocks
+    }
+
+    /// `M⁻¹`, P×P.
+    pub fn inverse(&self) -> &DMatrix<f64> {
+        &self.inverse
+    }
+
+    /// The blocks of each of `count` groups as one block, with the residuals of the common fit.
+    pub fn clusters(&self, groups: &[usize], count: usize) -> Vec<Block> {
+        let of = |group: usize| -> Vec<Block> {
+            let own = self.blocks.iter().zip(groups).filter(|(_, g)| **g == group);
+            own.map(|(b, _)| b.clone()).collect()
+        };
+        (0..count)
+            .map(|g| Block::joined(format!("group {}", g + 1), &of(g)).compressed())
+            .collect()
+    }
+
+    /// The fit to the blocks of one group alone in the first `kept` columns, and how far it is from the common one.
+    ///
+    /// # Errors
+    /// [`Error::Numerical`] when the group does not determine all parameters.
+    pub fn alone(
+        &self,
+        groups: &[usize],
+        group: usize,
+        kept: usize,
+    ) -> Result<(Self, DVector<f64>)> {
+        let mut blocks: Vec<Block> = Vec::new();
+        for (block, _) in self.blocks.iter().zip(groups).filter(|(_, g)| **g == group) {
+            let rows = block.rows.columns(0, kept).into_owned();
+            blocks.push(Block {
+                rows,
+                ..block.clone()
+            });
+        }
+        let tangent = self.tangent.as_ref().map(|t| held_at_zero(t, kept));
+        // determines the parameters, or says that it does not
+        Self::new(blocks.clone(), tangent.clone())?;
+        let all = Block::joined(String::new(), &blocks);
+        let qr = along(&all.rows, tangent.as_ref()).qr();
+        let inner = qr
+            .r()
+            .solve_upper_triangular(&qr.q().tr_mul(&all.residual))
+            .ok_or_else(|| Error::Numerical("covariance: one speed alone".into()))?;
+        let step = match &tangent {
+            Some(t) => t * inner,
+            None => inner,
+        };
+        for block in &mut blocks {
+            block.residual -= &block.rows * &step;
+        }
+        Ok((Self::new(blocks, tangent)?, step))
+    }
+
     /// Names of the blocks.
     pub fn names(&self) -> Vec<String> {
         self.blocks.iter().map(|b| b.name.clone()).collect()
@@ -232,22 +349,48 @@ impl Design {
     /// # Errors
     /// [`Error::Numerical`] when the weighted blocks do not determine all parameters.
     pub fn reweighted(&self, weights: &[f64]) -> Result<DVector<f64>> {
-        let n = self.inverse.nrows();
+        let inner = |rows: &DMatrix<f64>| along(rows, self.tangent.as_ref());
+        let own = match &self.tangent {
+            Some(t) => t.tr_mul(&(&self.inverse * t)),
+            None => self.inverse.clone(),
+        };
         // in units in which the whole system is near the identity, so that the normal equations lose no digits
-        let unit = self.inverse.diagonal().map(f64::sqrt);
+        let unit = own.diagonal().map(f64::sqrt);
+        let n = unit.len();
         let mut gram = DMatrix::zeros(n, n);
         let mut right = DVector::zeros(n);
         for (block, weight) in self.blocks.iter().zip(weights) {
-            let rows = DMatrix::from_fn(block.rows.nrows(), n, |i, j| block.rows[(i, j)] * unit[j]);
+            let rows = inner(&block.rows) * DMatrix::from_diagonal(&unit);
             gram.gemm(*weight, &rows.transpose(), &rows, 1.0);
             right.gemv(*weight, &rows.transpose(), &block.residual, 1.0);
         }
         let step = gram
             .cholesky()
             .ok_or_else(|| Error::Numerical("bootstrap: a replicate is singular".into()))?
-            .solve(&right);
-        Ok(step.component_mul(&unit))
+            .solve(&right)
+            .component_mul(&unit);
+        Ok(match &self.tangent {
+            Some(t) => t * step,
+            None => step,
+        })
     }
+}
+
+/// Rows seen along the tangent.
+fn along(rows: &DMatrix<f64>, tangent: Option<&DMatrix<f64>>) -> DMatrix<f64> {
+    match tangent {
+        Some(t) => rows * t,
+        None => rows.clone(),
+    }
+}
+
+/// The directions of a tangent in which all parameters from `kept` on stay as they are, without these.
+fn held_at_zero(tangent: &DMatrix<f64>, kept: usize) -> DMatrix<f64> {
+    let held = tangent.rows(kept, tangent.nrows() - kept).into_owned();
+    let eigen = SymmetricEigen::new(held.tr_mul(&held));
+    let still = |i: &usize| eigen.eigenvalues[*i] < LEVERAGE_TOLERANCE;
+    let free: Vec<usize> = (0..eigen.eigenvalues.len()).filter(still).collect();
+    tangent.rows(0, kept) * eigen.eigenvectors.select_columns(&free)
 }
 
 /// `diag(factors) m`.
@@ -256,92 +399,5 @@ fn scaled(m: &DMatrix<f64>, factors: &DVector<f64>) -> DMatrix<f64> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use rand::SeedableRng;
-    use rand_chacha::ChaCha8Rng;
-    use rand_distr::{Distribution, StandardNormal};
-
-    fn normal(random: &mut ChaCha8Rng) -> f64 {
-        StandardNormal.sample(random)
-    }
-
-    /// Unequal blocks of a straight line and its errors.
-    fn blocks(errors: &DVector<f64>, sizes: &[usize]) -> Vec<Block> {
-        let total: usize = sizes.iter().sum();
-        let x = DMatrix::from_fn(total, 2, |i, j| {
-            (i as f64 * 0.7).sin().powi(j as i32) + 0.02 * (i * j) as f64
-        });
-        let solution = x.clone().svd(true, true).solve(errors, 0.0).unwrap();
-        let residual = errors - &x * solution;
-        let mut at = 0;
-        sizes
-            .iter()
-            .map(|n| {
-                let block = Block {
-                    name: format!("{at}"),
-                    rows: x.rows(at, *n).into(),
-                    residual: residual.rows(at, *n).into(),
-                    variance: DVector::from_element(*n, 1.0),
-                };
-                at += n;
-                block
-            })
-            .collect()
-    }
-
-    /// White errors: the mean of many estimated variances is the true one, and twice the squared mean over the variance
-    /// of the estimates is the number of degrees of freedom.
-    #[test]
-    fn variance_is_unbiased_and_its_degrees_of_freedom_are_those_stated() {
-        const SIZES: [usize; 6] = [3, 5, 2, 9, 4, 7];
-        const RUNS: usize = 4000;
-        let mut random = ChaCha8Rng::seed_from_u64(5);
-        let contrast = DVector::from_vec(vec![0.3, 1.0]);
-        let (mut sum, mut squares, mut truth, mut stated) = (0.0, 0.0, 0.0, 0.0);
-        for _ in 0..RUNS {
-            let errors = DVector::from_fn(30, |_, _| normal(&mut random));
-            let design = Design::new(blocks(&errors, &SIZES)).unwrap();
-            let along = design.contributions().transpose() * &contrast;
-            let variance = along.norm_squared();
-            sum += variance;
-            squares += variance * variance;
-            truth = contrast.dot(&(&design.inverse * &contrast));
-            stated = design.degrees_of_freedom(&contrast);
-        }
-        let mean = sum / RUNS as f64;
-        let spread = squares / RUNS as f64 - mean * mean;
-        // standard error of the mean: √(2/ν/4000) = 1.2 % for ν near 3.5
-        assert!((mean / truth - 1.0).abs() < 0.05, "{mean} {truth}");
-        let found = 2.0 * mean * mean / spread;
-        // kurtosis of a squared normal: the variance of 4000 estimates is good to about 8 %
-        assert!((found / stated - 1.0).abs() < 0.2, "{found} {stated}");
-    }
-
-    /// Leaving a block out by its weight is the fit without it.
-    #[test]
-    fn a_weight_of_zero_leaves_a_block_out() {
-        let mut random = ChaCha8Rng::seed_from_u64(2);
-        let errors = DVector::from_fn(20, |_, _| normal(&mut random));
-        let all = blocks(&errors, &[5, 7, 8]);
-        let design = Design::new(all.clone()).unwrap();
-        let step = design.reweighted(&[1.0, 0.0, 1.0]).unwrap();
-        let x = DMatrix::from_fn(13, 2, |i, j| {
-            if i < 5 {
-                all[0].rows[(i, j)]
-            } else {
-                all[2].rows[(i - 5, j)]
-            }
-        });
-        let b = DVector::from_fn(13, |i, _| {
-            if i < 5 {
-                all[0].residual[i]
-            } else {
-                all[2].residual[i - 5]
-            }
-        });
-        let direct = x.svd(true, true).solve(&b, 0.0).unwrap();
-        assert!((step - direct).amax() < 1e-12);
-        assert!(design.reweighted(&[1.0; 3]).unwrap().amax() < 1e-12);
-    }
-}
+#[path = "design_tests.rs"]
+mod tests;

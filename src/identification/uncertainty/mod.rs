@@ -7,17 +7,22 @@
 //! segments motion and force come to rest, so that blocks do not leak into each other.
 //! See [`CoefficientUncertainty::assumption`] for what is assumed in each case.
 
+mod alone;
 mod coefficients;
 mod columns;
+mod constraints;
 mod design;
 mod poles;
 mod records;
 mod segments;
+mod speeds;
 mod student;
 mod table;
 
 pub use coefficients::{CoefficientUncertainty, Coordinates, Parameter, SearchedPole};
 pub use columns::LinearModel;
+pub use poles::SEARCHED_POLES;
 pub use records::{discrete_uncertainty, record_uncertainty};
+pub use speeds::{ForceScatter, SpeedScatter};
 pub use student::two_sided_quantile;
 pub use table::table_uncertainty;

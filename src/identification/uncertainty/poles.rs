@@ -8,6 +8,9 @@ use crate::section::Dof;
 /// Poles closer than this to a bound, relatively, are held by it.
 const AT_BOUND: f64 = 0.01;
 
+/// How the assumption of a covariance says that searched poles are in it.
+pub const SEARCHED_POLES: &str = "searched poles are parameters through their Jacobian columns";
+
 /// Name of a pole and its transfer function (force, motion); none when all share it.
 pub(super) type PoleName = (String, Option<(Dof, Dof)>);
 
@@ -69,7 +72,7 @@ impl FreePoles {
         let mut text = if self.searched.is_empty() {
             "poles count as known".to_owned()
         } else {
-            "searched poles are parameters through their Jacobian columns".to_owned()
+            SEARCHED_POLES.to_owned()
         };
         if self.held > 0 {
             text.push_str(&format!(

@@ -2,7 +2,7 @@
 
 use super::coefficients::{CoefficientUncertainty, Coordinates, Parameter};
 use super::columns::Expansion;
-
+use super::constraints::{held_sentence, tangent_of};
 use super::poles::{FreePoles, PoleName, free_poles};
 use super::segments::{Part, Stretched, gather, sandwich};
 use crate::error::{Error, Result};
@@ -20,6 +20,7 @@ use crate::identification::time::search::padded;
 use crate::identification::time::slices::{Scaled, scale_all};
 use crate::identification::time::stretches::{Closed, stretches};
 use crate::trained_model::Model;
+use crate::units::ReducedFrequencyRange;
 use crate::wind_tunnel::RecordSource;
 use nalgebra::{DMatrix, DVector};
 
@@ -57,11 +58,14 @@ pub fn record_uncertainty(
     let poles = free_poles(&fit.form, &fit.poles, report);
     let entries = Entries::new(&fit.form, dofs.len(), report, &poles)?;
     let closed = task.stretches(&entries.chains())?;
-    let (design, blocks) = sandwich(entries.blocks(&scaled, &closed)?)?;
-    let searched = poles.sentence();
+    let (design, blocks) = sandwich(entries.blocks(&scaled, &closed)?, entries.tangent.clone())?;
+    let searched = poles.sentence() + &held_sentence(report);
     let inputs = dofs.len();
-    Ok(CoefficientUncertainty::new(
-        format!("{blocks}; motions are exact; {searched}"),
+    CoefficientUncertainty::new(
+        (
+            format!("{blocks}; motions are exact; {searched}"),
+            Some(report.tested_range),
+        ),
         dofs,
         Coordinates::Continuous {
             form: fit.form.clone(),
@@ -74,7 +78,7 @@ pub fn record_uncertainty(
         },
         entries.parameters(report, &poles.values),
         design,
-    ))
+    )
 }
 
 impl Task<'_> {
@@ -129,6 +133,8 @@ struct Entries {
     parameters: usize,
     /// Whether all entries share one chain.
     shared: bool,
+    /// What active constraints leave free.
+    tangent: Option<DMatrix<f64>>,
 }
 
 impl Entries {
@@ -142,6 +148,7 @@ impl Entries {
             first: Vec::new(),
             parameters: 0,
             shared: report.entries.windows(2).all(|w| w[0].poles == w[1].poles),
+            tangent: None,
         };
         for (e, entry) in report.entries.iter().enumerate() {
             let expansion = Expansion::new(form, &entry.poles, searched)?;
@@ -161,6 +168,7 @@ impl Entries {
             entries.slopes.push(slopes);
         }
         entries.parameters += poles.searched.len();
+        entries.tangent = tangent_of(report, (form, poles), &entries.first, entries.parameters)?;
         Ok(entries)
     }
 
@@ -335,9 +343,17 @@ pub fn discrete_uncertainty(
         .flat_map(|stretch| (0..n).map(move |i| (stretch, i)))
         .map(|(stretch, i)| discrete_part(stretch, i, each, filters, &values))
         .collect();
-    let (design, blocks) = sandwich(gather(&scaled, parts))?;
-    Ok(CoefficientUncertainty::new(
-        format!("{blocks}; motions are exact; α is given"),
+    let (design, blocks) = sandwich(gather(&scaled, parts), None)?;
+    let ranges = scaled.iter().map(Scaled::tested_range);
+    let ranges: Vec<_> = ranges.collect::<Result<Vec<_>>>()?;
+    let ends = ranges.into_iter().flatten().flat_map(|r| [r.min, r.max]);
+    let tested = ReducedFrequencyRange::spanning(ends)
+        .ok_or_else(|| Error::input("records", "some motion", "none"))?;
+    CoefficientUncertainty::new(
+        (
+            format!("{blocks}; motions are exact; α is given"),
+            Some(tested),
+        ),
         dofs,
         Coordinates::Discrete {
             alpha,
@@ -346,7 +362,7 @@ pub fn discrete_uncertainty(
         },
         parameters,
         design,
-    ))
+    )
 }
 
 /// Rows of force `i` in one stretch: a constant, then the filters of the inputs that move.

@@ -14,6 +14,7 @@ use crate::error::Result;
 use crate::identification::time::slices::Scaled;
 use nalgebra::{DMatrix, DVector};
 use std::collections::BTreeMap;
+use std::f64::consts::TAU;
 
 /// Steepest spectrum believed: steeper ones come from chance or from lack of fit.
 const STEEPEST: f64 = 4.0;
@@ -32,13 +33,16 @@ pub(super) struct Stretched {
 }
 
 /// The sandwich over stretches, or over segments where residuals repeat through them; and which, in words.
-pub(super) fn sandwich(stretched: Stretched) -> Result<(Design, String)> {
+pub(super) fn sandwich(
+    stretched: Stretched,
+    tangent: Option<DMatrix<f64>>,
+) -> Result<(Design, String)> {
     let Stretched {
         blocks,
         segments,
         names,
     } = stretched;
-    let fine = Design::new(blocks)?;
+    let fine = Design::new(blocks, tangent.clone())?;
     let ratio = fine.coherence(&segments);
     let either = "residuals may be correlated in any way within a block and between its forces; sandwich of the blocks \
                   with the small-sample correction CR2";
@@ -52,7 +56,7 @@ pub(super) fn sandwich(stretched: Stretched) -> Result<(Design, String)> {
         "{either}; blocks are whole segments, since residuals repeat through them (ratio {ratio:.2}): what the model \
          cannot follow counts as scatter from segment to segment"
     );
-    Ok((Design::new(fine.merged(&segments, &names))?, text))
+    Ok((Design::new(fine.merged(&segments, &names), tangent)?, text))
 }
 
 /// Rows of one force in one stretch of a record.
@@ -133,7 +137,10 @@ pub(super) fn gather(records: &[Scaled<'_>], parts: Vec<Part>) -> Stretched {
         } else {
             name
         };
-        out.blocks.push(Block::stacked(name, &scaled));
+        let record = &records[record];
+        let k = segment.map(|s| TAU * record.segments()[s].frequency_hz / record.rate);
+        let test = (name, Some(record.mean_speed_m_s()), k);
+        out.blocks.push(Block::stacked(test, &scaled));
         out.segments.push(key);
     }
     out

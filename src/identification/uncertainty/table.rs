@@ -1,6 +1,7 @@
 //! Uncertainty of models fitted to a table: blocks are its test runs.
 
 use super::coefficients::{CoefficientUncertainty, Coordinates, Parameter};
+use super::constraints::{held_sentence, tangent_of};
 use super::design::{Block, Design};
 use super::poles::free_poles;
 use crate::aerodynamics::derivatives::TransferSample;
@@ -81,13 +82,17 @@ pub fn table_uncertainty(
         };
         columns.add_to(&mut runs, &fit.form, entry, parameters.len())?;
     }
+    let tangent = tangent_of(report, (&fit.form, &poles), &first, parameters.len())?;
     let blocks = runs.into_iter().map(Run::block).collect();
-    let searched = poles.sentence();
-    Ok(CoefficientUncertainty::new(
-        format!(
-            "the table states no errors: the scatter of its points around the fit stands for measuring errors and lack of \
+    let searched = poles.sentence() + &held_sentence(report);
+    CoefficientUncertainty::new(
+        (
+            format!(
+                "the table states no errors: the scatter of its points around the fit stands for measuring errors and lack of \
              fit together; correlated in any way within a test run (one motion, frequency and speed), independent \
              from run to run; sandwich of the runs with the small-sample correction CR2; {searched}"
+            ),
+            Some(report.tested_range),
         ),
         dofs.to_vec(),
         Coordinates::Continuous {
@@ -100,8 +105,8 @@ pub fn table_uncertainty(
             searched: poles.searched,
         },
         parameters,
-        Design::new(blocks)?,
-    ))
+        Design::new(blocks, tangent)?,
+    )
 }
 
 /// All samples of one motion at one frequency and speed.
@@ -130,6 +135,8 @@ impl Run {
             .map_or_else(String::new, |v| format!(", {v:.2} m/s"));
         Block {
             name: format!("{} motion, K = {:.3}{speed}", self.motion.name(), self.k),
+            speed_m_s: self.mean_speed_m_s,
+            k: Some(self.k),
             rows: DMatrix::from_fn(count, width, |i, c| self.rows[i].0[c]),
             residual: DVector::from_fn(count, |i, _| self.rows[i].1),
             variance: DVector::from_fn(count, |i, _| self.rows[i].2),

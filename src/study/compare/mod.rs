@@ -21,7 +21,7 @@ pub use statements::Statement;
 
 use crate::aerodynamics::derivatives::{DerivativeTable, embedded};
 use crate::error::{Error, Result};
-use crate::identification::{DiscreteFit, Form, FrequencyFit, FrequencyWeights};
+use crate::identification::{Constraints, DiscreteFit, Form, FrequencyFit, FrequencyWeights};
 use crate::section::Dof;
 use crate::wind_tunnel::{Record, TunnelPlan};
 use serde::{Deserialize, Serialize};
@@ -74,6 +74,7 @@ fn thesis_rational_functions() -> FrequencyFit {
             added_mass: false,
         },
         weights: FrequencyWeights::Derivatives,
+        constraints: Constraints::None,
         ..FrequencyFit::default()
     }
 }

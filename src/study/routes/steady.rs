@@ -2,10 +2,10 @@
 //! low-frequency limit of the derivatives.
 
 use super::super::Study;
-use super::super::onsets::coupled;
 use super::{Forces, RouteTable};
 use crate::aerodynamics::quasi_steady::QuasiSteady;
 use crate::aerodynamics::{AerodynamicModel, Lags, RationalModel};
+use crate::aeroelastic::CoupledSection;
 use crate::aeroelastic::{EquilibriumEnd, static_equilibria};
 use crate::error::Result;
 use crate::flutter::{
@@ -15,6 +15,9 @@ use crate::section::Structure;
 use crate::units::ReducedFrequency;
 use nalgebra::DMatrix;
 
+/// Name of quasi-steady theory with static coefficients.
+pub(super) const THEORY: &str = "quasi-steady theory";
+
 impl RouteTable {
     /// Quasi-steady theory with static coefficients, each wind speed about its own equilibrium (1.31).
     pub(super) fn add_static_coefficients(
@@ -23,8 +26,8 @@ impl RouteTable {
         structure: &Structure,
         theory: &QuasiSteady,
     ) -> Result<()> {
-        let name = "quasi-steady theory";
-        let found = quasi_steady_onset(name, structure, theory, &study.flutter.search())?;
+        let name = THEORY;
+        let found = quasi_steady_onset(name, structure, theory, &study.speeds().search())?;
         // the mode at onset belongs to the linear forces about the equilibrium there
         let speed = found.search.onset().map(|o| o.speed_m_s);
         let path = static_equilibria(structure, theory, speed.as_slice())?;
@@ -45,9 +48,8 @@ impl RouteTable {
         let mut route = forces.route(study, OnsetMethod::Eigenvalues, found.search)?;
         route.low_frequency_limit = true;
         self.routes.push(route);
-        let path = static_equilibria(structure, theory, &study.flutter.curve_speeds_m_s())?;
-        self.curves
-            .push(quasi_steady_modes(name, structure, theory, &path)?);
+        let path = static_equilibria(structure, theory, &study.speeds().curve_speeds_m_s())?;
+        self.draw(&forces, quasi_steady_modes(name, structure, theory, &path));
         Ok(())
     }
 
@@ -68,8 +70,8 @@ impl RouteTable {
             divergence_m_s: divergence_speed(structure, &steady)?,
             quasi_steady_m_s: limit_onset(study, structure, limit)?,
         };
-        let section = coupled(structure, limit)?;
-        let found = find_onset(&forces.name, &section, &study.flutter.search(), None)?;
+        let section = CoupledSection::with_model(structure, limit)?;
+        let found = find_onset(&forces.name, &section, &study.speeds().search(), None)?;
         let mut route = forces.route(study, OnsetMethod::Eigenvalues, found)?;
         route.low_frequency_limit = true;
         route.warnings.push(match from {
@@ -81,9 +83,8 @@ impl RouteTable {
             None => "circulation without lag, C = 1".into(),
         });
         self.routes.push(route);
-        let speeds = study.flutter.curve_speeds_m_s();
-        self.curves
-            .push(trace_modes(&forces.name, &section, &speeds)?);
+        let speeds = study.speeds().curve_speeds_m_s();
+        self.draw(&forces, trace_modes(&forces.name, &section, &speeds));
         Ok(())
     }
 }
@@ -135,7 +136,7 @@ pub(super) fn limit_onset(
     structure: &Structure,
     limit: &RationalModel,
 ) -> Result<Option<f64>> {
-    let section = coupled(structure, limit)?;
-    let found = find_onset("", &section, &study.flutter.search(), None)?;
+    let section = CoupledSection::with_model(structure, limit)?;
+    let found = find_onset("", &section, &study.speeds().search(), None)?;
     Ok(found.onset().map(|o| o.speed_m_s))
 }

@@ -30,12 +30,21 @@ pub struct BuffetingStudy {
     pub width_m: f64,
     /// Root mean squares at each speed at which the section is stable.
     pub responses: Vec<BuffetingResponse>,
-    /// First speed of the list at which it is not, m/s, and why.
-    pub ends_at: Option<(f64, String)>,
+    /// Speeds of the lists that have no answer.
+    pub left_out: Vec<SpeedLeftOut>,
     /// Spectra at the speeds of the time domain, else at the middle speed.
     pub spectra: Vec<SpectrumCurve>,
     /// Both domains at the speeds asked for.
     pub time: Vec<TimeDomain>,
+}
+
+/// A wind speed without a stationary response.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SpeedLeftOut {
+    /// The speed, m/s.
+    pub speed_m_s: f64,
+    /// Why.
+    pub reason: String,
 }
 
 /// Spectra at one wind speed.
@@ -86,19 +95,20 @@ pub fn buffeting_study(
 ) -> Result<BuffetingStudy> {
     let setting = Setting::new(study)?;
     let mut responses = Vec::new();
-    let mut ends_at = None;
-    for speed in study.speeds.curve_speeds_m_s() {
-        match setting.response(speed)? {
-            Ok(response) => responses.push(response),
-            Err(reason) => {
-                ends_at = Some((speed, reason));
-                break;
-            }
-        }
+    let mut left_out = Vec::new();
+    for speed in study.speed_range()?.curve_speeds_m_s() {
+        responses.extend(setting.answered(speed, &mut left_out)?);
     }
-    let time = setting.time(progress)?;
-    let mut of_spectra = study.time.speeds_m_s.clone();
-    if of_spectra.is_empty() {
+    // the same test for the speeds of the time domain, in which an unstable section would only grow
+    let mut timed = Vec::new();
+    for speed in &study.time.speeds_m_s {
+        timed.extend(setting.answered(*speed, &mut left_out)?);
+    }
+    left_out.sort_by(|a, b| a.speed_m_s.total_cmp(&b.speed_m_s));
+    left_out.dedup_by(|a, b| a.speed_m_s == b.speed_m_s);
+    let time = setting.time(&timed, progress)?;
+    let mut of_spectra: Vec<f64> = timed.iter().map(|r| r.speed_m_s).collect();
+    if study.time.speeds_m_s.is_empty() {
         of_spectra.extend(responses.get(responses.len() / 2).map(|r| r.speed_m_s));
     }
     let spectra = of_spectra
@@ -110,7 +120,7 @@ pub fn buffeting_study(
         dofs: setting.structure.dofs.clone(),
         width_m: setting.structure.width_m,
         responses,
-        ends_at,
+        left_out,
         spectra,
         time,
     })
@@ -202,7 +212,11 @@ impl<'a> Setting<'a> {
         };
         let problem = self.problem(&at)?;
         problem.validate()?;
-        let unstable = unstable_roots(&problem, speed)?;
+        let unstable = match unstable_roots(&problem, speed) {
+            // at an onset itself nothing can be told, which is no reason to end the other speeds
+            Err(Error::Numerical(why)) => return Ok(Err(why)),
+            other => other?,
+        };
         if unstable > 0 {
             return Ok(Err(format!(
                 "the section is unstable ({unstable} growing roots): no stationary response"
@@ -211,37 +225,56 @@ impl<'a> Setting<'a> {
         buffeting_response(&problem, speed, self.tested).map(Ok)
     }
 
+    /// The response, unless there is none, which is noted.
+    fn answered(
+        &self,
+        speed_m_s: f64,
+        left_out: &mut Vec<SpeedLeftOut>,
+    ) -> Result<Option<BuffetingResponse>> {
+        Ok(match self.response(speed_m_s)? {
+            Ok(response) => Some(response),
+            Err(reason) => {
+                left_out.push(SpeedLeftOut { speed_m_s, reason });
+                None
+            }
+        })
+    }
+
     /// The forces at a speed that was asked for by name.
     fn required(&self, speed: f64) -> Result<AtSpeed> {
         self.at(speed)?
             .map_err(|why| Error::Numerical(format!("buffeting at {speed} m/s: {why}")))
     }
 
-    fn time(&self, progress: &(dyn Fn(usize, usize) + Sync)) -> Result<Vec<TimeDomain>> {
-        let (speeds, plan) = (&self.study.time.speeds_m_s, &self.study.time.plan);
-        let all = speeds.len() * plan.records;
-        speeds
+    fn time(
+        &self,
+        responses: &[BuffetingResponse],
+        progress: &(dyn Fn(usize, usize) + Sync),
+    ) -> Result<Vec<TimeDomain>> {
+        let plan = &self.study.time.plan;
+        let all = responses.len() * plan.records;
+        responses
             .iter()
             .enumerate()
-            .map(|(i, speed)| {
+            .map(|(i, response)| {
                 let told = |done: usize, _: usize| progress(i * plan.records + done, all);
-                self.both_domains(*speed, plan, &told)
+                self.both_domains(response, plan, &told)
             })
             .collect()
     }
 
     fn both_domains(
         &self,
-        speed: f64,
+        frequency: &BuffetingResponse,
         plan: &TimePlan,
         progress: &(dyn Fn(usize, usize) + Sync),
     ) -> Result<TimeDomain> {
+        let speed = frequency.speed_m_s;
         let at = self.required(speed)?;
         let problem = self.problem(&at)?;
-        let frequency = buffeting_response(&problem, speed, self.tested)?;
         let ensemble = time_ensemble(&problem, speed, plan, progress)?;
         Ok(TimeDomain {
-            comparison: compare(&self.structure.dofs, &frequency, &ensemble),
+            comparison: compare(&self.structure.dofs, frequency, &ensemble),
             ensemble,
         })
     }

@@ -3,15 +3,13 @@
 mod buffeting;
 mod quasi_steady;
 
-pub use buffeting::{BuffetingStudy, SpectrumCurve, TimeDomain, buffeting_study};
+pub use buffeting::{BuffetingStudy, SpectrumCurve, SpeedLeftOut, TimeDomain, buffeting_study};
 pub use quasi_steady::{QuasiSteadyStudy, SimulatedMotion, quasi_steady_study, simulated_motion};
 
-use super::FlutterBlock;
-use crate::aerodynamics::derivatives::{
-    DerivativeTable, Extrapolation, InterpolatedTable, embedded as decks, read_table,
-};
+use super::{FlutterBlock, SpeedRange};
+use crate::aerodynamics::derivatives::{Extrapolation, InterpolatedTable, named_table};
 use crate::aerodynamics::quasi_steady::{
-    Arms, QuasiSteady, StaticCoefficients, embedded, read_coefficients,
+    Arms, QuasiSteady, StaticCoefficients, named_coefficients,
 };
 use crate::buffeting::{TimePlan, Turbulence};
 use crate::error::{Error, Result, positive};
@@ -127,9 +125,7 @@ impl WindStudy {
     /// # Errors
     /// [`Error::Io`] when it cannot be read; [`Error::Input`] with file and line for everything that is wrong in it.
     pub fn read(path: &Path) -> Result<Self> {
-        let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, e))?;
-        let directory = path.parent().unwrap_or(Path::new("")).to_path_buf();
-        Self::from_toml(&text, directory).map_err(|e| e.in_file(path))
+        toml_lines::read(path, Self::from_toml)
     }
 
     /// Reads and checks the text of a wind file; paths in it are read against `directory`.
@@ -137,13 +133,10 @@ impl WindStudy {
     /// # Errors
     /// [`Error::Input`] with line and key for everything that is wrong in it.
     pub fn from_toml(text: &str, directory: PathBuf) -> Result<Self> {
-        let mut study: Self =
-            toml::from_str(text).map_err(|e| toml_lines::syntax_error("a wind file", text, &e))?;
-        study.directory = directory;
-        study
-            .validate()
-            .map_err(|e| toml_lines::with_line(text, e))?;
-        Ok(study)
+        toml_lines::parse("a wind file", text, |study: &mut Self| {
+            study.directory = directory;
+            study.validate()
+        })
     }
 
     fn validate(&self) -> Result<()> {
@@ -192,10 +185,7 @@ impl WindStudy {
         if !self.aerodynamics.ends_with(".json") {
             return Ok(None);
         }
-        let path = self.directory.join(&self.aerodynamics);
-        let text = std::fs::read_to_string(&path).map_err(|e| Error::io(&path, e))?;
-        let model = TrainedModel::from_json(&text).map_err(|e| e.in_file(&path))?;
-        Ok(Some(model))
+        TrainedModel::read(&self.directory.join(&self.aerodynamics)).map(Some)
     }
 
     /// The section: that of the file, else that of the trained model.
@@ -216,12 +206,20 @@ impl WindStudy {
         })
     }
 
+    /// Wind speeds of all curves and of the search for the onset.
+    ///
+    /// # Errors
+    /// Those of [`WindStudy::section`].
+    pub fn speed_range(&self) -> Result<SpeedRange> {
+        Ok(self.speeds.range(&self.section()?))
+    }
+
     /// The table of static coefficients.
     ///
     /// # Errors
     /// [`Error::Input`] when the file names none; those of reading.
     pub fn static_coefficients(&self) -> Result<StaticCoefficients> {
-        self.coefficients_block()?.table(&self.directory)
+        named_coefficients(&self.coefficients_block()?.source, &self.directory)
     }
 
     fn coefficients_block(&self) -> Result<&CoefficientsBlock> {
@@ -241,15 +239,6 @@ impl WindStudy {
 }
 
 impl CoefficientsBlock {
-    /// The table of static coefficients; paths are read against `directory`.
-    fn table(&self, directory: &Path) -> Result<StaticCoefficients> {
-        if self.source.to_lowercase().ends_with(".csv") {
-            read_coefficients(directory.join(&self.source))
-        } else {
-            embedded::coefficients(&self.source)
-        }
-    }
-
     /// Quasi-steady theory with its arms for these degrees of freedom; paths are read against `directory`.
     ///
     /// # Errors
@@ -258,13 +247,13 @@ impl CoefficientsBlock {
         let arms = match (&self.arms, &self.arms_from) {
             (Some(arms), _) => *arms,
             (None, Some(source)) => {
-                let table = derivatives(source, directory)?;
+                let table = named_table(source, directory)?;
                 let model = InterpolatedTable::new(&table, dofs, Extrapolation::Refuse)?;
                 Arms::from_model(&model, model.tested_range().min)?
             }
             (None, None) => Arms::default(),
         };
-        QuasiSteady::new(self.table(directory)?, arms, dofs)
+        QuasiSteady::new(named_coefficients(&self.source, directory)?, arms, dofs)
     }
 
     /// Refuses arms from two sources; `place` is the key of the block.
@@ -277,16 +266,5 @@ impl CoefficientsBlock {
             ));
         }
         Ok(())
-    }
-}
-
-fn derivatives(source: &str, directory: &Path) -> Result<DerivativeTable> {
-    let is_file = [".csv", ".xlsx"]
-        .iter()
-        .any(|end| source.to_lowercase().ends_with(end));
-    if is_file {
-        read_table(directory.join(source))
-    } else {
-        decks::deck(source)
     }
 }

@@ -49,7 +49,8 @@ pub fn quasi_steady_study(study: &WindStudy) -> Result<QuasiSteadyStudy> {
     let structure = study.section()?.structure()?;
     let theory = study.quasi_steady()?;
     let table = theory.coefficients();
-    let speeds = study.speeds.curve_speeds_m_s();
+    let range = study.speed_range()?;
+    let speeds = range.curve_speeds_m_s();
     let equilibria = static_equilibria(&structure, &theory, &speeds)?;
     let name = format!("quasi-steady, {}", table.name());
     let linear = equilibria
@@ -68,7 +69,7 @@ pub fn quasi_steady_study(study: &WindStudy) -> Result<QuasiSteadyStudy> {
         coefficients: table.name().to_owned(),
         dofs: structure.dofs.clone(),
         curves: quasi_steady_modes(&name, &structure, &theory, &equilibria)?,
-        onset: quasi_steady_onset(&name, &structure, &theory, &study.speeds.search())?,
+        onset: quasi_steady_onset(&name, &structure, &theory, &range.search())?,
         rows: table.rows().to_vec(),
         linear,
         equilibria,
@@ -209,9 +210,10 @@ fn linear_rows(
     let mut stepper = Stepper::new(CoupledSection::new(structure.clone(), realization)?);
     let mut state = stepper.released(&released[..n], &released[n..])?;
     let half_rho_v = 0.5 * structure.air_density_kg_m3 * speed;
+    let buffeting = structure.forces_at_axis(linear.buffeting().clone());
     let force = |time: f64| -> Vec<f64> {
         let (u, w) = gusts.at(time);
-        let rows = linear.buffeting().row_iter().zip(&structure.dofs);
+        let rows = buffeting.row_iter().zip(&structure.dofs);
         rows.map(|(row, dof)| {
             half_rho_v * dof.force_scale(structure.width_m) * (row[0] * u + row[1] * w)
         })

@@ -1,6 +1,7 @@
 //! The channel map: which channel of the files is what, in which unit, with which sign.
 
-use super::quantity::Quantity;
+use super::quantity::{Quantity, is_known, unit_in_name};
+use super::section_forces::SectionForces;
 use crate::error::{Error, Result};
 use crate::section::Dof;
 use crate::wind_tunnel::lab_files::{Channel, ChannelSet};
@@ -50,6 +51,9 @@ pub struct ChannelMap {
     /// Static pressure, a channel or a single number.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pressure: Option<ChannelRef>,
+    /// Forces on the whole section, in place of cells.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub section: Option<SectionForces>,
     /// For each cell its channels `fx`, `fy`, `fz`, `mx`, `my`, `mz` in local axes.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub cells: BTreeMap<String, BTreeMap<String, CellChannel>>,
@@ -116,6 +120,15 @@ impl ChannelRef {
         let channel = set
             .channel(&self.name)
             .ok_or_else(|| self.missing(place, set))?;
+        let of_the_name = set.channels.iter().filter(|c| c.name == self.name).count();
+        if of_the_name > 1 {
+            let expected = format!("one channel `{}`", self.name);
+            return Err(Error::input(
+                place,
+                expected,
+                format!("{of_the_name} of that name"),
+            ));
+        }
         let factor = self.factor(place, quantity, channel.unit.as_deref())?;
         Ok(channel.samples.iter().map(|x| factor * x).collect())
     }
@@ -148,16 +161,21 @@ impl ChannelRef {
                 Error::input(&place, "its unit, in the map or in the file", "none")
             })?;
         let factor = quantity.factor(&place, unit)?;
-        // a unit of the file that is not known here cannot be compared
-        let by_file = stated.and_then(|u| quantity.factor_of(u));
-        if by_file.is_some_and(|f| (f / factor - 1.0).abs() > 1e-12) {
-            return Err(Error::input(
+        // a unit of the file that is not known here (volts, counts) cannot be compared
+        let differs = |by_file: &&str| {
+            let factor_of_file = quantity.factor_of(by_file);
+            factor_of_file.map_or(is_known(by_file), |f| (f / factor - 1.0).abs() > 1e-12)
+        };
+        // an ending of the name that is a unit of another quantity may be a word: `cell_N`
+        let in_name = unit_in_name(&self.name).filter(|u| quantity.factor_of(u).is_some());
+        match stated.or(in_name).filter(differs) {
+            None => Ok(self.scale * factor),
+            Some(by_file) => Err(Error::input(
                 &place,
-                format!("the unit `{}` that the file states", stated.unwrap_or("")),
+                format!("the unit `{by_file}` that the file states"),
                 format!("`{unit}` in the map"),
-            ));
+            )),
         }
-        Ok(self.scale * factor)
     }
 }
 
@@ -173,6 +191,14 @@ impl ChannelMap {
             Dof::Lateral => self.lateral.as_ref(),
             Dof::Torsion => self.torsion.as_ref(),
         }
+    }
+
+    /// The key of a channel of a cell.
+    pub(super) fn cell_key(&self, cell: &str, channel: &str) -> String {
+        if self.section.is_some() {
+            return SectionForces::key(channel);
+        }
+        format!("channels.cells.{cell}.{channel}")
     }
 
     /// Checks units and names without any file.
@@ -196,6 +222,11 @@ impl ChannelMap {
                 channel.validate(&format!("channels.{key}"), quantity)?;
             }
         }
+        if self.section.as_ref().is_some_and(|s| s.dofs().is_empty()) {
+            let expected = "at least one of lift, drag, moment";
+            return Err(Error::input("channels.section", expected, "none"));
+        }
+        self.each_once()?;
         let names: Vec<&str> = rig.cells.iter().map(|c| c.name.as_str()).collect();
         if let Some(unknown) = self.cells.keys().find(|n| !names.contains(&n.as_str())) {
             let expected = format!("one of the cells of the rig: {}", names.join(", "));
@@ -206,6 +237,43 @@ impl ChannelMap {
             ));
         }
         names.iter().try_for_each(|cell| self.validate_cell(cell))
+    }
+
+    /// Refuses a channel of the files that is said to be two things.
+    fn each_once(&self) -> Result<()> {
+        let single = [
+            ("time", &self.time),
+            ("vertical", &self.vertical),
+            ("lateral", &self.lateral),
+            ("torsion", &self.torsion),
+            ("wind_speed", &self.wind_speed),
+            ("air_density", &self.air_density),
+            ("temperature", &self.temperature),
+            ("pressure", &self.pressure),
+        ];
+        let single = single.into_iter().filter_map(|(key, channel)| {
+            let name = channel.as_ref()?.name.as_str();
+            Some((format!("channels.{key}"), name))
+        });
+        let of_cells = self.cells.iter().flat_map(|(cell, channels)| {
+            channels
+                .iter()
+                .filter_map(move |(key, channel)| match channel {
+                    CellChannel::Measured(c) => Some((self.cell_key(cell, key), c.name.as_str())),
+                    CellChannel::NotMeasured(_) => None,
+                })
+        });
+        let mut used = BTreeMap::new();
+        for (key, name) in single.chain(of_cells) {
+            if let Some(other) = used.insert(name, key.clone()) {
+                return Err(Error::input(
+                    key,
+                    "a channel of its own",
+                    format!("`{name}`, which is `{other}` too"),
+                ));
+            }
+        }
+        Ok(())
     }
 
     fn validate_cell(&self, cell: &str) -> Result<()> {
@@ -235,7 +303,7 @@ impl ChannelMap {
                 None => return Err(Error::input(&place, all(), format!("no `{key}`"))),
                 Some(CellChannel::NotMeasured(_)) => {}
                 Some(CellChannel::Measured(channel)) => {
-                    channel.validate(&format!("{place}.{key}"), cell_quantity(key))?;
+                    channel.validate(&self.cell_key(cell, key), cell_quantity(key))?;
                 }
             }
         }

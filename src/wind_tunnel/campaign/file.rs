@@ -3,7 +3,8 @@
 use super::air::Air;
 use super::channel_map::{ChannelMap, ChannelRef};
 use super::ntnu;
-use crate::error::{Error, Result, positive};
+use super::section_forces::{self, SectionForces};
+use crate::error::{Error, Result, at_most, positive};
 use crate::section::Dof;
 use crate::toml_lines;
 use crate::wind_tunnel::Rig;
@@ -12,6 +13,11 @@ use std::path::{Path, PathBuf};
 
 /// Version of the campaign file.
 pub const CAMPAIGN_SCHEMA: u32 = 1;
+
+/// Bounds that no campaign reaches: a typing error must not become hours or the whole memory.
+const SAMPLING_HZ_AT_MOST: f64 = 1e6;
+const RUNS_AT_MOST: f64 = 10_000.0;
+const CELLS_AT_MOST: f64 = 64.0;
 
 /// Contents of a campaign file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -27,8 +33,9 @@ pub struct Campaign {
     /// What all recordings have in common.
     #[serde(default)]
     pub recording: RecordingBlock,
-    /// The rig.
-    pub rig: Rig,
+    /// The rig; left out where `channels.section` has the forces on the whole section.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rig: Option<Rig>,
     /// Which channel is what.
     #[serde(default)]
     pub channels: ChannelMap,
@@ -52,6 +59,12 @@ pub struct SectionBlock {
     /// Licence of the data.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub licence: String,
+    /// Width B, m, where there is no rig that states it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub width_m: Option<f64>,
+    /// Length along the span, m, that the forces are those of, where there is no rig; left out, 1 m.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub length_m: Option<f64>,
 }
 
 /// What all recordings have in common.
@@ -99,7 +112,7 @@ pub struct RunBlock {
     pub motion: Vec<Dof>,
     /// Recording in wind.
     pub in_wind: FileRef,
-    /// Recording of the same motion in still air.
+    /// Recording of the same motion in still air; not needed for `channels.section`, the forces of the wind alone.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub still_air: Option<FileRef>,
     /// Mean wind speed, m/s; left out, the mean of the channel `wind_speed`.
@@ -141,9 +154,7 @@ impl Campaign {
     /// [`Error::Io`] when it cannot be read; [`Error::Input`] with file and line for everything that is wrong in it.
     pub fn read(path: impl AsRef<Path>) -> Result<Self> {
         let path = path.as_ref();
-        let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, e))?;
-        let directory = path.parent().unwrap_or(Path::new("")).to_path_buf();
-        Self::from_toml(&text, directory).map_err(|e| e.in_file(path))
+        toml_lines::read(path, Self::from_toml)
     }
 
     /// Reads and checks the text of a campaign file; paths in it are read against `directory`.
@@ -151,22 +162,28 @@ impl Campaign {
     /// # Errors
     /// [`Error::Input`] with line and key for everything that is wrong in it.
     pub fn from_toml(text: &str, directory: PathBuf) -> Result<Self> {
-        let mut campaign: Self = toml::from_str(text)
-            .map_err(|e| toml_lines::syntax_error("a campaign file", text, &e))?;
-        campaign.directory = directory;
-        campaign
-            .validate()
-            .map_err(|e| toml_lines::with_line(text, e))?;
-        Ok(campaign)
+        toml_lines::parse("a campaign file", text, |campaign: &mut Self| {
+            campaign.directory = directory;
+            campaign.validate()
+        })
     }
 
     /// The channel map, that of a layout filled in.
     pub fn channel_map(&self) -> ChannelMap {
         let own = &self.channels;
+        if let Some(section) = &own.section {
+            let mut map = own.clone();
+            let cell = (section_forces::CELL.to_owned(), section.channels());
+            map.cells.extend([cell]);
+            return map;
+        }
         let Some(RecordingLayout::Ntnu) = self.recording.layout else {
             return own.clone();
         };
-        let preset = ntnu::channel_map(&self.rig);
+        let Some(rig) = &self.rig else {
+            return own.clone();
+        };
+        let preset = ntnu::channel_map(rig);
         let first = |own: &Option<ChannelRef>, preset: Option<ChannelRef>| own.clone().or(preset);
         let mut cells = preset.cells;
         cells.extend(own.cells.clone());
@@ -179,7 +196,49 @@ impl Campaign {
             air_density: own.air_density.clone().or_else(|| self.density_of_layout()),
             temperature: own.temperature.clone(),
             pressure: own.pressure.clone(),
+            section: None,
             cells,
+        }
+    }
+
+    /// The rig of the file, or what stands for it where the forces are those on the whole section: one cell in global axes
+    /// at the centre of rotation.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for neither or both of `rig` and `channels.section`, and for a width or length that is not positive.
+    pub fn rig(&self) -> Result<Rig> {
+        match (&self.rig, &self.channels.section) {
+            (Some(rig), None) => {
+                rig.validate()?;
+                match (self.section.width_m, self.section.length_m) {
+                    (None, None) => Ok(rig.clone()),
+                    _ => Err(Error::input(
+                        "section",
+                        "width and length of the model in `rig` alone",
+                        "`width_m` or `length_m` besides",
+                    )),
+                }
+            }
+            (None, Some(_)) => {
+                let width = self.section.width_m.ok_or_else(|| {
+                    Error::input("section.width_m", "the width B of the section, m", "none")
+                })?;
+                Ok(Rig {
+                    model_length_m: positive(
+                        "section.length_m",
+                        self.section.length_m.unwrap_or(1.0),
+                    )?,
+                    model_width_m: positive("section.width_m", width)?,
+                    model_mass_kg: None,
+                    model_inertia_kg_m2: None,
+                    cells: vec![SectionForces::cell()],
+                })
+            }
+            (rig, _) => Err(Error::input(
+                "rig",
+                "either load cells in `rig`, or the forces on the whole section in `channels.section`",
+                if rig.is_some() { "both" } else { "neither" },
+            )),
         }
     }
 
@@ -202,13 +261,15 @@ impl Campaign {
         if self.section.name.trim().is_empty() {
             return Err(Error::input("section.name", "a name", "none"));
         }
-        self.rig.validate()?;
-        self.validate_cells()?;
+        let rig = self.rig()?;
+        self.validate_cells(&rig)?;
         if let Some(hz) = self.recording.sampling_hz {
             positive("recording.sampling_hz", hz)?;
+            at_most("recording.sampling_hz", hz, SAMPLING_HZ_AT_MOST)?;
         }
+        at_most("run", self.runs.len() as f64, RUNS_AT_MOST)?;
         let map = self.channel_map();
-        map.validate(&self.rig)?;
+        map.validate(&rig)?;
         if self.runs.is_empty() {
             return Err(Error::input("run", "at least one [[run]]", "none"));
         }
@@ -225,8 +286,9 @@ impl Campaign {
         Ok(())
     }
 
-    fn validate_cells(&self) -> Result<()> {
-        let cells = &self.rig.cells;
+    fn validate_cells(&self, rig: &Rig) -> Result<()> {
+        let cells = &rig.cells;
+        at_most("rig.cells", cells.len() as f64, CELLS_AT_MOST)?;
         for (i, cell) in cells.iter().enumerate() {
             if cells[..i].iter().any(|c| c.name == cell.name) {
                 return Err(Error::input(
@@ -251,7 +313,7 @@ impl RunBlock {
         if self.name.trim().is_empty() {
             return Err(Error::input(key("name"), "a name", "none"));
         }
-        if self.still_air.is_none() {
+        if self.still_air.is_none() && map.section.is_none() {
             return Err(Error::input(
                 key("still_air"),
                 format!("the recording of the same motion in still air {of_run}"),
@@ -263,6 +325,15 @@ impl RunBlock {
             return Err(Error::input(key("motion"), expected, "nothing"));
         }
         for dof in &self.motion {
+            if map
+                .section
+                .as_ref()
+                .is_some_and(|s| !s.dofs().contains(dof))
+            {
+                let force = SectionForces::name(*dof);
+                let expected = format!("its force too: `channels.section.{force}` {of_run}");
+                return Err(Error::input(key("motion"), expected, "none"));
+            }
             if map.motion(*dof).is_none() {
                 return Err(Error::input(
                     key("motion"),

@@ -1,5 +1,8 @@
 //! What is odd in a recording but does not stop reading it, and where a channel is no number.
 
+use super::hints;
+use crate::error::{Error, Result};
+use crate::plausibility::ratio_hint;
 use crate::section::Dof;
 use crate::signal::clipped_stretches;
 use crate::wind_tunnel::RawRun;
@@ -14,7 +17,7 @@ const SPEED_OFF_AT_MOST: f64 = 0.05;
 /// Something that a user should look at.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Finding {
-    /// Name of the run.
+    /// Name of the run; empty for the campaign file.
     pub run: String,
     /// Recording: `in wind` or `still air`; empty for the run as a whole.
     pub recording: String,
@@ -30,6 +33,9 @@ pub struct Finding {
 
 impl fmt::Display for Finding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.run.is_empty() {
+            return write!(f, "{}", self.what);
+        }
         write!(f, "run `{}`", self.run)?;
         if !self.recording.is_empty() {
             write!(f, ", {}", self.recording)?;
@@ -107,33 +113,43 @@ pub(super) fn channel_findings(
 }
 
 /// What is odd about a run: lengths, speeds, motions.
-pub(super) fn run_findings(run: &RawRun, motion: &[Dof], width_m: f64) -> Vec<Finding> {
+///
+/// # Errors
+/// [`Error::Input`] when another motion than those stated moves most: then motion channels are exchanged, or the run is.
+pub(super) fn run_findings(run: &RawRun, motion: &[Dof], width_m: f64) -> Result<Vec<Finding>> {
     let mut found = Vec::new();
     let mut say = |what: String| found.push(Finding::of_run(&run.name, what));
-    let (wind, still) = (run.in_wind.len(), run.still_air.len());
-    if wind != still {
-        say(format!(
-            "{wind} samples in wind, {still} in still air; only the first {} have both",
-            wind.min(still)
-        ));
-    }
     let mean = |x: &[f64]| x.iter().sum::<f64>() / x.len() as f64;
-    let (measured, at_rest) = (&run.in_wind.wind_speed_m_s, &run.still_air.wind_speed_m_s);
+    let measured = &run.in_wind.wind_speed_m_s;
+    if let Some(still) = &run.still_air {
+        let (in_wind, still_air) = (run.in_wind.len(), still.len());
+        if in_wind != still_air {
+            say(format!(
+                "{in_wind} samples in wind, {still_air} in still air; only the first {} have both",
+                in_wind.min(still_air)
+            ));
+        }
+    }
     if !measured.is_empty() && (mean(measured) / run.mean_speed_m_s - 1.0).abs() > SPEED_OFF_AT_MOST
     {
         say(format!(
-            "the mean speed is {} m/s, its channel says {:.3} m/s",
+            "the mean speed is {} m/s, its channel says {:.3} m/s{}",
             run.mean_speed_m_s,
-            mean(measured)
+            mean(measured),
+            ratio_hint(run.mean_speed_m_s / mean(measured))
         ));
     }
-    if !at_rest.is_empty() && mean(at_rest) > SPEED_OFF_AT_MOST * run.mean_speed_m_s {
+    if let Some(still) = &run.still_air
+        && !still.wind_speed_m_s.is_empty()
+        && mean(&still.wind_speed_m_s) > SPEED_OFF_AT_MOST * run.mean_speed_m_s
+    {
         say(format!(
             "the still-air recording has a wind of {:.3} m/s",
-            mean(at_rest)
+            mean(&still.wind_speed_m_s)
         ));
     }
-    for (name, recording) in [("in wind", &run.in_wind), ("still air", &run.still_air)] {
+    let still = run.still_air.iter().map(|r| ("still air", r));
+    for (name, recording) in std::iter::once(("in wind", &run.in_wind)).chain(still) {
         let spread = |d: Dof| {
             let index = Dof::THREE.iter().position(|t| *t == d).unwrap_or(0);
             deviation(&recording.motion[index]) * d.motion_scale(width_m)
@@ -141,7 +157,15 @@ pub(super) fn run_findings(run: &RawRun, motion: &[Dof], width_m: f64) -> Vec<Fi
         let stated = motion.iter().map(|d| spread(*d)).fold(0.0, f64::max);
         for dof in Dof::THREE {
             let is_stated = motion.contains(&dof);
-            if is_stated && spread(dof) == 0.0 {
+            if !is_stated && spread(dof) > stated && spread(dof) > 0.0 {
+                return Err(exchanged(
+                    &run.name,
+                    name,
+                    motion,
+                    dof,
+                    spread(dof) / stated,
+                ));
+            } else if is_stated && spread(dof) == 0.0 {
                 say(format!("{name}: no {} motion", dof.name()));
             } else if !is_stated && spread(dof) > OTHER_MOTION_AT_MOST * stated {
                 let part = 100.0 * spread(dof) / stated;
@@ -151,8 +175,27 @@ pub(super) fn run_findings(run: &RawRun, motion: &[Dof], width_m: f64) -> Vec<Fi
                 ));
             }
         }
+        let of_motion = hints::of_motion((&run.name, name), recording, motion, width_m);
+        of_motion.into_iter().for_each(|f| say(f.what));
     }
-    found
+    Ok(found)
+}
+
+fn exchanged(run: &str, recording: &str, stated: &[Dof], found: Dof, ratio: f64) -> Error {
+    let stated: Vec<&str> = stated.iter().map(|d| d.name()).collect();
+    let times = if ratio.is_finite() {
+        format!("{ratio:.1} times that, both over the width")
+    } else {
+        "alone".to_owned()
+    };
+    Error::input(
+        format!("run `{run}`, {recording}"),
+        format!("{} motion, as `motion` states", stated.join(", ")),
+        format!(
+            "a {} motion of {times}: are the motion channels exchanged, or their units wrong?",
+            found.name()
+        ),
+    )
 }
 
 /// Standard deviation; 0 for a channel that is not there.

@@ -4,10 +4,12 @@ use super::air::Air;
 use super::channel_map::{ChannelMap, mean};
 use super::file::{Campaign, RunBlock};
 use super::findings::{Finding, run_findings};
+use super::hints;
 use super::recording::{Loading, SAME_RATE};
-use crate::error::{Error, Result, positive};
+use super::section_forces::SectionForces;
+use crate::error::{Error, Result, all_or_errors, positive};
 use crate::section::Dof;
-use crate::wind_tunnel::{RawCampaign, RawRecording, RawRun};
+use crate::wind_tunnel::{RawCampaign, RawRecording, RawRun, Rig};
 use rayon::prelude::*;
 use serde::Serialize;
 use std::path::Path;
@@ -36,8 +38,8 @@ pub struct RunSummary {
     pub air_density_kg_m3: f64,
     /// Recording in wind.
     pub in_wind: RecordingSummary,
-    /// Recording in still air.
-    pub still_air: RecordingSummary,
+    /// Recording in still air, if there is one.
+    pub still_air: Option<RecordingSummary>,
 }
 
 /// What a recording is.
@@ -69,27 +71,30 @@ impl Campaign {
     /// # Errors
     /// [`Error::Io`]; [`Error::Input`] naming run, recording, channel and sample: a channel that the file does not
     /// hold (with those that it does), channels of unequal length or rate, samples that are no numbers, a unit that
-    /// does not fit, a mean speed that is not positive, air of unknown density.
+    /// does not fit, a mean speed that is not positive, air of unknown density. The errors of all runs, in their order.
     pub fn load(&self) -> Result<CampaignReading> {
         let map = self.channel_map();
-        let read: Vec<_> = self
+        let rig = self.rig()?;
+        let read = self
             .runs
             .par_iter()
             .map(|run| {
                 let path = self.directory.join(run.in_wind.file());
-                self.load_run(&map, run).map_err(|e| e.in_file(path))
+                self.load_run(&rig, &map, run).map_err(|e| e.in_file(path))
             })
-            .collect::<Result<_>>()?;
+            .collect();
+        let read = all_or_errors(read)?;
         let mut reading = CampaignReading {
             raw: RawCampaign {
                 section: self.section.name.clone(),
                 source: self.section.source.clone(),
                 licence: self.section.licence.clone(),
-                rig: self.rig.clone(),
+                forces: map.section.as_ref().map(SectionForces::dofs),
+                rig,
                 runs: Vec::new(),
             },
             runs: Vec::new(),
-            findings: Vec::new(),
+            findings: hints::of_file(self),
         };
         for (run, summary, findings) in read {
             reading.raw.runs.push(run);
@@ -101,17 +106,18 @@ impl Campaign {
 
     fn load_run(
         &self,
+        rig: &Rig,
         map: &ChannelMap,
         run: &RunBlock,
     ) -> Result<(RawRun, RunSummary, Vec<Finding>)> {
         let place = format!("run `{}`", run.name);
-        let still = run
-            .still_air
-            .as_ref()
-            .ok_or_else(|| Error::input(&place, "a recording in still air", "none"))?;
-        let wind = Loading::new(self, map, run, &run.in_wind, "in wind")?;
-        let still = Loading::new(self, map, run, still, "still air")?;
-        let (wind_hz, still_hz) = (wind.recording.sampling_hz, still.recording.sampling_hz);
+        let wind = Loading::new((self, rig), map, run, &run.in_wind, "in wind")?;
+        let still = match &run.still_air {
+            Some(file) => Some(Loading::new((self, rig), map, run, file, "still air")?),
+            None => None,
+        };
+        let wind_hz = wind.recording.sampling_hz;
+        let still_hz = still.as_ref().map_or(wind_hz, |s| s.recording.sampling_hz);
         if (wind_hz / still_hz - 1.0).abs() > SAME_RATE {
             return Err(Error::input(
                 place,
@@ -119,24 +125,32 @@ impl Campaign {
                 format!("{wind_hz} Hz and {still_hz} Hz"),
             ));
         }
-        let raw = RawRun {
-            name: run.name.clone(),
-            mean_speed_m_s: mean_speed(run, &wind.recording)?,
-            air_density_kg_m3: self.density(map, run, &wind)?,
-            in_wind: wind.recording,
-            still_air: still.recording,
-        };
+        let mean_speed_m_s = mean_speed(run, &wind.recording)?;
+        let air_density_kg_m3 = self.density(map, run, &wind)?;
         let summary = RunSummary {
             name: run.name.clone(),
             motion: run.motion.clone(),
-            mean_speed_m_s: raw.mean_speed_m_s,
-            air_density_kg_m3: raw.air_density_kg_m3,
-            in_wind: summary(&raw.in_wind, wind.channels),
-            still_air: summary(&raw.still_air, still.channels),
+            mean_speed_m_s,
+            air_density_kg_m3,
+            in_wind: summary(&wind.recording, wind.channels),
+            still_air: still
+                .as_ref()
+                .map(|s| summary(&s.recording, s.channels.clone())),
         };
-        let mut findings = run_findings(&raw, &run.motion, self.rig.model_width_m);
-        findings.extend(wind.findings);
-        findings.extend(still.findings);
+        let mut read = wind.findings;
+        let still_air = still.map(|s| {
+            read.extend(s.findings);
+            s.recording
+        });
+        let raw = RawRun {
+            name: run.name.clone(),
+            in_wind: wind.recording,
+            still_air,
+            mean_speed_m_s,
+            air_density_kg_m3,
+        };
+        let mut findings = run_findings(&raw, &run.motion, rig.model_width_m)?;
+        findings.extend(read);
         Ok((raw, summary, findings))
     }
 

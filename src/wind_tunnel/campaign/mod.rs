@@ -7,10 +7,13 @@ mod air;
 mod channel_map;
 mod file;
 mod findings;
+mod hints;
 mod load;
 mod ntnu;
+mod ntnu_file;
 mod quantity;
 mod recording;
+mod section_forces;
 mod write;
 
 pub use air::Air;
@@ -21,6 +24,7 @@ pub use file::{
 pub use findings::Finding;
 pub use load::{CampaignReading, RecordingSummary, RunSummary};
 pub use quantity::Quantity;
+pub use section_forces::SectionForces;
 pub use write::{FileFormat, write_virtual_campaign};
 
 #[cfg(test)]

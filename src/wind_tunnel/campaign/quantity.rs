@@ -98,6 +98,24 @@ impl Quantity {
     }
 }
 
+/// Whether `unit` is one of any quantity.
+pub(super) fn is_known(unit: &str) -> bool {
+    let plain = normalised(unit);
+    UNITS.iter().any(|(name, ..)| *name == plain)
+}
+
+/// Endings of a name that say its unit: `y_mm`, `lift kN`. Of the units of one letter only N is one beyond doubt.
+const ENDINGS: &[&str] = &[
+    "mm", "cm", "um", "rad", "mrad", "deg", "N", "mN", "kN", "Nm", "Nmm", "mNm", "Ncm", "kNm",
+    "ms", "Pa", "hPa", "mbar", "kPa",
+];
+
+/// The unit that the name of a channel ends with, if it does: `y_mm`, `lift, kN`.
+pub(super) fn unit_in_name(name: &str) -> Option<&str> {
+    let (_, ending) = name.rsplit_once(['_', ' ', ',', '/', '-'])?;
+    ENDINGS.contains(&ending).then_some(ending)
+}
+
 /// Spellings of one unit as one: `N·m`, `N m`, `N*m`, `kg/m^3`, `kg/m³`, `degC`.
 fn normalised(unit: &str) -> String {
     let mut plain: String = unit
@@ -110,12 +128,19 @@ fn normalised(unit: &str) -> String {
             c => c,
         })
         .collect();
-    if let Some(rest) = plain.strip_prefix("deg")
-        && rest == "C"
-    {
-        plain = "C".to_owned();
-    }
-    plain
+    // words for symbols, in any case and number
+    let word = plain.to_lowercase();
+    let symbol = match word.trim_end_matches('s') {
+        "degc" | "celsiu" => "C",
+        "degree" | "deg" => "deg",
+        "radian" | "rad" => "rad",
+        "metre" | "meter" => "m",
+        "millimetre" | "millimeter" => "mm",
+        "newton" => "N",
+        "second" | "sec" => "s",
+        _ => return std::mem::take(&mut plain),
+    };
+    symbol.to_owned()
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ use super::quantity::Quantity;
 use crate::error::{Error, Result};
 use crate::section::Dof;
 use crate::wind_tunnel::lab_files::ChannelSet;
-use crate::wind_tunnel::{CELL_CHANNELS, RawRecording, SAMPLES_AT_LEAST};
+use crate::wind_tunnel::{CELL_CHANNELS, RawRecording, Rig, SAMPLES_AT_LEAST};
 
 /// Two statements of one sampling frequency may differ by this part.
 pub(super) const SAME_RATE: f64 = 1e-3;
@@ -26,7 +26,7 @@ pub(super) struct Loading {
 impl Loading {
     /// Reads the file, or the group of it.
     pub fn new(
-        campaign: &Campaign,
+        (campaign, rig): (&Campaign, &Rig),
         map: &ChannelMap,
         run: &RunBlock,
         file: &FileRef,
@@ -45,7 +45,7 @@ impl Loading {
                 channels: Vec::new(),
                 findings: Vec::new(),
             };
-            let recording = taking.recording(campaign, file.to_string())?;
+            let recording = taking.recording(campaign, rig, file.to_string())?;
             Ok(Self {
                 recording,
                 air: taking.air(what == "in wind")?,
@@ -87,7 +87,12 @@ struct Taking<'a> {
 }
 
 impl Taking<'_> {
-    fn recording(&mut self, campaign: &Campaign, source: String) -> Result<RawRecording> {
+    fn recording(
+        &mut self,
+        campaign: &Campaign,
+        rig: &Rig,
+        source: String,
+    ) -> Result<RawRecording> {
         let map = self.map;
         let mut motion: [Vec<f64>; 3] = Default::default();
         for (samples, dof) in motion.iter_mut().zip(Dof::THREE) {
@@ -106,7 +111,7 @@ impl Taking<'_> {
             }
         }
         let mut cells = Vec::new();
-        for cell in &campaign.rig.cells {
+        for cell in &rig.cells {
             cells.push(self.cell(&cell.name)?);
         }
         let wind_speed_m_s = self.wind_speed()?;
@@ -136,7 +141,7 @@ impl Taking<'_> {
         for (samples, key) in channels.iter_mut().zip(CELL_CHANNELS) {
             let channel = map.cells.get(cell).and_then(|channels| channels.get(key));
             if let Some(CellChannel::Measured(channel)) = channel {
-                let place = format!("channels.cells.{cell}.{key}");
+                let place = map.cell_key(cell, key);
                 *samples = self.take(&place, channel, cell_quantity(key), true)?;
             }
         }

@@ -5,15 +5,12 @@ use super::channel_map::{CellChannel, ChannelMap, ChannelRef, cell_quantity};
 use super::file::{
     CAMPAIGN_SCHEMA, Campaign, FileRef, RecordingBlock, RecordingLayout, RunBlock, SectionBlock,
 };
-use super::ntnu;
+use super::ntnu_file;
 use super::quantity::Quantity;
 use crate::error::{Error, Result};
-use crate::section::Dof;
 use crate::wind_tunnel::record_file::push_number;
 use crate::wind_tunnel::virtual_campaign::VirtualCampaign;
-use crate::wind_tunnel::{CELL_CHANNELS, LoadCell, RawRecording, RawRun, Rig, write_record};
-use hdf5_pure::{AttrValue, FileBuilder};
-use nalgebra::{Matrix3, Vector3};
+use crate::wind_tunnel::{CELL_CHANNELS, RawRecording, RawRun, Rig, write_record};
 use serde::{Deserialize, Serialize};
 use std::fs::File;
 use std::io::{BufWriter, Write};
@@ -49,20 +46,17 @@ pub fn write_virtual_campaign(
     match format {
         FileFormat::Csv => {
             for (run, block) in made.raw.runs.iter().zip(&campaign.runs) {
-                let both = [
-                    (Some(&block.in_wind), &run.in_wind),
-                    (block.still_air.as_ref(), &run.still_air),
-                ];
-                for (file, recording) in both {
-                    if let Some(file) = file {
-                        write_csv(recording, &made.raw.rig, &place(file.file())?)?;
-                    }
+                let still = block.still_air.iter().zip(&run.still_air);
+                for (file, recording) in
+                    std::iter::once((&block.in_wind, &run.in_wind)).chain(still)
+                {
+                    write_csv(recording, &made.raw.rig, &place(file.file())?)?;
                 }
             }
         }
         FileFormat::Ntnu => {
             let path = place(Path::new(NTNU_FILE))?;
-            ntnu_file(made)
+            ntnu_file::build(made)
                 .write(&path)
                 .map_err(|e| Error::io(&path, std::io::Error::other(e.to_string())))?;
         }
@@ -139,6 +133,8 @@ fn campaign_file(made: &VirtualCampaign, format: FileFormat) -> Campaign {
             name: raw.section.clone(),
             source: raw.source.clone(),
             licence: raw.licence.clone(),
+            width_m: None,
+            length_m: None,
         },
         air: match format {
             FileFormat::Csv => Air {
@@ -153,8 +149,8 @@ fn campaign_file(made: &VirtualCampaign, format: FileFormat) -> Campaign {
             layout: (format == FileFormat::Ntnu).then_some(RecordingLayout::Ntnu),
         },
         rig: match format {
-            FileFormat::Csv => raw.rig.clone(),
-            FileFormat::Ntnu => ntnu_rig(&raw.rig),
+            FileFormat::Csv => Some(raw.rig.clone()),
+            FileFormat::Ntnu => Some(ntnu_file::rig(&raw.rig)),
         },
         channels: match format {
             FileFormat::Csv => csv_map(&raw.rig),
@@ -231,84 +227,4 @@ fn write_csv(recording: &RawRecording, rig: &Rig, path: &Path) -> Result<()> {
         out.write_all(line.as_bytes()).map_err(io)?;
     }
     out.flush().map_err(io)
-}
-
-/// The same cells as the layout has them: fixed axes at the place of the cell at rest.
-fn ntnu_rig(rig: &Rig) -> Rig {
-    let fixed = |cell: &LoadCell| LoadCell {
-        axes: ntnu::AXES,
-        turns_with_model: false,
-        ..cell.clone()
-    };
-    Rig {
-        cells: rig.cells.iter().map(fixed).collect(),
-        ..rig.clone()
-    }
-}
-
-fn ntnu_file(made: &VirtualCampaign) -> FileBuilder {
-    let mut file = FileBuilder::new();
-    for (run, truth) in made.raw.runs.iter().zip(&made.truth.records) {
-        let moving: Vec<&str> = (0..truth.header.dofs.len())
-            .filter(|j| truth.motion[*j].iter().any(|x| *x != 0.0))
-            .map(|j| truth.header.dofs[j].name())
-            .collect();
-        for (what, recording) in [("wind", &run.in_wind), ("still", &run.still_air)] {
-            let n = recording.len() as u64;
-            let mut group = file.create_group(&format!("{}-{what}", run.name));
-            let text = AttrValue::String(moving.join(", "));
-            group.set_attr("sampling frequency", AttrValue::F64(recording.sampling_hz));
-            group.set_attr("forced motion", text);
-            group
-                .create_dataset("air_density")
-                .with_f64_data(&[run.air_density_kg_m3])
-                .with_shape(&[1]);
-            group
-                .create_dataset("wind_velocity")
-                .with_f64_data(&recording.wind_speed_m_s)
-                .with_shape(&[n]);
-            group
-                .create_dataset("motion")
-                .with_f64_data(&ntnu_motion(recording))
-                .with_shape(&[n, 3]);
-            group
-                .create_dataset("forces_global_coord")
-                .with_f64_data(&ntnu_forces(recording, &made.raw.rig))
-                .with_shape(&[n, 6 * ntnu::CELLS as u64]);
-            file.add_group(group.finish());
-        }
-    }
-    file
-}
-
-/// Rows of lateral, vertical, torsion.
-fn ntnu_motion(recording: &RawRecording) -> Vec<f64> {
-    let [vertical, lateral, torsion] = &recording.motion;
-    (0..recording.len())
-        .flat_map(|i| [lateral[i], vertical[i], torsion[i]])
-        .collect()
-}
-
-/// Rows of the six channels of each cell in fixed axes, about the place of the cell at rest.
-fn ntnu_forces(recording: &RawRecording, rig: &Rig) -> Vec<f64> {
-    let to_lab = Matrix3::from_fn(|i, j| ntnu::AXES[j][i]);
-    let torsion = Dof::THREE
-        .iter()
-        .position(|d| *d == Dof::Torsion)
-        .unwrap_or(0);
-    let mut rows = Vec::with_capacity(recording.len() * 6 * ntnu::CELLS);
-    for i in 0..recording.len() {
-        let theta = recording.motion[torsion].get(i).copied().unwrap_or(0.0);
-        for (cell, channels) in rig.cells.iter().zip(&recording.cells) {
-            let to_global = cell.axes_at(theta);
-            let [fx, fy, fz, mx, my, mz] = channels;
-            let force = to_global * Vector3::new(fx[i], fy[i], fz[i]);
-            let moved = cell.position_at(theta) - Vector3::from(cell.position_m);
-            let moment = to_global * Vector3::new(mx[i], my[i], mz[i]) + moved.cross(&force);
-            rows.extend((to_lab * force).iter());
-            rows.extend((to_lab * moment).iter());
-        }
-        rows.resize((i + 1) * 6 * ntnu::CELLS, 0.0);
-    }
-    rows
 }

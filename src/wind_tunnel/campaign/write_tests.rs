@@ -41,7 +41,8 @@ fn csv_reads_back_bit_for_bit() {
     for (run, own) in reading.raw.runs.iter_mut().zip(&made.raw.runs) {
         assert_eq!(run.in_wind.source, format!("runs/{}-wind.csv", own.name));
         run.in_wind.source = own.in_wind.source.clone();
-        run.still_air.source = own.still_air.source.clone();
+        let (still, own) = (run.still_air.as_mut(), own.still_air.as_ref());
+        still.unwrap().source = own.unwrap().source.clone();
     }
     assert_eq!(reading.raw, made.raw);
     // the truth stands beside it
@@ -76,7 +77,8 @@ fn the_layout_of_ntnu_reads_back_the_same_forces() {
     assert!(raw.rig.cells.iter().all(|c| !c.turns_with_model));
     for (a, b) in raw.runs.iter().zip(&made.raw.runs) {
         assert_eq!(a.air_density_kg_m3, b.air_density_kg_m3);
-        for (a, b) in [(&a.in_wind, &b.in_wind), (&a.still_air, &b.still_air)] {
+        let still = [&a.still_air, &b.still_air].map(|r| r.as_ref().unwrap());
+        for (a, b) in [(&a.in_wind, &b.in_wind), (still[0], still[1])] {
             assert_eq!(
                 (&a.motion, &a.wind_speed_m_s),
                 (&b.motion, &b.wind_speed_m_s)
@@ -89,4 +91,35 @@ fn the_layout_of_ntnu_reads_back_the_same_forces() {
             }
         }
     }
+}
+
+/// Units stand in the file as one a column, and the map has to agree with them.
+#[test]
+fn the_layout_of_ntnu_states_its_units() {
+    let folder = tempfile::tempdir().unwrap();
+    again(&made(), FileFormat::Ntnu, folder.path());
+    let file = folder.path().join("runs.h5");
+    let group = "Jones-vertical-8.17-wind";
+    let set = crate::wind_tunnel::lab_files::ChannelSet::read(&file, Some(group)).unwrap();
+    let unit = |name: &str| set.channel(name).unwrap().unit.clone().unwrap();
+    assert_eq!(unit("motion[2]"), "m");
+    assert_eq!(unit("motion[3]"), "rad");
+    assert_eq!(unit("forces_global_coord_center[11]"), "Nm");
+    assert!((set.number("temperature").unwrap() - 23.5).abs() < 1.0);
+    let toml = folder.path().join("campaign.toml");
+    let text = std::fs::read_to_string(&toml).unwrap();
+    let map = "[channels]\ntorsion = { name = \"motion[3]\", unit = \"deg\" }\n";
+    assert!(text.contains("[channels]\n"), "{text}");
+    std::fs::write(&toml, text.replacen("[channels]\n", map, 1)).unwrap();
+    let said = Campaign::read(&toml)
+        .unwrap()
+        .load()
+        .unwrap_err()
+        .to_string();
+    assert!(
+        said.contains(
+            "`motion[3]`: expected the unit `rad` that the file states, found `deg` in the map"
+        ),
+        "{said}"
+    );
 }

@@ -21,17 +21,22 @@ pub(super) fn push_array(
     shape: &[usize],
     order: Order,
     values: Vec<f64>,
-    unit: Option<&str>,
+    units: &[String],
 ) {
     let sides: Vec<usize> = shape.iter().copied().filter(|n| *n != 1).collect();
-    let unit = || unit.map(str::to_owned);
+    // one unit for all columns, or one a column
+    let unit = |column: usize, columns: usize| match units {
+        [one] => Some(one.clone()),
+        all if all.len() == columns => Some(all[column].clone()),
+        _ => None,
+    };
     match (sides[..].len(), &sides[..]) {
         _ if values.is_empty() => set.leave_out(name, "empty"),
         (0, _) => {
             set.attributes
                 .insert(name.to_owned(), Attribute::Number(values[0]));
         }
-        (1, _) => set.push(name, values, unit()),
+        (1, _) => set.push(name, values, unit(0, 1)),
         (2, &[rows, columns]) => {
             // as if stored with the first index fastest
             let (fast, slow) = match order {
@@ -60,7 +65,7 @@ pub(super) fn push_array(
                     }]
                 };
                 let column = (0..samples).map(at).collect();
-                set.push(format!("{name}[{}]", c + 1), column, unit());
+                set.push(format!("{name}[{}]", c + 1), column, unit(c, channels));
             }
         }
         (dimensions, _) => set.leave_out(name, format!("an array of {dimensions} dimensions")),

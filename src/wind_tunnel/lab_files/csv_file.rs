@@ -4,9 +4,12 @@
 //! unless all of it is numbers. A row of units may follow, or units may stand behind the names: `y [mm]`, `Fx (N)`.
 //! An empty cell or `NaN` is a missing sample. A column whose first cell is text is left out.
 
-use super::{Attribute, ChannelSet, no_group};
+use super::{Attribute, ChannelSet, check_count, no_group};
 use crate::error::{Error, Result};
 use std::borrow::Cow;
+
+/// A row of a thousand channels has 20 kB.
+const LINE_BYTES_AT_MOST: usize = 1 << 20;
 
 /// How cells and numbers are written.
 #[derive(Debug, Clone, Copy)]
@@ -27,6 +30,7 @@ pub(super) fn parse(bytes: &[u8], group: Option<&str>) -> Result<ChannelSet> {
     let mut set = ChannelSet::default();
     let start = take_comments(bytes, &mut set);
     let (skipped, rest) = (count_lines(&bytes[..start]), &bytes[start..]);
+    check_lines(rest, skipped)?;
     let style = Style::of(rest);
     let mut reader = csv::ReaderBuilder::new()
         .delimiter(style.separator)
@@ -74,6 +78,26 @@ fn take_comments(bytes: &[u8], set: &mut ChannelSet) -> usize {
         start += line.len();
     }
     start
+}
+
+/// Refuses lines that are no rows of samples, before anything is made of them.
+fn check_lines(bytes: &[u8], skipped: usize) -> Result<()> {
+    let long = bytes
+        .split(|b| *b == b'\n')
+        .enumerate()
+        .find(|(_, line)| line.len() > LINE_BYTES_AT_MOST);
+    match long {
+        None => Ok(()),
+        Some((i, line)) => {
+            let expected = format!("a row of at most {LINE_BYTES_AT_MOST} bytes");
+            let place = format!("line {}", skipped + i + 1);
+            Err(Error::input(
+                place,
+                expected,
+                format!("{} bytes", line.len()),
+            ))
+        }
+    }
 }
 
 fn count_lines(bytes: &[u8]) -> usize {
@@ -173,7 +197,10 @@ impl Table {
             }
         }
         self.rows += 1;
-        Ok(())
+        check_count(
+            &format!("line {line}"),
+            (self.rows * self.names.len()) as u64,
+        )
     }
 
     /// Takes a row without any number as units.

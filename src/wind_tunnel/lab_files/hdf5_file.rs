@@ -2,7 +2,7 @@
 
 use super::columns::{Order, push_array};
 use super::guarded::guarded;
-use super::{Attribute, ChannelSet, no_group};
+use super::{Attribute, ChannelSet, check_count, no_group};
 use crate::error::{Error, Result};
 use hdf5_pure::{AttrValue, DType, Dataset, File, Group};
 
@@ -45,6 +45,7 @@ fn read(bytes: Vec<u8>, length: u64, group: Option<&str>, separator: &str) -> Re
     let root = file.root();
     let mut reader = Reader {
         set: ChannelSet::default(),
+        numbers: 0,
         bytes_at_most: length.saturating_mul(PACKED_AT_MOST),
         separator: separator.to_owned(),
     };
@@ -65,6 +66,8 @@ fn read(bytes: Vec<u8>, length: u64, group: Option<&str>, separator: &str) -> Re
 
 struct Reader {
     set: ChannelSet,
+    /// Numbers taken so far.
+    numbers: u64,
     bytes_at_most: u64,
     separator: String,
 }
@@ -104,6 +107,13 @@ impl Reader {
     fn take_dataset(&mut self, dataset: &Dataset, path: &str) -> Result<()> {
         let shape = dataset.shape().map_err(|e| corrupt(path, e))?;
         let size = dataset.element_size().map_err(|e| corrupt(path, e))?;
+        let count = shape.iter().try_fold(1_u64, |n, side| n.checked_mul(*side));
+        let chunk = dataset.chunk_shape().map_err(|e| corrupt(path, e))?;
+        let chunk = chunk.unwrap_or_default();
+        let chunk = chunk.iter().try_fold(1_u64, |n, side| n.checked_mul(*side));
+        check_count(path, chunk.unwrap_or(u64::MAX))?;
+        self.numbers = self.numbers.saturating_add(count.unwrap_or(u64::MAX));
+        check_count(path, self.numbers)?;
         let bytes = shape
             .iter()
             .try_fold(size, |product, n| product.checked_mul(*n));
@@ -150,7 +160,15 @@ impl Reader {
                 .insert(path.to_owned(), Attribute::Text(text));
             return Ok(());
         }
-        let unit = text("unit").or_else(|| text("units"));
+        let stated = attributes
+            .iter()
+            .find(|(name, _)| ["unit", "units"].contains(&name.to_lowercase().as_str()))
+            .map(|(_, value)| value);
+        let units: Vec<String> = match stated.map(|v| (v.as_str(), v.as_strings())) {
+            Some((Some(one), _)) => vec![one.to_owned()],
+            Some((None, Some(all))) => all.to_vec(),
+            _ => Vec::new(),
+        };
         let shape: Vec<usize> = shape.iter().map(|n| *n as usize).collect();
         push_array(
             &mut self.set,
@@ -158,7 +176,7 @@ impl Reader {
             &shape,
             Order::LastFastest,
             values,
-            unit,
+            &units,
         );
         Ok(())
     }

@@ -5,12 +5,15 @@
 
 use super::columns::{Order, push_array};
 use super::guarded::guarded;
-use super::{Attribute, ChannelSet, no_group};
+use super::{Attribute, ChannelSet, NUMBERS_AT_MOST, check_count, no_group};
 use crate::error::{Error, Result};
 use matrw::{MatFile, MatVariable, MatlabType};
+use std::io::Read;
 
 /// What `matrw` looks for.
 const HEADER: &[u8] = b"MATLAB 5.0 MAT-file, ";
+/// Type of a compressed element.
+const COMPRESSED: u32 = 15;
 /// Length of the header; version and byte order are its last four bytes.
 const HEADER_BYTES: usize = 128;
 
@@ -33,7 +36,21 @@ pub(super) fn parse(mut bytes: Vec<u8>, group: Option<&str>) -> Result<ChannelSe
         .ok_or_else(|| corrupt("a part that cannot be read".to_owned()))?
 }
 
-/// Checks that all elements lie in the file, so that a truncated one is named as such.
+/// Refuses compressed elements that become more than a recording can be, without keeping what they become.
+fn check_inflated(place: &str, packed: &[u8], before: u64) -> Result<u64> {
+    let at_most = NUMBERS_AT_MOST * size_of::<f64>() as u64;
+    let mut stream = flate2::read::ZlibDecoder::new(packed).take(at_most + 1 - before.min(at_most));
+    // what is corrupt is said by the reader proper
+    let inflated = std::io::copy(&mut stream, &mut std::io::sink()).unwrap_or(0);
+    if before + inflated > at_most {
+        let expected =
+            format!("compressed variables of at most {at_most} bytes (cut the recording)");
+        return Err(Error::input(place, expected, "more"));
+    }
+    Ok(before + inflated)
+}
+
+/// Checks that all elements lie in the file, so that a truncated one is named as such, and what compressed ones become.
 fn check_elements(bytes: &[u8]) -> Result<()> {
     let version = bytes.get(124..HEADER_BYTES);
     let little = match version {
@@ -57,11 +74,17 @@ fn check_elements(bytes: &[u8]) -> Result<()> {
             u32::from_be_bytes(four)
         })
     };
-    let mut at = HEADER_BYTES;
+    let (mut at, mut inflated) = (HEADER_BYTES, 0);
     while at < bytes.len() {
         let size = word(at + 4).map(|size| size as usize);
         match size {
-            Some(size) if size <= bytes.len() - at - 8 => at += 8 + size,
+            Some(size) if size <= bytes.len() - at - 8 => {
+                if word(at) == Some(COMPRESSED) {
+                    let packed = &bytes[at + 8..at + 8 + size];
+                    inflated = check_inflated(&format!("byte {at}"), packed, inflated)?;
+                }
+                at += 8 + size;
+            }
             _ => {
                 let expected = match size {
                     Some(size) => format!("{size} bytes"),
@@ -80,6 +103,8 @@ fn check_elements(bytes: &[u8]) -> Result<()> {
 
 fn channels(file: &MatFile, group: Option<&str>) -> Result<ChannelSet> {
     let mut set = ChannelSet::default();
+    let numbers = file.iter().map(|(_, v)| count(v)).sum();
+    check_count("", numbers)?;
     let Some(group) = group else {
         for (name, variable) in file.iter() {
             push(&mut set, name, variable);
@@ -104,6 +129,21 @@ fn channels(file: &MatFile, group: Option<&str>) -> Result<ChannelSet> {
     Ok(set)
 }
 
+/// Numbers in a variable and all that is in it.
+fn count(variable: &MatVariable) -> u64 {
+    match variable {
+        MatVariable::Compressed(inner) => count(&inner.value),
+        MatVariable::NumericArray(array) => array.dim.iter().map(|n| *n as u64).product(),
+        MatVariable::Structure(inner) => {
+            let fields = inner.fieldnames();
+            fields.iter().filter_map(|f| inner.get(f)).map(count).sum()
+        }
+        MatVariable::StructureArray(array) => array.value.iter().map(count).sum(),
+        MatVariable::CellArray(array) => array.value.iter().map(count).sum(),
+        _ => 0,
+    }
+}
+
 fn uncompressed(variable: &MatVariable) -> &MatVariable {
     match variable {
         MatVariable::Compressed(inner) => uncompressed(&inner.value),
@@ -119,7 +159,7 @@ fn push(set: &mut ChannelSet, name: &str, variable: &MatVariable) {
         }
         MatVariable::NumericArray(array) => match numbers(array.numeric_type()) {
             Numbers::Values(values) => {
-                push_array(set, name, &array.dim, Order::FirstFastest, values, None);
+                push_array(set, name, &array.dim, Order::FirstFastest, values, &[]);
             }
             Numbers::Text(text) => {
                 set.attributes

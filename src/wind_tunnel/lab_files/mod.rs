@@ -57,6 +57,25 @@ pub enum Attribute {
     Text(String),
 }
 
+/// Numbers in one file, or one group of it, at most: all channels of 46 for an hour at 200 Hz. With it each reader works within
+/// 1 GiB for files of 100 MB.
+const NUMBERS_AT_MOST: u64 = 32 << 20;
+/// Bytes of one file at most.
+const BYTES_AT_MOST: u64 = 2 << 30;
+/// Names in a message at most.
+const NAMES_AT_MOST: usize = 60;
+
+/// Refuses more numbers than a recording has.
+fn check_count(place: &str, numbers: u64) -> Result<()> {
+    if numbers <= NUMBERS_AT_MOST {
+        return Ok(());
+    }
+    let expected = format!(
+        "at most {NUMBERS_AT_MOST} numbers in a file or group (cut the recording, or give each run a group)"
+    );
+    Err(Error::input(place, expected, numbers.to_string()))
+}
+
 /// Names under which files state their sampling frequency in Hz, in lower case.
 const SAMPLING_NAMES: [&str; 8] = [
     "sampling frequency",
@@ -77,6 +96,13 @@ impl ChannelSet {
     /// without the group.
     pub fn read(path: impl AsRef<Path>, group: Option<&str>) -> Result<Self> {
         let path = path.as_ref();
+        let length = std::fs::metadata(path)
+            .map_err(|e| Error::io(path, e))?
+            .len();
+        if length > BYTES_AT_MOST {
+            let expected = format!("a file of at most {BYTES_AT_MOST} bytes");
+            return Err(Error::input("", expected, length.to_string()).in_file(path));
+        }
         let bytes = std::fs::read(path).map_err(|e| Error::io(path, e))?;
         let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("");
         let mut set =
@@ -124,7 +150,7 @@ impl ChannelSet {
         let mut text = if names.is_empty() {
             "no channel".to_owned()
         } else {
-            format!("the channels {}", names.join(", "))
+            format!("the channels {}", shortened(&names))
         };
         let numbers: Vec<&str> = self
             .attributes
@@ -133,9 +159,9 @@ impl ChannelSet {
             .map(|(name, _)| name.as_str())
             .collect();
         if !numbers.is_empty() {
-            text.push_str(&format!("; the numbers {}", numbers.join(", ")));
+            text.push_str(&format!("; the numbers {}", shortened(&numbers)));
         }
-        for (name, reason) in &self.left_out {
+        for (name, reason) in self.left_out.iter().take(NAMES_AT_MOST) {
             text.push_str(&format!("; not read: {name} ({reason})"));
         }
         text
@@ -171,12 +197,22 @@ impl ChannelSet {
     }
 }
 
+/// Names in a row, no more than a message should hold.
+fn shortened(names: &[&str]) -> String {
+    let shown = names[..names.len().min(NAMES_AT_MOST)].join(", ");
+    match names.len().saturating_sub(NAMES_AT_MOST) {
+        0 => shown,
+        more => format!("{shown} and {more} more"),
+    }
+}
+
 /// The error that there is no such group.
 fn no_group(wanted: &str, groups: &[String]) -> Error {
+    let groups: Vec<&str> = groups.iter().map(String::as_str).collect();
     let expected = if groups.is_empty() {
         "no group: the file has none".to_owned()
     } else {
-        format!("one of the groups {}", groups.join(", "))
+        format!("one of the groups {}", shortened(&groups))
     };
     Error::input("group", expected, format!("`{wanted}`"))
 }

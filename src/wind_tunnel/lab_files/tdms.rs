@@ -7,9 +7,9 @@
 //! DAQmx raw data, strings, time stamps, and channels whose samples still have to be scaled.
 
 use super::tdms_bytes::Bytes;
-use super::{Attribute, ChannelSet, no_group};
+use super::{Attribute, ChannelSet, check_count, no_group};
 use crate::error::{Error, Result};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 
 const LEAD_IN_BYTES: usize = 28;
 const HAS_METADATA: u32 = 1 << 1;
@@ -50,18 +50,31 @@ struct Layout {
 
 #[derive(Debug, Default)]
 struct Object {
+    path: String,
+    /// Whether it is in `active`.
+    is_active: bool,
     properties: BTreeMap<String, Attribute>,
     layout: Option<Layout>,
     samples: Vec<f64>,
 }
 
+/// Objects of one file at most.
+const OBJECTS_AT_MOST: usize = 20_000;
+/// Layouts looked at over all segments at most: 20 channels in 10 million segments.
+const LOOKS_AT_MOST: usize = 200_000_000;
+
 #[derive(Debug, Default)]
 struct TdmsFile {
     /// In the order in which they are first named.
-    paths: Vec<String>,
-    objects: BTreeMap<String, Object>,
+    objects: Vec<Object>,
+    /// Place of an object by its path.
+    places: HashMap<String, usize>,
     /// Objects with samples in the current segment, in order.
-    active: Vec<String>,
+    active: Vec<usize>,
+    /// Samples taken so far.
+    samples: u64,
+    /// Layouts looked at so far.
+    looks: usize,
 }
 
 impl TdmsFile {
@@ -111,15 +124,15 @@ impl TdmsFile {
 
     fn take_metadata(&mut self, bytes: &mut Bytes<'_>, is_new_list: bool) -> Result<()> {
         if is_new_list {
-            self.active.clear();
+            for place in self.active.drain(..) {
+                self.objects[place].is_active = false;
+            }
         }
         for _ in 0..bytes.u32()? {
             let path = bytes.text()?;
-            let place = format!("byte {}", bytes.at);
-            if !self.objects.contains_key(&path) {
-                self.paths.push(path.clone());
-            }
-            let object = self.objects.entry(path.clone()).or_default();
+            let at = format!("byte {}", bytes.at);
+            let place = self.place_of(path, &at)?;
+            let object = &mut self.objects[place];
             let has_samples = match bytes.u32()? {
                 NO_SAMPLES => false,
                 AS_BEFORE => true,
@@ -129,7 +142,7 @@ impl TdmsFile {
                     let count = usize::try_from(bytes.u64()?).unwrap_or(usize::MAX);
                     if kind == STRING {
                         return Err(Error::input(
-                            format!("{place}, {path}"),
+                            format!("{at}, {}", object.path),
                             "samples that are numbers",
                             format!("texts (index of {length} bytes)"),
                         ));
@@ -145,12 +158,32 @@ impl TdmsFile {
                     object.properties.insert(name, value);
                 }
             }
-            self.active.retain(|p| *p != path || has_samples);
-            if has_samples && !self.active.contains(&path) {
-                self.active.push(path);
+            if object.is_active && !has_samples {
+                self.looks += self.active.len();
+                self.active.retain(|p| *p != place);
+            } else if !object.is_active && has_samples {
+                self.active.push(place);
             }
+            self.objects[place].is_active = has_samples;
         }
         Ok(())
+    }
+
+    /// The place of an object, a new one when the path is new.
+    fn place_of(&mut self, path: String, at: &str) -> Result<usize> {
+        if let Some(place) = self.places.get(&path) {
+            return Ok(*place);
+        }
+        if self.objects.len() == OBJECTS_AT_MOST {
+            let expected = format!("at most {OBJECTS_AT_MOST} channels and groups");
+            return Err(Error::input(at, expected, "more"));
+        }
+        self.objects.push(Object {
+            path: path.clone(),
+            ..Object::default()
+        });
+        self.places.insert(path, self.objects.len() - 1);
+        Ok(self.objects.len() - 1)
     }
 
     /// The blocks up to `end`.
@@ -160,21 +193,27 @@ impl TdmsFile {
         end: usize,
         is_interleaved: bool,
     ) -> Result<()> {
-        let mut layouts = Vec::new();
-        for path in &self.active {
-            if let Some(layout) = self.objects.get(path).and_then(|o| o.layout) {
-                layouts.push((path.clone(), layout));
-            }
+        let raw = end.saturating_sub(bytes.at);
+        if raw == 0 || self.active.is_empty() {
+            return Ok(());
         }
-        let mut block = 0_usize;
-        for (path, layout) in &layouts {
-            let size = layout.count.checked_mul(size_of(layout.kind, path)?);
+        self.looks += self.active.len();
+        if self.looks > LOOKS_AT_MOST {
+            let expected = "fewer segments of so many channels (have the file defragmented)";
+            return Err(Error::input(format!("byte {}", bytes.at), expected, "more"));
+        }
+        let layout = |place: &usize| Some((*place, self.objects[*place].layout?));
+        let layouts: Vec<(usize, Layout)> = self.active.iter().filter_map(layout).collect();
+        let (mut block, mut samples) = (0_usize, 0_usize);
+        for (place, layout) in &layouts {
+            let each = size_of(layout.kind, &self.objects[*place].path)?;
+            let size = layout.count.checked_mul(each);
             block = size
                 .and_then(|s| block.checked_add(s))
                 .unwrap_or(usize::MAX);
+            samples = samples.saturating_add(layout.count);
         }
-        let raw = end.saturating_sub(bytes.at);
-        if raw == 0 || layouts.is_empty() {
+        if layouts.is_empty() {
             return Ok(());
         }
         if block == 0 || !raw.is_multiple_of(block) {
@@ -184,6 +223,8 @@ impl TdmsFile {
                 format!("{raw} bytes of samples"),
             ));
         }
+        self.samples += samples.saturating_mul(raw / block) as u64;
+        check_count(&format!("byte {}", bytes.at), self.samples)?;
         let rows = layouts[0].1.count;
         if is_interleaved && layouts.iter().any(|(_, l)| l.count != rows) {
             let place = format!("byte {}", bytes.at);
@@ -200,11 +241,10 @@ impl TdmsFile {
                 (1, usize::MAX)
             };
             for _ in 0..rows {
-                for (path, layout) in &layouts {
-                    if let Some(object) = self.objects.get_mut(path) {
-                        for _ in 0..layout.count.min(each) {
-                            object.samples.push(sample(bytes, layout.kind)?);
-                        }
+                for (place, layout) in &layouts {
+                    let samples = &mut self.objects[*place].samples;
+                    for _ in 0..layout.count.min(each) {
+                        samples.push(sample(bytes, layout.kind)?);
                     }
                 }
             }
@@ -214,27 +254,20 @@ impl TdmsFile {
 
     fn channels(self, group: Option<&str>) -> Result<ChannelSet> {
         let mut set = ChannelSet::default();
-        let parts: Vec<(String, Vec<String>)> = self
-            .paths
-            .iter()
-            .map(|path| (path.clone(), path_parts(path)))
-            .collect();
+        let parts = |object: Object| (path_parts(&object.path), object);
+        let objects: Vec<(Vec<String>, Object)> = self.objects.into_iter().map(parts).collect();
         if let Some(wanted) = group {
-            let groups: Vec<String> = parts
+            let mut groups: Vec<String> = objects
                 .iter()
-                .filter_map(|(_, p)| p.first().cloned())
+                .filter_map(|(p, _)| p.first().cloned())
                 .collect();
             if !groups.iter().any(|g| g == wanted) {
-                let mut groups = groups;
                 groups.dedup();
                 return Err(no_group(wanted, &groups));
             }
         }
-        let (mut objects, mut rates) = (self.objects, Vec::new());
-        for (path, parts) in parts {
-            let Some(object) = objects.remove(&path) else {
-                continue;
-            };
+        let mut rates = Vec::new();
+        for (parts, object) in objects {
             let inside = match (group, parts.first()) {
                 (Some(wanted), Some(own)) if own != wanted => continue,
                 (Some(_), Some(_)) => parts[1..].join("/"),

@@ -2,6 +2,8 @@
 //!
 //! The files are written by `tests/data/lab/make_lab_files.py`.
 
+mod bounds;
+
 use super::*;
 use std::f64::consts::PI;
 use std::path::PathBuf;

@@ -29,3 +29,26 @@ pub fn to_global(recording: &RawRecording, rig: &Rig, rotation_rad: &[f64]) -> V
     };
     rig.cells.iter().zip(&recording.cells).map(turn).collect()
 }
+
+/// Moves the moments of a cell by `sign` times its arm from the centre of rotation: `m ± p × f`.
+pub fn move_moment(global: &mut GlobalCell, cell: &LoadCell, rotation_rad: &[f64], sign: f64) {
+    for k in 0..global[0].len() {
+        let arm = cell.position_at(rotation_rad.get(k).copied().unwrap_or(0.0));
+        let force = nalgebra::Vector3::from_fn(|i, _| global[i][k]);
+        let added = arm.cross(&force) * sign;
+        for i in 0..3 {
+            global[3 + i][k] += added[i];
+        }
+    }
+}
+
+/// Back to the axes of a cell of a model at rest.
+pub fn to_cell_at_rest(global: &GlobalCell, cell: &LoadCell) -> GlobalCell {
+    let back = cell.axes_at(0.0).transpose();
+    std::array::from_fn(|c| {
+        let (triple, row) = (c / 3 * 3, c % 3);
+        (0..global[0].len())
+            .map(|k| (0..3).map(|i| back[(row, i)] * global[triple + i][k]).sum())
+            .collect()
+    })
+}

@@ -4,9 +4,8 @@
 //! clamping does to one cell it does oppositely to the others (3.1): it falls out of the sums. Lift is `F_y`, drag `F_x`, the
 //! nose-up moment `−M_z`.
 
-use super::axes::GlobalCell;
+use super::axes::{GlobalCell, move_moment};
 use crate::wind_tunnel::Rig;
-use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 /// What one cell carries at rest.
@@ -25,14 +24,12 @@ pub fn sum_about_centre(cells: &[GlobalCell], rig: &Rig, rotation_rad: &[f64]) -
     let count = cells.first().map_or(0, |c| c[0].len());
     let mut sum: [Vec<f64>; 3] = std::array::from_fn(|_| vec![0.0; count]);
     for (place, cell) in rig.cells.iter().zip(cells) {
+        let mut about_centre = cell.clone();
+        move_moment(&mut about_centre, place, rotation_rad, 1.0);
         for k in 0..count {
-            let arm = place.position_at(rotation_rad.get(k).copied().unwrap_or(0.0));
-            let vector = |triple: usize| Vector3::from_fn(|i, _| cell[triple + i][k]);
-            let force = vector(0);
-            let moment = vector(3) + arm.cross(&force);
-            sum[0][k] += force.y;
-            sum[1][k] += force.x;
-            sum[2][k] -= moment.z;
+            sum[0][k] += about_centre[1][k];
+            sum[1][k] += about_centre[0][k];
+            sum[2][k] -= about_centre[5][k];
         }
     }
     sum

@@ -44,10 +44,40 @@ pub fn check_run(run: &RawRun, rig: &Rig) -> Result<Findings> {
     let place = |what: &str| format!("run {}, {what}", run.name);
     positive(&place("mean wind speed"), run.mean_speed_m_s)?;
     positive(&place("air density"), run.air_density_kg_m3)?;
-    let (wind, still) = (&run.in_wind, &run.still_air);
-    for (name, recording) in [("in wind", wind), ("still air", still)] {
-        check_recording(&place(name), recording, rig)?;
+    let wind = &run.in_wind;
+    check_recording(&place("in wind"), wind, rig)?;
+    let mut findings = Findings {
+        clipped_in_wind: clipped(&place("in wind"), wind, rig)?,
+        ..Findings::default()
+    };
+    if let Some(still) = &run.still_air {
+        check_recording(&place("still air"), still, rig)?;
+        check_pair(&run.name, wind, still)?;
+        findings.clipped_still_air = clipped(&place("still air"), still, rig)?;
+        if wind.len() != still.len() {
+            findings.warnings.push(format!(
+                "{} samples in wind, {} in still air: only the part that both cover is used",
+                wind.len(),
+                still.len()
+            ));
+        }
     }
+    for c in findings
+        .clipped_in_wind
+        .iter()
+        .chain(&findings.clipped_still_air)
+    {
+        findings.warnings.push(format!(
+            "{}: {} samples from sample {} stand at the limit of the channel; they are replaced",
+            c.channel, c.samples, c.first
+        ));
+    }
+    Ok(findings)
+}
+
+/// Checks that the two recordings of a run can be of one motion.
+fn check_pair(run: &str, wind: &RawRecording, still: &RawRecording) -> Result<()> {
+    let place = |what: &str| format!("run {run}, {what}");
     let (f1, f2) = (wind.sampling_hz, still.sampling_hz);
     if (f1 / f2 - 1.0).abs() > SAME_RATE {
         return Err(Error::input(
@@ -68,29 +98,7 @@ pub fn check_run(run: &RawRun, rig: &Rig) -> Result<Findings> {
             return Err(Error::input(place(without), expected, "none"));
         }
     }
-    let mut findings = Findings {
-        clipped_in_wind: clipped(&place("in wind"), wind, rig)?,
-        clipped_still_air: clipped(&place("still air"), still, rig)?,
-        warnings: Vec::new(),
-    };
-    if wind.len() != still.len() {
-        findings.warnings.push(format!(
-            "{} samples in wind, {} in still air: only the part that both cover is used",
-            wind.len(),
-            still.len()
-        ));
-    }
-    for c in findings
-        .clipped_in_wind
-        .iter()
-        .chain(&findings.clipped_still_air)
-    {
-        findings.warnings.push(format!(
-            "{}: {} samples from sample {} stand at the limit of the channel; they are replaced",
-            c.channel, c.samples, c.first
-        ));
-    }
-    Ok(findings)
+    Ok(())
 }
 
 /// Channels of a recording with their names.

@@ -5,6 +5,7 @@
 //! frequencies weighted least squares of `Im(F/X)/ω` on `Re(F/X)` and a constant gives τ and c, repeated until the turned-back
 //! ratio gives none; of one or two frequencies c is left out. μ and κ then follow from the real part.
 
+use super::body;
 use super::cells::sum_about_centre;
 use super::segmentation::HarmonicSegment;
 use crate::error::{Error, Result};
@@ -38,6 +39,11 @@ pub struct StillAirInertia {
 }
 
 impl StillAirInertia {
+    /// Whether the inertia is no chance.
+    pub fn is_certain(&self) -> bool {
+        self.inertia.abs() > CERTAIN * self.inertia_standard_error
+    }
+
     /// Whether there is inertia enough to tell the lag to a fifth of a sample.
     pub fn tells_lag(&self, sampling_hz: f64) -> bool {
         self.lag_standard_error_s * sampling_hz < 0.2 && self.inertia > 0.0
@@ -73,7 +79,16 @@ pub fn still_air_inertia(
     let Some(result) = solve(dof, &own) else {
         return Ok(None);
     };
-    let certain = |r: &StillAirInertia| r.inertia.abs() > CERTAIN * r.inertia_standard_error;
+    let others: &[Dof] = match dof {
+        Dof::Torsion => &[Dof::Vertical, Dof::Lateral],
+        _ => &[Dof::Torsion],
+    };
+    for other in others {
+        if let Some(across) = solve(*other, &of(&total[super::index(*other)])?) {
+            body::check_motion(run, rig, &result, &across)?;
+        }
+    }
+    let certain = StillAirInertia::is_certain;
     if certain(&result) && result.inertia < 0.0 {
         return Err(wrong_sign(run, "sum of the cells", dof, &result));
     }

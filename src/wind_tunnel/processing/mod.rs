@@ -5,7 +5,7 @@
 //! 1. [`check`]: lengths, rates, finite numbers, clipping;
 //! 2. [`segmentation`]: the test points, from the motion;
 //! 3. [`lag`]: force channels behind the motion, from the inertia in still air, and the sign of that inertia;
-//! 4. [`alignment`]: still air in step with wind;
+//! 4. [`drift`] of the cells, in their own axes; [`alignment`]: still air in step with wind;
 //! 5. [`axes`], [`cells`]: global axes, about the centre of rotation, summed: clamping `F_E` is gone;
 //! 6. [`means`]: gravity `F_G` and static wind `F_S` are gone;
 //! 7. [`inertia`]: still air subtracted: inertia `F_I` and the turning part of gravity are gone;
@@ -16,10 +16,12 @@
 
 pub mod alignment;
 pub mod axes;
+mod body;
 pub mod cells;
 pub mod check;
 pub mod coherent;
 pub mod dimensionless;
+pub mod drift;
 pub mod inertia;
 pub mod lag;
 pub mod low_pass;
@@ -45,7 +47,7 @@ pub use segmentation::HarmonicSegment;
 pub use signals::{SectionSignals, force_unit, index};
 
 use super::{RawCampaign, Record};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, all_or_errors};
 use crate::section::Dof;
 use prepare::Prepared;
 use rayon::prelude::*;
@@ -65,7 +67,7 @@ pub struct Processed {
 /// Processes every run of a campaign; `progress` is called with the number of runs done.
 ///
 /// # Errors
-/// [`Error::Input`] naming run, recording, channel and sample for what cannot be processed.
+/// [`Error::Input`] naming run, recording, channel and sample for what cannot be processed; those of all runs in their order.
 pub fn process(
     campaign: &RawCampaign,
     options: &ProcessingOptions,
@@ -80,8 +82,12 @@ pub fn process(
         .runs
         .par_iter()
         .map(|run| Prepared::new(run, &campaign.rig, options))
-        .collect::<Result<Vec<_>>>()?;
-    let dofs = options.dofs.clone().unwrap_or_else(|| dofs_of(&prepared));
+        .collect();
+    let prepared = all_or_errors(prepared)?;
+    let dofs = options
+        .dofs
+        .clone()
+        .unwrap_or_else(|| dofs_of(campaign, &prepared));
     let estimates: Vec<_> = prepared
         .iter()
         .filter_map(|p| p.still_air.clone())
@@ -99,7 +105,8 @@ pub fn process(
             progress(1 + done.fetch_add(1, Ordering::Relaxed));
             Ok(run)
         })
-        .collect::<Result<Vec<ProcessedRun>>>()?;
+        .collect();
+    let runs = all_or_errors::<ProcessedRun>(runs)?;
     let delta_s = |r: &ProcessedRun| r.report.dimensionless.delta_s;
     let report = ProcessingReport {
         section: campaign.section.clone(),
@@ -124,13 +131,15 @@ pub fn process(
     })
 }
 
-/// Heave and rotation, and sway when a run moves it.
-fn dofs_of(prepared: &[Prepared<'_>]) -> Vec<Dof> {
-    if prepared.iter().any(|p| p.dof == Dof::Lateral) {
-        Dof::THREE.to_vec()
+/// Heave and rotation, and sway when a run moves it; of these the forces that there are.
+fn dofs_of(campaign: &RawCampaign, prepared: &[Prepared<'_>]) -> Vec<Dof> {
+    let all: &[Dof] = if prepared.iter().any(|p| p.dof == Dof::Lateral) {
+        &Dof::THREE
     } else {
-        Dof::TWO.to_vec()
-    }
+        &Dof::TWO
+    };
+    let measured = |d: &&Dof| campaign.forces.as_ref().is_none_or(|f| f.contains(d));
+    all.iter().filter(measured).copied().collect()
 }
 
 #[cfg(test)]

@@ -3,8 +3,8 @@
 use super::check::{Findings, check_run};
 use super::lag::{StillAirInertia, still_air_inertia};
 use super::options::ProcessingOptions;
-use super::segmentation::{HarmonicSegment, find_segments, moving_dof};
-use super::{alignment, index};
+use super::segmentation::{HarmonicSegment, find_segments, moving_dof, whole_periods};
+use super::{alignment, body, index};
 use crate::error::{Error, Result};
 use crate::section::Dof;
 use crate::wind_tunnel::{RawRecording, RawRun, Rig};
@@ -18,12 +18,14 @@ pub(super) struct Prepared<'a> {
     pub findings: Findings,
     /// In samples of the recording in wind.
     pub segments: Vec<HarmonicSegment>,
+    /// In samples of the recording in still air; empty without one.
+    pub still_segments: Vec<HarmonicSegment>,
     pub still_air: Option<StillAirInertia>,
 }
 
 impl<'a> Prepared<'a> {
     pub fn new(run: &'a RawRun, rig: &Rig, options: &ProcessingOptions) -> Result<Self> {
-        let findings = check_run(run, rig)?;
+        let mut findings = check_run(run, rig)?;
         let width = rig.model_width_m;
         let moving = |r: &RawRecording, what: &str| {
             let place = format!("run {}, {what}", run.name);
@@ -31,26 +33,40 @@ impl<'a> Prepared<'a> {
                 .ok_or_else(|| Error::input(place, "a motion", "none that moves"))
         };
         let dof = moving(&run.in_wind, "in wind")?;
-        let in_still_air = moving(&run.still_air, "still air")?;
-        if in_still_air != dof {
-            return Err(Error::input(
-                format!("run {}, still air", run.name),
-                format!("the {} motion of the recording in wind", dof.name()),
-                format!("a {} motion", in_still_air.name()),
-            ));
-        }
         let find = |r: &RawRecording| {
             let motion = alignment::from_rest(&r.motion[index(dof)]);
             find_segments(&motion, r.sampling_hz, &options.segments)
         };
         let segments = find(&run.in_wind);
-        let still_air =
-            still_air_inertia(&run.name, &run.still_air, rig, dof, &find(&run.still_air))?;
+        if segments.is_empty() {
+            whole_periods(&format!("run {}, in wind", run.name), &run.in_wind, dof)?;
+        }
+        let mut still_segments = Vec::new();
+        let mut still_air = None;
+        if let Some(still) = &run.still_air {
+            let in_still_air = moving(still, "still air")?;
+            if in_still_air != dof {
+                return Err(Error::input(
+                    format!("run {}, still air", run.name),
+                    format!("the {} motion of the recording in wind", dof.name()),
+                    format!("a {} motion", in_still_air.name()),
+                ));
+            }
+            still_segments = find(still);
+            still_air = still_air_inertia(&run.name, still, rig, dof, &still_segments)?;
+            if let Some(inertia) = &still_air {
+                let density = run.air_density_kg_m3;
+                findings
+                    .warnings
+                    .extend(body::compare(&run.name, rig, inertia, density)?);
+            }
+        }
         Ok(Self {
             run,
             dof,
             findings,
             segments,
+            still_segments,
             still_air,
         })
     }

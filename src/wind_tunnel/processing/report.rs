@@ -3,6 +3,7 @@
 use super::alignment::Alignment;
 use super::cells::CellShare;
 use super::check::ClippedStretch;
+use super::drift::CellDrift;
 use super::inertia::RemovedInertia;
 use super::lag::StillAirInertia;
 use super::low_pass::AppliedLowPass;
@@ -89,8 +90,8 @@ pub struct RunReport {
     pub still_air: Option<StillAirInertia>,
     /// Lag that was corrected, s.
     pub lag_corrected_s: f64,
-    /// Alignment of the still-air recording.
-    pub alignment: Alignment,
+    /// Alignment of the still-air recording; `None` without one.
+    pub alignment: Option<Alignment>,
     /// Means of the cells in wind, global axes.
     pub cells: Vec<CellShare>,
     /// Means that were removed.
@@ -99,7 +100,9 @@ pub struct RunReport {
     pub inertia: RemovedInertia,
     /// Samples replaced, with place and reason.
     pub replaced: Vec<Replaced>,
-    /// What drift was removed.
+    /// Drift that was removed from the cells in wind, in their own axes.
+    pub cell_drift: Vec<CellDrift>,
+    /// What drift was left and removed from the whole.
     pub drift: RemovedDrift,
     /// The low-pass, if any.
     pub low_pass: Option<AppliedLowPass>,

@@ -3,6 +3,7 @@
 use super::alignment::Alignment;
 use super::cells::CellShare;
 use super::coherent::{Parts, Regressors};
+use super::drift::CellDrift;
 use super::low_pass::AppliedLowPass;
 use super::means::{RemovedMeans, remove_means, rest};
 use super::options::ProcessingOptions;
@@ -11,7 +12,7 @@ use super::report::{DimensionlessFactors, RemovedDrift, RunReport, SignalToNoise
 use super::rest::still_the_rest;
 use super::segmentation::HarmonicSegment;
 use super::signals::{SectionSignals, peak_and_rms};
-use super::{alignment, axes, cells, index, inertia, low_pass, spikes};
+use super::{alignment, axes, cells, drift, index, inertia, low_pass, spikes};
 use super::{records, warnings};
 use crate::error::Result;
 use crate::section::Dof;
@@ -45,7 +46,9 @@ struct InStep {
     still_air: SectionSignals,
     shares: Vec<CellShare>,
     covered: Range<usize>,
-    alignment: Alignment,
+    /// `None` without a recording in still air.
+    alignment: Option<Alignment>,
+    cell_drift: Vec<CellDrift>,
 }
 
 /// Takes a prepared run through all stages.
@@ -66,7 +69,8 @@ pub(super) fn process_run(
         shares,
         covered,
         alignment,
-    } = in_step(prepared, rig, lag_s)?;
+        cell_drift,
+    } = in_step(prepared, rig, lag_s, options.drift_degree)?;
     let segments = prepared.covered_segments(&covered)?;
     let mut stages = Stages::default();
     stages.add("sum of the cells", &signals);
@@ -86,7 +90,7 @@ pub(super) fn process_run(
             segments: &segments,
             filter: filter.as_ref(),
             width_m: rig.model_width_m,
-            clipped: &prepared.clipped(&covered, alignment.offset_samples),
+            clipped: &prepared.clipped(&covered, alignment.map_or(0.0, |a| a.offset_samples)),
             options,
         },
     )?;
@@ -136,6 +140,7 @@ pub(super) fn process_run(
         },
         inertia,
         replaced,
+        cell_drift,
         drift,
         low_pass: filter.map(|f| f.1),
         cross_talk,
@@ -167,11 +172,34 @@ pub(super) fn process_run(
     })
 }
 
-/// Stages 3 to 6: lag, alignment, axes, cells.
-fn in_step(prepared: &Prepared<'_>, rig: &Rig, lag_s: f64) -> Result<InStep> {
+/// Stages 3 to 6: lag, drift of the cells, alignment, axes, cells.
+fn in_step(prepared: &Prepared<'_>, rig: &Rig, lag_s: f64, degree: usize) -> Result<InStep> {
     let run = prepared.run;
-    let wind = without_lag(&run.in_wind, lag_s);
-    let still = without_lag(&run.still_air, lag_s);
+    let ready = |recording: &RawRecording, segments: &[HarmonicSegment]| {
+        let mut recording = without_lag(recording, lag_s);
+        let motion = alignment::from_rest(&recording.motion[index(prepared.dof)]);
+        let rotation = rotation(&recording);
+        let drift =
+            drift::remove_cell_drift(&mut recording, rig, &motion, &rotation, segments, degree)?;
+        Ok::<_, crate::Error>((recording, drift))
+    };
+    let (wind, cell_drift) = ready(&run.in_wind, &prepared.segments)?;
+    let Some(still) = &run.still_air else {
+        let (wind, shares) = on_the_model(&wind, rig);
+        let nothing = wind.force.each_ref().map(|f| vec![0.0; f.len()]);
+        return Ok(InStep {
+            still_air: SectionSignals {
+                force: nothing,
+                ..wind.clone()
+            },
+            covered: 0..wind.len(),
+            wind,
+            shares,
+            alignment: None,
+            cell_drift,
+        });
+    };
+    let (still, _) = ready(still, &prepared.still_segments)?;
     let aligned = alignment::align(&run.name, &wind, &still, prepared.dof)?;
     let covered = aligned.covered;
     let (wind, shares) = on_the_model(&cut(&wind, &covered), rig);
@@ -181,7 +209,8 @@ fn in_step(prepared: &Prepared<'_>, rig: &Rig, lag_s: f64) -> Result<InStep> {
         still_air,
         shares,
         covered,
-        alignment: aligned.alignment,
+        alignment: Some(aligned.alignment),
+        cell_drift,
     })
 }
 
@@ -277,6 +306,16 @@ fn cut(recording: &RawRecording, covered: &Range<usize>) -> RawRecording {
             .map(|c| std::array::from_fn(|i| part(&c[i])))
             .collect(),
         wind_speed_m_s: part(&recording.wind_speed_m_s),
+    }
+}
+
+/// Rotation of the model at each sample, rad; zero where nobody measured it.
+fn rotation(recording: &RawRecording) -> Vec<f64> {
+    let x = &recording.motion[index(Dof::Torsion)];
+    if x.is_empty() {
+        vec![0.0; recording.len()]
+    } else {
+        x.clone()
     }
 }
 

@@ -6,9 +6,10 @@
 //! halves of the steady part, and the steady part cut to whole periods.
 
 use super::options::SegmentOptions;
+use crate::error::{Error, Result};
 use crate::section::Dof;
 use crate::signal::{Plateau, median, plateau, refine_frequency};
-use crate::wind_tunnel::Segment;
+use crate::wind_tunnel::{RawRecording, Segment};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
@@ -67,16 +68,18 @@ pub fn find_segments(
         let before = i.checked_sub(1).map(|j| groups[j].last);
         let after = groups.get(i + 1).map(|g| g.first);
         let quiet = AT_REST * amplitude;
+        // a slow motion is quiet about every passage through zero
+        let rest = (0.25 * sampling_hz).max(0.25 * group.period);
         let start = match before {
             Some(last) => seam(motion, last, group.first, quiet),
-            None => first_motion(motion, group.first, quiet, sampling_hz),
+            None => first_motion(motion, group.first, quiet, rest, sampling_hz),
         };
         let end = match after {
             Some(first) => seam(motion, group.last, first, quiet),
             None => {
                 let reversed: Vec<f64> = motion.iter().rev().copied().collect();
                 let last = motion.len() as f64 - 1.0 - group.last;
-                motion.len() - first_motion(&reversed, last, quiet, sampling_hz)
+                motion.len() - first_motion(&reversed, last, quiet, rest, sampling_hz)
             }
         };
         let rough = sampling_hz / group.period;
@@ -102,6 +105,31 @@ pub fn find_segments(
         }
     }
     found
+}
+
+/// Refuses a motion that ends before it has gone through the periods that one test point takes: of such a record nothing can be
+/// said, whatever moves.
+///
+/// # Errors
+/// [`Error::Input`] at `place` with the periods there are.
+pub fn whole_periods(place: &str, recording: &RawRecording, dof: Dof) -> Result<()> {
+    let motion = super::alignment::from_rest(&recording.motion[super::index(dof)]);
+    let amplitude = motion.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+    let periods = upward_passages(&motion, HYSTERESIS * amplitude)
+        .len()
+        .saturating_sub(1);
+    if periods >= PERIODS_AT_LEAST {
+        return Ok(());
+    }
+    let seconds = motion.len() as f64 / recording.sampling_hz;
+    Err(Error::input(
+        place,
+        format!(
+            "a record of at least {PERIODS_AT_LEAST} whole periods of the {} motion",
+            dof.name()
+        ),
+        format!("{periods} in {} samples ({seconds:.3} s)", motion.len()),
+    ))
 }
 
 /// Places (in samples) at which the motion passes zero upwards between −`level` and `level`.
@@ -181,10 +209,10 @@ fn seam(motion: &[f64], from: f64, to: f64, quiet: f64) -> usize {
     }
 }
 
-/// First sample of the motion that leads to the passage at `first`: after the last quarter of a second of rest before it, with
+/// First sample of the motion that leads to the passage at `first`: after the last `rest` samples of rest before it, with
 /// half a second for the smooth beginning of a ramp; 0 when it never rested.
-fn first_motion(motion: &[f64], first: f64, quiet: f64, sampling_hz: f64) -> usize {
-    let rest = (0.25 * sampling_hz) as usize;
+fn first_motion(motion: &[f64], first: f64, quiet: f64, rest: f64, sampling_hz: f64) -> usize {
+    let (rest, ramp) = (rest as usize, (0.5 * sampling_hz) as usize);
     let mut quiet_for = 0;
     for k in (0..(first as usize).min(motion.len())).rev() {
         quiet_for = if motion[k].abs() <= quiet {
@@ -193,7 +221,7 @@ fn first_motion(motion: &[f64], first: f64, quiet: f64, sampling_hz: f64) -> usi
             0
         };
         if quiet_for == rest {
-            return (k + rest).saturating_sub((0.5 * sampling_hz) as usize);
+            return (k + rest).saturating_sub(ramp);
         }
     }
     0

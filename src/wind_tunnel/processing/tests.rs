@@ -1,5 +1,7 @@
 //! Processing of virtual campaigns against their truth.
 
+mod bodies;
+
 use super::*;
 use crate::aerodynamics::FlatPlate;
 use crate::wind_tunnel::virtual_campaign::{VirtualCampaign, VirtualCampaignPlan};
@@ -53,18 +55,19 @@ fn a_campaign_without_disturbances_gives_the_truth_back() {
     for run in &processed.report.runs {
         assert!(run.warnings.is_empty(), "{:?}", run.warnings);
         assert!(run.replaced.is_empty() && run.clipped.is_empty());
-        // the plan: lift −0.12, drag 0.08, moment 0.02; the transform behind the truth leaks 3e-9 into the rest
+        // the plan: lift −0.12, drag 0.08, moment 0.02. A centre of mass off the axis presses outwards by m e θ̇², some 1e-3 N in the mean
+        // while the model turns; the polynomials of the cells take 2e-4 N of it for drift, 3e-6 of the pressure on the model
         for (found, stated) in run
             .means
             .static_coefficients
             .iter()
             .zip([-0.12, 0.08, 0.02])
         {
-            assert!((found - stated).abs() < 1e-7, "{found}");
+            assert!((found - stated).abs() < 1e-5, "{found}");
         }
-        // weight of 2 kg/m × 2.68 m; the line taken for drift holds 1e-6 N of the ramps
+        // weight of 2 kg/m × 2.68 m, likewise
         let weight_n = 2.0 * 2.68 * 9.81;
-        assert!((run.means.still_air[0] + weight_n).abs() < 1e-5);
+        assert!((run.means.still_air[0] + weight_n).abs() < 1e-3);
         assert_eq!(run.segments.len(), 3);
     }
     let inertia = |i: usize| processed.report.runs[i].still_air.clone().unwrap();
@@ -90,8 +93,9 @@ fn lag_offset_drift_and_spike_are_found() {
     assert!((report.lag_s - d.force_lag_s).abs() < 4.0 * error + 5e-6);
     for (run, applied) in report.runs.iter().zip(&made.truth.disturbances) {
         // the motions are without noise: interpolation alone
-        assert!((run.alignment.offset_s - d.still_air_offset_s).abs() < 1e-8);
-        assert!((run.alignment.parabolic_samples - run.alignment.offset_samples).abs() < 1e-3);
+        let alignment = run.alignment.unwrap();
+        assert!((alignment.offset_s - d.still_air_offset_s).abs() < 1e-8);
+        assert!((alignment.parabolic_samples - alignment.offset_samples).abs() < 1e-3);
         let spike = applied.spike.unwrap();
         let [found] = &run.replaced[..] else {
             panic!("{:?}", run.replaced);
@@ -108,7 +112,13 @@ fn lag_offset_drift_and_spike_are_found() {
         assert!(run.signal_to_noise.before_low_pass_db[at] > 20.0);
         assert!(run.signal_to_noise.after_low_pass_db[at] > 30.0);
         // two recordings of two cells, each with up to 0.3 N of rise and 0.15 N of wave
-        assert!(run.drift.range[0] > 0.0 && run.drift.range[0] < 4.0 * 0.45);
+        for cell in &run.cell_drift {
+            assert!(
+                cell.range[..3].iter().all(|r| (0.0..0.45).contains(r)),
+                "{cell:?}"
+            );
+            assert!(cell.range[..3].iter().any(|r| *r > 0.05), "{cell:?}");
+        }
     }
     for force in 0..2 {
         // what is left of 5 % noise behind the low-pass: 4.5 standard deviations of 1.3 % of an RMS, ⅓ of the greatest force
@@ -161,7 +171,7 @@ fn cut_ramps_leave_whole_periods() {
 fn recordings_of_unequal_length() {
     let mut made = campaign(&short(VirtualCampaignPlan::default()));
     let cut = |raw: &mut RawCampaign, count: usize| {
-        let still = &mut raw.runs[0].still_air;
+        let still = raw.runs[0].still_air.as_mut().unwrap();
         still.motion.iter_mut().for_each(|x| x.truncate(count));
         still
             .cells
@@ -182,7 +192,7 @@ fn recordings_of_unequal_length() {
         message.contains("still air: expected a recording as long as the motion at 2.000 Hz"),
         "{message}"
     );
-    made.raw.runs[0].still_air.motion[0].pop();
+    made.raw.runs[0].still_air.as_mut().unwrap().motion[0].pop();
     assert!(refused(&made.raw).contains("samples, as the first force channel"));
 }
 
@@ -197,7 +207,7 @@ fn channels_of_the_wrong_sign_or_place_are_named() {
     fn both(raw: &mut RawCampaign, change: impl Fn(&mut super::super::RawRecording)) {
         for run in &mut raw.runs {
             change(&mut run.in_wind);
-            change(&mut run.still_air);
+            change(run.still_air.as_mut().unwrap());
         }
     }
     // x of the near cell points up: the lift of one cell turned round
@@ -250,7 +260,7 @@ fn bad_recordings_name_run_channel_and_sample() {
     assert!(
         message.contains("run plate-vertical-8.00, mean wind speed: expected a positive number")
     );
-    let message = with(&|raw| raw.runs[0].still_air.sampling_hz = 250.0);
+    let message = with(&|raw| raw.runs[0].still_air.as_mut().unwrap().sampling_hz = 250.0);
     assert!(
         message.contains("still air: expected the sampling frequency of the recording in wind")
     );

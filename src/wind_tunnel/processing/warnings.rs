@@ -27,11 +27,11 @@ pub(super) fn warn(report: &mut RunReport, options: &ProcessingOptions) {
                 ));
             }
         }
-        _ if options.lag_s.is_none() => warnings
+        _ if options.lag_s.is_none() && report.alignment.is_some() => warnings
             .push("the inertia in still air is too small to tell the lag of the channels".into()),
         _ => {}
     }
-    let ratio = report.alignment.amplitude_ratio;
+    let ratio = report.alignment.map_or(1.0, |a| a.amplitude_ratio);
     if (ratio - 1.0).abs() > SAME_AMPLITUDE {
         warnings.push(format!(
             "the motion in wind is {ratio:.4} times that in still air: inertia is not removed exactly"

@@ -102,7 +102,8 @@ impl VirtualCampaignPlan {
                 licence: header
                     .as_ref()
                     .map_or_else(String::new, |h| h.licence.clone()),
-                rig: self.support.rig(header.map_or(0.0, |h| h.width_m)),
+                rig: self.rig(header.map_or(0.0, |h| h.width_m)),
+                forces: None,
                 runs,
             },
             truth: CampaignTruth {
@@ -197,7 +198,7 @@ impl<'a> RunInMaking<'a> {
         RawRun {
             name: header.name.clone(),
             in_wind: self.recording(Air::Wind),
-            still_air: self.recording(Air::Still),
+            still_air: Some(self.recording(Air::Still)),
             mean_speed_m_s: header.mean_speed_m_s,
             air_density_kg_m3: header.air_density_kg_m3,
         }

@@ -224,6 +224,19 @@ impl VirtualCampaignPlan {
         plan
     }
 
+    /// The rig for a model of `width_m`, with the mass and inertia of the model as a laboratory would state them.
+    pub(super) fn rig(&self, width_m: f64) -> Rig {
+        let (body, length) = (&self.model, self.support.model_length_m);
+        let [x, y, _] = body.centre_of_gravity_m;
+        let about_rotation = body.inertia_kg_m2_m + body.mass_kg_m * (x * x + y * y);
+        let stated = |value: f64| (value > 0.0).then_some(value * length);
+        Rig {
+            model_mass_kg: stated(body.mass_kg_m),
+            model_inertia_kg_m2: stated(about_rotation),
+            ..self.support.rig(width_m)
+        }
+    }
+
     /// Checks that the plan can be carried out.
     ///
     /// # Errors
@@ -280,6 +293,8 @@ impl Support {
         Rig {
             model_length_m: self.model_length_m,
             model_width_m: width_m,
+            model_mass_kg: None,
+            model_inertia_kg_m2: None,
             cells: self.cells.clone(),
         }
     }

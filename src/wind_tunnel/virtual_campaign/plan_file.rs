@@ -11,9 +11,7 @@ impl VirtualCampaignPlan {
     /// # Errors
     /// [`Error::Io`] when it cannot be read; [`Error::Input`] with file and line for everything that is wrong in it.
     pub fn read(path: impl AsRef<Path>) -> Result<Self> {
-        let path = path.as_ref();
-        let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, e))?;
-        Self::from_toml(&text).map_err(|e| e.in_file(path))
+        toml_lines::read(path.as_ref(), |text, _| Self::from_toml(text))
     }
 
     /// Reads and checks the text of a plan.
@@ -21,11 +19,9 @@ impl VirtualCampaignPlan {
     /// # Errors
     /// [`Error::Input`] with line and key for everything that is wrong in it.
     pub fn from_toml(text: &str) -> Result<Self> {
-        let plan: Self = toml::from_str(text)
-            .map_err(|e| toml_lines::syntax_error("a plan of a virtual campaign", text, &e))?;
-        plan.validate()
-            .map_err(|e| toml_lines::with_line(text, e))?;
-        Ok(plan)
+        toml_lines::parse("a plan of a virtual campaign", text, |plan: &mut Self| {
+            plan.validate()
+        })
     }
 
     /// The plan as the text of a file.

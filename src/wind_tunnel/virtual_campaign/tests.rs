@@ -72,7 +72,7 @@ fn in_wind_minus_still_air_is_static_and_self_excited_force() {
             .zip(&made.truth.disturbances)
         {
             let wind = section_forces(&made.raw.rig, &run.in_wind);
-            let still = section_forces(&made.raw.rig, &run.still_air);
+            let still = section_forces(&made.raw.rig, run.still_air.as_ref().unwrap());
             for (c, row) in [1, 0, 2].into_iter().enumerate() {
                 assert!(applied.static_wind[c].abs() > 0.1);
                 for i in 0..run.in_wind.len() {
@@ -99,9 +99,9 @@ fn still_air_is_gravity_and_inertia() {
     let about_pivot = (body.inertia_kg_m2_m + body.mass_kg_m * (cx * cx + cy * cy)) * length;
     let rate = 1.0 / plan.tunnel.sampling_hz;
     for run in &made.raw.runs {
-        let [drag, lift, moment] = section_forces(&made.raw.rig, &run.still_air);
+        let [drag, lift, moment] = section_forces(&made.raw.rig, run.still_air.as_ref().unwrap());
         let second = |x: &[f64], i: usize| (x[i + 1] - 2.0 * x[i] + x[i - 1]) / (rate * rate);
-        let [y, _, theta] = &run.still_air.motion;
+        let [y, _, theta] = &run.still_air.as_ref().unwrap().motion;
         let half = |i: usize| 0.5 * theta[i];
         // position of the centre of gravity, from the turn by −θ about z
         let x_c: Vec<f64> = theta.iter().map(|t| cx * t.cos() + cy * t.sin()).collect();
@@ -135,7 +135,10 @@ fn noise_is_that_of_the_sum_about_the_centre_of_rotation() {
         let truth = &with.truth.records[i];
         for (a, b) in [
             (&run.in_wind, &without.raw.runs[i].in_wind),
-            (&run.still_air, &without.raw.runs[i].still_air),
+            (
+                run.still_air.as_ref().unwrap(),
+                without.raw.runs[i].still_air.as_ref().unwrap(),
+            ),
         ] {
             let (a, b) = (
                 section_forces(&with.raw.rig, a),
@@ -186,10 +189,15 @@ fn lag_and_offset_are_those_of_the_plan() {
     let (run, plain) = (&made.raw.runs[0], &plain.raw.runs[0]);
     let y = |r: &RawRecording| r.motion[0].clone();
     // six periods of a steady sine: rounding only
-    assert!((lateness(&y(&run.still_air), &y(&run.in_wind)) - 0.0123).abs() < 1e-9);
+    assert!(
+        (lateness(&y(run.still_air.as_ref().unwrap()), &y(&run.in_wind)) - 0.0123).abs() < 1e-9
+    );
     assert_eq!(y(&run.in_wind), y(&plain.in_wind));
     let lift = |r: &RawRecording| section_forces(&made.raw.rig, r)[1].clone();
-    let still = lateness(&lift(&run.still_air), &lift(&plain.still_air));
+    let still = lateness(
+        &lift(run.still_air.as_ref().unwrap()),
+        &lift(plain.still_air.as_ref().unwrap()),
+    );
     assert!((still - 0.0140).abs() < 1e-9, "{still}");
     // the flow remembers the start, which fades as e^(−0.091·4·t V/B): 1e-5 of the force after 2 s
     let wind = lateness(&lift(&run.in_wind), &lift(&plain.in_wind));

@@ -64,7 +64,7 @@ fn bits(values: &[f64]) -> Vec<u64> {
 }
 
 /// Steps of several sizes with forces, a gust and ramps, outputs compared after every step.
-fn compare(archive: Archive) {
+pub(super) fn compare(archive: Archive) {
     let unit = Unit::instantiate(archive);
     let mut process = InProcess::new(unit.archive.model());
     unit.start();

@@ -137,10 +137,10 @@ fn default_experiment(d: &ModelDescription, f: &mut Findings) {
 
 /// Every text that comes more than once, once.
 fn duplicates<'a>(all: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
-    let mut seen = HashSet::new();
+    let (mut seen, mut reported) = (HashSet::new(), HashSet::new());
     let mut twice = Vec::new();
     for one in all {
-        if !seen.insert(one) && !twice.contains(&one) {
+        if !seen.insert(one) && reported.insert(one) {
             twice.push(one);
         }
     }

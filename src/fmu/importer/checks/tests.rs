@@ -55,7 +55,10 @@ fn a_flawless_description_gives_no_finding() {
     assert_eq!(description.outputs[0].dependencies, Some(vec![]));
     assert_eq!(description.outputs[1].dependencies, None);
     let x = description.variable("x").unwrap();
-    assert_eq!(description.attribute_of(x, |a| a.max), Some(1.0));
+    assert_eq!(
+        x.attribute(&description.types_by_name(), |a| a.max),
+        Some(1.0)
+    );
 }
 
 /// (what stands, what is put there, words of the one error).
@@ -266,4 +269,33 @@ fn an_fmu_for_model_exchange_only_is_named_as_such() {
             .iter()
             .any(|e| e.contains("no <CoSimulation>"))
     );
+}
+
+/// Hundreds of thousands of names that come twice, types and units: looked up, not searched for.
+#[test]
+fn long_descriptions_are_checked_in_linear_time() {
+    const MANY: usize = 150_000;
+    let (mut variables, mut types, mut units) = (String::new(), String::new(), String::new());
+    for i in 0..MANY {
+        for reference in [i, 7] {
+            variables += &format!(
+                r#"<ScalarVariable name="v{i}" valueReference="{reference}" causality="input"><Real declaredType="T{i}" unit="u{i}" start="0"/></ScalarVariable>"#
+            );
+        }
+        types += &format!(r#"<SimpleType name="T{i}"><Real unit="u{i}"/></SimpleType>"#);
+        units += &format!(r#"<Unit name="u{i}"/>"#);
+    }
+    let text = GOOD
+        .replace(
+            "</ModelVariables>",
+            &format!("{variables}</ModelVariables>"),
+        )
+        .replace("</TypeDefinitions>", &format!("{types}</TypeDefinitions>"))
+        .replace("</UnitDefinitions>", &format!("{units}</UnitDefinitions>"));
+    let begin = std::time::Instant::now();
+    let found = errors(&text);
+    // a second here; a search for each name takes many minutes
+    assert!(begin.elapsed().as_secs() < 60);
+    assert!(found.iter().filter(|f| f.contains("unique names")).count() == MANY);
+    assert!(found.iter().all(|f| f.len() < 400), "one line each");
 }

@@ -1,8 +1,9 @@
 //! Units: defined once, with a meaning, and every one that is used is defined.
 
-use super::super::description::ModelDescription;
+use super::super::description::{ModelDescription, Unit};
 use super::super::findings::Findings;
 use super::{FILE, duplicates};
+use std::collections::HashMap;
 
 pub(super) fn definitions(d: &ModelDescription, f: &mut Findings) {
     for name in duplicates(d.units.iter().map(|u| u.name.as_str())) {
@@ -33,6 +34,11 @@ pub(super) fn definitions(d: &ModelDescription, f: &mut Findings) {
 }
 
 pub(super) fn uses(d: &ModelDescription, f: &mut Findings) {
+    // the first of each name, as everywhere
+    let mut units: HashMap<&str, &Unit> = HashMap::new();
+    for unit in &d.units {
+        units.entry(&unit.name).or_insert(unit);
+    }
     let variables = d.variables.iter().map(|v| (v.place(), &v.attributes));
     let types = d.types.iter().map(|t| {
         let place = format!("{FILE}, line {}, type `{}`", t.line, t.name);
@@ -49,7 +55,7 @@ pub(super) fn uses(d: &ModelDescription, f: &mut Findings) {
             }
             continue;
         };
-        let Some(unit) = d.units.iter().find(|u| u.name == *name) else {
+        let Some(unit) = units.get(name.as_str()) else {
             f.error(
                 place,
                 "a unit of <UnitDefinitions>",

@@ -7,6 +7,9 @@ use super::super::findings::Findings;
 use super::{FILE, duplicates};
 use std::collections::BTreeMap;
 
+/// Names that one finding lists.
+const MAX_NAMES: usize = 5;
+
 pub(super) fn names(d: &ModelDescription, f: &mut Findings) {
     for name in duplicates(d.variables.iter().map(|v| v.name.as_str())) {
         f.error(
@@ -54,6 +57,7 @@ fn structured(name: &str) -> bool {
 }
 
 pub(super) fn types(d: &ModelDescription, f: &mut Findings) {
+    let types = d.types_by_name();
     for v in &d.variables {
         if v.kind == Kind::Enumeration && v.declared_type.is_none() {
             f.error(v.place(), "the declared type of an enumeration", "none");
@@ -61,7 +65,7 @@ pub(super) fn types(d: &ModelDescription, f: &mut Findings) {
         let Some(name) = &v.declared_type else {
             continue;
         };
-        match d.types.iter().find(|t| t.name == *name) {
+        match types.get(name.as_str()) {
             None => f.error(
                 v.place(),
                 "a type of <TypeDefinitions>",
@@ -138,9 +142,10 @@ pub(super) fn start_presence(d: &ModelDescription, f: &mut Findings) {
 }
 
 pub(super) fn ranges(d: &ModelDescription, f: &mut Findings) {
+    let types = d.types_by_name();
     for v in &d.variables {
-        let min = d.attribute_of(v, |a| a.min);
-        let max = d.attribute_of(v, |a| a.max);
+        let min = v.attribute(&types, |a| a.min);
+        let max = v.attribute(&types, |a| a.max);
         if let (Some(min), Some(max)) = (min, max)
             && max < min
         {
@@ -163,7 +168,7 @@ pub(super) fn ranges(d: &ModelDescription, f: &mut Findings) {
         if min.is_some_and(|m| start < m) || max.is_some_and(|m| start > m) {
             f.error(v.place(), range, start.to_string());
         }
-        if d.attribute_of(v, |a| a.nominal) == Some(0.0) {
+        if v.attribute(&types, |a| a.nominal) == Some(0.0) {
             f.error(v.place(), "a nominal value other than 0", "0");
         }
     }
@@ -171,6 +176,7 @@ pub(super) fn ranges(d: &ModelDescription, f: &mut Findings) {
 
 /// Section 2.2.7 on alias sets: at most one member can be set, constants stand apart, units agree.
 pub(super) fn aliases(d: &ModelDescription, f: &mut Findings) {
+    let types = d.types_by_name();
     let mut sets: BTreeMap<(Kind, u32), Vec<&ScalarVariable>> = BTreeMap::new();
     for v in &d.variables {
         // the two are the same C type
@@ -185,7 +191,10 @@ pub(super) fn aliases(d: &ModelDescription, f: &mut Findings) {
         let name = |v: &&&ScalarVariable| format!("`{}`", v.name);
         let settable: Vec<_> = set.iter().filter(|v| v.settable()).collect();
         if settable.len() > 1 {
-            let names: Vec<_> = settable.iter().map(name).collect();
+            let mut names: Vec<_> = settable.iter().take(MAX_NAMES).map(name).collect();
+            if settable.len() > MAX_NAMES {
+                names.push(format!("and {} more", settable.len() - MAX_NAMES));
+            }
             f.error(
                 settable[1].place(),
                 format!("one settable variable for value reference {reference}"),
@@ -203,8 +212,9 @@ pub(super) fn aliases(d: &ModelDescription, f: &mut Findings) {
                 "both",
             );
         }
-        let unit = |v: &ScalarVariable| d.attribute_of(v, |a| a.unit.clone());
-        if let Some(other) = set.iter().find(|v| unit(v) != unit(set[0])) {
+        let unit = |v: &ScalarVariable| v.attribute(&types, |a| a.unit.clone());
+        let first = unit(set[0]);
+        if let Some(other) = set.iter().find(|v| unit(v) != first) {
             f.error(
                 other.place(),
                 format!("the unit of its alias `{}`", set[0].name),

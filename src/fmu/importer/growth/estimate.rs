@@ -3,8 +3,8 @@
 //! The samples `z = [q₁, q̇₁, q₂, q̇₂, …]` of a linear section move as `z(t+T) = Φ z(t)` once the filters have decayed.
 //! `Φ` is fitted by least squares over the later half of the samples, in the directions in which there is motion
 //! (Schmid 2010, dynamic mode decomposition). `T` is about two periods: the longer it is, the less a disturbance of
-//! the samples biases `|μ|`. Of the eigenvalues `μ` the one with the most energy at the end counts:
-//! growth rate `ln|μ|/T`. Its frequency is known up to multiples of `2π/T` from `arg μ`, and the multiple from the
+//! the samples biases `|μ|`. A motion that hardly oscillates has no such time; half the samples then have to do. Of the
+//! eigenvalues `μ` with energy at the end the largest counts: growth rate `ln|μ|/T`. Its frequency is known up to multiples of `2π/T` from `arg μ`, and the multiple from the
 //! eigenvector, in which rate and displacement stand in the ratio `λ`.
 
 use crate::error::{Error, Result};
@@ -16,6 +16,9 @@ use std::f64::consts::TAU;
 const RANK_TOLERANCE: f64 = 1e-9;
 /// `T` in periods.
 const LAG_PERIODS: f64 = 2.0;
+/// An eigenvalue counts if at the end its part of the motion is at least this part of the largest: above what the filters
+/// and rounding leave.
+const HEARD: f64 = 1e-4;
 
 /// The dominant mode of a motion.
 #[derive(Debug, Clone, PartialEq)]
@@ -61,10 +64,15 @@ pub fn growth_of_samples(samples: &[f64], width: usize, step_s: f64) -> Result<G
     let half = &samples[count / 2 * width..];
     let rows = half.len() / width;
     let period = rough_period(half, width);
-    let lag = ((LAG_PERIODS * period / step_s).round() as usize).max(1);
-    if !period.is_finite() || rows < lag + 2 * width {
-        return Err(unclear("too few samples, or no motion"));
+    if !half.iter().any(|x| *x != 0.0) {
+        return Err(unclear("no motion"));
     }
+    if rows < 6 * width {
+        return Err(unclear("too few samples"));
+    }
+    // the slow motion of one degree of freedom must not take the time that tells the others apart
+    let wished = (LAG_PERIODS * period / step_s).round();
+    let lag = (wished.max(1.0) as usize).min(rows / 3);
     // each signal in units of its own size, so that metres and radians count alike
     let scale = sizes(half, width);
     let scaled = DMatrix::from_fn(width, rows, |i, j| half[j * width + i] / scale[i]);
@@ -120,7 +128,7 @@ fn transition(early: &DMatrix<f64>, late: &DMatrix<f64>) -> Option<(DMatrix<f64>
     Some((basis.transpose() * late * weights, basis))
 }
 
-/// Eigenvalue and eigenvector of `Φ` with the most energy in the state `end`.
+/// Eigenvalue and eigenvector of `Φ` that grow fastest among those heard in the state `end`.
 fn dominant(
     phi: &DMatrix<f64>,
     end: &DVector<f64>,
@@ -136,10 +144,12 @@ fn dominant(
         .solve(&end.map(|x| Complex::new(x, 0.0)))
         .ok_or_else(|| Error::Numerical("growth rate: modes coincide".into()))?;
     let energy = |i: usize| amplitudes[i].norm() * vectors[i].norm();
-    let strongest = (0..values.len())
-        .max_by(|a, b| energy(*a).total_cmp(&energy(*b)))
+    let most = (0..values.len()).map(energy).fold(0.0, f64::max);
+    let fastest = (0..values.len())
+        .filter(|i| energy(*i) >= HEARD * most)
+        .max_by(|a, b| values[*a].norm().total_cmp(&values[*b].norm()))
         .unwrap_or(0);
-    Ok((values[strongest], vectors[strongest].clone()))
+    Ok((values[fastest], vectors[fastest].clone()))
 }
 
 /// `|Im λ|`: the multiple of `2π/T` that `arg μ` leaves open is taken from rate over displacement.

@@ -12,6 +12,7 @@ use super::description::{Kind, Value};
 use super::simulation::{Times, start};
 use super::slave::{Slave, Status, find};
 use crate::error::{Error, Result, positive};
+use crate::flutter::StableRange;
 use serde::Serialize;
 
 /// Names of displacement and rate of the motions that a section may have.
@@ -28,13 +29,17 @@ const AGREEMENT: f64 = 1e-6;
 const FIRST_PERIODS: f64 = 24.0;
 /// Most periods, 24·2⁷.
 const MAX_PERIODS: f64 = 3072.0;
+/// Where the section grows at the lowest speed asked for, the search goes down by halves to this part of it.
+const DOWNWARDS: f64 = 1.0 / 128.0;
+/// Halvings to the speed of a divergence, which only bounds what could be judged.
+const DIVERGENCE_HALVINGS: usize = 8;
 /// Most steps of one run.
 const MAX_STEPS: usize = 2_000_000;
 
 /// Where to look and how to step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SteppingSearch {
-    /// Wind speed at which the section is stable, m/s.
+    /// Wind speed from which on is searched, m/s; where the section grows there already, the search goes down.
     pub speed_min_m_s: f64,
     /// Highest wind speed, m/s.
     pub speed_max_m_s: f64,
@@ -109,8 +114,10 @@ pub struct SteppedOnset {
 pub enum SteppedSearch {
     /// The section flutters.
     Onset(Box<SteppedOnset>),
-    /// No growth up to this wind speed, m/s.
-    StableUpTo(f64),
+    /// Growth at the lowest speed that was stepped.
+    UnstableAtOrBelow(GrowthPoint),
+    /// No growth of an oscillation between these speeds.
+    StableUpTo(StableRange),
 }
 
 impl SteppedSearch {
@@ -118,7 +125,7 @@ impl SteppedSearch {
     pub fn onset(&self) -> Option<&SteppedOnset> {
         match self {
             Self::Onset(onset) => Some(onset),
-            Self::StableUpTo(_) => None,
+            Self::UnstableAtOrBelow(_) | Self::StableUpTo(_) => None,
         }
     }
 }
@@ -129,34 +136,77 @@ impl SteppedSearch {
 /// rates, and the parameters for their initial values.
 ///
 /// # Errors
-/// [`Error::Input`] for a search that makes no sense, an FMU without these variables, or a section that grows already at
-/// the lowest speed; [`Error::Numerical`] when no growth rate can be told; the errors of [`Slave`].
+/// [`Error::Input`] for a search that makes no sense or an FMU without these variables; [`Error::Numerical`] when no growth
+/// rate can be told at the lowest speed; the errors of [`Slave`].
 pub fn onset_by_stepping(fmu: &Fmu, search: &SteppingSearch) -> Result<SteppedSearch> {
     search.check()?;
     let mut run = Run::new(fmu, search.communication_step_s)?;
     let intervals = search.intervals.max(1);
     let mut below = run.growth(search.speed_min_m_s)?;
-    if below.1.rate_per_s >= 0.0 {
-        return Err(Error::input(
-            "speed_min_m_s",
-            "a wind speed at which the section is stable",
-            format!("{} m/s with growth {} 1/s", below.0, below.1.rate_per_s),
-        ));
+    let mut above = None;
+    while below.1.rate_per_s >= 0.0 && below.0 > DOWNWARDS * search.speed_min_m_s {
+        let speed = 0.5 * below.0;
+        above = Some(below);
+        below = run.growth(speed)?;
     }
+    if below.1.rate_per_s >= 0.0 {
+        return Ok(SteppedSearch::UnstableAtOrBelow(point(&below)));
+    }
+    if let Some(above) = above {
+        return run.found(below, above, search.tolerance);
+    }
+    let lowest = below.0;
+    let stable = |to_m_s, why: Option<String>| {
+        SteppedSearch::StableUpTo(StableRange {
+            from_m_s: lowest,
+            to_m_s,
+            not_judged: Some(why.unwrap_or_else(|| "lower speeds were not stepped".to_owned())),
+        })
+    };
     for i in 1..=intervals {
         let part = i as f64 / intervals as f64;
         let speed = search.speed_min_m_s + part * (search.speed_max_m_s - search.speed_min_m_s);
-        let above = run.growth(speed)?;
+        let above = match run.growth(speed) {
+            Ok(above) => above,
+            Err(Error::Numerical(why)) => {
+                return Ok(stable(below.0, Some(format!("beyond: {why}"))));
+            }
+            Err(other) => return Err(other),
+        };
+        if above.1.rate_per_s >= 0.0 && above.1.frequency_rad_s > 0.0 {
+            return run.found(below, above, search.tolerance);
+        }
         if above.1.rate_per_s >= 0.0 {
-            let (speed, growth) = run.refine(below, above, search.tolerance)?;
-            return run
-                .onset(speed, &growth)
-                .map(Box::new)
-                .map(SteppedSearch::Onset);
+            let (last, from) = run.divergence(below, above.0);
+            let why =
+                format!("from {from:.3} m/s on the section diverges, which hides any oscillation");
+            return Ok(stable(last.0, Some(why)));
         }
         below = above;
     }
-    Ok(SteppedSearch::StableUpTo(search.speed_max_m_s))
+    Ok(stable(search.speed_max_m_s, None))
+}
+
+/// Growth of the released section of the FMU at one wind speed (m/s).
+///
+/// # Errors
+/// As [`onset_by_stepping`].
+pub fn growth_by_stepping(
+    fmu: &Fmu,
+    speed_m_s: f64,
+    communication_step_s: f64,
+) -> Result<GrowthPoint> {
+    let speed = positive("wind speed", speed_m_s)?;
+    let step = positive("communication_step_s", communication_step_s)?;
+    Run::new(fmu, step)?.growth(speed).map(|at| point(&at))
+}
+
+fn point((speed_m_s, growth): &At) -> GrowthPoint {
+    GrowthPoint {
+        speed_m_s: *speed_m_s,
+        growth_rate_per_s: growth.rate_per_s,
+        frequency_hz: growth.frequency_rad_s / std::f64::consts::TAU,
+    }
 }
 
 /// One instance, run again and again.
@@ -239,12 +289,9 @@ impl Run {
             if let Some(last) = &last
                 && (now.rate_per_s - last.rate_per_s).abs() <= AGREEMENT * scale
             {
-                self.points.push(GrowthPoint {
-                    speed_m_s: speed,
-                    growth_rate_per_s: now.rate_per_s,
-                    frequency_hz: now.frequency_rad_s / std::f64::consts::TAU,
-                });
-                return Ok((speed, now));
+                let at = (speed, now);
+                self.points.push(point(&at));
+                return Ok(at);
             }
             last = Some(now);
             periods *= 2.0;
@@ -313,6 +360,26 @@ impl Run {
         } else {
             high
         })
+    }
+
+    /// The last speed without growth and the first with that of a divergence between two speeds.
+    fn divergence(&mut self, mut below: At, mut above_m_s: f64) -> (At, f64) {
+        for _ in 0..DIVERGENCE_HALVINGS {
+            let middle = 0.5 * (below.0 + above_m_s);
+            match self.growth(middle) {
+                Ok(at) if at.1.rate_per_s < 0.0 => below = at,
+                // nearly at rest on both sides of it, no rate can be told
+                _ => above_m_s = middle,
+            }
+        }
+        (below, above_m_s)
+    }
+
+    fn found(mut self, below: At, above: At, tolerance: f64) -> Result<SteppedSearch> {
+        let (speed, growth) = self.refine(below, above, tolerance)?;
+        self.onset(speed, &growth)
+            .map(Box::new)
+            .map(SteppedSearch::Onset)
     }
 
     fn onset(mut self, speed: f64, growth: &Growth) -> Result<SteppedOnset> {

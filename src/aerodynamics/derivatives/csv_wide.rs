@@ -1,0 +1,248 @@
+//! Tables as laboratories and papers keep them: one row a reduced velocity, one column a derivative.
+//!
+//! ```text
+//! # notation: scanlan
+//! v_hat,H1,H2,H3,A1,A2,A3
+//! 2.0,-9.1,0.8,13.6,-2.4,-0.6,3.5
+//! ```
+//!
+//! The first row names the columns: derivatives as in the notation, with or without a star; the argument (`v_hat`,
+//! `v_star`, `k_full`, `k_semi`, or any name when the argument is stated and one column is left over); `mean_speed_m_s` if
+//! it is known. A cell may be empty where a derivative was not measured. Semicolons between the cells, then also decimal
+//! commas, and tabs are understood. The `# key: value` lines of the long form may stand above, all of them optional but
+//! what states the convention.
+
+use super::csv_file::number;
+use super::csv_header::Head;
+use super::missing::fill_in;
+use super::notation::{Argument, Convention, ExpressedPoint};
+use super::table::{check_point_count, check_points};
+use super::workbook::WIDTH_ASSUMED;
+use super::{Derivative, DerivativePoint, DerivativeTable, ReadOptions};
+use crate::error::{Error, Result, positive};
+use std::collections::BTreeMap;
+
+const SPEED: &str = "mean_speed_m_s";
+
+type Points = BTreeMap<Derivative, Vec<DerivativePoint>>;
+/// Points of one derivative and the lines they stand on.
+type Rows = BTreeMap<Derivative, (Vec<DerivativePoint>, Vec<usize>)>;
+
+/// Where the numbers stand.
+struct Columns {
+    argument: usize,
+    speed: Option<usize>,
+    derivatives: Vec<(usize, Derivative)>,
+    /// Names of columns that mean nothing here.
+    others: Vec<String>,
+}
+
+/// The separator that the first row uses.
+fn separator(row: &str) -> char {
+    [';', '\t']
+        .into_iter()
+        .find(|c| row.contains(*c))
+        .unwrap_or(',')
+}
+
+fn cells(row: &str, separator: char) -> Vec<&str> {
+    let bare = |cell: &str| -> usize { cell.len() - cell.trim_start_matches(['"', ' ']).len() };
+    row.split(separator)
+        .map(|cell| cell[bare(cell)..].trim_end_matches(['"', ' ', '\r']))
+        .collect()
+}
+
+/// Whether the first row after the header is that of a wide table: no column `derivative`.
+pub(super) fn is_wide(text: &str) -> bool {
+    let mut rows = text
+        .lines()
+        .filter(|l| !l.starts_with('#') && !l.trim().is_empty());
+    rows.next()
+        .is_some_and(|row| !cells(row, separator(row)).contains(&"derivative"))
+}
+
+/// The table in `text`; `stem` names it when the header does not.
+///
+/// # Errors
+/// [`Error::Input`] naming line, column, expectation and finding.
+pub(super) fn parse(
+    text: &str,
+    stem: &str,
+    options: &ReadOptions,
+) -> Result<(DerivativeTable, Convention)> {
+    let text = text.trim_start_matches('\u{feff}');
+    let head = Head::read(text)?;
+    let mut lines = (1..)
+        .zip(text.lines())
+        .skip(head.lines())
+        .filter(|l| !l.1.trim().is_empty());
+    let (line, row) = lines
+        .next()
+        .ok_or_else(|| Error::input("", "a row of column names", "an empty file"))?;
+    let between = separator(row);
+    let names = cells(row, between);
+    let mut stated = head.stated()?;
+    let known = Argument::ALL
+        .into_iter()
+        .find(|a| names.iter().any(|n| is_argument(n, *a)));
+    if options.convention.argument.is_none() && stated.argument.is_none() {
+        stated.argument = known;
+    }
+    let convention = options.convention.with_file(stated)?;
+    let columns = find_columns(&names, line, &convention)?;
+    let mut rows = Rows::new();
+    for (line, text) in lines {
+        let row = Row {
+            line,
+            cells: cells(text, between),
+            names: &names,
+            decimal_comma: between == ';',
+        };
+        row.enter(&columns, &convention, &mut rows)?;
+    }
+    let points = checked(rows, &convention)?;
+    let table = finished(&head, points, columns.others, stem, options)?;
+    Ok((table, convention))
+}
+
+/// One line of numbers.
+struct Row<'a> {
+    line: usize,
+    cells: Vec<&'a str>,
+    names: &'a [&'a str],
+    decimal_comma: bool,
+}
+
+impl Row<'_> {
+    fn place(&self, column: usize) -> String {
+        format!("line {}, column {}", self.line, self.names[column])
+    }
+
+    /// The number in a column; `None` for an empty cell.
+    fn number(&self, column: usize) -> Result<Option<f64>> {
+        let text = match (self.cells[column], self.decimal_comma) {
+            ("", _) => return Ok(None),
+            (text, true) => text.replace(',', "."),
+            (text, false) => text.to_owned(),
+        };
+        number(&self.place(column), &text).map(Some)
+    }
+
+    /// Adds the points of this line.
+    fn enter(&self, columns: &Columns, convention: &Convention, rows: &mut Rows) -> Result<()> {
+        if self.cells.len() != self.names.len() {
+            let expected = format!("{} columns", self.names.len());
+            let found = self.cells.len().to_string();
+            return Err(Error::input(format!("line {}", self.line), expected, found));
+        }
+        let argument = self.number(columns.argument)?.unwrap_or(f64::NAN);
+        positive(&self.place(columns.argument), argument)?;
+        let speed = columns.speed.map(|column| self.number(column));
+        let mean_speed_m_s = speed.transpose()?.flatten();
+        for (column, derivative) in &columns.derivatives {
+            let Some(value) = self.number(*column)? else {
+                continue;
+            };
+            let point = ExpressedPoint {
+                mean_speed_m_s,
+                argument,
+                value,
+            };
+            let (points, lines) = rows.entry(*derivative).or_default();
+            points.push(convention.read_point(*derivative, &point));
+            lines.push(self.line);
+            check_point_count(self.names[*column], points.len())?;
+        }
+        Ok(())
+    }
+}
+
+/// The points, each derivative's own checked.
+fn checked(rows: Rows, convention: &Convention) -> Result<Points> {
+    for (derivative, (points, lines)) in &rows {
+        if let Some(problem) = check_points(points) {
+            let name = convention.notation.name_of(*derivative);
+            let place = format!("line {} ({name})", lines[problem.index]);
+            return Err(Error::input(place, problem.expected, problem.found));
+        }
+    }
+    Ok(rows.into_iter().map(|(d, (p, _))| (d, p)).collect())
+}
+
+/// The table, with notes on what had to be taken for granted.
+fn finished(
+    head: &Head,
+    mut points: Points,
+    others: Vec<String>,
+    stem: &str,
+    options: &ReadOptions,
+) -> Result<DerivativeTable> {
+    let mut header = head.provenance()?;
+    header.notes.extend(fill_in(&mut points, options.missing));
+    if !others.is_empty() {
+        let note = format!("columns that were not read: {}", others.join(", "));
+        header.notes.push(note);
+    }
+    if header.source.is_empty() {
+        header.source = format!("table {stem}");
+    }
+    let stated = head.width_stated(options.width_m)?;
+    if stated.is_none() {
+        header.notes.push(WIDTH_ASSUMED.to_owned());
+    }
+    let name = head.name().unwrap_or_else(|_| stem.to_owned());
+    DerivativeTable::new(name, stated.unwrap_or(1.0), header, points)
+}
+
+fn is_argument(name: &str, argument: Argument) -> bool {
+    name.eq_ignore_ascii_case(argument.name()) || name == argument.definition()
+}
+
+fn find_columns(names: &[&str], line: usize, convention: &Convention) -> Result<Columns> {
+    let mut columns = Columns {
+        argument: usize::MAX,
+        speed: None,
+        derivatives: Vec::new(),
+        others: Vec::new(),
+    };
+    let mut unnamed = Vec::new();
+    for (i, name) in names.iter().enumerate() {
+        if let Ok(derivative) = convention.notation.derivative(name) {
+            if columns.derivatives.iter().any(|(_, d)| *d == derivative) {
+                let place = format!("line {line}");
+                return Err(Error::input(place, format!("`{name}` once"), "it twice"));
+            }
+            columns.derivatives.push((i, derivative));
+        } else if is_argument(name, convention.argument) {
+            columns.argument = i;
+        } else if name.eq_ignore_ascii_case(SPEED) {
+            columns.speed = Some(i);
+        } else {
+            unnamed.push(i);
+        }
+    }
+    if columns.argument == usize::MAX {
+        // the argument is stated: the only column that is nothing else is its
+        let [only] = unnamed[..] else {
+            let expected = format!("a column `{}`", convention.argument.name());
+            return Err(Error::input(
+                format!("line {line}"),
+                expected,
+                format!("`{}`", names.join(",")),
+            ));
+        };
+        columns.argument = only;
+        unnamed.clear();
+    }
+    if columns.derivatives.is_empty() {
+        let expected = format!("columns of derivatives, {}", convention.notation.names());
+        let found = format!("`{}`", names.join(","));
+        return Err(Error::input(format!("line {line}"), expected, found));
+    }
+    columns.others = unnamed.into_iter().map(|i| names[i].to_owned()).collect();
+    Ok(columns)
+}
+
+#[cfg(test)]
+#[path = "csv_wide_tests.rs"]
+mod tests;

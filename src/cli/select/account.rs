@@ -1,0 +1,123 @@
+//! A selection in words and figures.
+
+use crate::error::Result;
+use crate::report::{Figure, HeatMap, heat_map_figure};
+use crate::selection::{Cell, CellMetrics, MetricGrid, Selection};
+use crate::study::Study;
+use std::fmt::Write as _;
+
+/// The table of cells and the recommendation.
+pub fn account(selection: &Selection) -> String {
+    let mut text = format!(
+        "{} cells: {} values of {}, L = 1 to {}\n\nBest fit of each number of filters, as a free search of {} finds it\n",
+        selection.cells.len(),
+        selection.values.len(),
+        selection.symbol,
+        selection.filters_max,
+        selection.symbol,
+    );
+    let _ = writeln!(
+        text,
+        "{:>3} {:>7} {:>9} {:>9} {:>11} {:>11}  verdict",
+        "L", selection.symbol, "residual", "left out", "speed out", "freq. out",
+    );
+    for at in selection.free.iter().flatten() {
+        text.push_str(&line(&selection.cells[*at]));
+    }
+    let _ = writeln!(text, "\nRecommended\n{}", selection.reason);
+    if let Some(recommended) = &selection.recommended {
+        text.push_str(&line(&selection.cells[recommended.cell]));
+    }
+    text
+}
+
+fn line(cell: &Cell) -> String {
+    let percent = |x: Option<f64>| x.map_or("–".to_owned(), |x| format!("{:.2} %", 100.0 * x));
+    let cv = cell.cross_validation;
+    let onset = cell
+        .onset_m_s
+        .map_or("no onset".to_owned(), |v| format!("onset {v:.3} m/s"));
+    let verdict = if cell.rejected.is_empty() {
+        onset
+    } else {
+        format!("REFUSED: {} ({onset})", cell.rejected.join("; "))
+    };
+    format!(
+        "{:>3} {:>7.3} {:>9} {:>9} {:>11} {:>11}  {verdict}\n",
+        cell.filters,
+        cell.value,
+        percent(cell.residual),
+        percent(cv.map(|v| v.score)),
+        percent(cv.and_then(|v| v.across_speeds)),
+        percent(cv.and_then(|v| v.across_frequencies)),
+    )
+}
+
+/// Errors and onsets over the grid, and the metrics of the forces.
+pub fn figures(
+    study: &Study,
+    selection: &Selection,
+    metrics: &[MetricGrid],
+) -> Result<Vec<(&'static str, Figure)>> {
+    let filters = selection.filters_max;
+    let map = |title: &str, values: Vec<Option<f64>>, logarithmic: bool| HeatMap {
+        title: title.to_owned(),
+        x_label: match selection.symbol.as_str() {
+            "p" => "Pole p (–)".to_owned(),
+            other => format!("Decay factor {other} (–)"),
+        },
+        x: selection.values.clone(),
+        y_label: "Filters L".to_owned(),
+        rows: filters,
+        values,
+        logarithmic,
+        refused: selection
+            .cells
+            .iter()
+            .map(|c| !c.rejected.is_empty())
+            .collect(),
+        chosen: selection
+            .recommended
+            .as_ref()
+            .map(|r| (r.cell / filters, r.cell % filters)),
+    };
+    let of = |f: &dyn Fn(&Cell) -> Option<f64>| selection.cells.iter().map(f).collect::<Vec<_>>();
+    let errors = [
+        map("Residual of the fit", of(&|c| c.residual), true),
+        map(
+            "Error on data left out",
+            of(&|c| Some(c.cross_validation?.score)),
+            true,
+        ),
+        map("Flutter onset (m/s)", of(&|c| c.onset_m_s), false),
+        map("Largest term over the fit", of(&|c| c.cancellation), true),
+    ];
+    let mut maps = Vec::new();
+    type Pick = fn(&CellMetrics) -> f64;
+    let kinds: [(&str, Pick); 3] = [
+        ("Phase", |m| m.phase),
+        ("Peak", |m| m.peak),
+        ("Warped magnitude", |m| m.magnitude_warped),
+    ];
+    for grid in metrics {
+        for (name, pick) in kinds {
+            let title = format!(
+                "{name} metric: {} force and motion, {:.2} Hz",
+                grid.force.name(),
+                grid.frequency_hz
+            );
+            let values = grid.cells.iter().map(|c| c.as_ref().map(pick)).collect();
+            maps.push(map(&title, values, false));
+        }
+    }
+    Ok(vec![
+        (
+            "selection",
+            heat_map_figure(&format!("{}: selection", study.name), &errors, 2)?,
+        ),
+        (
+            "selection_metrics",
+            heat_map_figure(&format!("{}: metrics of the forces", study.name), &maps, 3)?,
+        ),
+    ])
+}

@@ -1,0 +1,321 @@
+//! What a search for flutter answers: an onset, growth from the lowest speed that could be judged, or none.
+
+use super::onset::{Onset, OnsetMethod};
+use crate::section::Structure;
+use crate::units::{ReducedFrequency, ReducedFrequencyRange, ReducedVelocity};
+use nalgebra::Complex;
+use serde::Serialize;
+use std::f64::consts::TAU;
+
+/// Speeds closer than this, relatively, are one finding by two ways.
+const SAME_SPEED: f64 = 1e-3;
+
+/// Answer of a search.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum FlutterSearch {
+    /// The section flutters from this speed on.
+    Onset(Box<Onset>),
+    /// The section grows already at the lowest speed that could be judged: the onset lies there or below.
+    UnstableAtOrBelow(Box<UnstableStart>),
+    /// No flutter between these speeds.
+    StableUpTo(StableRange),
+}
+
+/// Growth at the lowest speed at which a mode could be judged.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct UnstableStart {
+    /// Force model.
+    pub model: String,
+    /// Route by which it was found.
+    pub method: OnsetMethod,
+    /// The lowest speed that could be judged, m/s; the onset is there or below.
+    pub speed_m_s: f64,
+    /// Frequency of the growing motion there, Hz.
+    pub frequency_hz: f64,
+    /// `V* = V/(fB)`.
+    pub reduced_velocity: ReducedVelocity,
+    /// `K = ωB/V`.
+    pub reduced_frequency: ReducedFrequency,
+    /// Real part of the eigenvalue, 1/s.
+    pub growth_rate_per_s: f64,
+    /// Branch that grows.
+    pub branch: String,
+    /// Whether `K` lies in the range in which the model was tested; `None` when there is no such range.
+    pub in_tested_range: Option<bool>,
+    /// Why nothing is known below.
+    pub reason: String,
+    /// What a reader must know before using the number.
+    pub warnings: Vec<String>,
+}
+
+/// Speeds between which every mode was looked at and none grows.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct StableRange {
+    /// Lowest speed at which all modes could be judged, m/s; 0 from still air.
+    pub from_m_s: f64,
+    /// Highest speed at which all modes could be judged, m/s.
+    pub to_m_s: f64,
+    /// Why nothing is known outside, where a speed that was asked for is.
+    pub not_judged: Option<String>,
+}
+
+impl StableRange {
+    /// Every speed from still air to this one, m/s.
+    pub fn up_to(to_m_s: f64) -> Self {
+        Self {
+            from_m_s: 0.0,
+            to_m_s,
+            not_judged: None,
+        }
+    }
+}
+
+/// Where modes come into the range of reduced frequencies that can be judged, and where they leave it.
+#[derive(Debug, Default)]
+pub(super) struct Reach {
+    /// Speed, m/s, and branch.
+    pub(super) entries: Vec<(f64, String)>,
+    /// The same at the other end.
+    pub(super) exits: Vec<(f64, String)>,
+}
+
+impl Reach {
+    /// The speeds up to `highest_m_s` at which every mode was judged.
+    pub(super) fn judged(&self, highest_m_s: f64) -> StableRange {
+        let last = self.entries.iter().max_by(|a, b| a.0.total_cmp(&b.0));
+        let first = self.exits.iter().min_by(|a, b| a.0.total_cmp(&b.0));
+        let first = first.filter(|(speed, _)| *speed < highest_m_s);
+        let mut why: Vec<String> = last
+            .iter()
+            .map(|(speed, branch)| {
+                format!("the {branch} branch can be judged from {speed:.3} m/s on")
+            })
+            .collect();
+        why.extend(first.iter().map(|(speed, branch)| {
+            format!("the {branch} branch can be judged up to {speed:.3} m/s")
+        }));
+        StableRange {
+            from_m_s: last.map_or(0.0, |l| l.0),
+            to_m_s: first.map_or(highest_m_s, |f| f.0),
+            not_judged: (!why.is_empty()).then(|| why.join(", ")),
+        }
+    }
+}
+
+/// Why nothing is known below the speed at which a mode comes to the end `limit` of the range that can be judged.
+pub(super) fn entry_reason(limit: ReducedFrequency) -> String {
+    format!(
+        "there its motion comes into the range that could be judged, whose end is K {:.4}",
+        limit.full_width()
+    )
+}
+
+impl FlutterSearch {
+    /// The onset, if it was found; `None` also where the section grows from the lowest speed on.
+    pub fn onset(&self) -> Option<&Onset> {
+        match self {
+            Self::Onset(onset) => Some(onset),
+            Self::UnstableAtOrBelow(_) | Self::StableUpTo(_) => None,
+        }
+    }
+
+    /// A speed at which the section is known to grow, m/s: the onset lies there, or there or below.
+    pub fn critical_speed_m_s(&self) -> Option<f64> {
+        match self {
+            Self::Onset(onset) => Some(onset.speed_m_s),
+            Self::UnstableAtOrBelow(start) => Some(start.speed_m_s),
+            Self::StableUpTo(_) => None,
+        }
+    }
+
+    /// The answer in words.
+    pub fn explain(&self) -> String {
+        match self {
+            Self::Onset(o) => format!("onset at {:.3} m/s", o.speed_m_s),
+            Self::UnstableAtOrBelow(start) => start.explain(),
+            Self::StableUpTo(range) => range.explain(),
+        }
+    }
+}
+
+impl UnstableStart {
+    /// Growth at a speed (m/s) with the eigenvalue `lambda` (rad/s); nothing about ranges yet.
+    pub(super) fn new(
+        model: &str,
+        method: OnsetMethod,
+        structure: &Structure,
+        (speed_m_s, lambda): (f64, Complex<f64>),
+        branch: String,
+        reason: String,
+    ) -> Self {
+        let k = ReducedFrequency::from_circular(lambda.im, structure.width_m, speed_m_s);
+        Self {
+            model: model.to_owned(),
+            method,
+            speed_m_s,
+            frequency_hz: lambda.im / TAU,
+            reduced_velocity: k.into(),
+            reduced_frequency: k,
+            growth_rate_per_s: lambda.re,
+            branch,
+            in_tested_range: None,
+            reason,
+            warnings: Vec::new(),
+        }
+    }
+
+    /// The answer in words.
+    pub fn explain(&self) -> String {
+        format!(
+            "unstable at and below {:.3} m/s, the lowest speed that could be judged: {} branch, {:.4} Hz, K {:.4}, \
+             growth {:+.4} 1/s ({})",
+            self.speed_m_s,
+            self.branch,
+            self.frequency_hz,
+            self.reduced_frequency.full_width(),
+            self.growth_rate_per_s,
+            self.reason
+        )
+    }
+}
+
+impl StableRange {
+    /// The answer in words.
+    pub fn explain(&self) -> String {
+        if self.from_m_s > self.to_m_s {
+            let why = self
+                .not_judged
+                .as_deref()
+                .unwrap_or("no speed was looked at");
+            return format!("not judged: {why}");
+        }
+        let mut text = format!("no flutter up to {:.3} m/s", self.to_m_s);
+        if self.from_m_s > 0.0 {
+            text.push_str(&format!(", judged from {:.3} m/s", self.from_m_s));
+        }
+        if let Some(why) = &self.not_judged {
+            text.push_str(&format!(" ({why})"));
+        }
+        text
+    }
+}
+
+/// Everything that a search came across.
+#[derive(Debug)]
+pub(super) struct Findings {
+    /// Speeds at which a mode loses its damping.
+    pub(super) crossings: Vec<Onset>,
+    /// Modes that grow where they could be judged first.
+    pub(super) starts: Vec<UnstableStart>,
+    /// The speeds that were judged.
+    pub(super) judged: StableRange,
+    /// What a reader of an onset must know.
+    pub(super) warnings: Vec<String>,
+}
+
+/// Picks the answer: the lowest crossing inside the tested range, or growth where a mode enters it if that is lower;
+/// crossings below are named as suspicious. Without either, the lowest outside, with a warning.
+pub(super) fn choose(mut found: Findings, tested: Option<ReducedFrequencyRange>) -> FlutterSearch {
+    found
+        .crossings
+        .sort_by(|a, b| a.speed_m_s.total_cmp(&b.speed_m_s));
+    found
+        .starts
+        .sort_by(|a, b| a.speed_m_s.total_cmp(&b.speed_m_s));
+    let inside = |k: ReducedFrequency| tested.map(|range| range.contains(k));
+    for onset in &mut found.crossings {
+        onset.in_tested_range = inside(onset.reduced_frequency);
+    }
+    let (crossings, starts) = (&found.crossings, &found.starts);
+    let onset = crossings
+        .iter()
+        .position(|o| o.in_tested_range != Some(false));
+    let start = starts.iter().position(|s| s.in_tested_range != Some(false));
+    // what lies outside the tested range is an answer only where there is none inside
+    let (onset, start) = match (onset, start) {
+        (None, None) => (
+            (!crossings.is_empty()).then_some(0),
+            (!starts.is_empty()).then_some(0),
+        ),
+        trusted => trusted,
+    };
+    match (onset, start) {
+        (Some(o), Some(s)) if starts[s].speed_m_s <= crossings[o].speed_m_s => found.start(s),
+        (Some(o), _) => found.onset(o),
+        (None, Some(s)) => found.start(s),
+        (None, None) => FlutterSearch::StableUpTo(found.judged),
+    }
+}
+
+impl Findings {
+    /// Nothing yet.
+    pub(super) fn judged(judged: StableRange) -> Self {
+        Self {
+            crossings: Vec::new(),
+            starts: Vec::new(),
+            judged,
+            warnings: Vec::new(),
+        }
+    }
+
+    /// Whether an onset or growth at this speed is among them.
+    pub(super) fn knows(&self, speed_m_s: f64) -> bool {
+        let same = |v: f64| (v / speed_m_s - 1.0).abs() < SAME_SPEED;
+        self.crossings.iter().any(|o| same(o.speed_m_s))
+            || self.starts.iter().any(|s| same(s.speed_m_s))
+    }
+
+    fn onset(mut self, chosen: usize) -> FlutterSearch {
+        let mut onset = self.crossings.swap_remove(chosen);
+        let (spurious, warnings) =
+            self.below(onset.speed_m_s, "probably spurious, a sign of over-fitting");
+        onset.spurious_speeds_m_s.extend(spurious);
+        onset.warnings.extend(warnings);
+        onset.warnings.append(&mut self.warnings);
+        if onset.in_tested_range == Some(false) {
+            onset.warnings.push(format!(
+                "V* {:.2} at this onset lies outside the tested range: the model is extrapolating, the onset may be \
+                 spurious",
+                onset.reduced_velocity.v_star()
+            ));
+        }
+        FlutterSearch::Onset(Box::new(onset))
+    }
+
+    fn start(mut self, chosen: usize) -> FlutterSearch {
+        let mut start = self.starts.swap_remove(chosen);
+        let (_, warnings) = self.below(start.speed_m_s, "an extrapolation");
+        start.warnings.extend(warnings);
+        start.warnings.append(&mut self.warnings);
+        FlutterSearch::UnstableAtOrBelow(Box::new(start))
+    }
+
+    /// Growth below a speed, all of it outside the tested range.
+    fn below(&self, speed_m_s: f64, verdict: &str) -> (Vec<f64>, Vec<String>) {
+        let crossings = self
+            .crossings
+            .iter()
+            .map(|o| (o.speed_m_s, o.reduced_velocity, &o.branch, "loses damping"));
+        let starts = self
+            .starts
+            .iter()
+            .map(|s| (s.speed_m_s, s.reduced_velocity, &s.branch, "grows"));
+        let mut below: Vec<_> = crossings
+            .chain(starts)
+            .filter(|(speed, ..)| *speed < speed_m_s)
+            .collect();
+        below.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let warning = |(speed, v, branch, what): &(f64, ReducedVelocity, &String, &str)| {
+            format!(
+                "the model also {what} at {speed:.3} m/s (V* {:.2}, {branch} branch), outside the tested range: \
+                 {verdict}",
+                v.v_star()
+            )
+        };
+        (
+            below.iter().map(|b| b.0).collect(),
+            below.iter().map(warning).collect(),
+        )
+    }
+}

@@ -1,0 +1,91 @@
+//! What the scan of all eigenvalues adds to the modes that were followed.
+
+use super::answer::{Findings, UnstableStart};
+use super::curves::damping_ratio;
+use super::onset::{Onset, OnsetMethod};
+use super::scan::{AERODYNAMIC, COARSE, FINE, Scan};
+use super::tracking::mode_shape;
+use crate::error::Result;
+use nalgebra::Complex;
+
+/// Growth of at most this part of the eigenvalue at the lower end of a band is that of a crossing, not of a mode that
+/// enters the tested range.
+const JUST_GROWING: f64 = 1e-6;
+/// Relative distance of the second speed of a slope.
+const SLOPE_STEP: f64 = 1e-5;
+
+impl Scan<'_> {
+    /// Adds growth from still air up to a speed that is not among the findings yet; what lies above an answer inside the
+    /// tested range does not matter.
+    pub(super) fn add_missed(&self, found: &mut Findings, to_m_s: f64) -> Result<()> {
+        let density = if found.warnings.is_empty() {
+            COARSE
+        } else {
+            FINE
+        };
+        let speeds = found
+            .crossings
+            .iter()
+            .map(|o| (o.speed_m_s, o.reduced_frequency));
+        let to_m_s = speeds
+            .filter(|(_, k)| self.tested.is_none_or(|range| range.contains(*k)))
+            .map(|(speed, _)| speed)
+            .fold(to_m_s, f64::min);
+        for band in self.bands(0.0, to_m_s, density)? {
+            let at = self.at(band.from_m_s)?;
+            if let Some(lambda) = at.fastest.filter(|_| !found.knows(band.from_m_s)) {
+                if band.from_start {
+                    let mut start = self.start(band.from_m_s, lambda, "the lowest speed looked at");
+                    start.in_tested_range = self.inside(band.from_m_s, lambda);
+                    found.starts.push(start);
+                } else {
+                    found.crossings.push(self.crossing(band.from_m_s, lambda)?);
+                }
+            }
+            let tested_from = band.tested_from_m_s.filter(|v| !found.knows(*v));
+            let inside = tested_from.map(|v| self.at(v)).transpose()?;
+            let Some((at, lambda)) = inside.and_then(|p| Some((p, p.inside?))) else {
+                continue;
+            };
+            if lambda.re > JUST_GROWING * lambda.norm() {
+                let reason = "there its motion comes into the range that could be judged";
+                let mut start = self.start(at.speed, lambda, reason);
+                start.in_tested_range = Some(true);
+                found.starts.push(start);
+            } else {
+                found.crossings.push(self.crossing(at.speed, lambda)?);
+            }
+        }
+        Ok(())
+    }
+
+    fn start(&self, speed: f64, lambda: Complex<f64>, reason: &str) -> UnstableStart {
+        UnstableStart::new(
+            self.model,
+            OnsetMethod::Eigenvalues,
+            self.section.structure(),
+            (speed, lambda),
+            self.branch(speed, lambda),
+            reason.to_owned(),
+        )
+    }
+
+    fn crossing(&self, speed: f64, lambda: Complex<f64>) -> Result<Onset> {
+        let shape = mode_shape(self.section, &self.section.at(speed)?, lambda)?;
+        let branch = self.branch(speed, lambda);
+        let force_model = branch == AERODYNAMIC;
+        let (s, method) = (self.section.structure(), OnsetMethod::Eigenvalues);
+        let mut onset = Onset::new(self.model, method, s, (speed, lambda.im), &shape, branch);
+        let nearby = self.at(speed * (1.0 - SLOPE_STEP))?;
+        onset.damping_slope_s_m = nearby
+            .fastest
+            .map(|before| (damping_ratio(lambda) - damping_ratio(before)) / (speed * SLOPE_STEP));
+        if force_model {
+            onset.warnings.push(
+                "an eigenvalue of the force model itself becomes unstable: a defect of the fit"
+                    .to_owned(),
+            );
+        }
+        Ok(onset)
+    }
+}

@@ -1,0 +1,353 @@
+//! All eigenvalues over wind speed: the speeds at which any oscillation grows, found without following modes.
+
+use super::answer::StableRange;
+use super::tracking::{Tracker, branch_name, lowest_speed, mode_shape, oscillates};
+use crate::aeroelastic::CoupledSection;
+use crate::error::{Error, Result, non_negative, positive};
+use crate::units::{ReducedFrequency, ReducedFrequencyRange};
+use nalgebra::Complex;
+use serde::Serialize;
+use std::f64::consts::TAU;
+
+/// Lowest speed of a scan from still air, as `V/(fB)` of the slowest mode: wind that no test and no site knows.
+const NEARLY_STILL: f64 = 0.01;
+/// Neighbouring speeds differ by at most this ratio, and at most this part of the highest speed.
+pub(super) const FINE: (f64, f64) = (1.05, 1.0 / 120.0);
+/// The same where the structural modes are followed besides.
+pub(super) const COARSE: (f64, f64) = (1.12, 1.0 / 50.0);
+/// Growth up to this part of the eigenvalue is rounding.
+const ROUNDING: f64 = 1e-9;
+/// Branch of an eigenvalue that belongs to no structural mode.
+pub(super) const AERODYNAMIC: &str = "aerodynamic";
+/// Relative width to which the ends of a band are halved.
+const EDGE_TOLERANCE: f64 = 1e-11;
+/// Steps of the golden section between three speeds of the grid: a peak to 1e-5 of their distance.
+const PEAK_STEPS: usize = 24;
+
+/// A band of wind speeds in which an oscillating eigenvalue has a positive real part.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct GrowthBand {
+    /// Lowest speed with growth, m/s.
+    pub from_m_s: f64,
+    /// Highest speed with growth, m/s; the end of the scan where it goes on.
+    pub to_m_s: f64,
+    /// Whether there is growth at the lowest speed of the scan already, so that the band begins there or below.
+    pub from_start: bool,
+    /// Fastest growth rate that was met in the band, 1/s.
+    pub fastest_growth_per_s: f64,
+    /// Speed of the fastest growth, m/s.
+    pub fastest_at_m_s: f64,
+    /// Frequency of the fastest growth, Hz.
+    pub frequency_hz: f64,
+    /// `K` of the fastest growth.
+    pub reduced_frequency: ReducedFrequency,
+    /// Lowest speed of the band at which a motion with `K` inside the tested range grows, m/s; that of the band itself
+    /// where there is no such range, `None` where nothing grows inside.
+    pub tested_from_m_s: Option<f64>,
+    /// Name of the structural mode with the fastest growth; `aerodynamic` for an eigenvalue of the force model itself.
+    pub branch: String,
+}
+
+impl GrowthBand {
+    /// Whether all growth of the band lies outside the tested range: the model extrapolates there.
+    pub fn extrapolated(&self) -> bool {
+        self.tested_from_m_s.is_none()
+    }
+
+    /// The band in words.
+    pub fn explain(&self) -> String {
+        let tested = if self.extrapolated() {
+            ", outside the tested range"
+        } else {
+            ""
+        };
+        let below = if self.from_start { "at or below " } else { "" };
+        format!(
+            "grows from {below}{:.3} to {:.3} m/s, by {:.4} 1/s at {:.3} m/s ({} branch, {:.4} Hz, K {:.3}{tested})",
+            self.from_m_s,
+            self.to_m_s,
+            self.fastest_growth_per_s,
+            self.fastest_at_m_s,
+            self.branch,
+            self.frequency_hz,
+            self.reduced_frequency.full_width(),
+        )
+    }
+}
+
+/// Bands of wind speed between two speeds in which an oscillation grows, in rising order.
+///
+/// Looks at every eigenvalue at speeds a twentieth apart or closer, from nearly still air if `from_m_s` is zero, at peaks
+/// between them too, and halves down to the ends of each band. `tested` as in [`find_onset`](super::find_onset).
+///
+/// # Errors
+/// [`Error::Input`] for speeds that are no interval; those of the eigenvalues.
+pub fn growth_scan(
+    section: &CoupledSection,
+    from_m_s: f64,
+    to_m_s: f64,
+    tested: Option<ReducedFrequencyRange>,
+) -> Result<Vec<GrowthBand>> {
+    Scan::new("", section, tested).bands(from_m_s, to_m_s, FINE)
+}
+
+/// The fastest growing oscillations at one speed.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Point {
+    pub(super) speed: f64,
+    /// The least damped oscillating eigenvalue, rad/s.
+    pub(super) fastest: Option<Complex<f64>>,
+    /// The fastest growing oscillation inside the tested range.
+    pub(super) inside: Option<Complex<f64>>,
+}
+
+impl Point {
+    fn grows(&self) -> bool {
+        self.fastest.is_some_and(|z| growing(&z))
+    }
+
+    fn rate(&self) -> f64 {
+        self.fastest.map_or(f64::NEG_INFINITY, |z| z.re)
+    }
+}
+
+/// Whether a real part is above rounding.
+pub(super) fn growing(lambda: &Complex<f64>) -> bool {
+    lambda.re > ROUNDING * lambda.norm()
+}
+
+/// A section whose eigenvalues are looked at.
+pub(super) struct Scan<'a> {
+    pub(super) model: &'a str,
+    pub(super) section: &'a CoupledSection,
+    pub(super) tested: Option<ReducedFrequencyRange>,
+}
+
+impl<'a> Scan<'a> {
+    pub(super) fn new(
+        model: &'a str,
+        section: &'a CoupledSection,
+        tested: Option<ReducedFrequencyRange>,
+    ) -> Self {
+        Self {
+            model,
+            section,
+            tested,
+        }
+    }
+
+    /// Lowest speed of a scan from still air, m/s.
+    pub(super) fn lowest(&self, to_m_s: f64) -> Result<f64> {
+        let s = self.section.structure();
+        let slowest_hz = (0..s.dofs.len())
+            .map(|i| (s.stiffness[(i, i)] / s.mass[(i, i)]).sqrt() / TAU)
+            .filter(|f| *f > 0.0)
+            .fold(f64::INFINITY, f64::min);
+        let nearly_still = (NEARLY_STILL * slowest_hz * s.width_m).min(1e-3 * to_m_s);
+        Ok(nearly_still.max(lowest_speed(self.section)?))
+    }
+
+    /// What a scan from still air covers.
+    pub(super) fn judged(&self, to_m_s: f64) -> Result<StableRange> {
+        let lowest = lowest_speed(self.section)?;
+        if lowest >= to_m_s {
+            return Err(Error::input(
+                "highest wind speed",
+                format!(
+                    "more than {lowest:.3} m/s, below which the sampled model has too few samples a period"
+                ),
+                format!("{to_m_s} m/s"),
+            ));
+        }
+        Ok(StableRange {
+            from_m_s: lowest,
+            to_m_s,
+            not_judged: (lowest > 0.0)
+                .then(|| "below, the sampled model has too few samples a period".to_owned()),
+        })
+    }
+
+    /// Speeds of a scan, m/s.
+    fn speeds(&self, from_m_s: f64, to_m_s: f64, (ratio, part): (f64, f64)) -> Result<Vec<f64>> {
+        non_negative("lowest wind speed", from_m_s)?;
+        positive("highest wind speed", to_m_s)?;
+        if from_m_s >= to_m_s {
+            return Err(Error::input(
+                "highest wind speed",
+                format!("a number above the lowest, {from_m_s} m/s"),
+                to_m_s.to_string(),
+            ));
+        }
+        let mut all = Vec::new();
+        let mut speed = from_m_s.max(self.lowest(to_m_s)?);
+        while speed < to_m_s {
+            all.push(speed);
+            speed = (ratio * speed).min(speed + to_m_s * part);
+        }
+        all.push(to_m_s);
+        Ok(all)
+    }
+
+    pub(super) fn bands(
+        &self,
+        from_m_s: f64,
+        to_m_s: f64,
+        density: (f64, f64),
+    ) -> Result<Vec<GrowthBand>> {
+        let speeds = self.speeds(from_m_s, to_m_s, density)?;
+        let mut points: Vec<Point> = speeds
+            .into_iter()
+            .map(|v| self.at(v))
+            .collect::<Result<_>>()?;
+        self.add_peaks(&mut points)?;
+        let mut bands = Vec::new();
+        let mut i = 0;
+        while i < points.len() {
+            let count = points[i..].iter().take_while(|p| p.grows()).count();
+            if count > 0 {
+                bands.push(self.band(&points, i, i + count)?);
+            }
+            i += count.max(1);
+        }
+        Ok(bands)
+    }
+
+    /// Whether the motion with this eigenvalue lies in the tested range; `None` when there is none.
+    pub(super) fn inside(&self, speed: f64, lambda: Complex<f64>) -> Option<bool> {
+        let width = self.section.structure().width_m;
+        let k = ReducedFrequency::from_circular(lambda.im, width, speed);
+        self.tested.map(|range| range.contains(k))
+    }
+
+    pub(super) fn at(&self, speed: f64) -> Result<Point> {
+        let mut all = self.section.at(speed)?.eigenvalues()?;
+        all.retain(oscillates);
+        all.sort_by(|a, b| b.re.total_cmp(&a.re));
+        let inside = |z: &&Complex<f64>| growing(z) && self.inside(speed, **z) != Some(false);
+        Ok(Point {
+            speed,
+            fastest: all.first().copied(),
+            inside: all.iter().find(inside).copied(),
+        })
+    }
+
+    /// Adds growth that is met only between the speeds looked at.
+    fn add_peaks(&self, points: &mut Vec<Point>) -> Result<()> {
+        let mut peaks = Vec::new();
+        for three in points.windows(3) {
+            let rate = |i: usize| three[i].rate();
+            if !three[1].grows() && rate(1) >= rate(0) && rate(1) >= rate(2) {
+                peaks.extend(self.peak(three[0].speed, three[2].speed)?);
+            }
+        }
+        points.extend(peaks);
+        points.sort_by(|a, b| a.speed.total_cmp(&b.speed));
+        Ok(())
+    }
+
+    /// The highest point between two speeds, if it grows.
+    fn peak(&self, mut low: f64, mut high: f64) -> Result<Option<Point>> {
+        let part = 0.5 * (5.0_f64.sqrt() - 1.0);
+        let mut left = self.at(high - part * (high - low))?;
+        let mut right = self.at(low + part * (high - low))?;
+        for _ in 0..PEAK_STEPS {
+            if left.grows() || right.grows() {
+                break;
+            }
+            if left.rate() > right.rate() {
+                high = right.speed;
+                right = left;
+                left = self.at(high - part * (high - low))?;
+            } else {
+                low = left.speed;
+                left = right;
+                right = self.at(low + part * (high - low))?;
+            }
+        }
+        let highest = if left.rate() > right.rate() {
+            left
+        } else {
+            right
+        };
+        Ok(highest.grows().then_some(highest))
+    }
+
+    /// The band of the points `from..to`, its ends refined.
+    fn band(&self, points: &[Point], from: usize, to: usize) -> Result<GrowthBand> {
+        let within = &points[from..to];
+        let from_m_s = match from.checked_sub(1) {
+            Some(before) => self.edge(points[from].speed, points[before].speed, Point::grows)?,
+            None => points[0].speed,
+        };
+        let to_m_s = match points.get(to) {
+            Some(after) => self.edge(points[to - 1].speed, after.speed, Point::grows)?,
+            None => points[to - 1].speed,
+        };
+        let fastest = within
+            .iter()
+            .max_by(|a, b| a.rate().total_cmp(&b.rate()))
+            .unwrap_or(&points[from]);
+        let lambda = fastest.fastest.unwrap_or_default();
+        let width = self.section.structure().width_m;
+        Ok(GrowthBand {
+            from_m_s,
+            to_m_s,
+            from_start: from == 0,
+            fastest_growth_per_s: lambda.re,
+            fastest_at_m_s: fastest.speed,
+            frequency_hz: lambda.im / TAU,
+            reduced_frequency: ReducedFrequency::from_circular(lambda.im, width, fastest.speed),
+            tested_from_m_s: self.tested_from(from_m_s, within)?,
+            branch: self.branch(fastest.speed, lambda),
+        })
+    }
+
+    fn tested_from(&self, from_m_s: f64, within: &[Point]) -> Result<Option<f64>> {
+        let Some(first) = within.iter().position(|p| p.inside.is_some()) else {
+            return Ok(None);
+        };
+        let before = first.checked_sub(1).map_or(from_m_s, |i| within[i].speed);
+        self.edge(within[first].speed, before, |p| p.inside.is_some())
+            .map(Some)
+    }
+
+    /// The last speed from `yes` towards `no` at which the test still holds.
+    fn edge(&self, mut yes: f64, mut no: f64, test: impl Fn(&Point) -> bool) -> Result<f64> {
+        while (yes - no).abs() > EDGE_TOLERANCE * yes {
+            let middle = 0.5 * (yes + no);
+            if test(&self.at(middle)?) {
+                yes = middle;
+            } else {
+                no = middle;
+            }
+        }
+        Ok(yes)
+    }
+
+    /// The structural mode that `lambda` belongs to, followed from still air; where modes cannot be followed, the degree
+    /// of freedom that moves most.
+    pub(super) fn branch(&self, speed: f64, lambda: Complex<f64>) -> String {
+        let dofs = &self.section.structure().dofs;
+        match Tracker::start(self.section).and_then(|t| t.advance(speed)) {
+            Ok(tracked) => tracked
+                .modes
+                .iter()
+                .find(|m| (m.lambda - lambda).norm() < 1e-6 * lambda.norm())
+                .map_or(AERODYNAMIC.to_owned(), |m| branch_name(dofs[m.branch])),
+            Err(_) => self
+                .section
+                .at(speed)
+                .and_then(|system| mode_shape(self.section, &system, lambda))
+                .map_or(AERODYNAMIC.to_owned(), |shape| {
+                    let scale = |i: usize| dofs[i].motion_scale(self.section.structure().width_m);
+                    let most = (0..shape.len())
+                        .max_by(|i, j| {
+                            let size = |i: usize| shape[i].norm() * scale(i);
+                            size(*i).total_cmp(&size(*j))
+                        })
+                        .unwrap_or(0);
+                    branch_name(dofs[most])
+                }),
+        }
+    }
+}

@@ -1,0 +1,67 @@
+//! Units of sections that state an axis and a centre of mass.
+
+use super::*;
+use crate::aerodynamics::AerodynamicModel;
+use crate::aeroelastic::CoupledSection;
+use crate::flutter::{OnsetSearch, find_onset};
+
+fn unbalanced(kind: &str, (axis, mass): (f64, f64)) -> Archive {
+    let mut model = Archive::fixture(kind).resources.model;
+    model.section.axis_offset_m = Some(axis);
+    model.section.mass_offset_m = Some(mass);
+    Archive::of(&model.to_json().unwrap())
+}
+
+fn onset(model: &TrainedModel) -> f64 {
+    let structure = model.section.structure().unwrap();
+    let section = CoupledSection::new(structure, model.model.realize().unwrap()).unwrap();
+    let search = OnsetSearch {
+        speed_max_m_s: model.experiment.onset_search_limit_m_s,
+        ..OnsetSearch::default()
+    };
+    let found = find_onset("", &section, &search, Some(model.tested_range)).unwrap();
+    found.onset().unwrap().speed_m_s
+}
+
+#[test]
+fn an_unbalanced_section_moves_as_the_stepper_does() {
+    for kind in ["continuous_laguerre", "rational", "discrete_laguerre"] {
+        super::run::compare(unbalanced(kind, (0.03, -0.02)));
+    }
+}
+
+/// The offsets are parameters where the section states them, and only there.
+#[test]
+fn offsets_are_parameters_where_they_are_stated() {
+    let plain = Archive::fixture("rational");
+    for name in ["axis_offset", "mass_offset"] {
+        assert_eq!(plain.resources.table.find_name(name), None);
+    }
+    let moved = unbalanced("rational", (0.02, 0.03));
+    let unit = Unit::instantiate(unbalanced("rational", (0.0, 0.0)));
+    unit.start();
+    let before = unit.get(["onset_speed"])[0];
+    assert_eq!(before, onset(plain.model()));
+    unit.set("axis_offset", 0.02);
+    unit.set("mass_offset", 0.03);
+    let after = unit.get(["onset_speed"])[0];
+    assert_eq!(after, onset(moved.model()));
+    assert!(after < 0.95 * before, "{before} {after}");
+}
+
+/// With static unbalance a moment accelerates the heave, and the description says so.
+#[test]
+fn a_moment_acts_on_the_heave() {
+    let archive = unbalanced("discrete_laguerre", (0.0, 0.05));
+    let table = &archive.resources.table;
+    let moment = table.find_name("external_moment").unwrap();
+    let of = |name: &str| &table.variables()[table.find_name(name).unwrap()].direct_inputs;
+    assert!(of("heave_acceleration").contains(&moment));
+    assert!(!of("lift").contains(&moment));
+    let unit = Unit::instantiate(archive);
+    unit.start();
+    let before = unit.get(["heave_acceleration"])[0];
+    unit.set("external_moment", 1.0);
+    // centre of mass downwind: turned nose-up about it, the axis is lifted
+    assert!(unit.get(["heave_acceleration"])[0] > before);
+}

@@ -1,0 +1,44 @@
+//! The guard of every export: a model that grows where it should not is refused.
+
+use crate::aeroelastic::CoupledSection;
+use crate::error::{Error, Result};
+use crate::flutter::{OnsetSearch, UnwantedGrowth, unwanted_growth};
+use crate::trained_model::TrainedModel;
+
+/// What becomes of a model that grows below its onset.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Growing {
+    /// It is not packed.
+    Refuse,
+    /// It is packed; its documentation and its log say at which speeds it grows.
+    Allow,
+}
+
+/// Growth below the onset of the section of a model, by extrapolation alone; see [`unwanted_growth`].
+///
+/// # Errors
+/// Those of coupling and scan.
+pub fn growth_of(model: &TrainedModel) -> Result<UnwantedGrowth> {
+    let section = CoupledSection::with_model(&model.section.structure()?, &model.model)?;
+    let search = OnsetSearch {
+        speed_max_m_s: model.experiment.onset_search_limit_m_s,
+        ..OnsetSearch::default()
+    };
+    unwanted_growth(&section, &search, Some(model.tested_range))
+}
+
+/// Refuses a model that grows where it should not, unless that is allowed.
+pub(super) fn check(model: &TrainedModel, growing: Growing) -> Result<()> {
+    if growing == Growing::Allow {
+        return Ok(());
+    }
+    let growth = growth_of(model)?;
+    if growth.is_none() {
+        return Ok(());
+    }
+    Err(Error::Numerical(format!(
+        "{} is not exported: it {}",
+        model.name,
+        growth.explain()
+    )))
+}

@@ -1,0 +1,128 @@
+//! Equations that coefficients have to satisfy besides: symmetric added mass, limits at K → 0.
+
+use super::{ActiveConstraint, ConstraintKind, LinearEntry, Wishes};
+use crate::error::{Error, Result};
+use crate::identification::basis::Basis;
+use crate::identification::dissipative::Constraints;
+use nalgebra::DVector;
+
+/// Part of an equation outside the others below which it repeats them.
+const RANK_TOLERANCE: f64 = 1e-10;
+/// Relative difference to which a repeated equation has to agree with the others.
+const AGREEMENT: f64 = 1e-8;
+
+/// One equation: the sum of rows over the coefficients of transfer functions is `target`.
+#[derive(Debug, Clone)]
+pub(super) struct Equation {
+    kind: ConstraintKind,
+    /// Row and column of the transfer function that it names.
+    entry: (usize, usize),
+    rows: Vec<(usize, Vec<f64>)>,
+    target: f64,
+}
+
+/// The equations of a model with given bases, row by row.
+pub(super) fn equations(bases: &[Basis], n: usize, wishes: &Wishes) -> Vec<Equation> {
+    let mut all = Vec::new();
+    if wishes.constraints == Constraints::Dissipative && bases[0].feed().e2 {
+        let row = |e: usize, sign: f64| {
+            let row = ConstraintKind::SymmetricAddedMass.row(None, &bases[e]);
+            (e, row.into_iter().map(|x| sign * x).collect())
+        };
+        for i in 0..n {
+            all.extend((0..i).map(|j| Equation {
+                kind: ConstraintKind::SymmetricAddedMass,
+                entry: (i, j),
+                rows: vec![row(i * n + j, 1.0), row(j * n + i, -1.0)],
+                target: 0.0,
+            }));
+        }
+    }
+    for (e, limits) in wishes.limits.iter().enumerate() {
+        for (kind, target) in [ConstraintKind::ValueAtZero, ConstraintKind::SlopeAtZero]
+            .into_iter()
+            .zip(limits)
+        {
+            all.extend(target.map(|target| Equation {
+                kind,
+                entry: (e / n, e % n),
+                rows: vec![(e, kind.row(None, &bases[e]))],
+                target,
+            }));
+        }
+    }
+    all
+}
+
+impl Equation {
+    fn value(&self, coefficients: &[Vec<f64>]) -> f64 {
+        let dot = |(e, row): &(usize, Vec<f64>)| -> f64 {
+            row.iter().zip(&coefficients[*e]).map(|(a, c)| a * c).sum()
+        };
+        self.rows.iter().map(dot).sum()
+    }
+
+    fn gradient(&self, entries: &[LinearEntry], width: usize) -> DVector<f64> {
+        let mut gradient = DVector::zeros(width);
+        for (e, row) in &self.rows {
+            let entry = &entries[*e];
+            for (c, x) in row.iter().enumerate() {
+                for (m, s) in entry.spread.row(c).iter().enumerate() {
+                    gradient[entry.at + m] += x * s;
+                }
+            }
+        }
+        gradient
+    }
+
+    pub fn account(&self, n: usize, alone: &[Vec<f64>], held: &[Vec<f64>]) -> ActiveConstraint {
+        ActiveConstraint {
+            kind: self.kind,
+            k: None,
+            entry: Some(self.entry),
+            direction: vec![0.0; n],
+            alone: self.value(alone),
+            held: self.value(held),
+        }
+    }
+}
+
+/// Orthonormal gradients of the equations, and the shortest free numbers that satisfy them.
+///
+/// # Errors
+/// [`Error::Input`] for limits that the columns of the model cannot meet.
+pub(super) fn satisfy(
+    equations: &[Equation],
+    entries: &[LinearEntry],
+    width: usize,
+) -> Result<(Vec<DVector<f64>>, DVector<f64>)> {
+    let mut columns: Vec<DVector<f64>> = Vec::new();
+    let mut start = DVector::zeros(width);
+    for equation in equations {
+        let mut gradient = equation.gradient(entries, width);
+        let norm = gradient.norm();
+        for _ in 0..2 {
+            for q in &columns {
+                let along = q.dot(&gradient);
+                gradient.axpy(-along, q, 1.0);
+            }
+        }
+        let at_start: Vec<Vec<f64>> = entries.iter().map(|e| e.coefficients(&start)).collect();
+        let short = equation.target - equation.value(&at_start);
+        let left = gradient.norm();
+        if left <= RANK_TOLERANCE * norm {
+            if short.abs() > AGREEMENT * equation.target.abs().max(norm) {
+                return Err(Error::input(
+                    "limits",
+                    "limits at K → 0 that the columns of the model can meet",
+                    "a feed-through is missing, or one limit repeats another",
+                ));
+            }
+            continue;
+        }
+        gradient.unscale_mut(left);
+        start.axpy(short / left, &gradient, 1.0);
+        columns.push(gradient);
+    }
+    Ok((columns, start))
+}

@@ -1,0 +1,104 @@
+//! The directions that active constraints leave free.
+
+use super::LinearEntry;
+use nalgebra::{DMatrix, DVector};
+
+/// Part of a gradient outside the others below which it adds no direction.
+const RANK_TOLERANCE: f64 = 1e-8;
+
+/// Orthonormal directions that active constraints take.
+#[derive(Debug, Clone)]
+pub(crate) struct Tangent {
+    taken: Vec<DVector<f64>>,
+}
+
+impl Tangent {
+    /// From the gradients of the constraints, in one scale for all unknowns.
+    pub fn new(gradients: impl Iterator<Item = DVector<f64>>) -> Self {
+        let mut taken: Vec<DVector<f64>> = Vec::new();
+        for mut gradient in gradients {
+            let norm = gradient.norm();
+            // twice is enough (Kahan): the first pass leaves rounding errors of the cancelled part
+            for _ in 0..2 {
+                for q in &taken {
+                    let along = q.dot(&gradient);
+                    gradient.axpy(-along, q, 1.0);
+                }
+            }
+            let left = gradient.norm();
+            if left > RANK_TOLERANCE * norm {
+                taken.push(gradient / left);
+            }
+        }
+        Self { taken }
+    }
+
+    /// Number of directions that are taken.
+    pub fn count(&self) -> usize {
+        self.taken.len()
+    }
+
+    /// Orthonormal basis of the directions that are left, n×(n − taken).
+    pub fn basis(&self, n: usize) -> DMatrix<f64> {
+        let mut left: Vec<DVector<f64>> = Vec::new();
+        // the unit vectors that stick out furthest come first
+        let out = |i: usize| 1.0 - self.taken.iter().map(|q| q[i] * q[i]).sum::<f64>();
+        let mut order: Vec<usize> = (0..n).collect();
+        order.sort_by(|a, b| out(*b).total_cmp(&out(*a)));
+        for i in order {
+            if left.len() + self.count() == n {
+                break;
+            }
+            let mut unit = DVector::zeros(n);
+            unit[i] = 1.0;
+            for _ in 0..2 {
+                for q in self.taken.iter().chain(&left) {
+                    let along = q.dot(&unit);
+                    unit.axpy(-along, q, 1.0);
+                }
+            }
+            let norm = unit.norm();
+            if norm > 1e-3 {
+                left.push(unit / norm);
+            }
+        }
+        DMatrix::from_fn(n, left.len(), |i, j| left[j][i])
+    }
+
+    /// Covariance of the coefficients of one transfer function, from the variances of the free numbers of each without
+    /// constraints: with the projector `P`, that of `P u`.
+    pub fn covariance(&self, entry: &LinearEntry, variances: &DVector<f64>) -> DMatrix<f64> {
+        let width = entry.spread.ncols();
+        let mut rows = DMatrix::zeros(width, variances.len());
+        for m in 0..width {
+            rows[(m, entry.at + m)] = 1.0;
+            for q in &self.taken {
+                for (c, x) in q.iter().enumerate() {
+                    rows[(m, c)] -= q[entry.at + m] * x;
+                }
+            }
+        }
+        let spread = &entry.spread * rows;
+        let weighted = DMatrix::from_fn(spread.nrows(), spread.ncols(), |i, c| {
+            spread[(i, c)] * variances[c]
+        });
+        weighted * spread.transpose()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_left_is_orthonormal_and_across() {
+        let a = DVector::from_vec(vec![1.0, 2.0, 0.0, -1.0]);
+        let b = DVector::from_vec(vec![0.0, 1.0, 1.0, 0.0]);
+        let tangent = Tangent::new([a.clone(), b.clone(), &a * 2.0 - &b].into_iter());
+        assert_eq!(tangent.count(), 2);
+        let basis = tangent.basis(4);
+        assert_eq!(basis.ncols(), 2);
+        assert!((basis.transpose() * &basis - DMatrix::identity(2, 2)).amax() < 1e-15);
+        assert!((basis.transpose() * a).amax() < 1e-15 && (basis.transpose() * b).amax() < 1e-15);
+    }
+}

@@ -1,0 +1,125 @@
+//! All transfer functions of a table at once, held together by constraints.
+
+use super::shares;
+use crate::error::Result;
+use crate::identification::basis::Basis;
+use crate::identification::constrained::LinearSolution;
+use crate::identification::dissipative::{Dissipation, LinearEntry, Solution, Wishes};
+use crate::identification::options::Form;
+use crate::identification::samples::Entry;
+use nalgebra::{DMatrix, DVector};
+
+/// Share of an entry that the search leaves out (weight zero) over the largest: it is free to follow the others.
+const LEAST_SHARE: f64 = 1e-6;
+
+/// What stays the same for all poles.
+pub(super) struct Joint<'a> {
+    pub entries: &'a [Entry],
+    pub form: &'a Form,
+    pub wishes: Wishes,
+}
+
+/// All entries at given poles: each by itself, and together under the constraints where these bind.
+pub(super) struct JointFit<'a> {
+    entries: &'a [Entry],
+    shares: Vec<f64>,
+    pub bases: Vec<Basis>,
+    pub solutions: Vec<LinearSolution>,
+    linear: Vec<LinearEntry>,
+    pub held: Option<Solution>,
+}
+
+impl<'a> Joint<'a> {
+    /// The constrained fit in the columns of the model.
+    ///
+    /// # Errors
+    /// Those of the fits of single entries, and constraints that no coefficients satisfy.
+    pub fn at(&self, poles: &[Vec<f64>]) -> Result<JointFit<'a>> {
+        self.fit(poles, true)
+    }
+
+    /// Weighted residuals of all entries, as the search of poles takes them.
+    ///
+    /// # Errors
+    /// Those of [`Self::at`].
+    pub fn residuals(&self, poles: &[Vec<f64>]) -> Result<DVector<f64>> {
+        // a ridge weighs the terms of the model themselves, else only the space counts
+        let native = self.entries.iter().any(|e| e.ridge > 0.0);
+        Ok(self.fit(poles, native)?.residuals())
+    }
+
+    fn fit(&self, poles: &[Vec<f64>], native: bool) -> Result<JointFit<'a>> {
+        let basis = |poles: &Vec<f64>| {
+            if native {
+                Basis::new(self.form, poles)
+            } else {
+                Basis::orthonormal(self.form, poles)
+            }
+        };
+        let bases = poles.iter().map(basis).collect::<Result<Vec<_>>>()?;
+        let all: Vec<&Entry> = self.entries.iter().collect();
+        let shares = shares(&all);
+        let least = LEAST_SHARE * shares.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+        let (mut solutions, mut linear, mut at) = (Vec::new(), Vec::new(), 0);
+        for ((entry, basis), share) in self.entries.iter().zip(&bases).zip(&shares) {
+            let solution = entry.fit(basis)?;
+            linear.push(LinearEntry {
+                values: solution.coefficients.clone(),
+                spread: solution.spread()? / share.max(least),
+                at,
+            });
+            at += solution.unknowns;
+            solutions.push(solution);
+        }
+        let held = Dissipation::new(&bases, &self.wishes).solve(&linear)?;
+        Ok(JointFit {
+            entries: self.entries,
+            shares,
+            bases,
+            solutions,
+            linear,
+            held,
+        })
+    }
+}
+
+impl JointFit<'_> {
+    /// Coefficients of an entry.
+    pub fn coefficients(&self, e: usize) -> &[f64] {
+        match &self.held {
+            Some(held) => &held.coefficients[e],
+            None => &self.solutions[e].coefficients,
+        }
+    }
+
+    fn residuals(&self) -> DVector<f64> {
+        let mut all = Vec::new();
+        for (e, entry) in self.entries.iter().enumerate() {
+            let values = self.coefficients(e);
+            let residuals = entry.residuals(&self.bases[e], values);
+            let share = self.shares[e];
+            let weighted = residuals.iter().zip(&entry.rows);
+            all.extend(weighted.map(|(r, row)| r * row.weight * share));
+            all.extend(self.solutions[e].penalty(values).map(|r| r * share));
+        }
+        DVector::from_vec(all)
+    }
+
+    /// Covariance of the coefficients of an entry from the variances of the weighted residuals of all entries: what the
+    /// active constraints take is known.
+    pub fn covariance(&self, e: usize, variances: &[Option<f64>]) -> Option<DMatrix<f64>> {
+        let held = self.held.as_ref()?;
+        variances[e]?;
+        let mut each = Vec::new();
+        for ((linear, share), v) in self.linear.iter().zip(&self.shares).zip(variances) {
+            each.extend(vec![
+                v.unwrap_or(0.0) * share * share;
+                linear.spread.ncols()
+            ]);
+        }
+        Some(
+            held.tangent
+                .covariance(&self.linear[e], &DVector::from_vec(each)),
+        )
+    }
+}

@@ -1,0 +1,103 @@
+//! The minimum-state form under constraints: for given lags and `E` they are convex in `D` and the feed-through of all forces.
+
+use super::{Fitted, LinearProblem, LinearSolution, ROUNDS, Task};
+use crate::error::Result;
+use crate::identification::descent::descend;
+use crate::identification::dissipative::{
+    ActiveConstraint, ConstraintReport, Dissipation, LinearEntry,
+};
+use crate::identification::report::SearchPoint;
+use crate::section::Dof;
+use nalgebra::{DMatrix, DVector};
+
+/// All forces at one point of the search.
+pub(super) struct Rows {
+    pub problems: Vec<LinearProblem>,
+    pub solutions: Vec<LinearSolution>,
+    /// Coefficients of each force.
+    pub values: Vec<Vec<f64>>,
+    /// What holds them.
+    pub active: Option<Vec<ActiveConstraint>>,
+}
+
+impl Task<'_> {
+    /// The fit under its constraints, searched from the best point of least squares alone; that fit where nothing binds.
+    pub(super) fn constrain(&self, dofs: &[Dof], best: Vec<f64>, alone: Fitted) -> Result<Fitted> {
+        if self.rows(&best)?.active.is_none() {
+            return Ok(alone);
+        }
+        let mut at = DVector::from_vec(best);
+        for _ in 0..ROUNDS {
+            at = descend(at, &|x| self.residuals(x).ok());
+        }
+        let point = self.normalised(at.as_slice());
+        let mut search = alone.search.clone();
+        for report in &mut search {
+            report.chosen = SearchPoint {
+                poles: self.lags_at(&point),
+                objective: self.residuals(&point)?.norm(),
+            };
+            report.points.push(report.chosen.clone());
+        }
+        let (mut fitted, active) = self.finish(dofs, &point, search)?;
+        let bases = vec![self.roger_basis(&alone.reports[0].poles)?; self.entries.len()];
+        fitted.constraints = active.map(|active| {
+            let before = (alone.reports.as_slice(), bases.as_slice());
+            ConstraintReport::new(active, dofs, before, &fitted.reports, alone.model)
+        });
+        Ok(fitted)
+    }
+
+    /// Coefficients of every force at one point, under the constraints once these are asked for.
+    pub(super) fn rows(&self, x: &[f64]) -> Result<Rows> {
+        let (lags, e) = (self.lags_at(x), self.e_at(x));
+        let problems: Vec<_> = (0..self.n).map(|i| self.row(i, &lags, &e)).collect();
+        let mut solutions = Vec::new();
+        for (i, problem) in problems.iter().enumerate() {
+            solutions.push(self.solve(i, problem)?);
+        }
+        let mut rows = Rows {
+            problems,
+            values: solutions.iter().map(|s| s.coefficients.clone()).collect(),
+            solutions,
+            active: None,
+        };
+        let Some(wishes) = &self.wishes else {
+            return Ok(rows);
+        };
+        let (mut forces, mut entries, mut at) = (Vec::new(), Vec::new(), 0);
+        for solution in &rows.solutions {
+            let force = LinearEntry {
+                values: solution.coefficients.clone(),
+                spread: solution.spread()?,
+                at,
+            };
+            at += solution.unknowns;
+            entries.extend((0..self.n).map(|j| self.entry_of(&force, j, &e)));
+            forces.push(force);
+        }
+        let bases = vec![self.roger_basis(&lags)?; self.entries.len()];
+        if let Some(held) = Dissipation::new(&bases, wishes).solve(&entries)? {
+            rows.values = forces.iter().map(|f| f.coefficients(&held.free)).collect();
+            rows.active = Some(held.active);
+        }
+        Ok(rows)
+    }
+
+    /// One transfer function of a force in the columns of Roger's form.
+    fn entry_of(&self, force: &LinearEntry, j: usize, e: &DMatrix<f64>) -> LinearEntry {
+        let feed = self.feed.count();
+        let places: Vec<(usize, f64)> = (0..feed)
+            .map(|c| (j * feed + c, 1.0))
+            .chain((0..self.states).map(|l| (self.n * feed + l, e[(l, j)])))
+            .collect();
+        let spread = &force.spread;
+        LinearEntry {
+            values: places.iter().map(|&(c, f)| f * force.values[c]).collect(),
+            spread: DMatrix::from_fn(places.len(), spread.ncols(), |r, m| {
+                places[r].1 * spread[(places[r].0, m)]
+            }),
+            at: force.at,
+        }
+    }
+}

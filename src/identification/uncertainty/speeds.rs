@@ -1,0 +1,351 @@
+//! Scatter between mean speeds: tests at another speed (another run, another Reynolds number, another day) do not find
+//! quite the same transfer functions, and no number of periods at one speed shows it.
+//!
+//! A random effect for every speed is added to the scatter of the blocks: each transfer function is multiplied by
+//! `1 + ξ + iη` at a speed, with `ξ` (size) and `η` (phase) of zero mean, independent from one transfer function to
+//! the next. What nests in a speed (its runs) is in it. Variances are estimated by moments: sandwich over speeds minus
+//! sandwich over blocks, of the transfer functions at reduced frequencies that every speed has.
+//!
+//! With two speeds each difference has one degree of freedom, and Student's quantile would be 12.7. The variance of a
+//! force is therefore pooled over its motions, in absolute size: on measured decks lift due to heave and lift due to
+//! rotation, whose transfer functions differ fivefold, scatter by the same amount per unit of dimensionless motion, and so
+//! do the moments, at a tenth of it. Nothing is pooled over forces, nor over size and phase.
+
+use super::design::{Block, Design};
+use crate::aerodynamics::TransferMatrix;
+use crate::error::Result;
+use crate::section::Dof;
+use nalgebra::{DMatrix, DVector};
+use serde::{Deserialize, Serialize};
+
+/// Mean speeds less than 5 % apart are one, as in tables.
+const SAME_SPEED: f64 = 1.05;
+/// Reduced frequencies over the tested range at which transfer functions are compared.
+pub(super) const POINTS: usize = 16;
+/// Transfer functions smaller than this part of their root mean square are taken as that.
+const SMALL: f64 = 1e-3;
+/// Standard deviations by which the mean ratio of variances must exceed one to be counted: a lower limit counts scatter that
+/// is not there and widens intervals of speeds that agree, a higher one misses scatter of the size of the noise.
+const BEYOND_CHANCE: f64 = 1.5;
+/// Singular values below this part of the largest are left out where a turned transfer function is sought.
+const SINGULAR: f64 = 1e-8;
+
+/// How much the transfer functions differ between mean speeds.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SpeedScatter {
+    /// Mean wind speeds, rising, m/s.
+    pub speeds_m_s: Vec<f64>,
+    /// Variance between speeds over what independent blocks would give: one if speeds agree.
+    pub ratio: f64,
+    /// Whether the ratio is more than chance, so that the scatter is in the covariance.
+    pub counted: bool,
+    /// Standard deviations of each force.
+    pub forces: Vec<ForceScatter>,
+}
+
+/// Standard deviations between speeds of one force, relative to its transfer functions (root mean square over
+/// motions and the reduced frequencies that all speeds have).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ForceScatter {
+    /// Force.
+    pub force: Dof,
+    /// In phase with the transfer function.
+    pub size: f64,
+    /// In quadrature to it, rad.
+    pub phase: f64,
+}
+
+/// Transfer matrix at one reduced frequency with its derivatives with respect to all parameters.
+pub(super) struct Slopes {
+    pub k: f64,
+    pub value: TransferMatrix,
+    pub slopes: Vec<TransferMatrix>,
+}
+
+/// A random effect on the parameters.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Effect {
+    /// Each column times an independent standard normal number, P×m.
+    pub columns: DMatrix<f64>,
+    /// Variance between speeds over that part of it which exceeds the blocks'.
+    total: f64,
+    degrees_of_freedom: f64,
+}
+
+impl Effect {
+    fn variance(&self, gradient: &DVector<f64>) -> f64 {
+        self.columns.tr_mul(gradient).norm_squared()
+    }
+}
+
+/// Satterthwaite's degrees of freedom of the variance of blocks and effects together.
+pub(super) fn degrees_of_freedom(
+    design: &Design,
+    effects: &[Effect],
+    gradient: &DVector<f64>,
+) -> f64 {
+    let own = design.degrees_of_freedom(gradient);
+    let blocks = design.contributions().tr_mul(gradient).norm_squared();
+    let (mut sum, mut squares) = (blocks, blocks * blocks / own);
+    for effect in effects {
+        let variance = effect.variance(gradient);
+        sum += variance;
+        squares += (variance * effect.total).powi(2) / effect.degrees_of_freedom;
+    }
+    if squares > 0.0 {
+        (sum * sum / squares).max(1.0)
+    } else {
+        own
+    }
+}
+
+/// Number of the speed of every block, and the speeds, rising; `None` when a block has none or all have the same.
+pub(super) fn speed_groups(blocks: &[Block]) -> Option<(Vec<usize>, Vec<f64>)> {
+    let speeds: Vec<f64> = blocks.iter().map(|b| b.speed_m_s).collect::<Option<_>>()?;
+    let mut sorted = speeds.clone();
+    sorted.sort_by(f64::total_cmp);
+    let groups: Vec<&[f64]> = sorted.chunk_by(|a, b| *b <= SAME_SPEED * a).collect();
+    if groups.len() < 2 {
+        return None;
+    }
+    let last = |g: &&[f64]| g[g.len() - 1];
+    let number = |v: f64| groups.iter().position(|g| v <= last(g)).unwrap_or(0);
+    let mean = |g: &&[f64]| g.iter().sum::<f64>() / g.len() as f64;
+    Some((
+        speeds.into_iter().map(number).collect(),
+        groups.iter().map(mean).collect(),
+    ))
+}
+
+/// Reduced frequencies that the blocks of every group have; `None` when they share none or do not say.
+pub(super) fn shared_range(blocks: &[Block], groups: &[usize]) -> Option<(f64, f64)> {
+    let count = groups.iter().max().map_or(0, |g| g + 1);
+    let mut ranges = vec![(f64::INFINITY, 0.0_f64); count];
+    for (block, group) in blocks.iter().zip(groups) {
+        let k = block.k?;
+        let range = &mut ranges[*group];
+        *range = (range.0.min(k), range.1.max(k));
+    }
+    let low = ranges.iter().map(|r| r.0).fold(0.0, f64::max);
+    let high = ranges.iter().map(|r| r.1).fold(f64::INFINITY, f64::min);
+    (low < high).then_some((low, high))
+}
+
+/// The random effects of mean speeds; `None` for tests at one speed.
+///
+/// `own` lists the coefficients of every transfer function, row by row; `at` are points over all tested `K`.
+///
+/// # Errors
+/// Speeds whose residuals cannot be judged.
+pub(super) fn between_speeds(
+    design: &Design,
+    dofs: &[Dof],
+    (values, own): (&DVector<f64>, &[Vec<usize>]),
+    at: &[Slopes],
+) -> Result<Option<(SpeedScatter, Vec<Effect>)>> {
+    let Some((groups, speeds_m_s)) = speed_groups(design.blocks()) else {
+        return Ok(None);
+    };
+    let shared = shared_range(design.blocks(), &groups);
+    let inside = |s: &&Slopes| shared.is_none_or(|(low, high)| low <= s.k && s.k <= high);
+    let mut common: Vec<&Slopes> = at.iter().filter(inside).collect();
+    if common.is_empty() {
+        common = at.iter().collect();
+    }
+    let clusters = design.clusters(&groups, speeds_m_s.len());
+    let judge = Judge {
+        grams: clusters.iter().map(|c| c.rows.tr_mul(&c.rows)).collect(),
+        of_speeds: design.with_blocks(clusters)?.contributions(),
+        of_blocks: design.contributions(),
+        design,
+        at,
+        common,
+    };
+    let n = dofs.len();
+    let spare = (n * (speeds_m_s.len() - 1)) as f64;
+    let (mut ratios, mut effects, mut forces) = (Vec::new(), Vec::new(), Vec::new());
+    for (i, &force) in dofs.iter().enumerate() {
+        let size: f64 = (0..n).map(|j| judge.mean_square((i, j))).sum::<f64>() / n as f64;
+        let mut deviations = [0.0; 2];
+        for (turn, deviation) in [Turn::Size, Turn::Phase].into_iter().zip(&mut deviations) {
+            let columns = judge.effect((i, n), turn, (values, own), &mut ratios);
+            let Some((columns, excess, total)) = columns else {
+                continue;
+            };
+            if excess > 0.0 && size > 0.0 {
+                *deviation = (excess / size).sqrt();
+                effects.push(Effect {
+                    columns: columns * excess.sqrt(),
+                    total: total / excess,
+                    degrees_of_freedom: spare,
+                });
+            }
+        }
+        let [size, phase] = deviations;
+        forces.push(ForceScatter { force, size, phase });
+    }
+    let ratio = ratios.iter().sum::<f64>() / (ratios.len() as f64).max(1.0);
+    // standard deviation of the mean of that many squares
+    let chance = (2.0 / (ratios.len() as f64 * (speeds_m_s.len() - 1) as f64)).sqrt();
+    let counted = ratio > 1.0 + BEYOND_CHANCE * chance;
+    if !counted {
+        effects.clear();
+    }
+    let scatter = SpeedScatter {
+        speeds_m_s,
+        ratio,
+        counted,
+        forces,
+    };
+    Ok(Some((scatter, effects)))
+}
+
+/// In which direction a transfer function is moved.
+#[derive(Clone, Copy, PartialEq)]
+enum Turn {
+    Size,
+    Phase,
+}
+
+/// What the scatter of all forces is judged by.
+struct Judge<'a> {
+    design: &'a Design,
+    at: &'a [Slopes],
+    common: Vec<&'a Slopes>,
+    grams: Vec<DMatrix<f64>>,
+    of_speeds: DMatrix<f64>,
+    of_blocks: DMatrix<f64>,
+}
+
+impl Judge<'_> {
+    fn mean_square(&self, entry: (usize, usize)) -> f64 {
+        let sum: f64 = self.common.iter().map(|s| s.value[entry].norm_sqr()).sum();
+        sum / self.common.len() as f64
+    }
+
+    /// The effect of force `i` of `n` of unit absolute standard deviation, its estimated variance (what exceeds the blocks),
+    /// and the same with the blocks; adds the ratios of variances to `ratios`.
+    fn effect(
+        &self,
+        (i, n): (usize, usize),
+        turn: Turn,
+        (values, own): (&DVector<f64>, &[Vec<usize>]),
+        ratios: &mut Vec<f64>,
+    ) -> Option<(DMatrix<f64>, f64, f64)> {
+        let parameters = values.len();
+        let mut columns: Vec<DVector<f64>> = Vec::new();
+        let (mut excess, mut total, mut weight) = (0.0, 0.0, 0.0);
+        for j in 0..n {
+            let size = self.mean_square((i, j));
+            let own = &own[i * n + j];
+            if size == 0.0 || own.is_empty() {
+                continue;
+            }
+            let relative = self.relative_rows((i, j), turn, size.sqrt());
+            let square =
+                |m: &DMatrix<f64>| (&relative * m).norm_squared() / relative.nrows() as f64;
+            let (speeds, blocks) = (square(&self.of_speeds), square(&self.of_blocks));
+            let moved = self.moved((i, j), turn, (values, own), size.sqrt());
+            let mut scattered = DVector::zeros(parameters);
+            for (p, value) in own.iter().zip(moved.iter()) {
+                scattered[*p] = *value;
+            }
+            let of_each: Vec<DVector<f64>> = self
+                .grams
+                .iter()
+                .map(|gram| self.design.inverse() * (gram * &scattered))
+                .collect();
+            weight += square(&DMatrix::from_columns(&of_each));
+            excess += size * (speeds - blocks);
+            total += size * speeds;
+            if blocks > 0.0 {
+                ratios.push(speeds / blocks);
+            }
+            columns.extend(of_each.into_iter().map(|c| c / size.sqrt()));
+        }
+        (weight > 0.0).then(|| {
+            (
+                DMatrix::from_columns(&columns),
+                (excess / weight).max(0.0),
+                total / weight,
+            )
+        })
+    }
+
+    /// Change of an entry relative to itself with all parameters, one row a common `K`.
+    fn relative_rows(&self, entry: (usize, usize), turn: Turn, size: f64) -> DMatrix<f64> {
+        let parameters = self.common[0].slopes.len();
+        DMatrix::from_fn(self.common.len(), parameters, |q, p| {
+            let s = self.common[q];
+            let own = s.value[entry];
+            let ratio =
+                s.slopes[p][entry] * own.conj() / own.norm_sqr().max((SMALL * size).powi(2));
+            match turn {
+                Turn::Size => ratio.re,
+                Turn::Phase => ratio.im,
+            }
+        })
+    }
+
+    /// Coefficients of an entry for the same entry, or for the entry turned by a right angle as well as its columns can
+    /// over all tested `K`.
+    fn moved(
+        &self,
+        entry: (usize, usize),
+        turn: Turn,
+        (values, own): (&DVector<f64>, &[usize]),
+        size: f64,
+    ) -> DVector<f64> {
+        let as_it_is = || DVector::from_iterator(own.len(), own.iter().map(|p| values[*p]));
+        if turn == Turn::Size {
+            return as_it_is();
+        }
+        let count = self.at.len();
+        let weight = |q: usize| self.at[q].value[entry].norm().max(SMALL * size).recip();
+        let columns = DMatrix::from_fn(2 * count, own.len(), |r, c| {
+            let (q, z) = (r % count, self.at[r % count].slopes[own[c]][entry]);
+            weight(q) * if r < count { z.re } else { z.im }
+        });
+        let turned = DVector::from_fn(2 * count, |r, _| {
+            let (q, z) = (r % count, self.at[r % count].value[entry]);
+            weight(q) * if r < count { -z.im } else { z.re }
+        });
+        let svd = columns.svd(true, true);
+        let cut = SINGULAR * svd.singular_values.max();
+        svd.solve(&turned, cut).unwrap_or_else(|_| as_it_is())
+    }
+}
+
+impl SpeedScatter {
+    /// In words.
+    pub fn describe(&self) -> String {
+        let speeds: Vec<String> = self.speeds_m_s.iter().map(|v| format!("{v:.2}")).collect();
+        let speeds = speeds.join(", ");
+        if !self.counted {
+            return format!(
+                "the mean speeds {speeds} m/s agree within the scatter of their blocks (variance ratio {:.2})",
+                self.ratio
+            );
+        }
+        let forces: Vec<String> = self
+            .forces
+            .iter()
+            .map(|f| {
+                format!(
+                    "{} force {:.1} % in size, {:.1}° in phase",
+                    f.force.name(),
+                    100.0 * f.size,
+                    f.phase.to_degrees()
+                )
+            })
+            .collect();
+        format!(
+            "transfer functions scatter between the mean speeds {speeds} m/s (standard deviations: {}; variance {:.1} times \
+             that of independent blocks): counted as a random effect of each speed, pooled over the motions of a force",
+            forces.join("; "),
+            self.ratio
+        )
+    }
+}

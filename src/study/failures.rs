@@ -1,0 +1,58 @@
+//! Stages that fail without taking the others with them.
+
+use crate::error::{Error, Result};
+use serde::Serialize;
+
+/// A stage of a study that failed; what does not need it went on.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct StageFailure {
+    /// Which stage, in words.
+    pub stage: String,
+    /// Why.
+    pub reason: String,
+}
+
+impl StageFailure {
+    /// A stage and why it failed.
+    pub fn new(stage: impl Into<String>, reason: impl ToString) -> Self {
+        Self {
+            stage: stage.into(),
+            reason: reason.to_string(),
+        }
+    }
+
+    /// The failure in words.
+    pub fn explain(&self) -> String {
+        format!("FAILED {}: {}", self.stage, self.reason)
+    }
+}
+
+/// Whether an error is one of a file, to be mended before anything else is of use: it cannot be read or written, or what
+/// stands in it is wrong.
+pub fn is_of_a_file(error: &Error) -> bool {
+    match error {
+        Error::Io { .. } => true,
+        Error::Input(input) => input.file.is_some(),
+        Error::Several(errors) => errors.iter().any(is_of_a_file),
+        Error::Numerical(_) => false,
+    }
+}
+
+/// The value of a stage; a failure is noted in `failed`.
+///
+/// # Errors
+/// Those of a file; see [`is_of_a_file`].
+pub fn attempt<T>(
+    failed: &mut Vec<StageFailure>,
+    stage: impl Into<String>,
+    result: Result<T>,
+) -> Result<Option<T>> {
+    match result {
+        Ok(value) => Ok(Some(value)),
+        Err(e) if is_of_a_file(&e) => Err(e),
+        Err(e) => {
+            failed.push(StageFailure::new(stage, e));
+            Ok(None)
+        }
+    }
+}

@@ -1,0 +1,212 @@
+//! Values that are possible but hardly meant: most of them stand in another unit than the key says.
+
+use super::Study;
+use crate::section::SectionModel;
+
+/// Widest deck, m.
+const WIDEST_M: f64 = 100.0;
+/// Narrowest model, m.
+const NARROWEST_M: f64 = 0.03;
+/// Air between a high mountain and a cold day, kg/m³.
+const DENSITIES: (f64, f64) = (0.7, 1.6);
+/// Highest ratio to critical damping of a structure.
+const MOST_DAMPING: f64 = 0.1;
+/// Decks narrower than this are models, m.
+const MODEL_WIDTH_M: f64 = 2.0;
+/// Fastest suspension of a model and of a bridge, Hz.
+const FASTEST_HZ: (f64, f64) = (20.0, 6.0);
+/// Mass over that of the air in a square of the width, `m/(ρB²)`.
+const MASS_RATIOS: (f64, f64) = (1.5, 1000.0);
+/// Radius of gyration over the width, `√(J/m)/B`.
+const RADII: (f64, f64) = (0.05, 1.0);
+/// Largest amplitude over the width.
+const MOST_AMPLITUDE: f64 = 0.5;
+/// Smallest amplitude of rotation that is driven on purpose, degrees.
+const LEAST_ROTATION_DEG: f64 = 0.05;
+
+/// What is hardly meant in a section: one sentence a key, with the likely reason.
+pub fn section_warnings(section: &SectionModel) -> Vec<String> {
+    let mut found = Vec::new();
+    let (width, density) = (section.width_m, section.air_density_kg_m3);
+    if width > WIDEST_M {
+        let likely = format!("in millimetres it would be {} m", width / 1e3);
+        found.push(warning(
+            "section.width_m",
+            width,
+            &format!("no deck is wider than {WIDEST_M} m; {likely}"),
+        ));
+    } else if width < NARROWEST_M {
+        found.push(warning(
+            "section.width_m",
+            width,
+            "no model is that narrow; is it in kilometres or a semi-chord?",
+        ));
+    }
+    if !(DENSITIES.0..=DENSITIES.1).contains(&density) {
+        let usual = format!(
+            "air has {} to {} kg/m³; 1.2 at sea level",
+            DENSITIES.0, DENSITIES.1
+        );
+        found.push(warning("section.air_density_kg_m3", density, &usual));
+    }
+    let heave = &section.vertical;
+    let twist = &section.torsion;
+    let sway = section.lateral.as_ref();
+    let mut supports = vec![
+        ("vertical", heave.frequency_hz, heave.damping_ratio),
+        ("torsion", twist.frequency_hz, twist.damping_ratio),
+    ];
+    supports.extend(sway.map(|s| ("lateral", s.frequency_hz, s.damping_ratio)));
+    for (name, frequency_hz, damping_ratio) in supports {
+        found.extend(frequency_warning(name, frequency_hz, width));
+        if damping_ratio > MOST_DAMPING {
+            let likely = format!(
+                "a ratio to critical damping is usually 0.001 to 0.02; in per cent it would be {}",
+                damping_ratio / 100.0
+            );
+            let key = format!("section.{name}.damping_ratio");
+            found.push(warning(&key, damping_ratio, &likely));
+        }
+    }
+    let masses = [
+        Some(("vertical", heave.mass_kg_m)),
+        sway.map(|s| ("lateral", s.mass_kg_m)),
+    ];
+    for (name, mass) in masses.into_iter().flatten() {
+        let ratio = mass / (density * width * width);
+        if !(MASS_RATIOS.0..=MASS_RATIOS.1).contains(&ratio) {
+            let likely = if ratio < MASS_RATIOS.0 {
+                "is it in t/m?"
+            } else {
+                "is it that of the whole model or span?"
+            };
+            let why = format!(
+                "that is {ratio:.3} times the air in a square of the width (bridges have 5 to 100); {likely}"
+            );
+            found.push(warning(&format!("section.{name}.mass_kg_m"), mass, &why));
+        }
+    }
+    let inertia = twist.inertia_kg_m2_m;
+    let radius = (inertia / heave.mass_kg_m).sqrt() / width;
+    if !(RADII.0..=RADII.1).contains(&radius) {
+        let why = format!(
+            "with the mass that is a radius of gyration of {radius:.3} widths (decks have 0.2 to 0.5); another unit of mass, \
+             inertia or width?"
+        );
+        found.push(warning("section.torsion.inertia_kg_m2_m", inertia, &why));
+    }
+    found
+}
+
+fn frequency_warning(name: &str, frequency_hz: Option<f64>, width_m: f64) -> Option<String> {
+    let hertz = frequency_hz?;
+    let (what, fastest) = if width_m < MODEL_WIDTH_M {
+        ("model", FASTEST_HZ.0)
+    } else {
+        ("bridge", FASTEST_HZ.1)
+    };
+    (hertz > fastest).then(|| {
+        let why = format!(
+            "no {what} moves faster than {fastest} Hz; in rad/s it would be {:.3} Hz",
+            hertz / std::f64::consts::TAU
+        );
+        warning(&format!("section.{name}.frequency_hz"), hertz, &why)
+    })
+}
+
+/// The same for a study: section and virtual tunnel.
+pub fn study_warnings(study: &Study) -> Vec<String> {
+    let mut found = section_warnings(&study.section);
+    let width = study.section.width_m;
+    let plan = &study.tunnel;
+    for (key, amplitude) in [
+        ("tunnel.vertical_amplitude_m", plan.vertical_amplitude_m),
+        ("tunnel.lateral_amplitude_m", plan.lateral_amplitude_m),
+        ("export.initial_vertical_m", study.export.initial_vertical_m),
+    ] {
+        if amplitude.abs() > MOST_AMPLITUDE * width {
+            let why = format!(
+                "that is {:.1} widths; in millimetres it would be {} m",
+                amplitude.abs() / width,
+                amplitude / 1e3
+            );
+            found.push(warning(key, amplitude, &why));
+        }
+    }
+    if plan.torsion_amplitude_deg < LEAST_ROTATION_DEG {
+        let degrees = plan.torsion_amplitude_deg.to_degrees();
+        let why = format!("too small to measure; in radians it would be {degrees:.2} degrees");
+        found.push(warning(
+            "tunnel.torsion_amplitude_deg",
+            plan.torsion_amplitude_deg,
+            &why,
+        ));
+    }
+    found
+}
+
+fn warning(key: &str, value: f64, why: &str) -> String {
+    format!("{key} = {value}: {why}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::section::Translation;
+
+    #[test]
+    fn sections_of_bridges_and_models_are_plausible() {
+        for section in [SectionModel::table_4_1(), SectionModel::iabse_1_1a()] {
+            assert_eq!(section_warnings(&section), Vec::<String>::new());
+        }
+    }
+
+    /// The one warning of the section of Table 4.1 after a change.
+    fn warned(change: impl Fn(&mut SectionModel)) -> String {
+        let mut section = SectionModel::table_4_1();
+        section.lateral = Some(Translation {
+            frequency_hz: Some(1.0),
+            ..section.vertical.clone()
+        });
+        change(&mut section);
+        section_warnings(&section).join("\n")
+    }
+
+    #[test]
+    fn other_units_are_recognised_by_key() {
+        let text = warned(|s| s.width_m = 502.3);
+        assert!(text.contains("section.width_m = 502.3: "), "{text}");
+        assert!(
+            text.contains("in millimetres it would be 0.5023 m"),
+            "{text}"
+        );
+        let text = warned(|s| s.torsion.frequency_hz = Some(31.4));
+        assert!(
+            text.contains("section.torsion.frequency_hz = 31.4: "),
+            "{text}"
+        );
+        assert!(text.contains("in rad/s it would be 4.997 Hz"), "{text}");
+        let text = warned(|s| s.vertical.damping_ratio = 0.3);
+        assert!(
+            text.contains("section.vertical.damping_ratio = 0.3: "),
+            "{text}"
+        );
+        assert!(text.contains("in per cent it would be 0.003"), "{text}");
+        let text = warned(|s| s.air_density_kg_m3 = 1190.0);
+        assert!(
+            text.contains("section.air_density_kg_m3 = 1190: "),
+            "{text}"
+        );
+        let text = warned(|s| s.lateral.as_mut().unwrap().mass_kg_m = 0.015);
+        assert!(
+            text.contains("section.lateral.mass_kg_m = 0.015: "),
+            "{text}"
+        );
+        assert!(text.contains("is it in t/m?"), "{text}");
+        let text = warned(|s| s.torsion.inertia_kg_m2_m = 600.0);
+        assert!(
+            text.contains("section.torsion.inertia_kg_m2_m = 600: "),
+            "{text}"
+        );
+    }
+}

@@ -1,0 +1,92 @@
+//! A virtual campaign whose truth differs between mean speeds and between runs.
+
+use crate::aerodynamics::{AerodynamicModel, Realization, TransferMatrix};
+use crate::error::Result;
+use crate::section::Dof;
+use crate::units::ReducedFrequency;
+use crate::wind_tunnel::{Record, TunnelPlan};
+use nalgebra::Complex;
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
+
+/// Stream of the truth's random numbers; the records' noise has the streams from zero.
+const STREAM: u64 = 1 << 40;
+
+/// Records without noise, and the same with every force turned by a right angle: together they make records of
+/// transfer functions of other size and phase.
+pub(super) struct ScatteredTunnel {
+    straight: Vec<Record>,
+    turned: Vec<Record>,
+    /// Standard deviation of every transfer function between speeds, relative, in size and in phase.
+    speeds: f64,
+    /// The same of all forces of a run together.
+    runs: f64,
+}
+
+/// `i G(K)`.
+struct Turned<'a>(&'a dyn AerodynamicModel);
+
+impl AerodynamicModel for Turned<'_> {
+    fn dofs(&self) -> &[Dof] {
+        self.0.dofs()
+    }
+
+    fn transfer(&self, k: ReducedFrequency) -> Result<TransferMatrix> {
+        Ok(self.0.transfer(k)? * Complex::i())
+    }
+
+    fn realize(&self) -> Option<Realization> {
+        None
+    }
+}
+
+impl ScatteredTunnel {
+    /// For a plan without noise.
+    pub fn new(
+        quiet: &TunnelPlan,
+        model: &dyn AerodynamicModel,
+        width_m: f64,
+        (speeds, runs): (f64, f64),
+    ) -> Result<Self> {
+        let straight = quiet.records_from_model(model, "truth", width_m)?;
+        let turned = if speeds > 0.0 || runs > 0.0 {
+            quiet.records_from_model(&Turned(model), "truth", width_m)?
+        } else {
+            Vec::new()
+        };
+        Ok(Self {
+            straight,
+            turned,
+            speeds,
+            runs,
+        })
+    }
+
+    /// Records of the truth itself.
+    pub fn straight(&self) -> &[Record] {
+        &self.straight
+    }
+
+    /// Records of one campaign.
+    pub fn draw(&self, seed: u64) -> Vec<Record> {
+        let mut records = self.straight.clone();
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        random.set_stream(STREAM);
+        let mut factor = |deviation: f64| {
+            let mut normal = || -> f64 { StandardNormal.sample(&mut random) };
+            Complex::new(deviation * normal(), deviation * normal())
+        };
+        for (record, turned) in records.iter_mut().zip(&self.turned) {
+            let run = factor(self.runs);
+            for (force, turned) in record.force.iter_mut().zip(&turned.force) {
+                // one motion a record: each force of a record is a transfer function of its own at that speed
+                let change = factor(self.speeds) + run;
+                for (f, t) in force.iter_mut().zip(turned) {
+                    *f += change.re * *f + change.im * t;
+                }
+            }
+        }
+        records
+    }
+}

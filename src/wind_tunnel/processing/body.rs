@@ -1,0 +1,116 @@
+//! What still air says of the model as a rigid body, against what a model can be and what the rig states.
+//!
+//! Of a body of mass m whose centre of gravity is `e` from the axis of rotation, heave shows m in the lift and `m e` in the moment,
+//! rotation `I = m (r² + e²)` in the moment and `m e` in the lift. So `|e| < B` bounds the one, and `e/(r² + e²) ≤ 1/(2r)` with a
+//! radius of gyration r of no less than `B/20` the other, whatever the model: beyond them the motion is not the one that its channel says.
+
+use super::lag::StillAirInertia;
+use crate::error::{Error, Result};
+use crate::section::Dof;
+use crate::wind_tunnel::Rig;
+use std::f64::consts::PI;
+
+/// A stated mass may be off by this part, for screws and clamps, before it is said …
+const SAME_BODY: f64 = 0.03;
+/// … and by this part before nothing else can be right either: a channel that is lost or taken twice changes more.
+const ANOTHER_BODY: f64 = 0.2;
+/// Mass of air that moves with the model over that with a flat plate of its width, at most.
+const AIR_OVER_PLATE: f64 = 1.5;
+/// `1/(2r)` with `r = B/20`, times B.
+const LEVER_OF_ROTATION: f64 = 10.0;
+
+/// Refuses inertia in another force than a motion of `dof` can have: then rotation and a displacement are exchanged.
+///
+/// # Errors
+/// [`Error::Input`] naming `run` with the figures.
+pub(super) fn check_motion(
+    run: &str,
+    rig: &Rig,
+    own: &StillAirInertia,
+    across: &StillAirInertia,
+) -> Result<()> {
+    let width = rig.model_width_m;
+    let (exchanged, unit) = match (own.dof, across.dof) {
+        (Dof::Torsion, _) => (
+            across.inertia.abs() * width > LEVER_OF_ROTATION * own.inertia.abs(),
+            ("kg·m²", "kg·m"),
+        ),
+        (_, Dof::Torsion) => (
+            across.inertia.abs() > width * own.inertia.abs(),
+            ("kg", "kg·m"),
+        ),
+        _ => return Ok(()),
+    };
+    if !(exchanged && across.is_certain()) {
+        return Ok(());
+    }
+    Err(Error::input(
+        format!("run {run}, still air"),
+        format!(
+            "inertia of the {} motion mostly in the {} force",
+            own.dof.name(),
+            own.dof.name()
+        ),
+        format!(
+            "{:.4} {} there and {:.4} {} in the {} force, which no body has: the channels of rotation and displacement are \
+             exchanged",
+            own.inertia,
+            unit.0,
+            across.inertia,
+            unit.1,
+            across.dof.name()
+        ),
+    ))
+}
+
+/// Compares the inertia with that of the rig, if it states one: a warning with the figures, or nothing.
+///
+/// # Errors
+/// [`Error::Input`] naming `run` when it is that of another body.
+pub(super) fn compare(
+    run: &str,
+    rig: &Rig,
+    found: &StillAirInertia,
+    air_density_kg_m3: f64,
+) -> Result<Option<String>> {
+    let (width, length) = (rig.model_width_m, rig.model_length_m);
+    let (key, stated, air, unit) = match found.dof {
+        Dof::Torsion => (
+            "rig.model_inertia_kg_m2",
+            rig.model_inertia_kg_m2,
+            PI / 128.0 * width.powi(4),
+            "kg·m²",
+        ),
+        _ => (
+            "rig.model_mass_kg",
+            rig.model_mass_kg,
+            PI / 4.0 * width.powi(2),
+            "kg",
+        ),
+    };
+    let Some(stated) = stated else {
+        return Ok(None);
+    };
+    // a real tunnel at rest adds the mass of the air that moves with the model
+    let with_air = stated + AIR_OVER_PLATE * air * air_density_kg_m3 * length;
+    let beyond = (stated - found.inertia).max(found.inertia - with_air);
+    let error = 3.0 * found.inertia_standard_error;
+    if beyond <= SAME_BODY * stated + error {
+        return Ok(None);
+    }
+    let shown = format!(
+        "{:.4} ± {:.4} {unit}",
+        found.inertia, found.inertia_standard_error
+    );
+    if beyond <= ANOTHER_BODY * stated + error {
+        return Ok(Some(format!(
+            "still air shows {shown} in {} motion, `{key}` states {stated} {unit}",
+            found.dof.name()
+        )));
+    }
+    Err(Error::input(
+        format!("run {run}, still air, {} motion", found.dof.name()),
+        format!("about the {stated:.4} {unit} that `{key}` states"),
+        format!("{shown}: a load-cell channel is missing, taken twice, or in another unit"),
+    ))
+}

@@ -1,0 +1,168 @@
+//! Inertia in still air against the rig; exchanged channels; records that are too short; drift of cells.
+
+use super::*;
+
+fn made() -> VirtualCampaign {
+    campaign(&short(VirtualCampaignPlan::default()))
+}
+
+fn everywhere(raw: &mut RawCampaign, change: impl Fn(&mut super::super::super::RawRecording)) {
+    for run in &mut raw.runs {
+        change(&mut run.in_wind);
+        change(run.still_air.as_mut().unwrap());
+    }
+}
+
+#[test]
+fn a_stated_mass_is_compared_with_still_air() {
+    let mut raw = made().raw;
+    let mass = raw.rig.model_mass_kg.unwrap();
+    // the virtual campaign: 2 kg/m on 2.68 m
+    assert!((mass - 5.36).abs() < 1e-12);
+    assert!(
+        done(&raw, &ProcessingOptions::default())
+            .report
+            .warnings()
+            .is_empty()
+    );
+    raw.rig.model_mass_kg = Some(1.1 * mass);
+    let warnings = done(&raw, &ProcessingOptions::default()).report.warnings();
+    assert!(
+        warnings.len() == 1
+            && warnings[0].contains("still air shows 5.36")
+            && warnings[0].contains("`rig.model_mass_kg` states 5.89"),
+        "{warnings:?}"
+    );
+    raw.rig.model_mass_kg = Some(2.0 * mass);
+    let message = refused(&raw);
+    assert!(
+        message.contains("still air, vertical motion: expected about the 10.7200 kg"),
+        "{message}"
+    );
+    raw.rig.model_mass_kg = None;
+    raw.rig.model_inertia_kg_m2 = Some(1.0);
+    let message = refused(&raw);
+    assert!(
+        message.contains(
+            "torsion motion: expected about the 1.0000 kg·m² that `rig.model_inertia_kg_m2`"
+        ),
+        "{message}"
+    );
+}
+
+/// As when `near.fx` is mapped from the column of `near.fy`.
+#[test]
+fn a_channel_taken_twice_shows_in_the_mass() {
+    let mut raw = made().raw;
+    everywhere(&mut raw, |r| r.cells[0][0] = r.cells[0][1].clone());
+    let message = refused(&raw);
+    assert!(
+        message.contains("missing, taken twice, or in another unit"),
+        "{message}"
+    );
+}
+
+#[test]
+fn exchanged_motions_show_in_the_inertia() {
+    let mut raw = made().raw;
+    raw.rig.model_mass_kg = None;
+    raw.rig.model_inertia_kg_m2 = None;
+    everywhere(&mut raw, |r| r.motion.swap(0, 2));
+    let Err(Error::Several(errors)) = process(&raw, &ProcessingOptions::default(), &|_| {}) else {
+        panic!("both runs are wrong");
+    };
+    for error in errors {
+        let message = error.to_string();
+        assert!(message.contains("exchanged"), "{message}");
+    }
+}
+
+#[test]
+fn a_record_shorter_than_its_periods_is_refused() {
+    let mut raw = made().raw;
+    // 8 s of rest, ramps of 4 s and a first frequency of 0.5 Hz: 9 s end in the first period
+    everywhere(&mut raw, |r| {
+        let cells = r.cells.iter_mut().flatten();
+        r.motion
+            .iter_mut()
+            .chain(cells)
+            .for_each(|x| x.truncate(1800));
+        r.wind_speed_m_s.truncate(1800);
+    });
+    let message = refused(&raw);
+    assert!(
+        message.contains("in wind: expected a record of at least 2 whole periods of the vertical motion, found 0 in 1800 samples (9.000 s)"),
+        "{message}"
+    );
+}
+
+/// Drift of a lift channel that turns with the model is a drag in step with the rotation.
+#[test]
+fn drift_is_removed_in_the_axes_of_the_cells() {
+    let plan = |drift_n: f64| {
+        let mut plan = short(VirtualCampaignPlan::default());
+        plan.disturbances.drift_n = drift_n;
+        plan
+    };
+    let drag = |drift_n: f64| {
+        let made = campaign(&plan(drift_n));
+        let options = ProcessingOptions {
+            dofs: Some(Dof::THREE.to_vec()),
+            ..ProcessingOptions::default()
+        };
+        let processed = done(&made.raw, &options);
+        let torsion = processed
+            .records
+            .iter()
+            .find(|r| r.header.name.contains("torsion"));
+        torsion.unwrap().force[1]
+            .iter()
+            .fold(0.0_f64, |m, x| m.max(x.abs()))
+    };
+    // the flat plate has no drag: 10 N of drift on 1° are 0.17 N, 0.07 N/m of the 2.68 m; what is left is the degree of the polynomial
+    let (without, with) = (drag(0.0), drag(10.0));
+    assert!(without < 1e-3, "{without}");
+    assert!(with < 5e-3, "{with}");
+}
+
+#[test]
+fn without_still_air_the_forces_are_those_of_the_wind() {
+    let made = made();
+    let mut raw = made.raw.clone();
+    for (run, truth) in raw.runs.iter_mut().zip(&made.truth.records) {
+        run.still_air = None;
+        let length = raw.rig.model_length_m;
+        let of = |row: usize, sign: f64| -> Vec<f64> {
+            truth.force[row].iter().map(|f| sign * length * f).collect()
+        };
+        let zero = vec![0.0; truth.force[0].len()];
+        run.in_wind.cells = vec![[
+            zero.clone(),
+            of(0, 1.0),
+            zero.clone(),
+            zero.clone(),
+            zero.clone(),
+            of(1, -1.0),
+        ]];
+    }
+    raw.rig.cells.truncate(1);
+    raw.rig.cells[0].axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    raw.rig.cells[0].position_m = [0.0; 3];
+    raw.rig.cells[0].turns_with_model = false;
+    let processed = done(&raw, &ProcessingOptions::default());
+    for force in 0..2 {
+        assert!(worst(&processed, &made.truth.records, force) < 1e-3);
+    }
+    assert!(
+        processed
+            .report
+            .runs
+            .iter()
+            .all(|r| r.alignment.is_none() && r.warnings.is_empty())
+    );
+    // forces that were not measured are not those of the records
+    raw.forces = Some(vec![Dof::Vertical]);
+    raw.runs.truncate(1);
+    let processed = done(&raw, &ProcessingOptions::default());
+    assert_eq!(processed.records[0].header.dofs, [Dof::Vertical]);
+}
