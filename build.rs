@@ -1,6 +1,6 @@
 //! Builds the FMU runtime, the shared library that every exported FMU holds, and hands it to `src/fmu/package.rs`.
 //!
-//! With the feature `packaging` (part of `cli`) this script calls cargo once more on the same package without any
+//! With the feature `cli` this script calls cargo once more on the same package without any
 //! feature, in the profile `fmu` and a target directory of its own, and copies the library to `OUT_DIR`, from where
 //! it is embedded: an installed `aerodeck` exports FMUs without source tree or Rust toolchain. Without that feature,
 //! and so in the nested call itself, there is nothing to do.
@@ -11,10 +11,9 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
 /// Parts of `src/` that never reach the runtime, beside tests; every other file there leads to a new build of it.
-const NOT_IN_RUNTIME: [&str; 19] = [
+const NOT_IN_RUNTIME: [&str; 18] = [
     "main.rs",
-    "benchmarks",
-    "benchmarks.rs",
+    "reference",
     "buffeting",
     "cli",
     "comparison",
@@ -43,7 +42,7 @@ const EMBEDDED: &str = "aerodeck_section";
 fn main() -> ExitCode {
     println!("cargo::rerun-if-changed=build.rs");
     println!("cargo::rerun-if-env-changed={READY_MADE}");
-    if env::var_os("CARGO_FEATURE_PACKAGING").is_none() {
+    if env::var_os("CARGO_FEATURE_CLI").is_none() {
         return ExitCode::SUCCESS;
     }
     match embed_runtime() {

@@ -3,7 +3,7 @@
 //!
 //! `cargo run --release --example first_order -- OUT_FOLDER`
 
-use aerodeck::benchmarks::FirstOrderExample;
+use aerodeck::reference::FirstOrderExample;
 use aerodeck::report::first_order_figures;
 use std::error::Error;
 use std::path::PathBuf;

@@ -30,41 +30,41 @@
 
 pub mod aerodynamics;
 pub mod aeroelastic;
-#[cfg(feature = "identification")]
-pub mod benchmarks;
-#[cfg(feature = "identification")]
+#[cfg(feature = "cli")]
 pub mod buffeting;
 #[cfg(feature = "cli")]
 pub mod cli;
-#[cfg(feature = "identification")]
+#[cfg(feature = "cli")]
 pub mod comparison;
 pub mod error;
 pub mod flutter;
 pub mod fmu;
-#[cfg(feature = "identification")]
+#[cfg(feature = "cli")]
 pub mod identification;
-#[cfg(feature = "identification")]
+#[cfg(feature = "cli")]
 mod plausibility;
-#[cfg(feature = "campaigns")]
+#[cfg(feature = "cli")]
+pub mod reference;
+#[cfg(feature = "cli")]
 pub mod reliability;
-#[cfg(feature = "report")]
+#[cfg(feature = "cli")]
 pub mod report;
 pub mod response;
 pub mod section;
-#[cfg(feature = "identification")]
+#[cfg(feature = "cli")]
 pub mod selection;
-#[cfg(feature = "identification")]
+#[cfg(feature = "cli")]
 pub mod signal;
 pub mod state_space;
 #[cfg(feature = "cli")]
 pub mod study;
-#[cfg(feature = "campaigns")]
+#[cfg(feature = "cli")]
 mod toml_lines;
 pub mod trained_model;
-#[cfg(feature = "identification")]
+#[cfg(feature = "cli")]
 pub mod uncertainty;
 pub mod units;
-#[cfg(feature = "identification")]
+#[cfg(feature = "cli")]
 pub mod wind_tunnel;
 
 pub use error::{Error, Result};

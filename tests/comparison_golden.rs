@@ -1,5 +1,5 @@
 //! Comparison metrics against independently computed numbers (`tests/data/comparison_golden.json`).
-#![cfg(feature = "identification")]
+#![cfg(feature = "cli")]
 
 use aerodeck::comparison::{
     PhaseParameters, SignalPair, WarpingParameters, WaveletParameters, magnitude, magnitude_warped,

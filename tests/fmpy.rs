@@ -2,7 +2,7 @@
 //!
 //! Writes one FMU a model and `expected.json` (what the same models give in process) to a folder below the target
 //! directory, then runs `tests/fmpy` with pytest in an environment of its own; see `common/python.rs`.
-#![cfg(all(feature = "packaging", feature = "identification"))]
+#![cfg(feature = "cli")]
 
 #[path = "common/in_process.rs"]
 mod in_process;

@@ -1,7 +1,7 @@
 //! The committed descriptions are what the variable table gives, byte for byte.
 //!
 //! `AERODECK_BLESS=1 cargo test --test model_description` writes the fixtures and descriptions anew.
-#![cfg(feature = "packaging")]
+#![cfg(feature = "cli")]
 
 #[path = "common/models.rs"]
 mod models;

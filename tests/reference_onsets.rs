@@ -1,5 +1,5 @@
 //! Eigenvalues and determinant agree; stable sections say so; curves stay on their branches. The reference figures
-//! themselves stand in `benchmarks.rs`.
+//! themselves stand in `data/reference`.
 
 use aerodeck::aerodynamics::{AerodynamicModel, RationalModel};
 use aerodeck::aeroelastic::CoupledSection;

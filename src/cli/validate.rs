@@ -2,8 +2,8 @@
 
 use super::answer::Answer;
 use super::progress::Progress;
-use crate::benchmarks::{CaseResult, UserCase, run as run_case, run_all, validation_table};
 use crate::error::Result;
+use crate::reference::{CaseResult, UserCase, run as run_case, run_all, validation_table};
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
@@ -29,7 +29,7 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     let stage = progress.stage("reference cases");
     let results = match &args.name {
         Some(name) => run_case(name)?,
-        None if args.files.is_empty() => run_all(),
+        None if args.files.is_empty() => run_all()?,
         None => user_cases(&args.files)?,
     };
     drop(stage);

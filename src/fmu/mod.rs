@@ -1,17 +1,17 @@
 //! The coupled section as a co-simulation slave: version-neutral instance, variables, resources, packing, importer.
 
-#[cfg(feature = "packaging")]
+#[cfg(feature = "cli")]
 pub mod description;
 #[allow(unsafe_code)]
 pub mod fmi2;
 pub mod identity;
-#[cfg(feature = "packaging")]
+#[cfg(feature = "cli")]
 #[allow(unsafe_code)]
 pub mod importer;
 pub mod instance;
 pub mod lifecycle;
 pub mod log_categories;
-#[cfg(feature = "packaging")]
+#[cfg(feature = "cli")]
 pub mod package;
 pub mod refusal;
 pub mod resources;

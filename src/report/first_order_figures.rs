@@ -4,8 +4,8 @@ use super::figure::Figure;
 use super::response_figures::{TimePanel, time_history_figure};
 use super::series::PlottedSeries;
 use super::transfer_figure::{TransferCurve, TransferPlot, transfer_figure};
-use crate::benchmarks::{FirstOrderResults, SampledTransfer};
 use crate::error::Result;
+use crate::reference::{FirstOrderResults, SampledTransfer};
 
 /// The six figures with the number of each in the thesis: training input, predicted output, transfer function and impulse
 /// response of the model, transfer functions for several `α` and for several `L`.

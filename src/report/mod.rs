@@ -8,7 +8,6 @@ mod axes_sketch;
 mod axis;
 mod derivatives_figure;
 mod figure;
-#[cfg(feature = "identification")]
 mod first_order_figures;
 mod flutter_figures;
 mod font;
@@ -17,9 +16,7 @@ mod labels;
 mod legend;
 mod metrics_figure;
 mod panel;
-#[cfg(feature = "identification")]
 mod processing_figures;
-#[cfg(feature = "campaigns")]
 mod reliability_figure;
 mod response_figures;
 mod root_locus;
@@ -27,24 +24,19 @@ mod series;
 mod sheet;
 mod style;
 mod transfer_figure;
-#[cfg(feature = "cli")]
 mod wind_figures;
 
 pub use axes_sketch::axes_sketch;
 pub use derivatives_figure::{DerivativePlot, DerivativesPlot, derivatives_figure};
 pub use figure::{Figure, PNG_SCALE};
-#[cfg(feature = "identification")]
 pub use first_order_figures::first_order_figures;
 pub use flutter_figures::{VfVgOptions, vf_vg_figure};
 pub use heat_map::{HeatMap, heat_map_figure};
 pub use metrics_figure::{MetricPanel, metrics_figure};
-#[cfg(feature = "identification")]
 pub use processing_figures::processing_figure;
-#[cfg(feature = "campaigns")]
 pub use reliability_figure::onset_distribution_figure;
 pub use response_figures::{PoleSearchPlot, TimePanel, pole_search_figure, time_history_figure};
 pub use root_locus::root_locus_figure;
 pub use series::PlottedSeries;
 pub use transfer_figure::{TransferCurve, TransferPlot, transfer_figure};
-#[cfg(feature = "cli")]
 pub use wind_figures::{buffeting_rms_figure, buffeting_spectra_figure, equilibrium_figure};

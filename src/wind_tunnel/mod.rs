@@ -1,9 +1,7 @@
 //! Forced-vibration records: what they are, reading and writing them, and a virtual tunnel that makes them.
 
 mod broadband;
-#[cfg(feature = "campaigns")]
 pub mod campaign;
-#[cfg(feature = "campaigns")]
 pub mod lab_files;
 mod motion;
 mod plan_checks;

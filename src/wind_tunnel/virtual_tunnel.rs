@@ -93,7 +93,7 @@ impl TunnelPlan {
     /// One record a motion and speed group of `table`, forces from its derivatives at its own test points.
     ///
     /// # Errors
-    /// [`Error::Input`] for an impossible plan, or a table that lacks a derivative of `dofs`. Where derivatives of one motion
+    /// [`crate::Error::Input`] for an impossible plan, or a table that lacks a derivative of `dofs`. Where derivatives of one motion
     /// were tested at different points, those of the first are taken and the others interpolated; the record says so.
     pub fn records_from_table(&self, table: &DerivativeTable, dofs: &[Dof]) -> Result<Vec<Record>> {
         let records = self.clean_from_table(table, dofs, 0.0)?;
@@ -129,7 +129,7 @@ impl TunnelPlan {
     /// One record a motion and speed of the plan, forces from the transfer matrix of `model` for a deck of `width_m`.
     ///
     /// # Errors
-    /// [`Error::Input`] for an impossible plan or width; those of the model, which is asked at every `K` from zero to
+    /// [`crate::Error::Input`] for an impossible plan or width; those of the model, which is asked at every `K` from zero to
     /// that of half the sampling frequency.
     pub fn records_from_model(
         &self,

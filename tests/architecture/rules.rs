@@ -76,14 +76,14 @@ pub const ARROWS: &[Row] = &[
         "selection",
         &["flutter+", "identification+", "wind_tunnel+", "comparison"],
     ),
-    row("benchmarks", BELOW_STUDY),
+    row("reference", BELOW_STUDY),
     row("study", BELOW_STUDY),
     Row {
         module: "report",
-        may_use: &["study+", "benchmarks+", "reliability"],
+        may_use: &["study+", "reference+", "reliability"],
         types_only: true,
     },
-    row("cli", &["report", "study+", "benchmarks+", "reliability"]),
+    row("cli", &["report", "study+", "reference+", "reliability"]),
     row("main", &["cli+"]),
 ];
 

@@ -3,34 +3,34 @@
 //! `G_yy = K²(H4* + iH1*)`, `G_yθ = K²(H3* + iH2*)`, `G_θy = K²(A4* + iA1*)`, `G_θθ = K²(A3* + iA2*)`, likewise
 //! `P*` and the pairs 5, 6 of `H*`, `A*` for sway (equation 1.17).
 
-#[cfg(feature = "identification")]
+#[cfg(feature = "cli")]
 pub(crate) mod comment_header;
-#[cfg(feature = "identification")]
+#[cfg(feature = "cli")]
 pub(in crate::aerodynamics) mod csv_file;
-#[cfg(feature = "identification")]
+#[cfg(feature = "cli")]
 mod csv_header;
-#[cfg(feature = "identification")]
+#[cfg(feature = "cli")]
 mod csv_wide;
 mod derivative;
-#[cfg(feature = "identification")]
+#[cfg(feature = "cli")]
 pub mod embedded;
 mod interpolated;
 mod interpolation;
-#[cfg(feature = "identification")]
+#[cfg(feature = "cli")]
 mod missing;
-#[cfg(feature = "identification")]
+#[cfg(feature = "cli")]
 pub mod notation;
-#[cfg(feature = "identification")]
+#[cfg(feature = "cli")]
 mod plausibility;
 mod table;
-#[cfg(feature = "identification")]
+#[cfg(feature = "cli")]
 mod workbook;
-#[cfg(feature = "campaigns")]
+#[cfg(feature = "cli")]
 mod workbook_writer;
-#[cfg(feature = "identification")]
+#[cfg(feature = "cli")]
 mod xlsx_cells;
 
-#[cfg(feature = "identification")]
+#[cfg(feature = "cli")]
 pub use csv_file::{
     CSV_COLUMNS, parse_csv, parse_csv_in, read_csv, read_csv_in, read_csv_with, write_csv,
     write_csv_in, write_points,
@@ -38,12 +38,12 @@ pub use csv_file::{
 pub use derivative::{Derivative, Part};
 pub use interpolated::{Extrapolation, InterpolatedTable};
 pub use interpolation::Interpolation;
-#[cfg(feature = "identification")]
+#[cfg(feature = "cli")]
 pub use missing::Missing;
 pub use table::{DerivativePoint, DerivativeTable, SIGN_CONVENTION, TableHeader, UNITS};
-#[cfg(feature = "identification")]
+#[cfg(feature = "cli")]
 pub use workbook::{TABLE_3_2_FREQUENCIES_HZ, WorkbookOptions, read_workbook, read_workbook_in};
-#[cfg(feature = "campaigns")]
+#[cfg(feature = "cli")]
 pub use workbook_writer::{workbook_bytes, workbook_bytes_in, write_workbook};
 
 use crate::section::Dof;
@@ -66,7 +66,7 @@ pub struct TransferSample {
 }
 
 /// Whether `name` means a file that holds a table, not an embedded deck: it ends in `.csv` or `.xlsx`.
-#[cfg(feature = "identification")]
+#[cfg(feature = "cli")]
 pub fn is_table_file(name: &str) -> bool {
     let name = name.to_lowercase();
     name.ends_with(".csv") || name.ends_with(".xlsx")
@@ -76,7 +76,7 @@ pub fn is_table_file(name: &str) -> bool {
 ///
 /// # Errors
 /// Those of [`embedded::deck`] and [`read_table`].
-#[cfg(feature = "identification")]
+#[cfg(feature = "cli")]
 pub fn named_table(name: &str, directory: &std::path::Path) -> crate::Result<DerivativeTable> {
     if is_table_file(name) {
         read_table(directory.join(name))
@@ -86,7 +86,7 @@ pub fn named_table(name: &str, directory: &std::path::Path) -> crate::Result<Der
 }
 
 /// What a file of derivatives does not say of itself.
-#[cfg(feature = "identification")]
+#[cfg(feature = "cli")]
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct ReadOptions {
     /// Notation, argument and axes; what the file states must not contradict them.
@@ -103,7 +103,7 @@ pub struct ReadOptions {
 ///
 /// # Errors
 /// Those of [`read_workbook`] and [`read_csv`].
-#[cfg(feature = "identification")]
+#[cfg(feature = "cli")]
 pub fn read_table(path: impl AsRef<std::path::Path>) -> crate::Result<DerivativeTable> {
     read_table_with(path, &ReadOptions::default()).map(|(table, _)| table)
 }
@@ -112,7 +112,7 @@ pub fn read_table(path: impl AsRef<std::path::Path>) -> crate::Result<Derivative
 ///
 /// # Errors
 /// Those of [`read_workbook`] and [`read_csv_with`].
-#[cfg(feature = "identification")]
+#[cfg(feature = "cli")]
 pub fn read_table_in(
     path: impl AsRef<std::path::Path>,
     stated: notation::StatedConvention,
@@ -128,7 +128,7 @@ pub fn read_table_in(
 ///
 /// # Errors
 /// Those of [`read_workbook`] and [`read_csv_with`].
-#[cfg(feature = "identification")]
+#[cfg(feature = "cli")]
 pub fn read_table_with(
     path: impl AsRef<std::path::Path>,
     options: &ReadOptions,

@@ -9,9 +9,9 @@ mod coefficients;
 mod forces;
 mod linear;
 
-#[cfg(feature = "identification")]
+#[cfg(feature = "cli")]
 mod csv_file;
-#[cfg(feature = "identification")]
+#[cfg(feature = "cli")]
 pub mod embedded;
 
 pub use arms::Arms;
@@ -19,7 +19,7 @@ pub use coefficients::{
     CoefficientRow, CoefficientsAt, CoefficientsHeader, StaticCoefficients, TABLE_SIGN_CONVENTION,
     TABLE_UNITS,
 };
-#[cfg(feature = "identification")]
+#[cfg(feature = "cli")]
 pub use csv_file::{
     COEFFICIENT_COLUMNS, parse_coefficients, read_coefficients, write_coefficients,
 };
@@ -30,7 +30,7 @@ pub use linear::LinearQuasiSteady;
 ///
 /// # Errors
 /// Those of [`embedded::coefficients`] and [`read_coefficients`].
-#[cfg(feature = "identification")]
+#[cfg(feature = "cli")]
 pub fn named_coefficients(
     name: &str,
     directory: &std::path::Path,

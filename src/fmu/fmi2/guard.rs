@@ -138,7 +138,7 @@ pub(super) unsafe fn not_offered(handle: fmi2Component, function: &str, why: &st
 
 /// Silence about panics inside [`shielded`], where the library shares its process with Rust code that may panic on its
 /// own account (tests, the program). The runtime in an FMU has a panic hook to itself and needs no bookkeeping.
-#[cfg(feature = "packaging")]
+#[cfg(feature = "cli")]
 mod silence {
     use std::cell::Cell;
     use std::panic::PanicHookInfo;
@@ -172,7 +172,7 @@ mod silence {
     }
 }
 
-#[cfg(not(feature = "packaging"))]
+#[cfg(not(feature = "cli"))]
 mod silence {
     pub fn install() {
         std::panic::set_hook(Box::new(|_| ()));

@@ -1,7 +1,7 @@
 //! Aerodynamic derivatives from a released section: the free motion method (thesis, 1.2.1).
 //!
 //! A section released in wind moves as `q(t) = Σ_m Re(φ_m e^{λ_m t})`. The complex modes of this coupled response are identified from
-//! all channels at once ([`modes`]); with the structure `(M, R, K)` known, each obeys
+//! all channels at once (`modes`); with the structure `(M, R, K)` known, each obeys
 //!
 //! ```text
 //! (M λ² + R λ + K) φ = F_m = ½ρV² P(G(λB/V)) φ         P(G) = diag(B, B, B²) G diag(1/B, 1/B, 1)

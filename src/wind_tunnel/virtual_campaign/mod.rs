@@ -23,7 +23,6 @@ mod disturbances;
 mod gusts;
 mod make;
 mod plan;
-#[cfg(feature = "campaigns")]
 mod plan_file;
 mod truth;
 

@@ -11,7 +11,6 @@ use crate::toml_lines;
 use evaluate::Loaded;
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
-use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 /// Version of the case file.
@@ -257,18 +256,18 @@ impl UserCase {
         // as many digits as the tolerance makes sense of
         let decimals = (-figure.tolerance.log10().floor()).clamp(0.0, 12.0) as usize;
         CaseResult {
-            name: Cow::Owned(self.name.clone()),
-            what: Cow::Owned(self.what.clone()),
-            quantity: quantity.into(),
+            name: self.name.clone(),
+            what: self.what.clone(),
+            quantity,
             unit: unit.into(),
             expected: figure.expected,
             decimals,
             found,
             deviation,
             tolerance: figure.tolerance,
-            reason: Cow::Owned(figure.reason.clone()),
+            reason: figure.reason.clone(),
             passed: deviation.is_some_and(|d| d.abs() <= figure.tolerance),
-            source: Citation::Stated(Cow::Owned(figure.source.clone())),
+            source: Citation::Stated(figure.source.clone()),
             headline: true,
             problem,
         }

@@ -1,7 +1,7 @@
 //! Every reference case is met, and the table in the README says so.
-#![cfg(feature = "identification")]
+#![cfg(feature = "cli")]
 
-use aerodeck::benchmarks::{CaseResult, run_all, validation_table};
+use aerodeck::reference::{CaseResult, run_all, validation_table};
 use std::path::Path;
 use std::sync::OnceLock;
 
@@ -10,7 +10,7 @@ const END: &str = "<!-- validation:end -->";
 
 fn results() -> &'static [CaseResult] {
     static RESULTS: OnceLock<Vec<CaseResult>> = OnceLock::new();
-    RESULTS.get_or_init(run_all)
+    RESULTS.get_or_init(|| run_all().unwrap())
 }
 
 #[test]
@@ -34,7 +34,7 @@ fn reference_cases_are_met() {
     assert!(failed.is_empty(), "\n{}\n", failed.join("\n"));
 }
 
-/// `AERODECK_UPDATE=1 cargo test --test benchmarks` writes the table.
+/// `AERODECK_UPDATE=1 cargo test --test reference` writes the table.
 #[test]
 fn the_readme_shows_the_results() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md");
@@ -48,6 +48,6 @@ fn the_readme_shows_the_results() {
     }
     assert_eq!(
         block, table,
-        "the table is out of date: AERODECK_UPDATE=1 cargo test --test benchmarks"
+        "the table is out of date: AERODECK_UPDATE=1 cargo test --test reference"
     );
 }
