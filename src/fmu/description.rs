@@ -3,19 +3,18 @@
 //! Order of elements and attributes follow the XML schema of FMI 2.0; an empty list is left out. The text holds no date
 //! and no path, so that an export is reproducible byte for byte.
 
-mod xml;
-
 use super::identity::MODEL_IDENTIFIER;
-use super::variables::{Variable, VariableTable};
+use super::log_categories::LOG_CATEGORIES;
+use super::si::Unit;
+use super::standard::Word;
+use super::variables::{Causality, Value, Variable, VariableTable};
+use super::xml::Element;
 use crate::error::{Error, Result};
 use crate::trained_model::{Experiment, TrainedModel};
 use uuid::Uuid;
 
 /// More communication points than this make FMPy double the step of the default experiment.
 const MAX_DEFAULT_STEPS: f64 = 1000.0;
-
-/// Categories of log messages with their descriptions, as the standard names them.
-use super::log_categories::LOG_CATEGORIES;
 
 /// The description of an exported model.
 ///
@@ -26,43 +25,94 @@ pub fn model_description(
     table: &VariableTable,
     guid: &Uuid,
 ) -> Result<String> {
-    let root = xml::Root {
-        fmi_version: "2.0",
-        model_name: line(&model.name),
-        guid: guid.to_string(),
-        description: line(&format!(
-            "Bridge deck section under self-excited wind forces ({}), forces per unit length; data: {}",
-            model.model.kind(),
-            model.provenance.source
-        )),
-        version: env!("CARGO_PKG_VERSION"),
-        license: line(&format!(
-            "MIT OR Apache-2.0; data of the model: {}",
-            model.provenance.licence
-        )),
-        generation_tool: concat!("aerodeck ", env!("CARGO_PKG_VERSION")),
-        variable_naming_convention: "flat",
-        co_simulation: xml::CoSimulation::new(MODEL_IDENTIFIER),
-        units: xml::units(table)?,
-        log_categories: xml::log_categories(&LOG_CATEGORIES),
-        experiment: experiment(&model.experiment)?,
-        variables: xml::Variables {
-            list: table
-                .variables()
-                .iter()
-                .enumerate()
-                .map(|(i, v)| scalar(i, v))
-                .collect::<Result<_>>()?,
-        },
-        structure: xml::structure(table),
-    };
-    let mut text = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
-    let mut writer = quick_xml::se::Serializer::new(&mut text);
-    writer.indent(' ', 2);
-    serde::Serialize::serialize(&root, writer)
-        .map_err(|e| Error::Numerical(format!("modelDescription.xml: {e}")))?;
-    text.push('\n');
-    Ok(text)
+    let variables = table.variables().iter().enumerate();
+    let variables = variables
+        .map(|(i, v)| scalar(i, v))
+        .collect::<Result<Vec<_>>>()?;
+    let categories = LOG_CATEGORIES.iter().map(|(name, description)| {
+        Element::new("Category")
+            .with("name", name)
+            .with("description", description)
+    });
+    let root = Element::new("fmiModelDescription")
+        .with("fmiVersion", "2.0")
+        .with("modelName", line(&model.name))
+        .with("guid", guid)
+        .with(
+            "description",
+            line(&format!(
+                "Bridge deck section under self-excited wind forces ({}), forces per unit length; data: {}",
+                model.model.kind(),
+                model.provenance.source
+            )),
+        )
+        .with("version", env!("CARGO_PKG_VERSION"))
+        .with(
+            "license",
+            line(&format!(
+                "MIT OR Apache-2.0; data of the model: {}",
+                model.provenance.licence
+            )),
+        )
+        .with("generationTool", concat!("aerodeck ", env!("CARGO_PKG_VERSION")))
+        .with("variableNamingConvention", "flat")
+        .containing([
+            co_simulation(),
+            Element::new("UnitDefinitions").containing(units(table)?),
+            Element::new("LogCategories").containing(categories),
+            experiment(&model.experiment)?,
+            Element::new("ModelVariables").containing(variables),
+            structure(table),
+        ]);
+    Ok(root.document())
+}
+
+/// What the runtime can do.
+fn co_simulation() -> Element {
+    Element::new("CoSimulation")
+        .with("modelIdentifier", MODEL_IDENTIFIER)
+        .with("needsExecutionTool", false)
+        .with("canHandleVariableCommunicationStepSize", true)
+        .with("canInterpolateInputs", true)
+        .with("maxOutputDerivativeOrder", 1)
+        // spelt so in the standard
+        .with("canRunAsynchronuously", false)
+        .with("canBeInstantiatedOnlyOncePerProcess", false)
+        .with("canNotUseMemoryManagementFunctions", true)
+        .with("canGetAndSetFMUstate", true)
+        .with("canSerializeFMUstate", true)
+        .with("providesDirectionalDerivative", true)
+}
+
+/// Every unit that a variable uses, once, in the order of first use.
+fn units(table: &VariableTable) -> Result<Vec<Element>> {
+    let mut used: Vec<&'static Unit> = Vec::new();
+    for unit in table.variables().iter().filter_map(|v| v.unit) {
+        if used.iter().all(|u| u.name != unit.name) {
+            used.push(unit);
+        }
+    }
+    used.into_iter().map(unit_definition).collect()
+}
+
+fn unit_definition(unit: &Unit) -> Result<Element> {
+    let mut base = Element::new("BaseUnit");
+    let b = unit.base;
+    for (name, exponent) in [("kg", b.kg), ("m", b.m), ("s", b.s), ("rad", b.rad)] {
+        base = base.with_any(name, (exponent != 0).then_some(exponent));
+    }
+    let factor = (unit.factor != 1.0).then_some(unit.factor);
+    let mut children = vec![base.with_any("factor", factor.map(number).transpose()?)];
+    for shown in unit.display {
+        children.push(
+            Element::new("DisplayUnit")
+                .with("name", shown.name)
+                .with("factor", number(shown.factor)?),
+        );
+    }
+    Ok(Element::new("Unit")
+        .with("name", unit.name)
+        .containing(children))
 }
 
 /// Attributes hold one line.
@@ -83,24 +133,75 @@ fn number(x: f64) -> Result<String> {
     }
 }
 
-fn scalar(reference: usize, v: &Variable) -> Result<xml::ScalarVariable> {
-    Ok(xml::ScalarVariable {
-        name: v.name,
-        reference,
-        description: v.description.clone(),
-        causality: xml::causality(v.causality),
-        variability: xml::variability(v.variability),
-        initial: v.initial.map(xml::initial),
-        value: xml::typed_value(v)?,
+fn scalar(reference: usize, v: &Variable) -> Result<Element> {
+    Ok(Element::new("ScalarVariable")
+        .with("name", v.name)
+        .with("valueReference", reference)
+        .with("description", &v.description)
+        .with("causality", v.causality.word())
+        .with("variability", v.variability.word())
+        .with_any("initial", v.initial.map(Word::word))
+        .containing([typed(v)?]))
+}
+
+fn typed(v: &Variable) -> Result<Element> {
+    let element = Element::new(v.value.type_name());
+    let text = |x: Option<f64>| x.map(number).transpose();
+    Ok(match &v.value {
+        Value::Real(start) => element
+            .with_any("quantity", v.quantity)
+            .with_any("unit", v.unit.map(|u| u.name))
+            .with_any("displayUnit", v.display_unit)
+            .with_any("min", text(v.min)?)
+            .with_any("max", text(v.max)?)
+            .with_any("nominal", text(v.nominal)?)
+            .with_any("start", text(*start)?),
+        Value::Integer(start) => element.with_any("start", *start),
+        Value::Boolean(start) => element.with_any("start", *start),
+        Value::String(start) => element.with("start", start),
     })
 }
 
-fn experiment(e: &Experiment) -> Result<xml::DefaultExperiment> {
-    Ok(xml::DefaultExperiment {
-        start: number(0.0)?,
-        stop: number(e.stop_time_s)?,
-        step: number(default_step_s(e))?,
-    })
+fn experiment(e: &Experiment) -> Result<Element> {
+    Ok(Element::new("DefaultExperiment")
+        .with("startTime", number(0.0)?)
+        .with("stopTime", number(e.stop_time_s)?)
+        .with("stepSize", number(default_step_s(e))?))
+}
+
+/// Outputs and unknowns of the initialisation with their dependencies, by one-based index, in the order of the table.
+fn structure(table: &VariableTable) -> Element {
+    let variables = || table.variables().iter().enumerate();
+    let outputs = variables()
+        .filter(|(_, v)| v.causality == Causality::Output)
+        .map(|(i, v)| unknown(i, v.direct_inputs.iter().map(|&on| (on, "dependent"))));
+    let initial = variables()
+        .filter(|(_, v)| v.is_initial_unknown())
+        .map(|(i, v)| {
+            let kind = |constant| if constant { "constant" } else { "dependent" };
+            unknown(
+                i,
+                v.initial_dependencies
+                    .iter()
+                    .map(|d| (d.on, kind(d.constant))),
+            )
+        });
+    Element::new("ModelStructure").containing([
+        Element::new("Outputs").containing(outputs),
+        Element::new("InitialUnknowns").containing(initial),
+    ])
+}
+
+fn unknown(at: usize, on: impl Iterator<Item = (usize, &'static str)>) -> Element {
+    let (indices, kinds): (Vec<_>, Vec<_>) =
+        on.map(|(on, kind)| ((on + 1).to_string(), kind)).unzip();
+    Element::new("Unknown")
+        .with("index", at + 1)
+        .with("dependencies", indices.join(" "))
+        .with_any(
+            "dependenciesKind",
+            (!kinds.is_empty()).then(|| kinds.join(" ")),
+        )
 }
 
 /// Step of the default experiment, s: that of the model, or the smallest multiple of it that needs no more than a

@@ -16,4 +16,7 @@ pub mod package;
 pub mod refusal;
 pub mod resources;
 pub mod si;
+pub mod standard;
 pub mod variables;
+#[cfg(feature = "cli")]
+mod xml;

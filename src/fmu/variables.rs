@@ -11,6 +11,7 @@ mod section;
 mod tests;
 mod words;
 
+pub use super::standard::{Causality, Initial, Variability};
 pub use parameters::SectionParameter;
 pub use section::filters;
 
@@ -18,43 +19,6 @@ use super::si::Unit;
 use crate::error::{Error, Result};
 use crate::section::Dof;
 use crate::trained_model::TrainedModel;
-
-/// What a variable is to the importer.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Causality {
-    /// Set by the importer while running.
-    Input,
-    /// Computed.
-    Output,
-    /// Set by the importer.
-    Parameter,
-    /// Computed from parameters.
-    CalculatedParameter,
-    /// For information only.
-    Local,
-}
-
-/// When a value changes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Variability {
-    /// Never.
-    Constant,
-    /// Not after initialisation.
-    Fixed,
-    /// Between communication steps.
-    Tunable,
-    /// At any time.
-    Continuous,
-}
-
-/// How a value comes about at initialisation.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Initial {
-    /// It is the start value.
-    Exact,
-    /// It is computed.
-    Calculated,
-}
 
 /// Type of a variable, with its start value where it has one.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,53 +1,8 @@
 //! What `modelDescription.xml` of an FMI 2.0 co-simulation FMU says, as plain values.
 
+pub use crate::fmu::standard::{Causality, Initial, Variability};
 use serde::Serialize;
 use std::collections::HashMap;
-
-/// Role of a variable.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
-#[serde(rename_all = "camelCase")]
-pub enum Causality {
-    /// Set by the user, constant during a run unless tunable.
-    Parameter,
-    /// Computed from parameters.
-    CalculatedParameter,
-    /// Comes from outside.
-    Input,
-    /// Goes outside.
-    Output,
-    /// Inside only.
-    Local,
-    /// Time.
-    Independent,
-}
-
-/// When a variable may change.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
-#[serde(rename_all = "camelCase")]
-pub enum Variability {
-    /// Never.
-    Constant,
-    /// Not after initialisation.
-    Fixed,
-    /// Between communication points, by the user.
-    Tunable,
-    /// At events or communication points.
-    Discrete,
-    /// Always.
-    Continuous,
-}
-
-/// How a variable gets its first value.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
-#[serde(rename_all = "camelCase")]
-pub enum Initial {
-    /// It is the start value.
-    Exact,
-    /// An iteration begins at the start value.
-    Approx,
-    /// From other variables.
-    Calculated,
-}
 
 /// Type of a variable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]

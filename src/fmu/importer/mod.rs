@@ -17,7 +17,6 @@ mod reading;
 mod simulation;
 mod slave;
 mod trials;
-mod xml;
 
 pub use description::{
     Causality, CoSimulation, DefaultExperiment, DisplayUnit, Initial, Kind, ModelDescription,
@@ -34,6 +33,7 @@ pub use slave::{FmuState, Slave, Status};
 
 use crate::error::{Error, Result};
 use crate::fmu::resources::location_of;
+use crate::fmu::xml::Element;
 use findings::Findings;
 use library::Binary;
 use slave::Loaded;
@@ -100,7 +100,7 @@ impl Fmu {
         }
         let bytes = std::fs::read(&file).map_err(|e| Error::io(&file, e))?;
         let root = decoded(bytes)
-            .and_then(|text| xml::Element::parse(&text))
+            .and_then(|text| Element::parse(&text))
             .map_err(|e| e.in_file(DESCRIPTION_FILE))
             .map_err(|e| Error::input("archive", "a readable description", e.to_string()))?;
         let (description, reading) = reading::read(&root);

@@ -1,11 +1,12 @@
 //! From the XML tree to a [`ModelDescription`]. What is legal is taken; what is not becomes a finding and a default.
 
 use super::description::{
-    Causality, CoSimulation, DefaultExperiment, DisplayUnit, Initial, Kind, ModelDescription,
+    Causality, CoSimulation, DefaultExperiment, DisplayUnit, Kind, ModelDescription,
     ScalarVariable, SimpleType, TypeAttributes, Unit, Unknown, Value, Variability,
 };
 use super::findings::Findings;
-use super::xml::Element;
+use crate::fmu::standard::Word;
+use crate::fmu::xml::Element;
 use std::str::FromStr;
 
 const FILE: &str = "modelDescription.xml";
@@ -170,11 +171,11 @@ impl Reading {
         }
     }
 
-    fn choice<T: Copy>(&mut self, e: &Element, name: &str, choices: &[(&str, T)]) -> Option<T> {
+    fn choice<T: Word>(&mut self, e: &Element, name: &str) -> Option<T> {
         let value = e.attribute(name)?;
-        let found = choices.iter().find(|(n, _)| *n == value).map(|(_, t)| *t);
+        let found = T::ALL.iter().find(|(n, _)| *n == value).map(|(_, t)| *t);
         if found.is_none() {
-            let names: Vec<_> = choices.iter().map(|(n, _)| *n).collect();
+            let names: Vec<_> = T::ALL.iter().map(|(n, _)| *n).collect();
             self.not_a(e, name, &format!("one of {}", names.join(", ")), value);
         }
         found
@@ -274,7 +275,7 @@ impl Reading {
             );
             (Kind::Real, e)
         });
-        let stated = self.choice(e, "variability", &VARIABILITIES);
+        let stated = self.choice(e, "variability");
         self.required(e, "valueReference");
         ScalarVariable {
             name: self.required(e, "name"),
@@ -282,12 +283,10 @@ impl Reading {
                 .parsed(e, "valueReference", "a whole number below 2³²")
                 .unwrap_or(u32::MAX),
             description: text(e, "description"),
-            causality: self
-                .choice(e, "causality", &CAUSALITIES)
-                .unwrap_or(Causality::Local),
+            causality: self.choice(e, "causality").unwrap_or(Causality::Local),
             variability: stated.unwrap_or(Variability::Continuous),
             variability_stated: stated.is_some(),
-            initial: self.choice(e, "initial", &INITIALS),
+            initial: self.choice(e, "initial"),
             start: self.start(child, kind),
             declared_type: text(child, "declaredType"),
             attributes: self.type_attributes(child),
@@ -329,29 +328,6 @@ impl Reading {
         }
     }
 }
-
-const CAUSALITIES: [(&str, Causality); 6] = [
-    ("parameter", Causality::Parameter),
-    ("calculatedParameter", Causality::CalculatedParameter),
-    ("input", Causality::Input),
-    ("output", Causality::Output),
-    ("local", Causality::Local),
-    ("independent", Causality::Independent),
-];
-
-const VARIABILITIES: [(&str, Variability); 5] = [
-    ("constant", Variability::Constant),
-    ("fixed", Variability::Fixed),
-    ("tunable", Variability::Tunable),
-    ("discrete", Variability::Discrete),
-    ("continuous", Variability::Continuous),
-];
-
-const INITIALS: [(&str, Initial); 3] = [
-    ("exact", Initial::Exact),
-    ("approx", Initial::Approx),
-    ("calculated", Initial::Calculated),
-];
 
 fn typed_child(e: &Element) -> Option<(Kind, &Element)> {
     [

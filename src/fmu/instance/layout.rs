@@ -240,6 +240,7 @@ fn not_in_state(v: &Variable, (verb, allowed): (&str, StateSet), state: State) -
         Causality::Parameter => "a parameter",
         Causality::CalculatedParameter => "a calculated parameter",
         Causality::Local => "a constant",
+        Causality::Independent => "the time",
     };
     Refusal::error(format!(
         "`{}` ({what}, {:?}) cannot be {verb} in the state `{}`, only {}",

@@ -2,8 +2,8 @@
 
 use super::super::findings::Severity;
 use super::super::reading::read;
-use super::super::xml::Element;
 use super::check;
+use crate::fmu::xml::Element;
 
 /// A description without a flaw: time, tunable parameter, inputs, state, output, calculated parameter, string.
 const GOOD: &str = r#"<?xml version="1.0" encoding="UTF-8"?>

@@ -1,7 +1,8 @@
-//! A small tree of XML elements with line numbers, so that every finding can name its place.
+//! A small tree of XML elements: read with line numbers, so that every finding can name its place, and written.
 
 use crate::error::{Error, Result};
 use quick_xml::XmlVersion;
+use quick_xml::escape::partial_escape;
 use quick_xml::events::{BytesStart, Event};
 use quick_xml::reader::Reader;
 
@@ -15,7 +16,7 @@ const MAX_ATTRIBUTES: usize = 200;
 pub(super) struct Element {
     /// Name, with its prefix if it has one.
     pub name: String,
-    /// Line of the opening tag, counted from 1.
+    /// Line of the opening tag, counted from 1; 0 for an element to be written.
     pub line: usize,
     /// Names and unescaped values, in the order of the text.
     pub attributes: Vec<(String, String)>,
@@ -24,6 +25,61 @@ pub(super) struct Element {
 }
 
 impl Element {
+    /// An element to be written.
+    pub fn new(name: &str) -> Self {
+        Self {
+            name: name.to_owned(),
+            line: 0,
+            attributes: Vec::new(),
+            children: Vec::new(),
+        }
+    }
+
+    /// The same with one more attribute.
+    pub fn with(mut self, name: &str, value: impl ToString) -> Self {
+        self.attributes.push((name.to_owned(), value.to_string()));
+        self
+    }
+
+    /// The same with one more attribute if there is a value.
+    pub fn with_any(self, name: &str, value: Option<impl ToString>) -> Self {
+        match value {
+            Some(value) => self.with(name, value),
+            None => self,
+        }
+    }
+
+    /// The same with more children.
+    pub fn containing(mut self, children: impl IntoIterator<Item = Element>) -> Self {
+        self.children.extend(children);
+        self
+    }
+
+    /// The document: an element a line, two spaces a level.
+    pub fn document(&self) -> String {
+        let mut text = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
+        self.write(&mut text, 0);
+        text
+    }
+
+    fn write(&self, text: &mut String, depth: usize) {
+        let indent = "  ".repeat(depth);
+        text.push_str(&format!("{indent}<{}", self.name));
+        for (name, value) in &self.attributes {
+            let value = partial_escape(value.as_str()).replace('"', "&quot;");
+            text.push_str(&format!(" {name}=\"{value}\""));
+        }
+        if self.children.is_empty() {
+            text.push_str("/>\n");
+            return;
+        }
+        text.push_str(">\n");
+        for child in &self.children {
+            child.write(text, depth + 1);
+        }
+        text.push_str(&format!("{indent}</{}>\n", self.name));
+    }
+
     /// Reads a document.
     ///
     /// # Errors
@@ -146,6 +202,20 @@ mod tests {
         assert_eq!(root.child("b").unwrap().attribute("d"), Some(""));
         assert_eq!(root.child("b").unwrap().attribute("e"), None);
         assert_eq!(root.child("c").unwrap().line, 4);
+    }
+
+    #[test]
+    fn what_is_written_reads_back() {
+        let child = Element::new("b").with("d", "1 < \"2\" & 3 > 2");
+        let root = Element::new("a")
+            .with("x", 0.1)
+            .with_any("y", None::<f64>)
+            .containing([child.clone(), child]);
+        let mut read = Element::parse(&root.document()).unwrap();
+        assert_eq!((read.line, read.children[1].line), (2, 4));
+        read.line = 0;
+        read.children.iter_mut().for_each(|c| c.line = 0);
+        assert_eq!(read, root);
     }
 
     #[test]
