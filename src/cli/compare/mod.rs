@@ -1,8 +1,9 @@
-//! `aerodeck compare`: the thesis's comparisons on the embedded decks.
+//! `aerodeck compare`: the thesis's comparisons on the embedded decks, and any two time histories.
 
 mod decks;
 mod figures;
 mod models;
+mod signals;
 
 use super::answer::Answer;
 use super::output::OutputDir;
@@ -15,11 +16,12 @@ use crate::study::compare::{CompareOptions, ForceMetrics, ScoreSummary, Scoring,
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-/// Predicted against measured forces: one model on several decks, or several models on one
+/// Predicted against measured forces: one model on several decks, several models on one, or two signals of a file
 #[derive(clap::Subcommand)]
 pub enum Compare {
     Decks(decks::Args),
     Models(models::Args),
+    Signals(signals::Args),
 }
 
 /// Arguments of both comparisons.
@@ -82,6 +84,7 @@ pub fn run(command: &Compare, progress: &Progress) -> Result<Answer> {
     match command {
         Compare::Decks(args) => decks::run(args, progress),
         Compare::Models(args) => models::run(args, progress),
+        Compare::Signals(args) => signals::run(args, progress),
     }
 }
 

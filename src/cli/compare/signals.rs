@@ -1,0 +1,177 @@
+//! `aerodeck compare signals`: all metrics of two time histories of any laboratory file.
+
+use crate::cli::answer::Answer;
+use crate::cli::progress::Progress;
+use crate::comparison::{
+    BicoherenceParameters, DensityParameters, Metric, PhaseParameters, SignalPair,
+    StationarityParameters, WarpingParameters, WaveletParameters, bicoherence, magnitude,
+    magnitude_warped, peak, phase, probability_density, rms, stationarity, wavelet,
+    wavelet_normalised,
+};
+use crate::error::{Error, Result, positive};
+use crate::wind_tunnel::lab_files::ChannelSet;
+use serde::Serialize;
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+/// How alike two time histories are, by all metrics: phase, peak, RMS, magnitude, wavelets, distribution, stationarity, bicoherence
+///
+/// Example: aerodeck compare signals forces.csv --reference measured --compared predicted --sampling-hz 200
+#[derive(clap::Args)]
+#[command(verbatim_doc_comment)]
+pub struct Args {
+    /// CSV, MATLAB, HDF5 or TDMS file with both signals.
+    file: PathBuf,
+    /// Channel of the reference signal.
+    #[arg(long)]
+    reference: String,
+    /// Channel of the signal that is compared with it.
+    #[arg(long)]
+    compared: String,
+    /// Group (HDF5, TDMS) or struct (MATLAB) of the file to read.
+    #[arg(long)]
+    group: Option<String>,
+    /// Samples a second; by default what the file states.
+    #[arg(long)]
+    sampling_hz: Option<f64>,
+    /// Lowest frequency of wavelets, Hz.
+    #[arg(long, default_value_t = 0.2)]
+    from_hz: f64,
+    /// Highest frequency of wavelets, Hz.
+    #[arg(long, default_value_t = 12.0)]
+    to_hz: f64,
+    /// Frequencies between them.
+    #[arg(long, default_value_t = 120)]
+    levels: usize,
+    /// Delay that brings the phase metric to 1/e, s.
+    #[arg(long, default_value_t = 1.0)]
+    significant_delay: f64,
+    /// Seed of the surrogates.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+}
+
+/// One metric, or why there is none.
+#[derive(Serialize)]
+struct Line {
+    symbol: &'static str,
+    sees: &'static str,
+    value: Option<f64>,
+    details: serde_json::Value,
+    problem: Option<String>,
+}
+
+impl Line {
+    fn new<D: Serialize>(
+        symbol: &'static str,
+        sees: &'static str,
+        metric: Result<Metric<D>>,
+    ) -> Result<Self> {
+        let (value, details, problem) = match metric {
+            Ok(metric) => {
+                let details = serde_json::to_value(&metric.details);
+                let details = details.map_err(|e| Error::Numerical(e.to_string()))?;
+                (Some(metric.value), details, None)
+            }
+            Err(error) => (None, serde_json::Value::Null, Some(error.to_string())),
+        };
+        Ok(Self {
+            symbol,
+            sees,
+            value,
+            details,
+            problem,
+        })
+    }
+}
+
+/// Runs the command.
+pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+    let set = ChannelSet::read(&args.file, args.group.as_deref())?;
+    let channel = |name: &str| {
+        let found = set.channel(name);
+        found.map(|c| &c.samples[..]).ok_or_else(|| {
+            Error::input("channel", set.listing(), format!("`{name}`")).in_file(&args.file)
+        })
+    };
+    let (reference, compared) = (channel(&args.reference)?, channel(&args.compared)?);
+    let sampling_hz = args.sampling_hz.or(set.sampling_hz).ok_or_else(|| {
+        let expected = "a file that states it, or --sampling-hz";
+        Error::input("sampling frequency", expected, "neither").in_file(&args.file)
+    })?;
+    let sampling_hz = positive("--sampling-hz", sampling_hz)?;
+    let pair = SignalPair::new(reference, compared, 1.0 / sampling_hz)
+        .map_err(|e| e.in_file(&args.file))?;
+    let stage = progress.stage("metrics");
+    let lines = metrics(&pair, args)?;
+    drop(stage);
+    let missing = lines.iter().any(|l| l.problem.is_some());
+    Ok(Answer::new(account(args, &pair, &lines), &lines)?.with_verdict(!missing))
+}
+
+fn metrics(pair: &SignalPair<'_>, args: &Args) -> Result<Vec<Line>> {
+    let levels = WaveletParameters {
+        level_count: args.levels,
+        frequency_min_hz: args.from_hz,
+        frequency_max_hz: args.to_hz,
+        ..WaveletParameters::default()
+    };
+    let delay = PhaseParameters {
+        significant_delay_s: args.significant_delay,
+        ..PhaseParameters::default()
+    };
+    let surrogates = StationarityParameters {
+        wavelet: levels,
+        seed: args.seed,
+        ..StationarityParameters::default()
+    };
+    let coupling = BicoherenceParameters {
+        wavelet: levels,
+        seed: args.seed,
+        ..BicoherenceParameters::default()
+    };
+    let warping = magnitude_warped(pair, &WarpingParameters::default());
+    let density = probability_density(pair, &DensityParameters::default());
+    Ok(vec![
+        Line::new("M_phi", "mean delay", phase(pair, &delay))?,
+        Line::new("M_p", "largest absolute value", peak(pair))?,
+        Line::new("M_rms", "mean power", rms(pair))?,
+        Line::new("M_muw", "sample by sample difference", magnitude(pair))?,
+        Line::new("M_m", "the same after time warping", warping)?,
+        Line::new(
+            "M_w",
+            "amplitude over time and frequency",
+            wavelet(pair, &levels),
+        )?,
+        Line::new(
+            "M_wf",
+            "the same, each time normalised",
+            wavelet_normalised(pair, &levels),
+        )?,
+        Line::new("M_pdf", "distribution of values", density)?,
+        Line::new(
+            "M_s",
+            "non-stationary content",
+            stationarity(pair, &surrogates),
+        )?,
+        Line::new("M_b", "quadratic coupling", bicoherence(pair, &coupling))?,
+    ])
+}
+
+fn account(args: &Args, pair: &SignalPair<'_>, lines: &[Line]) -> String {
+    let mut text = format!(
+        "{} against {}: {} samples of {} s; 1 for equal signals\n",
+        args.compared,
+        args.reference,
+        pair.sample_count(),
+        pair.time_step_s()
+    );
+    for line in lines {
+        let found = match (&line.problem, line.value) {
+            (None, Some(value)) => format!("{value:>8.4}"),
+            (problem, _) => format!("    none: {}", problem.as_deref().unwrap_or("")),
+        };
+        let _ = writeln!(text, "{:<6} {:<35} {found}", line.symbol, line.sees);
+    }
+    text
+}
