@@ -5,7 +5,8 @@ use crate::aerodynamics::FlatPlate;
 use crate::aerodynamics::derivatives::{
     DerivativePoint, DerivativeTable, TableHeader, parse_csv_in, write_csv_in,
 };
-use proptest::prelude::*;
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
 use std::collections::BTreeMap;
 
 fn all_conventions() -> Vec<Convention> {
@@ -151,23 +152,21 @@ fn assert_same(a: &DerivativeTable, b: &DerivativeTable, what: &str) {
     }
 }
 
-proptest! {
-    #![proptest_config(ProptestConfig::with_cases(24))]
-
-    /// All 18 numbers from any convention to any other and back, through tables and through the text of files.
-    #[test]
-    fn every_pair_of_conventions_round_trips(
-        v_hats in prop::collection::hash_set(1u32..100_000, 3),
-        values in prop::collection::vec(-50.0..50.0f64, 54),
-    ) {
-        let v_hats: Vec<f64> = v_hats.into_iter().map(|n| f64::from(n) * 1e-3).collect();
+/// All 18 numbers from any convention to any other and back, through tables and through the text of files.
+#[test]
+fn every_pair_of_conventions_round_trips() {
+    let mut random = ChaCha8Rng::seed_from_u64(1);
+    for _ in 0..24 {
+        // three different reduced velocities
+        let v_hats = [1.0, 1e3, 1e6].map(|decade| decade * random.random_range(1e-3..0.9));
+        let values: Vec<f64> = (0..54).map(|_| random.random_range(-50.0..50.0)).collect();
         let table = table_of(&v_hats, &values);
         for from in all_conventions() {
             let mut text = Vec::new();
             write_csv_in(&table, &from, &mut text).unwrap();
             let text = String::from_utf8(text).unwrap();
             let (read, said) = parse_csv_in(&text, StatedConvention::default()).unwrap();
-            prop_assert_eq!(said, from);
+            assert_eq!(said, from);
             assert_same(&table, &read, &from.to_string());
             for to in all_conventions() {
                 let there = to.express(&read).to_table().unwrap();
@@ -175,8 +174,8 @@ proptest! {
                 let original = from.express(&table);
                 for (a, b) in original.derivatives.iter().zip(&back.derivatives) {
                     for (p, q) in a.points.iter().zip(&b.points) {
-                        prop_assert!((p.argument / q.argument - 1.0).abs() < 1e-12);
-                        prop_assert!((p.value - q.value).abs() <= 1e-12 * p.value.abs());
+                        assert!((p.argument / q.argument - 1.0).abs() < 1e-12);
+                        assert!((p.value - q.value).abs() <= 1e-12 * p.value.abs());
                     }
                 }
             }
