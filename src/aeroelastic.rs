@@ -12,14 +12,10 @@
 //! corrected; the force is held over each step `Δt = Δs B/V`.
 
 mod equilibrium;
-mod rational_form;
 
 pub use equilibrium::{EquilibriumEnd, EquilibriumPath, StaticEquilibrium, static_equilibria};
-pub use rational_form::{RationalDescriptor, RationalForces};
 
-use crate::aerodynamics::{
-    AerodynamicModel, ContinuousRealization, DiscreteRealization, Realization,
-};
+use crate::aerodynamics::{ContinuousRealization, DiscreteRealization, Realizable, Realization};
 use crate::error::{Error, Result, non_negative, positive};
 use crate::section::Structure;
 use crate::state_space::{Continuous, Discrete, StateSpace, eigenvalues, step_matrices};
@@ -83,12 +79,9 @@ impl CoupledSection {
     /// Couples a structure and a force model that has a realisation.
     ///
     /// # Errors
-    /// [`Error::Numerical`] for a model that is only a `G(K)`; those of [`CoupledSection::new`].
-    pub fn with_model(structure: &Structure, model: &dyn AerodynamicModel) -> Result<Self> {
-        let realization = model
-            .realize()
-            .ok_or_else(|| Error::Numerical("the model has no state-space realisation".into()))?;
-        Self::new(structure.clone(), realization)
+    /// Those of [`CoupledSection::new`].
+    pub fn with_model(structure: &Structure, model: &dyn Realizable) -> Result<Self> {
+        Self::new(structure.clone(), model.realize())
     }
 
     /// Couples a structure and a realisation of the same degrees of freedom.
@@ -344,7 +337,7 @@ fn at_axis(s: &Structure, aerodynamics: Realization) -> Realization {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::aerodynamics::{AerodynamicModel, RationalModel};
+    use crate::aerodynamics::{RationalModel, Realizable};
     use crate::section::SectionModel;
 
     /// Eigenvalues of the IABSE 1.1a structure with Jones's rational function, six printed decimals.
@@ -352,7 +345,7 @@ mod tests {
     fn jones_eigenvalues() {
         let section = CoupledSection::new(
             SectionModel::iabse_1_1a().structure().unwrap(),
-            RationalModel::jones_flat_plate().realize().unwrap(),
+            RationalModel::jones_flat_plate().realize(),
         )
         .unwrap();
         let cases: [(f64, [(f64, f64); 6]); 2] = [

@@ -8,7 +8,7 @@ use super::answer::{Findings, FlutterSearch, Reach, UnstableStart, choose, entry
 use super::onset::{Onset, OnsetMethod};
 use super::search::root;
 use super::tracking::branch_name;
-use crate::aerodynamics::{AerodynamicModel, Realization, TransferMatrix};
+use crate::aerodynamics::{AerodynamicModel, TransferMatrix};
 use crate::error::{Error, Result, positive};
 use crate::section::{Dof, Structure};
 use crate::state_space::complex;
@@ -297,9 +297,6 @@ impl AerodynamicModel for OneDof<'_> {
     fn transfer(&self, k: ReducedFrequency) -> Result<TransferMatrix> {
         let g = self.structure.at_axis(self.model.transfer(k)?);
         Ok(DMatrix::from_element(1, 1, g[(self.dof, self.dof)]))
-    }
-    fn realize(&self) -> Option<Realization> {
-        None
     }
     fn known_range(&self) -> Option<ReducedFrequencyRange> {
         self.model.known_range()

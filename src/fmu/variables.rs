@@ -12,7 +12,6 @@ mod tests;
 mod words;
 
 pub use parameters::SectionParameter;
-pub use section::filters;
 
 use super::si::Unit;
 use crate::error::{Error, Result};
