@@ -18,7 +18,7 @@ pub use equilibrium::{EquilibriumEnd, EquilibriumPath, StaticEquilibrium, static
 use crate::aerodynamics::{ContinuousRealization, DiscreteRealization, Realizable, Realization};
 use crate::error::{Error, Result, non_negative, positive};
 use crate::section::Structure;
-use crate::state_space::{Continuous, Discrete, StateSpace, eigenvalues, step_matrices};
+use crate::state_space::{Continuous, Discrete, StateSpace, c2d, eigenvalues, first_order};
 use nalgebra::{Complex, DMatrix};
 
 /// An elastically suspended section with a realised aerodynamic model.
@@ -230,7 +230,7 @@ impl CoupledSection {
         let (n, filters) = (s.dofs.len(), aero.a.nrows());
         let step = aero.delta_s * s.width_m / speed;
         let (a_c, b_c) = self.structure_alone();
-        let held = step_matrices(&a_c, &b_c, step)?;
+        let held = c2d(&a_c, &b_c, step)?;
         let force = self.force_of_filters(aero, speed);
         let drive = DMatrix::from_fn(filters, 2 * n, |l, j| {
             if j < n {
@@ -303,12 +303,7 @@ impl CoupledSection {
     pub fn structure_alone(&self) -> (DMatrix<f64>, DMatrix<f64>) {
         let s = &self.structure;
         let n = s.dofs.len();
-        let mut a = DMatrix::zeros(2 * n, 2 * n);
-        a.view_mut((0, n), (n, n)).fill_with_identity();
-        a.view_mut((n, 0), (n, n))
-            .copy_from(&(-&self.inverse_mass * &s.stiffness));
-        a.view_mut((n, n), (n, n))
-            .copy_from(&(-&self.inverse_mass * &s.damping));
+        let a = first_order(&self.inverse_mass, &-&s.stiffness, &-&s.damping);
         let mut b = DMatrix::zeros(2 * n, n);
         b.view_mut((n, 0), (n, n)).copy_from(&self.inverse_mass);
         (a, b)

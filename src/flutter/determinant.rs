@@ -11,7 +11,7 @@ use super::tracking::branch_name;
 use crate::aerodynamics::{AerodynamicModel, TransferMatrix};
 use crate::error::{Error, Result, positive};
 use crate::section::{Dof, Structure};
-use crate::state_space::complex;
+use crate::state_space::{complex, first_order};
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use nalgebra::{Complex, DMatrix, DVector, Schur};
 
@@ -178,21 +178,14 @@ impl Problem<'_> {
     /// The same with a part of the density of the air.
     fn frequencies_in(&self, k: f64, part: f64) -> Result<Vec<Complex<f64>>> {
         let s = self.structure;
-        let n = s.dofs.len();
         let g = self.model.transfer(ReducedFrequency::from_full_width(k))?;
         let air = 0.5 * part * s.air_density_kg_m3 * (s.width_m / k).powi(2);
         let mass = complex(&s.mass) + s.to_physical(&g) * Complex::new(air, 0.0);
         let inverse = mass
             .try_inverse()
             .ok_or_else(|| Error::Numerical(format!("determinant: singular at K = {k}")))?;
-        let mut companion = DMatrix::zeros(2 * n, 2 * n);
-        companion.view_mut((0, n), (n, n)).fill_with_identity();
-        companion
-            .view_mut((n, 0), (n, n))
-            .copy_from(&(&inverse * complex(&s.stiffness)));
-        companion
-            .view_mut((n, n), (n, n))
-            .copy_from(&(inverse * complex(&s.damping) * Complex::i()));
+        let on_rate = complex(&s.damping) * Complex::i();
+        let companion = first_order(&inverse, &complex(&s.stiffness), &on_rate);
         if !companion
             .iter()
             .all(|z| z.re.is_finite() && z.im.is_finite())

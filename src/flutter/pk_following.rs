@@ -7,9 +7,9 @@ use super::tracking::branch_name;
 use crate::aerodynamics::AerodynamicModel;
 use crate::error::Result;
 use crate::section::{Dof, Structure};
-use crate::state_space::{eigenvalues, eigenvector};
+use crate::state_space::{eigenvalues, eigenvector, first_order};
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
-use nalgebra::{Complex, DMatrix, DVector};
+use nalgebra::{Complex, DVector};
 use std::f64::consts::TAU;
 
 /// A step is halved until every mode changes little, at most this many times.
@@ -232,12 +232,7 @@ impl Iteration<'_> {
             return None;
         }
         let inverse = s.mass.clone().try_inverse()?;
-        let mut a = DMatrix::zeros(2 * n, 2 * n);
-        a.view_mut((0, n), (n, n)).fill_with_identity();
-        a.view_mut((n, 0), (n, n))
-            .copy_from(&(-&inverse * &s.stiffness));
-        a.view_mut((n, n), (n, n))
-            .copy_from(&(-inverse * &s.damping));
+        let a = first_order(&inverse, &-&s.stiffness, &-&s.damping);
         let mut natural = eigenvalues(&a).ok()?;
         natural.retain(|z| z.im > 0.0);
         natural.sort_by(|a, b| a.im.total_cmp(&b.im));

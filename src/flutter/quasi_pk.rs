@@ -8,7 +8,7 @@
 use crate::aerodynamics::AerodynamicModel;
 use crate::error::{Error, Result};
 use crate::section::Structure;
-use crate::state_space::{eigenvalues, eigenvector};
+use crate::state_space::{eigenvalues, eigenvector, first_order};
 use crate::units::ReducedFrequency;
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -96,12 +96,7 @@ fn frozen(
         .clone()
         .try_inverse()
         .ok_or_else(|| Error::Numerical("quasi-p-k: a degree of freedom has no mass".into()))?;
-    let n = s.dofs.len();
-    let mut a = DMatrix::zeros(2 * n, 2 * n);
-    a.view_mut((0, n), (n, n)).fill_with_identity();
-    a.view_mut((n, 0), (n, n))
-        .copy_from(&(&inverse * (force.map(|z| z.re) - &s.stiffness)));
-    a.view_mut((n, n), (n, n))
-        .copy_from(&(inverse * (force.map(|z| z.im / omega) - &s.damping)));
-    Ok(a)
+    let on_motion = force.map(|z| z.re) - &s.stiffness;
+    let on_rate = force.map(|z| z.im / omega) - &s.damping;
+    Ok(first_order(&inverse, &on_motion, &on_rate))
 }

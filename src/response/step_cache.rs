@@ -2,7 +2,7 @@
 
 use crate::aeroelastic::{CoupledSection, CoupledSystem};
 use crate::error::{Error, Result};
-use crate::state_space::{StepMatrices, step_matrices};
+use crate::state_space::{StepMatrices, c2d};
 
 /// Pairs of wind speed and step size that are remembered. Importers whose step jitters in the last bits come back to a
 /// handful of values; a wind speed that never repeats needs no more.
@@ -129,7 +129,7 @@ impl StepCache {
             let CoupledSystem::Continuous(s) = section.at(speed)? else {
                 return Err(Error::Numerical("step: the model is sampled".into()));
             };
-            Ok(pack(&step_matrices(&s.a, &s.b, step)?))
+            Ok(pack(&c2d(&s.a, &s.b, step)?))
         })
     }
 
@@ -137,7 +137,7 @@ impl StepCache {
     pub(super) fn structure(&mut self, section: &CoupledSection, step: f64) -> Result<&StepEntry> {
         self.steps.get((0, step.to_bits()), || {
             let (a, b) = section.structure_alone();
-            Ok(pack(&step_matrices(&a, &b, step)?))
+            Ok(pack(&c2d(&a, &b, step)?))
         })
     }
 
