@@ -6,12 +6,11 @@
 
 use super::answer::{Findings, FlutterSearch, Reach, UnstableStart, choose, entry_reason};
 use super::onset::{Onset, OnsetMethod};
-use super::search::root;
 use super::tracking::branch_name;
 use crate::aerodynamics::{AerodynamicModel, TransferMatrix};
 use crate::error::{Error, Result, positive};
 use crate::section::{Dof, Structure};
-use crate::state_space::{complex, first_order};
+use crate::state_space::{complex, first_order, root};
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use nalgebra::{Complex, DMatrix, DVector, Schur};
 

@@ -2,12 +2,11 @@
 
 use super::answer::Reach;
 use super::quasi_pk::{PkMode, pk_mode, pk_mode_at};
-use super::search::root;
 use super::tracking::branch_name;
 use crate::aerodynamics::AerodynamicModel;
 use crate::error::Result;
 use crate::section::{Dof, Structure};
-use crate::state_space::{eigenvalues, eigenvector, first_order};
+use crate::state_space::{eigenvalues, eigenvector, first_order, root};
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use nalgebra::{Complex, DVector};
 use std::f64::consts::TAU;

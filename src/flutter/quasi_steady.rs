@@ -5,12 +5,13 @@ use super::answer::{FlutterSearch, StableRange, UnstableStart};
 use super::curves::{FlutterCurves, ModeBranch, damping_ratio, trace_modes};
 use super::instability::{ModeAtOnset, classify};
 use super::onset::{Onset, OnsetMethod};
-use super::search::{OnsetSearch, root};
+use super::search::OnsetSearch;
 use super::tracking::{TrackedMode, Tracker, branch_name, oscillates};
 use crate::aerodynamics::quasi_steady::{LinearQuasiSteady, QuasiSteady};
 use crate::aeroelastic::{CoupledSection, EquilibriumEnd, EquilibriumPath, static_equilibria};
 use crate::error::{Error, Result};
 use crate::section::Structure;
+use crate::state_space::root;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use serde::Serialize;
 

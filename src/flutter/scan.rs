@@ -4,6 +4,7 @@ use super::answer::StableRange;
 use super::tracking::{Tracker, branch_name, lowest_speed, mode_shape, oscillates};
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, non_negative, positive};
+use crate::state_space::{boundary, golden_section};
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use nalgebra::Complex;
 use serde::Serialize;
@@ -246,29 +247,15 @@ impl<'a> Scan<'a> {
     }
 
     /// The highest point between two speeds, if it grows.
-    fn peak(&self, mut low: f64, mut high: f64) -> Result<Option<Point>> {
-        let part = 0.5 * (5.0_f64.sqrt() - 1.0);
-        let mut left = self.at(high - part * (high - low))?;
-        let mut right = self.at(low + part * (high - low))?;
-        for _ in 0..PEAK_STEPS {
-            if left.grows() || right.grows() {
-                break;
-            }
-            if left.rate() > right.rate() {
-                high = right.speed;
-                right = left;
-                left = self.at(high - part * (high - low))?;
-            } else {
-                low = left.speed;
-                left = right;
-                right = self.at(low + part * (high - low))?;
-            }
-        }
-        let highest = if left.rate() > right.rate() {
-            left
-        } else {
-            right
+    fn peak(&self, low: f64, high: f64) -> Result<Option<Point>> {
+        let mut steps = 0;
+        let done = |_, left: &Point, right: &Point| {
+            steps += 1;
+            left.grows() || right.grows() || steps > PEAK_STEPS
         };
+        let higher = |a: &Point, b: &Point| a.rate() > b.rate();
+        let (_, [left, right]) = golden_section((low, high), |v| self.at(v), higher, done)?;
+        let highest = if higher(&left, &right) { left } else { right };
         Ok(highest.grows().then_some(highest))
     }
 
@@ -312,16 +299,11 @@ impl<'a> Scan<'a> {
     }
 
     /// The last speed from `yes` towards `no` at which the test still holds.
-    fn edge(&self, mut yes: f64, mut no: f64, test: impl Fn(&Point) -> bool) -> Result<f64> {
-        while (yes - no).abs() > EDGE_TOLERANCE * yes {
-            let middle = 0.5 * (yes + no);
-            if test(&self.at(middle)?) {
-                yes = middle;
-            } else {
-                no = middle;
-            }
-        }
-        Ok(yes)
+    fn edge(&self, yes: f64, no: f64, test: impl Fn(&Point) -> bool) -> Result<f64> {
+        let (last, _) = boundary(yes, no, EDGE_TOLERANCE, |v| {
+            Ok::<_, Error>(test(&self.at(v)?))
+        })?;
+        Ok(last)
     }
 
     /// The structural mode that `lambda` belongs to, followed from still air; where modes cannot be followed, the degree

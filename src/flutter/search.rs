@@ -8,13 +8,9 @@ use super::tracking::{TrackedMode, Tracker, branch_name};
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, positive};
 use crate::section::Dof;
+use crate::state_space::root;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use serde::{Deserialize, Serialize};
-
-/// Relative width of the bracket at which the root search stops: rounding of the eigenvalues.
-const ROOT_TOLERANCE: f64 = 1e-13;
-/// The secant steps converge in about ten; bisection alone in fifty.
-const MAX_ROOT_STEPS: usize = 80;
 
 /// Where and how densely to look.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -221,36 +217,4 @@ fn single_dof(dof: Dof, mode_ratio: f64) -> bool {
         Dof::Vertical => mode_ratio > 20.0,
         Dof::Lateral => false,
     }
-}
-
-/// Zero of `f` in a bracket with a sign change, by secant steps kept inside (Illinois) and bisection.
-pub(super) fn root(
-    low: (f64, f64),
-    high: (f64, f64),
-    f: impl Fn(f64) -> Result<f64>,
-) -> Result<f64> {
-    let (mut a, mut fa) = low;
-    let (mut b, mut fb) = high;
-    for step in 0..MAX_ROOT_STEPS {
-        if fb == 0.0 || (b - a).abs() <= ROOT_TOLERANCE * b.abs() {
-            break;
-        }
-        let secant = b - fb * (b - a) / (fb - fa);
-        let middle = 0.5 * (a + b);
-        let inside = (secant - a) * (secant - b) < 0.0;
-        let x = if inside && step % 4 != 3 {
-            secant
-        } else {
-            middle
-        };
-        let fx = f(x)?;
-        if (fx >= 0.0) == (fb >= 0.0) {
-            (b, fb) = (x, fx);
-            fa *= 0.5;
-        } else {
-            (a, fa) = (x, fx);
-            fb *= 0.5;
-        }
-    }
-    Ok(b)
 }

@@ -3,10 +3,12 @@
 mod discretize;
 mod francis;
 mod poles;
+mod roots;
 pub mod rows;
 
 pub use discretize::{StepMatrices, c2d, matrix_exponential};
 pub use poles::{balance, eigenvalues, eigenvector};
+pub use roots::{boundary, golden_section, root};
 
 use crate::error::{Error, Result};
 use nalgebra::{Complex, ComplexField, DMatrix};
