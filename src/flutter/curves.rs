@@ -1,6 +1,7 @@
 //! Frequencies, damping ratios and shapes of the tracked modes over wind speed (V-f and V-g curves).
 
-use super::tracking::{Tracker, branch_name};
+use super::following::{Follower, branch_name};
+use super::tracking::Tracker;
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, non_negative};
 use crate::section::Dof;
@@ -91,7 +92,8 @@ pub fn trace_modes(
     section: &CoupledSection,
     speeds_m_s: &[f64],
 ) -> Result<FlutterCurves> {
-    let mut tracker = Tracker::start(section)?;
+    let tracker = Tracker::new(section);
+    let mut modes = tracker.start()?;
     let mut branches = empty_branches(&section.structure().dofs, speeds_m_s.len());
     let (mut last, mut ended) = (0.0, None);
     for &speed in speeds_m_s {
@@ -103,19 +105,19 @@ pub fn trace_modes(
             ));
         }
         last = speed;
-        if speed < tracker.speed {
+        if speed < modes.speed {
             // below the first speed at which the sampled system resolves the modes nothing can be said
             continue;
         }
-        tracker = match tracker.advance(speed) {
-            Ok(tracker) => tracker,
+        modes = match tracker.advance(&modes, speed) {
+            Ok(modes) => modes,
             Err(Error::Numerical(why)) => {
                 ended = Some(why);
                 break;
             }
             other => other?,
         };
-        for mode in &tracker.modes {
+        for mode in &modes.all {
             branches[mode.branch].points.push(ModePoint {
                 speed_m_s: speed,
                 eigenvalue: mode.lambda.into(),

@@ -5,8 +5,8 @@
 //! section flutters (Theodorsen's method with viscous damping).
 
 use super::answer::{Findings, FlutterSearch, Reach, UnstableStart, choose, entry_reason};
+use super::following::branch_name;
 use super::onset::{Onset, OnsetMethod};
-use super::tracking::branch_name;
 use crate::aerodynamics::{AerodynamicModel, TransferMatrix};
 use crate::error::{Error, Result, positive};
 use crate::section::{Dof, Structure};

@@ -1,7 +1,8 @@
 //! All eigenvalues over wind speed: the speeds at which any oscillation grows, found without following modes.
 
 use super::answer::StableRange;
-use super::tracking::{Tracker, branch_name, lowest_speed, mode_shape, oscillates};
+use super::following::{branch_name, dimensionless};
+use super::tracking::{Tracker, lowest_speed, mode_shape, oscillates};
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, non_negative, positive};
 use crate::state_space::{boundary, golden_section};
@@ -310,9 +311,9 @@ impl<'a> Scan<'a> {
     /// of freedom that moves most.
     pub(super) fn branch(&self, speed: f64, lambda: Complex<f64>) -> String {
         let dofs = &self.section.structure().dofs;
-        match Tracker::start(self.section).and_then(|t| t.advance(speed)) {
+        match Tracker::new(self.section).at(speed) {
             Ok(tracked) => tracked
-                .modes
+                .all
                 .iter()
                 .find(|m| (m.lambda - lambda).norm() < 1e-6 * lambda.norm())
                 .map_or(AERODYNAMIC.to_owned(), |m| branch_name(dofs[m.branch])),
@@ -321,14 +322,8 @@ impl<'a> Scan<'a> {
                 .at(speed)
                 .and_then(|system| mode_shape(self.section, &system, lambda))
                 .map_or(AERODYNAMIC.to_owned(), |shape| {
-                    let scale = |i: usize| dofs[i].motion_scale(self.section.structure().width_m);
-                    let most = (0..shape.len())
-                        .max_by(|i, j| {
-                            let size = |i: usize| shape[i].norm() * scale(i);
-                            size(*i).total_cmp(&size(*j))
-                        })
-                        .unwrap_or(0);
-                    branch_name(dofs[most])
+                    let sizes = dimensionless(self.section.structure(), &shape).map(|z| z.norm());
+                    branch_name(dofs[sizes.imax()])
                 }),
         }
     }
