@@ -174,9 +174,7 @@ impl CoupledSection {
         let q = half_rho * speed * speed;
         let stiffness = s.scaled(&aero.e0) * q - &s.stiffness;
         let damping = s.scaled(&aero.e1) * (half_rho * speed * s.width_m) - &s.damping;
-        let force_of_filters = DMatrix::from_fn(n, filters, |i, l| {
-            q * s.dofs[i].force_scale(s.width_m) * aero.c[(i, l)]
-        });
+        let force_of_filters = self.force_of_filters(&aero.c, speed);
         let mut a = DMatrix::zeros(2 * n + filters, 2 * n + filters);
         a.view_mut((0, n), (n, n)).fill_with_identity();
         // [K, R, C] acting on the state; the accelerations are its product with the inverse mass
@@ -231,7 +229,7 @@ impl CoupledSection {
         let step = aero.delta_s * s.width_m / speed;
         let (a_c, b_c) = self.structure_alone();
         let held = c2d(&a_c, &b_c, step)?;
-        let force = self.force_of_filters(aero, speed);
+        let force = self.force_of_filters(&aero.c, speed);
         let drive = DMatrix::from_fn(filters, 2 * n, |l, j| {
             if j < n {
                 aero.b[(l, j)] * s.dofs[j].motion_scale(s.width_m)
@@ -285,17 +283,17 @@ impl CoupledSection {
             }
             Realization::Discrete(d) => {
                 let (a, _) = self.structure_alone();
-                Ok(self.sampled_outputs(&a, &self.force_of_filters(d, speed_m_s)))
+                Ok(self.sampled_outputs(&a, &self.force_of_filters(&d.c, speed_m_s)))
             }
         }
     }
 
     /// `½ρV² diag(B, B, B²) C`, n×N.
-    fn force_of_filters(&self, aero: &DiscreteRealization, speed: f64) -> DMatrix<f64> {
+    fn force_of_filters(&self, c: &DMatrix<f64>, speed: f64) -> DMatrix<f64> {
         let s = &self.structure;
         let q = 0.5 * s.air_density_kg_m3 * speed * speed;
-        DMatrix::from_fn(s.dofs.len(), aero.a.nrows(), |i, l| {
-            q * s.dofs[i].force_scale(s.width_m) * aero.c[(i, l)]
+        DMatrix::from_fn(c.nrows(), c.ncols(), |i, l| {
+            q * s.dofs[i].force_scale(s.width_m) * c[(i, l)]
         })
     }
 

@@ -1,6 +1,6 @@
 //! Frequencies, damping ratios and shapes of the tracked modes over wind speed (V-f and V-g curves).
 
-use super::following::{Follower, branch_name};
+use super::following::{Follower, Mode, branch_name};
 use super::tracking::Tracker;
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, non_negative};
@@ -25,6 +25,20 @@ pub struct ModePoint {
     pub shape: Vec<Complex64>,
     /// Whether `K = ωB/V` lies in the range in which the model was tested; `None` when there is no such range.
     pub in_tested_range: Option<bool>,
+}
+
+impl ModePoint {
+    /// A mode at a wind speed, its displacements divided by `size`; nothing about ranges yet.
+    pub(super) fn new(speed_m_s: f64, mode: &Mode, size: f64) -> Self {
+        Self {
+            speed_m_s,
+            eigenvalue: mode.lambda.into(),
+            frequency_hz: mode.lambda.im / TAU,
+            damping_ratio: damping_ratio(mode.lambda),
+            shape: mode.shape.iter().map(|z| (z / size).into()).collect(),
+            in_tested_range: None,
+        }
+    }
 }
 
 /// A complex number as it is written to files.
@@ -118,14 +132,9 @@ pub fn trace_modes(
             other => other?,
         };
         for mode in &modes.all {
-            branches[mode.branch].points.push(ModePoint {
-                speed_m_s: speed,
-                eigenvalue: mode.lambda.into(),
-                frequency_hz: mode.lambda.im.abs() / TAU,
-                damping_ratio: damping_ratio(mode.lambda),
-                shape: mode.shape.iter().map(|z| (*z).into()).collect(),
-                in_tested_range: None,
-            });
+            branches[mode.branch]
+                .points
+                .push(ModePoint::new(speed, mode, 1.0));
         }
     }
     Ok(FlutterCurves {

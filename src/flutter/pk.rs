@@ -6,8 +6,8 @@
 //! means what measured derivatives mean.
 
 use super::answer::{Findings, FlutterSearch, StableRange, choose, entry_reason};
-use super::curves::{FlutterCurves, ModePoint, damping_ratio, empty_branches};
-use super::following::{Follower, Watch};
+use super::curves::{FlutterCurves, ModePoint, empty_branches};
+use super::following::{Follower, Watch, dimensionless};
 use super::pk_following::Iteration;
 use super::scan::growing;
 use super::search::OnsetSearch;
@@ -16,7 +16,6 @@ use crate::error::{Error, Result, positive};
 use crate::section::Structure;
 use crate::units::ReducedFrequencyRange;
 use nalgebra::Complex;
-use std::f64::consts::TAU;
 
 /// Speeds from still air to that of a single mode.
 const STEPS_TO_MODE: usize = 100;
@@ -49,14 +48,9 @@ pub fn pk_curves(
     iteration.march(speeds_m_s, &mut |_, at| {
         let asked = speeds_m_s.binary_search_by(|v| v.total_cmp(&at.speed));
         for mode in at.all.iter().filter(|_| asked.is_ok()) {
-            branches[mode.branch].points.push(ModePoint {
-                speed_m_s: at.speed,
-                eigenvalue: mode.lambda.into(),
-                frequency_hz: mode.lambda.im / TAU,
-                damping_ratio: damping_ratio(mode.lambda),
-                shape: iteration.scaled(mode),
-                in_tested_range: None,
-            });
+            let size = dimensionless(structure, &mode.shape).norm();
+            let point = ModePoint::new(at.speed, mode, size);
+            branches[mode.branch].points.push(point);
         }
         Ok(())
     })?;

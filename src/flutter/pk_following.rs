@@ -263,12 +263,6 @@ impl Iteration<'_> {
         let of = |m: &Mode| dimensionless(self.structure, &m.shape);
         assurance(&of(a), &of(b))
     }
-
-    /// Displacements with unit norm in dimensionless motion.
-    pub(super) fn scaled(&self, mode: &Mode) -> Vec<super::curves::Complex64> {
-        let size = dimensionless(self.structure, &mode.shape).norm();
-        mode.shape.iter().map(|z| (z / size).into()).collect()
-    }
 }
 
 impl Follower for Iteration<'_> {

@@ -2,7 +2,7 @@
 //! equilibrium of that speed, so that the linear model itself changes with the speed.
 
 use super::answer::{FlutterSearch, StableRange, UnstableStart};
-use super::curves::{FlutterCurves, ModeBranch, damping_ratio, trace_modes};
+use super::curves::{FlutterCurves, damping_ratio, empty_branches, trace_modes};
 use super::following::{Mode, branch_name};
 use super::instability::{ModeAtOnset, classify};
 use super::onset::{Onset, OnsetMethod};
@@ -101,14 +101,7 @@ pub fn quasi_steady_modes(
     theory: &QuasiSteady,
     path: &EquilibriumPath,
 ) -> Result<FlutterCurves> {
-    let mut branches: Vec<ModeBranch> = structure
-        .dofs
-        .iter()
-        .map(|dof| ModeBranch {
-            name: branch_name(*dof),
-            points: Vec::with_capacity(path.points.len()),
-        })
-        .collect();
+    let mut branches = empty_branches(&structure.dofs, path.points.len());
     for point in &path.points {
         let linear = theory.linearised(point.rotation_rad)?;
         let at = trace_modes(
