@@ -6,7 +6,7 @@
 mod python;
 
 use aerodeck::aerodynamics::derivatives::embedded;
-use aerodeck::aerodynamics::{AerodynamicModel, LaguerreModel, Realization};
+use aerodeck::aerodynamics::{LaguerreModel, Realizable, Realization};
 use aerodeck::flutter::{LinearForces, OnsetSweep, SweepOutcome};
 use aerodeck::identification::{Form, FrequencyFit, fit_table};
 use aerodeck::reliability::{MonteCarloPlan, monte_carlo};
@@ -66,7 +66,7 @@ fn three_filters() -> TrainedModel {
         ..FrequencyFit::default()
     };
     let (model, report) = fit_table(&table.samples(&Dof::TWO), &Dof::TWO, &fit).expect("a fit");
-    let states = model.realize().expect("a realisation").states();
+    let states = model.realize().states();
     assert_eq!(states, 6, "one bank of three filters");
     TrainedModel {
         schema_version: SCHEMA_VERSION,
@@ -173,13 +173,13 @@ fn compare(model: &LaguerreModel, python: &Path) {
 }
 
 fn argument(model: &LaguerreModel, samples: &[(SectionModel, Vec<f64>)]) -> Value {
-    let Some(Realization::Continuous(r)) = model.realize() else {
+    let Realization::Continuous(r) = model.realize() else {
         panic!("not continuous")
     };
     let one = |(section, coefficients): &(SectionModel, Vec<f64>)| {
         let s = section.structure().expect("a structure");
         let diagonal = |m: &DMatrix<f64>| m.diagonal().iter().copied().collect::<Vec<_>>();
-        let Some(Realization::Continuous(r)) = replaced(model, coefficients).realize() else {
+        let Realization::Continuous(r) = replaced(model, coefficients).realize() else {
             panic!("not continuous")
         };
         json!({

@@ -6,7 +6,7 @@
 mod python;
 
 use aerodeck::aerodynamics::derivatives::embedded;
-use aerodeck::aerodynamics::{AerodynamicModel, ContinuousRealization, Realization};
+use aerodeck::aerodynamics::{ContinuousRealization, Realizable, Realization};
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::flutter::trace_modes;
 use aerodeck::fmu::importer::{Fmu, Slave};
@@ -205,7 +205,7 @@ fn rows(m: &DMatrix<f64>) -> Value {
 fn sweep(model: &TrainedModel, python: &Path) {
     const REPETITIONS: usize = 50;
     let structure = model.section.structure().expect("a structure");
-    let realization = model.model.realize().expect("a realisation");
+    let realization = model.model.realize();
     let Realization::Continuous(ContinuousRealization {
         a,
         b,

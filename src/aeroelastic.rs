@@ -12,17 +12,13 @@
 //! corrected; the force is held over each step `Δt = Δs B/V`.
 
 mod equilibrium;
-mod rational_form;
 
 pub use equilibrium::{EquilibriumEnd, EquilibriumPath, StaticEquilibrium, static_equilibria};
-pub use rational_form::{RationalDescriptor, RationalForces};
 
-use crate::aerodynamics::{
-    AerodynamicModel, ContinuousRealization, DiscreteRealization, Realization,
-};
+use crate::aerodynamics::{ContinuousRealization, DiscreteRealization, Realizable, Realization};
 use crate::error::{Error, Result, non_negative, positive};
 use crate::section::Structure;
-use crate::state_space::{Continuous, Discrete, StateSpace, eigenvalues, step_matrices};
+use crate::state_space::{Continuous, Discrete, StateSpace, c2d, eigenvalues, first_order};
 use nalgebra::{Complex, DMatrix};
 
 /// An elastically suspended section with a realised aerodynamic model.
@@ -83,12 +79,9 @@ impl CoupledSection {
     /// Couples a structure and a force model that has a realisation.
     ///
     /// # Errors
-    /// [`Error::Numerical`] for a model that is only a `G(K)`; those of [`CoupledSection::new`].
-    pub fn with_model(structure: &Structure, model: &dyn AerodynamicModel) -> Result<Self> {
-        let realization = model
-            .realize()
-            .ok_or_else(|| Error::Numerical("the model has no state-space realisation".into()))?;
-        Self::new(structure.clone(), realization)
+    /// Those of [`CoupledSection::new`].
+    pub fn with_model(structure: &Structure, model: &dyn Realizable) -> Result<Self> {
+        Self::new(structure.clone(), model.realize())
     }
 
     /// Couples a structure and a realisation of the same degrees of freedom.
@@ -181,9 +174,7 @@ impl CoupledSection {
         let q = half_rho * speed * speed;
         let stiffness = s.scaled(&aero.e0) * q - &s.stiffness;
         let damping = s.scaled(&aero.e1) * (half_rho * speed * s.width_m) - &s.damping;
-        let force_of_filters = DMatrix::from_fn(n, filters, |i, l| {
-            q * s.dofs[i].force_scale(s.width_m) * aero.c[(i, l)]
-        });
+        let force_of_filters = self.force_of_filters(&aero.c, speed);
         let mut a = DMatrix::zeros(2 * n + filters, 2 * n + filters);
         a.view_mut((0, n), (n, n)).fill_with_identity();
         // [K, R, C] acting on the state; the accelerations are its product with the inverse mass
@@ -237,8 +228,8 @@ impl CoupledSection {
         let (n, filters) = (s.dofs.len(), aero.a.nrows());
         let step = aero.delta_s * s.width_m / speed;
         let (a_c, b_c) = self.structure_alone();
-        let held = step_matrices(&a_c, &b_c, step)?;
-        let force = self.force_of_filters(aero, speed);
+        let held = c2d(&a_c, &b_c, step)?;
+        let force = self.force_of_filters(&aero.c, speed);
         let drive = DMatrix::from_fn(filters, 2 * n, |l, j| {
             if j < n {
                 aero.b[(l, j)] * s.dofs[j].motion_scale(s.width_m)
@@ -292,17 +283,17 @@ impl CoupledSection {
             }
             Realization::Discrete(d) => {
                 let (a, _) = self.structure_alone();
-                Ok(self.sampled_outputs(&a, &self.force_of_filters(d, speed_m_s)))
+                Ok(self.sampled_outputs(&a, &self.force_of_filters(&d.c, speed_m_s)))
             }
         }
     }
 
     /// `½ρV² diag(B, B, B²) C`, n×N.
-    fn force_of_filters(&self, aero: &DiscreteRealization, speed: f64) -> DMatrix<f64> {
+    fn force_of_filters(&self, c: &DMatrix<f64>, speed: f64) -> DMatrix<f64> {
         let s = &self.structure;
         let q = 0.5 * s.air_density_kg_m3 * speed * speed;
-        DMatrix::from_fn(s.dofs.len(), aero.a.nrows(), |i, l| {
-            q * s.dofs[i].force_scale(s.width_m) * aero.c[(i, l)]
+        DMatrix::from_fn(c.nrows(), c.ncols(), |i, l| {
+            q * s.dofs[i].force_scale(s.width_m) * c[(i, l)]
         })
     }
 
@@ -310,12 +301,7 @@ impl CoupledSection {
     pub fn structure_alone(&self) -> (DMatrix<f64>, DMatrix<f64>) {
         let s = &self.structure;
         let n = s.dofs.len();
-        let mut a = DMatrix::zeros(2 * n, 2 * n);
-        a.view_mut((0, n), (n, n)).fill_with_identity();
-        a.view_mut((n, 0), (n, n))
-            .copy_from(&(-&self.inverse_mass * &s.stiffness));
-        a.view_mut((n, n), (n, n))
-            .copy_from(&(-&self.inverse_mass * &s.damping));
+        let a = first_order(&self.inverse_mass, &-&s.stiffness, &-&s.damping);
         let mut b = DMatrix::zeros(2 * n, n);
         b.view_mut((n, 0), (n, n)).copy_from(&self.inverse_mass);
         (a, b)
@@ -344,7 +330,7 @@ fn at_axis(s: &Structure, aerodynamics: Realization) -> Realization {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::aerodynamics::{AerodynamicModel, RationalModel};
+    use crate::aerodynamics::{RationalModel, Realizable};
     use crate::section::SectionModel;
 
     /// Eigenvalues of the IABSE 1.1a structure with Jones's rational function, six printed decimals.
@@ -352,7 +338,7 @@ mod tests {
     fn jones_eigenvalues() {
         let section = CoupledSection::new(
             SectionModel::iabse_1_1a().structure().unwrap(),
-            RationalModel::jones_flat_plate().realize().unwrap(),
+            RationalModel::jones_flat_plate().realize(),
         )
         .unwrap();
         let cases: [(f64, [(f64, f64); 6]); 2] = [

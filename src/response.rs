@@ -103,6 +103,18 @@ pub struct Outputs {
     pub self_excited_force: Vec<f64>,
 }
 
+impl Outputs {
+    /// Displacements, rates, accelerations and self-excited forces.
+    pub fn lists(&self) -> [&Vec<f64>; 4] {
+        [
+            &self.displacement,
+            &self.rate,
+            &self.acceleration,
+            &self.self_excited_force,
+        ]
+    }
+}
+
 /// Steps a coupled section. A step is a pure function of state, inputs and step size: the cache only saves time.
 #[derive(Debug, Clone)]
 pub struct Stepper {
@@ -197,12 +209,12 @@ impl Stepper {
         if inputs.wind_speed_rate_m_s2 != 0.0 {
             return self.advance_varying_speed(state, inputs, step_s);
         }
-        let entry = self
+        let step = self
             .cache
             .full_system(&self.section, inputs.wind_speed_m_s, step_s)?;
         load(&mut self.operand, &state.values, inputs);
         let columns = active_columns(inputs, state.values.len());
-        apply(&entry.step, &self.operand[..columns], &mut state.values);
+        apply(step, &self.operand[..columns], &mut state.values);
         if state.values.iter().all(|x| x.is_finite()) {
             drop_what_died_out(&mut state.values);
             return Ok(());
@@ -230,7 +242,7 @@ impl Stepper {
         outputs.rate.extend_from_slice(&state.values[n..2 * n]);
         outputs.acceleration.resize(n, 0.0);
         outputs.self_excited_force.resize(n, 0.0);
-        let entry = self
+        let rows = self
             .cache
             .output_rows(&self.section, inputs.wind_speed_m_s.max(0.0))?;
         self.operand[..state.values.len()].copy_from_slice(&state.values);
@@ -238,7 +250,7 @@ impl Stepper {
         let columns = state.values.len() + n;
         let mut both = [0.0; 2 * MAX_DOFS];
         let both = &mut both[..2 * n];
-        apply(&entry.rows, &self.operand[..columns], both);
+        apply(rows, &self.operand[..columns], both);
         outputs.acceleration.copy_from_slice(&both[..n]);
         outputs.self_excited_force.copy_from_slice(&both[n..]);
         Ok(())

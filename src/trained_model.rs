@@ -2,7 +2,7 @@
 
 use crate::aerodynamics::{
     AerodynamicModel, DiscreteLaguerre, Lags, LaguerreModel, MinimumStateModel, RationalModel,
-    Realization, TransferMatrix,
+    Realizable, Realization, TransferMatrix,
 };
 use crate::error::{Error, Result, positive};
 use crate::section::{Dof, SectionModel};
@@ -55,7 +55,7 @@ impl Model {
         }
     }
 
-    fn inner(&self) -> &dyn AerodynamicModel {
+    fn inner(&self) -> &dyn Realizable {
         match self {
             Self::Laguerre(m) => m,
             Self::DiscreteLaguerre(m) => m,
@@ -105,7 +105,13 @@ impl AerodynamicModel for Model {
     fn transfer(&self, k: ReducedFrequency) -> Result<TransferMatrix> {
         self.inner().transfer(k)
     }
-    fn realize(&self) -> Option<Realization> {
+    fn realizable(&self) -> Option<&dyn Realizable> {
+        Some(self)
+    }
+}
+
+impl Realizable for Model {
+    fn realize(&self) -> Realization {
         self.inner().realize()
     }
 }

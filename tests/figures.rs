@@ -2,7 +2,7 @@
 #![cfg(feature = "cli")]
 
 use aerodeck::aerodynamics::derivatives::{Derivative, Part, embedded};
-use aerodeck::aerodynamics::{AerodynamicModel, FlatPlate, RationalModel};
+use aerodeck::aerodynamics::{AerodynamicModel, FlatPlate, RationalModel, Realizable};
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::flutter::{
     FlutterCurves, Onset, OnsetSearch, determinant_onset, find_onset, trace_modes,
@@ -21,7 +21,7 @@ use std::f64::consts::TAU;
 use std::path::Path;
 
 fn jones(section: &SectionModel) -> CoupledSection {
-    let model = RationalModel::jones_flat_plate().realize().unwrap();
+    let model = RationalModel::jones_flat_plate().realize();
     CoupledSection::new(section.structure().unwrap(), model).unwrap()
 }
 

@@ -1,7 +1,7 @@
 //! Exported FMUs of all kinds of models through our own importer: every check, every trial, and the onset by stepping
 //! against the eigenvalues.
 
-use aerodeck::aerodynamics::AerodynamicModel;
+use aerodeck::aerodynamics::Realizable;
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::flutter::{Onset, OnsetSearch, find_onset};
 use aerodeck::fmu::importer::{
@@ -35,11 +35,8 @@ fn exported(folder: &Path, kind: &str) -> PathBuf {
 
 fn by_eigenvalues(kind: &str) -> Onset {
     let model = model(kind);
-    let section = CoupledSection::new(
-        model.section.structure().unwrap(),
-        model.model.realize().unwrap(),
-    )
-    .unwrap();
+    let section =
+        CoupledSection::new(model.section.structure().unwrap(), model.model.realize()).unwrap();
     let search = OnsetSearch::default();
     let found = find_onset(kind, &section, &search, Some(model.tested_range)).unwrap();
     found.onset().unwrap().clone()

@@ -1,7 +1,7 @@
 //! From raw virtual campaigns with every disturbance to derivatives and onset.
 
 use aerodeck::aerodynamics::derivatives::{Part, embedded};
-use aerodeck::aerodynamics::{AerodynamicModel, FlatPlate};
+use aerodeck::aerodynamics::{FlatPlate, Realizable};
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::flutter::{OnsetSearch, find_onset};
 use aerodeck::identification::derivatives::{
@@ -21,7 +21,7 @@ fn sources(records: &[Record]) -> Vec<&dyn RecordSource> {
 fn onset_m_s(records: &[Record]) -> f64 {
     let (model, report) = fit_records(&sources(records), &TimeFit::default(), &|_| {}).unwrap();
     let structure = SectionModel::table_4_1().structure().unwrap();
-    let section = CoupledSection::new(structure, model.realize().unwrap()).unwrap();
+    let section = CoupledSection::new(structure, model.realize()).unwrap();
     let search = OnsetSearch {
         speed_max_m_s: 60.0,
         speeds: 120,

@@ -12,7 +12,7 @@ use aerodeck::aerodynamics::derivatives::{
     Derivative, DerivativePoint, DerivativeTable, Extrapolation, InterpolatedTable, Interpolation,
     TableHeader, write_csv,
 };
-use aerodeck::aerodynamics::{AerodynamicModel, FlatPlate, RationalModel};
+use aerodeck::aerodynamics::{AerodynamicModel, FlatPlate, RationalModel, Realizable};
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::flutter::{
     Instability, OnsetSearch, classify, determinant_onset, divergence_by_eigenvalues,
@@ -45,7 +45,7 @@ fn near(found: f64, expected: f64, tolerance: f64) {
 fn three_routes_on_one_force_model() {
     let structure = SectionModel::iabse_1_1a().structure().unwrap();
     let jones = RationalModel::jones_flat_plate();
-    let coupled = CoupledSection::new(structure.clone(), jones.realize().unwrap()).unwrap();
+    let coupled = CoupledSection::new(structure.clone(), jones.realize()).unwrap();
     let search = OnsetSearch {
         speed_max_m_s: 120.0,
         speeds: 100,

@@ -1,6 +1,6 @@
 //! Exact steps against an independent integration and against the sampled system's own matrices.
 
-use aerodeck::aerodynamics::{AerodynamicModel, DiscreteLaguerre, RationalModel};
+use aerodeck::aerodynamics::{DiscreteLaguerre, RationalModel, Realizable};
 use aerodeck::aeroelastic::{CoupledSection, CoupledSystem};
 use aerodeck::response::{Inputs, Outputs, SectionState, Stepper};
 use aerodeck::section::{Dof, SectionModel};
@@ -8,7 +8,7 @@ use nalgebra::{DMatrix, DVector};
 
 fn jones() -> Stepper {
     let structure = SectionModel::table_4_1().structure().unwrap();
-    let aero = RationalModel::jones_flat_plate().realize().unwrap();
+    let aero = RationalModel::jones_flat_plate().realize();
     Stepper::new(CoupledSection::new(structure, aero).unwrap())
 }
 
@@ -24,7 +24,7 @@ fn discrete() -> Stepper {
         ],
         vec![0.0; 2],
     );
-    Stepper::new(CoupledSection::new(structure, model.realize().unwrap()).unwrap())
+    Stepper::new(CoupledSection::new(structure, model.realize()).unwrap())
 }
 
 fn distance(a: &[f64], b: &[f64]) -> f64 {

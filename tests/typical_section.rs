@@ -3,7 +3,7 @@
 
 use aerodeck::aerodynamics::flat_plate::theodorsen;
 use aerodeck::aerodynamics::quasi_steady::{Arms, QuasiSteady, embedded};
-use aerodeck::aerodynamics::{AerodynamicModel, FlatPlate, GustSeries, RationalModel};
+use aerodeck::aerodynamics::{AerodynamicModel, FlatPlate, GustSeries, RationalModel, Realizable};
 use aerodeck::aeroelastic::{CoupledSection, static_equilibria};
 use aerodeck::flutter::{
     OnsetSearch, determinant_onset, divergence_by_eigenvalues, divergence_speed, find_onset,
@@ -138,7 +138,7 @@ fn both_descriptions_of_a_body_have_the_same_eigenvalues() {
                 .structure()
                 .unwrap();
             for kind in ["continuous_laguerre", "rational", "discrete_laguerre"] {
-                let aero = fixture(kind).model.realize().unwrap();
+                let aero = fixture(kind).model.realize();
                 let about = |s: Structure| CoupledSection::new(s, aero.clone()).unwrap();
                 let speed = 0.6 * s.stiffness[(1, 1)].sqrt() / s.mass[(1, 1)].sqrt() * s.width_m;
                 let of = |c: CoupledSection| c.at(speed).unwrap().eigenvalues().unwrap();
@@ -219,7 +219,7 @@ fn both_descriptions_of_a_body_move_alike() {
     let s = section.structure().unwrap();
     let t = to_mid_chord(&s, 1.0);
     for kind in ["continuous_laguerre", "rational", "discrete_laguerre"] {
-        let aero = fixture(kind).model.realize().unwrap();
+        let aero = fixture(kind).model.realize();
         let stepper =
             |s: &Structure| Stepper::new(CoupledSection::new(s.clone(), aero.clone()).unwrap());
         let (mut axis, mut chord) = (stepper(&s), stepper(&by_mid_chord(&s)));

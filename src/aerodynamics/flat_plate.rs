@@ -2,7 +2,7 @@
 //!
 //! T. Theodorsen, NACA Report 496 (1935), written for full width `B`, `k = K/2` and lift positive up.
 
-use super::{AerodynamicModel, Realization, TransferMatrix};
+use super::{AerodynamicModel, TransferMatrix};
 use crate::error::{Result, positive};
 use crate::section::Dof;
 use crate::units::ReducedFrequency;
@@ -59,10 +59,6 @@ impl AerodynamicModel for FlatPlate {
                 -p * (PI / 8.0) - p * p * rotary + lagged * (PI / 2.0),
             ],
         ))
-    }
-
-    fn realize(&self) -> Option<Realization> {
-        None
     }
 }
 

@@ -42,9 +42,6 @@ pub trait AerodynamicModel: Send + Sync {
     /// When the model does not say anything at this `K` (a table outside its range).
     fn transfer(&self, k: ReducedFrequency) -> Result<TransferMatrix>;
 
-    /// State-space realisation in dimensionless time; `None` for models known only as a `G(K)`.
-    fn realize(&self) -> Option<Realization>;
-
     /// Reduced frequencies to which the model's own statements are confined; `None` when it speaks at every `K`.
     ///
     /// A table knows nothing beyond its points. Outside this range it refuses or holds values, so that a mode can be
@@ -52,4 +49,15 @@ pub trait AerodynamicModel: Send + Sync {
     fn known_range(&self) -> Option<ReducedFrequencyRange> {
         None
     }
+
+    /// The model as one with a realisation; `None` when it is known only as a `G(K)`.
+    fn realizable(&self) -> Option<&dyn Realizable> {
+        None
+    }
+}
+
+/// A force model with a state-space realisation.
+pub trait Realizable: AerodynamicModel {
+    /// Its realisation in dimensionless time `s = Vt/B`; the frequency response is [`AerodynamicModel::transfer`].
+    fn realize(&self) -> Realization;
 }

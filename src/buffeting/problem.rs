@@ -77,24 +77,6 @@ pub struct GustForces {
 }
 
 impl GustForces {
-    /// From a matrix with one row a degree of freedom and the columns `u/V`, `w/V`.
-    ///
-    /// # Errors
-    /// [`Error::Input`] for another shape or numbers that are not finite.
-    pub fn new(dofs: &[Dof], matrix: DMatrix<f64>) -> Result<Self> {
-        if matrix.shape() != (dofs.len(), 2) || !matrix.iter().all(|x| x.is_finite()) {
-            return Err(Error::input(
-                "gust forces",
-                format!("{} rows of 2 finite numbers", dofs.len()),
-                format!("{:?}", matrix.shape()),
-            ));
-        }
-        Ok(Self {
-            dofs: dofs.to_vec(),
-            matrix,
-        })
-    }
-
     /// The thin plate: lift `2π w/V`, moment about mid-chord `(π/2) w/V`.
     pub fn flat_plate() -> Self {
         Self {
@@ -114,11 +96,6 @@ impl GustForces {
     /// Degrees of freedom of the rows.
     pub fn dofs(&self) -> &[Dof] {
         &self.dofs
-    }
-
-    /// The matrix, n×2.
-    pub fn matrix(&self) -> &DMatrix<f64> {
-        &self.matrix
     }
 }
 

@@ -19,14 +19,6 @@ pub enum GustComponent {
 impl GustComponent {
     /// Both, in the order of the columns of a buffeting matrix.
     pub const BOTH: [GustComponent; 2] = [GustComponent::Along, GustComponent::Vertical];
-
-    /// Symbol: `u`, `w`.
-    pub fn symbol(self) -> &'static str {
-        match self {
-            Self::Along => "u",
-            Self::Vertical => "w",
-        }
-    }
 }
 
 /// Shape of a spectrum over `x = fL/V`, all of the form `f S/σ² = a x (1 + e xᶜ)/(1 + b xᶜ)ᵈ`.

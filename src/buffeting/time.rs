@@ -131,14 +131,14 @@ pub fn time_ensemble(
             plan.records.to_string(),
         ));
     }
-    let realization = problem.model.realize().ok_or_else(|| {
+    let model = problem.model.realizable().ok_or_else(|| {
         Error::input(
             "buffeting in the time domain",
             "a model with a realisation",
             "one that is known only as a transfer matrix",
         )
     })?;
-    let section = CoupledSection::new(problem.structure.clone(), realization)?;
+    let section = CoupledSection::with_model(problem.structure, model)?;
     let grid = grid(problem, &section, speed_m_s, plan)?;
     let done = AtomicUsize::new(0);
     let runs = (0..plan.records)

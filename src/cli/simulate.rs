@@ -3,7 +3,6 @@
 use super::answer::Answer;
 use super::output::{OutputDir, list};
 use super::stages;
-use crate::aerodynamics::AerodynamicModel;
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, positive};
 
@@ -87,11 +86,7 @@ pub fn run(args: &Args) -> Result<Answer> {
 }
 
 fn simulate(model: &TrainedModel, speed: f64, stop: f64, step: f64) -> Result<Trajectory> {
-    let realization = model
-        .model
-        .realize()
-        .ok_or_else(|| Error::Numerical("the model has no realisation".into()))?;
-    let section = CoupledSection::new(model.section.structure()?, realization)?;
+    let section = CoupledSection::with_model(&model.section.structure()?, &model.model)?;
     let dofs = section.structure().dofs.clone();
     let n = dofs.len();
     let mut stepper = Stepper::new(section);

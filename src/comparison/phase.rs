@@ -3,7 +3,9 @@
 use super::{Metric, SignalPair, zero_signal};
 use crate::error::{Result, positive};
 use crate::signal::CrossCorrelation;
+use crate::state_space::golden_section;
 use serde::Serialize;
+use std::convert::Infallible;
 use std::f64::consts::PI;
 
 /// How finely the lag of the largest correlation is found.
@@ -181,7 +183,7 @@ impl Refinement<'_> {
                 })
                 .sum()
         };
-        top as f64 + golden_section(interpolated, -1.0, 1.0)
+        top as f64 + place_of_maximum(interpolated, -1.0, 1.0)
     }
 }
 
@@ -194,24 +196,16 @@ fn sinc(x: f64) -> f64 {
 }
 
 /// Place of the maximum of a function with one maximum between `low` and `high`.
-fn golden_section(function: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
+fn place_of_maximum(function: impl Fn(f64) -> f64, low: f64, high: f64) -> f64 {
     // (√5 − 1)/2 to the 45th is 4e-10; the flatness of a maximum allows no more than about 1e-7.
     const ITERATIONS: usize = 45;
-    const RATIO: f64 = 0.618_033_988_749_894_9;
-    let mut left = high - RATIO * (high - low);
-    let mut right = low + RATIO * (high - low);
-    let (mut at_left, mut at_right) = (function(left), function(right));
-    for _ in 0..ITERATIONS {
-        if at_left > at_right {
-            (high, right, at_right) = (right, left, at_left);
-            left = high - RATIO * (high - low);
-            at_left = function(left);
-        } else {
-            (low, left, at_left) = (left, right, at_right);
-            right = low + RATIO * (high - low);
-            at_right = function(right);
-        }
-    }
+    let mut steps = 0;
+    let done = |_, _: &f64, _: &f64| {
+        steps += 1;
+        steps > ITERATIONS
+    };
+    let at = |x| Ok::<_, Infallible>(function(x));
+    let Ok(((low, high), _)) = golden_section((low, high), at, f64::gt, done);
     0.5 * (low + high)
 }
 

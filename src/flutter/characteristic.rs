@@ -155,9 +155,7 @@ impl Characteristic {
         let mut lambda = start;
         for _ in 0..MAX_NEWTON_STEPS {
             let at = self.evaluate(lambda, speed, work);
-            let adjugate = adjugate(&at.value, self.n);
-            // (det D)' = tr(adj(D) D')
-            let determinant = product_entry(&at.value, &adjugate, self.n);
+            let (determinant, adjugate) = determinant_and_adjugate(&at.value, self.n);
             let slope = trace_of_product(&adjugate, &at.derivative, self.n);
             let step = determinant / slope;
             if !(step.re.is_finite() && step.im.is_finite()) {
@@ -181,19 +179,23 @@ fn scaled_input(aero: &ContinuousRealization, scale: impl Fn(usize) -> f64) -> V
         .collect()
 }
 
-/// `adj(D)`: `D adj(D) = det(D) I`, so at a root its columns are the null vector.
-fn adjugate(d: &Small, n: usize) -> Small {
-    let mut out = [[ZERO; MAX_DOFS]; MAX_DOFS];
+/// Determinant and adjugate of the leading n×n block, n ≤ 3. `D adj(D) = det(D) I`, so at a root the columns of `adj(D)`
+/// are the null vector; `(det D)' = tr(adj(D) D')`.
+pub(super) fn determinant_and_adjugate<const M: usize>(
+    d: &[[Complex64; M]; M],
+    n: usize,
+) -> (Complex64, [[Complex64; M]; M]) {
+    let mut adjugate = [[ZERO; M]; M];
     match n {
-        1 => out[0][0] = Complex64::new(1.0, 0.0),
+        1 => adjugate[0][0] = Complex64::new(1.0, 0.0),
         2 => {
-            out[0][0] = d[1][1];
-            out[0][1] = -d[0][1];
-            out[1][0] = -d[1][0];
-            out[1][1] = d[0][0];
+            adjugate[0][0] = d[1][1];
+            adjugate[0][1] = -d[0][1];
+            adjugate[1][0] = -d[1][0];
+            adjugate[1][1] = d[0][0];
         }
         _ => {
-            for (i, row) in out.iter_mut().enumerate() {
+            for (i, row) in adjugate.iter_mut().enumerate() {
                 for (j, x) in row.iter_mut().enumerate() {
                     // cofactor of entry (j, i), indices cyclic so that the sign comes by itself
                     let (r1, r2) = ((j + 1) % 3, (j + 2) % 3);
@@ -203,15 +205,16 @@ fn adjugate(d: &Small, n: usize) -> Small {
             }
         }
     }
-    out
+    let determinant = (0..n).map(|k| d[0][k] * adjugate[k][0]).sum();
+    (determinant, adjugate)
 }
 
-/// First diagonal entry of `D adj(D)`, the determinant.
-fn product_entry(d: &Small, adjugate: &Small, n: usize) -> Complex64 {
-    (0..n).map(|k| d[0][k] * adjugate[k][0]).sum()
-}
-
-fn trace_of_product(a: &Small, b: &Small, n: usize) -> Complex64 {
+/// `tr(A B)` of the leading n×n blocks.
+pub(super) fn trace_of_product<const M: usize>(
+    a: &[[Complex64; M]; M],
+    b: &[[Complex64; M]; M],
+    n: usize,
+) -> Complex64 {
     (0..n)
         .flat_map(|i| (0..n).map(move |k| (i, k)))
         .map(|(i, k)| a[i][k] * b[k][i])

@@ -1,6 +1,7 @@
 //! Frequencies, damping ratios and shapes of the tracked modes over wind speed (V-f and V-g curves).
 
-use super::tracking::{Tracker, branch_name};
+use super::following::{Follower, Mode, branch_name};
+use super::tracking::Tracker;
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, non_negative};
 use crate::section::Dof;
@@ -24,6 +25,20 @@ pub struct ModePoint {
     pub shape: Vec<Complex64>,
     /// Whether `K = ωB/V` lies in the range in which the model was tested; `None` when there is no such range.
     pub in_tested_range: Option<bool>,
+}
+
+impl ModePoint {
+    /// A mode at a wind speed, its displacements divided by `size`; nothing about ranges yet.
+    pub(super) fn new(speed_m_s: f64, mode: &Mode, size: f64) -> Self {
+        Self {
+            speed_m_s,
+            eigenvalue: mode.lambda.into(),
+            frequency_hz: mode.lambda.im / TAU,
+            damping_ratio: damping_ratio(mode.lambda),
+            shape: mode.shape.iter().map(|z| (z / size).into()).collect(),
+            in_tested_range: None,
+        }
+    }
 }
 
 /// A complex number as it is written to files.
@@ -91,7 +106,8 @@ pub fn trace_modes(
     section: &CoupledSection,
     speeds_m_s: &[f64],
 ) -> Result<FlutterCurves> {
-    let mut tracker = Tracker::start(section)?;
+    let tracker = Tracker::new(section);
+    let mut modes = tracker.start()?;
     let mut branches = empty_branches(&section.structure().dofs, speeds_m_s.len());
     let (mut last, mut ended) = (0.0, None);
     for &speed in speeds_m_s {
@@ -103,27 +119,22 @@ pub fn trace_modes(
             ));
         }
         last = speed;
-        if speed < tracker.speed {
+        if speed < modes.speed {
             // below the first speed at which the sampled system resolves the modes nothing can be said
             continue;
         }
-        tracker = match tracker.advance(speed) {
-            Ok(tracker) => tracker,
+        modes = match tracker.advance(&modes, speed) {
+            Ok(modes) => modes,
             Err(Error::Numerical(why)) => {
                 ended = Some(why);
                 break;
             }
             other => other?,
         };
-        for mode in &tracker.modes {
-            branches[mode.branch].points.push(ModePoint {
-                speed_m_s: speed,
-                eigenvalue: mode.lambda.into(),
-                frequency_hz: mode.lambda.im.abs() / TAU,
-                damping_ratio: damping_ratio(mode.lambda),
-                shape: mode.shape.iter().map(|z| (*z).into()).collect(),
-                in_tested_range: None,
-            });
+        for mode in &modes.all {
+            branches[mode.branch]
+                .points
+                .push(ModePoint::new(speed, mode, 1.0));
         }
     }
     Ok(FlutterCurves {

@@ -5,13 +5,12 @@
 //! section flutters (Theodorsen's method with viscous damping).
 
 use super::answer::{Findings, FlutterSearch, Reach, UnstableStart, choose, entry_reason};
+use super::following::branch_name;
 use super::onset::{Onset, OnsetMethod};
-use super::search::root;
-use super::tracking::branch_name;
-use crate::aerodynamics::{AerodynamicModel, Realization, TransferMatrix};
+use crate::aerodynamics::{AerodynamicModel, TransferMatrix};
 use crate::error::{Error, Result, positive};
 use crate::section::{Dof, Structure};
-use crate::state_space::complex;
+use crate::state_space::{complex, first_order, root};
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use nalgebra::{Complex, DMatrix, DVector, Schur};
 
@@ -178,21 +177,14 @@ impl Problem<'_> {
     /// The same with a part of the density of the air.
     fn frequencies_in(&self, k: f64, part: f64) -> Result<Vec<Complex<f64>>> {
         let s = self.structure;
-        let n = s.dofs.len();
         let g = self.model.transfer(ReducedFrequency::from_full_width(k))?;
         let air = 0.5 * part * s.air_density_kg_m3 * (s.width_m / k).powi(2);
         let mass = complex(&s.mass) + s.to_physical(&g) * Complex::new(air, 0.0);
         let inverse = mass
             .try_inverse()
             .ok_or_else(|| Error::Numerical(format!("determinant: singular at K = {k}")))?;
-        let mut companion = DMatrix::zeros(2 * n, 2 * n);
-        companion.view_mut((0, n), (n, n)).fill_with_identity();
-        companion
-            .view_mut((n, 0), (n, n))
-            .copy_from(&(&inverse * complex(&s.stiffness)));
-        companion
-            .view_mut((n, n), (n, n))
-            .copy_from(&(inverse * complex(&s.damping) * Complex::i()));
+        let on_rate = complex(&s.damping) * Complex::i();
+        let companion = first_order(&inverse, &complex(&s.stiffness), &on_rate);
         if !companion
             .iter()
             .all(|z| z.re.is_finite() && z.im.is_finite())
@@ -297,9 +289,6 @@ impl AerodynamicModel for OneDof<'_> {
     fn transfer(&self, k: ReducedFrequency) -> Result<TransferMatrix> {
         let g = self.structure.at_axis(self.model.transfer(k)?);
         Ok(DMatrix::from_element(1, 1, g[(self.dof, self.dof)]))
-    }
-    fn realize(&self) -> Option<Realization> {
-        None
     }
     fn known_range(&self) -> Option<ReducedFrequencyRange> {
         self.model.known_range()

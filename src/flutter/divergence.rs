@@ -1,11 +1,10 @@
 //! Static divergence: in closed form, and by a real eigenvalue of the coupled system that passes through zero.
 
-use super::search::root;
 use crate::aerodynamics::TransferMatrix;
 use crate::aeroelastic::{CoupledSection, CoupledSystem};
 use crate::error::{Error, Result, positive};
 use crate::section::{Dof, Structure};
-use crate::state_space::{balance, eigenvalues};
+use crate::state_space::{balance, eigenvalues, root};
 use nalgebra::DMatrix;
 
 /// Speeds at which the sign of the determinant is looked at.

@@ -4,15 +4,13 @@ use super::answer::{Findings, UnstableStart};
 use super::curves::damping_ratio;
 use super::onset::{Onset, OnsetMethod};
 use super::scan::{AERODYNAMIC, COARSE, FINE, Scan};
-use super::tracking::mode_shape;
+use super::tracking::{SLOPE_STEP, mode_shape};
 use crate::error::Result;
 use nalgebra::Complex;
 
 /// Growth of at most this part of the eigenvalue at the lower end of a band is that of a crossing, not of a mode that
 /// enters the tested range.
 const JUST_GROWING: f64 = 1e-6;
-/// Relative distance of the second speed of a slope.
-const SLOPE_STEP: f64 = 1e-5;
 
 impl Scan<'_> {
     /// Adds growth from still air up to a speed that is not among the findings yet; what lies above an answer inside the

@@ -5,23 +5,18 @@
 //! to the highest `K` and leaves at that of the lowest. Needs no realisation, so it draws measured tables and Theodorsen's function. Exact at an onset; between onsets its damping
 //! means what measured derivatives mean.
 
-use super::answer::{Findings, FlutterSearch, UnstableStart, choose, entry_reason};
-use super::curves::{FlutterCurves, ModePoint, damping_ratio, empty_branches};
-use super::determinant::damping_slope;
-use super::onset::{Onset, OnsetMethod};
-use super::pk_following::{Entry, Iteration, Modes};
-use super::quasi_pk::PkMode;
+use super::answer::{Findings, FlutterSearch, StableRange, choose, entry_reason};
+use super::curves::{FlutterCurves, ModePoint, empty_branches};
+use super::following::{Follower, Watch, dimensionless};
+use super::pk_following::Iteration;
 use super::scan::growing;
-use super::search::{OnsetSearch, root};
+use super::search::OnsetSearch;
 use crate::aerodynamics::AerodynamicModel;
 use crate::error::{Error, Result, positive};
 use crate::section::Structure;
 use crate::units::ReducedFrequencyRange;
 use nalgebra::Complex;
-use std::f64::consts::TAU;
 
-/// Damping at a refined crossing above which it is none.
-const JUMP: f64 = 1e-6;
 /// Speeds from still air to that of a single mode.
 const STEPS_TO_MODE: usize = 100;
 
@@ -52,15 +47,10 @@ pub fn pk_curves(
     let mut branches = empty_branches(&structure.dofs, speeds_m_s.len());
     iteration.march(speeds_m_s, &mut |_, at| {
         let asked = speeds_m_s.binary_search_by(|v| v.total_cmp(&at.speed));
-        for (branch, mode) in at.all.iter().filter(|_| asked.is_ok()) {
-            branches[*branch].points.push(ModePoint {
-                speed_m_s: at.speed,
-                eigenvalue: mode.lambda.into(),
-                frequency_hz: mode.lambda.im / TAU,
-                damping_ratio: damping_ratio(mode.lambda),
-                shape: iteration.scaled(mode),
-                in_tested_range: None,
-            });
+        for mode in at.all.iter().filter(|_| asked.is_ok()) {
+            let size = dimensionless(structure, &mode.shape).norm();
+            let point = ModePoint::new(at.speed, mode, size);
+            branches[mode.branch].points.push(point);
         }
         Ok(())
     })?;
@@ -127,114 +117,27 @@ pub fn pk_onset(
     tested: Option<ReducedFrequencyRange>,
 ) -> Result<FlutterSearch> {
     let iteration = Iteration { structure, model };
-    let looking = Looking {
-        name,
-        iteration: &iteration,
-        tested,
+    let known = model.known_range();
+    let watch = Watch {
+        model: name,
+        follower: &iteration,
+        // into the range of a table modes come where they are known first
+        tested: tested.filter(|_| known.is_none()),
     };
-    let (mut crossings, mut starts) = (Vec::new(), Vec::new());
+    let mut found = Findings::judged(StableRange::up_to(search.speed_max_m_s));
     let (entries, reach) = iteration.march(&search.speeds_m_s()?, &mut |low, high| {
-        for (branch, after) in &high.all {
-            let Some(before) = low.mode(*branch) else {
-                continue;
-            };
-            let ends = (before.lambda.re, after.lambda.re);
-            if ends.0 < 0.0 && ends.1 >= 0.0 {
-                crossings.extend(looking.refine((low, high), *branch, ends)?);
-            }
-            starts.extend(looking.entry(low, high, *branch)?);
-        }
-        Ok(())
+        watch.step(low, high, &mut found)
     })?;
-    starts.extend(entries.iter().filter_map(|e| looking.first(e)));
-    let mut found = Findings::judged(reach.judged(search.speed_max_m_s));
-    found.crossings = crossings;
-    found.starts = starts;
-    Ok(choose(found, tested))
-}
-
-/// What the search for an onset looks at on each step.
-struct Looking<'a> {
-    name: &'a str,
-    iteration: &'a Iteration<'a>,
-    tested: Option<ReducedFrequencyRange>,
-}
-
-impl Looking<'_> {
-    fn start(&self, speed: f64, branch: usize, mode: &PkMode, reason: String) -> UnstableStart {
-        let (s, at) = (self.iteration.structure, (speed, mode.lambda));
-        let (method, branch) = (OnsetMethod::PkIteration, self.iteration.name(branch));
-        UnstableStart::new(self.name, method, s, at, branch, reason)
-    }
-
-    /// A mode that grows where it is known first.
-    fn first(&self, entry: &Entry) -> Option<UnstableStart> {
-        let range = self.iteration.model.known_range();
-        let reason = range.map_or("the lowest speed looked at".to_owned(), |range| {
+    found.judged = reach.judged(search.speed_max_m_s);
+    for entry in entries.iter().filter(|e| growing(&e.mode.lambda)) {
+        let reason = known.map_or("the lowest speed looked at".to_owned(), |range| {
             entry_reason(range.max)
         });
-        growing(&entry.mode.lambda).then(|| {
-            let mut start = self.start(entry.speed, entry.branch, &entry.mode, reason);
-            let k = start.reduced_frequency;
-            start.in_tested_range = self
-                .tested
-                .map(|tested| range.is_some() || tested.contains(k));
-            start
-        })
-    }
-
-    /// A mode that comes into the tested range between two speeds and grows there.
-    fn entry(&self, low: &Modes, high: &Modes, branch: usize) -> Result<Option<UnstableStart>> {
-        let (Some(before), Some(after)) = (low.mode(branch), high.mode(branch)) else {
-            return Ok(None);
-        };
-        let grows = before.lambda.re >= 0.0 || after.lambda.re >= 0.0;
-        let known = self.iteration.model.known_range().is_some();
-        let Some(range) = self.tested.filter(|_| grows && !known) else {
-            return Ok(None);
-        };
-        let k = |modes: &Modes, mode| self.iteration.k(modes.speed, mode);
-        let (from, to) = (k(low, before), k(high, after));
-        if from <= range.max || to > range.max {
-            return Ok(None);
+        let mut start = watch.start(entry.speed, &entry.mode, reason);
+        if known.is_some() {
+            start.in_tested_range = tested.map(|_| true);
         }
-        let beyond = |k: crate::units::ReducedFrequency| range.max.full_width() - k.full_width();
-        let speed = root((low.speed, beyond(from)), (high.speed, beyond(to)), |v| {
-            Ok(beyond(self.iteration.k(v, &self.mode_at(low, v, branch)?)))
-        })?;
-        let mode = self.mode_at(low, speed, branch)?;
-        Ok(growing(&mode.lambda).then(|| {
-            let mut start = self.start(speed, branch, &mode, entry_reason(range.max));
-            start.in_tested_range = Some(true);
-            start
-        }))
+        found.starts.push(start);
     }
-
-    fn mode_at(&self, low: &Modes, speed: f64, branch: usize) -> Result<PkMode> {
-        let modes = self.iteration.advance(low, speed)?;
-        let lost = || Error::Numerical(format!("p-k: the mode is lost at {speed} m/s"));
-        modes.mode(branch).cloned().ok_or_else(lost)
-    }
-
-    fn refine(
-        &self,
-        (low, high): (&Modes, &Modes),
-        branch: usize,
-        (before, after): (f64, f64),
-    ) -> Result<Option<Onset>> {
-        let speed = root((low.speed, before), (high.speed, after), |speed| {
-            Ok(self.mode_at(low, speed, branch)?.lambda.re)
-        })?;
-        let mode = self.mode_at(low, speed, branch)?;
-        if mode.lambda.re.abs() > JUMP * mode.lambda.norm() {
-            // the damping jumps through zero: the iteration changed to another root
-            return Ok(None);
-        }
-        let (s, model) = (self.iteration.structure, self.iteration.model);
-        let at = (speed, mode.lambda.im);
-        let (method, branch) = (OnsetMethod::PkIteration, self.iteration.name(branch));
-        let mut onset = Onset::new(self.name, method, s, at, &mode.shape, branch);
-        onset.damping_slope_s_m = damping_slope(s, model, speed, mode.lambda.im);
-        Ok(Some(onset))
-    }
+    Ok(choose(found, tested))
 }

@@ -1,45 +1,38 @@
 //! Modes of the p-k iteration followed over wind speed by what they are: small changes and like shapes from step to step.
 
 use super::answer::Reach;
-use super::quasi_pk::{PkMode, pk_mode, pk_mode_at};
-use super::search::root;
-use super::tracking::branch_name;
+use super::determinant::damping_slope;
+use super::following::{
+    Follower, MIN_ASSURANCE, Mode, Modes, SEPARATION, assurance, dimensionless,
+};
+use super::onset::{Onset, OnsetMethod};
+use super::quasi_pk::{pk_mode, pk_mode_at};
 use crate::aerodynamics::AerodynamicModel;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::section::{Dof, Structure};
-use crate::state_space::{eigenvalues, eigenvector};
+use crate::state_space::{eigenvalues, eigenvector, first_order, root};
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
-use nalgebra::{Complex, DMatrix, DVector};
+use nalgebra::{Complex, DVector};
 use std::f64::consts::TAU;
 
 /// A step is halved until every mode changes little, at most this many times.
 const MAX_HALVINGS: usize = 8;
 /// Relative change of an eigenvalue over one step above which the step is halved.
 const MAX_CHANGE: f64 = 0.05;
-/// Modal assurance between neighbouring speeds below which a step is halved.
-const MIN_ASSURANCE: f64 = 0.9;
 /// Modal assurance below which a mode is another one.
 const OTHER_MODE: f64 = 0.5;
-/// Two modes closer than this, relatively, are one root found twice.
-const SEPARATION: f64 = 1e-9;
+/// Damping at a refined crossing above which it is none.
+const JUMP: f64 = 1e-6;
 /// Lowest speed as `V/(fB)` of the slowest mode: nearly still air.
 const NEARLY_STILL: f64 = 0.01;
 /// Steps in which the air comes to its density where a table begins.
 const AIR_STEPS: usize = 40;
 
-/// The modes that still oscillate at one speed, by the index of the degree of freedom they move in still air.
-#[derive(Debug, Clone)]
-pub(super) struct Modes {
-    pub(super) speed: f64,
-    pub(super) all: Vec<(usize, PkMode)>,
-}
-
 /// A mode at the lowest speed at which it is known.
 #[derive(Debug, Clone)]
 pub(super) struct Entry {
     pub(super) speed: f64,
-    pub(super) branch: usize,
-    pub(super) mode: PkMode,
+    pub(super) mode: Mode,
 }
 
 /// Called with the modes at two neighbouring speeds.
@@ -50,42 +43,22 @@ pub(super) struct Iteration<'a> {
     pub(super) model: &'a dyn AerodynamicModel,
 }
 
-fn same_root(a: &PkMode, b: &PkMode) -> bool {
+fn same_root(a: &Mode, b: &Mode) -> bool {
     (a.lambda - b.lambda).norm() <= SEPARATION * a.lambda.norm()
 }
 
-impl Modes {
-    pub(super) fn mode(&self, branch: usize) -> Option<&PkMode> {
-        self.all.iter().find(|m| m.0 == branch).map(|m| &m.1)
-    }
-}
-
 impl Iteration<'_> {
-    pub(super) fn k(&self, speed: f64, mode: &PkMode) -> ReducedFrequency {
-        ReducedFrequency::from_circular(mode.lambda.im, self.structure.width_m, speed)
-    }
-
-    pub(super) fn name(&self, branch: usize) -> String {
-        branch_name(self.structure.dofs[branch])
-    }
-
     /// Follows every mode from where it is first known over the rising `speeds`, and further to where it leaves the range
     /// of the model. `on_step` sees both ends of every step, also those where a mode enters or leaves.
     pub(super) fn march(&self, speeds: &[f64], on_step: OnStep<'_>) -> Result<(Vec<Entry>, Reach)> {
         let entries = self.entries(speeds)?;
-        let named = |e: &Entry| (e.speed, self.name(e.branch));
-        let mut reach = Reach {
-            entries: Vec::new(),
-            exits: Vec::new(),
-        };
+        let named = |e: &Entry| (e.speed, self.name(e.mode.branch));
+        let mut reach = Reach::default();
         if self.model.known_range().is_some() {
             reach.entries = entries.iter().map(named).collect();
         }
         let mut waiting = entries.iter().peekable();
-        let mut at = Modes {
-            speed: 0.0,
-            all: Vec::new(),
-        };
+        let mut at = Modes::default();
         for &speed in speeds {
             loop {
                 let entry = waiting.peek().filter(|e| e.speed <= speed);
@@ -103,7 +76,7 @@ impl Iteration<'_> {
                     continue;
                 }
                 match waiting.next_if(|e| e.speed <= speed) {
-                    Some(e) => at.all.push((e.branch, e.mode.clone())),
+                    Some(e) => at.all.push(e.mode.clone()),
                     None => break,
                 }
             }
@@ -117,11 +90,11 @@ impl Iteration<'_> {
         let Some(range) = self.model.known_range() else {
             return Ok(next);
         };
-        let leaving = |m: &&(usize, PkMode)| self.k(target, &m.1) < range.min;
+        let leaving = |m: &&Mode| self.k(target, m) < range.min;
         let mut first: Option<(f64, usize)> = None;
-        for (branch, mode) in next.all.iter().filter(leaving) {
+        for mode in next.all.iter().filter(leaving) {
             let beyond = |k: ReducedFrequency| k.full_width() - range.min.full_width();
-            let Some(before) = from.mode(*branch) else {
+            let Some(before) = from.mode(mode.branch) else {
                 continue;
             };
             let ends = (
@@ -130,10 +103,12 @@ impl Iteration<'_> {
             );
             let speed = root((from.speed, ends.0), (target, ends.1), |v| {
                 let modes = self.advance(from, v)?;
-                Ok(modes.mode(*branch).map_or(ends.1, |m| beyond(self.k(v, m))))
+                Ok(modes
+                    .mode(mode.branch)
+                    .map_or(ends.1, |m| beyond(self.k(v, m))))
             })?;
             if first.is_none_or(|f| speed < f.0) {
-                first = Some((speed, *branch));
+                first = Some((speed, mode.branch));
             }
         }
         let Some((speed, branch)) = first.filter(|f| f.0 > from.speed) else {
@@ -149,7 +124,7 @@ impl Iteration<'_> {
         };
         let lowest = range.min.full_width() * (1.0 + SEPARATION);
         let speed = at.speed;
-        at.all.retain(|m| self.k(speed, &m.1).full_width() > lowest);
+        at.all.retain(|m| self.k(speed, m).full_width() > lowest);
     }
 
     /// Every mode where it is known first, by rising speed: in nearly still air, or at the highest `K` of a table.
@@ -158,16 +133,12 @@ impl Iteration<'_> {
         let mut entries = match self.model.known_range() {
             Some(range) => self.entries_into(range, &still)?,
             None => {
-                let slowest = still.all.iter().map(|m| m.1.lambda.im / TAU);
+                let slowest = still.all.iter().map(|m| m.lambda.im / TAU);
                 let slowest = slowest.fold(f64::INFINITY, f64::min);
                 let speed = NEARLY_STILL * slowest * self.structure.width_m;
                 let speed = speed.min(0.5 * speeds.first().copied().unwrap_or(f64::INFINITY));
                 let modes = self.advance(&still, speed)?.all;
-                let entry = |(branch, mode)| Entry {
-                    speed,
-                    branch,
-                    mode,
-                };
+                let entry = |mode| Entry { speed, mode };
                 modes.into_iter().map(entry).collect()
             }
         };
@@ -179,7 +150,7 @@ impl Iteration<'_> {
     /// density.
     fn entries_into(&self, range: ReducedFrequencyRange, still: &Modes) -> Result<Vec<Entry>> {
         let mut entries = Vec::with_capacity(still.all.len());
-        for (branch, mode) in &still.all {
+        for mode in &still.all {
             let mut thin = self.structure.clone();
             let mut at = Some((0.0, mode.clone()));
             for i in 1..=AIR_STEPS {
@@ -190,11 +161,7 @@ impl Iteration<'_> {
                     None => None,
                 };
             }
-            entries.extend(at.map(|(speed, mode)| Entry {
-                speed,
-                branch: *branch,
-                mode,
-            }));
+            entries.extend(at.map(|(speed, mode)| Entry { speed, mode }));
         }
         Ok(entries)
     }
@@ -212,18 +179,18 @@ impl Iteration<'_> {
             let omega = (stiffness / mass - decay * decay).max(0.0).sqrt();
             let mut shape = DVector::zeros(n);
             shape[i] = Complex::new(1.0, 0.0);
-            let lambda = Complex::new((-decay).min(-f64::MIN_POSITIVE), omega);
-            (i, PkMode { lambda, shape })
+            let lambda = Complex::new(-decay, omega);
+            still_mode(i, lambda, shape)
         };
         Modes {
             speed: 0.0,
-            all: (0..n).map(mode).filter(|m| m.1.lambda.im > 0.0).collect(),
+            all: (0..n).map(mode).filter(|m| m.lambda.im > 0.0).collect(),
         }
     }
 
     /// Modes of a section with static unbalance, `None` without or when one does not oscillate. It draws the frequencies
     /// apart, so that they stay in the order of the degrees of freedom by themselves.
-    fn unbalanced(&self) -> Option<Vec<(usize, PkMode)>> {
+    fn unbalanced(&self) -> Option<Vec<Mode>> {
         let s = self.structure;
         let n = s.dofs.len();
         let mut off_diagonal = s.mass.clone();
@@ -232,12 +199,7 @@ impl Iteration<'_> {
             return None;
         }
         let inverse = s.mass.clone().try_inverse()?;
-        let mut a = DMatrix::zeros(2 * n, 2 * n);
-        a.view_mut((0, n), (n, n)).fill_with_identity();
-        a.view_mut((n, 0), (n, n))
-            .copy_from(&(-&inverse * &s.stiffness));
-        a.view_mut((n, n), (n, n))
-            .copy_from(&(-inverse * &s.damping));
+        let a = first_order(&inverse, &-&s.stiffness, &-&s.damping);
         let mut natural = eigenvalues(&a).ok()?;
         natural.retain(|z| z.im > 0.0);
         natural.sort_by(|a, b| a.im.total_cmp(&b.im));
@@ -245,16 +207,72 @@ impl Iteration<'_> {
         let modes = s.dofs_by_frequency();
         let modes = modes.iter().zip(natural).map(|(dof, lambda)| {
             let shape = eigenvector(&a, lambda).ok()?.rows(0, n).into_owned();
-            let lambda = Complex::new(lambda.re.min(-f64::MIN_POSITIVE), lambda.im);
-            Some((index(dof)?, PkMode { lambda, shape }))
+            Some(still_mode(index(dof)?, lambda, shape))
         });
         let mut modes: Vec<_> = modes.collect::<Option<_>>()?;
-        modes.sort_by_key(|m| m.0);
+        modes.sort_by_key(|m| m.branch);
         (modes.len() == n).then_some(modes)
     }
 
-    /// The modes at `speed`, by as many intermediate speeds as continuity needs.
-    pub(super) fn advance(&self, from: &Modes, speed: f64) -> Result<Modes> {
+    /// Where a step cannot be made smooth: the modes that went on; of two on one root the one that moved less.
+    fn without_lost(&self, before: &Modes, after: Modes) -> Modes {
+        let moved = |mode: &Mode| {
+            before
+                .mode(mode.branch)
+                .map_or(f64::INFINITY, |old| (mode.lambda - old.lambda).norm())
+        };
+        let nearest = |m: &Mode| {
+            let rivals = after.all.iter().filter(|o| same_root(o, m));
+            rivals.map(moved).fold(f64::INFINITY, f64::min) >= moved(m)
+        };
+        // a mode that would have to change its shape at once is another one: the branch ends here
+        let same = |mode: &Mode| {
+            let old = before.mode(mode.branch);
+            before.speed == 0.0 || old.is_none_or(|old| self.assurance(old, mode) > OTHER_MODE)
+        };
+        let going_on = after.all.iter().filter(|m| nearest(m) && same(m));
+        let all = going_on.cloned().collect();
+        Modes {
+            speed: after.speed,
+            all,
+        }
+    }
+
+    /// The modes at `speed` that settle and oscillate.
+    fn at(&self, from: &Modes, speed: f64) -> Result<Modes> {
+        let mut all = Vec::with_capacity(from.all.len());
+        for mode in &from.all {
+            all.extend(pk_mode(self.structure, self.model, speed, mode)?);
+        }
+        Ok(Modes { speed, all })
+    }
+
+    fn continuous(&self, before: &Modes, after: &Modes) -> bool {
+        let still = before.speed == 0.0;
+        let doubled =
+            (0..after.all.len()).any(|i| (0..i).any(|j| same_root(&after.all[i], &after.all[j])));
+        !doubled
+            && before.all.iter().zip(&after.all).all(|(a, b)| {
+                let change = (b.lambda - a.lambda).norm() / a.lambda.norm();
+                // the added mass of the air changes the modes at once, however slow the wind
+                still || change < MAX_CHANGE && self.assurance(a, b) > MIN_ASSURANCE
+            })
+    }
+
+    fn assurance(&self, a: &Mode, b: &Mode) -> f64 {
+        let of = |m: &Mode| dimensionless(self.structure, &m.shape);
+        assurance(&of(a), &of(b))
+    }
+}
+
+impl Follower for Iteration<'_> {
+    const METHOD: OnsetMethod = OnsetMethod::PkIteration;
+
+    fn structure(&self) -> &Structure {
+        self.structure
+    }
+
+    fn advance(&self, from: &Modes, speed: f64) -> Result<Modes> {
         let mut at = from.clone();
         let mut step = speed - at.speed;
         let mut halvings = 0;
@@ -277,69 +295,27 @@ impl Iteration<'_> {
         Ok(at)
     }
 
-    /// Where a step cannot be made smooth: the modes that went on; of two on one root the one that moved less.
-    fn without_lost(&self, before: &Modes, after: Modes) -> Modes {
-        let moved = |(branch, mode): &(usize, PkMode)| {
-            before
-                .mode(*branch)
-                .map_or(f64::INFINITY, |old| (mode.lambda - old.lambda).norm())
-        };
-        let nearest = |m: &(usize, PkMode)| {
-            let rivals = after.all.iter().filter(|o| same_root(&o.1, &m.1));
-            rivals.map(moved).fold(f64::INFINITY, f64::min) >= moved(m)
-        };
-        // a mode that would have to change its shape at once is another one: the branch ends here
-        let same = |(branch, mode): &(usize, PkMode)| {
-            let old = before.mode(*branch);
-            before.speed == 0.0 || old.is_none_or(|old| self.assurance(old, mode) > OTHER_MODE)
-        };
-        let going_on = after.all.iter().filter(|m| nearest(m) && same(m));
-        let all = going_on.cloned().collect();
-        Modes {
-            speed: after.speed,
-            all,
+    fn lost(speed: f64) -> Error {
+        Error::Numerical(format!("p-k: the mode is lost at {speed} m/s"))
+    }
+
+    fn complete(&self, mut onset: Onset, _low: &Modes, mode: &Mode) -> Result<Option<Onset>> {
+        if mode.lambda.re.abs() > JUMP * mode.lambda.norm() {
+            // the damping jumps through zero: the iteration changed to another root
+            return Ok(None);
         }
+        let (speed, omega) = (onset.speed_m_s, mode.lambda.im);
+        onset.damping_slope_s_m = damping_slope(self.structure, self.model, speed, omega);
+        Ok(Some(onset))
     }
+}
 
-    /// The modes at `speed` that settle and oscillate.
-    fn at(&self, from: &Modes, speed: f64) -> Result<Modes> {
-        let mut all: Vec<(usize, PkMode)> = Vec::with_capacity(from.all.len());
-        for (branch, mode) in &from.all {
-            if let Some(next) = pk_mode(self.structure, self.model, speed, mode)? {
-                all.push((*branch, next));
-            }
-        }
-        Ok(Modes { speed, all })
-    }
-
-    fn continuous(&self, before: &Modes, after: &Modes) -> bool {
-        let still = before.speed == 0.0;
-        let doubled = (0..after.all.len())
-            .any(|i| (0..i).any(|j| same_root(&after.all[i].1, &after.all[j].1)));
-        !doubled
-            && before.all.iter().zip(&after.all).all(|((_, a), (_, b))| {
-                let change = (b.lambda - a.lambda).norm() / a.lambda.norm();
-                // the added mass of the air changes the modes at once, however slow the wind
-                still || change < MAX_CHANGE && self.assurance(a, b) > MIN_ASSURANCE
-            })
-    }
-
-    /// Modal assurance criterion of two shapes: 1 for the same shape.
-    fn assurance(&self, a: &PkMode, b: &PkMode) -> f64 {
-        let (u, v) = (self.dimensionless(a), self.dimensionless(b));
-        u.dotc(&v).norm_sqr() / (u.norm_squared() * v.norm_squared())
-    }
-
-    fn dimensionless(&self, mode: &PkMode) -> DVector<Complex<f64>> {
-        let s = self.structure;
-        DVector::from_fn(mode.shape.len(), |i, _| {
-            mode.shape[i] * s.dofs[i].motion_scale(s.width_m)
-        })
-    }
-
-    /// Displacements with unit norm in dimensionless motion.
-    pub(super) fn scaled(&self, mode: &PkMode) -> Vec<super::curves::Complex64> {
-        let size = self.dimensionless(mode).norm();
-        mode.shape.iter().map(|z| (z / size).into()).collect()
+/// A mode in still air; an undamped one counts as damped, so that it can lose its damping.
+fn still_mode(branch: usize, lambda: Complex<f64>, shape: DVector<Complex<f64>>) -> Mode {
+    Mode {
+        branch,
+        lambda: Complex::new(lambda.re.min(-f64::MIN_POSITIVE), lambda.im),
+        shape,
+        slope: Complex::default(),
     }
 }

@@ -5,32 +5,27 @@
 //! imaginary; for damped modes it means by frequency and damping what measured derivatives mean, not what the
 //! eigenvalues of a realisation mean.
 
+use super::following::Mode;
+use super::tracking::oscillates;
 use crate::aerodynamics::AerodynamicModel;
 use crate::error::{Error, Result};
 use crate::section::Structure;
-use crate::state_space::{eigenvalues, eigenvector};
+use crate::state_space::{eigenvalues, eigenvector, first_order};
 use crate::units::ReducedFrequency;
-use nalgebra::{Complex, DMatrix, DVector};
+use nalgebra::{Complex, DMatrix};
 
 /// The iteration contracts by about ten a round; one that needs more than this has no solution.
 const MAX_ROUNDS: usize = 200;
 /// Relative change at which a mode counts as found.
 const TOLERANCE: f64 = 1e-12;
 
-/// An eigenvalue (rad/s, upper half plane) with its displacements (n): m, rad; of any size.
-#[derive(Debug, Clone)]
-pub(super) struct PkMode {
-    pub(super) lambda: Complex<f64>,
-    pub(super) shape: DVector<Complex<f64>>,
-}
-
 /// The mode at `speed_m_s` that the iteration reaches from `start`; `None` when it stops oscillating or does not settle.
 pub(super) fn pk_mode(
     structure: &Structure,
     model: &dyn AerodynamicModel,
     speed_m_s: f64,
-    start: &PkMode,
-) -> Result<Option<PkMode>> {
+    start: &Mode,
+) -> Result<Option<Mode>> {
     settle(structure, model, |_| speed_m_s, start)
 }
 
@@ -39,8 +34,8 @@ pub(super) fn pk_mode_at(
     structure: &Structure,
     model: &dyn AerodynamicModel,
     k: ReducedFrequency,
-    start: &PkMode,
-) -> Result<Option<(f64, PkMode)>> {
+    start: &Mode,
+) -> Result<Option<(f64, Mode)>> {
     let speed = |omega: f64| omega * structure.width_m / k.full_width();
     let mode = settle(structure, model, speed, start)?;
     Ok(mode.map(|mode| (speed(mode.lambda.im), mode)))
@@ -51,22 +46,23 @@ fn settle(
     structure: &Structure,
     model: &dyn AerodynamicModel,
     speed: impl Fn(f64) -> f64,
-    start: &PkMode,
-) -> Result<Option<PkMode>> {
+    start: &Mode,
+) -> Result<Option<Mode>> {
     let mut lambda = start.lambda;
     for _ in 0..MAX_ROUNDS {
         let matrix = frozen(structure, model, speed(lambda.im), lambda.im)?;
         let next = eigenvalues(&matrix)?
             .into_iter()
-            .filter(|z| z.im > 1e-6 * z.norm())
+            .filter(oscillates)
             .min_by(|a, b| (a - lambda).norm().total_cmp(&(b - lambda).norm()));
         let Some(next) = next else { return Ok(None) };
         if (next - lambda).norm() <= TOLERANCE * next.norm() {
             let n = structure.dofs.len();
             let shape = eigenvector(&matrix, next)?.rows(0, n).into_owned();
-            return Ok(Some(PkMode {
+            return Ok(Some(Mode {
                 lambda: next,
                 shape,
+                ..*start
             }));
         }
         lambda = next;
@@ -96,12 +92,7 @@ fn frozen(
         .clone()
         .try_inverse()
         .ok_or_else(|| Error::Numerical("quasi-p-k: a degree of freedom has no mass".into()))?;
-    let n = s.dofs.len();
-    let mut a = DMatrix::zeros(2 * n, 2 * n);
-    a.view_mut((0, n), (n, n)).fill_with_identity();
-    a.view_mut((n, 0), (n, n))
-        .copy_from(&(&inverse * (force.map(|z| z.re) - &s.stiffness)));
-    a.view_mut((n, n), (n, n))
-        .copy_from(&(inverse * (force.map(|z| z.im / omega) - &s.damping)));
-    Ok(a)
+    let on_motion = force.map(|z| z.re) - &s.stiffness;
+    let on_rate = force.map(|z| z.im / omega) - &s.damping;
+    Ok(first_order(&inverse, &on_motion, &on_rate))
 }

@@ -2,15 +2,17 @@
 //! equilibrium of that speed, so that the linear model itself changes with the speed.
 
 use super::answer::{FlutterSearch, StableRange, UnstableStart};
-use super::curves::{FlutterCurves, ModeBranch, damping_ratio, trace_modes};
+use super::curves::{FlutterCurves, damping_ratio, empty_branches, trace_modes};
+use super::following::{Mode, branch_name};
 use super::instability::{ModeAtOnset, classify};
 use super::onset::{Onset, OnsetMethod};
-use super::search::{OnsetSearch, root};
-use super::tracking::{TrackedMode, Tracker, branch_name, oscillates};
+use super::search::OnsetSearch;
+use super::tracking::{SLOPE_STEP, Tracker, oscillates};
 use crate::aerodynamics::quasi_steady::{LinearQuasiSteady, QuasiSteady};
 use crate::aeroelastic::{CoupledSection, EquilibriumEnd, EquilibriumPath, static_equilibria};
 use crate::error::{Error, Result};
 use crate::section::Structure;
+use crate::state_space::root;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use serde::Serialize;
 
@@ -25,9 +27,6 @@ const SEARCHED: ReducedFrequencyRange = ReducedFrequencyRange {
 
 /// The first speed looked at, as a part of the first that is asked for.
 const NEARLY_STILL: f64 = 1e-3;
-
-/// Relative distance of the second speed of a slope.
-const NEARBY: f64 = 1e-5;
 
 /// Answer of quasi-steady theory.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -102,14 +101,7 @@ pub fn quasi_steady_modes(
     theory: &QuasiSteady,
     path: &EquilibriumPath,
 ) -> Result<FlutterCurves> {
-    let mut branches: Vec<ModeBranch> = structure
-        .dofs
-        .iter()
-        .map(|dof| ModeBranch {
-            name: branch_name(*dof),
-            points: Vec::with_capacity(path.points.len()),
-        })
-        .collect();
+    let mut branches = empty_branches(&structure.dofs, path.points.len());
     for point in &path.points {
         let linear = theory.linearised(point.rotation_rad)?;
         let at = trace_modes(
@@ -165,10 +157,10 @@ fn grows_in_still_air(name: &str, section: &CoupledSection, speed: f64) -> Resul
 }
 
 /// The mode with the least damping, followed from still air at one linearisation.
-fn least_damped(section: &CoupledSection, speed_m_s: f64) -> Result<TrackedMode> {
-    Tracker::start(section)?
-        .advance(speed_m_s)?
-        .modes
+fn least_damped(section: &CoupledSection, speed_m_s: f64) -> Result<Mode> {
+    Tracker::new(section)
+        .at(speed_m_s)?
+        .all
         .into_iter()
         .max_by(|a, b| a.lambda.re.total_cmp(&b.lambda.re))
         .ok_or_else(|| {
@@ -184,7 +176,7 @@ fn described(name: &str, structure: &Structure, theory: &QuasiSteady, speed: f64
         least_damped(&CoupledSection::with_model(structure, &linear)?, speed)
     };
     let mode = mode_at(speed)?;
-    let nearby = mode_at(speed * (1.0 - NEARBY))?;
+    let nearby = mode_at(speed * (1.0 - SLOPE_STEP))?;
     let mut onset = Onset::new(
         name,
         OnsetMethod::Eigenvalues,
@@ -194,7 +186,7 @@ fn described(name: &str, structure: &Structure, theory: &QuasiSteady, speed: f64
         branch_name(structure.dofs[mode.branch]),
     );
     let slope = damping_ratio(mode.lambda) - damping_ratio(nearby.lambda);
-    onset.damping_slope_s_m = Some(slope / (speed * NEARBY));
+    onset.damping_slope_s_m = Some(slope / (speed * SLOPE_STEP));
     let v_star = onset.reduced_velocity.v_star();
     if v_star < LEAST_REDUCED_VELOCITY {
         onset.warnings.push(format!(

@@ -1,9 +1,11 @@
 //! All eigenvalues over wind speed: the speeds at which any oscillation grows, found without following modes.
 
 use super::answer::StableRange;
-use super::tracking::{Tracker, branch_name, lowest_speed, mode_shape, oscillates};
+use super::following::{branch_name, dimensionless};
+use super::tracking::{Tracker, lowest_speed, mode_shape, oscillates};
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, non_negative, positive};
+use crate::state_space::{boundary, golden_section};
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use nalgebra::Complex;
 use serde::Serialize;
@@ -246,29 +248,15 @@ impl<'a> Scan<'a> {
     }
 
     /// The highest point between two speeds, if it grows.
-    fn peak(&self, mut low: f64, mut high: f64) -> Result<Option<Point>> {
-        let part = 0.5 * (5.0_f64.sqrt() - 1.0);
-        let mut left = self.at(high - part * (high - low))?;
-        let mut right = self.at(low + part * (high - low))?;
-        for _ in 0..PEAK_STEPS {
-            if left.grows() || right.grows() {
-                break;
-            }
-            if left.rate() > right.rate() {
-                high = right.speed;
-                right = left;
-                left = self.at(high - part * (high - low))?;
-            } else {
-                low = left.speed;
-                left = right;
-                right = self.at(low + part * (high - low))?;
-            }
-        }
-        let highest = if left.rate() > right.rate() {
-            left
-        } else {
-            right
+    fn peak(&self, low: f64, high: f64) -> Result<Option<Point>> {
+        let mut steps = 0;
+        let done = |_, left: &Point, right: &Point| {
+            steps += 1;
+            left.grows() || right.grows() || steps > PEAK_STEPS
         };
+        let higher = |a: &Point, b: &Point| a.rate() > b.rate();
+        let (_, [left, right]) = golden_section((low, high), |v| self.at(v), higher, done)?;
+        let highest = if higher(&left, &right) { left } else { right };
         Ok(highest.grows().then_some(highest))
     }
 
@@ -312,25 +300,20 @@ impl<'a> Scan<'a> {
     }
 
     /// The last speed from `yes` towards `no` at which the test still holds.
-    fn edge(&self, mut yes: f64, mut no: f64, test: impl Fn(&Point) -> bool) -> Result<f64> {
-        while (yes - no).abs() > EDGE_TOLERANCE * yes {
-            let middle = 0.5 * (yes + no);
-            if test(&self.at(middle)?) {
-                yes = middle;
-            } else {
-                no = middle;
-            }
-        }
-        Ok(yes)
+    fn edge(&self, yes: f64, no: f64, test: impl Fn(&Point) -> bool) -> Result<f64> {
+        let (last, _) = boundary(yes, no, EDGE_TOLERANCE, |v| {
+            Ok::<_, Error>(test(&self.at(v)?))
+        })?;
+        Ok(last)
     }
 
     /// The structural mode that `lambda` belongs to, followed from still air; where modes cannot be followed, the degree
     /// of freedom that moves most.
     pub(super) fn branch(&self, speed: f64, lambda: Complex<f64>) -> String {
         let dofs = &self.section.structure().dofs;
-        match Tracker::start(self.section).and_then(|t| t.advance(speed)) {
+        match Tracker::new(self.section).at(speed) {
             Ok(tracked) => tracked
-                .modes
+                .all
                 .iter()
                 .find(|m| (m.lambda - lambda).norm() < 1e-6 * lambda.norm())
                 .map_or(AERODYNAMIC.to_owned(), |m| branch_name(dofs[m.branch])),
@@ -339,14 +322,8 @@ impl<'a> Scan<'a> {
                 .at(speed)
                 .and_then(|system| mode_shape(self.section, &system, lambda))
                 .map_or(AERODYNAMIC.to_owned(), |shape| {
-                    let scale = |i: usize| dofs[i].motion_scale(self.section.structure().width_m);
-                    let most = (0..shape.len())
-                        .max_by(|i, j| {
-                            let size = |i: usize| shape[i].norm() * scale(i);
-                            size(*i).total_cmp(&size(*j))
-                        })
-                        .unwrap_or(0);
-                    branch_name(dofs[most])
+                    let sizes = dimensionless(self.section.structure(), &shape).map(|z| z.norm());
+                    branch_name(dofs[sizes.imax()])
                 }),
         }
     }

@@ -1,20 +1,13 @@
 //! Onset by the eigenvalues of the coupled state matrix.
 
-use super::answer::{Findings, FlutterSearch, UnstableStart, choose, entry_reason};
-use super::curves::damping_ratio;
-use super::onset::{Onset, OnsetMethod};
+use super::answer::{Findings, FlutterSearch, choose};
+use super::following::{Follower, Watch};
 use super::scan::{Scan, growing};
-use super::tracking::{TrackedMode, Tracker, branch_name};
+use super::tracking::Tracker;
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, positive};
-use crate::section::Dof;
-use crate::units::{ReducedFrequency, ReducedFrequencyRange};
+use crate::units::ReducedFrequencyRange;
 use serde::{Deserialize, Serialize};
-
-/// Relative width of the bracket at which the root search stops: rounding of the eigenvalues.
-const ROOT_TOLERANCE: f64 = 1e-13;
-/// The secant steps converge in about ten; bisection alone in fifty.
-const MAX_ROOT_STEPS: usize = 80;
 
 /// Where and how densely to look.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -73,12 +66,7 @@ pub fn find_onset(
     let speeds = search.speeds_m_s()?;
     let scan = Scan::new(model, section, tested);
     let mut found = Findings::judged(scan.judged(search.speed_max_m_s)?);
-    let following = Following {
-        model,
-        section,
-        tested,
-    };
-    match following.run(scan.lowest(search.speed_max_m_s)?, &speeds, &mut found) {
+    match follow(model, &scan, &speeds, &mut found) {
         // without names the answer still stands
         Err(Error::Numerical(why)) => found.warnings.push(format!(
             "{why}: modes beyond that were not followed but found among all eigenvalues"
@@ -89,168 +77,25 @@ pub fn find_onset(
     Ok(choose(found, tested))
 }
 
-/// The structural modes, followed by what they are.
-struct Following<'a> {
-    model: &'a str,
-    section: &'a CoupledSection,
-    tested: Option<ReducedFrequencyRange>,
-}
-
-impl Following<'_> {
-    fn run(&self, lowest: f64, speeds: &[f64], found: &mut Findings) -> Result<()> {
-        let mut tracker = Tracker::start(self.section)?.advance(lowest)?;
-        for mode in tracker.modes.iter().filter(|m| growing(&m.lambda)) {
-            found
-                .starts
-                .push(self.start(lowest, mode, "the lowest speed looked at".to_owned()));
-        }
-        for &speed in speeds.iter().filter(|v| **v > lowest) {
-            let next = tracker.advance(speed)?;
-            for after in &next.modes {
-                let Some(before) = tracker.mode(after.branch) else {
-                    continue;
-                };
-                let ends = (before.lambda.re, after.lambda.re);
-                if ends.0 < 0.0 && ends.1 >= 0.0 {
-                    found.crossings.push(structural_crossing(
-                        self.model,
-                        &tracker,
-                        &next,
-                        after.branch,
-                        ends,
-                    )?);
-                }
-                found
-                    .starts
-                    .extend(self.entry(&tracker, &next, before, after)?);
-            }
-            tracker = next;
-        }
-        Ok(())
-    }
-
-    fn k(&self, speed: f64, mode: &TrackedMode) -> ReducedFrequency {
-        let width = self.section.structure().width_m;
-        ReducedFrequency::from_circular(mode.lambda.im, width, speed)
-    }
-
-    fn start(&self, speed: f64, mode: &TrackedMode, reason: String) -> UnstableStart {
-        let structure = self.section.structure();
-        let at = (speed, mode.lambda);
-        let branch = branch_name(structure.dofs[mode.branch]);
-        let method = OnsetMethod::Eigenvalues;
-        let mut start = UnstableStart::new(self.model, method, structure, at, branch, reason);
-        start.in_tested_range = self.tested.map(|range| range.contains(self.k(speed, mode)));
-        start
-    }
-
-    /// A mode that comes into the tested range between two speeds and grows there.
-    fn entry(
-        &self,
-        low: &Tracker<'_>,
-        high: &Tracker<'_>,
-        before: &TrackedMode,
-        after: &TrackedMode,
-    ) -> Result<Option<UnstableStart>> {
-        let grows = before.lambda.re >= 0.0 || after.lambda.re >= 0.0;
-        let Some(range) = self.tested.filter(|_| grows) else {
-            return Ok(None);
-        };
-        let (from, to) = (self.k(low.speed, before), self.k(high.speed, after));
-        if from <= range.max || to > range.max {
-            return Ok(None);
-        }
-        let beyond = |k: ReducedFrequency| range.max.full_width() - k.full_width();
-        let mode_at = |speed: f64| lost(low.advance(speed)?.mode(after.branch).cloned(), speed);
-        let speed = root((low.speed, beyond(from)), (high.speed, beyond(to)), |v| {
-            Ok(beyond(self.k(v, &mode_at(v)?)))
-        })?;
-        let mode = mode_at(speed)?;
-        Ok(growing(&mode.lambda).then(|| {
-            let mut start = self.start(speed, &mode, entry_reason(range.max));
-            start.in_tested_range = Some(true);
-            start
-        }))
-    }
-}
-
-fn lost<T>(mode: Option<T>, speed: f64) -> Result<T> {
-    mode.ok_or_else(|| {
-        Error::Numerical(format!("onset: the mode does not oscillate at {speed} m/s"))
-    })
-}
-
-/// Refines the zero of `Re λ` of one structural mode.
-fn structural_crossing(
-    model: &str,
-    low: &Tracker<'_>,
-    high: &Tracker<'_>,
-    branch: usize,
-    (before, after): (f64, f64),
-) -> Result<Onset> {
-    let structure = low.section.structure();
-    let mode_at = |speed: f64| lost(low.advance(speed)?.mode(branch).cloned(), speed);
-    let speed = root((low.speed, before), (high.speed, after), |speed| {
-        Ok(mode_at(speed)?.lambda.re)
-    })?;
-    let at = mode_at(speed)?;
-    let nearby = mode_at(speed * (1.0 - 1e-5))?;
-    let slope = (damping_ratio(at.lambda) - damping_ratio(nearby.lambda)) / (speed * 1e-5);
-    let mut onset = Onset::new(
+/// What the structural modes do between the lowest and the highest speed of a scan.
+fn follow(model: &str, scan: &Scan<'_>, speeds: &[f64], found: &mut Findings) -> Result<()> {
+    let tracker = Tracker::new(scan.section);
+    let watch = Watch {
         model,
-        OnsetMethod::Eigenvalues,
-        structure,
-        (speed, at.lambda.im),
-        &at.shape,
-        branch_name(structure.dofs[branch]),
-    );
-    onset.damping_slope_s_m = Some(slope);
-    if single_dof(structure.dofs[branch], onset.mode_ratio) {
-        onset.warnings.push(format!(
-            "the mode is almost purely {}: a one-degree-of-freedom instability",
-            structure.dofs[branch].name()
-        ));
+        follower: &tracker,
+        tested: scan.tested,
+    };
+    let highest = speeds[speeds.len() - 1];
+    let lowest = scan.lowest(highest)?;
+    let mut modes = tracker.at(lowest)?;
+    for mode in modes.all.iter().filter(|m| growing(&m.lambda)) {
+        let reason = "the lowest speed looked at".to_owned();
+        found.starts.push(watch.start(lowest, mode, reason));
     }
-    Ok(onset)
-}
-
-/// Whether the mode hardly moves any other degree of freedom than its own.
-fn single_dof(dof: Dof, mode_ratio: f64) -> bool {
-    match dof {
-        Dof::Torsion => mode_ratio < 0.05,
-        Dof::Vertical => mode_ratio > 20.0,
-        Dof::Lateral => false,
+    for &speed in speeds.iter().filter(|v| **v > lowest) {
+        let next = tracker.advance(&modes, speed)?;
+        watch.step(&modes, &next, found)?;
+        modes = next;
     }
-}
-
-/// Zero of `f` in a bracket with a sign change, by secant steps kept inside (Illinois) and bisection.
-pub(super) fn root(
-    low: (f64, f64),
-    high: (f64, f64),
-    f: impl Fn(f64) -> Result<f64>,
-) -> Result<f64> {
-    let (mut a, mut fa) = low;
-    let (mut b, mut fb) = high;
-    for step in 0..MAX_ROOT_STEPS {
-        if fb == 0.0 || (b - a).abs() <= ROOT_TOLERANCE * b.abs() {
-            break;
-        }
-        let secant = b - fb * (b - a) / (fb - fa);
-        let middle = 0.5 * (a + b);
-        let inside = (secant - a) * (secant - b) < 0.0;
-        let x = if inside && step % 4 != 3 {
-            secant
-        } else {
-            middle
-        };
-        let fx = f(x)?;
-        if (fx >= 0.0) == (fb >= 0.0) {
-            (b, fb) = (x, fx);
-            fa *= 0.5;
-        } else {
-            (a, fa) = (x, fx);
-            fb *= 0.5;
-        }
-    }
-    Ok(b)
+    Ok(())
 }

@@ -4,9 +4,14 @@
 //! else the nearest eigenvalue of the whole state matrix.
 
 use super::characteristic::Characteristic;
+use super::curves::damping_ratio;
+use super::following::{
+    Follower, MIN_ASSURANCE, Mode, Modes, SEPARATION, assurance, dimensionless,
+};
+use super::onset::{Onset, OnsetMethod};
 use crate::aeroelastic::{CoupledSection, CoupledSystem};
 use crate::error::{Error, Result};
-use crate::section::Dof;
+use crate::section::{Dof, Structure};
 use crate::state_space::{eigenvalues, eigenvector};
 use nalgebra::{Complex, DVector};
 
@@ -14,64 +19,93 @@ use nalgebra::{Complex, DVector};
 const MAX_HALVINGS: usize = 14;
 /// "Clearly nearest": the second candidate is this many times farther away.
 const DISTANCE_RATIO: f64 = 3.0;
-/// Modal assurance between neighbouring speeds below which a step is halved.
-const MIN_ASSURANCE: f64 = 0.9;
-/// Two modes closer than this, relatively, are one root found twice.
-const SEPARATION: f64 = 1e-9;
 /// Sampled systems start where this many samples fall into one period, below which frequencies would alias.
 const SAMPLES_PER_PERIOD: f64 = 5.0;
 
+/// Relative distance of the second speed of a slope.
+pub(super) const SLOPE_STEP: f64 = 1e-5;
 /// A mode with more damping than this, as a ratio to critical, may stop oscillating.
 const NEARLY_CRITICAL: f64 = 0.8;
 
-/// One mode at one wind speed.
-#[derive(Debug, Clone)]
-pub(super) struct TrackedMode {
-    /// Place of the degree of freedom that the mode moves in still air.
-    pub(super) branch: usize,
-    /// Eigenvalue, rad/s.
-    pub(super) lambda: Complex<f64>,
-    /// Displacements of the mode (n): m, rad; unit norm in `(y/B, x/B, θ)`.
-    pub(super) shape: DVector<Complex<f64>>,
-    /// `dλ/dV` from the last step.
-    slope: Complex<f64>,
-}
-
-/// The structural modes at one wind speed, with what is needed to predict the next.
+/// Follows the structural modes of a section.
 ///
 /// A mode that stops oscillating (its pair of eigenvalues meets on the negative real axis) is not followed any further:
 /// it can diverge, which is found in closed form elsewhere, but not flutter.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub(super) struct Tracker<'a> {
-    pub(super) section: &'a CoupledSection,
-    characteristic: Option<std::rc::Rc<Characteristic>>,
-    pub(super) speed: f64,
-    /// Those that oscillate, in the order of the degrees of freedom.
-    pub(super) modes: Vec<TrackedMode>,
+    section: &'a CoupledSection,
+    characteristic: Option<Characteristic>,
 }
 
 impl<'a> Tracker<'a> {
-    /// Modes at the lowest speed at which they are the structure's own: still air, or for the sampled system the
-    /// speed with enough samples a period.
-    pub(super) fn start(section: &'a CoupledSection) -> Result<Self> {
-        let natural = natural_modes(section)?;
-        let speed = start_speed(section, &natural);
-        let still = Self {
+    pub(super) fn new(section: &'a CoupledSection) -> Self {
+        Self {
             section,
-            characteristic: Characteristic::new(section).map(std::rc::Rc::new),
-            speed,
-            modes: natural,
-        };
-        still.matched(speed)?.ok_or_else(|| {
+            characteristic: Characteristic::new(section),
+        }
+    }
+
+    /// Modes at the lowest speed at which they are the structure's own: still air, or for the sampled system the
+    /// speed with enough samples per period.
+    pub(super) fn start(&self) -> Result<Modes> {
+        let all = natural_modes(self.section)?;
+        let speed = start_speed(self.section, &all);
+        self.matched(&Modes { speed, all }, speed)?.ok_or_else(|| {
             Error::Numerical(format!(
                 "mode tracking: the structural modes are not distinct at {speed} m/s"
             ))
         })
     }
 
-    /// The modes at `speed`, by as many intermediate speeds as continuity needs.
-    pub(super) fn advance(&self, speed: f64) -> Result<Self> {
-        let mut at = self.clone();
+    /// The modes at `speed`, followed from the start.
+    pub(super) fn at(&self, speed: f64) -> Result<Modes> {
+        self.advance(&self.start()?, speed)
+    }
+
+    /// Modes at `speed` if each is clearly the continuation of one before.
+    fn matched(&self, before: &Modes, speed: f64) -> Result<Option<Modes>> {
+        let predicted: Vec<_> = before
+            .all
+            .iter()
+            .map(|mode| mode.lambda + mode.slope * (speed - before.speed))
+            .collect();
+        let corrected = match &self.characteristic {
+            Some(problem) => newton(self.section, problem, &predicted, speed),
+            None => nearest(self.section, &predicted, speed)?,
+        };
+        let Some(roots) = corrected else {
+            return Ok(None);
+        };
+        let mut all = Vec::with_capacity(roots.len());
+        for ((lambda, shape), old) in roots.into_iter().zip(&before.all) {
+            if assurance(&shape, &old.shape) < MIN_ASSURANCE {
+                return Ok(None);
+            }
+            let slope = if speed == before.speed {
+                old.slope
+            } else {
+                (lambda - old.lambda) / (speed - before.speed)
+            };
+            all.push(Mode {
+                branch: old.branch,
+                lambda,
+                shape,
+                slope,
+            });
+        }
+        Ok(Some(Modes { speed, all }))
+    }
+}
+
+impl Follower for Tracker<'_> {
+    const METHOD: OnsetMethod = OnsetMethod::Eigenvalues;
+
+    fn structure(&self) -> &Structure {
+        self.section.structure()
+    }
+
+    fn advance(&self, from: &Modes, speed: f64) -> Result<Modes> {
+        let mut at = from.clone();
         let mut step = speed - at.speed;
         let mut halvings = 0;
         while at.speed != speed {
@@ -80,14 +114,12 @@ impl<'a> Tracker<'a> {
             } else {
                 at.speed + step
             };
-            if let Some(next) = at.matched(target)? {
+            if let Some(next) = self.matched(&at, target)? {
                 at = next;
-                continue;
-            }
-            if halvings < MAX_HALVINGS {
+            } else if halvings < MAX_HALVINGS {
                 halvings += 1;
                 step *= 0.5;
-            } else if at.drop_overdamped() {
+            } else if drop_overdamped(&mut at.all) {
                 halvings = 0;
                 step = speed - at.speed;
             } else {
@@ -99,63 +131,47 @@ impl<'a> Tracker<'a> {
         Ok(at)
     }
 
-    /// The mode of a branch, unless it has stopped oscillating.
-    pub(super) fn mode(&self, branch: usize) -> Option<&TrackedMode> {
-        self.modes.iter().find(|m| m.branch == branch)
+    fn lost(speed: f64) -> Error {
+        Error::Numerical(format!("onset: the mode does not oscillate at {speed} m/s"))
     }
 
-    /// Stops following the mode with the most damping if that is close to critical; whether there was one.
-    fn drop_overdamped(&mut self) -> bool {
-        let damping = |m: &TrackedMode| -m.lambda.re / m.lambda.norm();
-        let most = self.modes.iter().map(damping).fold(f64::MIN, f64::max);
-        let before = self.modes.len();
-        if most > NEARLY_CRITICAL {
-            self.modes.retain(|m| damping(m) < most);
+    fn complete(&self, mut onset: Onset, low: &Modes, mode: &Mode) -> Result<Option<Onset>> {
+        let speed = onset.speed_m_s;
+        let nearby = self.mode_at(low, speed * (1.0 - SLOPE_STEP), mode.branch)?;
+        let slope = damping_ratio(mode.lambda) - damping_ratio(nearby.lambda);
+        onset.damping_slope_s_m = Some(slope / (speed * SLOPE_STEP));
+        let dof = self.structure().dofs[mode.branch];
+        if single_dof(dof, onset.mode_ratio) {
+            onset.warnings.push(format!(
+                "the mode is almost purely {}: a one-degree-of-freedom instability",
+                dof.name()
+            ));
         }
-        self.modes.len() < before
-    }
-
-    /// Modes at `speed` if each is clearly the continuation of one here.
-    fn matched(&self, speed: f64) -> Result<Option<Self>> {
-        let predicted: Vec<_> = self
-            .modes
-            .iter()
-            .map(|mode| mode.lambda + mode.slope * (speed - self.speed))
-            .collect();
-        let corrected = match &self.characteristic {
-            Some(problem) => newton(self.section, problem, &predicted, speed),
-            None => nearest(self.section, &predicted, speed)?,
-        };
-        let Some(roots) = corrected else {
-            return Ok(None);
-        };
-        let mut modes = Vec::with_capacity(roots.len());
-        for ((lambda, shape), old) in roots.into_iter().zip(&self.modes) {
-            if assurance(&shape, &old.shape) < MIN_ASSURANCE {
-                return Ok(None);
-            }
-            let slope = if speed == self.speed {
-                old.slope
-            } else {
-                (lambda - old.lambda) / (speed - self.speed)
-            };
-            modes.push(TrackedMode {
-                branch: old.branch,
-                lambda,
-                shape,
-                slope,
-            });
-        }
-        Ok(Some(Self {
-            section: self.section,
-            characteristic: self.characteristic.clone(),
-            speed,
-            modes,
-        }))
+        Ok(Some(onset))
     }
 }
 
-/// An eigenvalue and its shape, scaled as in [`TrackedMode`].
+/// Whether the mode hardly moves any other degree of freedom than its own.
+fn single_dof(dof: Dof, mode_ratio: f64) -> bool {
+    match dof {
+        Dof::Torsion => mode_ratio < 0.05,
+        Dof::Vertical => mode_ratio > 20.0,
+        Dof::Lateral => false,
+    }
+}
+
+/// Stops following the mode with the most damping if that is close to critical; whether there was one.
+fn drop_overdamped(modes: &mut Vec<Mode>) -> bool {
+    let damping = |m: &Mode| damping_ratio(m.lambda);
+    let most = modes.iter().map(damping).fold(f64::MIN, f64::max);
+    let before = modes.len();
+    if most > NEARLY_CRITICAL {
+        modes.retain(|m| damping(m) < most);
+    }
+    modes.len() < before
+}
+
+/// An eigenvalue and its shape, of unit norm in `(y/B, x/B, θ)`.
 type Root = (Complex<f64>, DVector<Complex<f64>>);
 
 /// Whether an eigenvalue has an imaginary part above rounding; of a pair the one in the upper half plane.
@@ -178,7 +194,7 @@ fn newton(
         if !oscillates(&lambda) || !roots.iter().all(distinct) {
             return None;
         }
-        let size = dimensionless(section, &shape).norm();
+        let size = dimensionless(section.structure(), &shape).norm();
         roots.push((lambda, shape.unscale(size)));
     }
     Some(roots)
@@ -237,7 +253,7 @@ pub(super) fn mode_shape(
     let n = s.dofs.len();
     let vector = eigenvector(system.state_matrix(), system.matrix_eigenvalue(lambda))?;
     let mut shape = vector.rows(0, n).into_owned();
-    let size = dimensionless(section, &shape).norm();
+    let size = dimensionless(section.structure(), &shape).norm();
     if size == 0.0 {
         return Err(Error::Numerical(
             "mode shape: the eigenvector does not move the section".into(),
@@ -247,21 +263,8 @@ pub(super) fn mode_shape(
     Ok(shape)
 }
 
-fn dimensionless(section: &CoupledSection, shape: &DVector<Complex<f64>>) -> DVector<Complex<f64>> {
-    let s = section.structure();
-    DVector::from_fn(shape.len(), |i, _| {
-        shape[i] * s.dofs[i].motion_scale(s.width_m)
-    })
-}
-
-/// Modal assurance criterion of two shapes: 1 for the same shape.
-fn assurance(a: &DVector<Complex<f64>>, b: &DVector<Complex<f64>>) -> f64 {
-    let scale = a.norm_squared() * b.norm_squared();
-    a.dotc(b).norm_sqr() / scale
-}
-
 /// Modes of the structure with its added mass in still air, in the order of the degrees of freedom they move most.
-fn natural_modes(section: &CoupledSection) -> Result<Vec<TrackedMode>> {
+fn natural_modes(section: &CoupledSection) -> Result<Vec<Mode>> {
     let s = section.structure();
     let n = s.dofs.len();
     let (a, _) = section.structure_alone();
@@ -269,8 +272,8 @@ fn natural_modes(section: &CoupledSection) -> Result<Vec<TrackedMode>> {
     for lambda in eigenvalues(&a)?.into_iter().filter(|z| z.im > 0.0) {
         let vector = eigenvector(&a, lambda)?;
         let shape = vector.rows(0, n).into_owned();
-        let size = dimensionless(section, &shape).norm();
-        modes.push(TrackedMode {
+        let size = dimensionless(section.structure(), &shape).norm();
+        modes.push(Mode {
             branch: 0,
             lambda,
             shape: shape.unscale(size),
@@ -287,12 +290,13 @@ fn natural_modes(section: &CoupledSection) -> Result<Vec<TrackedMode>> {
 }
 
 /// Puts the modes into the order of the degrees of freedom they move most.
-fn order_by_dof(section: &CoupledSection, modes: &mut [TrackedMode]) {
+fn order_by_dof(section: &CoupledSection, modes: &mut [Mode]) {
     let n = modes.len();
     for dof in 0..n {
         let strongest = (dof..n)
             .max_by(|i, j| {
-                let share = |m: usize| dimensionless(section, &modes[m].shape)[dof].norm();
+                let share =
+                    |m: usize| dimensionless(section.structure(), &modes[m].shape)[dof].norm();
                 share(*i).total_cmp(&share(*j))
             })
             .unwrap_or(dof);
@@ -307,15 +311,10 @@ pub(super) fn lowest_speed(section: &CoupledSection) -> Result<f64> {
     Ok(start_speed(section, &natural_modes(section)?))
 }
 
-fn start_speed(section: &CoupledSection, modes: &[TrackedMode]) -> f64 {
+fn start_speed(section: &CoupledSection, modes: &[Mode]) -> f64 {
     let crate::aerodynamics::Realization::Discrete(d) = section.aerodynamics() else {
         return 0.0;
     };
     let highest_hz = modes.iter().map(|m| m.lambda.im).fold(0.0, f64::max) / std::f64::consts::TAU;
     SAMPLES_PER_PERIOD * highest_hz * d.delta_s * section.structure().width_m
-}
-
-/// Name of the branch that starts as the mode of `dof`.
-pub(super) fn branch_name(dof: Dof) -> String {
-    dof.name().to_owned()
 }

@@ -90,7 +90,7 @@ impl UnwantedGrowth {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::aerodynamics::{AerodynamicModel, Lags, RationalModel};
+    use crate::aerodynamics::{Lags, RationalModel, Realizable};
     use crate::section::SectionModel;
 
     fn range(min: f64, max: f64) -> ReducedFrequencyRange {
@@ -102,7 +102,7 @@ mod tests {
 
     fn found(model: &RationalModel, tested: ReducedFrequencyRange) -> UnwantedGrowth {
         let structure = SectionModel::table_4_1().structure().unwrap();
-        let section = CoupledSection::new(structure, model.realize().unwrap()).unwrap();
+        let section = CoupledSection::new(structure, model.realize()).unwrap();
         let search = OnsetSearch {
             speed_max_m_s: 80.0,
             speeds: 100,
@@ -149,7 +149,7 @@ mod tests {
     #[test]
     fn growth_above_the_tests_is_unwanted_where_it_is_the_only_onset() {
         let structure = SectionModel::table_4_1().structure().unwrap();
-        let model = feeds_fast_heave().realize().unwrap();
+        let model = feeds_fast_heave().realize();
         let section = CoupledSection::new(structure, model).unwrap();
         let search = OnsetSearch {
             speed_max_m_s: 10.0,

@@ -21,8 +21,8 @@ use super::lifecycle::{Call, State};
 use super::refusal::{Answer, Refusal, Severity};
 use super::resources::Resources;
 use super::variables::VariableTable;
-use crate::aerodynamics::{AerodynamicModel, Realization};
-use crate::error::{Error, Result};
+use crate::aerodynamics::{Realizable, Realization};
+use crate::error::Result;
 use crate::response::{Inputs, Outputs, Stepper};
 use layout::Layout;
 use memory::{Experiment, Memory};
@@ -63,9 +63,7 @@ impl Instance {
     pub fn new(resources: Resources) -> Result<Self> {
         let layout = Layout::new(&resources.table)?;
         let model = &resources.model;
-        let aerodynamics = model.model.realize().ok_or_else(|| {
-            Error::input("model", "a model with a realisation", model.model.kind())
-        })?;
+        let aerodynamics = model.model.realize();
         let dofs = layout.force.len();
         let states = 2 * dofs + aerodynamics.states();
         let fresh = Memory::new(&resources.table, &layout, states);

@@ -13,7 +13,6 @@ mod words;
 
 pub use super::standard::{Causality, Initial, Variability};
 pub use parameters::SectionParameter;
-pub use section::filters;
 
 use super::si::Unit;
 use crate::error::{Error, Result};

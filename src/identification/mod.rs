@@ -49,6 +49,6 @@ pub use report::{
 pub use samples::sample_model;
 pub use uncertainty::{
     CoefficientUncertainty, Coordinates, ForceScatter, LinearModel, Parameter, SEARCHED_POLES,
-    SearchedPole, SpeedScatter, discrete_uncertainty, record_uncertainty, table_uncertainty,
-    two_sided_quantile,
+    SearchedPole, SpeedScatter, discrete_uncertainty, incomplete_beta, record_uncertainty,
+    table_uncertainty, two_sided_quantile,
 };

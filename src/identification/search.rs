@@ -10,6 +10,7 @@ use super::options::PoleSearch;
 use super::report::{SearchPoint, SearchReport};
 use crate::error::{Error, Result};
 use crate::section::Dof;
+use crate::state_space::golden_section;
 use crate::units::ReducedFrequencyRange;
 use nalgebra::DVector;
 
@@ -197,7 +198,6 @@ impl Search<'_> {
 
     /// Golden sections between the neighbours of the best grid point (or around a stated start).
     fn golden(&mut self, bounds: &Bounds, grid_points: usize) -> Result<SearchPoint> {
-        const RATIO: f64 = 0.618_033_988_749_894_9;
         let centre = self.best()?.poles[0].ln();
         let (low, high) = (bounds.min.ln(), bounds.max.ln());
         let step = if self.points.len() == 1 {
@@ -205,20 +205,9 @@ impl Search<'_> {
         } else {
             (high - low) / (grid_points as f64 - 1.0)
         };
-        let (mut a, mut b) = ((centre - step).max(low), (centre + step).min(high));
-        let (mut x, mut y) = (b - RATIO * (b - a), a + RATIO * (b - a));
-        let (mut fx, mut fy) = (self.evaluate(&[x.exp()])?, self.evaluate(&[y.exp()])?);
-        while b - a > GOLDEN_TOLERANCE {
-            if fx < fy {
-                (b, y, fy) = (y, x, fx);
-                x = b - RATIO * (b - a);
-                fx = self.evaluate(&[x.exp()])?;
-            } else {
-                (a, x, fx) = (x, y, fy);
-                y = a + RATIO * (b - a);
-                fy = self.evaluate(&[y.exp()])?;
-            }
-        }
+        let ends = ((centre - step).max(low), (centre + step).min(high));
+        let at = |x: f64| self.evaluate(&[x.exp()]);
+        golden_section(ends, at, f64::lt, |width, _, _| width <= GOLDEN_TOLERANCE)?;
         self.best()
     }
 

@@ -1,8 +1,8 @@
 //! Helpers of the tests of this module: the test points and records of the thesis, and an onset by plain bisection.
 
 use super::{Constraints, FrequencyFit, TimeFit};
-use crate::aerodynamics::AerodynamicModel;
 use crate::aerodynamics::derivatives::TABLE_3_2_FREQUENCIES_HZ;
+use crate::aerodynamics::{AerodynamicModel, Realizable};
 use crate::aeroelastic::CoupledSection;
 use crate::section::SectionModel;
 use crate::units::ReducedFrequency;
@@ -43,14 +43,14 @@ fn growth(section: &CoupledSection, speed: f64) -> f64 {
 }
 
 /// First wind speed (m/s) above 5 at which a mode of the Table 4.1 section stops being damped.
-pub fn onset_m_s(model: &dyn AerodynamicModel) -> f64 {
+pub fn onset_m_s(model: &dyn Realizable) -> f64 {
     onset_above(model, 5.0)
 }
 
 /// The same above another speed.
-pub fn onset_above(model: &dyn AerodynamicModel, speed_m_s: f64) -> f64 {
+pub fn onset_above(model: &dyn Realizable, speed_m_s: f64) -> f64 {
     let structure = SectionModel::table_4_1().structure().unwrap();
-    let section = CoupledSection::new(structure, model.realize().unwrap()).unwrap();
+    let section = CoupledSection::with_model(&structure, model).unwrap();
     let mut low = speed_m_s;
     while growth(&section, low + 0.5) < 0.0 {
         low += 0.5;

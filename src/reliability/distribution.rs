@@ -14,41 +14,9 @@ const SMALLEST_PROBABILITY: f64 = 1e-9;
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum Distribution {
     /// Gaussian; a bound that is given truncates it.
-    Normal {
-        /// Mean before truncation.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        mean: Option<f64>,
-        /// Standard deviation before truncation.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        standard_deviation: Option<f64>,
-        /// Standard deviation over mean, before truncation.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        coefficient_of_variation: Option<f64>,
-        /// Lower end.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        lower: Option<f64>,
-        /// Upper end.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        upper: Option<f64>,
-    },
+    Normal(Gaussian),
     /// The logarithm is Gaussian; a bound that is given truncates it.
-    Lognormal {
-        /// Mean of the parameter before truncation.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        mean: Option<f64>,
-        /// Standard deviation of the parameter before truncation.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        standard_deviation: Option<f64>,
-        /// Standard deviation over mean, before truncation.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        coefficient_of_variation: Option<f64>,
-        /// Lower end.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        lower: Option<f64>,
-        /// Upper end.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        upper: Option<f64>,
-    },
+    Lognormal(Gaussian),
     /// Every value between two ends is as likely.
     Uniform {
         /// Lower end.
@@ -58,40 +26,59 @@ pub enum Distribution {
     },
 }
 
+/// A Gaussian or lognormal distribution, in numbers of the parameter itself.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Gaussian {
+    /// Mean before truncation.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mean: Option<f64>,
+    /// Standard deviation before truncation.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub standard_deviation: Option<f64>,
+    /// Standard deviation over mean, before truncation.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub coefficient_of_variation: Option<f64>,
+    /// Lower end.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lower: Option<f64>,
+    /// Upper end.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub upper: Option<f64>,
+}
+
 /// A distribution with its numbers worked out: a function of a standard normal variable.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Transform {
-    Normal {
+    /// Of the logarithm if `exponential`.
+    Gaussian {
         mean: f64,
         deviation: f64,
-    },
-    Lognormal {
-        mean: f64,
-        deviation: f64,
+        ends: Option<Ends>,
+        exponential: bool,
     },
     Uniform {
         lower: f64,
         width: f64,
     },
-    /// A Gaussian between two quantiles, of the logarithm if `exponential`.
-    Truncated {
-        mean: f64,
-        deviation: f64,
-        from: f64,
-        to: f64,
-        mirrored: bool,
-        exponential: bool,
-    },
+}
+
+/// Probabilities between which a Gaussian is kept, counted from the upper tail if `mirrored`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Ends {
+    from: f64,
+    to: f64,
+    mirrored: bool,
 }
 
 impl Distribution {
-    /// The distribution around `nominal`; `place` is the key it stands under.
+    /// Works out the numbers; `nominal` is the value of the model, `place` the entry of the file.
     ///
     /// # Errors
-    /// [`Error::Input`] naming the key.
+    /// [`Error::Input`] for numbers that make no such distribution.
     pub(super) fn resolve(&self, place: &str, nominal: f64) -> Result<Transform> {
         let at = |key: &str| format!("{place}.{key}");
-        match *self {
+        match self {
             Self::Uniform { lower, upper } => {
                 if !(lower.is_finite() && upper.is_finite() && lower < upper) {
                     let found = format!("{lower} to {upper}");
@@ -101,44 +88,24 @@ impl Distribution {
                         found,
                     ));
                 }
-                let width = upper - lower;
+                let (lower, width) = (*lower, upper - lower);
                 Ok(Transform::Uniform { lower, width })
             }
-            Self::Normal {
-                mean,
-                standard_deviation,
-                coefficient_of_variation,
-                lower,
-                upper,
-            } => {
-                let mean = finite(&at("mean"), mean.unwrap_or(nominal))?;
-                let scatter = (standard_deviation, coefficient_of_variation);
-                let deviation = deviation(place, mean, scatter)?;
-                if lower.is_none() && upper.is_none() {
-                    return Ok(Transform::Normal { mean, deviation });
-                }
-                truncated(place, (mean, deviation), (lower, upper), false)
+            Self::Normal(given) => {
+                let mean = finite(&at("mean"), given.mean.unwrap_or(nominal))?;
+                let deviation = given.deviation(place, mean)?;
+                gaussian(place, (mean, deviation), (given.lower, given.upper), false)
             }
-            Self::Lognormal {
-                mean,
-                standard_deviation,
-                coefficient_of_variation,
-                lower,
-                upper,
-            } => {
-                let mean = positive(&at("mean"), mean.unwrap_or(nominal))?;
-                let scatter = (standard_deviation, coefficient_of_variation);
-                let ratio = deviation(place, mean, scatter)? / mean;
+            Self::Lognormal(given) => {
+                let mean = positive(&at("mean"), given.mean.unwrap_or(nominal))?;
+                let ratio = given.deviation(place, mean)? / mean;
                 let variance = (ratio * ratio).ln_1p();
-                let (mean, deviation) = (mean.ln() - 0.5 * variance, variance.sqrt());
-                if lower.is_none() && upper.is_none() {
-                    return Ok(Transform::Lognormal { mean, deviation });
-                }
                 let log = |key: &str, end: Option<f64>| {
                     end.map(|x| positive(&at(key), x).map(f64::ln)).transpose()
                 };
-                let ends = (log("lower", lower)?, log("upper", upper)?);
-                truncated(place, (mean, deviation), ends, true)
+                let ends = (log("lower", given.lower)?, log("upper", given.upper)?);
+                let moments = (mean.ln() - 0.5 * variance, variance.sqrt());
+                gaussian(place, moments, ends, true)
             }
         }
     }
@@ -151,29 +118,41 @@ fn finite(place: &str, value: f64) -> Result<f64> {
     Err(Error::input(place, "a finite number", value.to_string()))
 }
 
-/// The standard deviation from exactly one of its two forms.
-fn deviation(place: &str, mean: f64, scatter: (Option<f64>, Option<f64>)) -> Result<f64> {
-    match scatter {
-        (Some(s), None) => positive(&format!("{place}.standard_deviation"), s),
-        (None, Some(c)) => {
-            let key = format!("{place}.coefficient_of_variation");
-            positive(&key, c)?;
-            positive(&key, c * mean.abs())
+impl Gaussian {
+    /// The standard deviation for a mean, in the unit of the parameter.
+    fn deviation(&self, place: &str, mean: f64) -> Result<f64> {
+        match (self.standard_deviation, self.coefficient_of_variation) {
+            (Some(s), None) => positive(&format!("{place}.standard_deviation"), s),
+            (None, Some(c)) => {
+                let key = format!("{place}.coefficient_of_variation");
+                positive(&key, c)?;
+                positive(&key, c * mean.abs())
+            }
+            (given, _) => Err(Error::input(
+                place,
+                "either `standard_deviation` or `coefficient_of_variation`",
+                if given.is_some() { "both" } else { "neither" },
+            )),
         }
-        (given, _) => Err(Error::input(
-            place,
-            "either `standard_deviation` or `coefficient_of_variation`",
-            if given.is_some() { "both" } else { "neither" },
-        )),
     }
 }
 
-fn truncated(
+/// The transform of a Gaussian, cut where it has ends.
+fn gaussian(
     place: &str,
     (mean, deviation): (f64, f64),
     (lower, upper): (Option<f64>, Option<f64>),
     exponential: bool,
 ) -> Result<Transform> {
+    let transform = |ends| Transform::Gaussian {
+        mean,
+        deviation,
+        ends,
+        exponential,
+    };
+    if lower.is_none() && upper.is_none() {
+        return Ok(transform(None));
+    }
     let standard = |end: f64| (end - mean) / deviation;
     let low = lower.map_or(f64::NEG_INFINITY, standard);
     let high = upper.map_or(f64::INFINITY, standard);
@@ -193,38 +172,33 @@ fn truncated(
             format!("{} to {}", end(lower), end(upper)),
         ));
     }
-    Ok(Transform::Truncated {
-        mean,
-        deviation,
-        from,
-        to,
-        mirrored,
-        exponential,
-    })
+    Ok(transform(Some(Ends { from, to, mirrored })))
 }
 
 impl Transform {
     /// The parameter for a standard normal `z`.
     pub(super) fn value(&self, z: f64) -> f64 {
         match *self {
-            Self::Normal { mean, deviation } => mean + deviation * z,
-            Self::Lognormal { mean, deviation } => (mean + deviation * z).exp(),
             Self::Uniform { lower, width } => lower + width * normal::cdf(z),
-            Self::Truncated {
+            Self::Gaussian {
                 mean,
                 deviation,
-                from,
-                to,
-                mirrored,
+                ends,
                 exponential,
             } => {
-                let z = if mirrored { -z } else { z };
-                let u = from + (to - from) * normal::cdf(z);
-                let inside = normal::quantile(u.clamp(f64::MIN_POSITIVE, 1.0 - f64::EPSILON));
-                let x = mean + deviation * if mirrored { -inside } else { inside };
+                let x = mean + deviation * ends.map_or(z, |ends| ends.inside(z));
                 if exponential { x.exp() } else { x }
             }
         }
+    }
+}
+
+impl Ends {
+    /// The standard normal variable between the ends for an unbounded one.
+    fn inside(self, z: f64) -> f64 {
+        let sign = if self.mirrored { -1.0 } else { 1.0 };
+        let u = self.from + (self.to - self.from) * normal::cdf(sign * z);
+        sign * normal::quantile(u.clamp(f64::MIN_POSITIVE, 1.0 - f64::EPSILON))
     }
 }
 

@@ -1,5 +1,9 @@
 //! Confidence interval of a probability from counted samples.
 
+use crate::identification::incomplete_beta;
+use crate::state_space::boundary;
+use std::convert::Infallible;
+
 /// Exact (Clopper–Pearson 1934) two-sided interval at the level `confidence` for `count` of `samples`.
 pub(super) fn clopper_pearson(count: u64, samples: u64, confidence: f64) -> (f64, f64) {
     let tail = 0.5 * (1.0 - confidence);
@@ -19,52 +23,9 @@ pub(super) fn clopper_pearson(count: u64, samples: u64, confidence: f64) -> (f64
 
 /// `x` with `I_x(a, b) = probability`, by bisection.
 fn beta_quantile(probability: f64, a: f64, b: f64) -> f64 {
-    let (mut low, mut high) = (0.0, 1.0);
-    for _ in 0..200 {
-        let middle = 0.5 * (low + high);
-        if middle == low || middle == high {
-            break;
-        }
-        if incomplete_beta(middle, a, b) < probability {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
+    let below = |x| Ok::<_, Infallible>(incomplete_beta(x, a, b) < probability);
+    let Ok((low, high)) = boundary(0.0, 1.0, 0.0, below);
     0.5 * (low + high)
-}
-
-/// Regularised incomplete beta function by its continued fraction (Lentz's method).
-fn incomplete_beta(x: f64, a: f64, b: f64) -> f64 {
-    if x <= 0.0 || x >= 1.0 {
-        return x.clamp(0.0, 1.0);
-    }
-    if x > (a + 1.0) / (a + b + 2.0) {
-        // the fraction converges fast on this side only
-        return 1.0 - incomplete_beta(1.0 - x, b, a);
-    }
-    let log_factor =
-        libm::lgamma(a + b) - libm::lgamma(a) - libm::lgamma(b) + a * x.ln() + b * (-x).ln_1p();
-    let safe = |v: f64| if v.abs() < 1e-300 { 1e-300 } else { v };
-    let mut c = 1.0;
-    let mut d = 1.0 / safe(1.0 - (a + b) * x / (a + 1.0));
-    let mut fraction = d;
-    for m in 1..100_000 {
-        let m = f64::from(m);
-        let even = m * (b - m) * x / ((a + 2.0 * m - 1.0) * (a + 2.0 * m));
-        d = 1.0 / safe(1.0 + even * d);
-        c = safe(1.0 + even / c);
-        fraction *= d * c;
-        let odd = -(a + m) * (a + b + m) * x / ((a + 2.0 * m) * (a + 2.0 * m + 1.0));
-        d = 1.0 / safe(1.0 + odd * d);
-        c = safe(1.0 + odd / c);
-        let change = d * c;
-        fraction *= change;
-        if (change - 1.0).abs() < 1e-15 {
-            break;
-        }
-    }
-    log_factor.exp() * fraction / a
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use super::parameter::Parameter;
 use crate::error::{Error, Result, positive};
 use crate::toml_lines;
 use serde::{Deserialize, Serialize};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Version of the file.
 pub const PLAN_SCHEMA: u32 = 1;
@@ -94,14 +94,6 @@ fn usual_quantiles() -> Vec<f64> {
 }
 
 impl MonteCarloPlan {
-    /// Reads and checks a file.
-    ///
-    /// # Errors
-    /// [`Error::Io`] when it cannot be read; [`Error::Input`] with file and line for everything that is wrong in it.
-    pub fn read(path: &Path) -> Result<Self> {
-        toml_lines::read(path, Self::from_toml)
-    }
-
     /// Reads and checks the text of a file; paths in it are read against `directory`.
     ///
     /// # Errors

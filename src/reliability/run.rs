@@ -5,9 +5,8 @@ use super::drawn::drawn_model;
 use super::plan::MonteCarloPlan;
 use super::results::{MonteCarloResult, Tally};
 use super::sampler::{Sample, Sampler};
-use crate::aerodynamics::AerodynamicModel;
 use crate::aeroelastic::CoupledSection;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::flutter::{
     FlutterSearch, OnsetSearch, OnsetSweep, SweepOutcome, SweptOnset, find_onset,
 };
@@ -129,10 +128,7 @@ impl<'a> Finder<'a> {
     fn searched(&self, section: &SectionModel, values: &[f64]) -> Result<SweepOutcome> {
         let mut model: Model = self.model.model.clone();
         coefficients::replace(&mut model, values);
-        let realization = model
-            .realize()
-            .ok_or_else(|| Error::Numerical("the model has no realisation".into()))?;
-        let coupled = CoupledSection::new(section.structure()?, realization)?;
+        let coupled = CoupledSection::with_model(&section.structure()?, &model)?;
         let tested = Some(self.model.tested_range);
         let found = find_onset(&self.model.name, &coupled, &self.search, tested)?;
         Ok(match found {

@@ -1,7 +1,7 @@
 //! Analyses against closed forms, single searches and other numbers of threads.
 
 use super::*;
-use crate::aerodynamics::{AerodynamicModel, RationalModel};
+use crate::aerodynamics::{RationalModel, Realizable};
 use crate::aeroelastic::CoupledSection;
 use crate::flutter::{OnsetSearch, find_onset};
 use crate::section::SectionModel;
@@ -131,7 +131,7 @@ fn samples_are_those_of_single_searches() {
         coefficients::replace(&mut changed, &sample.coefficients);
         assert_eq!(coefficients::of(&changed).0, sample.coefficients);
         let structure = sample.section.structure().unwrap();
-        let coupled = CoupledSection::new(structure, changed.realize().unwrap()).unwrap();
+        let coupled = CoupledSection::new(structure, changed.realize()).unwrap();
         let search = OnsetSearch {
             speed_max_m_s: 120.0,
             speeds: 100,

@@ -87,8 +87,8 @@ impl Stepper {
         operand.extend_from_slice(&state.values[..2 * n]);
         operand.extend(force.iter().zip(&inputs.force).map(|(held, w)| held + w));
         operand.extend_from_slice(&inputs.force_rate);
-        let entry = self.cache.structure(&self.section, piece)?;
-        apply(&entry.step, &operand, &mut state.values[..2 * n]);
+        let step = self.cache.structure(&self.section, piece)?;
+        apply(step, &operand, &mut state.values[..2 * n]);
         Ok(())
     }
 

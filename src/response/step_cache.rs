@@ -2,7 +2,7 @@
 
 use crate::aeroelastic::{CoupledSection, CoupledSystem};
 use crate::error::{Error, Result};
-use crate::state_space::{StepMatrices, step_matrices};
+use crate::state_space::{StepMatrices, c2d};
 
 /// Pairs of wind speed and step size that are remembered. Importers whose step jitters in the last bits come back to a
 /// handful of values; a wind speed that never repeats needs no more.
@@ -69,27 +69,14 @@ pub(super) fn apply(w: &Packed, v: &[f64], y: &mut [f64]) {
     }
 }
 
-/// `[Φ, Γ₀, Γ₁]` of one wind speed and step.
-#[derive(Debug, Clone)]
-pub(super) struct StepEntry {
-    pub(super) step: Packed,
-}
-
-/// Rows of accelerations and of self-excited forces over `[z, w]`, of one wind speed.
-#[derive(Debug, Clone)]
-pub(super) struct OutputEntry {
-    /// Accelerations (n), then forces (n).
-    pub(super) rows: Packed,
-}
-
 /// Least recently used entries leave first; the one used last is found first.
 #[derive(Debug, Clone)]
-struct Recent<K, E> {
-    entries: Vec<(K, E)>,
+struct Recent<K> {
+    entries: Vec<(K, Packed)>,
 }
 
-impl<K: PartialEq + Copy, E> Recent<K, E> {
-    fn get(&mut self, key: K, make: impl FnOnce() -> Result<E>) -> Result<&E> {
+impl<K: PartialEq + Copy> Recent<K> {
+    fn get(&mut self, key: K, make: impl FnOnce() -> Result<Packed>) -> Result<&Packed> {
         match self.entries.iter().position(|(k, _)| *k == key) {
             Some(0) => {}
             Some(at) => self.entries[..=at].rotate_right(1),
@@ -103,7 +90,7 @@ impl<K: PartialEq + Copy, E> Recent<K, E> {
     }
 }
 
-impl<K, E> Default for Recent<K, E> {
+impl<K> Default for Recent<K> {
     fn default() -> Self {
         Self {
             entries: Vec::new(),
@@ -113,8 +100,8 @@ impl<K, E> Default for Recent<K, E> {
 
 #[derive(Debug, Clone, Default)]
 pub(super) struct StepCache {
-    steps: Recent<(u64, u64), StepEntry>,
-    outputs: Recent<u64, OutputEntry>,
+    steps: Recent<(u64, u64)>,
+    outputs: Recent<u64>,
 }
 
 impl StepCache {
@@ -124,55 +111,47 @@ impl StepCache {
         section: &CoupledSection,
         speed: f64,
         step: f64,
-    ) -> Result<&StepEntry> {
+    ) -> Result<&Packed> {
         self.steps.get((speed.to_bits(), step.to_bits()), || {
             let CoupledSystem::Continuous(s) = section.at(speed)? else {
                 return Err(Error::Numerical("step: the model is sampled".into()));
             };
-            Ok(pack(&step_matrices(&s.a, &s.b, step)?))
+            Ok(pack(&c2d(&s.a, &s.b, step)?))
         })
     }
 
     /// Step of the structure alone under a given force, for the sampled model.
-    pub(super) fn structure(&mut self, section: &CoupledSection, step: f64) -> Result<&StepEntry> {
+    pub(super) fn structure(&mut self, section: &CoupledSection, step: f64) -> Result<&Packed> {
         self.steps.get((0, step.to_bits()), || {
             let (a, b) = section.structure_alone();
-            Ok(pack(&step_matrices(&a, &b, step)?))
+            Ok(pack(&c2d(&a, &b, step)?))
         })
     }
 
-    pub(super) fn output_rows(
-        &mut self,
-        section: &CoupledSection,
-        speed: f64,
-    ) -> Result<&OutputEntry> {
+    pub(super) fn output_rows(&mut self, section: &CoupledSection, speed: f64) -> Result<&Packed> {
         self.outputs.get(speed.to_bits(), || {
             let (c, d) = section.output_matrices(speed)?;
             let (n, states) = (section.structure().dofs.len(), section.states());
-            Ok(OutputEntry {
-                rows: Packed::new(2 * n, states + n, |i, j| {
-                    if j < states {
-                        c[(2 * n + i, j)]
-                    } else {
-                        d[(2 * n + i, j - states)]
-                    }
-                }),
-            })
+            Ok(Packed::new(2 * n, states + n, |i, j| {
+                if j < states {
+                    c[(2 * n + i, j)]
+                } else {
+                    d[(2 * n + i, j - states)]
+                }
+            }))
         })
     }
 }
 
-fn pack(s: &StepMatrices) -> StepEntry {
+fn pack(s: &StepMatrices) -> Packed {
     let (n, m) = s.gamma_0.shape();
-    StepEntry {
-        step: Packed::new(n, n + 2 * m, |i, j| {
-            if j < n {
-                s.phi[(i, j)]
-            } else if j < n + m {
-                s.gamma_0[(i, j - n)]
-            } else {
-                s.gamma_1[(i, j - n - m)]
-            }
-        }),
-    }
+    Packed::new(n, n + 2 * m, |i, j| {
+        if j < n {
+            s.phi[(i, j)]
+        } else if j < n + m {
+            s.gamma_0[(i, j - n)]
+        } else {
+            s.gamma_1[(i, j - n - m)]
+        }
+    })
 }

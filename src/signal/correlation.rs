@@ -14,23 +14,11 @@ pub struct CrossCorrelation {
 impl CrossCorrelation {
     /// Of two signals of equal length.
     pub fn new(reference: &[f64], compared: &[f64]) -> Self {
-        let sample_count = reference.len();
-        let size = (2 * sample_count).next_power_of_two();
-        let mut planner = FftPlanner::new();
-        let forward = planner.plan_fft_forward(size);
-        let transform = |x: &[f64]| {
-            let mut buffer = vec![Complex64::default(); size];
-            for (z, &value) in buffer.iter_mut().zip(x) {
-                z.re = value;
-            }
-            forward.process(&mut buffer);
-            buffer
-        };
-        let mut product = transform(compared);
-        for (z, w) in product.iter_mut().zip(transform(reference)) {
-            *z *= w.conj();
-        }
-        planner.plan_fft_inverse(size).process(&mut product);
+        let mut product = cross_spectrum(reference, compared);
+        let size = product.len();
+        FftPlanner::new()
+            .plan_fft_inverse(size)
+            .process(&mut product);
         let values = product.iter().map(|z| z.re / size as f64).collect();
         Self {
             values,
@@ -87,6 +75,24 @@ impl CrossCorrelation {
         }
         best
     }
+}
+
+/// Transform of `compared` times the conjugate of that of `reference`, both padded with zeros to a power of two of at least
+/// twice the samples.
+pub(super) fn cross_spectrum(reference: &[f64], compared: &[f64]) -> Vec<Complex64> {
+    let size = (2 * reference.len()).next_power_of_two();
+    let forward = FftPlanner::new().plan_fft_forward(size);
+    let transform = |x: &[f64]| {
+        let mut z: Vec<Complex64> = x.iter().map(|v| (*v).into()).collect();
+        z.resize(size, Complex64::default());
+        forward.process(&mut z);
+        z
+    };
+    let mut product = transform(compared);
+    for (z, w) in product.iter_mut().zip(transform(reference)) {
+        *z *= w.conj();
+    }
+    product
 }
 
 fn cumulated_energy(signal: &[f64]) -> Vec<f64> {

@@ -4,9 +4,8 @@
 //! the slope of the phase of the cross-spectrum, `arg X₂X̄₁ = −ωδ` weighted by `ω²|X₁X₂|²`, refines it: for equal signals up to
 //! noise this is the maximum-likelihood delay (Knapp & Carter 1976, IEEE Trans. ASSP 24(4), with the noise white).
 
-use super::correlation::CrossCorrelation;
+use super::correlation::{CrossCorrelation, cross_spectrum};
 use crate::error::{Error, Result};
-use rustfft::FftPlanner;
 use rustfft::num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -68,18 +67,8 @@ pub fn delay(reference: &[f64], compared: &[f64]) -> Result<Delay> {
 
 /// Refines `start` by the slope of the phase of the cross-spectrum.
 fn by_phase_slope(reference: &[f64], compared: &[f64], start: f64) -> f64 {
-    let size = (2 * reference.len()).next_power_of_two();
-    let forward = FftPlanner::new().plan_fft_forward(size);
-    let spectrum = |x: &[f64]| {
-        let mut z: Vec<Complex64> = x.iter().map(|v| (*v).into()).collect();
-        z.resize(size, Complex64::default());
-        forward.process(&mut z);
-        z
-    };
-    let mut cross = spectrum(compared);
-    for (z, w) in cross.iter_mut().zip(spectrum(reference)) {
-        *z *= w.conj();
-    }
+    let cross = cross_spectrum(reference, compared);
+    let size = cross.len();
     let half = &cross[..size / 2];
     let largest = half.iter().map(|z| z.norm()).fold(0.0, f64::max);
     let mut delay = start;

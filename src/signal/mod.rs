@@ -18,7 +18,7 @@ pub use butterworth::{ButterworthLowPass, Section};
 pub use clipping::clipped_stretches;
 pub use correlation::CrossCorrelation;
 pub use delay::{Delay, delay};
-pub use differences::{acceleration, rate};
+pub use differences::rate;
 pub use harmonics::{HarmonicFit, Plateau, fit_harmonics, fit_sine, plateau, refine_frequency};
 pub use lagrange::{NODES, delayed, lagrange_weights, value_at};
 pub use resample::Resampler;

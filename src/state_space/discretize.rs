@@ -46,7 +46,7 @@ pub fn matrix_exponential(m: &DMatrix<f64>) -> Result<DMatrix<f64>> {
 ///
 /// # Errors
 /// [`Error::Numerical`] when an entry or the step is not finite.
-pub fn step_matrices(a: &DMatrix<f64>, b: &DMatrix<f64>, h: f64) -> Result<StepMatrices> {
+pub fn c2d(a: &DMatrix<f64>, b: &DMatrix<f64>, h: f64) -> Result<StepMatrices> {
     let (n, m) = b.shape();
     // the input block is integrated in units of h, so that e^M holds numbers of one size
     let mut augmented = DMatrix::zeros(n + 2 * m, n + 2 * m);
@@ -73,7 +73,7 @@ mod tests {
         let a = DMatrix::from_row_slice(2, 2, &[0.0, 1.0, 0.0, 0.0]);
         let b = DMatrix::from_row_slice(2, 1, &[0.0, 1.0]);
         let h = 0.3_f64;
-        let s = step_matrices(&a, &b, h).unwrap();
+        let s = c2d(&a, &b, h).unwrap();
         assert!((s.gamma_0[0] - h * h / 2.0).abs() < 1e-15);
         assert!((s.gamma_0[1] - h).abs() < 1e-15);
         assert!((s.gamma_1[0] - h.powi(3) / 6.0).abs() < 1e-15);

@@ -3,13 +3,15 @@
 mod discretize;
 mod francis;
 mod poles;
+mod roots;
 pub mod rows;
 
-pub use discretize::{StepMatrices, matrix_exponential, step_matrices};
+pub use discretize::{StepMatrices, c2d, matrix_exponential};
 pub use poles::{balance, eigenvalues, eigenvector};
+pub use roots::{boundary, golden_section, root};
 
 use crate::error::{Error, Result};
-use nalgebra::{Complex, DMatrix};
+use nalgebra::{Complex, ComplexField, DMatrix};
 
 /// Time basis of a continuous system.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -91,7 +93,7 @@ impl StateSpace<Continuous> {
     ///
     /// # Errors
     /// [`Error::Numerical`] when `iω` is a pole.
-    pub fn frequency_response(&self, omega: f64) -> Result<DMatrix<Complex<f64>>> {
+    pub fn freqresp(&self, omega: f64) -> Result<DMatrix<Complex<f64>>> {
         self.response_at(Complex::new(0.0, omega))
     }
 }
@@ -101,9 +103,25 @@ impl StateSpace<Discrete> {
     ///
     /// # Errors
     /// [`Error::Numerical`] when `e^{iωh}` is a pole.
-    pub fn frequency_response(&self, omega: f64) -> Result<DMatrix<Complex<f64>>> {
+    pub fn freqresp(&self, omega: f64) -> Result<DMatrix<Complex<f64>>> {
         self.response_at(Complex::new(0.0, omega * self.time.step).exp())
     }
+}
+
+/// `[0 I; M⁻¹K M⁻¹R]`, 2n×2n: the state matrix of `[q, q̇]` with `M q̈ = K q + R q̇`.
+pub fn first_order<T: ComplexField>(
+    inverse_mass: &DMatrix<T>,
+    on_motion: &DMatrix<T>,
+    on_rate: &DMatrix<T>,
+) -> DMatrix<T> {
+    let n = inverse_mass.nrows();
+    let mut a = DMatrix::zeros(2 * n, 2 * n);
+    a.view_mut((0, n), (n, n)).fill_with_identity();
+    a.view_mut((n, 0), (n, n))
+        .copy_from(&(inverse_mass * on_motion));
+    a.view_mut((n, n), (n, n))
+        .copy_from(&(inverse_mass * on_rate));
+    a
 }
 
 /// A real matrix as a complex one.

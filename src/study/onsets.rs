@@ -1,7 +1,7 @@
 //! Curves, onsets and divergence of all models of a study, side by side.
 
 use super::{Deck, StageFailure, SteppedAnswer, SteppedOnset, Study, attempt};
-use crate::aerodynamics::{AerodynamicModel, Realization};
+use crate::aerodynamics::{AerodynamicModel, Realizable, Realization};
 use crate::aeroelastic::CoupledSection;
 use crate::error::Result;
 use crate::flutter::{
@@ -244,7 +244,7 @@ fn deviation(
     let percent = |speed: f64| 100.0 * (speed / reference.speed_m_s - 1.0);
     let total = percent(onset.speed_m_s);
     let mut from_fit = None;
-    if matches!(model.model.realize(), Some(Realization::Discrete(_))) {
+    if matches!(model.model.realize(), Realization::Discrete(_)) {
         let unheld = determinant_onset(
             &model.name,
             structure,

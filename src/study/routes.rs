@@ -12,7 +12,7 @@ pub use steady::low_frequency_limit;
 use steady::{limit_onset, steady_flat_plate};
 
 use super::{Deck, Study};
-use crate::aerodynamics::{AerodynamicModel, FlatPlate, RationalModel, Realization};
+use crate::aerodynamics::{AerodynamicModel, FlatPlate, RationalModel, Realizable, Realization};
 use crate::error::Result;
 use crate::flutter::{
     FlutterCurves, FlutterSearch, ModeAtOnset, OnsetMethod, SanityLines, classify,
@@ -219,7 +219,7 @@ impl RouteTable {
         }
         let speeds = study.speeds().curve_speeds_m_s();
         self.draw(&forces, trace_modes(&model.name, &section, &speeds));
-        let sampled = matches!(model.model.realize(), Some(Realization::Discrete(_)));
+        let sampled = matches!(model.model.realize(), Realization::Discrete(_));
         self.add_transfer_routes(study, &forces, sampled);
         Ok(())
     }

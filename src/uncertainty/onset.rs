@@ -1,7 +1,7 @@
 //! Interval of an onset: by its gradient, and by re-solving it for other weights of the blocks.
 
 use super::sensitivity::{onset_gradient, onset_nearby};
-use crate::aerodynamics::AerodynamicModel;
+use crate::aerodynamics::Realizable;
 use crate::aeroelastic::CoupledSection;
 use crate::error::Result;
 use crate::flutter::{FlutterSearch, Onset, OnsetInterval, OnsetSearch, find_onset};
@@ -178,7 +178,7 @@ pub fn resample_onset(
 
 /// Onset of one draw.
 fn solve(
-    model: &dyn AerodynamicModel,
+    model: &dyn Realizable,
     structure: &Structure,
     at: (f64, f64),
     plan: &ResamplingPlan,

@@ -1,6 +1,6 @@
 //! A virtual campaign whose truth differs between mean speeds and between runs.
 
-use crate::aerodynamics::{AerodynamicModel, Realization, TransferMatrix};
+use crate::aerodynamics::{AerodynamicModel, TransferMatrix};
 use crate::error::Result;
 use crate::section::Dof;
 use crate::units::ReducedFrequency;
@@ -34,10 +34,6 @@ impl AerodynamicModel for Turned<'_> {
 
     fn transfer(&self, k: ReducedFrequency) -> Result<TransferMatrix> {
         Ok(self.0.transfer(k)? * Complex::i())
-    }
-
-    fn realize(&self) -> Option<Realization> {
-        None
     }
 }
 

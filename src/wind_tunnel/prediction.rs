@@ -56,7 +56,7 @@ pub fn predicted_forces(model: &dyn AerodynamicModel, record: &Record) -> Result
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::aerodynamics::{DiscreteLaguerre, RationalModel, Realization};
+    use crate::aerodynamics::{DiscreteLaguerre, RationalModel, Realizable, Realization};
     use crate::section::Dof;
     use crate::wind_tunnel::TunnelPlan;
     use nalgebra::{DMatrix, DVector};
@@ -102,7 +102,7 @@ mod tests {
             vec![0.0; 2],
         );
         let found = predicted_forces(&model, record).unwrap();
-        let Some(Realization::Discrete(d)) = model.realize() else {
+        let Realization::Discrete(d) = model.realize() else {
             panic!("discrete");
         };
         let pressure = 0.5 * 1.19 * 8.17 * 8.17;

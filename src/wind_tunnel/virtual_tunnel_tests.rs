@@ -3,7 +3,7 @@
 use super::super::motion::RampedSine;
 use super::*;
 use crate::aerodynamics::derivatives::{Derivative, Part, embedded};
-use crate::aerodynamics::{RationalModel, Realization};
+use crate::aerodynamics::{RationalModel, Realizable, Realization};
 use crate::units::ReducedFrequency;
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -178,7 +178,7 @@ fn table_and_model_give_the_same_steady_forces() {
 /// Force of the Jones plate due to one motion by integration in time (Runge–Kutta, four stages): the second path
 /// to the Fourier transform. Unit dimensionless motion; `h` is one sample.
 fn integrated(jones: &RationalModel, j: usize, plan: &TunnelPlan, speed: f64) -> Vec<[f64; 2]> {
-    let Some(Realization::Continuous(c)) = jones.realize() else {
+    let Realization::Continuous(c) = jones.realize() else {
         panic!("continuous")
     };
     let (scale, h) = (0.5 / speed, 1.0 / plan.sampling_hz);

@@ -1,6 +1,6 @@
 //! What an exported model must give, computed in process: onset by eigenvalues, trajectories to the last bit.
 
-use aerodeck::aerodynamics::AerodynamicModel;
+use aerodeck::aerodynamics::{AerodynamicModel, Realizable};
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::flutter::{OnsetSearch, divergence_speed, find_onset, trace_modes};
 use aerodeck::response::{Inputs, Outputs, SectionState, Stepper};
@@ -52,7 +52,7 @@ pub fn expectations(model: &TrainedModel, golden: Option<&Path>) -> Value {
 }
 
 fn couple(model: &TrainedModel, section: &SectionModel) -> CoupledSection {
-    CoupledSection::new(section.structure().unwrap(), model.model.realize().unwrap()).unwrap()
+    CoupledSection::new(section.structure().unwrap(), model.model.realize()).unwrap()
 }
 
 /// Growth rate and frequency of the structural mode that decays slowest at a wind speed.

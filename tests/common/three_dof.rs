@@ -1,6 +1,6 @@
 //! The deck LN21-5200 with a lateral support: 18 derivatives, three degrees of freedom.
 
-use aerodeck::aerodynamics::AerodynamicModel;
+use aerodeck::aerodynamics::Realizable;
 use aerodeck::aerodynamics::derivatives::embedded;
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::identification::{Constraints, Form, FrequencyFit, fit_table};
@@ -55,5 +55,5 @@ pub fn trained(form: Form, lateral_hz: f64) -> TrainedModel {
 
 pub fn coupled(model: &TrainedModel) -> CoupledSection {
     let structure = model.section.structure().unwrap();
-    CoupledSection::new(structure, model.model.realize().unwrap()).unwrap()
+    CoupledSection::new(structure, model.model.realize()).unwrap()
 }

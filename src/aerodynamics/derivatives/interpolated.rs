@@ -2,7 +2,7 @@
 
 use super::interpolation::{Curve, Interpolation};
 use super::{Derivative, DerivativePoint, DerivativeTable, Part};
-use crate::aerodynamics::{AerodynamicModel, Realization, TransferMatrix};
+use crate::aerodynamics::{AerodynamicModel, TransferMatrix};
 use crate::error::{Error, Result};
 use crate::section::Dof;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
@@ -116,10 +116,6 @@ impl AerodynamicModel for InterpolatedTable {
             Complex::new(re.at(k), im.at(k))
         };
         Ok(DMatrix::from_fn(n, n, entry))
-    }
-
-    fn realize(&self) -> Option<Realization> {
-        None
     }
 
     fn known_range(&self) -> Option<ReducedFrequencyRange> {

@@ -2,7 +2,9 @@
 //! `G = e₀ + e₁ iK + e₂ (iK)² + Σ c_l Λ_l(iK)`.
 
 use super::FilterBank;
-use crate::aerodynamics::{AerodynamicModel, ContinuousRealization, Realization, TransferMatrix};
+use crate::aerodynamics::{
+    AerodynamicModel, ContinuousRealization, Realizable, Realization, TransferMatrix,
+};
 use crate::error::{Error, Result};
 use crate::section::Dof;
 use crate::state_space::complex;
@@ -105,7 +107,13 @@ impl AerodynamicModel for LaguerreModel {
         Ok(g)
     }
 
-    fn realize(&self) -> Option<Realization> {
+    fn realizable(&self) -> Option<&dyn Realizable> {
+        Some(self)
+    }
+}
+
+impl Realizable for LaguerreModel {
+    fn realize(&self) -> Realization {
         let n = self.dofs.len();
         let states = self.terms.iter().map(|t| t.poles.len()).sum();
         let mut a = DMatrix::zeros(states, states);
@@ -120,14 +128,14 @@ impl AerodynamicModel for LaguerreModel {
             c.view_mut((0, at), (n, l)).copy_from(&term.coefficients);
             at += l;
         }
-        Some(Realization::Continuous(ContinuousRealization {
+        Realization::Continuous(ContinuousRealization {
             a,
             b,
             c,
             e0: self.e0.clone(),
             e1: self.e1.clone(),
             e2: self.e2.clone(),
-        }))
+        })
     }
 }
 
@@ -153,7 +161,7 @@ mod tests {
                 .collect(),
         };
         model.validate().unwrap();
-        let realization = model.realize().unwrap();
+        let realization = model.realize();
         for k in [0.05, 0.3, 1.4] {
             let k = ReducedFrequency::from_full_width(k);
             let difference = model.transfer(k).unwrap() - realization.transfer(k).unwrap();

@@ -1,7 +1,9 @@
 //! The discrete Laguerre model of the thesis (2.16, 2.33, 4.2): filters advancing by one `Δs`, no feed-through.
 
 use super::discrete_layout::Layout;
-use crate::aerodynamics::{AerodynamicModel, DiscreteRealization, Realization, TransferMatrix};
+use crate::aerodynamics::{
+    AerodynamicModel, DiscreteRealization, Realizable, Realization, TransferMatrix,
+};
 use crate::error::{Error, Result, positive};
 use crate::section::Dof;
 use crate::units::ReducedFrequency;
@@ -176,8 +178,14 @@ impl AerodynamicModel for DiscreteLaguerre {
         Ok(g)
     }
 
+    fn realizable(&self) -> Option<&dyn Realizable> {
+        Some(self)
+    }
+}
+
+impl Realizable for DiscreteLaguerre {
     /// One bank a term: the four banks of the thesis repeat the same states.
-    fn realize(&self) -> Option<Realization> {
+    fn realize(&self) -> Realization {
         let n = self.dofs.len();
         let states = self.terms.iter().map(|t| t.coefficients.ncols()).sum();
         let mut a = DMatrix::zeros(states, states);
@@ -193,12 +201,12 @@ impl AerodynamicModel for DiscreteLaguerre {
                 .copy_from(&term.coefficients);
             at += filters;
         }
-        Some(Realization::Discrete(DiscreteRealization {
+        Realization::Discrete(DiscreteRealization {
             a,
             b,
             c,
             delta_s: self.delta_s,
-        }))
+        })
     }
 }
 
@@ -246,7 +254,7 @@ mod tests {
         for own in [false, true] {
             let model = model(own);
             assert_eq!(model.shared_parameters(), (!own).then_some((0.6, 3)));
-            let realization = model.realize().unwrap();
+            let realization = model.realize();
             assert_eq!(realization.states(), if own { 8 } else { 6 });
             for k in [0.1, 0.7, 1.4] {
                 let k = ReducedFrequency::from_full_width(k);

@@ -3,7 +3,7 @@
 
 use super::{FilterBank, discrete_filter_matrices};
 use crate::error::Result;
-use crate::state_space::step_matrices;
+use crate::state_space::c2d;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::TAU;
 
@@ -56,7 +56,7 @@ impl FilterBank {
     /// Those of the matrix exponential.
     pub fn memory(&self, delta_s: f64) -> Result<usize> {
         let (a, b) = self.matrices();
-        let phi = step_matrices(
+        let phi = c2d(
             &a,
             &DMatrix::from_column_slice(b.len(), 1, b.as_slice()),
             delta_s,

@@ -58,11 +58,6 @@ impl QuasiSteady {
         &self.coefficients
     }
 
-    /// The arms `B₁ᵢ/B`.
-    pub fn arms(&self) -> Arms {
-        self.arms
-    }
-
     /// Degrees of freedom, in the order of the forces.
     pub fn dofs(&self) -> &[Dof] {
         &self.dofs

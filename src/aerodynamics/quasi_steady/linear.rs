@@ -1,7 +1,9 @@
 //! Linear quasi-steady theory: `G` affine in `iK`, and the buffeting matrix (1.11)–(1.13).
 
 use super::{Arms, CoefficientsAt};
-use crate::aerodynamics::{AerodynamicModel, ContinuousRealization, Realization, TransferMatrix};
+use crate::aerodynamics::{
+    AerodynamicModel, ContinuousRealization, Realizable, Realization, TransferMatrix,
+};
 use crate::error::Result;
 use crate::section::Dof;
 use crate::state_space::complex;
@@ -77,16 +79,6 @@ impl LinearQuasiSteady {
         }
     }
 
-    /// The rotation about which it is linear, rad.
-    pub fn rotation_rad(&self) -> f64 {
-        self.rotation_rad
-    }
-
-    /// Coefficients and slopes there.
-    pub fn coefficients(&self) -> CoefficientsAt {
-        self.coefficients
-    }
-
     /// The arms `B₁ᵢ/B`.
     pub fn arms(&self) -> Arms {
         self.arms
@@ -108,16 +100,22 @@ impl AerodynamicModel for LinearQuasiSteady {
         Ok(complex(&self.e0) + complex(&self.e1) * p)
     }
 
-    fn realize(&self) -> Option<Realization> {
+    fn realizable(&self) -> Option<&dyn Realizable> {
+        Some(self)
+    }
+}
+
+impl Realizable for LinearQuasiSteady {
+    fn realize(&self) -> Realization {
         let n = self.dofs.len();
-        Some(Realization::Continuous(ContinuousRealization {
+        Realization::Continuous(ContinuousRealization {
             a: DMatrix::zeros(0, 0),
             b: DMatrix::zeros(0, n),
             c: DMatrix::zeros(n, 0),
             e0: self.e0.clone(),
             e1: self.e1.clone(),
             e2: DMatrix::zeros(n, n),
-        }))
+        })
     }
 }
 
@@ -203,7 +201,7 @@ mod tests {
         let linear = QuasiSteady::new(table, arms, &Dof::THREE).unwrap();
         let linear = linear.linearised(0.03).unwrap();
         let k = ReducedFrequency::from_full_width(0.7);
-        let again = linear.realize().unwrap().transfer(k).unwrap();
+        let again = linear.realize().transfer(k).unwrap();
         assert!((again - linear.transfer(k).unwrap()).camax() < 1e-15);
     }
 }

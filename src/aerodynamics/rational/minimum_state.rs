@@ -5,7 +5,9 @@
 //! of `D` and a row of `E`.
 
 use super::{RationalModel, check_square};
-use crate::aerodynamics::{AerodynamicModel, ContinuousRealization, Realization, TransferMatrix};
+use crate::aerodynamics::{
+    AerodynamicModel, ContinuousRealization, Realizable, Realization, TransferMatrix,
+};
 use crate::error::{Error, Result, positive};
 use crate::section::Dof;
 use crate::state_space::complex;
@@ -93,17 +95,23 @@ impl AerodynamicModel for MinimumStateModel {
         Ok(feed + complex(&self.d) * filters * complex(&self.e))
     }
 
+    fn realizable(&self) -> Option<&dyn Realizable> {
+        Some(self)
+    }
+}
+
+impl Realizable for MinimumStateModel {
     /// `x' = −d x + d E r`, `q = … + D (E r − x)`: one state a lag.
-    fn realize(&self) -> Option<Realization> {
+    fn realize(&self) -> Realization {
         let lags = DMatrix::from_diagonal(&DVector::from_column_slice(&self.lags));
-        Some(Realization::Continuous(ContinuousRealization {
+        Realization::Continuous(ContinuousRealization {
             b: &lags * &self.e,
             a: -lags,
             c: -&self.d,
             e0: &self.a1 + &self.d * &self.e,
             e1: self.a2.clone(),
             e2: self.a3.clone(),
-        }))
+        })
     }
 }
 
@@ -132,7 +140,7 @@ mod tests {
         let model = jones();
         model.validate().unwrap();
         let roger = RationalModel::jones_flat_plate();
-        let realization = model.realize().unwrap();
+        let realization = model.realize();
         assert_eq!(realization.states(), 2);
         for k in [0.0, 0.05, 0.4, 3.0].map(ReducedFrequency::from_full_width) {
             let expected = roger.transfer(k).unwrap();

@@ -7,7 +7,7 @@ mod minimum_state;
 pub use lags::Lags;
 pub use minimum_state::MinimumStateModel;
 
-use super::{AerodynamicModel, ContinuousRealization, Realization, TransferMatrix};
+use super::{AerodynamicModel, ContinuousRealization, Realizable, Realization, TransferMatrix};
 use crate::error::{Error, Result};
 use crate::section::Dof;
 use crate::state_space::complex;
@@ -131,9 +131,15 @@ impl AerodynamicModel for RationalModel {
         Ok(g)
     }
 
+    fn realizable(&self) -> Option<&dyn Realizable> {
+        Some(self)
+    }
+}
+
+impl Realizable for RationalModel {
     /// n states a lag; `p/(p+d) = 1 − d/(p+d)` puts `a_{l+3}` into `e₀`. Shared lags: one state per lag and motion,
     /// `x' = −d x + d r`. Lags of each force: one per lag and force, `x' = −d x + d Σ_j a_j r_j`.
-    fn realize(&self) -> Option<Realization> {
+    fn realize(&self) -> Realization {
         let n = self.dofs.len();
         let states = n * self.lags.count();
         let mut a = DMatrix::zeros(states, states);
@@ -158,14 +164,14 @@ impl AerodynamicModel for RationalModel {
                 }
             }
         }
-        Some(Realization::Continuous(ContinuousRealization {
+        Realization::Continuous(ContinuousRealization {
             a,
             b,
             c,
             e0,
             e1: self.a2.clone(),
             e2: self.a3.clone(),
-        }))
+        })
     }
 }
 
@@ -198,7 +204,7 @@ mod tests {
         };
         let own = rows([[0.08, 0.7], [0.2, 0.5]]);
         own.validate().unwrap();
-        let realization = own.realize().unwrap();
+        let realization = own.realize();
         assert_eq!(realization.states(), 4);
         let same = rows([[0.091, 0.6]; 2]);
         for k in [0.0, 0.05, 0.4, 3.0].map(ReducedFrequency::from_full_width) {

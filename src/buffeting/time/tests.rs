@@ -52,8 +52,8 @@ fn exact_for_one_record(problem: &BuffetingProblem<'_>, speed: f64) {
         duration_s: Some(4000.0),
         ..TimePlan::default()
     };
-    let realization = problem.model.realize().unwrap();
-    let section = CoupledSection::new(problem.structure.clone(), realization).unwrap();
+    let model = problem.model.realizable().unwrap();
+    let section = CoupledSection::with_model(problem.structure, model).unwrap();
     let grid = grid(problem, &section, speed, &plan).unwrap();
     let (stepped, _) = mean_squares(problem, &section, speed, &grid, 5).unwrap();
     let sample = synthesise(problem, speed, (grid.step_s, grid.samples), 5).unwrap();

@@ -2,10 +2,10 @@
 
 use super::basis::LinearForces;
 use super::pencil::Supports;
+use crate::flutter::characteristic::{determinant_and_adjugate, trace_of_product};
 use nalgebra::Complex;
 
 type Complex64 = Complex<f64>;
-type Matrix<const N: usize> = [[Complex64; N]; N];
 
 /// Relative size of the last Newton step.
 const TOLERANCE: f64 = 1e-13;
@@ -95,41 +95,10 @@ fn determinant<const N: usize>(
         d[i][j] -= s.coupling * omega * omega;
         by_lambda[i][j] += lambda * (2.0 * s.coupling);
     }
-    let adjugate = adjugate(&d);
+    let (value, adjugate) = determinant_and_adjugate(&d, N);
     Determinant {
-        value: (0..N).map(|k| d[0][k] * adjugate[k][0]).sum(),
-        by_lambda: trace_of_product(&adjugate, &by_lambda),
-        by_speed: trace_of_product(&adjugate, &by_speed),
+        value,
+        by_lambda: trace_of_product(&adjugate, &by_lambda, N),
+        by_speed: trace_of_product(&adjugate, &by_speed, N),
     }
-}
-
-/// `adj(D)`; `(det D)' = tr(adj(D) D')`.
-fn adjugate<const N: usize>(d: &Matrix<N>) -> Matrix<N> {
-    let mut out = [[Complex64::new(0.0, 0.0); N]; N];
-    if N == 2 {
-        out[0][0] = d[1][1];
-        out[0][1] = -d[0][1];
-        out[1][0] = -d[1][0];
-        out[1][1] = d[0][0];
-        return out;
-    }
-    for (i, row) in out.iter_mut().enumerate() {
-        for (j, x) in row.iter_mut().enumerate() {
-            // cofactor of entry (j, i), indices cyclic so that the sign comes by itself
-            let (r1, r2) = ((j + 1) % N, (j + 2) % N);
-            let (c1, c2) = ((i + 1) % N, (i + 2) % N);
-            *x = d[r1][c1] * d[r2][c2] - d[r1][c2] * d[r2][c1];
-        }
-    }
-    out
-}
-
-fn trace_of_product<const N: usize>(a: &Matrix<N>, b: &Matrix<N>) -> Complex64 {
-    let mut sum = Complex64::new(0.0, 0.0);
-    for i in 0..N {
-        for k in 0..N {
-            sum += a[i][k] * b[k][i];
-        }
-    }
-    sum
 }

@@ -1,7 +1,7 @@
 //! The sweep against the search by eigenvalues, sample by sample.
 
 use super::*;
-use crate::aerodynamics::{AerodynamicModel, FilterBank, FilterTerm, LaguerreModel, RationalModel};
+use crate::aerodynamics::{FilterBank, FilterTerm, LaguerreModel, RationalModel, Realizable};
 use crate::aeroelastic::CoupledSection;
 use crate::flutter::{OnsetSearch, find_onset};
 use crate::section::{Dof, Translation};
@@ -52,7 +52,7 @@ fn begins_to_grow(section: &CoupledSection, speed: f64) -> bool {
 fn compare(
     forces: LinearForces,
     section: &SectionModel,
-    rebuilt: impl Fn(&[f64]) -> Box<dyn AerodynamicModel>,
+    rebuilt: impl Fn(&[f64]) -> Box<dyn Realizable>,
     (samples, speed_max, scatter): (usize, f64, f64),
 ) -> (usize, usize) {
     let sweep = OnsetSweep::new(forces, &section.structure().unwrap(), speed_max).unwrap();
@@ -66,7 +66,7 @@ fn compare(
             .iter()
             .map(|c| c * (1.0 + scatter * noise.next()))
             .collect();
-        let aero = rebuilt(&coefficients).realize().unwrap();
+        let aero = rebuilt(&coefficients).realize();
         let coupled = CoupledSection::new(s.structure().unwrap(), aero).unwrap();
         let search = OnsetSearch {
             speed_max_m_s: speed_max,
@@ -159,7 +159,7 @@ fn two_thousand_laguerre_samples() {
     let model = three_filters();
     let forces = LinearForces::of_laguerre(&model, None);
     assert_eq!(forces.coefficients().len(), 2 * 6 * 2);
-    let rebuilt = |c: &[f64]| Box::new(with_powers(&model, c)) as Box<dyn AerodynamicModel>;
+    let rebuilt = |c: &[f64]| Box::new(with_powers(&model, c)) as Box<dyn Realizable>;
     let section = SectionModel::table_4_1();
     let (onsets, unresolved) = compare(forces, &section, rebuilt, (2000, 60.0, 0.05));
     assert!(onsets > 1500 && unresolved < 4, "{onsets} {unresolved}");
@@ -172,8 +172,7 @@ fn frequencies_that_cross() {
     section.torsion.frequency_hz = Some(2.2);
     let jones = RationalModel::jones_flat_plate();
     let forces = LinearForces::of_rational(&jones, None);
-    let rebuilt =
-        |_: &[f64]| Box::new(RationalModel::jones_flat_plate()) as Box<dyn AerodynamicModel>;
+    let rebuilt = |_: &[f64]| Box::new(RationalModel::jones_flat_plate()) as Box<dyn Realizable>;
     let (_, unresolved) = compare(forces, &section, rebuilt, (300, 60.0, 0.0));
     assert!(unresolved < 30, "{unresolved}");
 }
@@ -218,7 +217,7 @@ fn three_degrees_of_freedom() {
             })
             .collect(),
     };
-    let rebuilt = |c: &[f64]| Box::new(with_powers(&model, c)) as Box<dyn AerodynamicModel>;
+    let rebuilt = |c: &[f64]| Box::new(with_powers(&model, c)) as Box<dyn Realizable>;
     for offset in [None, Some(0.03)] {
         section.axis_offset_m = offset;
         section.mass_offset_m = offset;
@@ -232,8 +231,7 @@ fn three_degrees_of_freedom() {
 #[test]
 fn unbalanced_sections() {
     let jones = RationalModel::jones_flat_plate();
-    let rebuilt =
-        |_: &[f64]| Box::new(RationalModel::jones_flat_plate()) as Box<dyn AerodynamicModel>;
+    let rebuilt = |_: &[f64]| Box::new(RationalModel::jones_flat_plate()) as Box<dyn Realizable>;
     let mut found = 0;
     for (axis, mass) in [(0.05, 0.03), (-0.05, 0.02), (0.05, 0.0), (0.0, 0.08)] {
         let mut section = SectionModel::table_4_1();

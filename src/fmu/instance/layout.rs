@@ -1,5 +1,6 @@
 //! The variable table in the form that the calls of every step use: by value reference, without text.
 
+use super::Instance;
 use crate::error::{Error, Result};
 use crate::fmu::lifecycle::{State, StateSet, gettable_in, settable_in};
 use crate::fmu::refusal::{Answer, Refusal};
@@ -131,66 +132,9 @@ impl Layout {
         })
     }
 
-    /// Access to `reference`, known by the table to be of this type.
-    pub fn typed(
-        &self,
-        reference: u32,
-        wanted: DataType,
-        table: &VariableTable,
-    ) -> Answer<(usize, Access)> {
-        let place = reference as usize;
-        match self.access.get(place) {
-            Some(access) if access.data_type == wanted => Ok((place, *access)),
-            _ => Err(wrong_reference(place, wanted, table)),
-        }
-    }
-
-    /// Access to a variable that may be read in `state`.
-    pub fn readable(
-        &self,
-        reference: u32,
-        wanted: DataType,
-        state: State,
-        table: &VariableTable,
-    ) -> Answer<(usize, Access)> {
-        let (place, access) = self.typed(reference, wanted, table)?;
-        if access.gettable.contains(state) {
-            Ok((place, access))
-        } else {
-            Err(not_in_state(
-                &table.variables()[place],
-                ("read", access.gettable),
-                state,
-            ))
-        }
-    }
-
-    /// Access to a variable that may be set in `state`.
-    pub fn writable(
-        &self,
-        reference: u32,
-        wanted: DataType,
-        state: State,
-        table: &VariableTable,
-    ) -> Answer<(usize, Access)> {
-        let (place, access) = self.typed(reference, wanted, table)?;
-        if access.settable.contains(state) {
-            Ok((place, access))
-        } else {
-            let variable = &table.variables()[place];
-            Err(not_in_state(variable, ("set", access.settable), state))
-        }
-    }
-
     /// Where the value at `place` comes from.
     pub fn source(&self, place: usize) -> Source {
         self.access[place].source
-    }
-
-    /// Whether `value` may stand at `place` in a state read from a file.
-    pub fn check_stored(&self, place: usize, value: f64, table: &VariableTable) -> Answer<()> {
-        self.check_value((place, self.access[place]), value, table)
-            .map_err(|refusal| Refusal::call(format!("serialised state: {}", refusal.message)))
     }
 
     /// `value` as it is stored at `place`: a wind that rounding has taken below zero is at rest.
@@ -201,19 +145,53 @@ impl Layout {
             value
         }
     }
+}
+
+impl Instance {
+    /// Access to `reference`, known by the table to be of this type.
+    pub(super) fn typed(&self, reference: u32, wanted: DataType) -> Answer<(usize, Access)> {
+        let place = reference as usize;
+        match self.layout.access.get(place) {
+            Some(access) if access.data_type == wanted => Ok((place, *access)),
+            _ => Err(wrong_reference(place, wanted, self.table())),
+        }
+    }
+
+    /// Access to a variable that may be read now.
+    pub(super) fn readable(&self, reference: u32, wanted: DataType) -> Answer<(usize, Access)> {
+        let (place, access) = self.typed(reference, wanted)?;
+        self.check_state(place, ("read", access.gettable))?;
+        Ok((place, access))
+    }
+
+    /// Access to a variable that may be set now.
+    pub(super) fn writable(&self, reference: u32, wanted: DataType) -> Answer<(usize, Access)> {
+        let (place, access) = self.typed(reference, wanted)?;
+        self.check_state(place, ("set", access.settable))?;
+        Ok((place, access))
+    }
+
+    fn check_state(&self, place: usize, (verb, allowed): (&str, StateSet)) -> Answer<()> {
+        let state = self.memory.state;
+        if allowed.contains(state) {
+            return Ok(());
+        }
+        let variable = &self.table().variables()[place];
+        Err(not_in_state(variable, (verb, allowed), state))
+    }
 
     /// Whether `value` may be stored at `place`: finite, and within the limits of the variable.
-    pub fn check_value(
-        &self,
-        (place, access): (usize, Access),
-        value: f64,
-        table: &VariableTable,
-    ) -> Answer<()> {
+    pub(super) fn check_value(&self, place: usize, access: Access, value: f64) -> Answer<()> {
         if value.is_finite() && value >= access.min && value <= access.max {
-            Ok(())
-        } else {
-            Err(wrong_value(&table.variables()[place], value))
+            return Ok(());
         }
+        Err(wrong_value(&self.table().variables()[place], value))
+    }
+
+    /// Whether `value` may stand at `place` in a state read from a file.
+    pub(super) fn check_stored(&self, place: usize, value: f64) -> Answer<()> {
+        self.check_value(place, self.layout.access[place], value)
+            .map_err(|refusal| Refusal::call(format!("serialised state: {}", refusal.message)))
     }
 }
 

@@ -102,7 +102,7 @@ impl Instance {
             if self.layout.source(place) == Source::Constant {
                 *value = self.fresh.values[place];
             }
-            self.layout.check_stored(place, *value, self.table())?;
+            self.check_stored(place, *value)?;
         }
         Ok(Snapshot { guid, memory })
     }

@@ -11,8 +11,9 @@ use crate::aeroelastic::CoupledSection;
 use crate::error::Result;
 use crate::fmu::lifecycle::State;
 use crate::fmu::refusal::{Answer, Refusal};
-use crate::fmu::variables::{Response, Role};
+use crate::fmu::variables::Role;
 use crate::response::{Inputs, Outputs, SectionState, Stepper};
+use crate::section::Dof;
 use nalgebra::{DMatrix, DVector};
 
 /// Relative step of the central differences: truncation about 1e-8, rounding of an onset search about 1e-9.
@@ -110,7 +111,7 @@ impl Instance {
     }
 
     fn response_of(&self, reference: u32) -> Answer<Role> {
-        let (place, access) = self.layout.typed(reference, DataType::Real, self.table())?;
+        let (place, access) = self.typed(reference, DataType::Real)?;
         let variable = &self.table().variables()[place];
         if access.source == Source::Response {
             Ok(variable.role)
@@ -120,7 +121,7 @@ impl Instance {
     }
 
     fn unknown(&self, reference: u32) -> Answer<Role> {
-        let (place, access) = self.layout.typed(reference, DataType::Real, self.table())?;
+        let (place, access) = self.typed(reference, DataType::Real)?;
         let variable = &self.table().variables()[place];
         match access.source {
             Source::Response => Ok(variable.role),
@@ -135,7 +136,7 @@ impl Instance {
 
     /// Place of a known.
     fn known(&self, reference: u32) -> Answer<usize> {
-        let (place, access) = self.layout.typed(reference, DataType::Real, self.table())?;
+        let (place, access) = self.typed(reference, DataType::Real)?;
         let initializing = self.memory.state == State::Initialization;
         match access.source {
             Source::Input => Ok(place),
@@ -244,17 +245,11 @@ fn pick(outputs: &Outputs, role: Role) -> f64 {
     let Role::Response(response, dof) = role else {
         return 0.0;
     };
-    let list = match response {
-        Response::Displacement => &outputs.displacement,
-        Response::Rate => &outputs.rate,
-        Response::Acceleration => &outputs.acceleration,
-        Response::SelfExcitedForce => &outputs.self_excited_force,
-    };
-    // vertical first, torsion last, lateral between them where it is there
+    let list = outputs.lists()[response as usize];
     let index = match dof {
-        crate::section::Dof::Vertical => 0,
-        crate::section::Dof::Lateral => 1,
-        crate::section::Dof::Torsion => list.len().saturating_sub(1),
+        Dof::Vertical => 0,
+        Dof::Lateral => 1,
+        Dof::Torsion => list.len().saturating_sub(1),
     };
     list.get(index).copied().unwrap_or(0.0)
 }

@@ -43,17 +43,11 @@ impl Instance {
     /// # Errors
     /// As [`Instance::reals`].
     pub fn text_place(&self, reference: u32) -> Answer<usize> {
-        let table = &self.resources.table;
-        self.layout
-            .readable(reference, DataType::String, self.memory.state, table)
-            .map(|(place, _)| place)
+        Ok(self.readable(reference, DataType::String)?.0)
     }
 
     pub(super) fn number(&mut self, reference: u32, wanted: DataType) -> Answer<f64> {
-        let table = &self.resources.table;
-        let (place, access) = self
-            .layout
-            .readable(reference, wanted, self.memory.state, table)?;
+        let (place, access) = self.readable(reference, wanted)?;
         match access.source {
             Source::Response if !self.outputs_current => {
                 self.prepare()?;
@@ -75,13 +69,9 @@ impl Instance {
     /// An error for a reference that is none, of another type or not settable now, and for a value that is not finite;
     /// a discard for a value outside the limits of its variable.
     pub fn set_reals(&mut self, references: &[u32], values: &[f64]) -> Answer<()> {
-        let table = &self.resources.table;
         for (reference, value) in references.iter().zip(values) {
-            let target =
-                self.layout
-                    .writable(*reference, DataType::Real, self.memory.state, table)?;
-            let value = self.layout.settled(target.0, *value);
-            self.layout.check_value(target, value, table)?;
+            let (place, access) = self.writable(*reference, DataType::Real)?;
+            self.check_value(place, access, self.layout.settled(place, *value))?;
         }
         for (reference, value) in references.iter().zip(values) {
             let place = *reference as usize;
@@ -95,10 +85,8 @@ impl Instance {
     /// # Errors
     /// For every reference.
     pub fn refuse_to_set(&self, references: &[u32], of_type: DataType) -> Answer<()> {
-        let table = &self.resources.table;
         for reference in references {
-            self.layout
-                .writable(*reference, of_type, self.memory.state, table)?;
+            self.writable(*reference, of_type)?;
         }
         Ok(())
     }
@@ -153,14 +141,13 @@ impl Instance {
 
     /// Place among the inputs: wind speed, then the external forces.
     pub(super) fn input_index(&self, reference: u32) -> Answer<usize> {
-        let table = &self.resources.table;
-        let (place, _) = self.layout.typed(reference, DataType::Real, table)?;
+        let (place, _) = self.typed(reference, DataType::Real)?;
         let forces = self.layout.force.iter().copied();
         std::iter::once(self.layout.wind_speed)
             .chain(forces)
             .position(|input| input == place)
             .ok_or_else(|| {
-                let name = table.variables()[place].name;
+                let name = self.table().variables()[place].name;
                 Refusal::error(format!("`{name}` is no input"))
             })
     }
@@ -173,11 +160,9 @@ impl Instance {
         }
         check_finite(&self.outputs)?;
         for (i, places) in self.layout.responses.iter().enumerate() {
-            let values = &mut self.memory.values;
-            values[places[0]] = self.outputs.displacement[i];
-            values[places[1]] = self.outputs.rate[i];
-            values[places[2]] = self.outputs.acceleration[i];
-            values[places[3]] = self.outputs.self_excited_force[i];
+            for (place, list) in places.iter().zip(self.outputs.lists()) {
+                self.memory.values[*place] = list[i];
+            }
         }
         self.outputs_current = true;
         Ok(())
@@ -218,13 +203,7 @@ impl Instance {
 
 /// Refuses outputs that no number holds any more.
 pub(super) fn check_finite(outputs: &Outputs) -> Answer<()> {
-    let lists = [
-        &outputs.displacement,
-        &outputs.rate,
-        &outputs.acceleration,
-        &outputs.self_excited_force,
-    ];
-    if lists.into_iter().flatten().all(|x| x.is_finite()) {
+    if outputs.lists().into_iter().flatten().all(|x| x.is_finite()) {
         return Ok(());
     }
     Err(Refusal::discard(

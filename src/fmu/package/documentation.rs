@@ -1,14 +1,14 @@
 //! `documentation/index.html` of an exported section, made from the variable table and the trained model.
 
 use super::runtime::Runtime;
-use crate::aerodynamics::AerodynamicModel;
+use crate::aerodynamics::{AerodynamicModel, Realizable};
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
 use crate::flutter::{
     FlutterSearch, Onset, OnsetSearch, divergence_speed, find_onset, unwanted_growth,
 };
 use crate::fmu::resources::Resources;
-use crate::fmu::variables::{Causality, SectionParameter, Value, Variability, Variable, filters};
+use crate::fmu::variables::{Causality, SectionParameter, Value, Variability, Variable};
 use crate::section::Dof;
 use crate::trained_model::{Model, TrainedModel};
 use crate::units::{ReducedFrequency, ReducedVelocity};
@@ -25,7 +25,7 @@ pub fn documentation(resources: &Resources, runtimes: &[Runtime]) -> Result<Stri
         kind: model.model.kind(),
         guid: resources.guid.to_string(),
         version: env!("CARGO_PKG_VERSION"),
-        filters: filters(model)?,
+        filters: model.model.realize().states(),
         initial_rotation_deg: digits(model.experiment.initial_rotation_rad.to_degrees()),
         lateral: model.section.lateral.is_some(),
         platforms: runtimes
@@ -185,16 +185,12 @@ fn speeds(model: &TrainedModel) -> Vec<Speeds> {
 /// Sentences on onset and divergence of the section as exported.
 fn stability(model: &TrainedModel) -> Result<Vec<String>> {
     let structure = model.section.structure()?;
-    let realization = model
-        .model
-        .realize()
-        .ok_or_else(|| Error::input("model", "a model with a realisation", model.model.kind()))?;
     let limit = model.experiment.onset_search_limit_m_s;
     let search = OnsetSearch {
         speed_max_m_s: limit,
         ..OnsetSearch::default()
     };
-    let section = CoupledSection::new(structure.clone(), realization)?;
+    let section = CoupledSection::with_model(&structure, &model.model)?;
     let mut sentences = match find_onset(&model.name, &section, &search, Some(model.tested_range)) {
         Ok(FlutterSearch::StableUpTo(range)) => {
             vec![format!("No flutter up to {} m/s.", digits(range.to_m_s))]

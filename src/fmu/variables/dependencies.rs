@@ -1,7 +1,7 @@
 //! What depends on what: the structure of outputs while stepping, and of all unknowns while initialising.
 
 use super::{Causality, InitialDependency, Response, Role, SectionParameter, Variable, find};
-use crate::aerodynamics::{AerodynamicModel, Realization};
+use crate::aerodynamics::{Realizable, Realization};
 use crate::section::Dof;
 use crate::trained_model::TrainedModel;
 
@@ -44,8 +44,8 @@ impl Coupling {
 /// Whether accelerations feed back into the forces, so that every external force acts on every acceleration.
 fn has_added_mass(model: &TrainedModel) -> bool {
     match model.model.realize() {
-        Some(Realization::Continuous(c)) => c.e2.iter().any(|x| *x != 0.0),
-        _ => false,
+        Realization::Continuous(c) => c.e2.iter().any(|x| *x != 0.0),
+        Realization::Discrete(_) => false,
     }
 }
 

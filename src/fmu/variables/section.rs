@@ -3,7 +3,7 @@
 use super::parameters::SectionParameter;
 use super::words::{Words, motion, words};
 use super::{Calculated, Causality, Initial, Response, Role, Value, Variability, Variable};
-use crate::aerodynamics::AerodynamicModel;
+use crate::aerodynamics::Realizable;
 use crate::error::{Error, Result};
 use crate::fmu::si::{self, Unit};
 use crate::section::{Dof, SectionModel};
@@ -14,18 +14,6 @@ use std::f64::consts::TAU;
 const SMALLEST: f64 = 1e-6;
 /// Smallest inertia per length, kg·m²/m.
 const SMALLEST_INERTIA: f64 = 1e-9;
-
-/// Number of filter states of a model.
-///
-/// # Errors
-/// [`Error::Input`] for a model without a realisation.
-pub fn filters(model: &TrainedModel) -> Result<usize> {
-    model
-        .model
-        .realize()
-        .map(|r| r.states())
-        .ok_or_else(|| Error::input("model", "a model with a realisation", model.model.kind()))
-}
 
 /// All variables without their dependencies.
 pub(super) fn variables(model: &TrainedModel) -> Result<Vec<Variable>> {
@@ -351,7 +339,7 @@ fn constants(model: &TrainedModel) -> Result<Vec<Variable>> {
             text.into(),
         )
     };
-    let states = filters(model)?;
+    let states = model.model.realize().states();
     let states = i32::try_from(states)
         .map_err(|_| Error::input("model", "fewer filter states", states.to_string()))?;
     Ok(vec![

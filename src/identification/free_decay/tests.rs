@@ -1,7 +1,7 @@
 //! Decays of a coupled section whose transfer matrix is known in closed form.
 
 use super::*;
-use crate::aerodynamics::{AerodynamicModel, RationalModel, Realization};
+use crate::aerodynamics::{AerodynamicModel, RationalModel, Realizable, Realization};
 use crate::aeroelastic::CoupledSection;
 use crate::response::{Inputs, Outputs, Stepper};
 use crate::section::SectionModel;
@@ -20,7 +20,7 @@ fn coupled_about(axis_m: Option<f64>) -> (Structure, CoupledSection) {
     section.mass_offset_m = axis_m.map(|a| 0.5 * a);
     let structure = section.structure().unwrap();
     let jones = RationalModel::jones_flat_plate();
-    let section = CoupledSection::new(structure.clone(), jones.realize().unwrap()).unwrap();
+    let section = CoupledSection::new(structure.clone(), jones.realize()).unwrap();
     (structure, section)
 }
 
@@ -72,7 +72,7 @@ fn decay_of(section: CoupledSection, noise: f64) -> Record {
 
 /// `G(p)` off the imaginary axis, from the realisation.
 fn transfer(p: Complex<f64>) -> DMatrix<Complex<f64>> {
-    let Realization::Continuous(r) = RationalModel::jones_flat_plate().realize().unwrap() else {
+    let Realization::Continuous(r) = RationalModel::jones_flat_plate().realize() else {
         panic!("a rational function is continuous");
     };
     let complex = |m: &DMatrix<f64>| m.map(|x| Complex::new(x, 0.0));

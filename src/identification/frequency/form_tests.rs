@@ -2,7 +2,9 @@
 
 use super::*;
 use crate::aerodynamics::derivatives::embedded;
-use crate::aerodynamics::{AerodynamicModel, FlatPlate, Lags, MinimumStateModel, RationalModel};
+use crate::aerodynamics::{
+    AerodynamicModel, FlatPlate, Lags, MinimumStateModel, RationalModel, Realizable,
+};
 use crate::identification::options::PoleSearch;
 use crate::identification::testing::{eight_k, onset_m_s, records_alone, table_alone};
 use crate::identification::{TimeFit, sample_model};
@@ -109,7 +111,7 @@ fn own_lags_fit_at_least_as_well() {
         panic!("not rational");
     };
     assert!(matches!(&model.lags, Lags::PerForce(rows) if rows.len() == 2));
-    assert_eq!(model.realize().unwrap().states(), 2);
+    assert_eq!(model.realize().states(), 2);
     let given = FrequencyFit {
         poles: PoleSearch::fixed(&[0.3, 0.6]),
         ..with(per_force(1))
@@ -125,7 +127,7 @@ fn own_lags_fit_at_least_as_well() {
 #[test]
 fn minimum_state_on_the_flat_plate() {
     let (model, report) = fit_table(&flat_plate(), &Dof::TWO, &with(minimum_state(2))).unwrap();
-    assert_eq!(model.realize().unwrap().states(), 2);
+    assert_eq!(model.realize().states(), 2);
     assert!(
         (onset_m_s(&model) - 39.456).abs() < 0.03,
         "{}",
@@ -138,7 +140,7 @@ fn minimum_state_on_the_flat_plate() {
     let table = embedded::deck("LN20-5500").unwrap();
     let wide = with(minimum_state(3));
     let (model, _) = fit_table(&table.samples(&Dof::THREE), &Dof::THREE, &wide).unwrap();
-    assert_eq!(model.realize().unwrap().states(), 3);
+    assert_eq!(model.realize().states(), 3);
 }
 
 /// A minimum-state function with unequal directions is found again from its samples.

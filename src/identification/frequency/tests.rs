@@ -1,5 +1,5 @@
 use super::*;
-use crate::aerodynamics::{AerodynamicModel, FlatPlate, RationalModel};
+use crate::aerodynamics::{AerodynamicModel, FlatPlate, RationalModel, Realizable};
 use crate::aeroelastic::CoupledSection;
 use crate::identification::options::{FeedThrough, PoleSearch};
 use crate::identification::sample_model;
@@ -66,7 +66,7 @@ fn assert_same(a: &Model, b: &Model) {
     }
     let structure = SectionModel::table_4_1().structure().unwrap();
     let values = |m: &Model| {
-        let section = CoupledSection::new(structure.clone(), m.realize().unwrap()).unwrap();
+        let section = CoupledSection::new(structure.clone(), m.realize()).unwrap();
         section.at(35.0).unwrap().eigenvalues().unwrap()
     };
     let others = values(b);

@@ -13,7 +13,7 @@ use crate::error::{Error, Result};
 use crate::identification::basis::Basis;
 use crate::identification::least_squares::BLOCK_ROWS;
 use crate::identification::options::FeedThrough;
-use crate::state_space::{StepMatrices, step_matrices};
+use crate::state_space::{StepMatrices, c2d};
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::TAU;
 
@@ -57,7 +57,7 @@ impl Hold {
             phi,
             gamma_0,
             gamma_1,
-        } = step_matrices(a, &b, step)?;
+        } = c2d(a, &b, step)?;
         let g1 = gamma_1.column(0) / step;
         Ok(Self {
             phi,

@@ -24,5 +24,5 @@ pub use columns::LinearModel;
 pub use poles::SEARCHED_POLES;
 pub use records::{discrete_uncertainty, record_uncertainty};
 pub use speeds::{ForceScatter, SpeedScatter};
-pub use student::two_sided_quantile;
+pub use student::{incomplete_beta, two_sided_quantile};
 pub use table::table_uncertainty;

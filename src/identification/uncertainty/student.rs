@@ -1,32 +1,26 @@
 //! Quantiles of Student's t distribution: few independent blocks make wide intervals.
 
+use crate::state_space::boundary;
 use libm::lgamma;
+use std::convert::Infallible;
 
 /// `t` with `P(|T| ≤ t) = confidence` for `degrees_of_freedom > 0` (not necessarily whole).
 pub fn two_sided_quantile(confidence: f64, degrees_of_freedom: f64) -> f64 {
     let nu = degrees_of_freedom.max(0.5);
     let inside = |t: f64| 1.0 - incomplete_beta(nu / (nu + t * t), 0.5 * nu, 0.5);
-    let (mut low, mut high) = (0.0, 2.0);
+    let (low, mut high) = (0.0, 2.0);
     while inside(high) < confidence && high < 1e12 {
         high *= 2.0;
     }
-    for _ in 0..200 {
-        let middle = 0.5 * (low + high);
-        if middle <= low || middle >= high {
-            break;
-        }
-        if inside(middle) < confidence {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
+    let Ok((low, high)) = boundary(low, high, 0.0, |t| {
+        Ok::<_, Infallible>(inside(t) < confidence)
+    });
     0.5 * (low + high)
 }
 
 /// Regularised incomplete beta function `I_x(a, b)` (DLMF 8.17.22), by the continued fraction on the side where it
 /// converges.
-fn incomplete_beta(x: f64, a: f64, b: f64) -> f64 {
+pub fn incomplete_beta(x: f64, a: f64, b: f64) -> f64 {
     if x <= 0.0 {
         return 0.0;
     }

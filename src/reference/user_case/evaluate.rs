@@ -87,7 +87,7 @@ impl Loaded {
         Ok(match figure.quantity {
             Quantity::DivergenceSpeed => {
                 // a table says nothing about steady flow; its static part at the lowest tested K is the nearest to it
-                let slowest = self.tested.filter(|_| self.model.realize().is_none());
+                let slowest = self.tested.filter(|_| self.model.realizable().is_none());
                 let k = slowest.map_or(ReducedFrequency::from_full_width(0.0), |range| range.min);
                 let mut steady = self.model.transfer(k)?;
                 if slowest.is_some() {
@@ -151,8 +151,8 @@ impl Loaded {
     }
 
     fn onset(&self, route: Option<OnsetMethod>) -> Result<Onset> {
-        let realization = self.model.realize();
-        let route = route.unwrap_or(if realization.is_some() {
+        let realizable = self.model.realizable();
+        let route = route.unwrap_or(if realizable.is_some() {
             OnsetMethod::Eigenvalues
         } else {
             OnsetMethod::Determinant
@@ -162,9 +162,9 @@ impl Loaded {
             speed_max_m_s: self.speed_max,
             ..OnsetSearch::default()
         };
-        let found: FlutterSearch = match (route, realization) {
+        let found: FlutterSearch = match (route, realizable) {
             (OnsetMethod::Eigenvalues, Some(aero)) => {
-                let section = CoupledSection::new(s.clone(), aero)?;
+                let section = CoupledSection::with_model(s, aero)?;
                 find_onset("", &section, &search, self.tested)?
             }
             (OnsetMethod::Eigenvalues, None) => {

@@ -1,7 +1,7 @@
 //! The nonlinear run against the linear stepper, against energy, and at the end of the table.
 
 use super::*;
-use crate::aerodynamics::AerodynamicModel;
+use crate::aerodynamics::Realizable;
 use crate::aerodynamics::quasi_steady::{Arms, LinearQuasiSteady, embedded};
 use crate::aeroelastic::{CoupledSection, StaticEquilibrium, static_equilibria};
 use crate::response::{Inputs, Stepper};
@@ -50,7 +50,7 @@ fn gusts(size: f64) -> GustSeries {
 /// The linear stepper under `½ρV² A (u, w)/V`, which runs on straight lines as the gusts do.
 fn linear(structure: &Structure, model: &LinearQuasiSteady, gusts: &GustSeries) -> Vec<Vec<f64>> {
     let n = structure.dofs.len();
-    let section = CoupledSection::new(structure.clone(), model.realize().unwrap()).unwrap();
+    let section = CoupledSection::new(structure.clone(), model.realize()).unwrap();
     let mut stepper = Stepper::new(section);
     let mut state = stepper.released(&vec![0.0; n], &vec![0.0; n]).unwrap();
     let force = |i: usize| -> Vec<f64> {

@@ -4,7 +4,7 @@ use super::{SimulationBlock, WindStudy};
 use crate::aerodynamics::quasi_steady::{
     CoefficientRow, CoefficientsAt, LinearQuasiSteady, QuasiSteady,
 };
-use crate::aerodynamics::{AerodynamicModel, GustSeries, read_gusts};
+use crate::aerodynamics::{GustSeries, read_gusts};
 use crate::aeroelastic::{CoupledSection, EquilibriumPath, StaticEquilibrium, static_equilibria};
 use crate::buffeting::{BuffetingProblem, GustForces, synthesise};
 use crate::error::{Error, Result};
@@ -204,10 +204,7 @@ fn linear_rows(
     (step_s, steps): (f64, usize),
 ) -> Result<Vec<Vec<f64>>> {
     let n = structure.dofs.len();
-    let realization = linear.realize().ok_or_else(|| {
-        Error::Numerical("quasi-steady theory: the linear model has no realisation".into())
-    })?;
-    let mut stepper = Stepper::new(CoupledSection::new(structure.clone(), realization)?);
+    let mut stepper = Stepper::new(CoupledSection::with_model(structure, linear)?);
     let mut state = stepper.released(&released[..n], &released[n..])?;
     let half_rho_v = 0.5 * structure.air_density_kg_m3 * speed;
     let buffeting = structure.forces_at_axis(linear.buffeting().clone());

@@ -1,7 +1,7 @@
 //! Units of sections that state an axis and a centre of mass.
 
 use super::*;
-use crate::aerodynamics::AerodynamicModel;
+use crate::aerodynamics::Realizable;
 use crate::aeroelastic::CoupledSection;
 use crate::flutter::{OnsetSearch, find_onset};
 
@@ -14,7 +14,7 @@ fn unbalanced(kind: &str, (axis, mass): (f64, f64)) -> Archive {
 
 fn onset(model: &TrainedModel) -> f64 {
     let structure = model.section.structure().unwrap();
-    let section = CoupledSection::new(structure, model.model.realize().unwrap()).unwrap();
+    let section = CoupledSection::new(structure, model.model.realize()).unwrap();
     let search = OnsetSearch {
         speed_max_m_s: model.experiment.onset_search_limit_m_s,
         ..OnsetSearch::default()

@@ -1,7 +1,7 @@
 //! Runs: the unit moves as the stepper in this process does, to the last bit.
 
 use super::*;
-use crate::aerodynamics::AerodynamicModel;
+use crate::aerodynamics::{AerodynamicModel, Realizable};
 use crate::aeroelastic::CoupledSection;
 use crate::flutter::{OnsetSearch, divergence_speed, find_onset};
 use crate::response::{Inputs, Outputs, Stepper};
@@ -18,7 +18,7 @@ impl InProcess {
     fn new(model: &TrainedModel) -> Self {
         let structure = model.section.structure().unwrap();
         let n = structure.dofs.len();
-        let section = CoupledSection::new(structure, model.model.realize().unwrap()).unwrap();
+        let section = CoupledSection::new(structure, model.model.realize()).unwrap();
         let stepper = Stepper::new(section);
         let mut displacement = vec![0.0; n];
         displacement[0] = model.experiment.initial_vertical_m;
@@ -160,7 +160,7 @@ fn filters_of_one_transfer_function_move_as_in_process() {
         coefficients: nalgebra::DMatrix::from_row_slice(2, 2, &[0.0, 0.0, -0.9, -0.6]),
     });
     model.schema_version = model.model.schema_version();
-    let states = model.model.realize().unwrap().states();
+    let states = model.model.realize().states();
     assert_eq!(states, 8);
     compare(Archive::of(&model.to_json().unwrap()));
 }
@@ -229,11 +229,8 @@ fn tunable_parameters_act_between_steps() {
 fn calculated_parameters_are_those_of_the_searches() {
     let unit = Unit::of("rational");
     let model = unit.archive.model().clone();
-    let section = CoupledSection::new(
-        model.section.structure().unwrap(),
-        model.model.realize().unwrap(),
-    )
-    .unwrap();
+    let section =
+        CoupledSection::new(model.section.structure().unwrap(), model.model.realize()).unwrap();
     let search = OnsetSearch {
         speed_max_m_s: 100.0,
         ..OnsetSearch::default()

@@ -1,0 +1,170 @@
+//! What the routes that follow modes over wind speed share: the modes, and what is watched from one speed to the next.
+
+use super::answer::{Findings, UnstableStart, entry_reason};
+use super::onset::{Onset, OnsetMethod};
+use super::scan::growing;
+use crate::error::{Error, Result};
+use crate::section::{Dof, Structure};
+use crate::state_space::root;
+use crate::units::{ReducedFrequency, ReducedFrequencyRange};
+use nalgebra::{Complex, DVector};
+
+/// Modal assurance between neighbouring speeds below which a step is halved.
+pub(super) const MIN_ASSURANCE: f64 = 0.9;
+/// Two modes closer than this, relatively, are one root found twice.
+pub(super) const SEPARATION: f64 = 1e-9;
+
+/// One mode at one wind speed.
+#[derive(Debug, Clone)]
+pub(super) struct Mode {
+    /// Place of the degree of freedom that the mode moves in still air.
+    pub(super) branch: usize,
+    /// Eigenvalue, rad/s, in the upper half plane.
+    pub(super) lambda: Complex<f64>,
+    /// Displacements (n): m, rad.
+    pub(super) shape: DVector<Complex<f64>>,
+    /// `dλ/dV` from the last step, where the next is predicted by it.
+    pub(super) slope: Complex<f64>,
+}
+
+/// The modes that oscillate at one wind speed, in the order of the degrees of freedom.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Modes {
+    /// m/s.
+    pub(super) speed: f64,
+    pub(super) all: Vec<Mode>,
+}
+
+impl Modes {
+    /// The mode of a branch, unless it has stopped oscillating.
+    pub(super) fn mode(&self, branch: usize) -> Option<&Mode> {
+        self.all.iter().find(|m| m.branch == branch)
+    }
+}
+
+/// A route that follows the modes of a structure over wind speed.
+pub(super) trait Follower {
+    /// The route.
+    const METHOD: OnsetMethod;
+
+    fn structure(&self) -> &Structure;
+
+    /// The modes at `speed`, by as many intermediate speeds as continuity needs.
+    fn advance(&self, from: &Modes, speed: f64) -> Result<Modes>;
+
+    /// The error for a mode that has ended at `speed`.
+    fn lost(speed: f64) -> Error;
+
+    /// The onset with what this route knows besides, `low` being the modes at a speed below; `None` where it is none.
+    fn complete(&self, onset: Onset, low: &Modes, mode: &Mode) -> Result<Option<Onset>>;
+
+    /// The mode of a branch at `speed`, from the modes nearby.
+    fn mode_at(&self, from: &Modes, speed: f64, branch: usize) -> Result<Mode> {
+        let modes = self.advance(from, speed)?;
+        modes.mode(branch).cloned().ok_or_else(|| Self::lost(speed))
+    }
+
+    /// `K` of a mode.
+    fn k(&self, speed: f64, mode: &Mode) -> ReducedFrequency {
+        ReducedFrequency::from_circular(mode.lambda.im, self.structure().width_m, speed)
+    }
+
+    /// Name of the branch.
+    fn name(&self, branch: usize) -> String {
+        branch_name(self.structure().dofs[branch])
+    }
+}
+
+/// The search for an onset along one route.
+pub(super) struct Watch<'a, F> {
+    /// Name of the force model.
+    pub(super) model: &'a str,
+    pub(super) follower: &'a F,
+    /// Reduced frequencies into which modes may come with rising speed.
+    pub(super) tested: Option<ReducedFrequencyRange>,
+}
+
+impl<F: Follower> Watch<'_, F> {
+    /// Adds what happens between two neighbouring speeds: modes that lose their damping, and modes that come into the tested
+    /// range growing.
+    pub(super) fn step(&self, low: &Modes, high: &Modes, found: &mut Findings) -> Result<()> {
+        for after in &high.all {
+            let Some(before) = low.mode(after.branch) else {
+                continue;
+            };
+            if before.lambda.re < 0.0 && after.lambda.re >= 0.0 {
+                let (speed, mode) = self.zero((low, before), (high, after), |_, m| m.lambda.re)?;
+                let (s, branch) = (self.follower.structure(), self.follower.name(mode.branch));
+                let at = (speed, mode.lambda.im);
+                let onset = Onset::new(self.model, F::METHOD, s, at, &mode.shape, branch);
+                found
+                    .crossings
+                    .extend(self.follower.complete(onset, low, &mode)?);
+            }
+            found
+                .starts
+                .extend(self.entry((low, before), (high, after))?);
+        }
+        Ok(())
+    }
+
+    /// Growth of a mode where it can be judged first.
+    pub(super) fn start(&self, speed: f64, mode: &Mode, reason: String) -> UnstableStart {
+        let (s, branch) = (self.follower.structure(), self.follower.name(mode.branch));
+        let at = (speed, mode.lambda);
+        let mut start = UnstableStart::new(self.model, F::METHOD, s, at, branch, reason);
+        let k = start.reduced_frequency;
+        start.in_tested_range = self.tested.map(|range| range.contains(k));
+        start
+    }
+
+    /// A mode that comes into the tested range between two speeds and grows there.
+    fn entry(&self, low: (&Modes, &Mode), high: (&Modes, &Mode)) -> Result<Option<UnstableStart>> {
+        let grows = low.1.lambda.re >= 0.0 || high.1.lambda.re >= 0.0;
+        let Some(range) = self.tested.filter(|_| grows) else {
+            return Ok(None);
+        };
+        let k = |(modes, mode): (&Modes, &Mode)| self.follower.k(modes.speed, mode);
+        if k(low) <= range.max || k(high) > range.max {
+            return Ok(None);
+        }
+        let beyond =
+            |v: f64, mode: &Mode| range.max.full_width() - self.follower.k(v, mode).full_width();
+        let (speed, mode) = self.zero(low, high, beyond)?;
+        Ok(growing(&mode.lambda).then(|| {
+            let mut start = self.start(speed, &mode, entry_reason(range.max));
+            start.in_tested_range = Some(true);
+            start
+        }))
+    }
+
+    /// The speed between two at which a number of one mode is zero, and the mode there.
+    fn zero(
+        &self,
+        (low, before): (&Modes, &Mode),
+        (high, after): (&Modes, &Mode),
+        value: impl Fn(f64, &Mode) -> f64,
+    ) -> Result<(f64, Mode)> {
+        let mode_at = |v: f64| self.follower.mode_at(low, v, after.branch);
+        let ends = [(low, before), (high, after)].map(|(at, m)| (at.speed, value(at.speed, m)));
+        let speed = root(ends[0], ends[1], |v| Ok(value(v, &mode_at(v)?)))?;
+        Ok((speed, mode_at(speed)?))
+    }
+}
+
+/// Displacements in the dimensionless motion `(y/B, x/B, θ)`.
+pub(super) fn dimensionless(s: &Structure, shape: &DVector<Complex<f64>>) -> DVector<Complex<f64>> {
+    DVector::from_fn(shape.len(), |i, _| {
+        shape[i] * s.dofs[i].motion_scale(s.width_m)
+    })
+}
+
+/// Modal assurance criterion of two shapes: 1 for the same shape.
+pub(super) fn assurance(u: &DVector<Complex<f64>>, v: &DVector<Complex<f64>>) -> f64 {
+    u.dotc(v).norm_sqr() / (u.norm_squared() * v.norm_squared())
+}
+
+/// Name of the branch that starts as the mode of `dof`.
+pub(super) fn branch_name(dof: Dof) -> String {
+    dof.name().to_owned()
+}
