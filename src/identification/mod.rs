@@ -11,7 +11,6 @@ pub mod derivatives;
 mod descent;
 mod discrete;
 mod dissipative;
-pub mod free_decay;
 mod frequency;
 mod frequency_options;
 mod grid;

@@ -162,11 +162,6 @@ impl Grid {
         &self.dofs
     }
 
-    /// Dimensionless step of the discrete model: the longest of the records.
-    pub fn delta_s(&self) -> f64 {
-        self.delta_s
-    }
-
     /// The stretches, in the order in which `keep` sees them.
     pub fn labels(&self) -> &[StretchLabel] {
         &self.labels

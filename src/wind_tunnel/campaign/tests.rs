@@ -379,6 +379,5 @@ fn the_example_of_the_documentation_is_a_campaign() {
         Campaign::from_toml(&again, PathBuf::new()).unwrap(),
         campaign
     );
-    // RawCampaign::read goes the same way
-    assert!(RawCampaign::read("no/such/campaign.toml").is_err());
+    assert!(Campaign::read("no/such/campaign.toml").is_err());
 }
