@@ -40,12 +40,13 @@ pub use grid::{CellFit, Grid, GridAxis, StretchLabel};
 pub use least_squares::{Factor, StreamingQr};
 pub use options::{FeedThrough, Form, PoleSearch, TimeFit, TimeWeights};
 pub use own::{OwnDecay, OwnFilters, StaticTerm};
-pub use records::{OnProgress, Progress, fit_records};
+pub use records::fit_records;
 pub use report::{
     AlphaGuideline, CANCELLATION_LIMIT, CONDITION_LIMIT, Coefficient, EntryReport, FitReport,
     MemoryReport, OrderReport, SearchPoint, SearchReport, StaticReport,
 };
 pub use samples::sample_model;
+pub use time::pass::{OnProgress, Progress};
 pub use uncertainty::{
     CoefficientUncertainty, Coordinates, ForceScatter, LinearModel, Parameter, SEARCHED_POLES,
     SearchedPole, SpeedScatter, discrete_uncertainty, record_uncertainty, table_uncertainty,

@@ -10,7 +10,6 @@ mod section_forces;
 use super::*;
 use crate::error::Result;
 use crate::section::Dof;
-use crate::wind_tunnel::RawCampaign;
 use std::f64::consts::{PI, TAU};
 use std::fmt::Write as _;
 use std::path::PathBuf;
