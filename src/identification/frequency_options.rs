@@ -127,7 +127,7 @@ impl FrequencyFit {
     }
 
     /// Whether every entry is an unconstrained linear fit whose poles are shared by all or its own.
-    pub(super) fn is_plain(&self) -> bool {
+    pub(crate) fn is_plain(&self) -> bool {
         let rational_only = matches!(
             self.form,
             Form::RationalPerForce { .. } | Form::MinimumState { .. }

@@ -2,8 +2,9 @@
 
 use super::coefficients::{CoefficientUncertainty, Coordinates, Parameter};
 use super::columns::Expansion;
-use super::constraints::{held_sentence, tangent_of};
-use super::poles::{FreePoles, PoleName, free_poles};
+use super::parameters::{
+    FreePoles, coordinates_of, free_poles, held_sentence, parameters_of, tangent_of,
+};
 use super::segments::{Part, Stretched, gather, sandwich};
 use crate::error::{Error, Result};
 use crate::identification::DiscreteFit;
@@ -52,7 +53,8 @@ pub fn record_uncertainty(
         progress,
     };
     let poles = free_poles(&fit.form, &fit.poles, report);
-    let entries = Entries::new(&fit.form, dofs.len(), report, &poles)?;
+    let (parameters, first) = parameters_of(report, &poles);
+    let entries = Entries::new(&fit.form, (first, parameters.len()), report, &poles)?;
     let rows = Rows {
         orthonormal: true,
         thinned: false,
@@ -61,23 +63,14 @@ pub fn record_uncertainty(
     let closed = task.pass(&entries.candidates(), rows, (1, 1))?.stretches;
     let (design, blocks) = sandwich(entries.blocks(&records, &closed)?, entries.tangent.clone())?;
     let searched = poles.sentence() + &held_sentence(report);
-    let inputs = dofs.len();
     CoefficientUncertainty::new(
         (
             format!("{blocks}; motions are exact; {searched}"),
             Some(report.tested_range),
         ),
         dofs,
-        Coordinates::Continuous {
-            form: fit.form.clone(),
-            chains: report
-                .entries
-                .chunks(inputs)
-                .map(|row| row.iter().map(|e| e.poles.clone()).collect())
-                .collect(),
-            searched: poles.searched,
-        },
-        entries.parameters(report, &poles.values),
+        coordinates_of(&fit.form, report, poles.searched),
+        parameters,
         design,
     )
 }
@@ -99,17 +92,23 @@ struct Entries {
 }
 
 impl Entries {
-    fn new(form: &Form, inputs: usize, report: &FitReport, poles: &FreePoles) -> Result<Self> {
+    fn new(
+        form: &Form,
+        (first, parameters): (Vec<usize>, usize),
+        report: &FitReport,
+        poles: &FreePoles,
+    ) -> Result<Self> {
+        let inputs = report.entries.len().isqrt();
         let searched = !poles.searched.is_empty();
         let mut entries = Self {
             inputs,
             expansions: Vec::new(),
             values: Vec::new(),
             slopes: Vec::new(),
-            first: Vec::new(),
-            parameters: 0,
+            tangent: tangent_of(report, (form, poles), &first, parameters)?,
+            first,
+            parameters,
             shared: report.entries.windows(2).all(|w| w[0].poles == w[1].poles),
-            tangent: None,
         };
         for (e, entry) in report.entries.iter().enumerate() {
             let expansion = Expansion::new(form, &entry.poles, searched)?;
@@ -122,14 +121,10 @@ impl Entries {
                     slopes.column_mut(m).copy_from(&all.column(pole.index));
                 }
             }
-            entries.first.push(entries.parameters);
-            entries.parameters += values.len();
             entries.expansions.push(expansion);
             entries.values.push(values);
             entries.slopes.push(slopes);
         }
-        entries.parameters += poles.searched.len();
-        entries.tangent = tangent_of(report, (form, poles), &entries.first, entries.parameters)?;
         Ok(entries)
     }
 
@@ -201,26 +196,6 @@ impl Entries {
         let rows = factor.upper() * columns * weight;
         let residual = (factor.projected().column(i) - factor.upper() * fitted) * weight;
         Ok((rows, residual, factor.total_sum(i) * weight * weight))
-    }
-
-    fn parameters(&self, report: &FitReport, poles: &[(PoleName, f64)]) -> Vec<Parameter> {
-        let coefficients = report.entries.iter().flat_map(|entry| {
-            entry.coefficients.iter().map(|c| Parameter {
-                name: c.name.clone(),
-                force: Some(entry.force),
-                motion: Some(entry.motion),
-                value: c.value,
-                standard_error: 0.0,
-            })
-        });
-        let poles = poles.iter().map(|((name, entry), value)| Parameter {
-            name: name.clone(),
-            force: entry.map(|e| e.0),
-            motion: entry.map(|e| e.1),
-            value: *value,
-            standard_error: 0.0,
-        });
-        coefficients.chain(poles).collect()
     }
 }
 
