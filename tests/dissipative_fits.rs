@@ -9,11 +9,12 @@ mod matrix;
 
 use aerodeck::aerodynamics::{AerodynamicModel, FlatPlate};
 use aerodeck::identification::{
-    CoefficientUncertainty, Constraints, FrequencyFit, PoleSearch, QuasiSteadyLimit, TimeFit,
-    fit_records, fit_table, record_uncertainty, sample_model, table_uncertainty,
+    Constraints, FrequencyFit, PoleSearch, QuasiSteadyLimit, TimeFit, fit_records, fit_table,
+    sample_model,
 };
 use aerodeck::section::Dof;
 use aerodeck::trained_model::Model;
+use aerodeck::uncertainty::{CoefficientUncertainty, record_uncertainty, table_uncertainty};
 use aerodeck::units::ReducedFrequency;
 use aerodeck::wind_tunnel::TunnelPlan;
 use fits::{assert_stable_below_onset, fitted, forms, laguerre, rational, sources};

@@ -1,22 +1,14 @@
 //! The thesis's discrete Laguerre model fitted to records (2.30–2.33, 3.2–3.6).
 
-mod options;
-
-pub use options::DiscreteFit;
-
-use super::least_squares::Factor;
-use super::own::StaticTerm;
-use super::records::{
-    OnProgress, Progress, describe, describe_own, estimated_constants, removed_means, tested_range,
-};
-use super::report::{
-    AlphaGuideline, EntryReport, FitReport, MemoryReport, OrderReport, enough_rows, variance,
-};
-use super::time::accumulate::{Accumulated, Plan, accumulate};
+use super::options::{PoleSearch, TimeWeights, number_of_filters};
+use super::own::{OwnDecay, StaticTerm, each_once, place_of};
+use super::records::{describe, describe_own, removed_means, tested_range};
+use super::report::{AlphaGuideline, FitReport, MemoryReport};
 use super::time::discrete_columns::DiscreteColumns;
-use super::time::layout::Layout;
-use super::time::selection::Selection;
-use super::time::slices::{Scaled, scale_all};
+use super::time::fitted::Fitted;
+use super::time::pass::{OnProgress, Pass, PassPlan, pass};
+use super::time::record::{DimensionlessRecord, read_all};
+use super::time::systems::{ColumnOrder, ForceSystems};
 use crate::aerodynamics::DiscreteLaguerre;
 use crate::aerodynamics::laguerre::{DiscreteTerm, alpha_lower_bound, discrete_memory};
 use crate::error::{Error, Result};
@@ -25,8 +17,77 @@ use crate::trained_model::Model;
 use crate::units::ReducedFrequencyRange;
 use crate::wind_tunnel::RecordSource;
 use nalgebra::DMatrix;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
-use std::rc::Rc;
+
+/// Fit of the thesis's discrete Laguerre model to records.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct DiscreteFit {
+    /// Number of filters `L`.
+    pub filters: usize,
+    /// Decay factor, `0 < α < 1`.
+    pub alpha: f64,
+    /// Weighting; the thesis has none.
+    pub weights: TimeWeights,
+    /// What is done about a constant in the forces.
+    pub static_term: StaticTerm,
+    /// Transfer functions with a number of filters or a decay factor of their own.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub own: Vec<OwnDecay>,
+}
+
+impl Default for DiscreteFit {
+    /// The thesis's choice: three filters, α = 0.6; the constant of (2.23) is estimated along.
+    fn default() -> Self {
+        Self {
+            filters: 3,
+            alpha: 0.6,
+            weights: TimeWeights::None,
+            static_term: StaticTerm::Estimated,
+            own: Vec::new(),
+        }
+    }
+}
+
+impl DiscreteFit {
+    /// Checks every value.
+    ///
+    /// # Errors
+    /// [`Error::Input`] naming the key.
+    pub fn validate(&self) -> Result<()> {
+        each_once(self.own.iter().map(|o| (o.force, o.motion)))?;
+        let own = self.own.iter().map(|o| ("own.", o.filters, o.alpha));
+        for (key, filters, alpha) in own.chain([("", Some(self.filters), Some(self.alpha))]) {
+            if let Some(filters) = filters {
+                number_of_filters(&format!("{key}filters"), filters)?;
+            }
+            if let Some(alpha) = alpha.filter(|a| !(*a > 0.0 && *a < 1.0)) {
+                return Err(Error::input(
+                    format!("{key}alpha"),
+                    "0 < alpha < 1",
+                    alpha.to_string(),
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    /// Decay factor and number of filters of every transfer function, row by row.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for degrees of freedom that the records do not have.
+    pub(crate) fn parameters(&self, dofs: &[Dof]) -> Result<Vec<(f64, usize)>> {
+        let mut all = vec![(self.alpha, self.filters); dofs.len() * dofs.len()];
+        for own in &self.own {
+            all[place_of(dofs, own.force, own.motion)?] = (
+                own.alpha.unwrap_or(self.alpha),
+                own.filters.unwrap_or(self.filters),
+            );
+        }
+        Ok(all)
+    }
+}
 
 /// Fits the discrete Laguerre model: records of lower speeds are resampled to the longest `Δs = VΔt/B` (3.2), the filters
 /// run recursively (2.33), a constant column takes the static term, least squares gives the coefficients: `9L` of them
@@ -40,19 +101,39 @@ pub fn fit_discrete(
     progress: OnProgress<'_>,
 ) -> Result<(Model, FitReport)> {
     fit.validate()?;
-    let (dofs, mut scaled) = scale_all(records)?;
-    let means = removed_means(fit.static_term, &dofs, &mut scaled)?;
-    let tested = tested_range(&scaled)?;
-    let delta_s = scaled.iter().map(Scaled::delta_s).fold(0.0, f64::max);
+    let (dofs, mut records) = read_all(records)?;
+    let means = removed_means(fit.static_term, &dofs, &mut records);
+    let tested = tested_range(&records)?;
+    let delta_s = longest_step(&records);
     let parameters = fit.parameters(&dofs)?;
-    let pass = one_pass(&scaled, &parameters, fit, delta_s, progress)?;
-    let selection = Selection {
-        counts: parameters.iter().map(|(_, filters)| *filters).collect(),
-        systems: pass.systems.into_iter().map(Rc::new).collect(),
+    let rows = parameters.chunks(dofs.len());
+    let mut alphas: Vec<Vec<f64>> = rows.map(|r| r.iter().map(|(a, _)| *a).collect()).collect();
+    // filters that serve all forces are filtered once
+    if alphas.iter().all(|row| *row == alphas[0]) {
+        alphas.truncate(1);
+    }
+    let order = ColumnOrder {
+        inputs: dofs.len(),
+        per_input: parameters.iter().map(|(_, l)| *l).max().unwrap_or(0),
+        constant: fit.static_term == StaticTerm::Estimated,
     };
-    let fitted = Fitted::new(&dofs, fit, &parameters, &selection)?;
-    let model = fitted.model(delta_s)?;
-    let entries = fitted.reports()?;
+    let pass = discrete_pass(
+        (&records, delta_s),
+        (order, &alphas),
+        (fit.weights, 0),
+        progress,
+    )?;
+    let systems = ForceSystems {
+        counts: parameters.iter().map(|(_, filters)| *filters).collect(),
+        systems: pass.systems(),
+    };
+    let fitted = Fitted::new(&dofs, systems, 1.0, "the filters")?;
+    let model = model(&fitted, &dofs, &parameters, delta_s)?;
+    let entries = fitted.reports(|e| {
+        let names = (0..parameters[e].1).map(|l| format!("c{l}")).collect();
+        Ok((names, Vec::new()))
+    })?;
+    let shared = parameters.iter().all(|p| *p == parameters[0]);
     let report = FitReport {
         method: format!(
             "discrete Laguerre as in the thesis, L = {}, α = {}{}, Δs = {delta_s:.6}, fitted to {} record(s)",
@@ -62,19 +143,15 @@ pub fn fit_discrete(
             records.len()
         ),
         weights: describe(fit.weights).into(),
-        samples: selection.whole(0).rows(),
+        samples: fitted.systems.whole(0).rows(),
         tested_range: tested,
         condition: entries.iter().map(|e| e.condition).fold(1.0, f64::max),
         entries,
         search: Vec::new(),
-        orders: fitted.orders(),
-        alpha_guideline: Some(guideline(&parameters, tested, delta_s, &scaled)),
-        static_terms: if fit.static_term == StaticTerm::Estimated {
-            estimated_constants(&selection, &dofs, 1.0)?
-        } else {
-            means
-        },
-        memory: memory(&parameters, &scaled, delta_s, &pass.still_samples),
+        orders: if shared { fitted.orders(0) } else { Vec::new() },
+        alpha_guideline: Some(guideline(&parameters, tested, delta_s, &records)),
+        static_terms: [means, fitted.constants()?].concat(),
+        memory: memory(&parameters, &records, delta_s, &pass.still_samples),
         constraints: None,
         covariance_assumption: "white residuals, exact motions".into(),
         notes: Vec::new(),
@@ -82,210 +159,89 @@ pub fn fit_discrete(
     Ok((Model::DiscreteLaguerre(model), with_notes(report)))
 }
 
-fn one_pass(
-    records: &[Scaled<'_>],
-    parameters: &[(f64, usize)],
-    fit: &DiscreteFit,
-    delta_s: f64,
+/// The dimensionless step to which all records are resampled: the longest.
+pub(crate) fn longest_step(records: &[DimensionlessRecord]) -> f64 {
+    let steps = records.iter().map(DimensionlessRecord::delta_s);
+    steps.fold(0.0, f64::max)
+}
+
+/// One pass over the records, resampled to one step, with the filters (2.33) of the given decay factors, one for each
+/// input of each candidate; `stretches` as in [`PassPlan`].
+pub(crate) fn discrete_pass(
+    (records, delta_s): (&[DimensionlessRecord], f64),
+    (order, alphas): (ColumnOrder, &[Vec<f64>]),
+    (weights, stretches): (TimeWeights, usize),
     progress: OnProgress<'_>,
-) -> Result<Accumulated> {
-    let inputs = parameters.len().isqrt();
-    let filters = parameters.iter().map(|(_, l)| *l).max().unwrap_or(0);
-    let rows = parameters.chunks(inputs);
-    let mut alphas: Vec<Vec<f64>> = rows.map(|r| r.iter().map(|(a, _)| *a).collect()).collect();
-    // filters that serve all forces are filtered once
-    if alphas.iter().all(|row| *row == alphas[0]) {
-        alphas.truncate(1);
-    }
-    let constant = fit.static_term == StaticTerm::Estimated;
-    let plan = Plan {
-        layout: Layout {
-            inputs,
-            per_input: filters,
-            constant,
-        },
-        weights: fit.weights,
+) -> Result<Pass> {
+    let plan = PassPlan {
+        order,
+        weights,
         delta_s: Some(delta_s),
         discard_s: 0.0,
         stride: 1,
-        stretches: 0,
+        stretches,
+        pass: (1, 1),
     };
-    let done = |records_done| {
-        progress(Progress {
-            pass: 1,
-            passes: 1,
-            records_done,
-            records: records.len(),
-        });
-    };
-    let make = |_: &Scaled<'_>| Ok(DiscreteColumns::new(&alphas, filters, constant));
-    accumulate(records, &plan, &make, &done)
-}
-
-/// The solved systems.
-struct Fitted<'a> {
-    dofs: &'a [Dof],
-    /// `α` and `L` of every transfer function, row by row.
-    parameters: &'a [(f64, usize)],
-    selection: &'a Selection,
-    /// All coefficients of each force, the constant first.
-    coefficients: Vec<DMatrix<f64>>,
-    constant: bool,
-}
-
-impl<'a> Fitted<'a> {
-    fn new(
-        dofs: &'a [Dof],
-        fit: &DiscreteFit,
-        parameters: &'a [(f64, usize)],
-        selection: &'a Selection,
-    ) -> Result<Self> {
-        let solve = |i: usize| {
-            let factor = selection.whole(i);
-            enough_rows("records", factor.rows(), factor.columns())?;
-            if let Some(column) = factor.undetermined(factor.columns()) {
-                let holds = |j: &usize| selection.places(i, *j).contains(&column);
-                let silent = (0..dofs.len()).find(holds);
-                return Err(Error::input(
-                    "records",
-                    format!(
-                        "a {} motion rich enough for the filters",
-                        silent.map_or("", |j| dofs[j].name())
-                    ),
-                    "none that determines its coefficients",
-                ));
-            }
-            factor.solve(factor.columns())
-        };
-        Ok(Self {
-            dofs,
-            parameters,
-            selection,
-            coefficients: (0..dofs.len()).map(solve).collect::<Result<_>>()?,
-            constant: fit.static_term == StaticTerm::Estimated,
-        })
-    }
-
-    fn values(&self, i: usize, j: usize) -> Vec<f64> {
-        let places = self.selection.places(i, j).into_iter();
-        places.map(|p| self.coefficients[i][p]).collect()
-    }
-
-    fn constants(&self) -> Vec<f64> {
-        let all = self.coefficients.iter();
-        all.map(|c| if self.constant { c[0] } else { 0.0 })
-            .collect()
-    }
-
-    /// One chain a motion for all forces that share its parameters.
-    fn model(&self, delta_s: f64) -> Result<DiscreteLaguerre> {
-        let n = self.dofs.len();
-        let mut terms = Vec::new();
-        for input in 0..n {
-            let of_force: Vec<(f64, usize)> =
-                (0..n).map(|i| self.parameters[i * n + input]).collect();
-            for (i, own) in of_force.iter().enumerate() {
-                if of_force[..i].contains(own) {
-                    continue;
-                }
-                let (alpha, filters) = *own;
-                let mut coefficients = DMatrix::zeros(n, filters);
-                for row in (0..n).filter(|r| of_force[*r] == *own) {
-                    for (l, value) in self.values(row, input).into_iter().enumerate() {
-                        coefficients[(row, l)] = value;
-                    }
-                }
-                terms.push(DiscreteTerm {
-                    input,
-                    alpha,
-                    coefficients,
-                });
-            }
-        }
-        let model = DiscreteLaguerre {
-            dofs: self.dofs.to_vec(),
-            delta_s,
-            terms,
-            static_term: self.constants(),
-        };
-        model.validate()?;
-        Ok(model)
-    }
-
-    fn reports(&self) -> Result<Vec<EntryReport>> {
-        let n = self.dofs.len();
-        let each = (0..n * n).map(|e| self.report(e / n, e % n));
-        each.collect()
-    }
-
-    fn report(&self, i: usize, j: usize) -> Result<EntryReport> {
-        let whole = self.selection.whole(i);
-        let columns = whole.columns();
-        let gram = whole.inverse_gram(columns)?;
-        let residual = variance(whole.residual_sum(columns, 0), whole.rows(), columns);
-        let (places, values) = (self.selection.places(i, j), self.values(i, j));
-        let covariance = residual.map(|v| {
-            DMatrix::from_fn(values.len(), values.len(), |a, b| {
-                v * gram[(places[a], places[b])]
-            })
-        });
-        // the constant belongs to the rows of every motion
-        let constant = self.constant.then_some(self.coefficients[i][0]);
-        let of_rows: Vec<f64> = constant.into_iter().chain(values.clone()).collect();
-        let own = self.selection.alone(i, j);
-        let relative = |f: &Factor| (f.residual_sum_of(&of_rows, 0) / f.total_sum(0)).sqrt();
-        let (condition, cancellation) = match own.as_deref() {
-            Some(f) => (f.condition(f.columns()), f.cancellation(&of_rows, 0)),
-            None => (
-                whole.condition(columns),
-                whole.cancellation(self.coefficients[i].as_slice(), 0),
-            ),
-        };
-        Ok(EntryReport {
-            force: self.dofs[i],
-            motion: self.dofs[j],
-            relative_rms: own
-                .as_deref()
-                .filter(|f| f.total_sum(0) > 0.0)
-                .map(relative),
-            worst_relative: None,
-            poles: Vec::new(),
-            coefficients: Vec::new(),
-            covariance: Vec::new(),
-            condition,
-            cancellation,
-        }
-        .with_coefficients(
-            (0..values.len()).map(|l| format!("c{l}")).collect(),
-            &values,
-            covariance,
+    let columns = |_: &_| {
+        Ok(DiscreteColumns::new(
+            alphas,
+            order.per_input,
+            order.constant,
         ))
-    }
+    };
+    pass(records, &plan, progress, columns)
+}
 
-    /// Fewer filters, from the same factorisation (shared parameters only).
-    fn orders(&self) -> Vec<OrderReport> {
-        if self.parameters.iter().any(|p| *p != self.parameters[0]) {
-            return Vec::new();
+/// One chain a motion for all forces that share its parameters (`α` and `L` of every transfer function, row by row).
+fn model(
+    fitted: &Fitted<'_>,
+    dofs: &[Dof],
+    parameters: &[(f64, usize)],
+    delta_s: f64,
+) -> Result<DiscreteLaguerre> {
+    let n = dofs.len();
+    let mut terms = Vec::new();
+    for input in 0..n {
+        let of_force: Vec<(f64, usize)> = (0..n).map(|i| parameters[i * n + input]).collect();
+        for (i, own) in of_force.iter().enumerate() {
+            if of_force[..i].contains(own) {
+                continue;
+            }
+            let (alpha, filters) = *own;
+            let mut coefficients = DMatrix::zeros(n, filters);
+            for row in (0..n).filter(|r| of_force[*r] == *own) {
+                for (l, value) in fitted.values(row, input).into_iter().enumerate() {
+                    coefficients[(row, l)] = value;
+                }
+            }
+            terms.push(DiscreteTerm {
+                input,
+                alpha,
+                coefficients,
+            });
         }
-        (1..=self.parameters[0].1)
-            .map(|filters| OrderReport {
-                filters,
-                objective: self.selection.systems[0].objective(filters, &|_, _| true),
-            })
-            .collect()
     }
+    let constants = (0..n).map(|i| fitted.constant(i).unwrap_or(0.0));
+    let model = DiscreteLaguerre {
+        dofs: dofs.to_vec(),
+        delta_s,
+        terms,
+        static_term: constants.collect(),
+    };
+    model.validate()?;
+    Ok(model)
 }
 
 /// Memory of the slowest chain against the rest before the motion, at the step of the model.
 fn memory(
     parameters: &[(f64, usize)],
-    records: &[Scaled<'_>],
+    records: &[DimensionlessRecord],
     delta_s: f64,
     still_samples: &[usize],
 ) -> Vec<MemoryReport> {
     let memories = parameters.iter().map(|(a, l)| discrete_memory(*a, *l));
     let longest = memories.max().unwrap_or(0);
-    let account = |(record, still): (&Scaled<'_>, &usize)| MemoryReport {
+    let account = |(record, still): (&DimensionlessRecord, &usize)| MemoryReport {
         record: record.name().to_owned(),
         memory_samples: longest,
         available_samples: *still,
@@ -299,7 +255,7 @@ fn guideline(
     parameters: &[(f64, usize)],
     tested: ReducedFrequencyRange,
     delta_s: f64,
-    records: &[Scaled<'_>],
+    records: &[DimensionlessRecord],
 ) -> AlphaGuideline {
     let rate = records.iter().map(|r| r.rate).fold(0.0, f64::max);
     let sampling_hz = rate / delta_s;
@@ -327,7 +283,7 @@ fn with_notes(mut report: FitReport) -> FitReport {
             g.alpha, g.lower_bound, g.highest_frequency_hz, g.sampling_hz
         ));
     }
-    report.judge(&super::options::PoleSearch::default());
+    report.judge(&PoleSearch::default());
     report
 }
 

@@ -52,7 +52,7 @@ pub fn fit_table(
             fit.regularization
         ));
     }
-    let Fitted {
+    let FittedTable {
         model,
         reports,
         search,
@@ -86,8 +86,8 @@ pub fn fit_table(
     Ok((model, report))
 }
 
-/// A model and the account of how it was found.
-pub(super) struct Fitted {
+/// A model fitted to a table and the account of how it was found.
+pub(super) struct FittedTable {
     pub model: Model,
     pub reports: Vec<EntryReport>,
     pub search: Vec<SearchReport>,
@@ -101,14 +101,14 @@ fn fit_linear(
     dofs: &[Dof],
     fit: &FrequencyFit,
     tested: ReducedFrequencyRange,
-) -> Result<Fitted> {
+) -> Result<FittedTable> {
     let forms = entry_forms(dofs, &fit.form, &fit.poles, &fit.own)?;
     let (poles, search) = choose_poles(entries, &forms, fit, tested)?;
     let mut reports = Vec::with_capacity(entries.len());
     for (entry, poles) in entries.iter().zip(&poles) {
         reports.push(fit_entry(entry, &fit.form, poles)?);
     }
-    let alone = Fitted {
+    let alone = FittedTable {
         model: model_of(dofs, fit, &reports)?,
         reports,
         search,
@@ -143,7 +143,7 @@ fn fit_linear(
         &reports,
         alone.model,
     );
-    Ok(Fitted {
+    Ok(FittedTable {
         model,
         reports,
         search,

@@ -6,7 +6,6 @@ use super::options::{Form, PoleSearch};
 use super::own::{OwnFilters, validate_own};
 use crate::error::{Error, Result, non_negative};
 use crate::section::Dof;
-use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 
 /// What one entry of `G` has to be in slow motion: `G → value + slope·iK` for K → 0, as quasi-steady theory gives it.
@@ -23,24 +22,6 @@ pub struct QuasiSteadyLimit {
     /// `dG/d(iK)` at 0, dimensionless; left out, free.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub slope: Option<f64>,
-}
-
-impl QuasiSteadyLimit {
-    /// Value and slope of every entry from the n×n matrices of a quasi-steady theory.
-    pub fn of(dofs: &[Dof], value: &DMatrix<f64>, slope: &DMatrix<f64>) -> Vec<Self> {
-        let mut limits = Vec::new();
-        for (i, &force) in dofs.iter().enumerate() {
-            for (j, &motion) in dofs.iter().enumerate() {
-                limits.push(Self {
-                    force,
-                    motion,
-                    value: value.get((i, j)).copied(),
-                    slope: slope.get((i, j)).copied(),
-                });
-            }
-        }
-        limits
-    }
 }
 
 /// Checks what can be checked without the data.
@@ -146,7 +127,7 @@ impl FrequencyFit {
     }
 
     /// Whether every entry is an unconstrained linear fit whose poles are shared by all or its own.
-    pub(super) fn is_plain(&self) -> bool {
+    pub(crate) fn is_plain(&self) -> bool {
         let rational_only = matches!(
             self.form,
             Form::RationalPerForce { .. } | Form::MinimumState { .. }

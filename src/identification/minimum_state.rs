@@ -11,7 +11,7 @@ use super::basis::Basis;
 use super::constrained::{LinearProblem, LinearSolution};
 use super::descent::descend;
 use super::dissipative::{ActiveConstraint, Constraints, Wishes};
-use super::frequency::{Fitted, shares, sizes};
+use super::frequency::{FittedTable, shares, sizes};
 use super::frequency_options::FrequencyFit;
 use super::options::{FeedThrough, Form};
 use super::report::{EntryReport, SearchPoint, SearchReport};
@@ -55,7 +55,7 @@ pub(super) fn fit_minimum_state(
     dofs: &[Dof],
     fit: &FrequencyFit,
     tested: ReducedFrequencyRange,
-) -> Result<Fitted> {
+) -> Result<FittedTable> {
     let states = fit.form.filters();
     let mut task = Task {
         entries,
@@ -310,7 +310,7 @@ impl Task<'_> {
         dofs: &[Dof],
         x: &[f64],
         search: Vec<SearchReport>,
-    ) -> Result<(Fitted, Option<Vec<ActiveConstraint>>)> {
+    ) -> Result<(FittedTable, Option<Vec<ActiveConstraint>>)> {
         let (lags, e) = (self.lags_at(x), self.e_at(x));
         let (n, feed) = (self.n, self.feed.count());
         let mut d = DMatrix::zeros(n, self.states);
@@ -365,7 +365,7 @@ impl Task<'_> {
             e,
         };
         model.validate()?;
-        let fitted = Fitted {
+        let fitted = FittedTable {
             model: Model::MinimumState(model),
             reports,
             search,

@@ -1,6 +1,6 @@
 //! From records and tables to models: regressors, fits, reports.
 
-mod basis;
+pub(crate) mod basis;
 #[cfg(test)]
 mod broadband_tests;
 mod constrained;
@@ -9,27 +9,25 @@ mod deck_tests;
 mod degenerate;
 pub mod derivatives;
 mod descent;
-mod discrete;
-mod dissipative;
-pub mod free_decay;
+pub(crate) mod discrete;
+pub(crate) mod dissipative;
 mod frequency;
-mod frequency_options;
+pub(crate) mod frequency_options;
 mod grid;
-mod least_squares;
+pub(crate) mod least_squares;
 mod minimum_state;
-mod options;
-mod own;
+pub(crate) mod options;
+pub(crate) mod own;
 mod rational_forms;
-mod records;
-mod report;
-mod samples;
+pub(crate) mod records;
+pub(crate) mod report;
+pub(crate) mod samples;
 mod search;
 #[cfg(test)]
 mod testing;
-mod time;
+pub(crate) mod time;
 #[cfg(test)]
 mod training_tests;
-mod uncertainty;
 
 pub use discrete::{DiscreteFit, fit_discrete};
 pub use dissipative::{
@@ -41,14 +39,10 @@ pub use grid::{CellFit, Grid, GridAxis, StretchLabel};
 pub use least_squares::{Factor, StreamingQr};
 pub use options::{FeedThrough, Form, PoleSearch, TimeFit, TimeWeights};
 pub use own::{OwnDecay, OwnFilters, StaticTerm};
-pub use records::{OnProgress, Progress, fit_records};
+pub use records::fit_records;
 pub use report::{
     AlphaGuideline, CANCELLATION_LIMIT, CONDITION_LIMIT, Coefficient, EntryReport, FitReport,
     MemoryReport, OrderReport, SearchPoint, SearchReport, StaticReport,
 };
 pub use samples::sample_model;
-pub use uncertainty::{
-    CoefficientUncertainty, Coordinates, ForceScatter, LinearModel, Parameter, SEARCHED_POLES,
-    SearchedPole, SpeedScatter, discrete_uncertainty, incomplete_beta, record_uncertainty,
-    table_uncertainty, two_sided_quantile,
-};
+pub use time::pass::{OnProgress, Progress};

@@ -2,7 +2,7 @@
 //!
 //! The covariance of a fit holds all its parameters, searched poles among them: with a pole the coefficients move
 //! together, and drawn at fixed poles they would be another model. The model is therefore followed along its slope with
-//! respect to the poles, in chains of filters that span it ([`crate::identification::LinearModel`]): a linear function of
+//! respect to the poles, in chains of filters that span it ([`crate::uncertainty::LinearModel`]): a linear function of
 //! the parameters, of which standard errors speak as well.
 
 use super::coefficients;
@@ -10,8 +10,8 @@ use super::plan::MonteCarloPlan;
 use super::scatter::{CovarianceFactor, factor_of, from_file};
 use crate::aerodynamics::AerodynamicModel;
 use crate::error::{Error, Result};
-use crate::identification::{CoefficientUncertainty, SEARCHED_POLES};
 use crate::trained_model::{Model, TrainedModel};
+use crate::uncertainty::{CoefficientUncertainty, SEARCHED_POLES};
 use nalgebra::DMatrix;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};

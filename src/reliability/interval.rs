@@ -1,6 +1,6 @@
 //! Confidence interval of a probability from counted samples.
 
-use crate::identification::incomplete_beta;
+use crate::uncertainty::incomplete_beta;
 use crate::state_space::boundary;
 use std::convert::Infallible;
 

@@ -58,14 +58,6 @@ pub struct Selection {
     pub reason: String,
 }
 
-impl Selection {
-    /// The cell of a number of filters (from one) and a value (index).
-    pub fn cell(&self, filters: usize, value: usize) -> Option<&Cell> {
-        self.cells
-            .get(value * self.filters_max + filters.checked_sub(1)?)
-    }
-}
-
 /// Judges every cell, in parallel over the values of the axis.
 ///
 /// `done` is called after each value with the number of those that are through.

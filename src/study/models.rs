@@ -5,11 +5,12 @@ use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
 use crate::flutter::{FlutterSearch, StableRange, find_onset};
 use crate::identification::{
-    FitReport, OnProgress, OnsetEffect, discrete_uncertainty, fit_discrete, fit_records, fit_table,
-    record_uncertainty, table_uncertainty,
+    FitReport, OnProgress, OnsetEffect, fit_discrete, fit_records, fit_table,
 };
 use crate::trained_model::{Experiment, Model, Provenance, TrainedModel};
-use crate::uncertainty::ModelUncertainty;
+use crate::uncertainty::{
+    ModelUncertainty, discrete_uncertainty, record_uncertainty, table_uncertainty,
+};
 use crate::units::ReducedFrequencyRange;
 
 /// A model with the account of its fit.

@@ -1,7 +1,9 @@
 //! Do the intervals keep their word? Virtual campaigns whose truth is known, fitted many times over.
 
+use super::coefficients::CoefficientUncertainty;
 use super::derivatives::{derivative_intervals, spread_over};
 use super::onset::onset_error;
+use super::record_covariance::record_uncertainty;
 use super::scattered::ScatteredTunnel;
 use crate::aerodynamics::derivatives::Part;
 use crate::aerodynamics::{AerodynamicModel, FlatPlate, RationalModel};
@@ -9,8 +11,7 @@ use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, non_negative, positive};
 use crate::flutter::{Onset, OnsetSearch, determinant_onset, find_onset};
 use crate::identification::{
-    CoefficientUncertainty, Constraints, FeedThrough, Form, PoleSearch, TimeFit, TimeWeights,
-    fit_records, record_uncertainty,
+    Constraints, FeedThrough, Form, PoleSearch, TimeFit, TimeWeights, fit_records,
 };
 use crate::section::SectionModel;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};

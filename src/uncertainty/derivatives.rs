@@ -1,10 +1,11 @@
 //! Aerodynamic derivatives of a fitted model with their intervals.
 
+use super::coefficients::CoefficientUncertainty;
 use super::onset::CONFIDENCE;
+use super::student::two_sided_quantile;
 use crate::aerodynamics::TransferMatrix;
 use crate::aerodynamics::derivatives::{Derivative, Part};
 use crate::error::Result;
-use crate::identification::{CoefficientUncertainty, two_sided_quantile};
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use serde::{Deserialize, Serialize};
 

@@ -1,14 +1,14 @@
 //! All that is known of the uncertainty of one trained model, as it is saved beside it.
 
+use super::coefficients::CoefficientUncertainty;
 use super::derivatives::{DerivativeInterval, derivative_intervals, spread_over};
 use super::onset::{
     OnsetError, ResampledOnset, Resampling, ResamplingPlan, onset_error, resample_onset,
 };
-use super::speeds::{Contradiction, SpeedOnsets, speed_onsets};
+use super::speed_onsets::{Contradiction, SpeedOnsets, speed_onsets};
 use crate::aerodynamics::AerodynamicModel;
 use crate::error::{Error, Result};
 use crate::flutter::{Onset, OnsetInterval, OnsetMethod, OnsetSearch};
-use crate::identification::CoefficientUncertainty;
 use crate::section::Structure;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use serde::{Deserialize, Serialize};

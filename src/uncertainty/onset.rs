@@ -1,11 +1,12 @@
 //! Interval of an onset: by its gradient, and by re-solving it for other weights of the blocks.
 
+use super::coefficients::CoefficientUncertainty;
 use super::sensitivity::{onset_gradient, onset_nearby};
+use super::student::two_sided_quantile;
 use crate::aerodynamics::Realizable;
 use crate::aeroelastic::CoupledSection;
 use crate::error::Result;
 use crate::flutter::{FlutterSearch, Onset, OnsetInterval, OnsetSearch, find_onset};
-use crate::identification::{CoefficientUncertainty, two_sided_quantile};
 use crate::section::Structure;
 use crate::units::ReducedFrequencyRange;
 use rand::SeedableRng;
@@ -128,7 +129,7 @@ pub struct ResamplingPlan {
 }
 
 /// Draws parameters and solves the onset anew for each draw, in parallel. Searched poles move the transfer function
-/// along its slope (see [`crate::identification::LinearModel`]). The answer does not depend on the number of
+/// along its slope (see [`super::LinearModel`]). The answer does not depend on the number of
 /// threads. `None` for blocks of an estimate that no longer knows its data.
 ///
 /// # Errors

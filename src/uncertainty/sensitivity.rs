@@ -5,9 +5,9 @@
 //! `dλ = uᴴ dA v / uᴴ v` (Murthy & Haftka, "Derivatives of eigenvalues and eigenvectors of a general complex matrix",
 //! IJNME 26, 1988). At the onset `Re λ = 0`, so `dV_F/dθ = −Re(∂λ/∂θ)/Re(∂λ/∂V)`.
 
+use super::coefficients::CoefficientUncertainty;
 use crate::aeroelastic::{CoupledSection, CoupledSystem};
 use crate::error::{Error, Result};
-use crate::identification::CoefficientUncertainty;
 use crate::section::Structure;
 use crate::state_space::{complex, eigenvector};
 use nalgebra::{Complex, DMatrix, DVector};

@@ -6,8 +6,8 @@ use crate::aerodynamics::{FlatPlate, RationalModel};
 use crate::aeroelastic::CoupledSection;
 use crate::flutter::{Onset, OnsetSearch, find_onset};
 use crate::identification::{
-    CoefficientUncertainty, DiscreteFit, FeedThrough, Form, FrequencyFit, FrequencyWeights,
-    PoleSearch, discrete_uncertainty, fit_discrete, fit_table, sample_model, table_uncertainty,
+    DiscreteFit, FeedThrough, Form, FrequencyFit, FrequencyWeights, PoleSearch, fit_discrete,
+    fit_table, sample_model,
 };
 use crate::section::{Dof, SectionModel, Structure};
 use crate::trained_model::Model;

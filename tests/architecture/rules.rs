@@ -65,12 +65,12 @@ pub const ARROWS: &[Row] = &[
     row("fmu", &["flutter+", "response+", "trained_model+"]),
     row("fmu::fmi2", &["fmu"]),
     row(
-        "reliability",
-        &["flutter+", "trained_model+", "toml_lines", "identification"],
-    ),
-    row(
         "uncertainty",
         &["flutter+", "identification+", "wind_tunnel+"],
+    ),
+    row(
+        "reliability",
+        &["flutter+", "trained_model+", "toml_lines", "uncertainty"],
     ),
     row(
         "selection",

@@ -6,7 +6,6 @@ use crate::identification::options::{FeedThrough, PoleSearch};
 use crate::identification::testing::{eight_k, table_alone};
 use crate::identification::{QuasiSteadyLimit, sample_model};
 use crate::units::ReducedFrequency;
-use nalgebra::DMatrix;
 use std::f64::consts::PI;
 
 fn samples() -> Vec<TransferSample> {
@@ -16,16 +15,19 @@ fn samples() -> Vec<TransferSample> {
 /// Quasi-steady theory of the thin plate about mid-chord; the slopes in the column of rotation stay free, since those of
 /// Theodorsen's function have no limit.
 fn quasi_steady() -> Vec<QuasiSteadyLimit> {
-    let matrix = |m: [f64; 4]| DMatrix::from_row_slice(2, 2, &m);
-    let value = matrix([0.0, 2.0 * PI, 0.0, PI / 2.0]);
-    let slope = matrix([-2.0 * PI, 0.0, -PI / 2.0, 0.0]);
-    let mut limits = QuasiSteadyLimit::of(&Dof::TWO, &value, &slope);
-    for limit in &mut limits {
-        if limit.motion == Dof::Torsion {
-            limit.slope = None;
-        }
-    }
-    limits
+    let (y, t) = (Dof::Vertical, Dof::Torsion);
+    let limit = |force, motion, value: f64, slope: Option<f64>| QuasiSteadyLimit {
+        force,
+        motion,
+        value: Some(value),
+        slope,
+    };
+    vec![
+        limit(y, y, 0.0, Some(-2.0 * PI)),
+        limit(y, t, 2.0 * PI, None),
+        limit(t, y, 0.0, Some(-PI / 2.0)),
+        limit(t, t, PI / 2.0, None),
+    ]
 }
 
 fn one_lag(poles: PoleSearch) -> FrequencyFit {

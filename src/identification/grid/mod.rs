@@ -3,26 +3,22 @@
 //! Columns are nested in `L`, so one factorisation of the largest number of filters serves all smaller ones; and every
 //! segment is factored by itself, so that leaving segments out costs no further pass.
 
-mod columns;
-mod discrete_pass;
-
 use super::basis::{Basis, assemble};
+use super::discrete::{discrete_pass, longest_step};
 use super::least_squares::Factor;
 use super::options::{Form, TimeFit, TimeWeights, number_of_filters};
-use super::records::{Joint, OnProgress, Task, tested_range, wishes};
-use super::time::accumulate::{Factored, Plan};
-use super::time::filters::ContinuousColumns;
-use super::time::layout::Layout;
-use super::time::selection::Selection;
-use super::time::slices::{Scaled, scale_all};
-use super::time::stretches::{Closed, stretches};
+use super::own::StaticTerm;
+use super::records::{RecordFit, Rows, tested_range, wishes};
+use super::time::joint::Joint;
+use super::time::pass::{OnProgress, Pass, Stretch};
+use super::time::record::{DimensionlessRecord, read_all};
+use super::time::systems::{ColumnOrder, ForceSystems, Systems};
 use crate::aerodynamics::DiscreteLaguerre;
 use crate::error::{Error, Result};
 use crate::section::Dof;
 use crate::trained_model::Model;
 use crate::units::ReducedFrequencyRange;
 use crate::wind_tunnel::RecordSource;
-use discrete_pass::{discrete_pass, report};
 use nalgebra::DMatrix;
 use std::rc::Rc;
 
@@ -51,8 +47,7 @@ pub struct Grid {
     filters_max: usize,
     tested: ReducedFrequencyRange,
     delta_s: f64,
-    layout: Layout,
-    closed: Vec<Closed>,
+    pass: Pass,
     labels: Vec<StretchLabel>,
 }
 
@@ -88,37 +83,18 @@ impl Grid {
             ));
         }
         number_of_filters("grid.filters", filters_max)?;
-        let (dofs, scaled) = scale_all(records)?;
-        let tested = tested_range(&scaled)?;
-        let delta_s = scaled.iter().map(Scaled::delta_s).fold(0.0, f64::max);
-        let (layout, closed) = match &axis {
-            GridAxis::Discrete(alphas, weights) => discrete_pass(
-                &scaled,
-                dofs.len(),
-                (alphas, *weights),
-                (filters_max, delta_s),
-                progress,
-            )?,
-            GridAxis::Continuous(poles, fit) => {
-                let task = Task {
-                    fit,
-                    dofs: &dofs,
-                    records: &scaled,
-                    // the grid itself says which filters there are
-                    entries: &[],
-                    progress,
-                };
-                continuous_pass(&task, poles, filters_max)?
+        let (dofs, records) = read_all(records)?;
+        let tested = tested_range(&records)?;
+        let delta_s = longest_step(&records);
+        let pass = axis.pass(&dofs, (&records, delta_s), filters_max, progress)?;
+        let label = |s: &Stretch| {
+            let record = &records[s.record];
+            StretchLabel {
+                mean_speed_m_s: record.mean_speed_m_s(),
+                frequency_hz: s.segment.map(|i| record.segments()[i].frequency_hz),
             }
         };
-        let label = |c: &Closed| StretchLabel {
-            mean_speed_m_s: records[c.record].header().mean_speed_m_s,
-            frequency_hz: c
-                .segment
-                .map(|s| scaled[c.record].segments()[s].frequency_hz),
-        };
-        let labels = closed.iter().map(label).collect();
-        if closed.iter().any(|c| c.set.len() > 1) {
+        if pass.stretches.iter().any(|s| s.set.len() > 1) {
             return Err(Error::input(
                 "records",
                 "one moving degree of freedom a record",
@@ -126,14 +102,13 @@ impl Grid {
             ));
         }
         Ok(Self {
-            labels,
+            labels: pass.stretches.iter().map(label).collect(),
             axis,
             dofs,
             filters_max,
             tested,
             delta_s,
-            layout,
-            closed,
+            pass,
         })
     }
 
@@ -162,11 +137,6 @@ impl Grid {
         &self.dofs
     }
 
-    /// Dimensionless step of the discrete model: the longest of the records.
-    pub fn delta_s(&self) -> f64 {
-        self.delta_s
-    }
-
     /// The stretches, in the order in which `keep` sees them.
     pub fn labels(&self) -> &[StretchLabel] {
         &self.labels
@@ -178,8 +148,13 @@ impl Grid {
     /// # Errors
     /// Stretches that do not determine the coefficients: as an entry of the list.
     pub fn fits(&self, value: usize, keep: &dyn Fn(usize) -> bool) -> Vec<Result<CellFit>> {
-        let chosen = self.closed.iter().enumerate().filter(|(s, _)| keep(*s));
-        let systems = Factored::from_stretches(self.layout, chosen.map(|(_, c)| c), value);
+        let chosen = self
+            .pass
+            .stretches
+            .iter()
+            .enumerate()
+            .filter(|(s, _)| keep(*s));
+        let systems = Systems::new(self.pass.order, chosen.map(|(_, c)| c), value);
         let systems = Rc::new(systems);
         (1..=self.filters_max)
             .map(|filters| self.cell(&systems, value, filters))
@@ -187,13 +162,13 @@ impl Grid {
     }
 
     fn leading(&self, filters: usize) -> usize {
-        let feed = self.layout.per_input - self.filters_max;
+        let feed = self.pass.order.per_input - self.filters_max;
         feed + filters
     }
 
-    fn cell(&self, systems: &Rc<Factored>, value: usize, filters: usize) -> Result<CellFit> {
+    fn cell(&self, systems: &Rc<Systems>, value: usize, filters: usize) -> Result<CellFit> {
         let per_input = self.leading(filters);
-        let leading = self.layout.leading(per_input);
+        let leading = self.pass.order.leading(per_input, self.dofs.len());
         let mut coefficients = systems
             .whole
             .iter()
@@ -205,7 +180,7 @@ impl Grid {
             for (i, all) in coefficients.iter_mut().enumerate() {
                 for j in 0..self.dofs.len() {
                     for (c, x) in held.values(i * self.dofs.len() + j).iter().enumerate() {
-                        all[self.layout.index(c, j)] = *x;
+                        all[self.pass.order.index(c, j)] = *x;
                     }
                 }
             }
@@ -228,7 +203,7 @@ impl Grid {
     /// The fit under its constraints, where these are asked for and bind.
     fn constrained(
         &self,
-        systems: &Rc<Factored>,
+        systems: &Rc<Systems>,
         value: usize,
         filters: usize,
     ) -> Result<Option<Joint>> {
@@ -242,18 +217,18 @@ impl Grid {
         let entries = self.dofs.len() * self.dofs.len();
         let form = with_filters(&fit.form, filters);
         let basis = Basis::orthonormal(&form, &vec![poles[value]; filters])?;
-        let selection = Selection {
+        let systems = ForceSystems {
             counts: vec![self.leading(filters); entries],
             systems: vec![Rc::clone(systems)],
         };
-        let joint = Joint::new(&selection, &vec![basis; entries], &wishes)?;
+        let joint = Joint::new(&systems, &vec![basis; entries], &wishes)?;
         Ok(Some(joint).filter(|j| j.held.is_some()))
     }
 
     /// Coefficients that a system of input `j` alone takes: the constant, if any, then that input's.
     fn own(&self, j: usize, per_input: usize, all: &DMatrix<f64>) -> Vec<f64> {
-        let constant = self.layout.constant.then(|| all[0]);
-        let columns = (0..per_input).map(|c| all[self.layout.index(c, j)]);
+        let constant = self.pass.order.constant.then(|| all[0]);
+        let columns = (0..per_input).map(|c| all[self.pass.order.index(c, j)]);
         constant.into_iter().chain(columns).collect()
     }
 
@@ -263,7 +238,7 @@ impl Grid {
         match &self.axis {
             GridAxis::Discrete(alphas, _) => {
                 let of_motion =
-                    |j| DMatrix::from_fn(n, filters, |i, l| all[i][self.layout.index(l, j)]);
+                    |j| DMatrix::from_fn(n, filters, |i, l| all[i][self.pass.order.index(l, j)]);
                 let model = DiscreteLaguerre::shared(
                     self.dofs.clone(),
                     alphas[value],
@@ -282,7 +257,7 @@ impl Grid {
                         (0..n)
                             .map(|j| {
                                 (0..per_input)
-                                    .map(|c| all[i][self.layout.index(c, j)])
+                                    .map(|c| all[i][self.pass.order.index(c, j)])
                                     .collect()
                             })
                             .collect()
@@ -300,14 +275,14 @@ impl Grid {
         value: usize,
         fit: &CellFit,
     ) -> Option<Vec<(f64, f64)>> {
-        let closed = &self.closed[stretch];
-        let &j = closed.set.first()?;
-        let factor: &Factor = &closed.factors[value];
+        let stretch = &self.pass.stretches[stretch];
+        let &j = stretch.set.first()?;
+        let factor: &Factor = &stretch.factors[value];
         let sums = fit.coefficients.iter().enumerate().map(|(i, all)| {
-            let per_input = (all.len() - usize::from(self.layout.constant)) / self.dofs.len();
+            let per_input = (all.len() - usize::from(self.pass.order.constant)) / self.dofs.len();
             let mut own = self.own(j, per_input, all);
             own.resize(factor.columns(), 0.0);
-            let square = closed.weights[i].powi(2);
+            let square = stretch.weights[i].powi(2);
             let residual = factor.residual_sum_of(&own, i);
             (square * residual, square * factor.total_sum(i))
         });
@@ -316,7 +291,10 @@ impl Grid {
 
     /// Input that moves in a stretch.
     pub fn motion(&self, stretch: usize) -> Option<Dof> {
-        self.closed[stretch].set.first().map(|j| self.dofs[*j])
+        self.pass.stretches[stretch]
+            .set
+            .first()
+            .map(|j| self.dofs[*j])
     }
 }
 
@@ -325,6 +303,53 @@ impl GridAxis {
     pub fn values(&self) -> &[f64] {
         match self {
             Self::Discrete(values, _) | Self::Continuous(values, _) => values,
+        }
+    }
+
+    /// One pass over the records with the filters of all values, every segment factored by itself.
+    fn pass(
+        &self,
+        dofs: &[Dof],
+        (records, delta_s): (&[DimensionlessRecord], f64),
+        filters: usize,
+        progress: OnProgress<'_>,
+    ) -> Result<Pass> {
+        let inputs = dofs.len();
+        match self {
+            Self::Discrete(alphas, weights) => {
+                if let Some(bad) = alphas.iter().find(|a| !(**a > 0.0 && **a < 1.0)) {
+                    return Err(Error::input("alpha", "0 < alpha < 1", bad.to_string()));
+                }
+                let order = ColumnOrder {
+                    inputs,
+                    per_input: filters,
+                    constant: true,
+                };
+                let alphas: Vec<Vec<f64>> = alphas.iter().map(|a| vec![*a; inputs]).collect();
+                let columns = (order, alphas.as_slice());
+                discrete_pass((records, delta_s), columns, (*weights, 1), progress)
+            }
+            Self::Continuous(poles, fit) => {
+                let task = RecordFit {
+                    fit: &TimeFit {
+                        form: with_filters(&fit.form, filters),
+                        static_term: StaticTerm::None,
+                        ..(**fit).clone()
+                    },
+                    dofs,
+                    records,
+                    // the grid itself says which filters there are
+                    entries: &[],
+                    progress,
+                };
+                let chains = |p: &f64| vec![vec![*p; filters]; inputs];
+                let candidates: Vec<_> = poles.iter().map(chains).collect();
+                let rows = Rows {
+                    stretches: 1,
+                    ..Rows::THINNED
+                };
+                task.pass(&candidates, rows, (1, 1))
+            }
         }
     }
 
@@ -343,36 +368,6 @@ fn with_filters(form: &Form, filters: usize) -> Form {
         feed_through: form.feed_through(),
         pole_per_transfer_function: false,
     }
-}
-
-fn continuous_pass(
-    task: &Task<'_>,
-    poles: &[f64],
-    filters: usize,
-) -> Result<(Layout, Vec<Closed>)> {
-    let form = with_filters(&task.fit.form, filters);
-    let inputs = task.dofs.len();
-    let bases = poles
-        .iter()
-        .map(|p| Ok(vec![Basis::orthonormal(&form, &vec![*p; filters])?; inputs]))
-        .collect::<Result<Vec<_>>>()?;
-    let layout = Layout {
-        inputs,
-        per_input: form.feed_through().count() + filters,
-        constant: false,
-    };
-    let plan = Plan {
-        layout,
-        weights: task.fit.weights,
-        delta_s: None,
-        discard_s: task.fit.discard_s,
-        stride: task.thinning(),
-        stretches: 1,
-    };
-    let make =
-        |record: &Scaled<'_>| ContinuousColumns::new(record, &bases, task.cutoff_hz(record), false);
-    let done = report(task.progress, task.records.len());
-    Ok((layout, stretches(task.records, &plan, &make, &done)?))
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! The minimum-state form under constraints: for given lags and `E` they are convex in `D` and the feed-through of all forces.
 
-use super::{Fitted, LinearProblem, LinearSolution, ROUNDS, Task};
+use super::{FittedTable, LinearProblem, LinearSolution, ROUNDS, Task};
 use crate::error::Result;
 use crate::identification::descent::descend;
 use crate::identification::dissipative::{
@@ -22,7 +22,12 @@ pub(super) struct Rows {
 
 impl Task<'_> {
     /// The fit under its constraints, searched from the best point of least squares alone; that fit where nothing binds.
-    pub(super) fn constrain(&self, dofs: &[Dof], best: Vec<f64>, alone: Fitted) -> Result<Fitted> {
+    pub(super) fn constrain(
+        &self,
+        dofs: &[Dof],
+        best: Vec<f64>,
+        alone: FittedTable,
+    ) -> Result<FittedTable> {
         if self.rows(&best)?.active.is_none() {
             return Ok(alone);
         }

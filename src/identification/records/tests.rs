@@ -1,5 +1,6 @@
 use super::*;
 use crate::aerodynamics::{AerodynamicModel, FlatPlate, RationalModel};
+use crate::identification::Progress;
 use crate::identification::options::{FeedThrough, Form, PoleSearch};
 use crate::identification::testing::{onset_m_s, records, records_alone, sources};
 use crate::units::ReducedFrequency;

@@ -1,99 +1,87 @@
 //! Regressor columns of the discrete model for one record: the recursion (2.33).
 
-use super::accumulate::Columns;
-use super::slices::Slice;
+use super::pass::{Columns, Piece};
 use crate::identification::least_squares::BLOCK_ROWS;
 
 /// Columns of the discrete model; a candidate is a decay factor for each input.
 pub(crate) struct DiscreteColumns {
-    /// One chain a candidate and input.
-    chains: Vec<Vec<Recursion>>,
+    /// `√α` and `√(1 − α)` of each candidate and input.
+    gains: Vec<Vec<(f64, f64)>>,
     filters: usize,
     /// The constant, if there is one.
     ones: Option<Vec<f64>>,
-    force: Vec<Vec<f64>>,
-    rows: usize,
-}
-
-/// One chain of filters driven by one motion.
-struct Recursion {
-    root: f64,
-    gain: f64,
-    /// Filter states at the last sample.
-    state: Vec<f64>,
-    /// States over the slice, one stretch of [`BLOCK_ROWS`] a filter.
-    columns: Vec<f64>,
+    /// Filter states at the last sample, one vector a candidate and input.
+    states: Vec<Vec<Vec<f64>>>,
+    /// Filter columns of the candidate asked for last, one stretch of [`BLOCK_ROWS`] a filter, one vector an input.
+    columns: Vec<Vec<f64>>,
 }
 
 impl DiscreteColumns {
     /// `filters` columns an input; `constant` puts a column of ones in front.
     pub fn new(alphas: &[Vec<f64>], filters: usize, constant: bool) -> Self {
-        let chain = |alpha: &f64| Recursion {
-            root: alpha.sqrt(),
-            gain: (1.0 - alpha).sqrt(),
-            state: vec![0.0; filters],
-            columns: vec![0.0; filters * BLOCK_ROWS],
-        };
+        let gains = |a: &f64| (a.sqrt(), (1.0 - a).sqrt());
         let inputs = alphas.first().map_or(0, Vec::len);
         Self {
-            chains: alphas
+            gains: alphas
                 .iter()
-                .map(|a| a.iter().map(chain).collect())
+                .map(|a| a.iter().map(gains).collect())
                 .collect(),
             filters,
             ones: constant.then(|| vec![1.0; BLOCK_ROWS]),
-            force: vec![Vec::with_capacity(BLOCK_ROWS); inputs],
-            rows: 0,
+            states: vec![vec![vec![0.0; filters]; inputs]; alphas.len()],
+            columns: vec![vec![0.0; filters * BLOCK_ROWS]; inputs],
         }
     }
 }
 
-impl Recursion {
-    fn advance(&mut self, motion: &[f64]) {
-        let (state, out) = (&mut self.state, &mut self.columns);
-        for (k, v) in motion.iter().enumerate() {
-            let mut before = state[0];
-            let mut new = self.root * before + self.gain * v;
-            state[0] = new;
-            out[k] = new;
-            for l in 1..state.len() {
-                let old = state[l];
-                new = self.root * (old + new) - before;
-                before = old;
-                state[l] = new;
-                out[l * BLOCK_ROWS + k] = new;
-            }
+/// One filter of a chain after the other, each over the whole piece: the recursions only look back.
+fn advance((root, gain): (f64, f64), state: &mut [f64], motion: &[f64], out: &mut [f64]) {
+    let rows = motion.len();
+    let mut last = state[0];
+    for (x, v) in out[..rows].iter_mut().zip(motion) {
+        last = root * last + gain * v;
+        *x = last;
+    }
+    let mut before = std::mem::replace(&mut state[0], last);
+    for l in 1..state.len() {
+        let (head, tail) = out.split_at_mut(l * BLOCK_ROWS);
+        let below = &head[(l - 1) * BLOCK_ROWS..][..rows];
+        let (mut last, mut previous) = (state[l], before);
+        for (x, b) in tail[..rows].iter_mut().zip(below) {
+            last = root * (last + b) - previous;
+            previous = *b;
+            *x = last;
         }
+        before = std::mem::replace(&mut state[l], last);
     }
 }
 
 impl Columns for DiscreteColumns {
     fn candidates(&self) -> usize {
-        self.chains.len()
+        self.gains.len()
     }
 
-    fn advance(&mut self, slice: &Slice<'_>, active: &[usize]) {
-        self.rows = slice.rows();
-        for of_inputs in &mut self.chains {
-            for &j in active {
-                of_inputs[j].advance(slice.motion[j]);
-            }
-        }
-        for (copy, samples) in self.force.iter_mut().zip(&slice.force) {
-            copy.clear();
-            copy.extend_from_slice(samples);
-        }
-    }
+    fn advance(&mut self, _: &Piece<'_>, _: &[usize]) {}
 
-    fn columns(&mut self, candidate: usize, active: &[usize]) -> Vec<&[f64]> {
+    fn columns<'a>(
+        &'a mut self,
+        piece: &Piece<'a>,
+        candidate: usize,
+        active: &[usize],
+    ) -> Vec<&'a [f64]> {
+        for &j in active {
+            let state = &mut self.states[candidate][j];
+            let gains = self.gains[candidate][j];
+            advance(gains, state, piece.motion[j], &mut self.columns[j]);
+        }
+        let rows = piece.rows();
         let mut columns: Vec<&[f64]> = Vec::new();
-        columns.extend(self.ones.as_ref().map(|ones| &ones[..self.rows]));
-        let chains = &self.chains[candidate];
+        columns.extend(self.ones.as_ref().map(|ones| &ones[..rows]));
         for l in 0..self.filters {
-            let stretch = l * BLOCK_ROWS..l * BLOCK_ROWS + self.rows;
-            columns.extend(active.iter().map(|&j| &chains[j].columns[stretch.clone()]));
+            let stretch = l * BLOCK_ROWS..l * BLOCK_ROWS + rows;
+            columns.extend(active.iter().map(|&j| &self.columns[j][stretch.clone()]));
         }
-        columns.extend(self.force.iter().map(Vec::as_slice));
+        columns.extend(&piece.force);
         columns
     }
 }

@@ -7,8 +7,8 @@
 //! harmonic motion and its force are thereby distorted alike, up to what the low-pass leaves of the images above half
 //! the sampling frequency (about 1e-5 with the default cut-off).
 
-use super::accumulate::Columns;
-use super::slices::{Scaled, Slice};
+use super::pass::{Columns, Piece};
+use super::record::DimensionlessRecord;
 use crate::error::{Error, Result};
 use crate::identification::basis::Basis;
 use crate::identification::least_squares::BLOCK_ROWS;
@@ -67,12 +67,12 @@ impl Hold {
     }
 }
 
-/// The low-pass of one channel and what it has put out for the current slice.
+/// The low-pass of one channel and what it has put out for the current piece.
 struct Filtered {
     state: [f64; ORDER],
-    /// Samples of the slice after the one before it.
+    /// Samples of the piece after the one before it.
     input: Vec<f64>,
-    /// States at the same instants as `input`, the one before the slice first.
+    /// States at the same instants as `input`, the one before the piece first.
     states: [Vec<f64>; ORDER],
     started: bool,
 }
@@ -140,7 +140,7 @@ struct FilterStep {
 }
 
 impl FilterStep {
-    /// `x[k] = own x[k−1] + drive (w[k−1], u[k−1], u[k])` for a whole slice; `out` holds one stretch of
+    /// `x[k] = own x[k−1] + drive (w[k−1], u[k−1], u[k])` for a whole piece; `out` holds one stretch of
     /// [`BLOCK_ROWS`] a filter.
     fn advance(&self, input: &Filtered, state: &mut [f64], out: &mut [f64]) {
         let rows = input.input.len() - 1;
@@ -193,7 +193,7 @@ impl<'a> ContinuousColumns<'a> {
     /// # Errors
     /// [`Error::Input`] for a cut-off at or above half the sampling frequency.
     pub fn new(
-        record: &Scaled<'_>,
+        record: &DimensionlessRecord,
         bases: &'a [Vec<Basis>],
         cutoff_hz: f64,
         constant: bool,
@@ -289,30 +289,35 @@ impl Columns for ContinuousColumns<'_> {
         self.bases.len()
     }
 
-    fn advance(&mut self, slice: &Slice<'_>, active: &[usize]) {
-        self.rows = slice.rows();
+    fn advance(&mut self, piece: &Piece<'_>, active: &[usize]) {
+        self.rows = piece.rows();
         for &j in active {
             // an input that was zero so far has started from rest, unless the record begins with it
-            if slice.first > 0 {
+            if piece.first > 0 {
                 self.motion[j].started = true;
             }
             self.starting[j] = !self.motion[j].started;
-            self.motion[j].advance(&self.low_pass, slice.motion[j]);
+            self.motion[j].advance(&self.low_pass, piece.motion[j]);
         }
-        for (filter, samples) in self.force.iter_mut().zip(&slice.force) {
+        for (filter, samples) in self.force.iter_mut().zip(&piece.force) {
             filter.advance(&self.low_pass, samples);
         }
         for (steps, states) in self.steps.iter().zip(&mut self.states) {
             for &j in active {
                 if self.starting[j] {
-                    let first = slice.motion[j][0];
+                    let first = piece.motion[j][0];
                     states[j] = steps[j].rest.iter().map(|x| x * first).collect();
                 }
             }
         }
     }
 
-    fn columns(&mut self, candidate: usize, active: &[usize]) -> Vec<&[f64]> {
+    fn columns<'a>(
+        &'a mut self,
+        _: &Piece<'a>,
+        candidate: usize,
+        active: &[usize],
+    ) -> Vec<&'a [f64]> {
         for &j in active {
             let state = &mut self.states[candidate][j];
             self.steps[candidate][j].advance(&self.motion[j], state, &mut self.filters[j]);

@@ -1,12 +1,11 @@
-//! Time domain: records as dimensionless slices, regressors, and their accumulation.
+//! Time domain: dimensionless records, passes over them, the systems that a pass yields and the search of poles.
 
-pub(crate) mod accumulate;
 pub(crate) mod discrete_columns;
 pub(crate) mod filters;
-pub(crate) mod layout;
-mod motion_start;
+pub(crate) mod fitted;
+pub(crate) mod joint;
+pub(crate) mod pass;
+pub(crate) mod record;
 pub(crate) mod search;
-pub(crate) mod selection;
-pub(crate) mod slices;
 mod spectrum;
-pub(crate) mod stretches;
+pub(crate) mod systems;

@@ -1,13 +1,13 @@
 //! Search of poles over records: every pass evaluates many candidates, the grid shrinks around the best.
 
-use super::accumulate::Factored;
-use super::selection::Selection;
+use super::joint::Joint;
+use super::systems::{ForceSystems, Systems};
 use crate::error::{Error, Result};
 use crate::identification::basis::Basis;
 use crate::identification::dissipative::Wishes;
 use crate::identification::options::{Form, PoleSearch};
 use crate::identification::own::{search_for, searched_together};
-use crate::identification::records::{Joint, Task};
+use crate::identification::records::{RecordFit, Rows};
 use crate::identification::report::{SearchPoint, SearchReport};
 use crate::identification::search::{Bounds, best_of};
 use crate::units::ReducedFrequencyRange;
@@ -48,7 +48,7 @@ pub(crate) struct Choice {
 /// [`Error::Input`] for bounds without room, and for poles per transfer function from records that move two degrees of
 /// freedom at once.
 pub(crate) fn choose_poles(
-    task: &Task<'_>,
+    task: &RecordFit<'_>,
     tested: ReducedFrequencyRange,
     wishes: &Wishes,
 ) -> Result<(Choice, Option<Choice>)> {
@@ -65,7 +65,8 @@ pub(crate) fn choose_poles(
             ..Group::new(task, tested, members)?
         });
     }
-    let longest = task.most_filters();
+    let filters = task.entries.iter().map(|e| e.form.filters());
+    let longest = filters.max().unwrap_or(0);
     for pass in 1..PASSES {
         if groups.is_empty() {
             break;
@@ -85,8 +86,7 @@ pub(crate) fn choose_poles(
         }
         let everywhere = |chain: Vec<f64>| vec![chain; task.dofs.len()];
         let chains: Vec<_> = candidates.into_iter().map(everywhere).collect();
-        let systems = task.pass(&chains, true, (pass, PASSES))?.systems;
-        let systems: Vec<Rc<Factored>> = systems.into_iter().map(Rc::new).collect();
+        let systems = task.pass(&chains, Rows::THINNED, (pass, PASSES))?.systems();
         for (g, poles, at) in trials {
             let objective = groups[g].objective(&poles, &systems[at])?;
             groups[g].points.push(SearchPoint { poles, objective });
@@ -108,7 +108,7 @@ pub(crate) fn choose_poles(
 }
 
 /// Fixed poles, and those that the groups found.
-fn choice(task: &Task<'_>, groups: Vec<Group>) -> Result<Choice> {
+fn choice(task: &RecordFit<'_>, groups: Vec<Group>) -> Result<Choice> {
     let fixed = task.entries.iter().map(|e| e.fixed.clone());
     let mut poles: Vec<Vec<f64>> = fixed.map(Option::unwrap_or_default).collect();
     let mut search = Vec::with_capacity(groups.len());
@@ -132,7 +132,11 @@ pub(crate) fn padded(chain: &[f64], longest: usize) -> Vec<f64> {
 }
 
 impl Group {
-    fn new(task: &Task<'_>, tested: ReducedFrequencyRange, members: Vec<usize>) -> Result<Self> {
+    fn new(
+        task: &RecordFit<'_>,
+        tested: ReducedFrequencyRange,
+        members: Vec<usize>,
+    ) -> Result<Self> {
         let first = &task.entries[members[0]];
         let options = search_for(&task.fit.poles, &first.form);
         let bounds = Bounds::resolve(&options, tested, first.form.free_poles())?;
@@ -164,38 +168,35 @@ impl Group {
     }
 
     /// Relative weighted residual of its transfer functions with the first columns of a system.
-    fn objective(&self, poles: &[f64], system: &Rc<Factored>) -> Result<f64> {
+    fn objective(&self, poles: &[f64], system: &Rc<Systems>) -> Result<f64> {
         let columns = self.form.feed_through().count() + self.form.filters();
-        // a motion that is missing is told by its name in the last pass
+        // a motion that is missing is named in the last pass
         let known = system
             .whole
             .iter()
             .all(|f| f.undetermined(f.columns()).is_none());
         if let Some(wishes) = self.held.as_ref().filter(|_| known) {
             let basis = Basis::orthonormal(&self.form, &self.form.expand(poles))?;
-            let selection = Selection {
+            let systems = ForceSystems {
                 counts: vec![columns; self.members.len()],
                 systems: vec![Rc::clone(system)],
             };
             let bases = vec![basis; self.members.len()];
-            return Ok(Joint::new(&selection, &bases, wishes)?.objective());
+            return Ok(Joint::new(&systems, &bases, wishes)?.objective());
         }
         let Some((i, j)) = self.entry else {
-            let n = system.layout.inputs;
+            let n = system.order.inputs;
             let among = |i: usize, j: usize| self.members.contains(&(i * n + j));
             return Ok(system.objective(columns, &among));
         };
-        let own = system
-            .alone(i, j)
-            .filter(|_| system.single_motions())
-            .ok_or_else(|| {
-                Error::input(
-                    "form.pole_per_transfer_function, own",
-                    "records that move one degree of freedom each, and every one of them",
-                    "records that move several at once, or a degree of freedom that never moves",
-                )
-            })?;
-        let leading = system.layout.leading_alone(columns);
+        let own = system.alone(i, j).ok_or_else(|| {
+            Error::input(
+                "form.pole_per_transfer_function, own",
+                "records that move one degree of freedom each, and every one of them",
+                "records that move several at once, or a degree of freedom that never moves",
+            )
+        })?;
+        let leading = system.order.leading(columns, 1);
         Ok((own.residual_sum(leading, 0) / own.total_sum(0)).sqrt())
     }
 
@@ -228,7 +229,7 @@ impl Group {
         Ok(sets)
     }
 
-    fn report(self, task: &Task<'_>) -> Result<SearchReport> {
+    fn report(self, task: &RecordFit<'_>) -> Result<SearchReport> {
         let bounds = self.bounds;
         let mut chosen = best_of(&self.points)?;
         if let Some(vertex) = self.vertex(&chosen) {

@@ -12,7 +12,6 @@ use crate::section::Dof;
 use crate::wind_tunnel::{RawCampaign, RawRecording, RawRun, Rig};
 use rayon::prelude::*;
 use serde::Serialize;
-use std::path::Path;
 
 /// A campaign with all its recordings, and what is odd about them.
 #[derive(Debug, Clone, PartialEq)]
@@ -53,16 +52,6 @@ pub struct RecordingSummary {
     pub sampling_hz: f64,
     /// Channels that were taken, as the file names them.
     pub channels: Vec<String>,
-}
-
-impl RawCampaign {
-    /// Reads a campaign file and all recordings that it names; [`Campaign::load`] also tells what is odd about them.
-    ///
-    /// # Errors
-    /// Those of [`Campaign::read`] and [`Campaign::load`].
-    pub fn read(path: impl AsRef<Path>) -> Result<Self> {
-        Ok(Campaign::read(path)?.load()?.raw)
-    }
 }
 
 impl Campaign {

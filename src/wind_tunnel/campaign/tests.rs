@@ -10,7 +10,6 @@ mod section_forces;
 use super::*;
 use crate::error::Result;
 use crate::section::Dof;
-use crate::wind_tunnel::RawCampaign;
 use std::f64::consts::{PI, TAU};
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -379,6 +378,5 @@ fn the_example_of_the_documentation_is_a_campaign() {
         Campaign::from_toml(&again, PathBuf::new()).unwrap(),
         campaign
     );
-    // RawCampaign::read goes the same way
-    assert!(RawCampaign::read("no/such/campaign.toml").is_err());
+    assert!(Campaign::read("no/such/campaign.toml").is_err());
 }

@@ -12,7 +12,7 @@
 //! 8. [`spikes`] and drift, by the [`coherent`] regression;
 //! 9. [`low_pass`]: noise and buffeting `F_B` above the cut-off are gone, `F_Se` is left;
 //! 10. [`rest`]: what is no motion is set to zero;
-//! 11. [`dimensionless`]: per unit length; dimensionless, one step, stacked where a discrete model needs it.
+//! 11. records per unit length.
 
 pub mod alignment;
 pub mod axes;
@@ -20,7 +20,6 @@ mod body;
 pub mod cells;
 pub mod check;
 pub mod coherent;
-pub mod dimensionless;
 pub mod drift;
 pub mod inertia;
 pub mod lag;
@@ -37,14 +36,13 @@ mod signals;
 pub mod spikes;
 mod warnings;
 
-pub use dimensionless::{DimensionlessRecord, stack};
 pub use options::{LowPassOptions, ProcessingOptions, Ramps, SegmentOptions, SpikeOptions};
 pub use report::{
     DimensionlessFactors, ProcessingReport, RemovedDrift, RunReport, SignalToNoise, StageLevels,
 };
 pub use run::{ProcessedRun, StageSignals};
 pub use segmentation::HarmonicSegment;
-pub use signals::{SectionSignals, force_unit, index};
+pub use signals::{SectionSignals, index};
 
 use super::{RawCampaign, Record};
 use crate::error::{Error, Result, all_or_errors};

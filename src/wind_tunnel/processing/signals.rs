@@ -11,14 +11,6 @@ pub fn index(dof: Dof) -> usize {
     }
 }
 
-/// Unit of the force on the whole model in a degree of freedom.
-pub fn force_unit(dof: Dof) -> &'static str {
-    match dof {
-        Dof::Torsion => "N·m",
-        _ => "N",
-    }
-}
-
 /// Motion of the section and force on the cells by the whole model, each vertical, lateral, torsion; of one length.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SectionSignals {

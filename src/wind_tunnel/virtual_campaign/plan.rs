@@ -172,28 +172,6 @@ impl Default for StaticWind {
     }
 }
 
-impl StaticWind {
-    /// No steady load.
-    pub const NONE: Self = Self {
-        drag: 0.0,
-        lift: 0.0,
-        moment: 0.0,
-        drag_slope: 0.0,
-        lift_slope: 0.0,
-        moment_slope: 0.0,
-    };
-}
-
-impl ModelBody {
-    /// A model without mass.
-    pub const NONE: Self = Self {
-        mass_kg_m: 0.0,
-        inertia_kg_m2_m: 0.0,
-        centre_of_gravity_m: [0.0; 3],
-        gravity_m_s2: 0.0,
-    };
-}
-
 impl Disturbances {
     /// Everything at a level that a careful laboratory meets: a lag of a third and an offset of two and a half
     /// samples at 200 Hz, a spike in the segment at 0.5 Hz.

@@ -2,7 +2,7 @@
 
 use super::columns::LinearModel;
 use super::design::Design;
-use super::speeds::{self, Effect, POINTS, Slopes, SpeedScatter};
+use super::speed_scatter::{self, Effect, POINTS, Slopes, SpeedScatter};
 use crate::aerodynamics::{AerodynamicModel, DiscreteLaguerre, TransferMatrix};
 use crate::error::{Error, Result};
 use crate::identification::basis::assemble;
@@ -132,7 +132,7 @@ impl CoefficientUncertainty {
         let at = self.slopes_over(tested)?;
         let values = DVector::from_vec(self.values());
         let own = self.own_coefficients();
-        let found = speeds::between_speeds(design, &self.dofs, (&values, &own), &at)?;
+        let found = speed_scatter::between_speeds(design, &self.dofs, (&values, &own), &at)?;
         let text = match &found {
             Some((scatter, _)) => scatter.describe(),
             None => "one mean speed: what another speed would change is not known and not in the intervals".into(),
@@ -336,7 +336,11 @@ impl CoefficientUncertainty {
     pub fn degrees_of_freedom(&self, gradient: &[f64]) -> Option<f64> {
         let design = self.design.as_ref()?;
         let gradient = DVector::from_column_slice(gradient);
-        Some(speeds::degrees_of_freedom(design, &self.effects, &gradient))
+        Some(speed_scatter::degrees_of_freedom(
+            design,
+            &self.effects,
+            &gradient,
+        ))
     }
 
     /// Adds a draw of the scatter between speeds to parameters that were drawn from the blocks.

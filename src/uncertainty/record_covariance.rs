@@ -2,25 +2,22 @@
 
 use super::coefficients::{CoefficientUncertainty, Coordinates, Parameter};
 use super::columns::Expansion;
-use super::constraints::{held_sentence, tangent_of};
-use super::poles::{FreePoles, PoleName, free_poles};
+use super::parameters::{
+    FreePoles, coordinates_of, free_poles, held_sentence, parameters_of, tangent_of,
+};
 use super::segments::{Part, Stretched, gather, sandwich};
 use crate::error::{Error, Result};
 use crate::identification::DiscreteFit;
-use crate::identification::basis::Basis;
+use crate::identification::discrete::discrete_pass;
 use crate::identification::options::{Form, TimeFit};
 use crate::identification::own::StaticTerm;
-use crate::identification::records::{OnProgress, Progress, Task, removed_means};
+use crate::identification::records::{RecordFit, Rows, removed_means, tested_range};
 use crate::identification::report::FitReport;
-use crate::identification::time::accumulate::Plan;
-use crate::identification::time::discrete_columns::DiscreteColumns;
-use crate::identification::time::filters::ContinuousColumns;
-use crate::identification::time::layout::Layout;
+use crate::identification::time::pass::{OnProgress, Stretch};
+use crate::identification::time::record::{DimensionlessRecord, read_all};
 use crate::identification::time::search::padded;
-use crate::identification::time::slices::{Scaled, scale_all};
-use crate::identification::time::stretches::{Closed, stretches};
+use crate::identification::time::systems::ColumnOrder;
 use crate::trained_model::Model;
-use crate::units::ReducedFrequencyRange;
 use crate::wind_tunnel::RecordSource;
 use nalgebra::{DMatrix, DVector};
 
@@ -38,8 +35,8 @@ pub fn record_uncertainty(
     report: &FitReport,
     progress: OnProgress<'_>,
 ) -> Result<CoefficientUncertainty> {
-    let (dofs, mut scaled) = scale_all(records)?;
-    removed_means(fit.static_term, &dofs, &mut scaled)?;
+    let (dofs, mut records) = read_all(records)?;
+    removed_means(fit.static_term, &dofs, &mut records);
     let together = report.search.iter().any(|s| s.entry.is_none());
     if fit.static_term == StaticTerm::Estimated || (together && !fit.own.is_empty()) {
         return Err(Error::Numerical(
@@ -48,77 +45,34 @@ pub fn record_uncertainty(
                 .into(),
         ));
     }
-    let task = Task {
+    let task = RecordFit {
         fit,
         dofs: &dofs,
-        records: &scaled,
+        records: &records,
         entries: &[],
         progress,
     };
     let poles = free_poles(&fit.form, &fit.poles, report);
-    let entries = Entries::new(&fit.form, dofs.len(), report, &poles)?;
-    let closed = task.stretches(&entries.chains())?;
-    let (design, blocks) = sandwich(entries.blocks(&scaled, &closed)?, entries.tangent.clone())?;
+    let (parameters, first) = parameters_of(report, &poles);
+    let entries = Entries::new(&fit.form, (first, parameters.len()), report, &poles)?;
+    let rows = Rows {
+        orthonormal: true,
+        thinned: false,
+        stretches: STRETCHES,
+    };
+    let closed = task.pass(&entries.candidates(), rows, (1, 1))?.stretches;
+    let (design, blocks) = sandwich(entries.blocks(&records, &closed)?, entries.tangent.clone())?;
     let searched = poles.sentence() + &held_sentence(report);
-    let inputs = dofs.len();
     CoefficientUncertainty::new(
         (
             format!("{blocks}; motions are exact; {searched}"),
             Some(report.tested_range),
         ),
         dofs,
-        Coordinates::Continuous {
-            form: fit.form.clone(),
-            chains: report
-                .entries
-                .chunks(inputs)
-                .map(|row| row.iter().map(|e| e.poles.clone()).collect())
-                .collect(),
-            searched: poles.searched,
-        },
-        entries.parameters(report, &poles.values),
+        coordinates_of(&fit.form, report, poles.searched),
+        parameters,
         design,
     )
-}
-
-impl Task<'_> {
-    /// One pass in which every segment is factored by itself.
-    fn stretches(&self, chains: &[Vec<f64>]) -> Result<Vec<Closed>> {
-        let inputs = self.dofs.len();
-        let longest = chains.iter().map(Vec::len).max().unwrap_or(0);
-        let bases = chains
-            .iter()
-            .map(|c| {
-                Ok(vec![
-                    Basis::orthonormal(&self.fit.form, &padded(c, longest))?;
-                    inputs
-                ])
-            })
-            .collect::<Result<Vec<_>>>()?;
-        let plan = Plan {
-            layout: Layout {
-                inputs,
-                per_input: self.fit.form.feed_through().count() + longest,
-                constant: false,
-            },
-            weights: self.fit.weights,
-            delta_s: None,
-            discard_s: self.fit.discard_s,
-            stride: 1,
-            stretches: STRETCHES,
-        };
-        let make = |record: &Scaled<'_>| {
-            ContinuousColumns::new(record, &bases, self.cutoff_hz(record), false)
-        };
-        stretches(self.records, &plan, &make, &|records_done| {
-            (self.progress)(Progress {
-                pass: 1,
-                passes: 1,
-                records_done,
-                records: self.records.len(),
-            });
-        })
-    }
 }
 
 /// Transfer functions with their columns in the chains of the pass.
@@ -138,17 +92,23 @@ struct Entries {
 }
 
 impl Entries {
-    fn new(form: &Form, inputs: usize, report: &FitReport, poles: &FreePoles) -> Result<Self> {
+    fn new(
+        form: &Form,
+        (first, parameters): (Vec<usize>, usize),
+        report: &FitReport,
+        poles: &FreePoles,
+    ) -> Result<Self> {
+        let inputs = report.entries.len().isqrt();
         let searched = !poles.searched.is_empty();
         let mut entries = Self {
             inputs,
             expansions: Vec::new(),
             values: Vec::new(),
             slopes: Vec::new(),
-            first: Vec::new(),
-            parameters: 0,
+            tangent: tangent_of(report, (form, poles), &first, parameters)?,
+            first,
+            parameters,
             shared: report.entries.windows(2).all(|w| w[0].poles == w[1].poles),
-            tangent: None,
         };
         for (e, entry) in report.entries.iter().enumerate() {
             let expansion = Expansion::new(form, &entry.poles, searched)?;
@@ -161,32 +121,28 @@ impl Entries {
                     slopes.column_mut(m).copy_from(&all.column(pole.index));
                 }
             }
-            entries.first.push(entries.parameters);
-            entries.parameters += values.len();
             entries.expansions.push(expansion);
             entries.values.push(values);
             entries.slopes.push(slopes);
         }
-        entries.parameters += poles.searched.len();
-        entries.tangent = tangent_of(report, (form, poles), &entries.first, entries.parameters)?;
         Ok(entries)
     }
 
-    /// Chains of the pass: one, or one an entry.
-    fn chains(&self) -> Vec<Vec<f64>> {
-        let distinct = if self.shared {
+    /// Chains of the pass, for all inputs: one, or one an entry.
+    fn candidates(&self) -> Vec<Vec<Vec<f64>>> {
+        let count = if self.shared {
             1
         } else {
             self.expansions.len()
         };
-        self.expansions
-            .iter()
-            .take(distinct)
-            .map(|e| e.extended.clone())
+        let chains = self.expansions.iter().map(|e| &e.extended).take(count);
+        let longest = chains.clone().map(Vec::len).max().unwrap_or(0);
+        chains
+            .map(|c| vec![padded(c, longest); self.inputs])
             .collect()
     }
 
-    fn blocks(&self, records: &[Scaled<'_>], closed: &[Closed]) -> Result<Stretched> {
+    fn blocks(&self, records: &[DimensionlessRecord], closed: &[Stretch]) -> Result<Stretched> {
         let mut parts = Vec::new();
         for stretch in closed.iter().filter(|c| !c.set.is_empty()) {
             if !self.shared && stretch.set.len() > 1 {
@@ -212,7 +168,7 @@ impl Entries {
     }
 
     /// Weighted rows, residuals and sum of squares of force `i` in one stretch.
-    fn part(&self, stretch: &Closed, i: usize) -> Result<(DMatrix<f64>, DVector<f64>, f64)> {
+    fn part(&self, stretch: &Stretch, i: usize) -> Result<(DMatrix<f64>, DVector<f64>, f64)> {
         let moving = stretch.set.len();
         let which = if self.shared {
             0
@@ -240,26 +196,6 @@ impl Entries {
         let rows = factor.upper() * columns * weight;
         let residual = (factor.projected().column(i) - factor.upper() * fitted) * weight;
         Ok((rows, residual, factor.total_sum(i) * weight * weight))
-    }
-
-    fn parameters(&self, report: &FitReport, poles: &[(PoleName, f64)]) -> Vec<Parameter> {
-        let coefficients = report.entries.iter().flat_map(|entry| {
-            entry.coefficients.iter().map(|c| Parameter {
-                name: c.name.clone(),
-                force: Some(entry.force),
-                motion: Some(entry.motion),
-                value: c.value,
-                standard_error: 0.0,
-            })
-        });
-        let poles = poles.iter().map(|((name, entry), value)| Parameter {
-            name: name.clone(),
-            force: entry.map(|e| e.0),
-            motion: entry.map(|e| e.1),
-            value: *value,
-            standard_error: 0.0,
-        });
-        coefficients.chain(poles).collect()
     }
 }
 
@@ -289,31 +225,20 @@ pub fn discrete_uncertainty(
             "covariance: known for discrete models whose filters are shared and whose constant was estimated along".into(),
         ));
     };
-    let (dofs, scaled) = scale_all(records)?;
+    let (dofs, records) = read_all(records)?;
     let n = dofs.len();
-    let plan = Plan {
-        layout: Layout {
-            inputs: n,
-            per_input: filters,
-            constant: true,
-        },
-        weights: fit.weights,
-        delta_s: Some(model.delta_s),
-        discard_s: 0.0,
-        stride: 1,
-        stretches: STRETCHES,
+    let order = ColumnOrder {
+        inputs: n,
+        per_input: filters,
+        constant: true,
     };
-    let done = |records_done| {
-        progress(Progress {
-            pass: 1,
-            passes: 1,
-            records_done,
-            records: scaled.len(),
-        });
-    };
-    let alphas = [vec![alpha; n]];
-    let make = |_: &Scaled<'_>| Ok(DiscreteColumns::new(&alphas, filters, true));
-    let closed = stretches(&scaled, &plan, &make, &done)?;
+    let closed = discrete_pass(
+        (&records, model.delta_s),
+        (order, &[vec![alpha; n]]),
+        (fit.weights, STRETCHES),
+        progress,
+    )?
+    .stretches;
     let each = 1 + n * filters;
     let mut parameters = Vec::with_capacity(n * each);
     for (i, &force) in dofs.iter().enumerate() {
@@ -343,16 +268,11 @@ pub fn discrete_uncertainty(
         .flat_map(|stretch| (0..n).map(move |i| (stretch, i)))
         .map(|(stretch, i)| discrete_part(stretch, i, each, filters, &values))
         .collect();
-    let (design, blocks) = sandwich(gather(&scaled, parts), None)?;
-    let ranges = scaled.iter().map(Scaled::tested_range);
-    let ranges: Vec<_> = ranges.collect::<Result<Vec<_>>>()?;
-    let ends = ranges.into_iter().flatten().flat_map(|r| [r.min, r.max]);
-    let tested = ReducedFrequencyRange::spanning(ends)
-        .ok_or_else(|| Error::input("records", "some motion", "none"))?;
+    let (design, blocks) = sandwich(gather(&records, parts), None)?;
     CoefficientUncertainty::new(
         (
             format!("{blocks}; motions are exact; α is given"),
-            Some(tested),
+            Some(tested_range(&records)?),
         ),
         dofs,
         Coordinates::Discrete {
@@ -366,7 +286,7 @@ pub fn discrete_uncertainty(
 }
 
 /// Rows of force `i` in one stretch: a constant, then the filters of the inputs that move.
-fn discrete_part(stretch: &Closed, i: usize, each: usize, filters: usize, values: &[f64]) -> Part {
+fn discrete_part(stretch: &Stretch, i: usize, each: usize, filters: usize, values: &[f64]) -> Part {
     let factor = &stretch.factors[0];
     let weight = stretch.weights[i];
     let mut columns = DMatrix::zeros(factor.columns(), values.len());

@@ -1,9 +1,10 @@
 //! Uncertainty of models fitted to a table: blocks are its test runs.
 
-use super::coefficients::{CoefficientUncertainty, Coordinates, Parameter};
-use super::constraints::{held_sentence, tangent_of};
+use super::coefficients::CoefficientUncertainty;
 use super::design::{Block, Design};
-use super::poles::free_poles;
+use super::parameters::{
+    STEP, coordinates_of, free_poles, held_sentence, moved_pole, parameters_of, tangent_of,
+};
 use crate::aerodynamics::derivatives::TransferSample;
 use crate::error::{Error, Result};
 use crate::identification::basis::Basis;
@@ -16,8 +17,6 @@ use nalgebra::{Complex, DMatrix, DVector};
 
 /// Samples of one motion belong to one test run when `K` and speed agree within this fraction.
 const SAME_RUN: f64 = 0.03;
-/// Relative step of central differences with respect to poles.
-const STEP: f64 = 1e-5;
 
 /// Covariance of the coefficients of a model that [`crate::identification::fit_table`] fitted to the same samples with
 /// the same options.
@@ -43,26 +42,8 @@ pub fn table_uncertainty(
     }
     let (entries, _) = sort_by_entry(samples, dofs, fit.weights)?;
     let poles = free_poles(&fit.form, &fit.poles, report);
-    let mut parameters = Vec::new();
-    let mut first = Vec::new();
-    for entry in &report.entries {
-        first.push(parameters.len());
-        parameters.extend(entry.coefficients.iter().map(|c| Parameter {
-            name: c.name.clone(),
-            force: Some(entry.force),
-            motion: Some(entry.motion),
-            value: c.value,
-            standard_error: 0.0,
-        }));
-    }
-    let first_pole = parameters.len();
-    parameters.extend(poles.values.iter().map(|((name, entry), value)| Parameter {
-        name: name.clone(),
-        force: entry.map(|e| e.0),
-        motion: entry.map(|e| e.1),
-        value: *value,
-        standard_error: 0.0,
-    }));
+    let (parameters, first) = parameters_of(report, &poles);
+    let first_pole = parameters.len() - poles.searched.len();
     let mut runs: Vec<Run> = Vec::new();
     for (e, entry) in entries.iter().enumerate() {
         let searched = poles
@@ -72,11 +53,7 @@ pub fn table_uncertainty(
             .filter(|(_, pole)| pole.entry.is_none_or(|(i, j)| i * dofs.len() + j == e));
         let columns = EntryColumns {
             chain: &report.entries[e].poles,
-            values: report.entries[e]
-                .coefficients
-                .iter()
-                .map(|c| c.value)
-                .collect(),
+            values: report.entries[e].values(),
             first: first[e],
             poles: searched.map(|(m, p)| (first_pole + m, p.index)).collect(),
         };
@@ -95,15 +72,7 @@ pub fn table_uncertainty(
             Some(report.tested_range),
         ),
         dofs.to_vec(),
-        Coordinates::Continuous {
-            form: fit.form.clone(),
-            chains: report
-                .entries
-                .chunks(dofs.len())
-                .map(|row| row.iter().map(|e| e.poles.clone()).collect())
-                .collect(),
-            searched: poles.searched,
-        },
+        coordinates_of(&fit.form, report, poles.searched),
         parameters,
         Design::new(blocks, tangent)?,
     )
@@ -159,12 +128,8 @@ impl EntryColumns<'_> {
         let free = form.collapse(self.chain);
         let mut pairs = Vec::new();
         for &(at, index) in &self.poles {
-            let moved = |factor: f64| {
-                let mut poles = free.clone();
-                poles[index] *= factor;
-                Basis::new(form, &form.expand(&poles))
-            };
-            pairs.push((at, index, moved(1.0 + STEP)?, moved(1.0 - STEP)?));
+            let (up, down) = moved_pole(form, &free, index)?;
+            pairs.push((at, index, up, down));
         }
         let total = entry.total();
         let scale = if total > 0.0 {

@@ -11,7 +11,7 @@
 
 use super::design::{Block, Design};
 use crate::error::Result;
-use crate::identification::time::slices::Scaled;
+use crate::identification::time::record::DimensionlessRecord;
 use nalgebra::{DMatrix, DVector};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -76,7 +76,7 @@ pub(super) struct Part {
 
 /// Stacks the forces of every stretch, each relative to its size over all stretches, as the search of poles weighs
 /// them.
-pub(super) fn gather(records: &[Scaled<'_>], parts: Vec<Part>) -> Stretched {
+pub(super) fn gather(records: &[DimensionlessRecord], parts: Vec<Part>) -> Stretched {
     let mut groups: BTreeMap<(Vec<usize>, usize), Vec<usize>> = BTreeMap::new();
     for (at, part) in parts.iter().enumerate() {
         groups.entry(part.group.clone()).or_default().push(at);
@@ -148,7 +148,7 @@ pub(super) fn gather(records: &[Scaled<'_>], parts: Vec<Part>) -> Stretched {
 
 /// Weighted variance of one row in each part: `w² e^(a + γ ln f)`, with a level `a` a record and one `γ`, by least
 /// squares on the logarithms.
-fn working_variances(records: &[Scaled<'_>], parts: &[&Part]) -> Vec<f64> {
+fn working_variances(records: &[DimensionlessRecord], parts: &[&Part]) -> Vec<f64> {
     let floor = 1e-12
         * parts
             .iter()

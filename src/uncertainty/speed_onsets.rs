@@ -1,12 +1,13 @@
 //! What the tests at each mean speed say of the onset alone, and whether they contradict each other.
 
+use super::coefficients::CoefficientUncertainty;
 use super::onset::{CONFIDENCE, OnsetError, error_at};
 use super::sensitivity::{onset_gradient, onset_nearby};
+use super::student::two_sided_quantile;
 use crate::aerodynamics::AerodynamicModel;
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
 use crate::flutter::{Onset, OnsetSearch, find_onset};
-use crate::identification::{CoefficientUncertainty, two_sided_quantile};
 use crate::section::{Dof, Structure};
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use serde::{Deserialize, Serialize};

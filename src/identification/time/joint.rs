@@ -1,10 +1,10 @@
 //! All transfer functions of records at once, held together by constraints.
 
+use super::systems::ForceSystems;
 use crate::error::{Error, Result};
 use crate::identification::basis::Basis;
 use crate::identification::dissipative::{Dissipation, LinearEntry, Solution, Wishes};
 use crate::identification::least_squares::Factor;
-use crate::identification::time::selection::Selection;
 use nalgebra::{DMatrix, DVector};
 
 /// All transfer functions at given poles, each force by itself and together under the constraints.
@@ -26,12 +26,12 @@ impl Joint {
     ///
     /// # Errors
     /// Rows that do not determine the coefficients, and constraints that no coefficients satisfy.
-    pub fn new(selection: &Selection, bases: &[Basis], wishes: &Wishes) -> Result<Self> {
+    pub fn new(systems: &ForceSystems, bases: &[Basis], wishes: &Wishes) -> Result<Self> {
         let n = (1..=bases.len())
             .find(|n| n * n >= bases.len())
             .unwrap_or(1);
-        let apart = (0..n).all(|i| (0..n).all(|j| selection.alone(i, j).is_some()))
-            && !selection.of_force(0).layout.constant;
+        let apart = (0..n).all(|i| (0..n).all(|j| systems.alone(i, j).is_some()))
+            && !systems.of_force(0).order.constant;
         let mut joint = Self {
             whole: Vec::new(),
             entries: Vec::new(),
@@ -43,10 +43,10 @@ impl Joint {
         let mut at = 0;
         for i in 0..n {
             if !apart {
-                let linear = joint.add(&selection.whole(i), count, at)?;
+                let linear = joint.add(&systems.whole(i), count, at)?;
                 at += linear.spread.ncols();
                 for j in 0..n {
-                    let places = selection.places(i, j);
+                    let places = systems.places(i, j);
                     joint.entries.push(LinearEntry {
                         values: places.iter().map(|&p| linear.values[p]).collect(),
                         spread: linear.spread.select_rows(&places),
@@ -56,7 +56,7 @@ impl Joint {
                 joint.whole.push(linear);
             }
             for j in (0..n).filter(|_| apart) {
-                let factor = selection.alone(i, j).ok_or_else(no_rows)?;
+                let factor = systems.alone(i, j).ok_or_else(no_rows)?;
                 let linear = joint.add(&factor, count, at)?;
                 at += linear.spread.ncols();
                 joint.entries.push(linear.clone());

@@ -5,6 +5,7 @@
 //! the records with that chain serves coefficients and poles, and its leading columns are those of the fit.
 
 use super::coefficients::SearchedPole;
+use super::parameters::{STEP, moved_pole};
 use crate::error::{Error, Result};
 use crate::identification::basis::{Basis, assemble};
 use crate::identification::options::Form;
@@ -12,8 +13,6 @@ use crate::section::Dof;
 use crate::trained_model::Model;
 use nalgebra::{Complex, DMatrix, DVector};
 
-/// Relative step of central differences: truncation and rounding both near 1e-10.
-const STEP: f64 = 1e-5;
 /// Frequencies at which columns are compared, for each column.
 const POINTS_PER_COLUMN: usize = 4;
 
@@ -55,15 +54,8 @@ impl Expansion {
 
     /// Derivatives of the whole transfer function with coefficients `values` with respect to the free poles, E×m.
     pub fn jacobian(&self, form: &Form, free: &[f64], values: &[f64]) -> Result<DMatrix<f64>> {
-        let moved = |m: usize, factor: f64| -> Result<Basis> {
-            let mut poles = free.to_vec();
-            poles[m] *= factor;
-            Basis::new(form, &form.expand(&poles))
-        };
-        let mut pairs = Vec::new();
-        for m in 0..free.len() {
-            pairs.push((moved(m, 1.0 + STEP)?, moved(m, 1.0 - STEP)?));
-        }
+        let pairs = (0..free.len()).map(|m| moved_pole(form, free, m));
+        let pairs = pairs.collect::<Result<Vec<_>>>()?;
         let sum = |basis: &Basis, p: Complex<f64>| -> Complex<f64> {
             let columns = basis.columns(p);
             columns.iter().zip(values).map(|(z, c)| z * *c).sum()

@@ -1,0 +1,191 @@
+//! Systems of equations of one candidate model: what all records say of every force, and which columns of it a model has.
+
+use super::pass::{Pass, Stretch};
+use crate::identification::least_squares::{Factor, StreamingQr};
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+use std::rc::Rc;
+
+/// Columns of the whole system: an optional constant, then every column of one input for all inputs, interleaved so
+/// that fewer filters are a leading subset.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ColumnOrder {
+    pub inputs: usize,
+    pub per_input: usize,
+    pub constant: bool,
+}
+
+impl ColumnOrder {
+    /// Number of columns with `active` inputs.
+    pub fn width(&self, active: usize) -> usize {
+        self.leading(self.per_input, active)
+    }
+
+    /// Number of columns that the first `per_input` columns of each of `active` inputs take.
+    pub fn leading(&self, per_input: usize, active: usize) -> usize {
+        usize::from(self.constant) + per_input * active
+    }
+
+    /// Column `c` of input `j` in the whole system.
+    pub fn index(&self, c: usize, j: usize) -> usize {
+        usize::from(self.constant) + c * self.inputs + j
+    }
+
+    /// Columns of the whole system for which `used(c, j)`, in their order.
+    fn columns(&self, used: impl Fn(usize, usize) -> bool) -> Vec<usize> {
+        let pairs = (0..self.per_input).flat_map(|c| (0..self.inputs).map(move |j| (c, j)));
+        let used = pairs.filter(|(c, j)| used(*c, *j));
+        let constant = self.constant.then_some(0).into_iter();
+        constant
+            .chain(used.map(|(c, j)| self.index(c, j)))
+            .collect()
+    }
+}
+
+/// Factored systems of one candidate.
+pub(crate) struct Systems {
+    pub order: ColumnOrder,
+    /// Inputs that moved together, and the system of their columns for each force.
+    pub sets: Vec<(Vec<usize>, Vec<Factor>)>,
+    /// The whole system for each force.
+    pub whole: Vec<Factor>,
+}
+
+impl Pass {
+    /// The systems of all candidates, from all stretches.
+    pub fn systems(&self) -> Vec<Rc<Systems>> {
+        let count = self.stretches.first().map_or(0, |s| s.factors.len());
+        let all = |c: usize| Rc::new(Systems::new(self.order, self.stretches.iter(), c));
+        (0..count).map(all).collect()
+    }
+}
+
+impl Systems {
+    /// The systems of one candidate from weighted stretches: summed record by record, then over the records.
+    pub fn new<'a>(
+        order: ColumnOrder,
+        stretches: impl Iterator<Item = &'a Stretch>,
+        candidate: usize,
+    ) -> Self {
+        let mut of_records: BTreeMap<(&[usize], usize), Vec<StreamingQr>> = BTreeMap::new();
+        let empty = |set: &[usize]| vec![StreamingQr::new(order.width(set.len()), 1); order.inputs];
+        for s in stretches {
+            let factor = &s.factors[candidate];
+            let own: Vec<usize> = (0..factor.columns()).collect();
+            let key = (s.set.as_slice(), s.record);
+            let into = of_records.entry(key).or_insert_with(|| empty(&s.set));
+            for (i, (system, weight)) in into.iter_mut().zip(&s.weights).enumerate() {
+                system.absorb(factor, &own, i, *weight);
+            }
+        }
+        let mut of_sets: BTreeMap<&[usize], Vec<StreamingQr>> = BTreeMap::new();
+        for ((set, _), systems) in of_records {
+            let own: Vec<usize> = (0..order.width(set.len())).collect();
+            let into = of_sets.entry(set).or_insert_with(|| empty(set));
+            for (into, system) in into.iter_mut().zip(systems) {
+                into.absorb(&system.finish(), &own, 0, 1.0);
+            }
+        }
+        let finished = |systems: Vec<StreamingQr>| -> Vec<Factor> {
+            systems.into_iter().map(StreamingQr::finish).collect()
+        };
+        let sets: Vec<(Vec<usize>, Vec<Factor>)> = of_sets
+            .into_iter()
+            .map(|(set, systems)| (set.to_vec(), finished(systems)))
+            .collect();
+        let whole = |i: usize| {
+            let mut all = StreamingQr::new(order.width(order.inputs), 1);
+            for (set, factors) in &sets {
+                all.absorb(&factors[i], &order.columns(|_, j| set.contains(&j)), 0, 1.0);
+            }
+            all.finish()
+        };
+        Self {
+            order,
+            whole: (0..order.inputs).map(whole).collect(),
+            sets,
+        }
+    }
+
+    /// The rows in which only input `j` moves, for force `i`, when no record moves two at once.
+    pub fn alone(&self, i: usize, j: usize) -> Option<&Factor> {
+        let single = self.sets.iter().all(|(set, _)| set.len() < 2);
+        let mut own = self.sets.iter().filter(|(set, _)| single && set == &[j]);
+        own.next().map(|(_, factors)| &factors[i])
+    }
+
+    /// Root mean square, over forces and sets of inputs, of the weighted residual relative to the weighted data, with the
+    /// first `per_input` columns of each input. Where one input moves alone, only the transfer functions `among` count.
+    pub fn objective(&self, per_input: usize, among: &dyn Fn(usize, usize) -> bool) -> f64 {
+        let (mut sum, mut count) = (0.0, 0.0);
+        for (set, factors) in self.sets.iter().filter(|(set, _)| !set.is_empty()) {
+            let leading = self.order.leading(per_input, set.len());
+            for (i, factor) in factors.iter().enumerate() {
+                let wanted = set.len() > 1 || among(i, set[0]);
+                if wanted && factor.total_sum(0) > 0.0 {
+                    sum += factor.residual_sum(leading, 0) / factor.total_sum(0);
+                    count += 1.0;
+                }
+            }
+        }
+        (sum / f64::max(count, 1.0)).sqrt()
+    }
+}
+
+/// The systems that each force is fitted to, one for all forces or one a force, and the columns that its transfer
+/// functions have of them: all candidates have as many as the one with the most filters, the others leave their last out.
+pub(crate) struct ForceSystems {
+    /// Columns of every transfer function, row by row.
+    pub counts: Vec<usize>,
+    pub systems: Vec<Rc<Systems>>,
+}
+
+impl ForceSystems {
+    /// The systems that hold the rows of force `i`.
+    pub fn of_force(&self, i: usize) -> &Systems {
+        &self.systems[if self.systems.len() == 1 { 0 } else { i }]
+    }
+
+    /// Number of columns of a transfer function.
+    fn count(&self, i: usize, j: usize) -> usize {
+        self.counts[i * self.systems[0].order.inputs + j]
+    }
+
+    /// Columns of the whole system that force `i` uses.
+    fn columns(&self, i: usize) -> Vec<usize> {
+        let order = self.of_force(i).order;
+        order.columns(|c, j| c < self.count(i, j))
+    }
+
+    /// The whole system of force `i`.
+    pub fn whole(&self, i: usize) -> Cow<'_, Factor> {
+        reduced(&self.of_force(i).whole[i], &self.columns(i))
+    }
+
+    /// Places of all columns of motion `j` in the whole system of force `i`.
+    pub fn places(&self, i: usize, j: usize) -> Vec<usize> {
+        let (order, columns) = (self.of_force(i).order, self.columns(i));
+        let place = |c| {
+            columns
+                .iter()
+                .position(|&column| column == order.index(c, j))
+        };
+        (0..self.count(i, j)).filter_map(place).collect()
+    }
+
+    /// The rows in which only motion `j` moves, for force `i`, when no record moves two at once.
+    pub fn alone(&self, i: usize, j: usize) -> Option<Cow<'_, Factor>> {
+        let systems = self.of_force(i);
+        let leading = systems.order.leading(self.count(i, j), 1);
+        let columns: Vec<usize> = (0..leading).collect();
+        Some(reduced(systems.alone(i, j)?, &columns))
+    }
+}
+
+fn reduced<'a>(factor: &'a Factor, columns: &[usize]) -> Cow<'a, Factor> {
+    if columns.len() == factor.columns() {
+        Cow::Borrowed(factor)
+    } else {
+        Cow::Owned(factor.select(columns))
+    }
+}

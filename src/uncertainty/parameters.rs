@@ -1,0 +1,194 @@
+//! What the parameters of a fit with searched poles are: its coefficients, the poles that a search found inside its
+//! bounds, and the directions that active constraints leave to them.
+
+use super::coefficients::{Coordinates, Parameter, SearchedPole};
+use crate::error::Result;
+use crate::identification::basis::Basis;
+use crate::identification::dissipative::Tangent;
+use crate::identification::{ActiveConstraint, FitReport, Form, PoleSearch};
+use crate::section::Dof;
+use nalgebra::{DMatrix, DVector};
+
+/// Relative step of central differences with respect to poles.
+pub(super) const STEP: f64 = 1e-5;
+/// Poles closer than this to a bound, relatively, are held by it.
+const AT_BOUND: f64 = 0.01;
+
+/// How the assumption of a covariance says that searched poles are in it.
+pub const SEARCHED_POLES: &str = "searched poles are parameters through their Jacobian columns";
+
+/// Name of a pole and its transfer function (force, motion); none when all share it.
+pub(super) type PoleName = (String, Option<(Dof, Dof)>);
+
+/// Poles among the parameters.
+pub(super) struct FreePoles {
+    pub searched: Vec<SearchedPole>,
+    /// Name, transfer function and value of each.
+    pub values: Vec<(PoleName, f64)>,
+    /// Poles that the bounds or the least ratio of the search hold.
+    pub held: usize,
+}
+
+/// The poles that a search left free to follow the data.
+pub(super) fn free_poles(form: &Form, options: &PoleSearch, report: &FitReport) -> FreePoles {
+    let mut poles = FreePoles {
+        searched: Vec::new(),
+        values: Vec::new(),
+        held: 0,
+    };
+    let mut dofs: Vec<Dof> = report.entries.iter().map(|e| e.motion).collect();
+    dofs.sort();
+    dofs.dedup();
+    let place = |dof: Dof| dofs.iter().position(|d| *d == dof).unwrap_or(0);
+    for search in &report.search {
+        // the poles in use: a search may end between the points it evaluated
+        let used = report
+            .entries
+            .iter()
+            .find(|e| {
+                search
+                    .entry
+                    .is_none_or(|entry| entry == (e.force, e.motion))
+            })
+            .map(|e| form.collapse(&e.poles))
+            .unwrap_or_default();
+        for (index, pole) in used.iter().enumerate() {
+            let near = |bound: f64| (pole / bound).ln().abs() < AT_BOUND;
+            let pressed =
+                index > 0 && pole / used[index - 1] < (1.0 + AT_BOUND) * options.min_ratio;
+            if near(search.min) || near(search.max) || pressed {
+                poles.held += 1;
+                continue;
+            }
+            poles.searched.push(SearchedPole {
+                entry: search.entry.map(|(f, m)| (place(f), place(m))),
+                index,
+            });
+            poles
+                .values
+                .push(((format!("pole {index}"), search.entry), *pole));
+        }
+    }
+    poles
+}
+
+impl FreePoles {
+    /// How poles enter, in words.
+    pub fn sentence(&self) -> String {
+        let mut text = if self.searched.is_empty() {
+            "poles count as known".to_owned()
+        } else {
+            SEARCHED_POLES.to_owned()
+        };
+        if self.held > 0 {
+            text.push_str(&format!(
+                "; {} pole(s) held by a bound of the search count as known",
+                self.held
+            ));
+        }
+        text
+    }
+}
+
+/// The columns with one of the free poles a little larger, and a little smaller.
+pub(super) fn moved_pole(form: &Form, free: &[f64], index: usize) -> Result<(Basis, Basis)> {
+    let moved = |factor: f64| {
+        let mut poles = free.to_vec();
+        poles[index] *= factor;
+        Basis::new(form, &form.expand(&poles))
+    };
+    Ok((moved(1.0 + STEP)?, moved(1.0 - STEP)?))
+}
+
+/// The coefficients of a fit row by row, then its searched poles; and the first parameter of every transfer function.
+pub(super) fn parameters_of(report: &FitReport, poles: &FreePoles) -> (Vec<Parameter>, Vec<usize>) {
+    let (mut all, mut first) = (Vec::new(), Vec::new());
+    let parameter = |name: &str, entry: Option<(Dof, Dof)>, value: f64| Parameter {
+        name: name.to_owned(),
+        force: entry.map(|e| e.0),
+        motion: entry.map(|e| e.1),
+        value,
+        standard_error: 0.0,
+    };
+    for entry in &report.entries {
+        first.push(all.len());
+        let own = Some((entry.force, entry.motion));
+        let coefficients = entry.coefficients.iter();
+        all.extend(coefficients.map(|c| parameter(&c.name, own, c.value)));
+    }
+    let searched = poles.values.iter();
+    all.extend(searched.map(|((name, entry), value)| parameter(name, *entry, *value)));
+    (all, first)
+}
+
+/// How those parameters make the model.
+pub(super) fn coordinates_of(
+    form: &Form,
+    report: &FitReport,
+    searched: Vec<SearchedPole>,
+) -> Coordinates {
+    let rows = report.entries.chunks(report.entries.len().isqrt());
+    Coordinates::Continuous {
+        form: form.clone(),
+        chains: rows
+            .map(|row| row.iter().map(|e| e.poles.clone()).collect())
+            .collect(),
+        searched,
+    }
+}
+
+/// Orthonormal directions that the active constraints of a fit leave to its parameters, P×q; `None` where nothing holds
+/// it. `first` is the first parameter of every transfer function; searched poles are the last.
+pub(super) fn tangent_of(
+    report: &FitReport,
+    (form, poles): (&Form, &FreePoles),
+    first: &[usize],
+    parameters: usize,
+) -> Result<Option<DMatrix<f64>>> {
+    let Some(constraints) = &report.constraints else {
+        return Ok(None);
+    };
+    let mut gradients = vec![DVector::zeros(parameters); constraints.active.len()];
+    let n = report.entries.len().isqrt();
+    for (e, entry) in report.entries.iter().enumerate() {
+        let place = (e / n, e % n);
+        let values = entry.values();
+        let free = form.collapse(&entry.poles);
+        let basis = Basis::new(form, &entry.poles)?;
+        for (gradient, active) in gradients.iter_mut().zip(&constraints.active) {
+            for (c, x) in active.gradient(place, &basis).iter().enumerate() {
+                gradient[first[e] + c] = *x;
+            }
+        }
+        for (m, pole) in poles.searched.iter().enumerate() {
+            if pole.entry.is_some_and(|entry| entry != place) {
+                continue;
+            }
+            let step = 2.0 * STEP * free[pole.index];
+            let (up, down) = moved_pole(form, &free, pole.index)?;
+            for (gradient, active) in gradients.iter_mut().zip(&constraints.active) {
+                let value = |b: &Basis| held(active, place, b, &values);
+                let place = parameters - poles.searched.len() + m;
+                gradient[place] += (value(&up) - value(&down)) / step;
+            }
+        }
+    }
+    Ok(Some(Tangent::new(gradients.into_iter()).basis(parameters)))
+}
+
+/// What a transfer function adds to what a constraint holds.
+fn held(active: &ActiveConstraint, place: (usize, usize), basis: &Basis, values: &[f64]) -> f64 {
+    let gradient = active.gradient(place, basis);
+    gradient.iter().zip(values).map(|(g, v)| g * v).sum()
+}
+
+/// How active constraints enter, in words.
+pub(super) fn held_sentence(report: &FitReport) -> String {
+    match &report.constraints {
+        Some(c) => format!(
+            "; what {} active constraint(s) hold counts as known",
+            c.active.len()
+        ),
+        None => String::new(),
+    }
+}
