@@ -24,7 +24,7 @@ const NOT_IN_RUNTIME: [&str; 19] = [
     "selection",
     "signal",
     "study",
-    "toml_lines.rs",
+    "files",
     "uncertainty",
     "wind_tunnel",
     "fmu/description.rs",

@@ -5,8 +5,8 @@
 #[path = "../tests/common/python.rs"]
 mod python;
 
-use aerodeck::aerodynamics::derivatives::embedded;
 use aerodeck::aerodynamics::{LaguerreModel, Realizable, Realization};
+use aerodeck::files::derivatives::embedded;
 use aerodeck::flutter::{LinearForces, OnsetSweep, SweepOutcome};
 use aerodeck::identification::{Form, FrequencyFit, fit_table};
 use aerodeck::reliability::{MonteCarloPlan, monte_carlo};

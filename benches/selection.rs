@@ -7,7 +7,7 @@
 #[path = "../tests/common/python.rs"]
 mod python;
 
-use aerodeck::aerodynamics::derivatives::embedded;
+use aerodeck::files::derivatives::embedded;
 use aerodeck::flutter::OnsetSearch;
 use aerodeck::identification::{Grid, GridAxis, TimeFit, TimeWeights};
 use aerodeck::section::{Dof, SectionModel};

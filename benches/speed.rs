@@ -5,9 +5,9 @@
 #[path = "../tests/common/python.rs"]
 mod python;
 
-use aerodeck::aerodynamics::derivatives::embedded;
 use aerodeck::aerodynamics::{ContinuousRealization, Realizable, Realization};
 use aerodeck::aeroelastic::CoupledSection;
+use aerodeck::files::derivatives::embedded;
 use aerodeck::flutter::trace_modes;
 use aerodeck::fmu::importer::{Fmu, Slave};
 use aerodeck::fmu::package::{Growing, Overwrite, Runtime, write_fmu};

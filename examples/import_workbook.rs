@@ -2,9 +2,12 @@
 //!
 //! `cargo run --example import_workbook -- WORKBOOK.xlsx OUT.csv SOURCE LICENCE [MODEL_LENGTH_M]`
 //!
-//! The tables in `src/aerodynamics/derivatives/data` were made with it. An existing file is not overwritten.
+//! The tables in `data/decks` were made with it. An existing file is not overwritten.
 
-use aerodeck::aerodynamics::derivatives::{TableHeader, WorkbookOptions, read_workbook, write_csv};
+use aerodeck::aerodynamics::derivatives::TableHeader;
+use aerodeck::files::derivatives::WorkbookOptions;
+use aerodeck::files::derivatives::read_workbook;
+use aerodeck::files::derivatives::write_csv;
 use std::error::Error;
 use std::fs::File;
 use std::io::{BufWriter, Write};

@@ -24,7 +24,7 @@
 //! onsets, [`response`] the exact steps, [`trained_model`] what is saved, [`fmu`] the co-simulation slave with its
 //! packing and importer. `wind_tunnel` leads from load cells to records, `identification` from records and tables to
 //! derivatives and models, `uncertainty` from their scatter to intervals, `selection` to one model among many;
-//! `comparison` compares time histories, `buffeting` adds gusts, `reliability` scatters the section. `study` runs the
+//! `files` reads and writes tables, `comparison` compares time histories, `buffeting` adds gusts, `reliability` scatters the section. `study` runs the
 //! whole chain, `report` draws it and `cli` is the program.
 #![deny(unsafe_code, missing_docs)]
 
@@ -37,12 +37,15 @@ pub mod cli;
 #[cfg(feature = "cli")]
 pub mod comparison;
 pub mod error;
+#[cfg(feature = "cli")]
+pub mod files;
 pub mod flutter;
 pub mod fmu;
 #[cfg(feature = "cli")]
 pub mod identification;
 #[cfg(feature = "cli")]
 mod plausibility;
+pub mod prelude;
 #[cfg(feature = "cli")]
 pub mod reference;
 #[cfg(feature = "cli")]
@@ -58,8 +61,6 @@ pub mod signal;
 pub mod state_space;
 #[cfg(feature = "cli")]
 pub mod study;
-#[cfg(feature = "cli")]
-mod toml_lines;
 pub mod trained_model;
 #[cfg(feature = "cli")]
 pub mod uncertainty;
@@ -68,3 +69,8 @@ pub mod units;
 pub mod wind_tunnel;
 
 pub use error::{Error, Result};
+
+/// The program in the README is compiled and run with the tests.
+#[cfg(all(doctest, feature = "cli"))]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -5,7 +5,9 @@
 #[allow(dead_code)] // each test file needs a part of it
 mod command;
 
-use aerodeck::aerodynamics::derivatives::{Derivative, embedded, read_csv};
+use aerodeck::aerodynamics::derivatives::Derivative;
+use aerodeck::files::derivatives::embedded;
+use aerodeck::files::derivatives::read_csv;
 use command::{onset_of, refused, succeeds};
 use serde_json::Value;
 use std::fs;

@@ -78,13 +78,12 @@ fn a_campaign_becomes_records_derivatives_and_an_onset() {
             .all(|e| e["standard_error"].as_f64().unwrap() > 0.0)
     );
     // the workbook is one that the program reads, and the study gives an onset
-    let table =
-        aerodeck::aerodynamics::derivatives::read_table(out.join("derivatives.csv")).unwrap();
-    let options = aerodeck::aerodynamics::derivatives::WorkbookOptions {
+    let table = aerodeck::files::derivatives::read_table(out.join("derivatives.csv")).unwrap();
+    let options = aerodeck::files::derivatives::WorkbookOptions {
         width_m: Some(table.width_m),
         ..Default::default()
     };
-    let book = aerodeck::aerodynamics::derivatives::read_workbook(
+    let book = aerodeck::files::derivatives::read_workbook(
         out.join("AerodynamicDerivatives_LN21-5200.xlsx"),
         &options,
     )

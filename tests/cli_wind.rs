@@ -43,7 +43,7 @@ fn quasi_steady_runs_the_example() {
         let path = format!("aerodeck-out/{name}");
         assert!(listing(folder.path()).contains(&path), "{path}");
     }
-    let gusts = aerodeck::aerodynamics::read_gusts(folder.path().join("aerodeck-out/gusts.csv"));
+    let gusts = aerodeck::files::gusts::read_gusts(folder.path().join("aerodeck-out/gusts.csv"));
     assert!((gusts.unwrap().duration_s() - 300.0).abs() < 1e-9);
 }
 
@@ -151,7 +151,8 @@ fn wrong_wind_files_are_refused_with_their_line() {
 /// A static table with a mistake is refused with file and line, an angle outside it by its value.
 #[test]
 fn wrong_static_tables_are_refused() {
-    use aerodeck::aerodynamics::quasi_steady::{embedded, write_coefficients};
+    use aerodeck::files::coefficients::embedded;
+    use aerodeck::files::coefficients::write_coefficients;
     let folder = TempDir::new().unwrap();
     let mut bytes = Vec::new();
     let table = embedded::coefficients("synthetic box girder").unwrap();

@@ -1,9 +1,11 @@
 //! Figures of cases with known answers: well-formed, complete, the same bytes every time.
 #![cfg(feature = "cli")]
 
-use aerodeck::aerodynamics::derivatives::{Derivative, Part, embedded};
+use aerodeck::aerodynamics::derivatives::Derivative;
+use aerodeck::aerodynamics::derivatives::Part;
 use aerodeck::aerodynamics::{AerodynamicModel, FlatPlate, RationalModel, Realizable};
 use aerodeck::aeroelastic::CoupledSection;
+use aerodeck::files::derivatives::embedded;
 use aerodeck::flutter::{
     FlutterCurves, Onset, OnsetSearch, determinant_onset, find_onset, trace_modes,
 };

@@ -15,7 +15,7 @@ mod python;
 #[allow(dead_code)] // one model of several
 mod three_dof;
 
-use aerodeck::aerodynamics::derivatives::embedded;
+use aerodeck::files::derivatives::embedded;
 use aerodeck::fmu::package::{Growing, Overwrite, Runtime, write_fmu};
 use aerodeck::identification::{Form, FrequencyFit, fit_table};
 use aerodeck::section::{Dof, SectionModel};

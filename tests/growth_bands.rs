@@ -4,8 +4,8 @@
 #[allow(dead_code)] // each test file needs a part of it
 mod matrix;
 
-use aerodeck::aerodynamics::derivatives::embedded;
 use aerodeck::aeroelastic::CoupledSection;
+use aerodeck::files::derivatives::embedded;
 use aerodeck::flutter::{OnsetSearch, find_onset, growth_scan};
 use aerodeck::identification::{Constraints, FrequencyFit, fit_table};
 use aerodeck::section::{Dof, SectionModel};

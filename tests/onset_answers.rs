@@ -8,11 +8,13 @@ mod matrix;
 #[allow(dead_code)]
 mod three_dof;
 
-use aerodeck::aerodynamics::derivatives::{
-    Derivative, DerivativeTable, Extrapolation, InterpolatedTable, embedded,
-};
+use aerodeck::aerodynamics::derivatives::Derivative;
+use aerodeck::aerodynamics::derivatives::DerivativeTable;
+use aerodeck::aerodynamics::derivatives::Extrapolation;
+use aerodeck::aerodynamics::derivatives::InterpolatedTable;
 use aerodeck::aerodynamics::{FlatPlate, RationalModel};
 use aerodeck::aeroelastic::CoupledSection;
+use aerodeck::files::derivatives::embedded;
 use aerodeck::flutter::{
     FlutterSearch, LinearForces, OnsetSearch, OnsetSweep, SweepOutcome, UnstableStart,
     determinant_onset, find_onset, pk_curves, pk_onset, quasi_pk_mode, trace_modes,

@@ -1,8 +1,9 @@
 //! From raw virtual campaigns with every disturbance to derivatives and onset.
 
-use aerodeck::aerodynamics::derivatives::{Part, embedded};
+use aerodeck::aerodynamics::derivatives::Part;
 use aerodeck::aerodynamics::{FlatPlate, Realizable};
 use aerodeck::aeroelastic::CoupledSection;
+use aerodeck::files::derivatives::embedded;
 use aerodeck::flutter::{OnsetSearch, find_onset};
 use aerodeck::identification::derivatives::{
     DerivativeOptions, IdentifiedDerivatives, identify_derivatives,

@@ -8,12 +8,16 @@ mod command;
 #[allow(dead_code)]
 mod matrix;
 
-use aerodeck::aerodynamics::derivatives::{
-    Derivative, DerivativePoint, DerivativeTable, Extrapolation, InterpolatedTable, Interpolation,
-    TableHeader, write_csv,
-};
+use aerodeck::aerodynamics::derivatives::Derivative;
+use aerodeck::aerodynamics::derivatives::DerivativePoint;
+use aerodeck::aerodynamics::derivatives::DerivativeTable;
+use aerodeck::aerodynamics::derivatives::Extrapolation;
+use aerodeck::aerodynamics::derivatives::InterpolatedTable;
+use aerodeck::aerodynamics::derivatives::Interpolation;
+use aerodeck::aerodynamics::derivatives::TableHeader;
 use aerodeck::aerodynamics::{AerodynamicModel, FlatPlate, RationalModel, Realizable};
 use aerodeck::aeroelastic::CoupledSection;
+use aerodeck::files::derivatives::write_csv;
 use aerodeck::flutter::{
     Instability, OnsetSearch, classify, determinant_onset, divergence_by_eigenvalues,
     divergence_speed, find_onset, pk_curves, pk_onset, quasi_pk_mode,

@@ -7,7 +7,8 @@ mod command;
 #[allow(dead_code)]
 mod matrix;
 
-use aerodeck::aerodynamics::derivatives::{DerivativeTable, write_csv};
+use aerodeck::aerodynamics::derivatives::DerivativeTable;
+use aerodeck::files::derivatives::write_csv;
 use aerodeck::section::SectionModel;
 use aerodeck::study::{Deck, RecordSet, Study, demo_study_text, flutter_study, train_one};
 use command::aerodeck;

@@ -126,7 +126,7 @@ fn the_study_chooses_the_interpolation() {
     let at = folder.path();
     let mut text = Vec::new();
     let table = plate(&[0.6, 1.2, 2.2, 4.5, 8.0]);
-    aerodeck::aerodynamics::derivatives::write_csv(&table, &mut text).unwrap();
+    aerodeck::files::derivatives::write_csv(&table, &mut text).unwrap();
     fs::write(at.join("plate.csv"), text).unwrap();
     let mut speeds = Vec::new();
     for by in [Interpolation::ModifiedAkima, Interpolation::LinearVHat] {

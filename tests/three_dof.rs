@@ -8,9 +8,12 @@ mod command;
 mod three_dof;
 
 use aerodeck::aerodynamics::AerodynamicModel;
-use aerodeck::aerodynamics::derivatives::{
-    Derivative, Extrapolation, InterpolatedTable, Interpolation, Part, embedded,
-};
+use aerodeck::aerodynamics::derivatives::Derivative;
+use aerodeck::aerodynamics::derivatives::Extrapolation;
+use aerodeck::aerodynamics::derivatives::InterpolatedTable;
+use aerodeck::aerodynamics::derivatives::Interpolation;
+use aerodeck::aerodynamics::derivatives::Part;
+use aerodeck::files::derivatives::embedded;
 use aerodeck::flutter::{
     Onset, OnsetSearch, determinant_onset, divergence_by_eigenvalues, divergence_speed, find_onset,
     pk_onset,

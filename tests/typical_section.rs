@@ -2,9 +2,11 @@
 //! body, Theodorsen's forces about the axis in closed form, every route on one force model.
 
 use aerodeck::aerodynamics::flat_plate::theodorsen;
-use aerodeck::aerodynamics::quasi_steady::{Arms, QuasiSteady, embedded};
+use aerodeck::aerodynamics::quasi_steady::Arms;
+use aerodeck::aerodynamics::quasi_steady::QuasiSteady;
 use aerodeck::aerodynamics::{AerodynamicModel, FlatPlate, GustSeries, RationalModel, Realizable};
 use aerodeck::aeroelastic::{CoupledSection, static_equilibria};
+use aerodeck::files::coefficients::embedded;
 use aerodeck::flutter::{
     OnsetSearch, determinant_onset, divergence_by_eigenvalues, divergence_speed, find_onset,
     impedance, pk_onset,

@@ -7,8 +7,6 @@
 pub mod derivatives;
 pub mod flat_plate;
 mod gust;
-#[cfg(feature = "cli")]
-mod gust_file;
 pub mod laguerre;
 pub mod quasi_steady;
 pub mod rational;
@@ -17,8 +15,6 @@ mod spline;
 
 pub use flat_plate::FlatPlate;
 pub use gust::GustSeries;
-#[cfg(feature = "cli")]
-pub use gust_file::{GUST_COLUMNS, parse_gusts, read_gusts, write_gusts};
 pub use laguerre::{DiscreteLaguerre, FilterBank, FilterTerm, LaguerreModel};
 pub use rational::{Lags, MinimumStateModel, RationalModel};
 pub use realization::{ContinuousRealization, DiscreteRealization, Realization};

@@ -5,11 +5,17 @@ use super::output::{OutputDir, list};
 use super::progress::Progress;
 use super::stages::RECORDS;
 use crate::aerodynamics::FlatPlate;
-use crate::aerodynamics::derivatives::{
-    Derivative, TableHeader, workbook_bytes, write_csv, write_points,
-};
-use crate::aerodynamics::quasi_steady::{Arms, LinearQuasiSteady, QuasiSteady, named_coefficients};
+use crate::aerodynamics::derivatives::Derivative;
+use crate::aerodynamics::derivatives::TableHeader;
+use crate::aerodynamics::quasi_steady::Arms;
+use crate::aerodynamics::quasi_steady::LinearQuasiSteady;
+use crate::aerodynamics::quasi_steady::QuasiSteady;
 use crate::error::{Error, Result};
+use crate::files::coefficients::named_coefficients;
+use crate::files::derivatives::workbook_bytes;
+use crate::files::derivatives::write_csv;
+use crate::files::derivatives::write_points;
+use crate::files::toml_lines;
 use crate::identification::derivatives::{
     DerivativeOptions, IdentifiedDerivatives, identify_derivatives,
 };
@@ -19,7 +25,6 @@ use crate::report::{
 };
 use crate::section::Dof;
 use crate::study::{Study, derivative_lines, processed_study_text, read_section};
-use crate::toml_lines;
 use crate::units::group_of;
 use crate::wind_tunnel::campaign::Campaign;
 use crate::wind_tunnel::processing::{Processed, ProcessingOptions, RunReport, process};

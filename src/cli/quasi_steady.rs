@@ -5,8 +5,9 @@ use super::answer::Answer;
 use super::output::{OutputDir, list};
 use super::progress::Progress;
 use super::wind::{WindArgs, write_figure, write_json};
-use crate::aerodynamics::{GustSeries, write_gusts};
+use crate::aerodynamics::GustSeries;
 use crate::error::{Error, Result};
+use crate::files::gusts::write_gusts;
 use crate::flutter::FlutterSearch;
 use crate::report::{
     DerivativePlot, DerivativesPlot, PlottedSeries, TimePanel, VfVgOptions, derivatives_figure,

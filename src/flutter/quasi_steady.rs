@@ -199,7 +199,8 @@ fn described(name: &str, structure: &Structure, theory: &QuasiSteady, speed: f64
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::aerodynamics::quasi_steady::{Arms, embedded};
+    use crate::aerodynamics::quasi_steady::Arms;
+    use crate::files::coefficients::embedded;
     use crate::flutter::find_onset;
     use crate::section::{Dof, SectionModel};
     use crate::units::{ReducedFrequency, ReducedFrequencyRange};

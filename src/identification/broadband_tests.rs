@@ -7,7 +7,7 @@ use super::{
     fit_table,
 };
 use crate::aerodynamics::RationalModel;
-use crate::aerodynamics::derivatives::embedded;
+use crate::files::derivatives::embedded;
 use crate::section::Dof;
 use crate::units::ReducedFrequency;
 use crate::wind_tunnel::{TrainingMotion, TunnelPlan};

@@ -4,7 +4,8 @@ use super::options::{FeedThrough, Form};
 use super::testing::{onset_above, onset_m_s, table_alone};
 use super::{FitReport, fit_table};
 use super::{FrequencyFit, FrequencyWeights};
-use crate::aerodynamics::derivatives::{DerivativeTable, embedded};
+use crate::aerodynamics::derivatives::DerivativeTable;
+use crate::files::derivatives::embedded;
 use crate::section::Dof;
 use crate::trained_model::Model;
 

@@ -1,9 +1,9 @@
 //! Helpers of the tests of this module: the test points and records of the thesis, and an onset by plain bisection.
 
 use super::{Constraints, FrequencyFit, TimeFit};
-use crate::aerodynamics::derivatives::TABLE_3_2_FREQUENCIES_HZ;
 use crate::aerodynamics::{AerodynamicModel, Realizable};
 use crate::aeroelastic::CoupledSection;
+use crate::files::derivatives::TABLE_3_2_FREQUENCIES_HZ;
 use crate::section::SectionModel;
 use crate::units::ReducedFrequency;
 use crate::wind_tunnel::{Record, RecordSource, TunnelPlan};

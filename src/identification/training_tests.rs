@@ -5,9 +5,9 @@ use super::{
     DiscreteFit, FitReport, Form, FrequencyFit, OwnDecay, OwnFilters, PoleSearch, StaticTerm,
     TimeFit, fit_discrete, fit_records, fit_table,
 };
-use crate::aerodynamics::derivatives::embedded;
 use crate::aerodynamics::laguerre::{DiscreteTerm, impulse_response};
 use crate::aerodynamics::{AerodynamicModel, DiscreteLaguerre, LaguerreModel, RationalModel};
+use crate::files::derivatives::embedded;
 use crate::section::Dof;
 use crate::trained_model::Model;
 use crate::units::ReducedFrequency;

@@ -16,8 +16,8 @@ pub use user_case::{CASE_SCHEMA, Quantity, UserAerodynamics, UserCase, UserFigur
 
 use crate::aerodynamics::derivatives::Interpolation;
 use crate::error::{Error, Result};
+use crate::files::toml_lines;
 use crate::identification::{FrequencyFit, FrequencyWeights};
-use crate::toml_lines;
 use serde::{Deserialize, Serialize};
 
 /// The files of `data/reference`.

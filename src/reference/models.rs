@@ -1,13 +1,15 @@
 //! Models trained on records and tables, and tables read between their points.
 
 use super::flat_plate::{WIDE, WITHOUT_ROTARY, by_determinant, by_eigenvalues};
-use crate::aerodynamics::derivatives::{
-    DerivativeTable, Extrapolation, InterpolatedTable, Interpolation, embedded,
-};
+use crate::aerodynamics::derivatives::DerivativeTable;
+use crate::aerodynamics::derivatives::Extrapolation;
+use crate::aerodynamics::derivatives::InterpolatedTable;
+use crate::aerodynamics::derivatives::Interpolation;
 use crate::aerodynamics::laguerre::{alpha_lower_bound, alpha_upper_bound, impulse_response};
 use crate::aerodynamics::{AerodynamicModel, FlatPlate};
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
+use crate::files::derivatives::embedded;
 use crate::flutter::{Onset, divergence_speed, static_part};
 use crate::identification::{
     Constraints, DiscreteFit, FeedThrough, Form, FrequencyFit, FrequencyWeights, PoleSearch,

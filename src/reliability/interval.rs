@@ -1,7 +1,7 @@
 //! Confidence interval of a probability from counted samples.
 
-use crate::uncertainty::incomplete_beta;
 use crate::state_space::boundary;
+use crate::uncertainty::incomplete_beta;
 use std::convert::Infallible;
 
 /// Exact (Clopper–Pearson 1934) two-sided interval at the level `confidence` for `count` of `samples`.

@@ -3,7 +3,7 @@
 use super::distribution::Distribution;
 use super::parameter::Parameter;
 use crate::error::{Error, Result, positive};
-use crate::toml_lines;
+use crate::files::toml_lines;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::aerodynamics::RationalModel;
-use crate::aerodynamics::derivatives::embedded;
+use crate::files::derivatives::embedded;
 use crate::flutter::OnsetSearch;
 use crate::identification::{Constraints, Grid, GridAxis, TimeFit, TimeWeights};
 use crate::section::{Dof, SectionModel};

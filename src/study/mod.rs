@@ -39,9 +39,9 @@ pub use wind::{
 use crate::aerodynamics::derivatives::notation::StatedConvention;
 use crate::aerodynamics::derivatives::{Interpolation, Missing};
 use crate::error::{Error, Result, positive};
+use crate::files::toml_lines;
 use crate::identification::{DiscreteFit, FrequencyFit, TimeFit};
 use crate::section::SectionModel;
-use crate::toml_lines;
 use crate::wind_tunnel::TunnelPlan;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};

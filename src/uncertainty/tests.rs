@@ -1,9 +1,10 @@
 //! The two routes to the error of an onset against each other and against re-solved onsets.
 
 use super::*;
-use crate::aerodynamics::derivatives::{TransferSample, embedded};
+use crate::aerodynamics::derivatives::TransferSample;
 use crate::aerodynamics::{FlatPlate, RationalModel};
 use crate::aeroelastic::CoupledSection;
+use crate::files::derivatives::embedded;
 use crate::flutter::{Onset, OnsetSearch, find_onset};
 use crate::identification::{
     DiscreteFit, FeedThrough, Form, FrequencyFit, FrequencyWeights, PoleSearch, fit_discrete,

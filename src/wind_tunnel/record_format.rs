@@ -17,8 +17,9 @@
 //! ```
 
 use super::records::{RecordHeader, Segment};
-use crate::aerodynamics::derivatives::comment_header::{CommentHeader, Entry};
 use crate::error::{Error, Result};
+use crate::files::header_csv::CommentHeader;
+use crate::files::header_csv::Entry;
 use crate::section::Dof;
 use std::io::{BufRead, Write};
 use std::path::Path;

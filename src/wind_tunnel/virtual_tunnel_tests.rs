@@ -2,8 +2,10 @@
 
 use super::super::motion::RampedSine;
 use super::*;
-use crate::aerodynamics::derivatives::{Derivative, Part, embedded};
+use crate::aerodynamics::derivatives::Derivative;
+use crate::aerodynamics::derivatives::Part;
 use crate::aerodynamics::{RationalModel, Realizable, Realization};
+use crate::files::derivatives::embedded;
 use crate::units::ReducedFrequency;
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -327,13 +329,13 @@ fn tables_without_speeds_or_common_points_say_what_was_assumed() {
     let records = |change: fn(&str) -> String| {
         let mut text = Vec::new();
         let deck = embedded::deck("LN21-5200").unwrap();
-        crate::aerodynamics::derivatives::write_csv(&deck, &mut text).unwrap();
+        crate::files::derivatives::write_csv(&deck, &mut text).unwrap();
         let text: String = std::str::from_utf8(&text)
             .unwrap()
             .lines()
             .map(change)
             .collect();
-        let table = crate::aerodynamics::derivatives::parse_csv(&text).unwrap();
+        let table = crate::files::derivatives::parse_csv(&text).unwrap();
         TunnelPlan::default()
             .records_from_table(&table, &Dof::TWO)
             .unwrap()

@@ -27,10 +27,10 @@ pub const ARROWS: &[Row] = &[
     row("units", &[]),
     row("state_space", &[]),
     row("signal", &[]),
-    row("comparison", &["signal"]),
+    row("comparison", &["signal", "state_space"]),
     row("section", &["units"]),
     row("aerodynamics", &["units", "section", "state_space"]),
-    row("toml_lines", &[]),
+    row("files", &["aerodynamics+"]),
     row("plausibility", &[]),
     row(
         "wind_tunnel",
@@ -39,7 +39,7 @@ pub const ARROWS: &[Row] = &[
             "section",
             "aerodynamics",
             "signal",
-            "toml_lines",
+            "files",
             "plausibility",
         ],
     ),
@@ -70,7 +70,7 @@ pub const ARROWS: &[Row] = &[
     ),
     row(
         "reliability",
-        &["flutter+", "trained_model+", "toml_lines", "uncertainty"],
+        &["flutter+", "trained_model+", "files", "uncertainty"],
     ),
     row(
         "selection",
@@ -84,6 +84,18 @@ pub const ARROWS: &[Row] = &[
         types_only: true,
     },
     row("cli", &["report", "study+", "reference+", "reliability"]),
+    row(
+        "prelude",
+        &[
+            "flutter+",
+            "trained_model",
+            "files",
+            "fmu+",
+            "identification+",
+            "wind_tunnel+",
+            "study",
+        ],
+    ),
     row("main", &["cli+"]),
 ];
 
@@ -92,7 +104,7 @@ const BELOW_STUDY: &[&str] = &[
     "identification+",
     "wind_tunnel+",
     "comparison",
-    "toml_lines",
+    "files",
     "buffeting+",
     "uncertainty",
     "selection",

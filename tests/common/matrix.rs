@@ -2,8 +2,9 @@
 //! and three motions, wind from near zero to beyond the onset.
 
 use aerodeck::aerodynamics::RationalModel;
-use aerodeck::aerodynamics::derivatives::{DerivativeTable, embedded};
+use aerodeck::aerodynamics::derivatives::DerivativeTable;
 use aerodeck::aeroelastic::CoupledSection;
+use aerodeck::files::derivatives::embedded;
 use aerodeck::section::{SectionModel, Translation};
 
 /// A section with its name.

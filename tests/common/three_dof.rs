@@ -1,8 +1,8 @@
 //! The deck LN21-5200 with a lateral support: 18 derivatives, three degrees of freedom.
 
 use aerodeck::aerodynamics::Realizable;
-use aerodeck::aerodynamics::derivatives::embedded;
 use aerodeck::aeroelastic::CoupledSection;
+use aerodeck::files::derivatives::embedded;
 use aerodeck::identification::{Constraints, Form, FrequencyFit, fit_table};
 use aerodeck::section::{Dof, SectionModel, Translation};
 use aerodeck::trained_model::{Experiment, Provenance, SCHEMA_VERSION, TrainedModel};

@@ -15,7 +15,7 @@ from pathlib import Path
 import cvxpy as cp
 import numpy as np
 
-DATA = Path(__file__).parents[2] / "src/aerodynamics/derivatives/data"
+DATA = Path(__file__).parents[2] / "data/decks"
 PARTS = {  # entry: real, imaginary
     "yy": ("H4", "H1"), "yx": ("H6", "H5"), "yt": ("H3", "H2"),
     "xy": ("P6", "P5"), "xx": ("P4", "P1"), "xt": ("P3", "P2"),

@@ -47,7 +47,7 @@ impl FromStr for Missing {
 }
 
 /// Fills in `H4*`, `A4*` where the other derivatives of their row are there; a note says so.
-pub(super) fn fill_in(
+pub(crate) fn fill_in(
     points: &mut BTreeMap<Derivative, Vec<DerivativePoint>>,
     stated: Option<Missing>,
 ) -> Option<String> {

@@ -1,8 +1,8 @@
 //! Tests of the hints: silent on what is right, right on what is mislabelled.
 
-use super::super::embedded;
 use super::super::table::tests::flat_plate_table;
 use super::*;
+use crate::files::derivatives::embedded;
 
 /// What `deck`, written in `truth`, becomes when it is read as `label`.
 fn mislabelled(deck: &DerivativeTable, truth: Convention, label: Convention) -> DerivativeTable {

@@ -17,7 +17,7 @@ pub const UNITS: &str = "mean_speed_m_s in m/s; v_hat = V/(omega B) = 1/K and va
 const POINTS_AT_MOST: usize = 10_000;
 
 /// Refuses more test points than a table can have.
-pub(super) fn check_point_count(place: &str, count: usize) -> Result<()> {
+pub(crate) fn check_point_count(place: &str, count: usize) -> Result<()> {
     if count <= POINTS_AT_MOST {
         return Ok(());
     }
@@ -60,7 +60,7 @@ pub struct TableHeader {
 
 /// What is wrong with one point of a derivative; the reader adds where it stands.
 #[derive(Debug, PartialEq)]
-pub(super) struct PointProblem {
+pub(crate) struct PointProblem {
     /// Position in test order, from 0.
     pub index: usize,
     pub expected: String,
@@ -317,7 +317,7 @@ fn check_speeds_agree(points: &BTreeMap<Derivative, Vec<DerivativePoint>>) -> Re
 }
 
 /// The first point of one derivative that cannot be right, if any.
-pub(super) fn check_points(points: &[DerivativePoint]) -> Option<PointProblem> {
+pub(crate) fn check_points(points: &[DerivativePoint]) -> Option<PointProblem> {
     let problem = |index: usize, expected: &str, found: String| {
         Some(PointProblem {
             index,

@@ -69,7 +69,7 @@ pub struct StaticCoefficients {
 
 /// What is wrong with one row; the reader adds where it stands.
 #[derive(Debug, PartialEq)]
-pub(super) struct RowProblem {
+pub(crate) struct RowProblem {
     /// Position, from 0.
     pub index: usize,
     pub expected: String,
@@ -160,7 +160,7 @@ impl StaticCoefficients {
 }
 
 /// The first thing that is wrong with the rows.
-pub(super) fn check_rows(rows: &[CoefficientRow]) -> Option<RowProblem> {
+pub(crate) fn check_rows(rows: &[CoefficientRow]) -> Option<RowProblem> {
     let problem = |index, expected: &str, found: String| {
         Some(RowProblem {
             index,

@@ -121,8 +121,10 @@ impl Realizable for LinearQuasiSteady {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{QuasiSteady, RelativeWind, embedded};
+    use super::super::QuasiSteady;
+    use super::super::RelativeWind;
     use super::*;
+    use crate::files::coefficients::embedded;
 
     /// Fourth-order central difference: error `h⁴/30` of the fifth derivative plus rounding over `h`, both near 1e-12.
     fn derivative(f: impl Fn(f64) -> [f64; 3]) -> [f64; 3] {

@@ -2,10 +2,12 @@
 
 use super::*;
 use crate::aerodynamics::RationalModel;
-use crate::aerodynamics::quasi_steady::{Arms, QuasiSteady, embedded};
+use crate::aerodynamics::quasi_steady::Arms;
+use crate::aerodynamics::quasi_steady::QuasiSteady;
 use crate::buffeting::{
     Admittance, Gust, GustForces, GustSpectrum, SpectrumShape, Turbulence, buffeting_response,
 };
+use crate::files::coefficients::embedded;
 use crate::section::{SectionModel, Structure, Translation};
 use nalgebra::{Complex, DVector};
 use rustfft::FftPlanner;

@@ -1,11 +1,11 @@
 //! `aerodeck campaign virtual`: a raw campaign with a known truth.
 
-use crate::aerodynamics::derivatives::named_table;
 use crate::aerodynamics::{FlatPlate, RationalModel};
 use crate::cli::answer::Answer;
 use crate::cli::output::{OutputDir, list};
 use crate::cli::progress::Progress;
 use crate::error::{Error, Result};
+use crate::files::derivatives::named_table;
 use crate::section::Dof;
 use crate::wind_tunnel::campaign::{FileFormat, write_virtual_campaign};
 use crate::wind_tunnel::virtual_campaign::{VirtualCampaign, VirtualCampaignPlan};

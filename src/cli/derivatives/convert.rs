@@ -1,10 +1,11 @@
 //! `aerodeck derivatives convert`: the same derivatives in another notation.
 
 use super::TableArgs;
-use crate::aerodynamics::derivatives::{workbook_bytes_in, write_csv_in};
 use crate::cli::answer::Answer;
 use crate::cli::output::{OutputDir, list};
 use crate::error::{Error, Result};
+use crate::files::derivatives::workbook_bytes_in;
+use crate::files::derivatives::write_csv_in;
 use std::path::{Path, PathBuf};
 
 /// Write a table of derivatives in another notation, argument or axes; the result states them

@@ -5,13 +5,16 @@ mod notations;
 mod show;
 
 use super::answer::Answer;
+use crate::aerodynamics::derivatives::DerivativeTable;
+use crate::aerodynamics::derivatives::Missing;
 use crate::aerodynamics::derivatives::notation::{
     Argument, Axes, Convention, Notation, StatedConvention,
 };
-use crate::aerodynamics::derivatives::{
-    DerivativeTable, Missing, ReadOptions, embedded, is_table_file, read_table_with,
-};
 use crate::error::Result;
+use crate::files::derivatives::ReadOptions;
+use crate::files::derivatives::embedded;
+use crate::files::derivatives::is_table_file;
+use crate::files::derivatives::read_table_with;
 use clap::Subcommand;
 
 /// Show tables of aerodynamic derivatives and convert them between notations

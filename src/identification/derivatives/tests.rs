@@ -1,8 +1,10 @@
 //! Derivatives of records whose transfer matrix is known.
 
 use super::*;
-use crate::aerodynamics::derivatives::{Derivative, Part, embedded};
+use crate::aerodynamics::derivatives::Derivative;
+use crate::aerodynamics::derivatives::Part;
 use crate::aerodynamics::{AerodynamicModel, RationalModel};
+use crate::files::derivatives::embedded;
 use crate::section::Dof;
 use crate::units::ReducedFrequency;
 use crate::wind_tunnel::{Record, TunnelPlan};

@@ -1,6 +1,6 @@
 use super::*;
-use crate::aerodynamics::derivatives::embedded;
 use crate::aerodynamics::{AerodynamicModel, FlatPlate};
+use crate::files::derivatives::embedded;
 use crate::identification::testing::{onset_m_s, records, sources};
 use crate::units::ReducedFrequency;
 use crate::wind_tunnel::TunnelPlan;

@@ -1,10 +1,10 @@
 //! Lags of each force, minimum state, weights of entries, regularisation; degenerate lags are said.
 
 use super::*;
-use crate::aerodynamics::derivatives::embedded;
 use crate::aerodynamics::{
     AerodynamicModel, FlatPlate, Lags, MinimumStateModel, RationalModel, Realizable,
 };
+use crate::files::derivatives::embedded;
 use crate::identification::options::PoleSearch;
 use crate::identification::testing::{eight_k, onset_m_s, records_alone, table_alone};
 use crate::identification::{TimeFit, sample_model};

@@ -1,10 +1,12 @@
 //! Loads the forces of a case and computes its figures.
 
 use super::{Quantity, UserCase, UserFigure};
-use crate::aerodynamics::derivatives::{Extrapolation, InterpolatedTable, named_table};
+use crate::aerodynamics::derivatives::Extrapolation;
+use crate::aerodynamics::derivatives::InterpolatedTable;
 use crate::aerodynamics::{AerodynamicModel, FlatPlate, Lags, RationalModel};
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
+use crate::files::derivatives::named_table;
 use crate::flutter::{
     FlutterSearch, Onset, OnsetMethod, OnsetSearch, determinant_onset, divergence_speed,
     find_onset, pk_onset, quasi_pk_mode, sanity_lines, static_part,

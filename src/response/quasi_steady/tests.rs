@@ -2,8 +2,10 @@
 
 use super::*;
 use crate::aerodynamics::Realizable;
-use crate::aerodynamics::quasi_steady::{Arms, LinearQuasiSteady, embedded};
+use crate::aerodynamics::quasi_steady::Arms;
+use crate::aerodynamics::quasi_steady::LinearQuasiSteady;
 use crate::aeroelastic::{CoupledSection, StaticEquilibrium, static_equilibria};
+use crate::files::coefficients::embedded;
 use crate::response::{Inputs, Stepper};
 use crate::section::{SectionModel, Translation};
 

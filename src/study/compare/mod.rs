@@ -19,8 +19,9 @@ pub use models::{History, ModelsComparison, Rival, compare_models};
 pub use score::{ForceMetrics, Score, ScoreSummary, Scoring, score_table, summaries};
 pub use statements::Statement;
 
-use crate::aerodynamics::derivatives::{DerivativeTable, embedded};
+use crate::aerodynamics::derivatives::DerivativeTable;
 use crate::error::{Error, Result};
+use crate::files::derivatives::embedded;
 use crate::identification::{Constraints, DiscreteFit, Form, FrequencyFit, FrequencyWeights};
 use crate::section::Dof;
 use crate::wind_tunnel::{Record, TunnelPlan};

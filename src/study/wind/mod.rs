@@ -7,14 +7,17 @@ pub use buffeting::{BuffetingStudy, SpectrumCurve, SpeedLeftOut, TimeDomain, buf
 pub use quasi_steady::{QuasiSteadyStudy, SimulatedMotion, quasi_steady_study, simulated_motion};
 
 use super::{FlutterBlock, SpeedRange};
-use crate::aerodynamics::derivatives::{Extrapolation, InterpolatedTable, named_table};
-use crate::aerodynamics::quasi_steady::{
-    Arms, QuasiSteady, StaticCoefficients, named_coefficients,
-};
+use crate::aerodynamics::derivatives::Extrapolation;
+use crate::aerodynamics::derivatives::InterpolatedTable;
+use crate::aerodynamics::quasi_steady::Arms;
+use crate::aerodynamics::quasi_steady::QuasiSteady;
+use crate::aerodynamics::quasi_steady::StaticCoefficients;
 use crate::buffeting::{TimePlan, Turbulence};
 use crate::error::{Error, Result, positive};
+use crate::files::coefficients::named_coefficients;
+use crate::files::derivatives::named_table;
+use crate::files::toml_lines;
 use crate::section::{Dof, SectionModel};
-use crate::toml_lines;
 use crate::trained_model::TrainedModel;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};

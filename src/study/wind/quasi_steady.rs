@@ -1,13 +1,14 @@
 //! Quasi-steady theory of a wind file: equilibria, linear model, onset, a nonlinear run.
 
 use super::{SimulationBlock, WindStudy};
+use crate::aerodynamics::GustSeries;
 use crate::aerodynamics::quasi_steady::{
     CoefficientRow, CoefficientsAt, LinearQuasiSteady, QuasiSteady,
 };
-use crate::aerodynamics::{GustSeries, read_gusts};
 use crate::aeroelastic::{CoupledSection, EquilibriumPath, StaticEquilibrium, static_equilibria};
 use crate::buffeting::{BuffetingProblem, GustForces, synthesise};
 use crate::error::{Error, Result};
+use crate::files::gusts::read_gusts;
 use crate::flutter::{FlutterCurves, QuasiSteadyOnset, quasi_steady_modes, quasi_steady_onset};
 use crate::response::{Inputs, NonlinearSection, Stepper};
 use crate::section::{Dof, Structure};

@@ -2,7 +2,7 @@
 
 use super::plan::VirtualCampaignPlan;
 use crate::error::{Error, Result};
-use crate::toml_lines;
+use crate::files::toml_lines;
 use std::path::Path;
 
 impl VirtualCampaignPlan {

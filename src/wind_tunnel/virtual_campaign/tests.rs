@@ -1,8 +1,8 @@
 //! The recordings against mechanics written out by hand, and the disturbances against what they should be.
 
 use super::*;
-use crate::aerodynamics::derivatives::embedded;
 use crate::aerodynamics::{AerodynamicModel, RationalModel};
+use crate::files::derivatives::embedded;
 use crate::section::Dof;
 use crate::units::ReducedFrequency;
 use crate::wind_tunnel::{RawRecording, Rig};

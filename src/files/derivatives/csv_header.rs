@@ -1,9 +1,16 @@
 //! Head of a file of derivatives: where the table comes from, and in which convention it is written.
 
-use super::comment_header::{CommentHeader, Entry};
-use super::notation::{Argument, Axes, Convention, Notation, StatedConvention};
-use super::{SIGN_CONVENTION, TableHeader, UNITS};
+use crate::aerodynamics::derivatives::SIGN_CONVENTION;
+use crate::aerodynamics::derivatives::TableHeader;
+use crate::aerodynamics::derivatives::UNITS;
+use crate::aerodynamics::derivatives::notation::Argument;
+use crate::aerodynamics::derivatives::notation::Axes;
+use crate::aerodynamics::derivatives::notation::Convention;
+use crate::aerodynamics::derivatives::notation::Notation;
+use crate::aerodynamics::derivatives::notation::StatedConvention;
 use crate::error::{Error, Result};
+use crate::files::header_csv::CommentHeader;
+use crate::files::header_csv::Entry;
 use std::io::Write;
 
 /// First line of the file: the one that is written, and that of files whose convention could only be the crate's own.

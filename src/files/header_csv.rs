@@ -1,4 +1,4 @@
-//! The `# key: value` lines at the head of this project's CSV files, read and written in one place.
+//! What all CSV files of this project share: `# key: value` lines at the head, columns by name, numbers with their place.
 
 use crate::error::{Error, Result};
 use std::io::Write;
@@ -142,5 +142,56 @@ impl Entry {
     /// The value as a positive number.
     pub fn positive(&self) -> Result<f64> {
         crate::error::positive(&self.place(), self.number()?)
+    }
+}
+/// Positions of the `wanted` columns among `names`, which may stand in any order.
+pub(crate) fn find_columns<const N: usize>(
+    names: &csv::StringRecord,
+    wanted: [&str; N],
+    line: usize,
+) -> Result<[usize; N]> {
+    let mut columns = [0; N];
+    for (column, wanted) in columns.iter_mut().zip(wanted) {
+        *column = names
+            .iter()
+            .position(|name| name == wanted)
+            .ok_or_else(|| missing_column(names, line, wanted))?;
+    }
+    Ok(columns)
+}
+
+pub(crate) fn missing_column(names: &csv::StringRecord, line: usize, wanted: &str) -> Error {
+    let found = names.iter().collect::<Vec<_>>().join(",");
+    Error::input(
+        format!("line {line}"),
+        format!("a column `{wanted}`"),
+        format!("`{found}`"),
+    )
+}
+
+/// The number in one cell.
+pub(crate) fn number(place: &str, text: &str) -> Result<f64> {
+    text.parse()
+        .map_err(|_| Error::input(place, "a number", format!("`{text}`")))
+}
+
+/// The same error at a better place.
+pub(crate) fn at_place(error: Error, place: &str) -> Error {
+    match error {
+        Error::Input(input) => Error::input(place, input.expected, input.found),
+        other => other,
+    }
+}
+
+/// An error of the CSV reader as one of ours, with the line.
+pub(crate) fn csv_error(error: csv::Error) -> Error {
+    let place = error
+        .position()
+        .map_or_else(String::new, |p| format!("line {}", p.line()));
+    match error.kind() {
+        csv::ErrorKind::UnequalLengths {
+            expected_len, len, ..
+        } => Error::input(place, format!("{expected_len} columns"), len.to_string()),
+        _ => Error::input(place, "a CSV row", error.to_string()),
     }
 }

@@ -4,19 +4,35 @@
 //! speeds and eight frequencies. MIT License, Copyright (c) 2022 juelpb; the text is in `data/LICENSE`.
 //! The files were written by `cargo run --example import_workbook` and hold the figures at full precision.
 
-use super::{DerivativeTable, parse_csv};
+use crate::aerodynamics::derivatives::DerivativeTable;
 use crate::error::{Error, Result};
+use crate::files::derivatives::parse_csv;
 
 /// Licence text of the embedded figures.
-pub const LICENCE: &str = include_str!("data/LICENSE");
+pub const LICENCE: &str = include_str!("../../../data/decks/LICENSE");
 
 /// Name and content of each file.
 const DECKS: [(&str, &str); 5] = [
-    ("LN20-5500", include_str!("data/LN20-5500.csv")),
-    ("LN21-5200", include_str!("data/LN21-5200.csv")),
-    ("LN21-5500", include_str!("data/LN21-5500.csv")),
-    ("LN21-5800", include_str!("data/LN21-5800.csv")),
-    ("LN21-6100", include_str!("data/LN21-6100.csv")),
+    (
+        "LN20-5500",
+        include_str!("../../../data/decks/LN20-5500.csv"),
+    ),
+    (
+        "LN21-5200",
+        include_str!("../../../data/decks/LN21-5200.csv"),
+    ),
+    (
+        "LN21-5500",
+        include_str!("../../../data/decks/LN21-5500.csv"),
+    ),
+    (
+        "LN21-5800",
+        include_str!("../../../data/decks/LN21-5800.csv"),
+    ),
+    (
+        "LN21-6100",
+        include_str!("../../../data/decks/LN21-6100.csv"),
+    ),
 ];
 
 /// Names of the embedded decks.
@@ -43,8 +59,8 @@ pub fn deck(name: &str) -> Result<DerivativeTable> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use crate::aerodynamics::derivatives::Derivative;
+    use crate::files::derivatives::embedded::*;
     use crate::section::Dof;
 
     #[test]

@@ -3,15 +3,19 @@
 //! The thin flat plate in closed form, and a box girder made up for examples and tests: its figures are of the size
 //! measured on streamlined decks, but no deck has been tested for them.
 
-use super::{StaticCoefficients, parse_coefficients};
+use crate::aerodynamics::quasi_steady::StaticCoefficients;
 use crate::error::{Error, Result};
+use crate::files::coefficients::parse_coefficients;
 
 /// Name and content of each file.
 const TABLES: [(&str, &str); 2] = [
-    ("flat plate", include_str!("data/flat_plate.csv")),
+    (
+        "flat plate",
+        include_str!("../../../data/coefficients/flat_plate.csv"),
+    ),
     (
         "synthetic box girder",
-        include_str!("data/synthetic_box_girder.csv"),
+        include_str!("../../../data/coefficients/synthetic_box_girder.csv"),
     ),
 ];
 
@@ -38,7 +42,7 @@ pub fn coefficients(name: &str) -> Result<StaticCoefficients> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use crate::files::coefficients::embedded::*;
     use std::f64::consts::PI;
 
     #[test]

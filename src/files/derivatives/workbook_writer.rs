@@ -4,10 +4,16 @@
 //! table does not hold have no columns. A fourth sheet, `Notes`, which other readers of the layout do not look at, says where
 //! the figures come from, in which convention they are, and which width belongs to them.
 
-use super::notation::{Convention, ExpressedPoint, ExpressedTable};
-use super::workbook::{DERIVATIVES, NOTES, REDUCED_VELOCITIES, SPEEDS};
-use super::{Derivative, DerivativeTable};
+use crate::aerodynamics::derivatives::Derivative;
+use crate::aerodynamics::derivatives::DerivativeTable;
+use crate::aerodynamics::derivatives::notation::Convention;
+use crate::aerodynamics::derivatives::notation::ExpressedPoint;
+use crate::aerodynamics::derivatives::notation::ExpressedTable;
 use crate::error::{Error, Result};
+use crate::files::derivatives::workbook::DERIVATIVES;
+use crate::files::derivatives::workbook::NOTES;
+use crate::files::derivatives::workbook::REDUCED_VELOCITIES;
+use crate::files::derivatives::workbook::SPEEDS;
 use rust_xlsxwriter::{Workbook, Worksheet, XlsxError};
 use std::path::Path;
 
@@ -107,8 +113,10 @@ fn write_notes(
 
 #[cfg(test)]
 mod tests {
-    use super::super::{WorkbookOptions, embedded, read_workbook};
-    use super::*;
+    use crate::files::derivatives::WorkbookOptions;
+    use crate::files::derivatives::embedded;
+    use crate::files::derivatives::read_workbook;
+    use crate::files::derivatives::workbook_writer::*;
     use std::collections::BTreeMap;
 
     fn round_trip(table: &DerivativeTable) -> DerivativeTable {
@@ -169,8 +177,9 @@ mod tests {
     /// In every notation, with nothing stated: the notes are obeyed, and a contradiction is refused.
     #[test]
     fn notes_state_the_convention() {
-        use super::super::notation::{Notation, StatedConvention};
-        use super::super::read_workbook_in;
+        use crate::aerodynamics::derivatives::notation::Notation;
+        use crate::aerodynamics::derivatives::notation::StatedConvention;
+        use crate::files::derivatives::read_workbook_in;
         let table = embedded::deck("LN21-5200").unwrap();
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("w.xlsx");

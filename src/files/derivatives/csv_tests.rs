@@ -1,7 +1,7 @@
 //! Tests of the file of derivatives.
 
-use super::super::embedded;
-use super::*;
+use crate::files::derivatives::csv_file::*;
+use crate::files::derivatives::embedded;
 
 fn written(table: &DerivativeTable) -> String {
     let mut out = Vec::new();
@@ -108,8 +108,8 @@ fn first_format() -> String {
     format!(
         "# aerodeck derivative table 1\n# name: LN21-5200\n# source: NTNU\n# licence: MIT\n# units: {}\n\
          # sign_convention: {}\n# generator: x\n# width_m: 0.5023\n# model_length_m: 2.68\nderivative,point{rows}",
-        super::super::UNITS,
-        super::super::SIGN_CONVENTION,
+        crate::aerodynamics::derivatives::UNITS,
+        crate::aerodynamics::derivatives::SIGN_CONVENTION,
     )
 }
 

@@ -14,13 +14,19 @@
 //!
 //! Angles rise from row to row. Numbers are written with as many digits as it takes to read the same double back.
 
-use super::coefficients::check_rows;
-use super::{
-    CoefficientRow, CoefficientsHeader, StaticCoefficients, TABLE_SIGN_CONVENTION, TABLE_UNITS,
-};
-use crate::aerodynamics::derivatives::comment_header::CommentHeader;
-use crate::aerodynamics::derivatives::csv_file::{csv_error, find_columns, number};
+pub mod embedded;
+
+use crate::aerodynamics::quasi_steady::CoefficientRow;
+use crate::aerodynamics::quasi_steady::CoefficientsHeader;
+use crate::aerodynamics::quasi_steady::StaticCoefficients;
+use crate::aerodynamics::quasi_steady::TABLE_SIGN_CONVENTION;
+use crate::aerodynamics::quasi_steady::TABLE_UNITS;
+use crate::aerodynamics::quasi_steady::coefficients::check_rows;
 use crate::error::{Error, Result};
+use crate::files::header_csv::CommentHeader;
+use crate::files::header_csv::csv_error;
+use crate::files::header_csv::find_columns;
+use crate::files::header_csv::number;
 use std::io::Write;
 use std::path::Path;
 
@@ -134,10 +140,25 @@ fn read_rows(text: &str, names_line: usize) -> Result<(Vec<CoefficientRow>, Vec<
     Ok((rows, lines))
 }
 
+/// The static coefficients of that name: an embedded table, or a file (`.csv`) whose path is read against `directory`.
+///
+/// # Errors
+/// Those of [`embedded::coefficients`] and [`read_coefficients`].
+pub fn named_coefficients(
+    name: &str,
+    directory: &std::path::Path,
+) -> crate::Result<StaticCoefficients> {
+    if name.to_lowercase().ends_with(".csv") {
+        read_coefficients(directory.join(name))
+    } else {
+        embedded::coefficients(name)
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::super::embedded;
-    use super::*;
+    use crate::files::coefficients::embedded;
+    use crate::files::coefficients::*;
 
     fn written(table: &StaticCoefficients) -> String {
         let mut out = Vec::new();

@@ -12,10 +12,12 @@
 //!
 //! Times start at zero and are equally spaced.
 
-use super::GustSeries;
-use crate::aerodynamics::derivatives::comment_header::CommentHeader;
-use crate::aerodynamics::derivatives::csv_file::{csv_error, find_columns, number};
+use crate::aerodynamics::GustSeries;
 use crate::error::{Error, Result};
+use crate::files::header_csv::CommentHeader;
+use crate::files::header_csv::csv_error;
+use crate::files::header_csv::find_columns;
+use crate::files::header_csv::number;
 use std::io::Write;
 use std::path::Path;
 
@@ -122,7 +124,7 @@ pub fn write_gusts(
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use crate::files::gusts::*;
 
     fn written() -> String {
         let gusts =

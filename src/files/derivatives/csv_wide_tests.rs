@@ -1,8 +1,11 @@
 //! Tests of wide tables.
 
-use super::super::notation::{Notation, StatedConvention};
-use super::super::{Missing, embedded, read_csv_with};
-use super::*;
+use crate::aerodynamics::derivatives::Missing;
+use crate::aerodynamics::derivatives::notation::Notation;
+use crate::aerodynamics::derivatives::notation::StatedConvention;
+use crate::files::derivatives::csv_wide::*;
+use crate::files::derivatives::embedded;
+use crate::files::derivatives::read_csv_with;
 use crate::section::Dof;
 
 fn read(text: &str, options: &ReadOptions) -> Result<DerivativeTable> {

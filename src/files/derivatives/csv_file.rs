@@ -22,13 +22,23 @@
 //! double back. The mean speed may be left empty throughout. Files of the first format, without notation, argument and
 //! axes but with a `sign_convention`, are read as what they are: Scanlan with ½ over V̂, heave up.
 
-use super::csv_header::{Head, write_head};
-use super::csv_wide;
-use super::missing::fill_in;
-use super::notation::{Argument, Convention, ExpressedPoint, StatedConvention};
-use super::table::{check_point_count, check_points};
-use super::{Derivative, DerivativePoint, DerivativeTable, ReadOptions, TableHeader};
+use crate::aerodynamics::derivatives::Derivative;
+use crate::aerodynamics::derivatives::DerivativePoint;
+use crate::aerodynamics::derivatives::DerivativeTable;
+use crate::aerodynamics::derivatives::TableHeader;
+use crate::aerodynamics::derivatives::missing::fill_in;
+use crate::aerodynamics::derivatives::notation::Argument;
+use crate::aerodynamics::derivatives::notation::Convention;
+use crate::aerodynamics::derivatives::notation::ExpressedPoint;
+use crate::aerodynamics::derivatives::notation::StatedConvention;
+use crate::aerodynamics::derivatives::table::check_point_count;
+use crate::aerodynamics::derivatives::table::check_points;
 use crate::error::{Error, Result};
+use crate::files::derivatives::ReadOptions;
+use crate::files::derivatives::csv_header::Head;
+use crate::files::derivatives::csv_header::write_head;
+use crate::files::derivatives::csv_wide;
+use crate::files::header_csv::{at_place, csv_error, find_columns, missing_column, number};
 use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::Path;
@@ -278,58 +288,6 @@ fn find_argument(names: &csv::StringRecord, line: usize) -> Result<Argument> {
             "one column of reduced velocities or frequencies",
             format!("`{first}` and `{second}`"),
         )),
-    }
-}
-
-/// Positions of the `wanted` columns among `names`, which may stand in any order.
-pub(in crate::aerodynamics) fn find_columns<const N: usize>(
-    names: &csv::StringRecord,
-    wanted: [&str; N],
-    line: usize,
-) -> Result<[usize; N]> {
-    let mut columns = [0; N];
-    for (column, wanted) in columns.iter_mut().zip(wanted) {
-        *column = names
-            .iter()
-            .position(|name| name == wanted)
-            .ok_or_else(|| missing_column(names, line, wanted))?;
-    }
-    Ok(columns)
-}
-
-fn missing_column(names: &csv::StringRecord, line: usize, wanted: &str) -> Error {
-    let found = names.iter().collect::<Vec<_>>().join(",");
-    Error::input(
-        format!("line {line}"),
-        format!("a column `{wanted}`"),
-        format!("`{found}`"),
-    )
-}
-
-/// The number in one cell.
-pub(in crate::aerodynamics) fn number(place: &str, text: &str) -> Result<f64> {
-    text.parse()
-        .map_err(|_| Error::input(place, "a number", format!("`{text}`")))
-}
-
-/// The same error at a better place.
-fn at_place(error: Error, place: &str) -> Error {
-    match error {
-        Error::Input(input) => Error::input(place, input.expected, input.found),
-        other => other,
-    }
-}
-
-/// An error of the CSV reader as one of ours, with the line.
-pub(in crate::aerodynamics) fn csv_error(error: csv::Error) -> Error {
-    let place = error
-        .position()
-        .map_or_else(String::new, |p| format!("line {}", p.line()));
-    match error.kind() {
-        csv::ErrorKind::UnequalLengths {
-            expected_len, len, ..
-        } => Error::input(place, format!("{expected_len} columns"), len.to_string()),
-        _ => Error::input(place, "a CSV row", error.to_string()),
     }
 }
 

@@ -1,0 +1,97 @@
+//! Tables of derivatives: header-CSV, wide CSV, NTNU workbooks, and the measured decks that come with the program.
+
+mod csv_file;
+mod csv_header;
+mod csv_wide;
+pub mod embedded;
+mod workbook;
+mod workbook_writer;
+mod xlsx_cells;
+
+pub use csv_file::{
+    CSV_COLUMNS, parse_csv, parse_csv_in, read_csv, read_csv_in, read_csv_with, write_csv,
+    write_csv_in, write_points,
+};
+pub use workbook::{TABLE_3_2_FREQUENCIES_HZ, WorkbookOptions, read_workbook, read_workbook_in};
+pub use workbook_writer::{workbook_bytes, workbook_bytes_in, write_workbook};
+
+use crate::aerodynamics::derivatives::{DerivativeTable, Missing, notation};
+
+/// Whether `name` means a file that holds a table, not an embedded deck: it ends in `.csv` or `.xlsx`.
+pub fn is_table_file(name: &str) -> bool {
+    let name = name.to_lowercase();
+    name.ends_with(".csv") || name.ends_with(".xlsx")
+}
+
+/// The table of that name: an embedded deck, or a file whose path is read against `directory`.
+///
+/// # Errors
+/// Those of [`embedded::deck`] and [`read_table`].
+pub fn named_table(name: &str, directory: &std::path::Path) -> crate::Result<DerivativeTable> {
+    if is_table_file(name) {
+        read_table(directory.join(name))
+    } else {
+        embedded::deck(name)
+    }
+}
+
+/// What a file of derivatives does not say of itself.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct ReadOptions {
+    /// Notation, argument and axes; what the file states must not contradict them.
+    pub convention: notation::StatedConvention,
+    /// Width of the section model, m.
+    pub width_m: Option<f64>,
+    /// Frequencies of motion of a workbook in test order, Hz, from which its width follows.
+    pub frequencies_hz: Option<Vec<f64>>,
+    /// What stands for H4*, A4* when there are none; zero when nothing is stated.
+    pub missing: Option<Missing>,
+}
+
+/// Reads a table from `path`: an NTNU workbook when the name ends in `.xlsx`, else a CSV.
+///
+/// # Errors
+/// Those of [`read_workbook`] and [`read_csv`].
+pub fn read_table(path: impl AsRef<std::path::Path>) -> crate::Result<DerivativeTable> {
+    read_table_with(path, &ReadOptions::default()).map(|(table, _)| table)
+}
+
+/// The same with what the caller states about the convention of the file; the second value is the one the file is in.
+///
+/// # Errors
+/// Those of [`read_workbook`] and [`read_csv_with`].
+pub fn read_table_in(
+    path: impl AsRef<std::path::Path>,
+    stated: notation::StatedConvention,
+) -> crate::Result<(DerivativeTable, notation::Convention)> {
+    let options = ReadOptions {
+        convention: stated,
+        ..ReadOptions::default()
+    };
+    read_table_with(path, &options)
+}
+
+/// The same with all that can be stated.
+///
+/// # Errors
+/// Those of [`read_workbook`] and [`read_csv_with`].
+pub fn read_table_with(
+    path: impl AsRef<std::path::Path>,
+    options: &ReadOptions,
+) -> crate::Result<(DerivativeTable, notation::Convention)> {
+    let path = path.as_ref();
+    let is_workbook = path
+        .extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case("xlsx"));
+    if !is_workbook {
+        return read_csv_with(path, options);
+    }
+    let options = WorkbookOptions {
+        width_m: options.width_m,
+        convention: options.convention,
+        frequencies_hz: options.frequencies_hz.clone(),
+        missing: options.missing,
+        ..WorkbookOptions::default()
+    };
+    read_workbook_in(path, &options)
+}
