@@ -1,7 +1,7 @@
 //! Distributions of single parameters, as they stand in the file.
 
 use super::probability::{cdf, quantile};
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result, finite, positive};
 use serde::{Deserialize, Serialize};
 
 /// Probability that must be left between the ends of a truncated distribution.
@@ -109,13 +109,6 @@ impl Distribution {
             }
         }
     }
-}
-
-fn finite(place: &str, value: f64) -> Result<f64> {
-    if value.is_finite() {
-        return Ok(value);
-    }
-    Err(Error::input(place, "a finite number", value.to_string()))
 }
 
 impl Gaussian {

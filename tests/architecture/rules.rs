@@ -27,7 +27,7 @@ pub const ARROWS: &[Row] = &[
     row("units", &[]),
     row("state_space", &[]),
     row("signal", &[]),
-    row("comparison", &["signal"]),
+    row("comparison", &["signal", "state_space"]),
     row("section", &["units"]),
     row("aerodynamics", &["units", "section", "state_space"]),
     row("toml_lines", &[]),
