@@ -13,12 +13,14 @@
 
 mod equilibrium;
 
-pub use equilibrium::{EquilibriumEnd, EquilibriumPath, StaticEquilibrium, static_equilibria};
+pub use equilibrium::{
+    EquilibriumEnd, EquilibriumPath, LastEquilibrium, StaticEquilibrium, static_equilibria,
+};
 
 use crate::aerodynamics::{ContinuousRealization, DiscreteRealization, Realizable, Realization};
 use crate::error::{Error, Result, non_negative, positive};
 use crate::section::Structure;
-use crate::state_space::{Continuous, Discrete, StateSpace, c2d, eigenvalues, first_order};
+use crate::state_space::{Continuous, Discrete, StateSpace, c2d, first_order};
 use nalgebra::{Complex, DMatrix};
 
 /// An elastically suspended section with a realised aerodynamic model.
@@ -45,16 +47,11 @@ impl CoupledSystem {
     /// Eigenvalues in continuous time, rad/s (`ln z / Δt` for the sampled system).
     ///
     /// # Errors
-    /// Those of [`eigenvalues`].
+    /// Those of [`StateSpace::poles`].
     pub fn eigenvalues(&self) -> Result<Vec<Complex<f64>>> {
         match self {
-            Self::Continuous(s) => eigenvalues(&s.a),
-            Self::Sampled(s) => Ok(eigenvalues(&s.a)?
-                .into_iter()
-                // a pole at the origin has died out after one step: no finite rate describes it
-                .filter(|z| z.norm() > f64::MIN_POSITIVE)
-                .map(|z| z.ln() / s.time.step)
-                .collect()),
+            Self::Continuous(s) => s.poles(),
+            Self::Sampled(s) => s.poles(),
         }
     }
 
@@ -152,7 +149,7 @@ impl CoupledSection {
         match &self.aerodynamics {
             Realization::Continuous(c) => {
                 non_negative("wind speed", speed_m_s)?;
-                self.continuous_at(c, speed_m_s)
+                self.coupled_with(c, speed_m_s)
                     .map(CoupledSystem::Continuous)
             }
             Realization::Discrete(d) => {
@@ -162,7 +159,18 @@ impl CoupledSection {
         }
     }
 
-    fn continuous_at(
+    /// The coupled system of a continuous model at the wind speed `V` (m/s).
+    ///
+    /// # Errors
+    /// [`Error::Numerical`] for a sampled model; those of [`CoupledSection::at`].
+    pub(crate) fn continuous_at(&self, speed_m_s: f64) -> Result<StateSpace<Continuous>> {
+        match self.at(speed_m_s)? {
+            CoupledSystem::Continuous(s) => Ok(s),
+            CoupledSystem::Sampled(_) => Err(Error::Numerical("step: the model is sampled".into())),
+        }
+    }
+
+    fn coupled_with(
         &self,
         aero: &ContinuousRealization,
         speed: f64,
@@ -278,7 +286,7 @@ impl CoupledSection {
         non_negative("wind speed", speed_m_s)?;
         match &self.aerodynamics {
             Realization::Continuous(c) => {
-                let system = self.continuous_at(c, speed_m_s)?;
+                let system = self.coupled_with(c, speed_m_s)?;
                 Ok((system.c, system.d))
             }
             Realization::Discrete(d) => {

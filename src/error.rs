@@ -155,6 +155,29 @@ pub fn positive(place: &str, value: f64) -> Result<f64> {
     }
 }
 
+/// `value` if it is finite.
+///
+/// # Errors
+/// [`Error::Input`] naming `place` otherwise.
+pub fn finite(place: &str, value: f64) -> Result<f64> {
+    if value.is_finite() {
+        return Ok(value);
+    }
+    Err(Error::input(place, "a finite number", value.to_string()))
+}
+
+/// Nothing if `values` are `count` finite numbers.
+///
+/// # Errors
+/// [`Error::Input`] naming `place` otherwise.
+pub fn finite_numbers(place: &str, values: &[f64], count: usize) -> Result<()> {
+    if values.len() == count && values.iter().all(|x| x.is_finite()) {
+        return Ok(());
+    }
+    let expected = format!("{count} finite numbers");
+    Err(Error::input(place, expected, format!("{values:?}")))
+}
+
 /// Nothing if `value` is at most `bound`: one that no real study reaches.
 ///
 /// # Errors

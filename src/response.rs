@@ -13,8 +13,8 @@ mod varying_speed;
 pub use quasi_steady::{NonlinearRun, NonlinearSection};
 
 use crate::aerodynamics::Realization;
-use crate::aeroelastic::{CoupledSection, CoupledSystem};
-use crate::error::{Error, Result, non_negative, positive};
+use crate::aeroelastic::CoupledSection;
+use crate::error::{Error, Result, finite_numbers, non_negative, positive};
 use crate::section::Dof;
 use nalgebra::{DMatrix, DVector};
 use step_cache::{StepCache, apply};
@@ -148,18 +148,8 @@ impl Stepper {
     pub fn released(&self, displacement: &[f64], rate: &[f64]) -> Result<SectionState> {
         let s = self.section.structure();
         let n = s.dofs.len();
-        for (place, v) in [
-            ("initial displacement", displacement),
-            ("initial rate", rate),
-        ] {
-            if v.len() != n || !v.iter().all(|x| x.is_finite()) {
-                return Err(Error::input(
-                    place,
-                    format!("{n} finite numbers"),
-                    format!("{v:?}"),
-                ));
-            }
-        }
+        finite_numbers("initial displacement", displacement, n)?;
+        finite_numbers("initial rate", rate, n)?;
         let motion = DVector::from_fn(n, |i, _| {
             displacement[i] * s.dofs[i].motion_scale(s.width_m)
         });
@@ -273,12 +263,8 @@ impl Stepper {
             derivative[..2 * n].copy_from_slice(motion.as_slice());
             return Ok(derivative);
         }
-        match self.section.at(inputs.wind_speed_m_s.max(0.0))? {
-            CoupledSystem::Continuous(s) => Ok((&s.a * z + &s.b * w).as_slice().to_vec()),
-            CoupledSystem::Sampled(_) => Err(Error::Numerical(
-                "state derivative: a continuous model gave a sampled system".into(),
-            )),
-        }
+        let s = self.section.continuous_at(inputs.wind_speed_m_s.max(0.0))?;
+        Ok((&s.a * z + &s.b * w).as_slice().to_vec())
     }
 }
 

@@ -9,7 +9,7 @@ mod structure;
 
 pub use structure::{Entry, Structure};
 
-use crate::error::{Error, Result, non_negative, positive};
+use crate::error::{Error, Result, finite, non_negative, positive};
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -230,13 +230,6 @@ impl SectionModel {
         }
         Ok([Some(heave), sway.transpose()?, Some(twist)])
     }
-}
-
-fn finite(place: &str, value: f64) -> Result<()> {
-    if value.is_finite() {
-        return Ok(());
-    }
-    Err(Error::input(place, "a finite number", value.to_string()))
 }
 
 fn rotation_support(place: &str, s: &Rotation) -> Result<(f64, f64, f64)> {

@@ -4,7 +4,7 @@ use crate::aerodynamics::{
     AerodynamicModel, DiscreteLaguerre, Lags, LaguerreModel, MinimumStateModel, RationalModel,
     Realizable, Realization, TransferMatrix,
 };
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result, finite, positive};
 use crate::section::{Dof, SectionModel};
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use serde::{Deserialize, Serialize};
@@ -259,9 +259,7 @@ impl Experiment {
             ("experiment.initial_vertical_m", self.initial_vertical_m),
             ("experiment.initial_rotation_rad", self.initial_rotation_rad),
         ] {
-            if !value.is_finite() {
-                return Err(Error::input(key, "a finite number", value.to_string()));
-            }
+            finite(key, value)?;
         }
         Ok(())
     }

@@ -42,45 +42,35 @@ pub struct StaticEquilibrium {
 #[serde(rename_all = "snake_case")]
 pub enum EquilibriumEnd {
     /// Torsional divergence: no equilibrium beyond, or no stable one.
-    Divergence {
-        /// Wind speed, m/s.
-        speed_m_s: f64,
-        /// Rotation there, rad.
-        rotation_rad: f64,
-    },
+    Divergence(LastEquilibrium),
     /// The rotation leaves the table of static coefficients.
-    OutsideTable {
-        /// Wind speed, m/s.
-        speed_m_s: f64,
-        /// Rotation there, rad.
-        rotation_rad: f64,
-    },
+    OutsideTable(LastEquilibrium),
+}
+
+/// The last equilibrium of a branch.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct LastEquilibrium {
+    /// Wind speed, m/s.
+    pub speed_m_s: f64,
+    /// Rotation, rad.
+    pub rotation_rad: f64,
 }
 
 impl EquilibriumEnd {
     /// Wind speed, m/s.
     pub fn speed_m_s(&self) -> f64 {
         match self {
-            Self::Divergence { speed_m_s, .. } | Self::OutsideTable { speed_m_s, .. } => *speed_m_s,
+            Self::Divergence(last) | Self::OutsideTable(last) => last.speed_m_s,
         }
     }
 
     /// In words.
     pub fn explain(&self) -> String {
-        let (what, speed, rotation) = match self {
-            Self::Divergence {
-                speed_m_s,
-                rotation_rad,
-            } => ("torsional divergence", speed_m_s, rotation_rad),
-            Self::OutsideTable {
-                speed_m_s,
-                rotation_rad,
-            } => (
-                "the rotation leaves the table of coefficients",
-                speed_m_s,
-                rotation_rad,
-            ),
+        let (what, last) = match self {
+            Self::Divergence(last) => ("torsional divergence", last),
+            Self::OutsideTable(last) => ("the rotation leaves the table of coefficients", last),
         };
+        let (speed, rotation) = (last.speed_m_s, last.rotation_rad);
         format!(
             "no equilibrium above {speed:.3} m/s: {what} at {:.3} deg",
             rotation.to_degrees()
@@ -237,18 +227,14 @@ impl<'a> Branch<'a> {
     }
 
     fn end(&self, at: Place) -> EquilibriumEnd {
-        let speed_m_s = (2.0 * at.pressure / self.structure.air_density_kg_m3).sqrt();
-        let rotation_rad = at.rotation;
+        let last = LastEquilibrium {
+            speed_m_s: (2.0 * at.pressure / self.structure.air_density_kg_m3).sqrt(),
+            rotation_rad: at.rotation,
+        };
         if at.left < STIFF {
-            EquilibriumEnd::Divergence {
-                speed_m_s,
-                rotation_rad,
-            }
+            EquilibriumEnd::Divergence(last)
         } else {
-            EquilibriumEnd::OutsideTable {
-                speed_m_s,
-                rotation_rad,
-            }
+            EquilibriumEnd::OutsideTable(last)
         }
     }
 

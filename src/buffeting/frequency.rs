@@ -43,12 +43,12 @@ pub fn response_spectrum(
     frequency_hz: f64,
     speed_m_s: f64,
 ) -> Result<Vec<f64>> {
-    let by_gust = spectra_by_gust(problem, frequency_hz, speed_m_s)?;
-    Ok(by_gust[0]
-        .iter()
-        .zip(&by_gust[1])
-        .map(|(u, w)| u + w)
-        .collect())
+    let [by_u, by_w] = spectra_by_gust(problem, frequency_hz, speed_m_s)?;
+    Ok(added(&by_u, &by_w).collect())
+}
+
+fn added<'a>(a: &'a [f64], b: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
+    a.iter().zip(b).map(|(a, b)| a + b)
 }
 
 /// The same by each component of the turbulence; the components are independent, so that they add up.
@@ -96,11 +96,7 @@ pub fn buffeting_response(
     let variances = all_frequencies(problem, speed_m_s, &peaks)?;
     let part = |i: usize| variances[i * n..(i + 1) * n].to_vec();
     let [by_u, by_w, rates] = [part(0), part(1), part(2)];
-    let rms: Vec<f64> = by_u
-        .iter()
-        .zip(&by_w)
-        .map(|(u, w)| (u + w).sqrt())
-        .collect();
+    let rms: Vec<f64> = added(&by_u, &by_w).map(f64::sqrt).collect();
     let rate_rms = roots(&rates);
     let crossing = rate_rms
         .iter()
@@ -133,11 +129,7 @@ fn all_frequencies(problem: &BuffetingProblem<'_>, speed: f64, peaks: &[f64]) ->
     let densities = |f: f64| -> Result<Vec<f64>> {
         let [by_u, by_w] = spectra_by_gust(problem, f, speed)?;
         let square = (std::f64::consts::TAU * f).powi(2);
-        let rates: Vec<f64> = by_u
-            .iter()
-            .zip(&by_w)
-            .map(|(u, w)| square * (u + w))
-            .collect();
+        let rates: Vec<f64> = added(&by_u, &by_w).map(|sum| square * sum).collect();
         Ok([by_u, by_w, rates].concat())
     };
     let (inner, _) = integrate(densities, &breaks, TOLERANCE)?;
@@ -147,7 +139,7 @@ fn all_frequencies(problem: &BuffetingProblem<'_>, speed: f64, peaks: &[f64]) ->
     };
     // a millionth of the whole at most, so a coarser tolerance does
     let (tail, _) = integrate(beyond, &[0.0, 1.0 / last], 1e-4)?;
-    Ok(inner.iter().zip(&tail).map(|(a, b)| a + b).collect())
+    Ok(added(&inner, &tail).collect())
 }
 
 fn tested_part(

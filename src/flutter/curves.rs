@@ -5,6 +5,7 @@ use super::tracking::Tracker;
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, non_negative};
 use crate::section::Dof;
+use crate::state_space::damping_ratio;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use nalgebra::Complex;
 use serde::Serialize;
@@ -142,9 +143,4 @@ pub fn trace_modes(
         branches,
         ended,
     })
-}
-
-/// `−Re λ/|λ|`.
-pub(super) fn damping_ratio(lambda: Complex<f64>) -> f64 {
-    -lambda.re / lambda.norm()
 }

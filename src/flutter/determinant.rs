@@ -4,7 +4,9 @@
 //! problem `ω² (M + ½ρB²/K² P(G)) − iωR − K_s = 0`. Its roots are followed over `K`; where one becomes real, the
 //! section flutters (Theodorsen's method with viscous damping).
 
-use super::answer::{Findings, FlutterSearch, Reach, UnstableStart, choose, entry_reason};
+use super::answer::{
+    Findings, FlutterSearch, Reach, StableRange, UnstableStart, choose, entry_reason,
+};
 use super::following::branch_name;
 use super::onset::{Onset, OnsetMethod};
 use crate::aerodynamics::{AerodynamicModel, TransferMatrix};
@@ -72,8 +74,7 @@ pub fn determinant_onset(
     // each root with its branch, as long as it stays in the right half plane
     let mut roots = problem.named_roots(k_max)?;
     let mut reach = Reach::default();
-    let mut found = Vec::new();
-    let mut starts = Vec::new();
+    let mut findings = Findings::judged(StableRange::up_to(speed_max_m_s));
     for (omega, dof) in &roots {
         let (speed, branch) = (omega.re * width / k_max, branch_name(*dof));
         reach.entries.push((speed, branch.clone()));
@@ -82,7 +83,7 @@ pub fn determinant_onset(
             let (method, why) = (OnsetMethod::Determinant, entry_reason(range.max));
             let mut start = UnstableStart::new(name, method, structure, at, branch, why);
             start.in_tested_range = Some(true);
-            starts.push(start);
+            findings.starts.push(start);
         }
     }
     for i in 1..=GRID {
@@ -97,7 +98,7 @@ pub fn determinant_onset(
                 let (from, to) = ((at(i - 1), root), (at(i), after));
                 let onset = problem.refine(name, from, to, branch_name(dof))?;
                 if onset.speed_m_s <= speed_max_m_s {
-                    found.push(onset);
+                    findings.crossings.push(onset);
                 }
             }
             next.push((after, dof));
@@ -107,9 +108,7 @@ pub fn determinant_onset(
     // at the lowest K each root has come to a speed of its own; beyond the slowest nothing was looked at
     let exit = |(root, dof): &(Complex<f64>, Dof)| (root.re * width / k_min, branch_name(*dof));
     reach.exits = roots.iter().map(exit).collect();
-    let mut findings = Findings::judged(reach.judged(speed_max_m_s));
-    findings.crossings = found;
-    findings.starts = starts;
+    findings.judged = reach.judged(speed_max_m_s);
     Ok(choose(findings, Some(range)))
 }
 

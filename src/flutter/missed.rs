@@ -1,11 +1,11 @@
 //! What the scan of all eigenvalues adds to the modes that were followed.
 
 use super::answer::{Findings, UnstableStart};
-use super::curves::damping_ratio;
 use super::onset::{Onset, OnsetMethod};
 use super::scan::{AERODYNAMIC, COARSE, FINE, Scan};
 use super::tracking::{SLOPE_STEP, mode_shape};
 use crate::error::Result;
+use crate::state_space::damping_ratio;
 use nalgebra::Complex;
 
 /// Growth of at most this part of the eigenvalue at the lower end of a band is that of a crossing, not of a mode that

@@ -2,7 +2,7 @@
 //! equilibrium of that speed, so that the linear model itself changes with the speed.
 
 use super::answer::{FlutterSearch, StableRange, UnstableStart};
-use super::curves::{FlutterCurves, damping_ratio, empty_branches, trace_modes};
+use super::curves::{FlutterCurves, empty_branches, trace_modes};
 use super::following::{Mode, branch_name};
 use super::instability::{ModeAtOnset, classify};
 use super::onset::{Onset, OnsetMethod};
@@ -12,7 +12,7 @@ use crate::aerodynamics::quasi_steady::{LinearQuasiSteady, QuasiSteady};
 use crate::aeroelastic::{CoupledSection, EquilibriumEnd, EquilibriumPath, static_equilibria};
 use crate::error::{Error, Result};
 use crate::section::Structure;
-use crate::state_space::root;
+use crate::state_space::{damping_ratio, root};
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use serde::Serialize;
 

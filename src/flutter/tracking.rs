@@ -4,7 +4,6 @@
 //! else the nearest eigenvalue of the whole state matrix.
 
 use super::characteristic::Characteristic;
-use super::curves::damping_ratio;
 use super::following::{
     Follower, MIN_ASSURANCE, Mode, Modes, SEPARATION, assurance, dimensionless,
 };
@@ -12,7 +11,7 @@ use super::onset::{Onset, OnsetMethod};
 use crate::aeroelastic::{CoupledSection, CoupledSystem};
 use crate::error::{Error, Result};
 use crate::section::{Dof, Structure};
-use crate::state_space::{eigenvalues, eigenvector};
+use crate::state_space::{damping_ratio, eigenvalues, eigenvector};
 use nalgebra::{Complex, DVector};
 
 /// A step is halved until every mode is clearly nearest to one eigenvalue, at most this many times.

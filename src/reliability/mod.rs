@@ -8,10 +8,9 @@
 mod coefficients;
 mod distribution;
 mod drawn;
-mod interval;
-mod normal;
 mod parameter;
 mod plan;
+mod probability;
 mod results;
 mod run;
 mod sampler;

@@ -1,7 +1,7 @@
 //! What a Monte Carlo analysis gives.
 
-use super::interval::clopper_pearson;
 use super::plan::MonteCarloPlan;
+use super::probability::clopper_pearson;
 use crate::flutter::{SweepOutcome, SweptOnset};
 use serde::Serialize;
 

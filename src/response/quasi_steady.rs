@@ -3,7 +3,7 @@
 
 use crate::aerodynamics::GustSeries;
 use crate::aerodynamics::quasi_steady::{QuasiSteady, RelativeWind};
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result, finite_numbers, positive};
 use crate::section::{Dof, Structure};
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
@@ -85,13 +85,7 @@ impl NonlinearSection {
         positive("step size", step_s)?;
         positive("tolerance", tolerance)?;
         let n = self.structure.dofs.len();
-        if initial.len() != 2 * n || !initial.iter().all(|x| x.is_finite()) {
-            return Err(Error::input(
-                "initial state",
-                format!("{} finite numbers", 2 * n),
-                format!("{initial:?}"),
-            ));
-        }
+        finite_numbers("initial state", initial, 2 * n)?;
         let duration = step_s * steps as f64;
         // the last step may end on the last gust but for rounding
         if duration > gusts.duration_s() * (1.0 + 1e-9) {

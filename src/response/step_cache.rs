@@ -1,7 +1,7 @@
 //! Step and output matrices, kept per wind speed and step size.
 
-use crate::aeroelastic::{CoupledSection, CoupledSystem};
-use crate::error::{Error, Result};
+use crate::aeroelastic::CoupledSection;
+use crate::error::Result;
 use crate::state_space::{StepMatrices, c2d};
 
 /// Pairs of wind speed and step size that are remembered. Importers whose step jitters in the last bits come back to a
@@ -113,10 +113,7 @@ impl StepCache {
         step: f64,
     ) -> Result<&Packed> {
         self.steps.get((speed.to_bits(), step.to_bits()), || {
-            let CoupledSystem::Continuous(s) = section.at(speed)? else {
-                return Err(Error::Numerical("step: the model is sampled".into()));
-            };
-            Ok(pack(&c2d(&s.a, &s.b, step)?))
+            Ok(pack(&section.continuous_at(speed)?.c2d(step)?))
         })
     }
 

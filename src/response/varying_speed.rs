@@ -4,8 +4,8 @@
 //! `M₁`, `M₂` at the two Gauss points (Iserles and Nørsett 1999). Exact again when the speed is constant.
 
 use super::{Inputs, SectionState, Stepper, check_substeps, drop_what_died_out, load, overgrown};
-use crate::aeroelastic::{CoupledSection, CoupledSystem};
-use crate::error::{Error, Result};
+use crate::aeroelastic::CoupledSection;
+use crate::error::Result;
 use crate::state_space::matrix_exponential;
 use nalgebra::{DMatrix, DVector};
 
@@ -77,9 +77,7 @@ fn magnus_exponential(
 
 /// `[[A(V), B, 0], [0, 0, I], [0, 0, 0]]`.
 fn augmented(section: &CoupledSection, speed: f64) -> Result<DMatrix<f64>> {
-    let CoupledSystem::Continuous(s) = section.at(speed)? else {
-        return Err(Error::Numerical("step: the model is sampled".into()));
-    };
+    let s = section.continuous_at(speed)?;
     let (n, m) = s.b.shape();
     let mut matrix = DMatrix::zeros(n + 2 * m, n + 2 * m);
     matrix.view_mut((0, 0), (n, n)).copy_from(&s.a);

@@ -4,22 +4,15 @@
 //! are those of fitted harmonics.
 
 mod butterworth;
-mod clipping;
 mod correlation;
 mod delay;
-mod differences;
 mod harmonics;
-mod lagrange;
 mod resample;
-mod robust;
-mod zero_phase;
+mod samples;
 
-pub use butterworth::{ButterworthLowPass, Section};
-pub use clipping::clipped_stretches;
+pub use butterworth::ButterworthLowPass;
 pub use correlation::CrossCorrelation;
 pub use delay::{Delay, delay};
-pub use differences::rate;
 pub use harmonics::{HarmonicFit, Plateau, fit_harmonics, fit_sine, plateau, refine_frequency};
-pub use lagrange::{NODES, delayed, lagrange_weights, value_at};
-pub use resample::Resampler;
-pub use robust::{median, robust_deviation};
+pub use resample::{Resampler, delayed, value_at};
+pub use samples::{clipped_stretches, median, rate, robust_deviation};

@@ -89,6 +89,22 @@ impl<T> StateSpace<T> {
 }
 
 impl StateSpace<Continuous> {
+    /// Step matrices for the step `h`; exact for inputs that run on a straight line over it.
+    ///
+    /// # Errors
+    /// Those of the free function.
+    pub fn c2d(&self, h: f64) -> Result<StepMatrices> {
+        c2d(&self.a, &self.b, h)
+    }
+
+    /// Poles, in the inverse time unit.
+    ///
+    /// # Errors
+    /// Those of [`eigenvalues`].
+    pub fn poles(&self) -> Result<Vec<Complex<f64>>> {
+        eigenvalues(&self.a)
+    }
+
     /// `C (iωI − A)⁻¹ B + D`, p×m.
     ///
     /// # Errors
@@ -99,6 +115,18 @@ impl StateSpace<Continuous> {
 }
 
 impl StateSpace<Discrete> {
+    /// Poles in continuous time, `ln z/h`. A pole at the origin has died out after one step and is left out: no finite rate
+    /// describes it.
+    ///
+    /// # Errors
+    /// Those of [`eigenvalues`].
+    pub fn poles(&self) -> Result<Vec<Complex<f64>>> {
+        let finite = eigenvalues(&self.a)?
+            .into_iter()
+            .filter(|z| z.norm() > f64::MIN_POSITIVE);
+        Ok(finite.map(|z| z.ln() / self.time.step).collect())
+    }
+
     /// `C (e^{iωh}I − A)⁻¹ B + D`, p×m.
     ///
     /// # Errors
@@ -122,6 +150,11 @@ pub fn first_order<T: ComplexField>(
     a.view_mut((n, n), (n, n))
         .copy_from(&(inverse_mass * on_rate));
     a
+}
+
+/// Damping ratio of a continuous-time pole, `−Re λ/|λ|`.
+pub fn damping_ratio(pole: Complex<f64>) -> f64 {
+    -pole.re / pole.norm()
 }
 
 /// A real matrix as a complex one.

@@ -102,6 +102,28 @@ impl FilterBank {
     }
 }
 
+/// Chains of filters side by side: `A`, `B`, `C` of terms that each drive one chain, `(a, b)`, from one motion and read it
+/// with an n×L matrix of coefficients.
+pub(super) fn side_by_side<'a>(
+    n: usize,
+    terms: impl Iterator<Item = (usize, (DMatrix<f64>, DVector<f64>), &'a DMatrix<f64>)>,
+) -> [DMatrix<f64>; 3] {
+    let terms: Vec<_> = terms.collect();
+    let states = terms.iter().map(|(_, (_, drive), _)| drive.len()).sum();
+    let mut a = DMatrix::zeros(states, states);
+    let mut b = DMatrix::zeros(states, n);
+    let mut c = DMatrix::zeros(n, states);
+    let mut at = 0;
+    for (input, (chain, drive), coefficients) in terms {
+        let l = drive.len();
+        a.view_mut((at, at), (l, l)).copy_from(&chain);
+        b.view_mut((at, input), (l, 1)).copy_from(&drive);
+        c.view_mut((0, at), (n, l)).copy_from(coefficients);
+        at += l;
+    }
+    [a, b, c]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,7 +1,7 @@
 //! Continuous Laguerre (or Takenaka–Malmquist) model with feed-through, the default of this crate:
 //! `G = e₀ + e₁ iK + e₂ (iK)² + Σ c_l Λ_l(iK)`.
 
-use super::FilterBank;
+use super::bank::{FilterBank, side_by_side};
 use crate::aerodynamics::{
     AerodynamicModel, ContinuousRealization, Realizable, Realization, TransferMatrix,
 };
@@ -114,20 +114,9 @@ impl AerodynamicModel for LaguerreModel {
 
 impl Realizable for LaguerreModel {
     fn realize(&self) -> Realization {
-        let n = self.dofs.len();
-        let states = self.terms.iter().map(|t| t.poles.len()).sum();
-        let mut a = DMatrix::zeros(states, states);
-        let mut b = DMatrix::zeros(states, n);
-        let mut c = DMatrix::zeros(n, states);
-        let mut at = 0;
-        for term in &self.terms {
-            let (chain, drive) = term.poles.matrices();
-            let l = drive.len();
-            a.view_mut((at, at), (l, l)).copy_from(&chain);
-            b.view_mut((at, term.input), (l, 1)).copy_from(&drive);
-            c.view_mut((0, at), (n, l)).copy_from(&term.coefficients);
-            at += l;
-        }
+        let terms = self.terms.iter();
+        let chains = terms.map(|t| (t.input, t.poles.matrices(), &t.coefficients));
+        let [a, b, c] = side_by_side(self.dofs.len(), chains);
         Realization::Continuous(ContinuousRealization {
             a,
             b,

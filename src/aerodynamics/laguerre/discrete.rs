@@ -1,10 +1,11 @@
 //! The discrete Laguerre model of the thesis (2.16, 2.33, 4.2): filters advancing by one `Δs`, no feed-through.
 
+use super::bank::side_by_side;
 use super::discrete_layout::Layout;
 use crate::aerodynamics::{
     AerodynamicModel, DiscreteRealization, Realizable, Realization, TransferMatrix,
 };
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result, finite_numbers, positive};
 use crate::section::Dof;
 use crate::units::ReducedFrequency;
 use nalgebra::{Complex, DMatrix, DVector};
@@ -143,14 +144,7 @@ impl DiscreteLaguerre {
                 "a motion without any",
             ));
         }
-        if self.static_term.len() != n || !self.static_term.iter().all(|x| x.is_finite()) {
-            return Err(Error::input(
-                place("static_term"),
-                format!("{n} finite numbers"),
-                format!("{:?}", self.static_term),
-            ));
-        }
-        Ok(())
+        finite_numbers(&place("static_term"), &self.static_term, n)
     }
 }
 
@@ -186,21 +180,11 @@ impl AerodynamicModel for DiscreteLaguerre {
 impl Realizable for DiscreteLaguerre {
     /// One bank a term: the four banks of the thesis repeat the same states.
     fn realize(&self) -> Realization {
-        let n = self.dofs.len();
-        let states = self.terms.iter().map(|t| t.coefficients.ncols()).sum();
-        let mut a = DMatrix::zeros(states, states);
-        let mut b = DMatrix::zeros(states, n);
-        let mut c = DMatrix::zeros(n, states);
-        let mut at = 0;
-        for term in &self.terms {
-            let filters = term.coefficients.ncols();
-            let (chain, drive) = discrete_filter_matrices(term.alpha, filters);
-            a.view_mut((at, at), (filters, filters)).copy_from(&chain);
-            b.view_mut((at, term.input), (filters, 1)).copy_from(&drive);
-            c.view_mut((0, at), (n, filters))
-                .copy_from(&term.coefficients);
-            at += filters;
-        }
+        let chains = self.terms.iter().map(|t| {
+            let chain = discrete_filter_matrices(t.alpha, t.coefficients.ncols());
+            (t.input, chain, &t.coefficients)
+        });
+        let [a, b, c] = side_by_side(self.dofs.len(), chains);
         Realization::Discrete(DiscreteRealization {
             a,
             b,

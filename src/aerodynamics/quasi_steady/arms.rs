@@ -1,7 +1,7 @@
 //! The distances `B₁` of the corrected quasi-steady theory (1.18).
 
 use crate::aerodynamics::AerodynamicModel;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, finite};
 use crate::section::Dof;
 use crate::units::ReducedFrequency;
 use serde::{Deserialize, Serialize};
@@ -38,13 +38,7 @@ impl Arms {
     /// [`Error::Input`] naming the arm.
     pub fn validate(&self) -> Result<()> {
         for dof in Dof::THREE {
-            if !self.of(dof).is_finite() {
-                return Err(Error::input(
-                    format!("arms.{}", dof.name()),
-                    "a finite number",
-                    self.of(dof).to_string(),
-                ));
-            }
+            finite(&format!("arms.{}", dof.name()), self.of(dof))?;
         }
         Ok(())
     }

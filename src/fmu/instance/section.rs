@@ -83,13 +83,8 @@ pub(super) fn coupled_section(
 /// Onset and divergence of a section.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct OnsetCard {
-    onset_speed: f64,
-    onset_frequency: f64,
-    onset_reduced_velocity: f64,
-    divergence_speed: f64,
-    pub onset_found: bool,
-    onset_in_tested_range: bool,
-    pub divergence_found: bool,
+    /// The calculated parameters in their order; truth values are 0 and 1.
+    values: [f64; 7],
     /// What a reader must know before using the numbers.
     pub warnings: Vec<String>,
 }
@@ -98,91 +93,77 @@ impl OnsetCard {
     /// Searches up to `limit` m/s. What is not found is the limit itself, with frequency and reduced velocity zero; so is
     /// what cannot be searched for, with a warning: parameters that are legal must not make a getter fail.
     pub fn search(model: &TrainedModel, section: &CoupledSection, limit: f64) -> Self {
-        let mut warnings = Vec::new();
-        let mut or_none = |what: &str, why: Error| {
-            warnings.push(format!("{what} is not known for these parameters: {why}"));
-        };
-        let divergence = divergence_of(model, section).unwrap_or_else(|e| {
-            or_none("divergence", e);
-            None
-        });
-        let found = onset_of(model, section, limit)
-            .map_err(|e| or_none("flutter onset", e))
-            .ok();
-        let mut card = Self::nothing_found(limit, warnings);
-        if let Some(speed) = divergence.filter(|v| *v <= limit) {
-            card.divergence_speed = speed;
-            card.divergence_found = true;
+        let mut card = Self::nothing_found(limit, Vec::new());
+        let unknown =
+            |what: &str, why: &Error| format!("{what} is not known for these parameters: {why}");
+        match divergence_of(model, section) {
+            Ok(speed) => {
+                if let Some(speed) = speed.filter(|v| *v <= limit) {
+                    card.set(Calculated::DivergenceSpeed, speed);
+                    card.set(Calculated::DivergenceFound, 1.0);
+                }
+            }
+            Err(why) => card.warnings.push(unknown("divergence", &why)),
         }
-        if let Some(found) = found {
-            card.take(found);
+        match onset_of(model, section, limit) {
+            Ok(found) => card.take(found),
+            Err(why) => card.warnings.push(unknown("flutter onset", &why)),
         }
         card
     }
 
     /// The card of parameters that give no section at all.
     pub fn unknown(limit: f64, why: &Error) -> Self {
-        Self::nothing_found(
-            limit,
-            vec![format!(
-                "flutter onset and divergence are not known for these parameters: {why}"
-            )],
-        )
+        let why = format!("flutter onset and divergence are not known for these parameters: {why}");
+        Self::nothing_found(limit, vec![why])
     }
 
     fn nothing_found(limit: f64, warnings: Vec<String>) -> Self {
-        Self {
-            onset_speed: limit,
-            onset_frequency: 0.0,
-            onset_reduced_velocity: 0.0,
-            divergence_speed: limit,
-            onset_found: false,
-            onset_in_tested_range: false,
-            divergence_found: false,
+        let mut card = Self {
+            values: [0.0; 7],
             warnings,
-        }
+        };
+        card.set(Calculated::OnsetSpeed, limit);
+        card.set(Calculated::DivergenceSpeed, limit);
+        card
     }
 
     /// Enters the answer of a search. Growth from the lowest speed on is an onset at that speed or lower.
     fn take(&mut self, found: FlutterSearch) {
-        match found {
-            FlutterSearch::Onset(o) => {
-                self.onset_speed = o.speed_m_s;
-                self.onset_frequency = o.frequency_hz;
-                self.onset_reduced_velocity = o.reduced_velocity.v_star();
-                self.onset_found = true;
-                self.onset_in_tested_range = o.in_tested_range == Some(true);
-                self.warnings.extend(o.warnings);
-            }
+        let (at, tested, warnings) = match found {
+            FlutterSearch::Onset(o) => (
+                (o.speed_m_s, o.frequency_hz, o.reduced_velocity),
+                o.in_tested_range,
+                o.warnings,
+            ),
             FlutterSearch::UnstableAtOrBelow(start) => {
-                self.onset_speed = start.speed_m_s;
-                self.onset_frequency = start.frequency_hz;
-                self.onset_reduced_velocity = start.reduced_velocity.v_star();
-                self.onset_found = true;
-                self.onset_in_tested_range = start.in_tested_range == Some(true);
-                self.warnings.push(format!(
-                    "the onset lies at {:.3} m/s or lower: {}",
-                    start.speed_m_s,
-                    start.explain()
-                ));
-                self.warnings.extend(start.warnings);
+                let (speed, why) = (start.speed_m_s, start.explain());
+                self.warnings
+                    .push(format!("the onset lies at {speed:.3} m/s or lower: {why}"));
+                (
+                    (speed, start.frequency_hz, start.reduced_velocity),
+                    start.in_tested_range,
+                    start.warnings,
+                )
             }
-            FlutterSearch::StableUpTo(_) => {}
-        }
+            FlutterSearch::StableUpTo(_) => return,
+        };
+        self.set(Calculated::OnsetSpeed, at.0);
+        self.set(Calculated::OnsetFrequency, at.1);
+        self.set(Calculated::OnsetReducedVelocity, at.2.v_star());
+        self.set(Calculated::OnsetFound, 1.0);
+        let tested = f64::from(u8::from(tested == Some(true)));
+        self.set(Calculated::OnsetInTestedRange, tested);
+        self.warnings.extend(warnings);
     }
 
-    /// One of its numbers; truth values are 0 and 1.
+    fn set(&mut self, which: Calculated, value: f64) {
+        self.values[which as usize] = value;
+    }
+
+    /// One of its numbers.
     pub fn value(&self, which: Calculated) -> f64 {
-        let flag = |b: bool| f64::from(u8::from(b));
-        match which {
-            Calculated::OnsetSpeed => self.onset_speed,
-            Calculated::OnsetFrequency => self.onset_frequency,
-            Calculated::OnsetReducedVelocity => self.onset_reduced_velocity,
-            Calculated::DivergenceSpeed => self.divergence_speed,
-            Calculated::OnsetFound => flag(self.onset_found),
-            Calculated::OnsetInTestedRange => flag(self.onset_in_tested_range),
-            Calculated::DivergenceFound => flag(self.divergence_found),
-        }
+        self.values[which as usize]
     }
 }
 

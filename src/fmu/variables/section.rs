@@ -37,7 +37,7 @@ fn real(
     name: &'static str,
     role: Role,
     (causality, variability): (Causality, Variability),
-    description: String,
+    description: impl Into<String>,
 ) -> Variable {
     let initial = match causality {
         Causality::Input => None,
@@ -46,7 +46,7 @@ fn real(
     };
     Variable {
         name,
-        description,
+        description: description.into(),
         role,
         causality,
         variability,
@@ -63,41 +63,63 @@ fn real(
     }
 }
 
+impl Variable {
+    fn start(mut self, value: f64) -> Self {
+        self.value = Value::Real(Some(value));
+        self
+    }
+
+    fn quantity(mut self, quantity: &'static str, unit: Option<&'static Unit>) -> Self {
+        (self.quantity, self.unit) = (Some(quantity), unit);
+        self
+    }
+
+    /// Shown in the first display unit of its unit, if there is one.
+    fn shown(mut self) -> Self {
+        let display = self.unit.and_then(|u| u.display.first());
+        self.display_unit = display.map(|d| d.name);
+        self
+    }
+
+    /// Degrees help, kilometres per hour of a vibrating deck do not.
+    fn shown_if(self, wanted: bool) -> Self {
+        if wanted { self.shown() } else { self }
+    }
+
+    fn min(mut self, min: f64) -> Self {
+        self.min = Some(min);
+        self
+    }
+
+    fn nominal(mut self, size: f64) -> Self {
+        self.nominal = Some(size);
+        self
+    }
+}
+
 const INPUT: (Causality, Variability) = (Causality::Input, Variability::Continuous);
 const OUTPUT: (Causality, Variability) = (Causality::Output, Variability::Continuous);
 const TUNABLE: (Causality, Variability) = (Causality::Parameter, Variability::Tunable);
 const FIXED: (Causality, Variability) = (Causality::Parameter, Variability::Fixed);
 const CALCULATED: (Causality, Variability) = (Causality::CalculatedParameter, Variability::Tunable);
+const LOCAL: (Causality, Variability) = (Causality::Local, Variability::Constant);
+const SPEED: Option<&Unit> = Some(&si::METRE_PER_SECOND);
 
 fn inputs(model: &TrainedModel, dofs: &[Dof]) -> Vec<Variable> {
-    let wind = Variable {
-        value: Value::Real(Some(model.experiment.wind_speed_m_s)),
-        unit: Some(&si::METRE_PER_SECOND),
-        display_unit: Some("km/h"),
-        quantity: Some("Velocity"),
-        min: Some(0.0),
-        nominal: Some(10.0),
-        ..real(
-            "wind_speed",
-            Role::WindSpeed,
-            INPUT,
-            "Mean wind speed V, normal to the span".into(),
-        )
-    };
+    let text = "Mean wind speed V, normal to the span";
+    let wind = real("wind_speed", Role::WindSpeed, INPUT, text)
+        .start(model.experiment.wind_speed_m_s)
+        .quantity("Velocity", SPEED)
+        .shown()
+        .min(0.0)
+        .nominal(10.0);
     let external = dofs.iter().map(|&dof| {
         let w = words(dof);
-        Variable {
-            value: Value::Real(Some(0.0)),
-            unit: Some(w.units[3]),
-            quantity: Some(w.force_quantity),
-            nominal: Some(force_scale(model, dof)),
-            ..real(
-                w.external,
-                Role::ExternalForce(dof),
-                INPUT,
-                format!("External {}", w.force),
-            )
-        }
+        let text = format!("External {}", w.force);
+        real(w.external, Role::ExternalForce(dof), INPUT, text)
+            .start(0.0)
+            .quantity(w.force_quantity, Some(w.units[3]))
+            .nominal(force_scale(model, dof))
     });
     std::iter::once(wind).chain(external).collect()
 }
@@ -123,103 +145,67 @@ fn outputs(model: &TrainedModel, dofs: &[Dof]) -> Vec<Variable> {
         .map(|(dof, response)| {
             let (w, i) = (words(dof), response as usize);
             let quantity = w.quantities.get(i).copied().unwrap_or(w.force_quantity);
-            Variable {
-                unit: Some(w.units[i]),
-                display_unit: w.units[i].display.first().and_then(|d| {
-                    // degrees help, kilometres per hour of a vibrating deck do not
-                    (dof == Dof::Torsion).then_some(d.name)
-                }),
-                quantity: Some(quantity),
-                nominal: Some(nominal(model, dof, response)),
-                ..real(
-                    w.responses[i],
-                    Role::Response(response, dof),
-                    OUTPUT,
-                    describe(response, w),
-                )
-            }
+            let role = Role::Response(response, dof);
+            real(w.responses[i], role, OUTPUT, describe(response, w))
+                .quantity(quantity, Some(w.units[i]))
+                .shown_if(dof == Dof::Torsion)
+                .nominal(nominal(model, dof, response))
         })
         .collect()
 }
 
 fn section_parameter(parameter: SectionParameter, section: &SectionModel) -> Variable {
-    let (name, unit, quantity, min, description): (_, Option<&Unit>, _, _, String) = match parameter
-    {
-        SectionParameter::AxisOffset => (
-            "axis_offset",
-            Some(&si::METRE),
-            "Length",
-            None,
-            "Axis about which the section turns, to which heave, lift and moment belong: distance from the reference point of the aerodynamic forces, positive downwind".into(),
-        ),
-        SectionParameter::MassOffset => (
-            "mass_offset",
-            Some(&si::METRE),
-            "Length",
-            None,
-            "Centre of mass: distance from the axis, positive downwind".into(),
-        ),
-        SectionParameter::Width => (
-            "width",
-            Some(&si::METRE),
-            "Length",
-            Some(SMALLEST),
-            "Full deck width B".into(),
-        ),
-        SectionParameter::AirDensity => (
-            "air_density",
-            Some(&si::KILOGRAM_PER_METRE3),
-            "Density",
-            Some(SMALLEST),
-            "Air density rho".into(),
-        ),
-        SectionParameter::Inertia(dof) => {
-            let w = words(dof);
-            let min = if dof == Dof::Torsion {
-                SMALLEST_INERTIA
-            } else {
-                SMALLEST
-            };
-            let text = match dof {
-                Dof::Vertical => "Mass per unit length of span, vertical motion",
-                Dof::Lateral => "Mass per unit length of span, lateral motion",
-                Dof::Torsion => "Mass moment of inertia per unit length of span",
-            };
-            (
-                w.support[0],
-                Some(w.inertia_unit),
-                w.inertia_quantity,
-                Some(min),
-                text.into(),
-            )
-        }
-        SectionParameter::Frequency(dof) => (
-            words(dof).support[1],
-            Some(&si::HERTZ),
-            "Frequency",
-            Some(0.0),
-            format!("Natural frequency in still air, {} motion", motion(dof)),
-        ),
-        SectionParameter::DampingRatio(dof) => (
-            words(dof).support[2],
-            None,
-            "DampingRatio",
-            Some(0.0),
-            format!(
-                "Structural damping as a ratio to critical, {} motion",
-                motion(dof)
-            ),
-        ),
+    let variable = |name, text: &str| real(name, Role::Section(parameter), TUNABLE, text);
+    let of_support = |dof, i: usize, text: &str| {
+        let text = format!("{text}, {} motion", motion(dof));
+        real(
+            words(dof).support[i],
+            Role::Section(parameter),
+            TUNABLE,
+            text,
+        )
+        .min(0.0)
     };
-    Variable {
-        value: Value::Real(Some(parameter.value_in(section))),
-        unit,
-        quantity: Some(quantity),
-        min,
-        ..real(name, Role::Section(parameter), TUNABLE, description)
+    let metre: Option<&Unit> = Some(&si::METRE);
+    match parameter {
+        SectionParameter::AxisOffset => variable(
+            "axis_offset",
+            "Axis about which the section turns, to which heave, lift and moment belong: distance from the reference point of the aerodynamic forces, positive downwind",
+        )
+        .quantity("Length", metre),
+        SectionParameter::MassOffset => variable(
+            "mass_offset",
+            "Centre of mass: distance from the axis, positive downwind",
+        )
+        .quantity("Length", metre),
+        SectionParameter::Width => variable("width", "Full deck width B")
+            .quantity("Length", metre)
+            .min(SMALLEST),
+        SectionParameter::AirDensity => variable("air_density", "Air density rho")
+            .quantity("Density", Some(&si::KILOGRAM_PER_METRE3))
+            .min(SMALLEST),
+        SectionParameter::Inertia(dof) => {
+            let (min, text) = match dof {
+                Dof::Vertical => (SMALLEST, "Mass per unit length of span, vertical motion"),
+                Dof::Lateral => (SMALLEST, "Mass per unit length of span, lateral motion"),
+                Dof::Torsion => (SMALLEST_INERTIA, "Mass moment of inertia per unit length of span"),
+            };
+            let w = words(dof);
+            variable(w.support[0], text)
+                .quantity(w.inertia_quantity, Some(w.inertia_unit))
+                .min(min)
+        }
+        SectionParameter::Frequency(dof) => of_support(dof, 1, "Natural frequency in still air")
+            .quantity("Frequency", Some(&si::HERTZ)),
+        SectionParameter::DampingRatio(dof) => {
+            of_support(dof, 2, "Structural damping as a ratio to critical")
+                .quantity("DampingRatio", None)
+        }
     }
+    .start(parameter.value_in(section))
 }
 
+/// Displacement and rate at release.
 fn initial_values(dof: Dof, model: &TrainedModel) -> [Variable; 2] {
     let w = words(dof);
     let release = match dof {
@@ -227,89 +213,63 @@ fn initial_values(dof: Dof, model: &TrainedModel) -> [Variable; 2] {
         Dof::Lateral => 0.0,
         Dof::Torsion => model.experiment.initial_rotation_rad,
     };
-    let variable = |i: usize, start: f64, role: Role, description: String| Variable {
-        value: Value::Real(Some(start)),
-        unit: Some(w.units[i]),
-        display_unit: (dof == Dof::Torsion)
-            .then(|| w.units[i].display.first().map(|d| d.name))
-            .flatten(),
-        quantity: Some(w.quantities[i]),
-        ..real(w.initial[i], role, FIXED, description)
+    let variable = |i: usize, start: f64, role: Role, what: &str| {
+        let text = format!("At release: {what}{}", w.motion);
+        real(w.initial[i], role, FIXED, text)
+            .start(start)
+            .quantity(w.quantities[i], Some(w.units[i]))
+            .shown_if(dof == Dof::Torsion)
     };
     [
-        variable(
-            0,
-            release,
-            Role::InitialDisplacement(dof),
-            format!("At release: {}", w.motion),
-        ),
-        variable(
-            1,
-            0.0,
-            Role::InitialRate(dof),
-            format!("At release: rate of the {}", w.motion),
-        ),
+        variable(0, release, Role::InitialDisplacement(dof), ""),
+        variable(1, 0.0, Role::InitialRate(dof), "rate of the "),
     ]
 }
 
 fn search_limit(model: &TrainedModel) -> Variable {
-    Variable {
-        value: Value::Real(Some(model.experiment.onset_search_limit_m_s)),
-        unit: Some(&si::METRE_PER_SECOND),
-        display_unit: Some("km/h"),
-        quantity: Some("Velocity"),
-        min: Some(SMALLEST),
-        ..real(
-            "onset_search_limit",
-            Role::OnsetSearchLimit,
-            FIXED,
-            "Flutter onset and divergence are searched up to this wind speed".into(),
-        )
-    }
+    let text = "Flutter onset and divergence are searched up to this wind speed";
+    real("onset_search_limit", Role::OnsetSearchLimit, FIXED, text)
+        .start(model.experiment.onset_search_limit_m_s)
+        .quantity("Velocity", SPEED)
+        .shown()
+        .min(SMALLEST)
 }
 
 fn calculated_parameters() -> Vec<Variable> {
     use Calculated as C;
-    let number = |name, what, unit: Option<&'static Unit>, quantity, text: &str| Variable {
-        unit,
-        display_unit: unit.and_then(|u| u.display.first()).map(|d| d.name),
-        quantity: Some(quantity),
-        ..real(name, Role::Calculated(what), CALCULATED, text.into())
-    };
+    let parameter = |name, what, text: &str| real(name, Role::Calculated(what), CALCULATED, text);
     let flag = |name, what, text: &str| Variable {
         value: Value::Boolean(None),
-        ..real(name, Role::Calculated(what), CALCULATED, text.into())
+        ..parameter(name, what, text)
     };
-    let speed = Some(&si::METRE_PER_SECOND);
     vec![
-        number(
+        parameter(
             "onset_speed",
             C::OnsetSpeed,
-            speed,
-            "Velocity",
             "Wind speed of flutter onset for the current parameters; onset_search_limit when none was found",
-        ),
-        number(
+        )
+        .quantity("Velocity", SPEED)
+        .shown(),
+        parameter(
             "onset_frequency",
             C::OnsetFrequency,
-            Some(&si::HERTZ),
-            "Frequency",
             "Frequency at flutter onset; zero when none was found",
-        ),
-        number(
+        )
+        .quantity("Frequency", Some(&si::HERTZ))
+        .shown(),
+        parameter(
             "onset_reduced_velocity",
             C::OnsetReducedVelocity,
-            None,
-            "ReducedVelocity",
             "Reduced velocity V/(f*B) at flutter onset; zero when none was found",
-        ),
-        number(
+        )
+        .quantity("ReducedVelocity", None),
+        parameter(
             "divergence_speed",
             C::DivergenceSpeed,
-            speed,
-            "Velocity",
             "Wind speed of static divergence for the current parameters; onset_search_limit when none was found",
-        ),
+        )
+        .quantity("Velocity", SPEED)
+        .shown(),
         flag(
             "onset_found",
             C::OnsetFound,
@@ -332,16 +292,13 @@ fn constants(model: &TrainedModel) -> Result<Vec<Variable>> {
     let constant = |name, value, text: &str| Variable {
         initial: Some(Initial::Exact),
         value,
-        ..real(
-            name,
-            Role::Constant,
-            (Causality::Local, Variability::Constant),
-            text.into(),
-        )
+        ..real(name, Role::Constant, LOCAL, text)
     };
+    let text = |text: &str| Value::String(text.to_owned());
     let states = model.model.realize().states();
     let states = i32::try_from(states)
         .map_err(|_| Error::input("model", "fewer filter states", states.to_string()))?;
+    let version = env!("CARGO_PKG_VERSION");
     Ok(vec![
         constant(
             "filters",
@@ -350,17 +307,13 @@ fn constants(model: &TrainedModel) -> Result<Vec<Variable>> {
         ),
         constant(
             "model_kind",
-            Value::String(model.model.kind().into()),
+            text(model.model.kind()),
             "Kind of the aerodynamic model",
         ),
-        constant(
-            "model_name",
-            Value::String(model.name.clone()),
-            "Name of the trained model",
-        ),
+        constant("model_name", text(&model.name), "Name of the trained model"),
         constant(
             "aerodeck_version",
-            Value::String(env!("CARGO_PKG_VERSION").into()),
+            text(version),
             "Version of the program that made this unit",
         ),
     ])
