@@ -5,7 +5,7 @@ use super::channel_map::{CellChannel, ChannelMap, ChannelRef, cell_quantity};
 use super::file::{
     CAMPAIGN_SCHEMA, Campaign, FileRef, RecordingBlock, RecordingLayout, RunBlock, SectionBlock,
 };
-use super::ntnu_file;
+use super::ntnu;
 use super::quantity::Quantity;
 use crate::error::{Error, Result};
 use crate::wind_tunnel::record_file::push_number;
@@ -56,7 +56,7 @@ pub fn write_virtual_campaign(
         }
         FileFormat::Ntnu => {
             let path = place(Path::new(NTNU_FILE))?;
-            ntnu_file::build(made)
+            ntnu::build(made)
                 .write(&path)
                 .map_err(|e| Error::io(&path, std::io::Error::other(e.to_string())))?;
         }
@@ -150,7 +150,7 @@ fn campaign_file(made: &VirtualCampaign, format: FileFormat) -> Campaign {
         },
         rig: match format {
             FileFormat::Csv => Some(raw.rig.clone()),
-            FileFormat::Ntnu => Some(ntnu_file::rig(&raw.rig)),
+            FileFormat::Ntnu => Some(ntnu::rig(&raw.rig)),
         },
         channels: match format {
             FileFormat::Csv => csv_map(&raw.rig),
