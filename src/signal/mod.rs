@@ -21,5 +21,5 @@ pub use delay::{Delay, delay};
 pub use differences::{acceleration, rate};
 pub use harmonics::{HarmonicFit, Plateau, fit_harmonics, fit_sine, plateau, refine_frequency};
 pub use lagrange::{NODES, delayed, lagrange_weights, value_at};
-pub use resample::Resampler;
+pub use resample::resampled;
 pub use robust::{median, robust_deviation};
