@@ -3,7 +3,7 @@
 //! Orthonormal filters and Roger's lag terms differ only in the filter column; everything else of the identification
 //! is common to them.
 
-use super::options::{FeedThrough, Form};
+use super::form::{FeedThrough, Form};
 use crate::aerodynamics::laguerre::FilterTerm;
 use crate::aerodynamics::{FilterBank, Lags, LaguerreModel, RationalModel};
 use crate::error::{Error, Result};
@@ -241,7 +241,7 @@ pub(crate) fn index_of(dofs: &[Dof], dof: Dof, place: &str) -> Result<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::identification::options::FeedThrough;
+    use crate::identification::form::FeedThrough;
 
     /// Value and slope at zero against the columns at ±1e-5: central differences err by the square of that times third
     /// derivatives of up to 1e4.

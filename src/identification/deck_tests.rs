@@ -1,6 +1,6 @@
 //! Fits to the measured decks, against figures computed independently with NumPy and SciPy (Table 4.1 structure).
 
-use super::options::{FeedThrough, Form};
+use super::form::{FeedThrough, Form};
 use super::testing::{onset_above, onset_m_s, table_alone};
 use super::{FitReport, fit_table};
 use super::{FrequencyFit, FrequencyWeights};

@@ -7,9 +7,9 @@ use super::basis::{Basis, assemble};
 use super::constrained::LinearSolution;
 use super::degenerate::note_lags;
 use super::dissipative::{ConstraintReport, Constraints, Wishes};
+use super::form::Form;
 use super::frequency_options::{FrequencyFit, FrequencyWeights};
 use super::minimum_state::fit_minimum_state;
-use super::options::Form;
 use super::own::entry_forms;
 use super::records::describe_own;
 use super::report::{EntryReport, FitReport, SearchReport, variance};
@@ -214,9 +214,7 @@ fn relative_residuals(entries: &[&Entry], form: &Form, poles: &[f64]) -> Result<
             Basis::orthonormal(form, poles)?
         };
         let fit = entry.fit(&basis)?;
-        let residuals = entry.residuals(&basis, &fit.coefficients);
-        let weighted = residuals.iter().zip(&entry.rows);
-        all.extend(weighted.map(|(r, row)| r * row.weight * scale));
+        all.extend(entry.weighted_residuals(&basis, &fit.coefficients, scale));
         all.extend(fit.penalty(&fit.coefficients).map(|r| r * scale));
     }
     Ok(DVector::from_vec(all))

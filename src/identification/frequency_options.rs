@@ -2,7 +2,8 @@
 
 use super::basis::index_of;
 use super::dissipative::Constraints;
-use super::options::{Form, PoleSearch};
+use super::form::Form;
+use super::options::PoleSearch;
 use super::own::{OwnFilters, validate_own};
 use crate::error::{Error, Result, non_negative};
 use crate::section::Dof;

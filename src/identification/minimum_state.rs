@@ -9,13 +9,13 @@ mod held;
 
 use super::basis::Basis;
 use super::constrained::{LinearProblem, LinearSolution};
-use super::descent::descend;
 use super::dissipative::{ActiveConstraint, Constraints, Wishes};
+use super::form::{FeedThrough, Form};
 use super::frequency::{FittedTable, shares, sizes};
 use super::frequency_options::FrequencyFit;
-use super::options::{FeedThrough, Form};
 use super::report::{EntryReport, SearchPoint, SearchReport};
 use super::samples::Entry;
+use super::search::descend;
 use super::search::{Bounds, best_of, search_poles};
 use crate::aerodynamics::MinimumStateModel;
 use crate::error::{Error, Result};
@@ -167,9 +167,7 @@ impl Task<'_> {
         let mut all = Vec::new();
         for (entry, share) in self.entries.iter().zip(&self.shares) {
             let fit = entry.fit(&basis)?;
-            let residuals = entry.residuals(&basis, &fit.coefficients);
-            let weighted = residuals.iter().zip(&entry.rows);
-            all.extend(weighted.map(|(r, row)| r * row.weight * share));
+            all.extend(entry.weighted_residuals(&basis, &fit.coefficients, *share));
         }
         Ok(DVector::from_vec(all))
     }

@@ -8,9 +8,9 @@ mod constrained;
 mod deck_tests;
 mod degenerate;
 pub mod derivatives;
-mod descent;
 pub(crate) mod discrete;
 pub(crate) mod dissipative;
+pub(crate) mod form;
 mod frequency;
 pub(crate) mod frequency_options;
 mod grid;
@@ -18,7 +18,6 @@ pub(crate) mod least_squares;
 mod minimum_state;
 pub(crate) mod options;
 pub(crate) mod own;
-mod rational_forms;
 pub(crate) mod records;
 pub(crate) mod report;
 pub(crate) mod samples;
@@ -33,11 +32,12 @@ pub use discrete::{DiscreteFit, fit_discrete};
 pub use dissipative::{
     ActiveConstraint, ConstraintCost, ConstraintKind, ConstraintReport, Constraints, OnsetEffect,
 };
+pub use form::{FeedThrough, Form};
 pub use frequency::fit_table;
 pub use frequency_options::{FrequencyFit, FrequencyWeights, QuasiSteadyLimit};
 pub use grid::{CellFit, Grid, GridAxis, StretchLabel};
 pub use least_squares::{Factor, StreamingQr};
-pub use options::{FeedThrough, Form, PoleSearch, TimeFit, TimeWeights};
+pub use options::{PoleSearch, TimeFit, TimeWeights};
 pub use own::{OwnDecay, OwnFilters, StaticTerm};
 pub use records::fit_records;
 pub use report::{

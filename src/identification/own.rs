@@ -4,7 +4,8 @@
 //! filters and their poles or decay factor may differ from one transfer function to the other.
 
 use super::basis::index_of;
-use super::options::{Form, PoleSearch};
+use super::form::Form;
+use super::options::PoleSearch;
 use crate::error::{Error, Result};
 use crate::section::Dof;
 use serde::{Deserialize, Serialize};

@@ -3,8 +3,9 @@
 use super::basis::{Basis, assemble};
 use super::degenerate::note_lags;
 use super::dissipative::{ConstraintReport, Wishes};
+use super::form::Form;
 use super::frequency_options::limits_by_entry;
-use super::options::{Form, TimeFit, TimeWeights};
+use super::options::{TimeFit, TimeWeights};
 use super::own::{EntryForm, StaticTerm, entry_forms};
 use super::report::{
     EntryReport, FitReport, MemoryReport, OrderReport, SearchReport, StaticReport,

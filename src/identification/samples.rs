@@ -123,6 +123,18 @@ impl Entry {
         problem.solve(&self.name(), &|c| basis.names()[c].clone())
     }
 
+    /// Weighted residuals of given coefficients times the share of the entry.
+    pub fn weighted_residuals<'a>(
+        &'a self,
+        basis: &Basis,
+        coefficients: &[f64],
+        share: f64,
+    ) -> impl Iterator<Item = f64> + 'a {
+        let residuals = self.residuals(basis, coefficients).into_iter();
+        let rows = residuals.zip(&self.rows);
+        rows.map(move |(r, row)| r * row.weight * share)
+    }
+
     /// Residuals of given coefficients, unweighted, in the order of the rows.
     pub fn residuals(&self, basis: &Basis, coefficients: &[f64]) -> Vec<f64> {
         self.rows

@@ -38,10 +38,11 @@ impl Folds {
     /// All numbers of filters of one value of the axis; `None` where a fit without a fold fails or nothing can be left
     /// out.
     pub fn validate(&self, grid: &Grid, value: usize) -> Vec<Option<CrossValidation>> {
-        let errors = |folds: &[Vec<usize>]| -> Vec<Option<Vec<f64>>> {
+        // none of a fit that failed, of those that did not perhaps nothing to leave out
+        let errors = |folds: &[Vec<usize>]| -> Vec<Option<Option<Vec<f64>>>> {
             let mut of_filters = vec![Some(Vec::new()); grid.filters_max()];
             if folds.len() < 2 {
-                return vec![None; grid.filters_max()];
+                return vec![Some(None); of_filters.len()];
             }
             for fold in folds {
                 let fits = grid.fits(value, &|s| !fold.contains(&s));
@@ -52,28 +53,12 @@ impl Folds {
                     }
                 }
             }
-            of_filters
+            of_filters.into_iter().map(|e| e.map(Some)).collect()
         };
-        let (speeds, frequencies) = (errors(&self.speeds), errors(&self.frequencies));
-        speeds
+        let pairs = errors(&self.speeds)
             .into_iter()
-            .zip(frequencies)
-            .map(|(s, f)| {
-                combine(
-                    self.part(&self.speeds, s)?,
-                    self.part(&self.frequencies, f)?,
-                )
-            })
-            .collect()
-    }
-
-    /// `Some(None)` when there is nothing to leave out, `None` when a fit failed.
-    fn part(&self, folds: &[Vec<usize>], errors: Option<Vec<f64>>) -> Option<Option<Vec<f64>>> {
-        if folds.len() < 2 {
-            Some(None)
-        } else {
-            errors.map(Some)
-        }
+            .zip(errors(&self.frequencies));
+        pairs.map(|(s, f)| combine(s?, f?)).collect()
     }
 }
 

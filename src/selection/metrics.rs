@@ -12,7 +12,7 @@ use crate::error::{Error, Result};
 use crate::identification::Grid;
 use crate::section::Dof;
 use crate::units::ReducedFrequency;
-use crate::wind_tunnel::RecordSource;
+use crate::wind_tunnel::{Record, RecordSource};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -112,25 +112,33 @@ struct Steady {
 
 impl Steady {
     fn new(records: &[&dyn RecordSource], dof: Dof, wanted_hz: f64) -> Result<Option<Self>> {
-        let mut best: Option<(&dyn RecordSource, usize)> = None;
-        for &record in records {
+        let mut best: Option<(Record, usize)> = None;
+        for record in records {
             let header = record.header();
             let distance = |s: usize| (header.segments[s].frequency_hz / wanted_hz).ln().abs();
             let nearest =
                 (0..header.segments.len()).min_by(|a, b| distance(*a).total_cmp(&distance(*b)));
-            let Some(segment) = nearest else { continue };
-            let faster =
-                best.is_none_or(|(other, _)| header.mean_speed_m_s > other.header().mean_speed_m_s);
-            if faster && moves(record, dof)? {
-                best = Some((record, segment));
+            let channel = header.dofs.iter().position(|d| *d == dof);
+            let (Some(segment), Some(channel)) = (nearest, channel) else {
+                continue;
+            };
+            let speed = header.mean_speed_m_s;
+            if best
+                .as_ref()
+                .is_none_or(|(b, _)| speed > b.header.mean_speed_m_s)
+            {
+                let whole = Record::whole(*record)?;
+                if whole.motion[channel].iter().any(|x| *x != 0.0) {
+                    best = Some((whole, segment));
+                }
             }
         }
-        best.map(|(record, segment)| Self::cut(record, dof, segment))
+        best.map(|(record, segment)| Self::cut(&record, dof, segment))
             .transpose()
     }
 
-    fn cut(record: &dyn RecordSource, dof: Dof, segment: usize) -> Result<Self> {
-        let header = record.header();
+    fn cut(record: &Record, dof: Dof, segment: usize) -> Result<Self> {
+        let header = &record.header;
         let s = header.segments[segment];
         let length = s.end_s - s.start_s;
         let at = |part: f64| ((s.start_s + part * length) * header.sampling_hz) as usize;
@@ -139,16 +147,12 @@ impl Steady {
         let pressure = 0.5 * header.air_density_kg_m3 * header.mean_speed_m_s.powi(2);
         let force_scale = 1.0 / (pressure * dof.force_scale(header.width_m));
         let motion_scale = dof.motion_scale(header.width_m);
-        let (mut motion, mut force, mut read) = (Vec::new(), Vec::new(), 0);
-        record.for_each_block(&mut |block| {
-            let (m, f) = (&block.motion[channel], &block.force[channel]);
-            let first = from.saturating_sub(read).min(m.len());
-            let last = to.saturating_sub(read).min(m.len());
-            motion.extend(m[first..last].iter().map(|x| motion_scale * x));
-            force.extend(f[first..last].iter().map(|x| force_scale * x));
-            read += m.len();
-            Ok(())
-        })?;
+        let scaled = |x: &[f64], factor: f64| -> Vec<f64> {
+            let (first, last) = (from.min(x.len()), to.min(x.len()));
+            x[first..last].iter().map(|x| factor * x).collect()
+        };
+        let motion = scaled(&record.motion[channel], motion_scale);
+        let force = scaled(&record.force[channel], force_scale);
         let step_s = 1.0 / header.sampling_hz;
         let omega = TAU * s.frequency_hz;
         Ok(Self {
@@ -189,19 +193,6 @@ impl Steady {
             magnitude: magnitude(&pair)?.value,
         })
     }
-}
-
-/// Whether a record moves a degree of freedom.
-fn moves(record: &dyn RecordSource, dof: Dof) -> Result<bool> {
-    let Some(channel) = record.header().dofs.iter().position(|d| *d == dof) else {
-        return Ok(false);
-    };
-    let mut moved = false;
-    record.for_each_block(&mut |block| {
-        moved |= block.motion[channel].iter().any(|x| *x != 0.0);
-        Ok(())
-    })?;
-    Ok(moved)
 }
 
 /// Coefficients of sine and cosine by least squares.

@@ -14,5 +14,5 @@ pub use butterworth::ButterworthLowPass;
 pub use correlation::CrossCorrelation;
 pub use delay::{Delay, delay};
 pub use harmonics::{HarmonicFit, Plateau, fit_harmonics, fit_sine, plateau, refine_frequency};
-pub use resample::{Resampler, delayed, value_at};
+pub use resample::{delayed, resampled, value_at};
 pub use samples::{clipped_stretches, median, rate, robust_deviation};

@@ -6,7 +6,7 @@ use super::speed_scatter::{self, Effect, POINTS, Slopes, SpeedScatter};
 use crate::aerodynamics::{AerodynamicModel, DiscreteLaguerre, TransferMatrix};
 use crate::error::{Error, Result};
 use crate::identification::basis::assemble;
-use crate::identification::options::Form;
+use crate::identification::form::Form;
 use crate::identification::report::FitReport;
 use crate::section::Dof;
 use crate::trained_model::Model;

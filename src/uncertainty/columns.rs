@@ -8,7 +8,7 @@ use super::coefficients::SearchedPole;
 use super::parameters::{STEP, moved_pole};
 use crate::error::{Error, Result};
 use crate::identification::basis::{Basis, assemble};
-use crate::identification::options::Form;
+use crate::identification::form::Form;
 use crate::section::Dof;
 use crate::trained_model::Model;
 use nalgebra::{Complex, DMatrix, DVector};
@@ -184,7 +184,7 @@ impl LinearModel {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::identification::options::FeedThrough;
+    use crate::identification::form::FeedThrough;
 
     /// Columns and slopes written in the longer chain against those computed directly, away from the grid.
     #[test]

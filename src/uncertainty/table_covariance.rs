@@ -8,8 +8,8 @@ use super::parameters::{
 use crate::aerodynamics::derivatives::TransferSample;
 use crate::error::{Error, Result};
 use crate::identification::basis::Basis;
+use crate::identification::form::Form;
 use crate::identification::frequency_options::FrequencyFit;
-use crate::identification::options::Form;
 use crate::identification::report::FitReport;
 use crate::identification::samples::{Entry, Row, sort_by_entry};
 use crate::section::Dof;

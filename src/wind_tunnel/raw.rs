@@ -128,6 +128,20 @@ pub struct RawRecording {
 }
 
 impl RawRecording {
+    /// The same recording with every channel that was recorded changed by `change`.
+    pub(super) fn map(&self, change: impl Fn(&[f64]) -> Vec<f64>) -> Self {
+        let one = |x: &Vec<f64>| {
+            if x.is_empty() { Vec::new() } else { change(x) }
+        };
+        Self {
+            source: self.source.clone(),
+            sampling_hz: self.sampling_hz,
+            motion: self.motion.each_ref().map(one),
+            cells: self.cells.iter().map(|c| c.each_ref().map(one)).collect(),
+            wind_speed_m_s: one(&self.wind_speed_m_s),
+        }
+    }
+
     /// Number of samples.
     pub fn len(&self) -> usize {
         self.cells.first().map_or(0, |c| c[0].len())

@@ -4,7 +4,7 @@
 //!
 //! Forces are self-excited ones per unit length, N/m and N·m/m. Reading streams the file in blocks of bounded size.
 
-use super::record_format::{Layout, read_head, text, write_head};
+use super::record_format::{RecordColumns, read_head, text, write_head};
 use super::records::{Record, RecordBlock, RecordHeader, RecordSource};
 use crate::error::{Error, Result};
 use std::fmt::Write as _;
@@ -29,7 +29,7 @@ const DRIFT: f64 = 1e-3;
 pub struct RecordFile {
     path: PathBuf,
     header: RecordHeader,
-    layout: Layout,
+    columns: RecordColumns,
 }
 
 impl RecordFile {
@@ -42,22 +42,32 @@ impl RecordFile {
         let path = path.as_ref().to_path_buf();
         let file = File::open(&path).map_err(|e| Error::io(&path, e))?;
         let read = || -> Result<Self> {
-            let (header, layout) = read_head(&path, &mut BufReader::new(file))?;
+            let (header, columns) = read_head(&path, &mut BufReader::new(file))?;
             Ok(Self {
                 path: path.clone(),
                 header,
-                layout,
+                columns,
             })
         };
         read().map_err(|e| e.in_file(&path))
     }
+}
 
-    fn stream(&self, f: &mut dyn FnMut(RecordBlock<'_>) -> Result<()>) -> Result<()> {
+impl RecordSource for RecordFile {
+    fn header(&self) -> &RecordHeader {
+        &self.header
+    }
+
+    /// # Errors
+    /// [`Error::Io`]; [`Error::Input`] with file and line: text or NaN in place of a number, a row with more or fewer
+    /// columns, a gap in time or an uneven step, another sampling frequency than stated, fewer than
+    /// [`SAMPLES_AT_LEAST`] samples.
+    fn for_each_block(&self, f: &mut dyn FnMut(RecordBlock<'_>) -> Result<()>) -> Result<()> {
         let io = |e| Error::io(&self.path, e);
         let mut file = File::open(&self.path).map_err(io)?;
-        file.seek(SeekFrom::Start(self.layout.start)).map_err(io)?;
+        file.seek(SeekFrom::Start(self.columns.start)).map_err(io)?;
         let mut reader = BufReader::with_capacity(1 << 16, file);
-        let mut rows = Rows::new(&self.header, &self.layout);
+        let mut rows = Rows::new(&self.header, &self.columns);
         let mut line = Vec::new();
         loop {
             line.clear();
@@ -74,43 +84,12 @@ impl RecordFile {
     }
 }
 
-impl RecordSource for RecordFile {
-    fn header(&self) -> &RecordHeader {
-        &self.header
-    }
-
-    /// # Errors
-    /// [`Error::Io`]; [`Error::Input`] with file and line: text or NaN in place of a number, a row with more or fewer
-    /// columns, a gap in time or an uneven step, another sampling frequency than stated, fewer than
-    /// [`SAMPLES_AT_LEAST`] samples.
-    fn for_each_block(&self, f: &mut dyn FnMut(RecordBlock<'_>) -> Result<()>) -> Result<()> {
-        self.stream(f)
-    }
-}
-
 /// Reads a whole record into memory.
 ///
 /// # Errors
 /// Those of [`RecordFile::open`] and of reading its samples.
 pub fn read_record(path: impl AsRef<Path>) -> Result<Record> {
-    let file = RecordFile::open(path)?;
-    let n = file.header.dofs.len();
-    let mut channels = vec![Vec::new(); 2 * n];
-    file.for_each_block(&mut |block| {
-        for (all, new) in channels
-            .iter_mut()
-            .zip(block.motion.iter().chain(block.force))
-        {
-            all.extend_from_slice(new);
-        }
-        Ok(())
-    })?;
-    let force = channels.split_off(n);
-    Ok(Record {
-        header: file.header,
-        motion: channels,
-        force,
-    })
+    Record::whole(&RecordFile::open(path)?)
 }
 
 /// Writes a record; [`read_record`] gives the same numbers back, bit for bit.
@@ -121,27 +100,45 @@ pub fn write_record(record: &dyn RecordSource, out: &mut dyn Write) -> Result<()
     let header = record.header();
     let io = |e| Error::io(&header.name, e);
     write_head(header, out).map_err(io)?;
-    let (mut sample, mut line) = (0_usize, String::new());
+    let mut first = 0;
     record.for_each_block(&mut |block| {
-        for i in 0..block.motion.first().map_or(0, Vec::len) {
-            line.clear();
-            // From the count, so that no rounding accumulates.
-            push_number(&mut line, sample as f64 / header.sampling_hz);
-            for channel in block.motion.iter().chain(block.force) {
-                line.push(',');
-                push_number(&mut line, channel[i]);
-            }
-            line.push('\n');
-            out.write_all(line.as_bytes()).map_err(io)?;
-            sample += 1;
-        }
+        let channels: Vec<&[f64]> = block
+            .motion
+            .iter()
+            .chain(block.force)
+            .map(Vec::as_slice)
+            .collect();
+        write_rows(out, header.sampling_hz, first, &channels).map_err(io)?;
+        first += channels.first().map_or(0, |c| c.len());
         Ok(())
     })?;
     out.flush().map_err(io)
 }
 
+/// Writes channels as rows that begin with the time; `first` is the number of the first sample.
+pub(super) fn write_rows(
+    out: &mut dyn Write,
+    sampling_hz: f64,
+    first: usize,
+    channels: &[&[f64]],
+) -> std::io::Result<()> {
+    let mut line = String::new();
+    for i in 0..channels.first().map_or(0, |c| c.len()) {
+        line.clear();
+        // From the count, so that no rounding accumulates.
+        push_number(&mut line, (first + i) as f64 / sampling_hz);
+        for channel in channels {
+            line.push(',');
+            push_number(&mut line, channel[i]);
+        }
+        line.push('\n');
+        out.write_all(line.as_bytes())?;
+    }
+    Ok(())
+}
+
 /// The shortest text that reads back as the same double.
-pub(super) fn push_number(text: &mut String, x: f64) {
+fn push_number(text: &mut String, x: f64) {
     let plain = x == 0.0 || (1e-3..1e6).contains(&x.abs());
     // Writing to a string cannot fail.
     let _ = if plain {
@@ -154,7 +151,7 @@ pub(super) fn push_number(text: &mut String, x: f64) {
 /// Rows being collected into a block.
 struct Rows<'a> {
     header: &'a RecordHeader,
-    layout: &'a Layout,
+    columns: &'a RecordColumns,
     line: usize,
     motion: Vec<Vec<f64>>,
     force: Vec<Vec<f64>>,
@@ -164,12 +161,12 @@ struct Rows<'a> {
 }
 
 impl<'a> Rows<'a> {
-    fn new(header: &'a RecordHeader, layout: &'a Layout) -> Self {
+    fn new(header: &'a RecordHeader, columns: &'a RecordColumns) -> Self {
         let block = || vec![Vec::with_capacity(BLOCK_SAMPLES); header.dofs.len()];
         Self {
             header,
-            layout,
-            line: layout.names_line,
+            columns,
+            line: columns.names_line,
             motion: block(),
             force: block(),
             read: 0,
@@ -206,11 +203,11 @@ impl<'a> Rows<'a> {
             return Ok(());
         }
         let mut cells = line.split(',');
-        for (column, channel) in self.layout.channels.iter().enumerate() {
+        for (column, channel) in self.columns.channels.iter().enumerate() {
             let cell = cells.next().ok_or_else(|| self.unequal(line))?.trim();
             let value = cell.parse::<f64>().ok().filter(|x| x.is_finite());
             let value = value.ok_or_else(|| {
-                let place = format!("line {}, column {}", self.line, self.layout.names[column]);
+                let place = format!("line {}, column {}", self.line, self.columns.names[column]);
                 Error::input(place, "a finite number", format!("`{cell}`"))
             })?;
             let n = self.motion.len();
@@ -230,7 +227,7 @@ impl<'a> Rows<'a> {
     fn unequal(&self, line: &str) -> Error {
         Error::input(
             format!("line {}", self.line),
-            format!("{} columns", self.layout.channels.len()),
+            format!("{} columns", self.columns.channels.len()),
             line.split(',').count().to_string(),
         )
     }

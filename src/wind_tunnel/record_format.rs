@@ -46,7 +46,7 @@ const KEYS: [&str; 10] = [
 
 /// Where the samples stand.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Layout {
+pub(super) struct RecordColumns {
     /// Byte at which the first row begins.
     pub start: u64,
     /// Line of the column names, from 1.
@@ -108,7 +108,10 @@ fn column_names(dofs: &[Dof]) -> Vec<&'static str> {
 ///
 /// # Errors
 /// [`Error::Input`] with the line that is wrong; [`Error::Io`].
-pub(super) fn read_head(path: &Path, reader: &mut dyn BufRead) -> Result<(RecordHeader, Layout)> {
+pub(super) fn read_head(
+    path: &Path,
+    reader: &mut dyn BufRead,
+) -> Result<(RecordHeader, RecordColumns)> {
     let mut head = CommentHeader::new(&[FORMAT], &KEYS, &["segment"]);
     let (mut start, mut line) = (0, Vec::new());
     let names = loop {
@@ -136,13 +139,13 @@ pub(super) fn read_head(path: &Path, reader: &mut dyn BufRead) -> Result<(Record
     let header = record_header(&head)?;
     let names_line = head.lines() + 1;
     let channels = find_channels(&names, &header.dofs, names_line)?;
-    let layout = Layout {
+    let columns = RecordColumns {
         start,
         names_line,
         names,
         channels,
     };
-    Ok((header, layout))
+    Ok((header, columns))
 }
 
 fn record_header(head: &CommentHeader) -> Result<RecordHeader> {

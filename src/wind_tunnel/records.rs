@@ -73,6 +73,30 @@ pub struct Record {
     pub force: Vec<Vec<f64>>,
 }
 
+impl Record {
+    /// All of a source, in memory.
+    ///
+    /// # Errors
+    /// What the source cannot give.
+    pub fn whole(source: &dyn RecordSource) -> Result<Self> {
+        let header = source.header().clone();
+        let mut motion = vec![Vec::new(); header.dofs.len()];
+        let mut force = motion.clone();
+        source.for_each_block(&mut |block| {
+            let parts = block.motion.iter().chain(block.force);
+            for (all, part) in motion.iter_mut().chain(&mut force).zip(parts) {
+                all.extend_from_slice(part);
+            }
+            Ok(())
+        })?;
+        Ok(Self {
+            header,
+            motion,
+            force,
+        })
+    }
+}
+
 impl RecordSource for Record {
     fn header(&self) -> &RecordHeader {
         &self.header

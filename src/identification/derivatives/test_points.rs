@@ -5,7 +5,7 @@ use crate::error::{Error, Result, positive};
 use crate::section::Dof;
 use crate::signal::{HarmonicFit, fit_harmonics, plateau, refine_frequency};
 use crate::units::ReducedFrequency;
-use crate::wind_tunnel::{RecordHeader, RecordSource};
+use crate::wind_tunnel::{Record, RecordHeader, RecordSource};
 
 /// Harmonics of a driven motion: a rig is not perfectly linear.
 const HARMONICS: usize = 3;
@@ -55,14 +55,8 @@ pub(super) fn collect(
     for record in records {
         let header = record.header();
         check(header, first)?;
-        let mut channels = vec![Vec::new(); 2 * header.dofs.len()];
-        record.for_each_block(&mut |block| {
-            let all = block.motion.iter().chain(block.force);
-            for (to, from) in channels.iter_mut().zip(all) {
-                to.extend_from_slice(from);
-            }
-            Ok(())
-        })?;
+        let Record { motion, force, .. } = Record::whole(*record)?;
+        let channels = [motion, force].concat();
         for i in 0..header.segments.len() {
             match stretch(header, &channels, i, options)? {
                 Some(stretch) => insert(&mut points.groups, stretch, options),

@@ -1,5 +1,6 @@
 //! Equations that coefficients have to satisfy besides: symmetric added mass, limits at K → 0.
 
+use super::tangent::take_away;
 use super::{ActiveConstraint, ConstraintKind, LinearEntry, Wishes};
 use crate::error::{Error, Result};
 use crate::identification::basis::Basis;
@@ -101,12 +102,8 @@ pub(super) fn satisfy(
     for equation in equations {
         let mut gradient = equation.gradient(entries, width);
         let norm = gradient.norm();
-        for _ in 0..2 {
-            for q in &columns {
-                let along = q.dot(&gradient);
-                gradient.axpy(-along, q, 1.0);
-            }
-        }
+        take_away(&mut gradient, &columns);
+        take_away(&mut gradient, &columns);
         let at_start: Vec<Vec<f64>> = entries.iter().map(|e| e.coefficients(&start)).collect();
         let short = equation.target - equation.value(&at_start);
         let left = gradient.norm();

@@ -27,6 +27,7 @@ use serde::{Deserialize, Serialize};
 
 pub use report::{ActiveConstraint, ConstraintCost, ConstraintKind, ConstraintReport, OnsetEffect};
 pub(crate) use tangent::Tangent;
+use tangent::take_away;
 
 /// Reduced frequencies at which condition 3 is stated.
 const SAMPLES: usize = 40;
@@ -134,9 +135,7 @@ impl Dissipation {
     /// For the bases of all transfer functions, row by row.
     pub fn new(bases: &[Basis], wishes: &Wishes) -> Self {
         let k_max = wishes.k_max;
-        let n = (1..=bases.len())
-            .find(|n| n * n >= bases.len())
-            .unwrap_or(1);
+        let n = bases.len().isqrt();
         let feed = bases[0].feed();
         let column = |order: usize| feed.orders().position(|o| o == order);
         let step = REACH.ln() / (SAMPLES as f64 - 1.0);
@@ -326,10 +325,7 @@ impl Dissipation {
         equalities: &[DVector<f64>],
     ) -> Inequality {
         let mut gradient = self.gradient(condition, v.as_slice(), entries);
-        for q in equalities {
-            let along = q.dot(&gradient);
-            gradient.axpy(-along, q, 1.0);
-        }
+        take_away(&mut gradient, equalities);
         let Condition { scale, margin, .. } = self.conditions[condition];
         let at_start = v.dot(&(self.matrix(condition, start) * v));
         Inequality {

@@ -6,6 +6,15 @@ use nalgebra::{DMatrix, DVector};
 /// Part of a gradient outside the others below which it adds no direction.
 const RANK_TOLERANCE: f64 = 1e-8;
 
+/// Takes away from a vector what lies along orthonormal directions. Twice is enough (Kahan): the first time leaves rounding
+/// errors of the cancelled part.
+pub(super) fn take_away(vector: &mut DVector<f64>, directions: &[DVector<f64>]) {
+    for q in directions {
+        let along = q.dot(vector);
+        vector.axpy(-along, q, 1.0);
+    }
+}
+
 /// Orthonormal directions that active constraints take.
 #[derive(Debug, Clone)]
 pub(crate) struct Tangent {
@@ -18,13 +27,8 @@ impl Tangent {
         let mut taken: Vec<DVector<f64>> = Vec::new();
         for mut gradient in gradients {
             let norm = gradient.norm();
-            // twice is enough (Kahan): the first pass leaves rounding errors of the cancelled part
-            for _ in 0..2 {
-                for q in &taken {
-                    let along = q.dot(&gradient);
-                    gradient.axpy(-along, q, 1.0);
-                }
-            }
+            take_away(&mut gradient, &taken);
+            take_away(&mut gradient, &taken);
             let left = gradient.norm();
             if left > RANK_TOLERANCE * norm {
                 taken.push(gradient / left);
@@ -52,10 +56,8 @@ impl Tangent {
             let mut unit = DVector::zeros(n);
             unit[i] = 1.0;
             for _ in 0..2 {
-                for q in self.taken.iter().chain(&left) {
-                    let along = q.dot(&unit);
-                    unit.axpy(-along, q, 1.0);
-                }
+                take_away(&mut unit, &self.taken);
+                take_away(&mut unit, &left);
             }
             let norm = unit.norm();
             if norm > 1e-3 {

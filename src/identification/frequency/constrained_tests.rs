@@ -2,7 +2,8 @@
 
 use super::*;
 use crate::aerodynamics::{AerodynamicModel, FlatPlate};
-use crate::identification::options::{FeedThrough, PoleSearch};
+use crate::identification::form::FeedThrough;
+use crate::identification::options::PoleSearch;
 use crate::identification::testing::{eight_k, table_alone};
 use crate::identification::{QuasiSteadyLimit, sample_model};
 use crate::units::ReducedFrequency;

@@ -5,7 +5,7 @@ use crate::error::Result;
 use crate::identification::basis::Basis;
 use crate::identification::constrained::LinearSolution;
 use crate::identification::dissipative::{Dissipation, LinearEntry, Solution, Wishes};
-use crate::identification::options::Form;
+use crate::identification::form::Form;
 use crate::identification::samples::Entry;
 use nalgebra::{DMatrix, DVector};
 
@@ -96,10 +96,8 @@ impl JointFit<'_> {
         let mut all = Vec::new();
         for (e, entry) in self.entries.iter().enumerate() {
             let values = self.coefficients(e);
-            let residuals = entry.residuals(&self.bases[e], values);
             let share = self.shares[e];
-            let weighted = residuals.iter().zip(&entry.rows);
-            all.extend(weighted.map(|(r, row)| r * row.weight * share));
+            all.extend(entry.weighted_residuals(&self.bases[e], values, share));
             all.extend(self.solutions[e].penalty(values).map(|r| r * share));
         }
         DVector::from_vec(all)

@@ -17,9 +17,7 @@ fn searched(forms: &[EntryForm], fit: &FrequencyFit) -> Result<(Vec<EntryForm>, 
     let mut forms = forms.to_vec();
     let mut groups = searched_together(&forms);
     if fit.form.poles_per_force() {
-        let n = (1..=forms.len())
-            .find(|n| n * n == forms.len())
-            .unwrap_or(1);
+        let n = forms.len().isqrt();
         state_lags_of_forces(&mut forms, fit, n)?;
         groups = (0..n).map(|i| (i * n..(i + 1) * n).collect()).collect();
         groups.retain(|group: &Vec<usize>| forms[group[0]].fixed.is_none());

@@ -1,7 +1,8 @@
 use super::*;
 use crate::aerodynamics::{AerodynamicModel, FlatPlate, RationalModel, Realizable};
 use crate::aeroelastic::CoupledSection;
-use crate::identification::options::{FeedThrough, PoleSearch};
+use crate::identification::form::FeedThrough;
+use crate::identification::options::PoleSearch;
 use crate::identification::sample_model;
 use crate::identification::testing::{eight_k, onset_m_s, table_alone};
 use crate::section::SectionModel;

@@ -5,8 +5,9 @@
 
 use super::basis::{Basis, assemble};
 use super::discrete::{discrete_pass, longest_step};
+use super::form::Form;
 use super::least_squares::Factor;
-use super::options::{Form, TimeFit, TimeWeights, number_of_filters};
+use super::options::{TimeFit, TimeWeights, number_of_filters};
 use super::own::StaticTerm;
 use super::records::{RecordFit, Rows, tested_range, wishes};
 use super::time::joint::Joint;

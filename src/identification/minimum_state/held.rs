@@ -2,11 +2,11 @@
 
 use super::{FittedTable, LinearProblem, LinearSolution, ROUNDS, Task};
 use crate::error::Result;
-use crate::identification::descent::descend;
 use crate::identification::dissipative::{
     ActiveConstraint, ConstraintReport, Dissipation, LinearEntry,
 };
 use crate::identification::report::SearchPoint;
+use crate::identification::search::descend;
 use crate::section::Dof;
 use nalgebra::{DMatrix, DVector};
 

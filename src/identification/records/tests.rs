@@ -1,7 +1,8 @@
 use super::*;
 use crate::aerodynamics::{AerodynamicModel, FlatPlate, RationalModel};
 use crate::identification::Progress;
-use crate::identification::options::{FeedThrough, Form, PoleSearch};
+use crate::identification::form::{FeedThrough, Form};
+use crate::identification::options::PoleSearch;
 use crate::identification::testing::{onset_m_s, records, records_alone, sources};
 use crate::units::ReducedFrequency;
 use crate::wind_tunnel::{Record, RecordBlock, RecordHeader};

@@ -27,9 +27,7 @@ impl Joint {
     /// # Errors
     /// Rows that do not determine the coefficients, and constraints that no coefficients satisfy.
     pub fn new(systems: &ForceSystems, bases: &[Basis], wishes: &Wishes) -> Result<Self> {
-        let n = (1..=bases.len())
-            .find(|n| n * n >= bases.len())
-            .unwrap_or(1);
+        let n = bases.len().isqrt();
         let apart = (0..n).all(|i| (0..n).all(|j| systems.alone(i, j).is_some()))
             && !systems.of_force(0).order.constant;
         let mut joint = Self {

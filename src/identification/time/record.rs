@@ -5,7 +5,7 @@ use crate::error::{Error, Result, positive};
 use crate::identification::basis::index_of;
 use crate::identification::least_squares::BLOCK_ROWS;
 use crate::section::Dof;
-use crate::signal::Resampler;
+use crate::signal::resampled;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use crate::wind_tunnel::{RecordBlock, RecordHeader, RecordSource, Segment};
 use std::borrow::Cow;
@@ -184,12 +184,13 @@ impl DimensionlessRecord {
         if ratio <= 1.0 + 1e-9 {
             return (Cow::Borrowed(&self.signals), self.step_s);
         }
-        let own = &self.signals;
-        let channels = [own.motion.clone(), own.force.clone()].concat();
-        let mut motion = vec![Vec::new(); channels.len()];
-        Resampler::new(ratio, channels.len()).push(&channels, &mut motion);
-        let force = motion.split_off(own.motion.len());
-        (Cow::Owned(Signals { motion, force }), self.step_s * ratio)
+        let at_ratio =
+            |channels: &[Vec<f64>]| channels.iter().map(|c| resampled(c, ratio)).collect();
+        let signals = Signals {
+            motion: at_ratio(&self.signals.motion),
+            force: at_ratio(&self.signals.force),
+        };
+        (Cow::Owned(signals), self.step_s * ratio)
     }
 }
 

@@ -193,6 +193,26 @@ impl ChannelMap {
         }
     }
 
+    /// The channels that are no cell's, with their keys and what they measure.
+    fn single(&self) -> Vec<(String, &ChannelRef, Quantity)> {
+        let all = [
+            ("time", &self.time, Quantity::Time),
+            ("vertical", &self.vertical, Quantity::Length),
+            ("lateral", &self.lateral, Quantity::Length),
+            ("torsion", &self.torsion, Quantity::Angle),
+            ("wind_speed", &self.wind_speed, Quantity::Speed),
+            ("air_density", &self.air_density, Quantity::Density),
+            ("temperature", &self.temperature, Quantity::Temperature),
+            ("pressure", &self.pressure, Quantity::Pressure),
+        ];
+        let stated = all.into_iter();
+        stated
+            .filter_map(|(key, c, quantity)| {
+                Some((format!("channels.{key}"), c.as_ref()?, quantity))
+            })
+            .collect()
+    }
+
     /// The key of a channel of a cell.
     pub(super) fn cell_key(&self, cell: &str, channel: &str) -> String {
         if self.section.is_some() {
@@ -207,20 +227,8 @@ impl ChannelMap {
     /// [`Error::Input`] with the key: a unit that does not fit, a cell that the rig does not have or that has no map,
     /// a channel that a cell does not have or that has no map.
     pub fn validate(&self, rig: &Rig) -> Result<()> {
-        let single = [
-            ("time", &self.time, Quantity::Time),
-            ("vertical", &self.vertical, Quantity::Length),
-            ("lateral", &self.lateral, Quantity::Length),
-            ("torsion", &self.torsion, Quantity::Angle),
-            ("wind_speed", &self.wind_speed, Quantity::Speed),
-            ("air_density", &self.air_density, Quantity::Density),
-            ("temperature", &self.temperature, Quantity::Temperature),
-            ("pressure", &self.pressure, Quantity::Pressure),
-        ];
-        for (key, channel, quantity) in single {
-            if let Some(channel) = channel {
-                channel.validate(&format!("channels.{key}"), quantity)?;
-            }
+        for (key, channel, quantity) in self.single() {
+            channel.validate(&key, quantity)?;
         }
         if self.section.as_ref().is_some_and(|s| s.dofs().is_empty()) {
             let expected = "at least one of lift, drag, moment";
@@ -241,20 +249,8 @@ impl ChannelMap {
 
     /// Refuses a channel of the files that is said to be two things.
     fn each_once(&self) -> Result<()> {
-        let single = [
-            ("time", &self.time),
-            ("vertical", &self.vertical),
-            ("lateral", &self.lateral),
-            ("torsion", &self.torsion),
-            ("wind_speed", &self.wind_speed),
-            ("air_density", &self.air_density),
-            ("temperature", &self.temperature),
-            ("pressure", &self.pressure),
-        ];
-        let single = single.into_iter().filter_map(|(key, channel)| {
-            let name = channel.as_ref()?.name.as_str();
-            Some((format!("channels.{key}"), name))
-        });
+        let single = self.single().into_iter();
+        let single = single.map(|(key, channel, _)| (key, channel.name.as_str()));
         let of_cells = self.cells.iter().flat_map(|(cell, channels)| {
             channels
                 .iter()

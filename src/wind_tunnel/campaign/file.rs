@@ -274,12 +274,9 @@ impl Campaign {
             return Err(Error::input("run", "at least one [[run]]", "none"));
         }
         for (i, run) in self.runs.iter().enumerate() {
-            if self.runs[..i].iter().any(|r| r.name == run.name) {
-                return Err(Error::input(
-                    format!("run[{i}].name"),
-                    "a name of its own for every run",
-                    format!("`{}` a second time", run.name),
-                ));
+            let mut before = self.runs[..i].iter();
+            if before.any(|r| r.name == run.name) {
+                return Err(second_time(&format!("run[{i}].name"), "run", &run.name));
             }
             run.validate(&format!("run[{i}]"), &map, self.air)?;
         }
@@ -291,11 +288,8 @@ impl Campaign {
         at_most("rig.cells", cells.len() as f64, CELLS_AT_MOST)?;
         for (i, cell) in cells.iter().enumerate() {
             if cells[..i].iter().any(|c| c.name == cell.name) {
-                return Err(Error::input(
-                    format!("rig.cells[{i}].name"),
-                    "a name of its own for every cell",
-                    format!("`{}` a second time", cell.name),
-                ));
+                let key = format!("rig.cells[{i}].name");
+                return Err(second_time(&key, "cell", &cell.name));
             }
         }
         if self.recording.layout.is_some() && cells.len() > ntnu::CELLS {
@@ -304,6 +298,11 @@ impl Campaign {
         }
         Ok(())
     }
+}
+
+fn second_time(key: &str, of: &str, name: &str) -> Error {
+    let expected = format!("a name of its own for every {of}");
+    Error::input(key, expected, format!("`{name}` a second time"))
 }
 
 impl RunBlock {

@@ -3,8 +3,7 @@
 use super::air::Air;
 use super::channel_map::{ChannelMap, mean};
 use super::file::{Campaign, RunBlock};
-use super::findings::{Finding, run_findings};
-use super::hints;
+use super::findings::{Finding, file_hints, run_findings};
 use super::recording::{Loading, SAME_RATE};
 use super::section_forces::SectionForces;
 use crate::error::{Error, Result, all_or_errors, positive};
@@ -83,7 +82,7 @@ impl Campaign {
                 runs: Vec::new(),
             },
             runs: Vec::new(),
-            findings: hints::of_file(self),
+            findings: file_hints(self),
         };
         for (run, summary, findings) in read {
             reading.raw.runs.push(run);

@@ -1,16 +1,24 @@
-//! The layout of NTNU's tools as a channel map.
+//! The layout of NTNU's tools: as a channel map, and a virtual campaign as such a file.
 //!
 //! One HDF5 group a run: `motion` (n, 3) lateral, vertical, torsion; `forces_global_coord` (n, 24), six channels for each
 //! of four cells in fixed axes x downwind, y along the span, z up; `wind_velocity`, `air_density`, `temperature`; the
 //! attribute `sampling frequency`. Cells of the rig take the columns in their order.
+//!
+//! The file has all that the Python package `w3t` (MIT licence) opens: `Experiment.fromWTT` reads the attribute `sampling
+//! frequency` and the datasets `temperature`, `air_density`, `wind_velocity`, `motion`, `forces_global_coord` and
+//! `forces_global_coord_center` of a group; units and descriptions are those that its import of TDMS files writes.
 
 use super::channel_map::{CellChannel, ChannelMap, ChannelRef, cell_quantity};
 use super::quantity::Quantity;
-use crate::wind_tunnel::{CELL_CHANNELS, Rig};
+use crate::section::Dof;
+use crate::wind_tunnel::virtual_campaign::VirtualCampaign;
+use crate::wind_tunnel::{CELL_CHANNELS, LoadCell, RawRecording, Rig};
+use hdf5_pure::{AttrValue, FileBuilder};
+use nalgebra::{Matrix3, Vector3};
 
 /// Rotation from the laboratory's axes (x downwind, z up) to those used here (x downwind, y up), for `axes` of the
 /// cells; these do not turn with the model.
-pub(super) const AXES: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]];
+const AXES: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]];
 /// Cells of the layout.
 pub(super) const CELLS: usize = 4;
 
@@ -39,4 +47,139 @@ pub(super) fn channel_map(rig: &Rig) -> ChannelMap {
         cells: cells.collect(),
         ..ChannelMap::default()
     }
+}
+
+/// Temperature at which dry air of the sea level has a density, °C: the plan states the density alone.
+fn temperature_c(density_kg_m3: f64) -> f64 {
+    101_325.0 / (287.058 * density_kg_m3) - 273.15
+}
+
+/// The same cells as the layout has them: fixed axes at the place of the cell at rest.
+pub(super) fn rig(rig: &Rig) -> Rig {
+    let fixed = |cell: &LoadCell| LoadCell {
+        axes: AXES,
+        turns_with_model: false,
+        ..cell.clone()
+    };
+    Rig {
+        cells: rig.cells.iter().map(fixed).collect(),
+        ..rig.clone()
+    }
+}
+
+/// One group a recording: `RUN-wind` and `RUN-still`.
+pub(super) fn build(made: &VirtualCampaign) -> FileBuilder {
+    let rig = &made.raw.rig;
+    let mut file = FileBuilder::new();
+    for (run, truth) in made.raw.runs.iter().zip(&made.truth.records) {
+        let moving: Vec<&str> = (0..truth.header.dofs.len())
+            .filter(|j| truth.motion[*j].iter().any(|x| *x != 0.0))
+            .map(|j| truth.header.dofs[j].name())
+            .collect();
+        let still = run.still_air.iter().map(|r| ("still", r));
+        for (what, recording) in std::iter::once(("wind", &run.in_wind)).chain(still) {
+            let n = recording.len() as u64;
+            let text = |words: &str| AttrValue::VarLenString(words.to_owned());
+            let units = |names: &[&str]| {
+                AttrValue::VarLenStringArray(names.iter().map(|u| (*u).to_owned()).collect())
+            };
+            let of_cells = ["N", "N", "N", "Nm", "Nm", "Nm"].repeat(CELLS);
+            let mut group = file.create_group(&format!("{}-{what}", run.name));
+            group.set_attr("test_type", text("Forced vibration"));
+            group.set_attr("test operator", text("aerodeck, virtual campaign"));
+            group.set_attr("sampling frequency", AttrValue::F64(recording.sampling_hz));
+            group.set_attr("forced motion", text(&moving.join(", ")));
+            let density = run.air_density_kg_m3;
+            let mut number = |name: &str, value: f64, unit: &str| {
+                group
+                    .create_dataset(name)
+                    .with_f64_data(&[value])
+                    .with_shape(&[])
+                    .set_attr("units", units(&[unit]));
+            };
+            number("temperature", temperature_c(density), "C");
+            number("air_density", density, "kg/m^3");
+            group
+                .create_dataset("wind_velocity")
+                .with_f64_data(&recording.wind_speed_m_s)
+                .with_shape(&[n])
+                .set_attr("units", units(&["m/s"]));
+            group
+                .create_dataset("motion")
+                .with_f64_data(&motion(recording))
+                .with_shape(&[n, 3])
+                .set_attr("units", units(&["m", "m", "rad"]));
+            for (name, about) in [
+                ("forces_global_coord", About::Cell),
+                ("forces_global_coord_center", About::Centre),
+            ] {
+                let dataset = group.create_dataset(name);
+                dataset
+                    .with_f64_data(&forces(recording, rig, about))
+                    .with_shape(&[n, 6 * CELLS as u64])
+                    .set_attr("units", units(&of_cells));
+                if about == About::Centre {
+                    dataset.set_attr("eccentricity", AttrValue::F64Array(eccentricity(rig)));
+                }
+            }
+            file.add_group(group.finish());
+        }
+    }
+    file
+}
+
+/// Mean distance downwind of the first two and the last two cells from the centre of rotation, m.
+fn eccentricity(rig: &Rig) -> Vec<f64> {
+    let mean = |cells: &[LoadCell]| {
+        let sum: f64 = cells.iter().map(|c| c.position_m[0]).sum();
+        sum / cells.len().max(1) as f64
+    };
+    let (upwind, downwind) = rig.cells.split_at(rig.cells.len().min(2));
+    vec![mean(upwind), mean(downwind)]
+}
+
+/// Rows of lateral, vertical, torsion.
+fn motion(recording: &RawRecording) -> Vec<f64> {
+    let [vertical, lateral, torsion] = &recording.motion;
+    (0..recording.len())
+        .flat_map(|i| [lateral[i], vertical[i], torsion[i]])
+        .collect()
+}
+
+/// Where the moments are taken about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum About {
+    /// The place of the cell at rest.
+    Cell,
+    /// The axis of rotation; along the span, as in the laboratory's own import, the place of the cell.
+    Centre,
+}
+
+/// Rows of the six channels of each cell in fixed axes.
+fn forces(recording: &RawRecording, rig: &Rig, about: About) -> Vec<f64> {
+    let to_lab = Matrix3::from_fn(|i, j| AXES[j][i]);
+    let torsion = Dof::THREE
+        .iter()
+        .position(|d| *d == Dof::Torsion)
+        .unwrap_or(0);
+    let mut rows = Vec::with_capacity(recording.len() * 6 * CELLS);
+    for i in 0..recording.len() {
+        let theta = recording.motion[torsion].get(i).copied().unwrap_or(0.0);
+        for (cell, channels) in rig.cells.iter().zip(&recording.cells) {
+            let to_global = cell.axes_at(theta);
+            let [fx, fy, fz, mx, my, mz] = channels;
+            let force = to_global * Vector3::new(fx[i], fy[i], fz[i]);
+            let [x, y, z] = cell.position_m;
+            let origin = match about {
+                About::Cell => Vector3::new(x, y, z),
+                About::Centre => Vector3::new(0.0, 0.0, z),
+            };
+            let arm = cell.position_at(theta) - origin;
+            let moment = to_global * Vector3::new(mx[i], my[i], mz[i]) + arm.cross(&force);
+            rows.extend((to_lab * force).iter());
+            rows.extend((to_lab * moment).iter());
+        }
+        rows.resize((i + 1) * 6 * CELLS, 0.0);
+    }
+    rows
 }

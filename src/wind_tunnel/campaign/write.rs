@@ -5,10 +5,10 @@ use super::channel_map::{CellChannel, ChannelMap, ChannelRef, cell_quantity};
 use super::file::{
     CAMPAIGN_SCHEMA, Campaign, FileRef, RecordingBlock, RecordingLayout, RunBlock, SectionBlock,
 };
-use super::ntnu_file;
+use super::ntnu;
 use super::quantity::Quantity;
 use crate::error::{Error, Result};
-use crate::wind_tunnel::record_file::push_number;
+use crate::wind_tunnel::record_file::write_rows;
 use crate::wind_tunnel::virtual_campaign::VirtualCampaign;
 use crate::wind_tunnel::{CELL_CHANNELS, RawRecording, RawRun, Rig, write_record};
 use serde::{Deserialize, Serialize};
@@ -56,7 +56,7 @@ pub fn write_virtual_campaign(
         }
         FileFormat::Ntnu => {
             let path = place(Path::new(NTNU_FILE))?;
-            ntnu_file::build(made)
+            ntnu::build(made)
                 .write(&path)
                 .map_err(|e| Error::io(&path, std::io::Error::other(e.to_string())))?;
         }
@@ -150,7 +150,7 @@ fn campaign_file(made: &VirtualCampaign, format: FileFormat) -> Campaign {
         },
         rig: match format {
             FileFormat::Csv => Some(raw.rig.clone()),
-            FileFormat::Ntnu => Some(ntnu_file::rig(&raw.rig)),
+            FileFormat::Ntnu => Some(ntnu::rig(&raw.rig)),
         },
         channels: match format {
             FileFormat::Csv => csv_map(&raw.rig),
@@ -210,21 +210,11 @@ fn write_csv(recording: &RawRecording, rig: &Rig, path: &Path) -> Result<()> {
     writeln!(out, "# sampling_hz: {}", recording.sampling_hz).map_err(io)?;
     writeln!(out, "time [s],{}", names.join(",")).map_err(io)?;
     let motion = recording.motion.iter();
-    let cells = recording.cells.iter().flatten();
-    let channels: Vec<&Vec<f64>> = motion
+    let channels: Vec<&[f64]> = motion
         .chain([&recording.wind_speed_m_s])
-        .chain(cells)
+        .chain(recording.cells.iter().flatten())
+        .map(Vec::as_slice)
         .collect();
-    let mut line = String::new();
-    for i in 0..recording.len() {
-        line.clear();
-        push_number(&mut line, i as f64 / recording.sampling_hz);
-        for channel in &channels {
-            line.push(',');
-            push_number(&mut line, channel[i]);
-        }
-        line.push('\n');
-        out.write_all(line.as_bytes()).map_err(io)?;
-    }
+    write_rows(&mut out, recording.sampling_hz, 0, &channels).map_err(io)?;
     out.flush().map_err(io)
 }

@@ -11,7 +11,7 @@
 //!
 //! What a zero has moved between the two recordings is not in it: at rest nothing tells it from static wind.
 
-use super::axes::{self, GlobalCell};
+use super::cells::{self, GlobalCell};
 use super::coherent::Regressors;
 use super::segmentation::HarmonicSegment;
 use crate::error::Result;
@@ -49,18 +49,18 @@ pub fn remove_cell_drift(
     let global = if degree == 0 {
         Vec::new()
     } else {
-        axes::to_global(recording, rig, rotation_rad)
+        cells::to_global(recording, rig, rotation_rad)
     };
     let mut found: Vec<CellDrift> = rig.cells.iter().map(CellDrift::none).collect();
     for (i, mut global) in global.into_iter().enumerate() {
         let cell = &rig.cells[i];
-        axes::move_moment(&mut global, cell, rotation_rad, 1.0);
+        cells::move_moment(&mut global, cell, rotation_rad, 1.0);
         let mut drift: GlobalCell = Default::default();
         for (drift, channel) in drift.iter_mut().zip(&global) {
             *drift = drift_of(channel, &regressors, &ramps)?;
         }
-        axes::move_moment(&mut drift, cell, &[], -1.0);
-        let drift = axes::to_cell_at_rest(&drift, cell);
+        cells::move_moment(&mut drift, cell, &[], -1.0);
+        let drift = cells::to_cell_at_rest(&drift, cell);
         for (c, channel) in recording.cells[i].iter_mut().enumerate() {
             // a channel that was not measured
             if channel.iter().all(|x| *x == 0.0) {

@@ -72,7 +72,7 @@ pub fn still_air_inertia(
     let rates = still.sampling_hz;
     // a lag of the axes behind the model would be of second order here
     let at_rest = vec![0.0; still.len()];
-    let cells = super::axes::to_global(still, rig, &at_rest);
+    let cells = super::cells::to_global(still, rig, &at_rest);
     let total = sum_about_centre(&cells, rig, &at_rest);
     let of = |force: &[f64]| ratios(motion, force, rates, segments);
     let own = of(&total[super::index(dof)])?;

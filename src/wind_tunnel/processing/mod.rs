@@ -5,36 +5,32 @@
 //! 1. [`check`]: lengths, rates, finite numbers, clipping;
 //! 2. [`segmentation`]: the test points, from the motion;
 //! 3. [`lag`]: force channels behind the motion, from the inertia in still air, and the sign of that inertia;
-//! 4. [`drift`] of the cells, in their own axes; [`alignment`]: still air in step with wind;
-//! 5. [`axes`], [`cells`]: global axes, about the centre of rotation, summed: clamping `F_E` is gone;
-//! 6. [`means`]: gravity `F_G` and static wind `F_S` are gone;
-//! 7. [`inertia`]: still air subtracted: inertia `F_I` and the turning part of gravity are gone;
-//! 8. [`spikes`] and drift, by the [`coherent`] regression;
-//! 9. [`low_pass`]: noise and buffeting `F_B` above the cut-off are gone, `F_Se` is left;
-//! 10. [`rest`]: what is no motion is set to zero;
-//! 11. records per unit length.
+//! 4. [`drift`] of the cells, in their own axes;
+//! 5. [`still_air`] in step with wind;
+//! 6. [`cells`]: global axes, about the centre of rotation, summed: clamping `F_E` is gone;
+//! 7. [`rest`]: means before the motion: gravity `F_G` and static wind `F_S` are gone;
+//! 8. [`still_air`] subtracted: inertia `F_I` and the turning part of gravity are gone;
+//! 9. [`spikes`] and drift, by the [`coherent`] regression;
+//! 10. [`low_pass`]: noise and buffeting `F_B` above the cut-off are gone, `F_Se` is left;
+//! 11. [`rest`] again: what is no motion is set to zero;
+//! 12. records per unit length.
 
-pub mod alignment;
-pub mod axes;
 mod body;
 pub mod cells;
 pub mod check;
 pub mod coherent;
 pub mod drift;
-pub mod inertia;
 pub mod lag;
 pub mod low_pass;
-pub mod means;
 mod options;
 mod prepare;
-mod records;
 mod report;
 pub mod rest;
 mod run;
 pub mod segmentation;
 mod signals;
 pub mod spikes;
-mod warnings;
+pub mod still_air;
 
 pub use options::{LowPassOptions, ProcessingOptions, Ramps, SegmentOptions, SpikeOptions};
 pub use report::{

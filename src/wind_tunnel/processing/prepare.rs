@@ -4,7 +4,7 @@ use super::check::{Findings, check_run};
 use super::lag::{StillAirInertia, still_air_inertia};
 use super::options::ProcessingOptions;
 use super::segmentation::{HarmonicSegment, find_segments, moving_dof, whole_periods};
-use super::{alignment, body, index};
+use super::{body, index, still_air};
 use crate::error::{Error, Result};
 use crate::section::Dof;
 use crate::wind_tunnel::{RawRecording, RawRun, Rig};
@@ -34,7 +34,7 @@ impl<'a> Prepared<'a> {
         };
         let dof = moving(&run.in_wind, "in wind")?;
         let find = |r: &RawRecording| {
-            let motion = alignment::from_rest(&r.motion[index(dof)]);
+            let motion = still_air::from_rest(&r.motion[index(dof)]);
             find_segments(&motion, r.sampling_hz, &options.segments)
         };
         let segments = find(&run.in_wind);

@@ -1,19 +1,17 @@
 //! One run through all stages.
 
-use super::alignment::Alignment;
 use super::cells::CellShare;
 use super::coherent::{Parts, Regressors};
 use super::drift::CellDrift;
 use super::low_pass::AppliedLowPass;
-use super::means::{RemovedMeans, remove_means, rest};
 use super::options::ProcessingOptions;
 use super::prepare::Prepared;
 use super::report::{DimensionlessFactors, RemovedDrift, RunReport, SignalToNoise, StageLevels};
-use super::rest::still_the_rest;
+use super::rest::{RemovedMeans, remove_means, rest, still_the_rest};
 use super::segmentation::HarmonicSegment;
 use super::signals::{SectionSignals, peak_and_rms};
-use super::{alignment, axes, cells, drift, index, inertia, low_pass, spikes};
-use super::{records, warnings};
+use super::still_air::Alignment;
+use super::{cells, drift, index, low_pass, report, signals, spikes, still_air};
 use crate::error::Result;
 use crate::section::Dof;
 use crate::signal::{ButterworthLowPass, delayed};
@@ -78,7 +76,7 @@ pub(super) fn process_run(
     let in_wind = remove_means(&mut signals, &range);
     let still_air = remove_means(&mut still, &range);
     stages.add("means removed", &signals);
-    let inertia = inertia::subtract(&mut signals, &still);
+    let inertia = still_air::subtract(&mut signals, &still);
     stages.add("still air subtracted", &signals);
     let rate = signals.sampling_hz;
     let filter = low_pass::design(&run.name, &options.low_pass, &segments, rate)?;
@@ -157,9 +155,9 @@ pub(super) fn process_run(
         levels: stages.levels,
         warnings: findings.warnings.clone(),
     };
-    warnings::warn(&mut report, options);
+    report::warn(&mut report, options);
     Ok(ProcessedRun {
-        records: records::records(
+        records: signals::records(
             campaign,
             dofs,
             &signals,
@@ -177,7 +175,7 @@ fn in_step(prepared: &Prepared<'_>, rig: &Rig, lag_s: f64, degree: usize) -> Res
     let run = prepared.run;
     let ready = |recording: &RawRecording, segments: &[HarmonicSegment]| {
         let mut recording = without_lag(recording, lag_s);
-        let motion = alignment::from_rest(&recording.motion[index(prepared.dof)]);
+        let motion = still_air::from_rest(&recording.motion[index(prepared.dof)]);
         let rotation = rotation(&recording);
         let drift =
             drift::remove_cell_drift(&mut recording, rig, &motion, &rotation, segments, degree)?;
@@ -200,10 +198,10 @@ fn in_step(prepared: &Prepared<'_>, rig: &Rig, lag_s: f64, degree: usize) -> Res
         });
     };
     let (still, _) = ready(still, &prepared.still_segments)?;
-    let aligned = alignment::align(&run.name, &wind, &still, prepared.dof)?;
+    let aligned = still_air::align(&run.name, &wind, &still, prepared.dof)?;
     let covered = aligned.covered;
-    let (wind, shares) = on_the_model(&cut(&wind, &covered), rig);
-    let (still_air, _) = on_the_model(&cut(&aligned.still_air, &covered), rig);
+    let (wind, shares) = on_the_model(&wind.map(|x| x[covered.clone()].to_vec()), rig);
+    let (still_air, _) = on_the_model(&aligned.still_air.map(|x| x[covered.clone()].to_vec()), rig);
     Ok(InStep {
         wind,
         still_air,
@@ -288,27 +286,6 @@ fn without_lag(recording: &RawRecording, lag_s: f64) -> RawRecording {
     corrected
 }
 
-fn cut(recording: &RawRecording, covered: &Range<usize>) -> RawRecording {
-    let part = |x: &Vec<f64>| {
-        if x.is_empty() {
-            Vec::new()
-        } else {
-            x[covered.clone()].to_vec()
-        }
-    };
-    RawRecording {
-        source: recording.source.clone(),
-        sampling_hz: recording.sampling_hz,
-        motion: std::array::from_fn(|d| part(&recording.motion[d])),
-        cells: recording
-            .cells
-            .iter()
-            .map(|c| std::array::from_fn(|i| part(&c[i])))
-            .collect(),
-        wind_speed_m_s: part(&recording.wind_speed_m_s),
-    }
-}
-
 /// Rotation of the model at each sample, rad; zero where nobody measured it.
 fn rotation(recording: &RawRecording) -> Vec<f64> {
     let x = &recording.motion[index(Dof::Torsion)];
@@ -331,7 +308,7 @@ fn on_the_model(recording: &RawRecording, rig: &Rig) -> (SectionSignals, Vec<cel
         }
     });
     let rotation = &motion[index(Dof::Torsion)];
-    let global = axes::to_global(recording, rig, rotation);
+    let global = cells::to_global(recording, rig, rotation);
     let force = cells::sum_about_centre(&global, rig, rotation);
     let shares = cells::shares(&global, rig);
     let signals = SectionSignals {

@@ -113,7 +113,7 @@ pub fn find_segments(
 /// # Errors
 /// [`Error::Input`] at `place` with the periods there are.
 pub fn whole_periods(place: &str, recording: &RawRecording, dof: Dof) -> Result<()> {
-    let motion = super::alignment::from_rest(&recording.motion[super::index(dof)]);
+    let motion = super::still_air::from_rest(&recording.motion[super::index(dof)]);
     let amplitude = motion.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     let periods = upward_passages(&motion, HYSTERESIS * amplitude)
         .len()

@@ -17,13 +17,9 @@
 //! gravity and inertia only, so that in wind minus still air is the self-excited force as the truth has it. (In a real
 //! tunnel the subtraction also takes the added mass of the air away.)
 
-mod body;
-mod cells;
-mod disturbances;
-mod gusts;
+mod forces;
 mod make;
 mod plan;
-mod plan_file;
 mod truth;
 
 pub use make::VirtualCampaign;

@@ -265,6 +265,34 @@ impl VirtualCampaignPlan {
     }
 }
 
+impl VirtualCampaignPlan {
+    /// Reads and checks a plan; what it does not state is as in [`VirtualCampaignPlan::default`].
+    ///
+    /// # Errors
+    /// [`Error::Io`] when it cannot be read; [`Error::Input`] with file and line for everything that is wrong in it.
+    pub fn read(path: impl AsRef<std::path::Path>) -> Result<Self> {
+        crate::files::toml_lines::read(path.as_ref(), |text, _| Self::from_toml(text))
+    }
+
+    /// Reads and checks the text of a plan.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with line and key for everything that is wrong in it.
+    pub fn from_toml(text: &str) -> Result<Self> {
+        crate::files::toml_lines::parse("a plan of a virtual campaign", text, |plan: &mut Self| {
+            plan.validate()
+        })
+    }
+
+    /// The plan as the text of a file.
+    ///
+    /// # Errors
+    /// [`Error::Numerical`] when it cannot be written as TOML.
+    pub fn to_toml(&self) -> Result<String> {
+        toml::to_string(self).map_err(|e| Error::Numerical(e.to_string()))
+    }
+}
+
 impl Support {
     /// The rig for a model of `width_m`.
     pub(super) fn rig(&self, width_m: f64) -> Rig {

@@ -1,10 +1,15 @@
-//! Still-air recording brought into step with the one in wind.
+//! The still-air recording: brought into step with the one in wind, and subtracted from it.
 //!
 //! The two motions are the same but for when recording began. Their delay is that of the largest cross-correlation, refined by
 //! the slope of the phase of the cross-spectrum ([`crate::signal::delay`]): whole samples would not do, since inertia is many
 //! times the self-excited force and half a sample turns it by 2° at 2.5 Hz and 200 Hz. Then every channel in still air is moved
 //! by Lagrange interpolation, which keeps the phase.
+//!
+//! Inertia, and what gravity does to the turning model, leave with the subtraction: `F_se = F_wind − F_still`, sample by sample,
+//! after both are in global axes, about the centre of rotation and in step. The mass of the air that moves with the model in
+//! still air leaves with it: the derivatives are those of wind against still air, as in every such test.
 
+use super::signals::{SectionSignals, peak_and_rms};
 use crate::error::{Error, Result};
 use crate::section::Dof;
 use crate::signal::{delay, delayed};
@@ -63,18 +68,7 @@ pub fn align(
         Error::input(place(), expected, "one that is nowhere like it")
     })?;
     let count = in_wind.len();
-    let shift = |x: &Vec<f64>| moved(x, found.samples, count);
-    let moved_still = RawRecording {
-        source: still_air.source.clone(),
-        sampling_hz: still_air.sampling_hz,
-        motion: std::array::from_fn(|d| shift(&still_air.motion[d])),
-        cells: still_air
-            .cells
-            .iter()
-            .map(|cell| std::array::from_fn(|c| shift(&cell[c])))
-            .collect(),
-        wind_speed_m_s: shift(&still_air.wind_speed_m_s),
-    };
+    let moved_still = still_air.map(|x| moved(x, found.samples, count));
     // an offset of rounding costs no sample
     let first = (-found.samples - ROUNDING).ceil().max(0.0) as usize;
     let end = (still_air.len() as f64 - found.samples + ROUNDING)
@@ -109,11 +103,8 @@ pub fn align(
     })
 }
 
-/// The signal earlier by `samples`, cut or held to `count` samples; an empty one stays empty.
+/// The signal earlier by `samples`, cut or held to `count` samples.
 fn moved(x: &[f64], samples: f64, count: usize) -> Vec<f64> {
-    if x.is_empty() {
-        return Vec::new();
-    }
     let mut x = x.to_vec();
     let last = x[x.len() - 1];
     x.resize(x.len().max(count), last);
@@ -126,4 +117,25 @@ fn moved(x: &[f64], samples: f64, count: usize) -> Vec<f64> {
 pub fn from_rest(x: &[f64]) -> Vec<f64> {
     let rest = crate::signal::median(x);
     x.iter().map(|v| v - rest).collect()
+}
+
+/// What the subtraction took.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct RemovedInertia {
+    /// RMS of what was subtracted: N, N, N·m.
+    pub removed_rms: [f64; 3],
+    /// RMS of what is left.
+    pub left_rms: [f64; 3],
+}
+
+/// `in_wind − still_air`.
+pub fn subtract(in_wind: &mut SectionSignals, still_air: &SectionSignals) -> RemovedInertia {
+    for (wind, still) in in_wind.force.iter_mut().zip(&still_air.force) {
+        wind.iter_mut().zip(still).for_each(|(w, s)| *w -= s);
+    }
+    let rms = |s: &SectionSignals| std::array::from_fn(|d| peak_and_rms(&s.force[d]).1);
+    RemovedInertia {
+        removed_rms: rms(still_air),
+        left_rms: rms(in_wind),
+    }
 }

@@ -1,0 +1,277 @@
+//! The forms that a continuous model may have.
+
+use super::options::number_of_filters;
+use crate::error::{Error, Result};
+use serde::{Deserialize, Serialize};
+
+/// Feed-through of the motion (`e0`), its rate (`e1`) and its acceleration (`e2`), each on or off.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct FeedThrough {
+    /// Motion.
+    pub e0: bool,
+    /// Rate.
+    pub e1: bool,
+    /// Acceleration (added mass of the air).
+    pub e2: bool,
+}
+
+impl Default for FeedThrough {
+    fn default() -> Self {
+        Self {
+            e0: true,
+            e1: true,
+            e2: true,
+        }
+    }
+}
+
+impl FeedThrough {
+    pub(crate) fn none() -> Self {
+        Self {
+            e0: false,
+            e1: false,
+            e2: false,
+        }
+    }
+
+    /// Derivative orders that are on.
+    pub(crate) fn orders(self) -> impl Iterator<Item = usize> {
+        [self.e0, self.e1, self.e2]
+            .into_iter()
+            .enumerate()
+            .filter_map(|(order, on)| on.then_some(order))
+    }
+
+    pub(crate) fn count(self) -> usize {
+        self.orders().count()
+    }
+}
+
+/// Form of a continuous model.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+pub enum Form {
+    /// `e₀ + e₁ p + e₂ p² + Σ c_l Λ_l(p)` with one pole for all filters of a chain.
+    Laguerre {
+        /// Number of filters `L`.
+        #[serde(default = "three")]
+        filters: usize,
+        /// Feed-through terms.
+        #[serde(default)]
+        feed_through: FeedThrough,
+        /// A pole for each transfer function instead of one for all.
+        #[serde(default)]
+        pole_per_transfer_function: bool,
+    },
+    /// The same with a pole for each filter.
+    TakenakaMalmquist {
+        /// Number of filters `L`.
+        filters: usize,
+        /// Feed-through terms.
+        #[serde(default)]
+        feed_through: FeedThrough,
+        /// Poles for each transfer function instead of one set for all.
+        #[serde(default)]
+        pole_per_transfer_function: bool,
+    },
+    /// Roger's `a₁ + a₂ p + a₃ p² + Σ a_{l+3} p/(p + d_l)`.
+    Rational {
+        /// Number of lags.
+        #[serde(default = "one")]
+        lags: usize,
+        /// Whether there is an `a₃`.
+        #[serde(default = "yes")]
+        added_mass: bool,
+    },
+    /// The same with lags of each force (row of `G`): the `d_l^y` of the thesis. For tables only.
+    RationalPerForce {
+        /// Number of lags of a force.
+        #[serde(default = "one")]
+        lags: usize,
+        /// Whether there is an `a₃`.
+        #[serde(default = "yes")]
+        added_mass: bool,
+    },
+    /// Karpel's `a₁ + a₂ p + a₃ p² + D (pI − R)⁻¹ E p` with one state a lag. For tables only.
+    MinimumState {
+        /// Number of lag states.
+        #[serde(default = "two")]
+        states: usize,
+        /// Whether there is an `a₃`.
+        #[serde(default = "yes")]
+        added_mass: bool,
+    },
+}
+
+fn two() -> usize {
+    2
+}
+
+fn one() -> usize {
+    1
+}
+
+fn yes() -> bool {
+    true
+}
+
+fn three() -> usize {
+    3
+}
+
+impl Default for Form {
+    fn default() -> Self {
+        Self::Laguerre {
+            filters: three(),
+            feed_through: FeedThrough::default(),
+            pole_per_transfer_function: false,
+        }
+    }
+}
+
+impl Form {
+    /// Number of filters or lags.
+    pub fn filters(&self) -> usize {
+        match self {
+            Self::Laguerre { filters, .. } | Self::TakenakaMalmquist { filters, .. } => *filters,
+            Self::Rational { lags, .. } | Self::RationalPerForce { lags, .. } => *lags,
+            Self::MinimumState { states, .. } => *states,
+        }
+    }
+
+    /// Feed-through terms.
+    pub fn feed_through(&self) -> FeedThrough {
+        match self {
+            Self::Laguerre { feed_through, .. } | Self::TakenakaMalmquist { feed_through, .. } => {
+                *feed_through
+            }
+            Self::Rational { added_mass, .. }
+            | Self::RationalPerForce { added_mass, .. }
+            | Self::MinimumState { added_mass, .. } => FeedThrough {
+                e2: *added_mass,
+                ..FeedThrough::default()
+            },
+        }
+    }
+
+    /// How many numbers a search of the poles has to find.
+    pub fn free_poles(&self) -> usize {
+        match self {
+            Self::Laguerre { .. } => 1,
+            _ => self.filters(),
+        }
+    }
+
+    /// Whether every transfer function has poles of its own.
+    pub fn pole_per_transfer_function(&self) -> bool {
+        match self {
+            Self::Laguerre {
+                pole_per_transfer_function,
+                ..
+            }
+            | Self::TakenakaMalmquist {
+                pole_per_transfer_function,
+                ..
+            } => *pole_per_transfer_function,
+            _ => false,
+        }
+    }
+
+    /// One pole a filter from the free ones.
+    pub(crate) fn expand(&self, free: &[f64]) -> Vec<f64> {
+        match self {
+            Self::Laguerre { filters, .. } => vec![free[0]; *filters],
+            _ => free.to_vec(),
+        }
+    }
+
+    /// The free poles from one pole a filter.
+    pub(crate) fn collapse(&self, chain: &[f64]) -> Vec<f64> {
+        match self {
+            Self::Laguerre { .. } => chain.iter().take(1).copied().collect(),
+            _ => chain.to_vec(),
+        }
+    }
+
+    /// The form in words.
+    pub fn describe(&self) -> String {
+        let feed = self.feed_through();
+        let own = if self.pole_per_transfer_function() {
+            ", poles per transfer function"
+        } else {
+            ""
+        };
+        let terms: Vec<_> = feed.orders().map(|o| format!("e{o}")).collect();
+        let with = if terms.is_empty() {
+            "no feed-through".into()
+        } else {
+            terms.join(" ")
+        };
+        match self {
+            Self::Laguerre { filters, .. } => {
+                format!("continuous Laguerre, L = {filters}, {with}{own}")
+            }
+            Self::TakenakaMalmquist { filters, .. } => {
+                format!("Takenaka–Malmquist, L = {filters}, {with}{own}")
+            }
+            _ => self.describe_rational(),
+        }
+    }
+
+    /// The same with another number of filters; `None` for rational functions, whose lags are common to all entries.
+    pub(crate) fn with_filters(&self, count: usize) -> Option<Self> {
+        let mut form = self.clone();
+        match &mut form {
+            Self::Laguerre { filters, .. } | Self::TakenakaMalmquist { filters, .. } => {
+                *filters = count;
+            }
+            _ => return None,
+        }
+        Some(form)
+    }
+
+    pub(crate) fn validate(&self) -> Result<()> {
+        number_of_filters("form.filters (or form.lags)", self.filters())
+    }
+
+    /// Whether every force has poles of its own.
+    pub fn poles_per_force(&self) -> bool {
+        matches!(self, Self::RationalPerForce { .. })
+    }
+
+    /// A rational form in words.
+    fn describe_rational(&self) -> String {
+        let (kind, whose) = match self {
+            Self::RationalPerForce { .. } => ("rational functions", " of each force"),
+            Self::MinimumState { .. } => ("minimum-state rational functions", ""),
+            _ => ("rational functions", ""),
+        };
+        let count = self.filters();
+        let plural = if count == 1 { "" } else { "s" };
+        let with = if self.feed_through().e2 {
+            "with"
+        } else {
+            "without"
+        };
+        format!("{kind}, {count} lag{plural}{whose}, {with} added mass")
+    }
+
+    /// Checks the form for a fit to records.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for forms that are fitted to tables only, and those of every form.
+    pub(super) fn validate_for_records(&self) -> Result<()> {
+        if matches!(
+            self,
+            Self::RationalPerForce { .. } | Self::MinimumState { .. }
+        ) {
+            return Err(Error::input(
+                "form.kind",
+                "laguerre, takenaka_malmquist or rational for a fit to records",
+                format!("{}, which is fitted to tables", self.describe()),
+            ));
+        }
+        self.validate()
+    }
+}
