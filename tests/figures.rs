@@ -10,9 +10,8 @@ use aerodeck::flutter::{
     FlutterCurves, Onset, OnsetSearch, determinant_onset, find_onset, trace_modes,
 };
 use aerodeck::report::{
-    DerivativePlot, DerivativesPlot, Figure, PNG_SCALE, PlottedSeries, PoleSearchPlot, TimePanel,
-    VfVgOptions, derivatives_figure, pole_search_figure, root_locus_figure, time_history_figure,
-    vf_vg_figure,
+    DerivativePlot, DerivativesPlot, Figure, PNG_SCALE, PlottedSeries, TimePanel, VfVgOptions,
+    derivatives_figure, time_history_figure, vf_vg_figure,
 };
 use aerodeck::response::{Inputs, Outputs, Stepper};
 use aerodeck::section::{Dof, SectionModel};
@@ -302,29 +301,6 @@ fn derivatives_of_two_and_three_degrees_of_freedom() {
 }
 
 #[test]
-fn root_locus_of_table_4_1() {
-    let section = SectionModel::table_4_1();
-    let mut damped = section.clone();
-    damped.torsion.damping_ratio = 0.02;
-    let curves = [
-        jones_curves("flat plate, Jones", &section, 45.0),
-        jones_curves("the same, 2 % torsional damping", &damped, 45.0),
-    ];
-    let draw = || root_locus_figure("Table 4.1", &curves).unwrap();
-    let labels = [
-        "Re λ (1/s)",
-        "Im λ (rad/s)",
-        "0 m/s",
-        "9 m/s",
-        "45 m/s",
-        "lowest wind speed",
-        "the same, 2 % torsional damping",
-    ];
-    check(&draw(), &draw(), "root_locus", &labels);
-    assert!(root_locus_figure("", &[]).is_err());
-}
-
-#[test]
 fn time_history_of_table_4_1() {
     let mut stepper = Stepper::new(jones(&SectionModel::table_4_1()));
     let mut panels = [("Heave y (m)", 0), ("Rotation θ (rad)", 1)].map(|(label, dof)| {
@@ -359,32 +335,4 @@ fn time_history_of_table_4_1() {
     let mut broken = panels;
     broken[0].series[1].points[100].0 = f64::NAN;
     assert!(time_history_figure("", &broken, "t").is_err());
-}
-
-#[test]
-fn pole_search_with_a_chosen_pole() {
-    // any smooth objective with a minimum will do
-    let curve = |filters: i32| {
-        let points = (1..=40).map(|i| {
-            let p = 0.05 * f64::from(i);
-            let objective = (1e-4 + (p.ln() + 0.5).powi(2)) * 10f64.powi(-filters);
-            (p, objective)
-        });
-        PlottedSeries::new(format!("N = {filters}"), points.collect())
-    };
-    let search = PoleSearchPlot {
-        title: "Search for the pole of the Laguerre filters".into(),
-        pole_label: "Pole p (–)".into(),
-        objective_label: "Objective (–)".into(),
-        curves: vec![curve(1), curve(2), curve(3)],
-        chosen: Some(curve(3).points[11]),
-    };
-    let draw = || pole_search_figure(&search).unwrap();
-    let labels = ["Pole p (–)", "N = 2", "0.6000", "10⁻⁶", "chosen"];
-    check(&draw(), &draw(), "pole_search", &labels);
-    let mut broken = search;
-    broken.chosen = Some((f64::NAN, 1.0));
-    assert!(pole_search_figure(&broken).is_err());
-    (broken.chosen, broken.curves) = (None, Vec::new());
-    assert!(pole_search_figure(&broken).is_err());
 }

@@ -1,7 +1,7 @@
 //! The standard normal distribution, and confidence intervals of counted probabilities.
 
-use crate::uncertainty::incomplete_beta;
 use crate::state_space::boundary;
+use crate::uncertainty::incomplete_beta;
 use std::convert::Infallible;
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 

@@ -1,12 +1,12 @@
-//! Time histories and the search for poles.
+//! Time histories.
 
-use super::axis::{Axis, significant};
+use super::axis::Axis;
 use super::figure::Figure;
 use super::legend::Entry;
-use super::panel::{Note, Panel};
+use super::panel::Panel;
 use super::series::{PlottedSeries, index_of, labels_of};
 use super::sheet::Sheet;
-use super::style::{BLACK, Ink, Shape, colour, dash};
+use super::style::{Ink, colour, dash};
 use crate::error::Result;
 
 /// Histories with a common ordinate.
@@ -69,82 +69,4 @@ pub fn time_history_figure(title: &str, panels: &[TimePanel], t_label: &str) -> 
         legend: vec![legend],
     }
     .draw()
-}
-
-/// What was tried in a search for the poles of a model, for the figure.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PoleSearchPlot {
-    /// Line above the figure; empty for none.
-    pub title: String,
-    /// Name of the pole, e.g. `Pole p (–)`.
-    pub pole_label: String,
-    /// Name of the objective and its unit.
-    pub objective_label: String,
-    /// Pole and objective, one series e.g. for each number of filters.
-    pub curves: Vec<PlottedSeries>,
-    /// The pole that was chosen and its objective.
-    pub chosen: Option<(f64, f64)>,
-}
-
-/// Objective over the pole, every trial a dot; logarithmic where positive objectives differ by more than a factor of 30.
-///
-/// # Errors
-/// [`crate::Error::Input`] for no data, numbers that are not finite, and more curves than colours.
-pub fn pole_search_figure(search: &PoleSearchPlot) -> Result<Figure> {
-    const PLACE: &str = "pole search";
-    let mut panel = Panel::new(
-        Axis::new(&search.pole_label),
-        Axis {
-            logarithmic: spread(&search.curves) > 30.0,
-            ..Axis::new(&search.objective_label)
-        },
-    );
-    let mut legend = Vec::with_capacity(search.curves.len());
-    for (i, curve) in search.curves.iter().enumerate() {
-        let ink = Ink::line(colour(PLACE, i)?, dash(i));
-        panel.add(&curve.label, curve.points.clone(), ink);
-        legend.push(Entry::new(&curve.label, ink));
-    }
-    for (i, curve) in search.curves.iter().enumerate() {
-        let mut dots = Ink::dots(colour(PLACE, i)?, Shape::Circle);
-        if let Ink::Dots { radius, .. } = &mut dots {
-            *radius = 2.4;
-        }
-        panel.add(&curve.label, curve.points.clone(), dots);
-    }
-    if let Some(at) = search.chosen {
-        let ink = Ink::Dots {
-            colour: BLACK,
-            shape: Shape::Diamond,
-            radius: 4.5,
-            hollow: false,
-        };
-        panel.add("chosen pole", vec![at], ink);
-        panel.notes.push(Note {
-            at,
-            text: significant(at.0),
-            colour: BLACK,
-        });
-        legend.push(Entry::new("chosen", ink));
-    }
-    Sheet {
-        name: PLACE,
-        title: Some(search.title.clone()).filter(|t| !t.is_empty()),
-        panels: vec![panel],
-        columns: 1,
-        axes: (560.0, 300.0),
-        legend: vec![legend],
-    }
-    .draw()
-}
-
-/// Largest over smallest of positive objectives; 1 when one is not positive.
-fn spread(curves: &[PlottedSeries]) -> f64 {
-    let values = || curves.iter().flat_map(|c| &c.points).map(|p| p.1);
-    let low = values().fold(f64::INFINITY, f64::min);
-    if low > 0.0 {
-        values().fold(0.0, f64::max) / low
-    } else {
-        1.0
-    }
 }
