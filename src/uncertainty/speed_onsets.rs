@@ -1,6 +1,7 @@
 //! What the tests at each mean speed say of the onset alone, and whether they contradict each other.
 
 use super::coefficients::CoefficientUncertainty;
+use super::derivatives::spread_over;
 use super::onset::{CONFIDENCE, OnsetError, error_at};
 use super::sensitivity::{onset_gradient, onset_nearby};
 use super::student::two_sided_quantile;
@@ -198,15 +199,14 @@ fn band(
     let dofs = &a.estimate.dofs;
     let place = |dof| dofs.iter().position(|d| *d == dof).unwrap_or(0);
     let entry = (place(force), place(motion));
-    let models = [a, b].map(|s| s.estimate.model_at(&s.estimate.values()));
-    let [first, second] = models;
-    let (first, second) = (first?, second?);
+    let model = |s: &Alone| s.estimate.model_at(&s.estimate.values());
+    let (first, second) = (model(a)?, model(b)?);
     let mut differences = Vec::with_capacity(POINTS);
-    for i in 0..POINTS {
-        let k = low * (high / low).powf(i as f64 / (POINTS as f64 - 1.0));
-        let at = ReducedFrequency::from_full_width(k);
-        let (x, y) = (first.transfer(at)?[entry], second.transfer(at)?[entry]);
-        differences.push((k, 2.0 * (x - y).norm() / (x.norm() + y.norm())));
+    let [min, max] = [low, high].map(ReducedFrequency::from_full_width);
+    for k in spread_over(ReducedFrequencyRange { min, max }, POINTS) {
+        let (x, y) = (first.transfer(k)?[entry], second.transfer(k)?[entry]);
+        let difference = 2.0 * (x - y).norm() / (x.norm() + y.norm());
+        differences.push((k.full_width(), difference));
     }
     let top = (0..POINTS)
         .max_by(|x, y| differences[*x].1.total_cmp(&differences[*y].1))

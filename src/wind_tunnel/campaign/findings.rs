@@ -153,10 +153,7 @@ pub(super) fn run_findings(run: &RawRun, motion: &[Dof], width_m: f64) -> Result
     }
     let still = run.still_air.iter().map(|r| ("still air", r));
     for (name, recording) in std::iter::once(("in wind", &run.in_wind)).chain(still) {
-        let spread = |d: Dof| {
-            let index = Dof::THREE.iter().position(|t| *t == d).unwrap_or(0);
-            deviation(&recording.motion[index]) * d.motion_scale(width_m)
-        };
+        let spread = |d: Dof| deviation(&recording.motion[d as usize]) * d.motion_scale(width_m);
         let stated = motion.iter().map(|d| spread(*d)).fold(0.0, f64::max);
         for dof in Dof::THREE {
             let is_stated = motion.contains(&dof);

@@ -158,13 +158,12 @@ enum About {
 /// Rows of the six channels of each cell in fixed axes.
 fn forces(recording: &RawRecording, rig: &Rig, about: About) -> Vec<f64> {
     let to_lab = Matrix3::from_fn(|i, j| AXES[j][i]);
-    let torsion = Dof::THREE
-        .iter()
-        .position(|d| *d == Dof::Torsion)
-        .unwrap_or(0);
     let mut rows = Vec::with_capacity(recording.len() * 6 * CELLS);
     for i in 0..recording.len() {
-        let theta = recording.motion[torsion].get(i).copied().unwrap_or(0.0);
+        let theta = recording.motion[Dof::Torsion as usize]
+            .get(i)
+            .copied()
+            .unwrap_or(0.0);
         for (cell, channels) in rig.cells.iter().zip(&recording.cells) {
             let to_global = cell.axes_at(theta);
             let [fx, fy, fz, mx, my, mz] = channels;

@@ -8,11 +8,7 @@ use std::ops::Range;
 
 /// Place of a degree of freedom in the arrays of a [`SectionSignals`], that of [`Dof::THREE`].
 pub fn index(dof: Dof) -> usize {
-    match dof {
-        Dof::Vertical => 0,
-        Dof::Lateral => 1,
-        Dof::Torsion => 2,
-    }
+    dof as usize
 }
 
 /// Motion of the section and force on the cells by the whole model, each vertical, lateral, torsion; of one length.
