@@ -1,4 +1,4 @@
-//! File formats: derivatives, static coefficients, gusts, and TOML files whose complaints name their line.
+//! File formats: derivatives, static coefficients, gusts, the files of laboratories, and TOML whose complaints name their line.
 //!
 //! Each format reads and writes value types of the rooms below, which know nothing of files.
 
@@ -6,4 +6,5 @@ pub mod coefficients;
 pub mod derivatives;
 pub mod gusts;
 pub(crate) mod header_csv;
+pub mod lab;
 pub(crate) mod toml_lines;

@@ -2,7 +2,6 @@
 
 mod broadband;
 pub mod campaign;
-pub mod lab_files;
 mod motion;
 mod plan_checks;
 mod prediction;

@@ -9,7 +9,7 @@ use crate::comparison::{
     wavelet_normalised,
 };
 use crate::error::{Error, Result, positive};
-use crate::wind_tunnel::lab_files::ChannelSet;
+use crate::files::lab::ChannelSet;
 use serde::Serialize;
 use std::fmt::Write as _;
 use std::path::PathBuf;

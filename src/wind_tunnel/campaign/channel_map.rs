@@ -3,8 +3,8 @@
 use super::quantity::{Quantity, is_known, unit_in_name};
 use super::section_forces::SectionForces;
 use crate::error::{Error, Result};
+use crate::files::lab::{Channel, ChannelSet};
 use crate::section::Dof;
-use crate::wind_tunnel::lab_files::{Channel, ChannelSet};
 use crate::wind_tunnel::{CELL_CHANNELS, Rig};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;

@@ -7,8 +7,8 @@ use super::file::{Campaign, FileRef, RunBlock};
 use super::findings::{Finding, channel_findings, first_gap};
 use super::quantity::Quantity;
 use crate::error::{Error, Result};
+use crate::files::lab::ChannelSet;
 use crate::section::Dof;
-use crate::wind_tunnel::lab_files::ChannelSet;
 use crate::wind_tunnel::{CELL_CHANNELS, RawRecording, Rig, SAMPLES_AT_LEAST};
 
 /// Two statements of one sampling frequency may differ by this part.

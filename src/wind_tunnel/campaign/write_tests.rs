@@ -100,7 +100,7 @@ fn the_layout_of_ntnu_states_its_units() {
     again(&made(), FileFormat::Ntnu, folder.path());
     let file = folder.path().join("runs.h5");
     let group = "Jones-vertical-8.17-wind";
-    let set = crate::wind_tunnel::lab_files::ChannelSet::read(&file, Some(group)).unwrap();
+    let set = crate::files::lab::ChannelSet::read(&file, Some(group)).unwrap();
     let unit = |name: &str| set.channel(name).unwrap().unit.clone().unwrap();
     assert_eq!(unit("motion[2]"), "m");
     assert_eq!(unit("motion[3]"), "rad");
