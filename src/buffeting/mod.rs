@@ -16,7 +16,7 @@ mod time;
 pub use admittance::Admittance;
 pub use frequency::{BuffetingResponse, buffeting_response, response_spectrum};
 pub use problem::{BuffetingProblem, Gust, GustForces, Turbulence};
-pub use spectrum::{GustComponent, GustSpectrum, SpectrumShape};
+pub use spectrum::{GustComponent, GustSpectrum, SpectrumFormula, SpectrumShape};
 pub use stability::unstable_roots;
 pub use synthesis::{GustSample, synthesise};
 pub use time::{ComponentComparison, Ensemble, TimePlan, compare, time_ensemble};

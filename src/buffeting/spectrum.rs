@@ -30,19 +30,7 @@ pub enum SpectrumShape {
     /// Kaimal in the form of EN 1991-1-4, B.1, and Handbook N400: `A x/(1 + 1.5 A x)^(5/3)`, `A_u = 6.8`, `A_w = 9.4`.
     Kaimal,
     /// Constants of the user's own; the integral must be the variance within 1 %.
-    General {
-        /// Factor `a`: at low frequency `S = a σ² L/V`.
-        a: f64,
-        /// Factor `b` in the denominator.
-        b: f64,
-        /// Power `c` of `x`.
-        c: f64,
-        /// Power `d` of the denominator.
-        d: f64,
-        /// Factor `e` in the numerator.
-        #[serde(default)]
-        e: f64,
-    },
+    General(SpectrumFormula),
 }
 
 /// A spectrum with its scales.
@@ -57,17 +45,24 @@ pub struct GustSpectrum {
     pub intensity: f64,
 }
 
-/// `a x (1 + e xᶜ)/(1 + b xᶜ)ᵈ`.
-#[derive(Debug, Clone, Copy)]
-struct Formula {
-    a: f64,
-    b: f64,
-    c: f64,
-    d: f64,
-    e: f64,
+/// `f S/σ² = a x (1 + e xᶜ)/(1 + b xᶜ)ᵈ`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SpectrumFormula {
+    /// Factor `a`: at low frequency `S = a σ² L/V`.
+    pub a: f64,
+    /// Factor `b` in the denominator.
+    pub b: f64,
+    /// Power `c` of `x`.
+    pub c: f64,
+    /// Power `d` of the denominator.
+    pub d: f64,
+    /// Factor `e` in the numerator.
+    #[serde(default)]
+    pub e: f64,
 }
 
-impl Formula {
+impl SpectrumFormula {
     /// `S V/(σ² L)`, finite at zero.
     fn density(&self, x: f64) -> f64 {
         let power = x.powf(self.c);
@@ -89,8 +84,8 @@ impl Formula {
 }
 
 impl SpectrumShape {
-    fn formula(&self, component: GustComponent) -> Formula {
-        let formula = |a, b, c, d, e| Formula { a, b, c, d, e };
+    fn formula(&self, component: GustComponent) -> SpectrumFormula {
+        let formula = |a, b, c, d, e| SpectrumFormula { a, b, c, d, e };
         match (*self, component) {
             (Self::VonKarman, GustComponent::Along) => formula(4.0, 70.8, 2.0, 5.0 / 6.0, 0.0),
             (Self::VonKarman, GustComponent::Vertical) => {
@@ -103,14 +98,15 @@ impl SpectrumShape {
                 };
                 formula(factor, 1.5 * factor, 1.0, 5.0 / 3.0, 0.0)
             }
-            (Self::General { a, b, c, d, e }, _) => formula(a, b, c, d, e),
+            (Self::General(formula), _) => formula,
         }
     }
 
     fn validate(&self, place: &str) -> Result<()> {
-        let Self::General { a, b, c, d, e } = *self else {
+        let Self::General(formula) = *self else {
             return Ok(());
         };
+        let SpectrumFormula { a, b, c, d, e } = formula;
         for (key, value) in [("a", a), ("b", b), ("c", c), ("d", d)] {
             positive(&format!("{place}.{key}"), value)?;
         }
@@ -124,7 +120,7 @@ impl SpectrumShape {
                 fall.to_string(),
             ));
         }
-        let integral = self.formula(GustComponent::Along).integral();
+        let integral = formula.integral();
         if (integral - 1.0).abs() > NORMALISATION_TOLERANCE {
             return Err(Error::input(
                 format!("{place}.a"),
@@ -219,7 +215,8 @@ mod tests {
 
     #[test]
     fn constants_of_the_user_are_checked() {
-        let general = |a, b, c, d, e| spectrum(SpectrumShape::General { a, b, c, d, e });
+        let general =
+            |a, b, c, d, e| spectrum(SpectrumShape::General(SpectrumFormula { a, b, c, d, e }));
         assert!(
             general(6.8, 10.2, 1.0, 5.0 / 3.0, 0.0)
                 .validate("w")

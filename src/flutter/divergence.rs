@@ -53,17 +53,14 @@ pub fn divergence_by_eigenvalues(
     speed_max_m_s: f64,
 ) -> Result<Option<f64>> {
     let speed_max = positive("highest wind speed", speed_max_m_s)?;
-    let mut before = (
-        speed_max / SPEEDS as f64,
-        singularity(section, speed_max / SPEEDS as f64)?,
-    );
-    for i in 2..=SPEEDS {
+    let mut before: Option<(f64, f64)> = None;
+    for i in 1..=SPEEDS {
         let speed = speed_max * i as f64 / SPEEDS as f64;
         let after = (speed, singularity(section, speed)?);
-        if (before.1 > 0.0) != (after.1 > 0.0) {
+        if let Some(before) = before.filter(|b| (b.1 > 0.0) != (after.1 > 0.0)) {
             return root(before, after, |speed| singularity(section, speed)).map(Some);
         }
-        before = after;
+        before = Some(after);
     }
     Ok(None)
 }

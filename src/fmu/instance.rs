@@ -6,7 +6,6 @@
 //! a change of parameters.
 
 mod layout;
-mod memory;
 mod saving;
 mod section;
 mod sensitivity;
@@ -25,7 +24,7 @@ use crate::aerodynamics::{Realizable, Realization};
 use crate::error::Result;
 use crate::response::{Inputs, Outputs, Stepper};
 use layout::Layout;
-use memory::{Experiment, Memory};
+use saving::{Experiment, Memory};
 
 /// Searches for growth of one instance at most: one takes as long as some thousand steps, and an importer may change
 /// parameters at every communication point.

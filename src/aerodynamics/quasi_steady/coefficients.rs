@@ -2,6 +2,7 @@
 
 use crate::aerodynamics::spline::{POINTS_AT_LEAST, Spline};
 use crate::error::{Error, Result};
+use crate::section::Dof;
 
 /// Sign convention and scaling of every table of static coefficients, as written in the header of its files.
 pub const TABLE_SIGN_CONVENTION: &str = "wind axes: drag along the relative wind, lift normal to it, up; moment and angle nose-up, moment about the axis of rotation; C_D = D/(rho V^2 B/2), C_L = L/(rho V^2 B/2), C_M = M/(rho V^2 B^2/2), B the full width";
@@ -54,6 +55,17 @@ pub struct CoefficientsAt {
     pub lift_slope: f64,
     /// `dC_M/dα`, per rad.
     pub moment_slope: f64,
+}
+
+impl CoefficientsAt {
+    /// The coefficient of the force on a degree of freedom and its slope, per rad.
+    pub fn of(&self, dof: Dof) -> (f64, f64) {
+        match dof {
+            Dof::Vertical => (self.lift, self.lift_slope),
+            Dof::Lateral => (self.drag, self.drag_slope),
+            Dof::Torsion => (self.moment, self.moment_slope),
+        }
+    }
 }
 
 /// Static coefficients `C_D`, `C_L`, `C_M` over the angle of attack: cubic splines with continuous curvature.

@@ -91,12 +91,7 @@ impl QuasiSteady {
     /// [`Error::Input`] naming the angle when it lies outside the table.
     pub fn static_forces(&self, rotation_rad: f64) -> Result<(Vec<f64>, Vec<f64>)> {
         let c = self.coefficients.at(rotation_rad)?;
-        let pick = |dof: &Dof| match dof {
-            Dof::Vertical => (c.lift, c.lift_slope),
-            Dof::Lateral => (c.drag, c.drag_slope),
-            Dof::Torsion => (c.moment, c.moment_slope),
-        };
-        Ok(self.dofs.iter().map(pick).unzip())
+        Ok(self.dofs.iter().map(|dof| c.of(*dof)).unzip())
     }
 
     /// The linear theory about the rotation `θ₀` (rad) in smooth wind (1.11)–(1.13).

@@ -126,11 +126,7 @@ impl Instance {
         match access.source {
             Source::Response => Ok(variable.role),
             Source::Calculated if self.memory.state == State::Initialization => Ok(variable.role),
-            _ => Err(Refusal::error(format!(
-                "directional derivative: `{}` is no unknown in the state `{}`",
-                variable.name,
-                self.memory.state.name()
-            ))),
+            _ => Err(self.refused(place, "unknown")),
         }
     }
 
@@ -141,12 +137,16 @@ impl Instance {
         match access.source {
             Source::Input => Ok(place),
             Source::Section | Source::Release | Source::Limit if initializing => Ok(place),
-            _ => Err(Refusal::error(format!(
-                "directional derivative: `{}` is no known in the state `{}`",
-                self.table().variables()[place].name,
-                self.memory.state.name()
-            ))),
+            _ => Err(self.refused(place, "known")),
         }
+    }
+
+    fn refused(&self, place: usize, what: &str) -> Refusal {
+        Refusal::error(format!(
+            "directional derivative: `{}` is no {what} in the state `{}`",
+            self.table().variables()[place].name,
+            self.memory.state.name()
+        ))
     }
 
     /// Derivatives of all unknowns with respect to one known.
