@@ -45,9 +45,6 @@ pub enum CoupledSystem {
 
 impl CoupledSystem {
     /// Eigenvalues in continuous time, rad/s (`ln z / Δt` for the sampled system).
-    ///
-    /// # Errors
-    /// Those of [`StateSpace::poles`].
     pub fn eigenvalues(&self) -> Result<Vec<Complex<f64>>> {
         match self {
             Self::Continuous(s) => s.poles(),
@@ -74,9 +71,6 @@ impl CoupledSystem {
 
 impl CoupledSection {
     /// Couples a structure and a force model that has a realisation.
-    ///
-    /// # Errors
-    /// Those of [`CoupledSection::new`].
     pub fn with_model(structure: &Structure, model: &dyn Realizable) -> Result<Self> {
         Self::new(structure.clone(), model.realize())
     }

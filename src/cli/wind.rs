@@ -25,9 +25,6 @@ pub struct WindArgs {
 
 impl WindArgs {
     /// The wind file or the example, and the folder of the results, in which the example then stands.
-    ///
-    /// # Errors
-    /// Those of reading and writing.
     pub fn open(&self) -> Result<(WindStudy, OutputDir)> {
         let Some(file) = &self.file else {
             let text = example_wind_study_text();

@@ -101,9 +101,6 @@ pub fn parse_gusts(text: &str) -> Result<GustSeries> {
 }
 
 /// Writes a series; [`parse_gusts`] gives the same gusts back, bit for bit.
-///
-/// # Errors
-/// Those of `out`.
 pub fn write_gusts(
     name: &str,
     source: &str,

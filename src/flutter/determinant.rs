@@ -27,9 +27,6 @@ const MAX_SCHUR_SWEEPS: usize = 600;
 const SLOPE_STEP: f64 = 1e-5;
 
 /// Impedance `−ω²M + iωR + K − ½ρV² P(G(ωB/V))` at speed (m/s) and circular frequency (rad/s), n×n, per unit length.
-///
-/// # Errors
-/// Those of [`AerodynamicModel::transfer`].
 pub fn impedance(
     structure: &Structure,
     model: &dyn AerodynamicModel,

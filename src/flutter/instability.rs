@@ -76,9 +76,6 @@ pub struct ModeAtOnset {
 /// Names an onset by the mode of the impedance of `model` at its speed and frequency.
 ///
 /// `range` is where single degrees of freedom are searched, up to `speed_max_m_s`.
-///
-/// # Errors
-/// Those of [`AerodynamicModel::transfer`] and of the search.
 pub fn classify(
     structure: &Structure,
     model: &dyn AerodynamicModel,

@@ -92,9 +92,6 @@ pub fn quasi_steady_onset(
 }
 
 /// Frequencies and damping over rising wind speeds, about the equilibrium of each; ends with the equilibrium.
-///
-/// # Errors
-/// Those of [`static_equilibria`] and [`trace_modes`].
 pub fn quasi_steady_modes(
     name: &str,
     structure: &Structure,

@@ -15,9 +15,6 @@ use nalgebra::Complex;
 const PAIRING_TOLERANCE: f64 = 0.05;
 
 /// Both parts of every entry of `model` at the reduced frequencies `ks`.
-///
-/// # Errors
-/// Those of [`AerodynamicModel::transfer`].
 pub fn sample_model(
     model: &dyn AerodynamicModel,
     ks: &[ReducedFrequency],

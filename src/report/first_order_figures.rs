@@ -9,9 +9,6 @@ use crate::reference::{FirstOrderResults, SampledTransfer};
 
 /// The six figures with the number of each in the thesis: training input, predicted output, transfer function and impulse
 /// response of the model, transfer functions for several `α` and for several `L`.
-///
-/// # Errors
-/// Those of drawing.
 pub fn first_order_figures(results: &FirstOrderResults) -> Result<Vec<(&'static str, Figure)>> {
     let step = results.example.step_s;
     let over_time = |label: &str, values: &[f64]| {

@@ -145,9 +145,6 @@ pub fn fit_harmonics(
 }
 
 /// One harmonic, all samples used.
-///
-/// # Errors
-/// Those of [`fit_harmonics`].
 pub fn fit_sine(
     signal: &[f64],
     range: Range<usize>,
@@ -158,9 +155,6 @@ pub fn fit_sine(
 }
 
 /// The frequency of the harmonic near `frequency_hz` in `range`, from the phases of its two halves.
-///
-/// # Errors
-/// Those of [`fit_harmonics`].
 pub fn refine_frequency(
     signal: &[f64],
     range: Range<usize>,

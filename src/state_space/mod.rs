@@ -90,17 +90,11 @@ impl<T> StateSpace<T> {
 
 impl StateSpace<Continuous> {
     /// Step matrices for the step `h`; exact for inputs that run on a straight line over it.
-    ///
-    /// # Errors
-    /// Those of the free function.
     pub fn c2d(&self, h: f64) -> Result<StepMatrices> {
         c2d(&self.a, &self.b, h)
     }
 
     /// Poles, in the inverse time unit.
-    ///
-    /// # Errors
-    /// Those of [`eigenvalues`].
     pub fn poles(&self) -> Result<Vec<Complex<f64>>> {
         eigenvalues(&self.a)
     }
@@ -117,9 +111,6 @@ impl StateSpace<Continuous> {
 impl StateSpace<Discrete> {
     /// Poles in continuous time, `ln z/h`. A pole at the origin has died out after one step and is left out: no finite rate
     /// describes it.
-    ///
-    /// # Errors
-    /// Those of [`eigenvalues`].
     pub fn poles(&self) -> Result<Vec<Complex<f64>>> {
         let finite = eigenvalues(&self.a)?
             .into_iter()

@@ -11,9 +11,6 @@ const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 /// Zero of `f` in a bracket with a sign change, by secant steps kept inside (Illinois) and bisection. Both ends are given
 /// with their values.
-///
-/// # Errors
-/// Those of `f`.
 pub fn root(low: (f64, f64), high: (f64, f64), f: impl Fn(f64) -> Result<f64>) -> Result<f64> {
     let (mut a, mut fa) = low;
     let (mut b, mut fb) = high;
@@ -43,9 +40,6 @@ pub fn root(low: (f64, f64), high: (f64, f64), f: impl Fn(f64) -> Result<f64>) -
 
 /// Where a test that holds at one number and fails at another changes, by bisection: the last two numbers at which it held
 /// and failed, no more than `tolerance` of the number apart, neighbours for zero.
-///
-/// # Errors
-/// Those of the test.
 pub fn boundary<E>(
     mut holds: f64,
     mut fails: f64,
@@ -70,9 +64,6 @@ pub fn boundary<E>(
 ///
 /// `at` gives the value at a number, `left_is_higher` compares two, `done` is asked before each step with the width of the
 /// interval and the two values.
-///
-/// # Errors
-/// Those of `at`.
 pub fn golden_section<T, E>(
     (mut low, mut high): (f64, f64),
     mut at: impl FnMut(f64) -> std::result::Result<T, E>,

@@ -19,17 +19,11 @@ fn from_rows(rows: &[Vec<f64>]) -> Result<DMatrix<f64>, String> {
 }
 
 /// Writes a matrix as rows.
-///
-/// # Errors
-/// Those of the serializer.
 pub fn serialize<S: Serializer>(m: &DMatrix<f64>, s: S) -> Result<S::Ok, S::Error> {
     to_rows(m).serialize(s)
 }
 
 /// Reads a matrix from rows of one length.
-///
-/// # Errors
-/// Those of the deserializer, and rows of different lengths.
 pub fn deserialize<'de, D: Deserializer<'de>>(d: D) -> Result<DMatrix<f64>, D::Error> {
     from_rows(&Vec::<Vec<f64>>::deserialize(d)?).map_err(D::Error::custom)
 }
@@ -40,17 +34,11 @@ pub mod list {
     use serde::de::Error as _;
 
     /// Writes a list of matrices.
-    ///
-    /// # Errors
-    /// Those of the serializer.
     pub fn serialize<S: Serializer>(list: &[DMatrix<f64>], s: S) -> Result<S::Ok, S::Error> {
         list.iter().map(to_rows).collect::<Vec<_>>().serialize(s)
     }
 
     /// Reads a list of matrices.
-    ///
-    /// # Errors
-    /// Those of the deserializer, and rows of different lengths.
     pub fn deserialize<'de, D: Deserializer<'de>>(d: D) -> Result<Vec<DMatrix<f64>>, D::Error> {
         Vec::<Vec<Vec<f64>>>::deserialize(d)?
             .iter()

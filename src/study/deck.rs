@@ -137,9 +137,6 @@ impl Deck {
     }
 
     /// Records of the virtual tunnel, one a motion and speed.
-    ///
-    /// # Errors
-    /// Those of the tunnel.
     pub fn virtual_records(&self, study: &Study) -> Result<Vec<Record>> {
         match &self.source {
             Source::Table(table) => study.tunnel.records_from_table(table, &self.dofs),
@@ -255,18 +252,12 @@ pub struct RecordSet {
 
 impl RecordSet {
     /// The records that the study states.
-    ///
-    /// # Errors
-    /// Those of reading.
     pub fn measured(study: &Study) -> Result<Self> {
         let paths = study.deck.records.iter().map(|p| study.directory.join(p));
         Self::open(paths.collect())
     }
 
     /// Records just written, still in memory.
-    ///
-    /// # Errors
-    /// Those of reading.
     pub fn staged(written: Vec<(PathBuf, Record)>) -> Result<Self> {
         Self::open(written.into_iter().map(|(path, _)| path).collect())
     }

@@ -12,9 +12,6 @@ pub type KnownUncertainty = std::result::Result<Box<ModelUncertainty>, String>;
 
 /// Gives every onset of a trained model its interval, in the order of `models`; onsets that the data do not determine are
 /// no onsets any more (see [`FlutterStudy::undetermined`]).
-///
-/// # Errors
-/// Those of the study's section.
 pub fn state_intervals(
     results: &mut FlutterStudy,
     study: &Study,
@@ -27,9 +24,6 @@ pub fn state_intervals(
 }
 
 /// As [`state_intervals`] for the onsets that a table of routes found by eigenvalues.
-///
-/// # Errors
-/// Those of the study's section.
 pub fn state_route_intervals(
     table: &mut RouteTable,
     study: &Study,

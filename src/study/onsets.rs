@@ -91,9 +91,6 @@ pub struct Deviation {
 
 /// Traces and searches every trained model, and the deck itself by the determinant. What cannot be computed is noted and
 /// leaves the rest as it is.
-///
-/// # Errors
-/// Those of the section, and [`Error::Io`](crate::Error::Io).
 pub fn flutter_study(study: &Study, deck: &Deck, trained: &[TrainedModel]) -> Result<FlutterStudy> {
     let structure = study.section.structure()?;
     let mut results = FlutterStudy {

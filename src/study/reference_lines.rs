@@ -10,9 +10,6 @@ use std::collections::BTreeMap;
 const POINTS: usize = 120;
 
 /// `V̂` and value of every derivative that `model` has, from `v_hat_max/120` to `v_hat_max`.
-///
-/// # Errors
-/// Those of the model.
 pub fn derivative_lines(
     model: &dyn AerodynamicModel,
     v_hat_max: f64,

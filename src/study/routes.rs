@@ -100,9 +100,6 @@ struct Forces<'a> {
 
 /// Compares all routes for the trained models of a study and its deck. A route that fails is listed with its reason and
 /// takes no other with it.
-///
-/// # Errors
-/// Those of the study's section.
 pub fn route_table(study: &Study, deck: &Deck, trained: &[TrainedModel]) -> Result<RouteTable> {
     let structure = study.section.structure()?;
     let mut table = RouteTable {

@@ -90,9 +90,6 @@ impl SteppedAnswer {
 
 /// Onset of the FMU at `path`, packed from `model`, by the growth of its released section. The second communication step
 /// is tried only where the first finds an onset.
-///
-/// # Errors
-/// Those of the importer and of the search.
 pub fn stepped_onset(
     model: &TrainedModel,
     path: &Path,

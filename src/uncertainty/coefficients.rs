@@ -165,9 +165,6 @@ impl CoefficientUncertainty {
     }
 
     /// The transfer matrix at every `K`, and its derivatives with respect to the parameters, by central differences.
-    ///
-    /// # Errors
-    /// Those of the model.
     pub fn transfer_slopes(
         &self,
         ks: &[ReducedFrequency],

@@ -28,9 +28,6 @@ pub struct DerivativeInterval {
 }
 
 /// All derivatives of the model at the reduced frequencies `ks`.
-///
-/// # Errors
-/// Those of the model.
 pub fn derivative_intervals(
     estimate: &CoefficientUncertainty,
     ks: &[ReducedFrequency],

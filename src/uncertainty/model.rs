@@ -43,9 +43,6 @@ pub struct ModelUncertainty {
 
 impl ModelUncertainty {
     /// Carries the covariance of the coefficients to derivatives and onset.
-    ///
-    /// # Errors
-    /// Those of the onset's sensitivity and of the resampled fits.
     pub fn new(
         coefficients: CoefficientUncertainty,
         structure: &Structure,
@@ -90,9 +87,6 @@ impl ModelUncertainty {
     }
 
     /// Interval of an onset of `model`, on any structure.
-    ///
-    /// # Errors
-    /// Those of the onset's sensitivity.
     pub fn interval(
         &self,
         model: &dyn AerodynamicModel,

@@ -34,9 +34,6 @@ pub struct OnsetError {
 /// Standard error of an onset by the delta method, `√(gᵀ C g)` with the gradient `g` of the onset speed.
 ///
 /// `degrees_of_freedom` stands in where the estimate no longer knows its data.
-///
-/// # Errors
-/// Those of the gradient.
 pub fn onset_error(
     estimate: &CoefficientUncertainty,
     structure: &Structure,
@@ -131,9 +128,6 @@ pub struct ResamplingPlan {
 /// Draws parameters and solves the onset anew for each draw, in parallel. Searched poles move the transfer function
 /// along its slope (see [`super::LinearModel`]). The answer does not depend on the number of
 /// threads. `None` for blocks of an estimate that no longer knows its data.
-///
-/// # Errors
-/// Those of the re-solved fits.
 pub fn resample_onset(
     estimate: &CoefficientUncertainty,
     structure: &Structure,

@@ -109,9 +109,6 @@ fn nearest(system: &CoupledSystem, target: Complex<f64>) -> Result<Complex<f64>>
 
 /// Onset speed near a known one: the zero of the growth rate of the same eigenvalue, by secants. `None` when it does not
 /// settle or ends up far away.
-///
-/// # Errors
-/// Those of the eigenvalues.
 pub(super) fn onset_nearby(
     section: &CoupledSection,
     (speed_m_s, omega): (f64, f64),

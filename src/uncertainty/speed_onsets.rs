@@ -71,9 +71,6 @@ struct Alone {
 }
 
 /// Onsets by the tests at each speed, near that of all tests.
-///
-/// # Errors
-/// Those of the gradient of the common onset.
 pub fn speed_onsets(
     estimate: &CoefficientUncertainty,
     structure: &Structure,

@@ -85,9 +85,6 @@ impl RecordSource for RecordFile {
 }
 
 /// Reads a whole record into memory.
-///
-/// # Errors
-/// Those of [`RecordFile::open`] and of reading its samples.
 pub fn read_record(path: impl AsRef<Path>) -> Result<Record> {
     Record::whole(&RecordFile::open(path)?)
 }

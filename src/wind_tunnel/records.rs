@@ -56,9 +56,6 @@ pub trait RecordSource: Sync {
     fn header(&self) -> &RecordHeader;
 
     /// Calls `f` with consecutive blocks from the first sample to the last.
-    ///
-    /// # Errors
-    /// Those of reading, and those of `f`.
     fn for_each_block(&self, f: &mut dyn FnMut(RecordBlock<'_>) -> Result<()>) -> Result<()>;
 }
 

@@ -105,9 +105,6 @@ impl TestPoints {
 ///
 /// `scale_s` is `B/V`. The padding is at least as long as the record, so that what the wake remembers at its end
 /// does not come round to its beginning.
-///
-/// # Errors
-/// Those of the model.
 pub(super) fn unit_response(
     model: &dyn AerodynamicModel,
     unit: &UnitMotion,
@@ -131,9 +128,6 @@ pub(super) fn unit_response(
 
 /// Dimensionless force of each row, `[row][sample]`, to dimensionless motions that were zero before their first sample:
 /// the sum over the columns of `model`. `scale_s` is `B/V`.
-///
-/// # Errors
-/// Those of the model.
 pub(super) fn response(
     model: &dyn AerodynamicModel,
     motion: &[Vec<f64>],

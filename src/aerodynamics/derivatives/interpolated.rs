@@ -34,9 +34,6 @@ pub struct InterpolatedTable {
 
 impl InterpolatedTable {
     /// The table among `dofs`, interpolated as by default.
-    ///
-    /// # Errors
-    /// Those of [`InterpolatedTable::by`].
     pub fn new(
         table: &DerivativeTable,
         dofs: &[Dof],

@@ -111,9 +111,6 @@ impl DerivativeTable {
     }
 
     /// The derivatives of a model at every pair of speed and frequency, as a test of a deck of `width_m` would find them.
-    ///
-    /// # Errors
-    /// Those of [`DerivativeTable::new`] and of the model.
     pub fn sampled(
         name: impl Into<String>,
         model: &dyn AerodynamicModel,

@@ -89,9 +89,6 @@ pub fn parse_coefficients(text: &str) -> Result<StaticCoefficients> {
 }
 
 /// Writes a table; [`parse_coefficients`] gives the same table back, bit for bit.
-///
-/// # Errors
-/// Those of `out`.
 pub fn write_coefficients(table: &StaticCoefficients, out: &mut dyn Write) -> std::io::Result<()> {
     CommentHeader::write_format(out, FORMAT)?;
     let header = table.header();
@@ -141,9 +138,6 @@ fn read_rows(text: &str, names_line: usize) -> Result<(Vec<CoefficientRow>, Vec<
 }
 
 /// The static coefficients of that name: an embedded table, or a file (`.csv`) whose path is read against `directory`.
-///
-/// # Errors
-/// Those of [`embedded::coefficients`] and [`read_coefficients`].
 pub fn named_coefficients(
     name: &str,
     directory: &std::path::Path,

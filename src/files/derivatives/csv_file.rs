@@ -64,9 +64,6 @@ pub fn read_csv(path: impl AsRef<Path>) -> Result<DerivativeTable> {
 
 /// Reads a table in this project's CSV whose convention the caller states, all of it or in part; the second value is
 /// the convention that the file is in.
-///
-/// # Errors
-/// Those of [`read_csv_with`].
 pub fn read_csv_in(
     path: impl AsRef<Path>,
     stated: StatedConvention,
@@ -80,9 +77,6 @@ pub fn read_csv_in(
 
 /// Reads a CSV table, this project's or a wide one (one row a reduced velocity, one column a derivative), with what the
 /// caller states.
-///
-/// # Errors
-/// Those of [`read_csv`], and a header that contradicts what the caller states.
 pub fn read_csv_with(
     path: impl AsRef<Path>,
     options: &ReadOptions,
@@ -117,9 +111,6 @@ pub fn parse_csv(text: &str) -> Result<DerivativeTable> {
 }
 
 /// As [`parse_csv`], with what the caller states about the convention; the second value is the one the text is in.
-///
-/// # Errors
-/// Those of [`parse_csv`], and a header that contradicts what the caller states.
 pub fn parse_csv_in(text: &str, stated: StatedConvention) -> Result<(DerivativeTable, Convention)> {
     let options = ReadOptions {
         convention: stated,
@@ -170,17 +161,11 @@ fn parse_long(text: &str, options: &ReadOptions) -> Result<(DerivativeTable, Con
 }
 
 /// Writes a table in this project's CSV and convention; [`parse_csv`] gives the same table back, bit for bit.
-///
-/// # Errors
-/// Those of `out`.
 pub fn write_csv(table: &DerivativeTable, out: &mut dyn Write) -> std::io::Result<()> {
     write_csv_in(table, &Convention::default(), out)
 }
 
 /// Writes points of a few derivatives, too few for a table, in the columns and convention of [`write_csv`]: what one motion alone tells.
-///
-/// # Errors
-/// Those of `out`.
 pub fn write_points(
     (name, width_m, header): (&str, f64, &TableHeader),
     points: &BTreeMap<Derivative, Vec<DerivativePoint>>,
@@ -204,9 +189,6 @@ pub fn write_points(
 }
 
 /// Writes a table in this project's CSV in `convention`, which its header states.
-///
-/// # Errors
-/// Those of `out`.
 pub fn write_csv_in(
     table: &DerivativeTable,
     convention: &Convention,

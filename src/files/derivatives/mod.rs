@@ -24,9 +24,6 @@ pub fn is_table_file(name: &str) -> bool {
 }
 
 /// The table of that name: an embedded deck, or a file whose path is read against `directory`.
-///
-/// # Errors
-/// Those of [`embedded::deck`] and [`read_table`].
 pub fn named_table(name: &str, directory: &std::path::Path) -> crate::Result<DerivativeTable> {
     if is_table_file(name) {
         read_table(directory.join(name))
@@ -49,17 +46,11 @@ pub struct ReadOptions {
 }
 
 /// Reads a table from `path`: an NTNU workbook when the name ends in `.xlsx`, else a CSV.
-///
-/// # Errors
-/// Those of [`read_workbook`] and [`read_csv`].
 pub fn read_table(path: impl AsRef<std::path::Path>) -> crate::Result<DerivativeTable> {
     read_table_with(path, &ReadOptions::default()).map(|(table, _)| table)
 }
 
 /// The same with what the caller states about the convention of the file; the second value is the one the file is in.
-///
-/// # Errors
-/// Those of [`read_workbook`] and [`read_csv_with`].
 pub fn read_table_in(
     path: impl AsRef<std::path::Path>,
     stated: notation::StatedConvention,
@@ -72,9 +63,6 @@ pub fn read_table_in(
 }
 
 /// The same with all that can be stated.
-///
-/// # Errors
-/// Those of [`read_workbook`] and [`read_csv_with`].
 pub fn read_table_with(
     path: impl AsRef<std::path::Path>,
     options: &ReadOptions,

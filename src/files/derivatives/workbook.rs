@@ -77,9 +77,6 @@ pub fn read_workbook(path: impl AsRef<Path>, options: &WorkbookOptions) -> Resul
 }
 
 /// The same; the second value is the convention that the workbook is in.
-///
-/// # Errors
-/// Those of [`read_workbook`].
 pub fn read_workbook_in(
     path: impl AsRef<Path>,
     options: &WorkbookOptions,

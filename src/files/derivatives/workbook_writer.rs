@@ -21,9 +21,6 @@ use std::path::Path;
 type Number = fn(&ExpressedPoint) -> f64;
 
 /// The bytes of a workbook with the figures of `table`, in this project's convention, which is NTNU's.
-///
-/// # Errors
-/// Those of [`workbook_bytes_in`].
 pub fn workbook_bytes(table: &DerivativeTable) -> Result<Vec<u8>> {
     workbook_bytes_in(table, &Convention::default())
 }

@@ -67,9 +67,6 @@ fn set_support(section: &mut SectionModel, dof: Dof, [inertia, frequency, dampin
 }
 
 /// The coupled section of the parameters in `values`.
-///
-/// # Errors
-/// Those of [`SectionModel::structure`] and [`CoupledSection::new`].
 pub(super) fn coupled_section(
     model: &TrainedModel,
     table: &VariableTable,

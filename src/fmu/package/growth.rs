@@ -15,9 +15,6 @@ pub enum Growing {
 }
 
 /// Growth below the onset of the section of a model, by extrapolation alone; see [`unwanted_growth`].
-///
-/// # Errors
-/// Those of coupling and scan.
 pub fn growth_of(model: &TrainedModel) -> Result<UnwantedGrowth> {
     let section = CoupledSection::with_model(&model.section.structure()?, &model.model)?;
     let search = OnsetSearch {

@@ -48,9 +48,6 @@ impl Runtime {
 
     /// The embedded runtime and those in the folder that [`RUNTIME_DIR_VARIABLE`] names, if it is set. A runtime of
     /// the folder takes the place of the embedded one for the same platform.
-    ///
-    /// # Errors
-    /// Those of [`Runtime::embedded`] and [`Runtime::in_folder`].
     pub fn available() -> Result<Vec<Self>> {
         let mut all = match std::env::var_os(RUNTIME_DIR_VARIABLE) {
             Some(folder) => Self::in_folder(Path::new(&folder))?,

@@ -31,17 +31,11 @@ pub(super) struct JointFit<'a> {
 
 impl<'a> Joint<'a> {
     /// The constrained fit in the columns of the model.
-    ///
-    /// # Errors
-    /// Those of the fits of single entries, and constraints that no coefficients satisfy.
     pub fn at(&self, poles: &[Vec<f64>]) -> Result<JointFit<'a>> {
         self.fit(poles, true)
     }
 
     /// Weighted residuals of all entries, as the search of poles takes them.
-    ///
-    /// # Errors
-    /// Those of [`Self::at`].
     pub fn residuals(&self, poles: &[Vec<f64>]) -> Result<DVector<f64>> {
         // a ridge weighs the terms of the model themselves, else only the space counts
         let native = self.entries.iter().any(|e| e.ridge > 0.0);

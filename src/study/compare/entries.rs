@@ -104,9 +104,6 @@ impl EntryComparison {
 }
 
 /// Every transfer function among `dofs` of a table of one speed against the models.
-///
-/// # Errors
-/// Those of the models.
 pub(super) fn compare_entries(
     group: &DerivativeTable,
     speed_m_s: f64,
@@ -219,9 +216,6 @@ impl Unwrapped {
 }
 
 /// The derivatives that couple `dofs`, measured at one speed and according to the models.
-///
-/// # Errors
-/// Those of the models.
 pub(super) fn compare_derivatives(
     group: &DerivativeTable,
     dofs: &[Dof],

@@ -118,9 +118,6 @@ impl Scoring {
     }
 
     /// Metrics of one force in a window of samples.
-    ///
-    /// # Errors
-    /// Those of the metrics, such as a measured force that is zero throughout.
     pub fn metrics(
         &self,
         measured: &[f64],

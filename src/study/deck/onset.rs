@@ -13,9 +13,6 @@ use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 impl Deck {
     /// The forces on a section that is held, `G` at `K → 0` (n×n), and what a table does not say about them and was
     /// assumed.
-    ///
-    /// # Errors
-    /// Those of the model.
     pub fn static_transfer(&self) -> Result<(TransferMatrix, Option<String>)> {
         let (model, tested) = self.model()?;
         let Some(range) = tested else {
@@ -27,9 +24,6 @@ impl Deck {
     }
 
     /// Onset of the deck itself by the determinant; for a table with the spread between ways of interpolation.
-    ///
-    /// # Errors
-    /// Those of the search.
     pub fn own_onset(&self, structure: &Structure, speed_max_m_s: f64) -> Result<FlutterSearch> {
         match &self.source {
             Source::Table(table) => {

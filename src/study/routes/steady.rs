@@ -90,9 +90,6 @@ impl RouteTable {
 }
 
 /// `G ≈ Re G(K) + iK · Im G(K)/K` at a low `K`: affine in `iK`, the form of quasi-steady theory.
-///
-/// # Errors
-/// Those of [`AerodynamicModel::transfer`].
 pub fn low_frequency_limit(
     model: &dyn AerodynamicModel,
     k: ReducedFrequency,

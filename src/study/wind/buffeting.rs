@@ -86,9 +86,6 @@ struct AtSpeed {
 
 /// RMS over the speeds of the file, spectra, and the time domain where it is asked for. `progress` is told records done and
 /// all of them.
-///
-/// # Errors
-/// Those of the file's parts and of the computations.
 pub fn buffeting_study(
     study: &WindStudy,
     progress: &(dyn Fn(usize, usize) + Sync),

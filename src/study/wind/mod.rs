@@ -210,9 +210,6 @@ impl WindStudy {
     }
 
     /// Wind speeds of all curves and of the search for the onset.
-    ///
-    /// # Errors
-    /// Those of [`WindStudy::section`].
     pub fn speed_range(&self) -> Result<SpeedRange> {
         Ok(self.speeds.range(&self.section()?))
     }
@@ -232,9 +229,6 @@ impl WindStudy {
     }
 
     /// Quasi-steady theory with its arms.
-    ///
-    /// # Errors
-    /// Those of the coefficients and of the derivatives that give the arms.
     pub fn quasi_steady(&self) -> Result<QuasiSteady> {
         let dofs = self.section()?.dofs();
         self.coefficients_block()?.theory(&self.directory, &dofs)
@@ -243,9 +237,6 @@ impl WindStudy {
 
 impl CoefficientsBlock {
     /// Quasi-steady theory with its arms for these degrees of freedom; paths are read against `directory`.
-    ///
-    /// # Errors
-    /// Those of the coefficients and of the derivatives that give the arms.
     pub fn theory(&self, directory: &Path, dofs: &[Dof]) -> Result<QuasiSteady> {
         let arms = match (&self.arms, &self.arms_from) {
             (Some(arms), _) => *arms,

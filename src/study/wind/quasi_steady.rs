@@ -43,9 +43,6 @@ pub struct QuasiSteadyStudy {
 }
 
 /// Equilibria, linear models, modes and onset of a wind file.
-///
-/// # Errors
-/// Those of the file's parts and of the computations.
 pub fn quasi_steady_study(study: &WindStudy) -> Result<QuasiSteadyStudy> {
     let structure = study.section()?.structure()?;
     let theory = study.quasi_steady()?;

@@ -74,9 +74,6 @@ impl AppliedLowPass {
 }
 
 /// Filters motion and force alike.
-///
-/// # Errors
-/// Those of [`ButterworthLowPass::zero_phase`].
 pub fn apply(signals: &mut SectionSignals, filter: &ButterworthLowPass) -> Result<()> {
     for channel in signals.motion.iter_mut().chain(&mut signals.force) {
         *channel = filter.zero_phase(channel)?;

@@ -46,9 +46,6 @@ pub struct Cleaned {
 }
 
 /// Finds wild samples and replaces them in `signals`; `clipped` are known to be wild.
-///
-/// # Errors
-/// Those of the regression and of the filter.
 pub fn remove_spikes(
     signals: &mut SectionSignals,
     regressors: &Regressors,

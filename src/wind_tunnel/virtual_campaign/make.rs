@@ -28,9 +28,6 @@ pub struct VirtualCampaign {
 
 impl VirtualCampaignPlan {
     /// A campaign on a deck known by its derivatives, one run a motion among `dofs` and speed group of `table`.
-    ///
-    /// # Errors
-    /// Those of the plan and of [`crate::wind_tunnel::TunnelPlan::records_from_table`].
     pub fn from_table(&self, table: &DerivativeTable, dofs: &[Dof]) -> Result<VirtualCampaign> {
         self.validate()?;
         let clean = |delay_s| self.tunnel.clean_from_table(table, dofs, delay_s);
@@ -50,9 +47,6 @@ impl VirtualCampaignPlan {
     }
 
     /// A campaign on a deck of `width_m` with the forces of `model`, one run a motion and speed of the plan.
-    ///
-    /// # Errors
-    /// Those of the plan and of [`crate::wind_tunnel::TunnelPlan::records_from_model`].
     pub fn from_model(
         &self,
         model: &dyn AerodynamicModel,

@@ -91,9 +91,6 @@ impl Convention {
 
 impl ExpressedTable {
     /// The table in the crate's convention.
-    ///
-    /// # Errors
-    /// Those of [`DerivativeTable::new`].
     pub fn to_table(&self) -> Result<DerivativeTable> {
         let points = self
             .derivatives
