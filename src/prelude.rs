@@ -1,9 +1,7 @@
 //! The names of a usual session: `use aerodeck::prelude::*;`.
 
 pub use crate::aerodynamics::derivatives::{DerivativeTable, Extrapolation, InterpolatedTable};
-pub use crate::aerodynamics::{
-    AerodynamicModel, FlatPlate, LaguerreModel, RationalModel, Realizable,
-};
+pub use crate::aerodynamics::{FlatPlate, LaguerreModel, RationalModel, Realizable, Transfer};
 pub use crate::aeroelastic::CoupledSection;
 pub use crate::error::{Error, Result};
 pub use crate::flutter::{

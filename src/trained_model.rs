@@ -1,8 +1,8 @@
 //! What is saved after training: section, model, tested range, provenance, as JSON with a schema version.
 
 use crate::aerodynamics::{
-    AerodynamicModel, DiscreteLaguerre, Lags, LaguerreModel, MinimumStateModel, RationalModel,
-    Realizable, Realization, TransferMatrix,
+    DiscreteLaguerre, Lags, LaguerreModel, MinimumStateModel, RationalModel, Realizable,
+    Realization, Transfer, TransferMatrix,
 };
 use crate::error::{Error, Result, finite, positive};
 use crate::section::{Dof, SectionModel};
@@ -98,7 +98,7 @@ impl Model {
     }
 }
 
-impl AerodynamicModel for Model {
+impl Transfer for Model {
     fn dofs(&self) -> &[Dof] {
         self.inner().dofs()
     }

@@ -9,7 +9,7 @@ mod fits;
 #[path = "common/matrix.rs"]
 mod matrix;
 
-use aerodeck::aerodynamics::{AerodynamicModel, FlatPlate};
+use aerodeck::aerodynamics::{FlatPlate, Transfer};
 use aerodeck::identification::{Constraints, FrequencyFit, fit_table, sample_model};
 use aerodeck::section::Dof;
 use aerodeck::trained_model::Model;

@@ -7,7 +7,7 @@ mod fits;
 #[path = "common/matrix.rs"]
 mod matrix;
 
-use aerodeck::aerodynamics::{AerodynamicModel, FlatPlate};
+use aerodeck::aerodynamics::{FlatPlate, Transfer};
 use aerodeck::identification::{
     Constraints, FrequencyFit, PoleSearch, QuasiSteadyLimit, TimeFit, fit_records, fit_table,
     sample_model,

@@ -3,7 +3,7 @@
 
 use aerodeck::aerodynamics::derivatives::Derivative;
 use aerodeck::aerodynamics::derivatives::Part;
-use aerodeck::aerodynamics::{AerodynamicModel, FlatPlate, RationalModel, Realizable};
+use aerodeck::aerodynamics::{FlatPlate, RationalModel, Realizable, Transfer};
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::files::derivatives::embedded;
 use aerodeck::flutter::{
@@ -211,12 +211,7 @@ fn what_cannot_be_drawn_is_refused() {
 }
 
 /// A derivative of a two-degree-of-freedom model over V* = V/(fB): G/K².
-fn line(
-    label: &str,
-    model: &dyn AerodynamicModel,
-    derivative: Derivative,
-    v_max: f64,
-) -> PlottedSeries {
+fn line(label: &str, model: &dyn Transfer, derivative: Derivative, v_max: f64) -> PlottedSeries {
     let index = |dof: Dof| usize::from(dof == Dof::Torsion);
     let points = (1..=60).map(|i| {
         let v_star = v_max * f64::from(i) / 60.0;

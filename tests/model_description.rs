@@ -6,7 +6,7 @@
 #[path = "common/models.rs"]
 mod models;
 
-use aerodeck::aerodynamics::AerodynamicModel;
+use aerodeck::aerodynamics::Transfer;
 use aerodeck::fmu::description::model_description;
 use aerodeck::fmu::resources::Resources;
 use aerodeck::trained_model::TrainedModel;

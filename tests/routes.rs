@@ -15,7 +15,7 @@ use aerodeck::aerodynamics::derivatives::Extrapolation;
 use aerodeck::aerodynamics::derivatives::InterpolatedTable;
 use aerodeck::aerodynamics::derivatives::Interpolation;
 use aerodeck::aerodynamics::derivatives::TableHeader;
-use aerodeck::aerodynamics::{AerodynamicModel, FlatPlate, RationalModel, Realizable};
+use aerodeck::aerodynamics::{FlatPlate, RationalModel, Realizable, Transfer};
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::files::derivatives::write_csv;
 use aerodeck::flutter::{

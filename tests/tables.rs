@@ -8,7 +8,7 @@ mod command;
 use aerodeck::aerodynamics::derivatives::{
     Derivative, DerivativeTable, Extrapolation, InterpolatedTable, Interpolation,
 };
-use aerodeck::aerodynamics::{AerodynamicModel, FlatPlate};
+use aerodeck::aerodynamics::{FlatPlate, Transfer};
 use aerodeck::flutter::{FlutterSearch, OnsetSearch, determinant_onset, pk_onset};
 use aerodeck::section::{Dof, SectionModel};
 use command::{onset_of, refused, succeeds};

@@ -7,7 +7,7 @@ mod command;
 #[path = "common/three_dof.rs"]
 mod three_dof;
 
-use aerodeck::aerodynamics::AerodynamicModel;
+use aerodeck::aerodynamics::Transfer;
 use aerodeck::aerodynamics::derivatives::Derivative;
 use aerodeck::aerodynamics::derivatives::Extrapolation;
 use aerodeck::aerodynamics::derivatives::InterpolatedTable;

@@ -4,7 +4,7 @@
 use aerodeck::aerodynamics::flat_plate::theodorsen;
 use aerodeck::aerodynamics::quasi_steady::Arms;
 use aerodeck::aerodynamics::quasi_steady::QuasiSteady;
-use aerodeck::aerodynamics::{AerodynamicModel, FlatPlate, GustSeries, RationalModel, Realizable};
+use aerodeck::aerodynamics::{FlatPlate, GustSeries, RationalModel, Realizable, Transfer};
 use aerodeck::aeroelastic::{CoupledSection, static_equilibria};
 use aerodeck::files::coefficients::embedded;
 use aerodeck::flutter::{

@@ -2,7 +2,7 @@
 //!
 //! T. Theodorsen, NACA Report 496 (1935), written for full width `B`, `k = K/2` and lift positive up.
 
-use super::{AerodynamicModel, TransferMatrix};
+use super::{Transfer, TransferMatrix};
 use crate::error::{Result, positive};
 use crate::section::Dof;
 use crate::units::ReducedFrequency;
@@ -35,7 +35,7 @@ pub fn theodorsen(k: f64) -> Complex<f64> {
     h1 / (h1 + Complex::<f64>::i() * h0)
 }
 
-impl AerodynamicModel for FlatPlate {
+impl Transfer for FlatPlate {
     fn dofs(&self) -> &[Dof] {
         &Dof::TWO
     }

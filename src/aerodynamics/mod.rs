@@ -28,8 +28,8 @@ use nalgebra::{Complex, DMatrix};
 pub type TransferMatrix = DMatrix<Complex<f64>>;
 
 /// A linear model of the self-excited forces.
-pub trait AerodynamicModel: Send + Sync {
-    /// Degrees of freedom, in the order of rows and columns of [`AerodynamicModel::transfer`].
+pub trait Transfer: Send + Sync {
+    /// Degrees of freedom, in the order of rows and columns of [`Transfer::transfer`].
     fn dofs(&self) -> &[Dof];
 
     /// The transfer matrix `G(K)`.
@@ -53,7 +53,7 @@ pub trait AerodynamicModel: Send + Sync {
 }
 
 /// A force model with a state-space realisation.
-pub trait Realizable: AerodynamicModel {
-    /// Its realisation in dimensionless time `s = Vt/B`; the frequency response is [`AerodynamicModel::transfer`].
+pub trait Realizable: Transfer {
+    /// Its realisation in dimensionless time `s = Vt/B`; the frequency response is [`Transfer::transfer`].
     fn realize(&self) -> Realization;
 }

@@ -2,7 +2,7 @@
 
 use super::admittance::Admittance;
 use super::spectrum::{GustComponent, GustSpectrum};
-use crate::aerodynamics::AerodynamicModel;
+use crate::aerodynamics::Transfer;
 use crate::aerodynamics::quasi_steady::LinearQuasiSteady;
 use crate::error::{Error, Result};
 use crate::flutter::impedance;
@@ -105,7 +105,7 @@ pub struct BuffetingProblem<'a> {
     /// The suspended section.
     pub structure: &'a Structure,
     /// Its self-excited forces.
-    pub model: &'a dyn AerodynamicModel,
+    pub model: &'a dyn Transfer,
     /// Its gust forces.
     pub forces: &'a GustForces,
     /// The turbulence.

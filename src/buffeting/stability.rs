@@ -97,12 +97,12 @@ fn turn(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::aerodynamics::{AerodynamicModel, FlatPlate, RationalModel, Realizable};
+    use crate::aerodynamics::{FlatPlate, RationalModel, Realizable, Transfer};
     use crate::aeroelastic::CoupledSection;
     use crate::buffeting::{GustForces, Turbulence};
     use crate::section::SectionModel;
 
-    fn count(model: &dyn AerodynamicModel, speed: f64) -> usize {
+    fn count(model: &dyn Transfer, speed: f64) -> usize {
         let structure = SectionModel::iabse_1_1a().structure().unwrap();
         let problem = BuffetingProblem {
             structure: &structure,

@@ -9,7 +9,7 @@ use super::answer::{
 };
 use super::following::branch_name;
 use super::onset::{Onset, OnsetMethod};
-use crate::aerodynamics::{AerodynamicModel, TransferMatrix};
+use crate::aerodynamics::{Transfer, TransferMatrix};
 use crate::error::{Error, Result, positive};
 use crate::section::{Dof, Structure};
 use crate::state_space::{complex, first_order, root};
@@ -29,7 +29,7 @@ const SLOPE_STEP: f64 = 1e-5;
 /// Impedance `−ω²M + iωR + K − ½ρV² P(G(ωB/V))` at speed (m/s) and circular frequency (rad/s), n×n, per unit length.
 pub fn impedance(
     structure: &Structure,
-    model: &dyn AerodynamicModel,
+    model: &dyn Transfer,
     speed_m_s: f64,
     omega: f64,
 ) -> Result<DMatrix<Complex<f64>>> {
@@ -52,7 +52,7 @@ pub fn impedance(
 pub fn determinant_onset(
     name: &str,
     structure: &Structure,
-    model: &dyn AerodynamicModel,
+    model: &dyn Transfer,
     range: ReducedFrequencyRange,
     speed_max_m_s: f64,
 ) -> Result<FlutterSearch> {
@@ -140,7 +140,7 @@ fn nearest(target: Complex<f64>, among: &[Complex<f64>]) -> Option<Complex<f64>>
 
 struct Problem<'a> {
     structure: &'a Structure,
-    model: &'a dyn AerodynamicModel,
+    model: &'a dyn Transfer,
 }
 
 impl Problem<'_> {
@@ -234,7 +234,7 @@ impl Problem<'_> {
 /// answer on both sides (a table at the end of its range).
 pub(super) fn damping_slope(
     structure: &Structure,
-    model: &dyn AerodynamicModel,
+    model: &dyn Transfer,
     speed_m_s: f64,
     omega: f64,
 ) -> Option<f64> {
@@ -256,7 +256,7 @@ pub(super) fn damping_slope(
 /// that belongs to that.
 pub(super) fn single_dof_onset(
     structure: &Structure,
-    model: &dyn AerodynamicModel,
+    model: &dyn Transfer,
     dof: usize,
     range: ReducedFrequencyRange,
     speed_max_m_s: f64,
@@ -274,11 +274,11 @@ pub(super) fn single_dof_onset(
 /// One diagonal entry of a model about the axis of a structure.
 struct OneDof<'a> {
     structure: &'a Structure,
-    model: &'a dyn AerodynamicModel,
+    model: &'a dyn Transfer,
     dof: usize,
 }
 
-impl AerodynamicModel for OneDof<'_> {
+impl Transfer for OneDof<'_> {
     fn dofs(&self) -> &[Dof] {
         &self.model.dofs()[self.dof..=self.dof]
     }

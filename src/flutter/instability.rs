@@ -6,7 +6,7 @@
 
 use super::determinant::{impedance, null_vector, single_dof_onset};
 use super::onset::Onset;
-use crate::aerodynamics::AerodynamicModel;
+use crate::aerodynamics::Transfer;
 use crate::error::Result;
 use crate::section::{Dof, Structure};
 use crate::units::ReducedFrequencyRange;
@@ -78,7 +78,7 @@ pub struct ModeAtOnset {
 /// `range` is where single degrees of freedom are searched, up to `speed_max_m_s`.
 pub fn classify(
     structure: &Structure,
-    model: &dyn AerodynamicModel,
+    model: &dyn Transfer,
     onset: &Onset,
     range: ReducedFrequencyRange,
     speed_max_m_s: f64,

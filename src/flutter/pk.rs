@@ -11,7 +11,7 @@ use super::following::{Follower, Watch, dimensionless};
 use super::pk_following::Iteration;
 use super::scan::growing;
 use super::search::OnsetSearch;
-use crate::aerodynamics::AerodynamicModel;
+use crate::aerodynamics::Transfer;
 use crate::error::{Error, Result, positive};
 use crate::section::Structure;
 use crate::units::ReducedFrequencyRange;
@@ -22,14 +22,14 @@ const STEPS_TO_MODE: usize = 100;
 
 /// Frequencies, damping ratios and shapes over the increasing `speeds_m_s` by the p-k iteration. A branch ends where
 /// its mode stops oscillating, and has points only where the model knows the forces
-/// ([`AerodynamicModel::known_range`]).
+/// ([`Transfer::known_range`]).
 ///
 /// # Errors
 /// [`Error::Input`] for speeds that do not increase from above zero; those of the model.
 pub fn pk_curves(
     name: &str,
     structure: &Structure,
-    model: &dyn AerodynamicModel,
+    model: &dyn Transfer,
     speeds_m_s: &[f64],
 ) -> Result<FlutterCurves> {
     let mut last = 0.0;
@@ -69,7 +69,7 @@ pub fn pk_curves(
 /// [`Error::Numerical`] when the branch has ended before that speed or is outside the range of a table.
 pub fn quasi_pk_mode(
     structure: &Structure,
-    model: &dyn AerodynamicModel,
+    model: &dyn Transfer,
     speed_m_s: f64,
     dof: usize,
 ) -> Result<Complex<f64>> {
@@ -112,7 +112,7 @@ pub fn quasi_pk_mode(
 pub fn pk_onset(
     name: &str,
     structure: &Structure,
-    model: &dyn AerodynamicModel,
+    model: &dyn Transfer,
     search: &OnsetSearch,
     tested: Option<ReducedFrequencyRange>,
 ) -> Result<FlutterSearch> {

@@ -7,7 +7,7 @@ use super::following::{
 };
 use super::onset::{Onset, OnsetMethod};
 use super::quasi_pk::{pk_mode, pk_mode_at};
-use crate::aerodynamics::AerodynamicModel;
+use crate::aerodynamics::Transfer;
 use crate::error::{Error, Result};
 use crate::section::{Dof, Structure};
 use crate::state_space::{eigenvalues, eigenvector, first_order, root};
@@ -40,7 +40,7 @@ pub(super) type OnStep<'a> = &'a mut dyn FnMut(&Modes, &Modes) -> Result<()>;
 
 pub(super) struct Iteration<'a> {
     pub(super) structure: &'a Structure,
-    pub(super) model: &'a dyn AerodynamicModel,
+    pub(super) model: &'a dyn Transfer,
 }
 
 fn same_root(a: &Mode, b: &Mode) -> bool {

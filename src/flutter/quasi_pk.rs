@@ -7,7 +7,7 @@
 
 use super::following::Mode;
 use super::tracking::oscillates;
-use crate::aerodynamics::AerodynamicModel;
+use crate::aerodynamics::Transfer;
 use crate::error::{Error, Result};
 use crate::section::Structure;
 use crate::state_space::{eigenvalues, eigenvector, first_order};
@@ -22,7 +22,7 @@ const TOLERANCE: f64 = 1e-12;
 /// The mode at `speed_m_s` that the iteration reaches from `start`; `None` when it stops oscillating or does not settle.
 pub(super) fn pk_mode(
     structure: &Structure,
-    model: &dyn AerodynamicModel,
+    model: &dyn Transfer,
     speed_m_s: f64,
     start: &Mode,
 ) -> Result<Option<Mode>> {
@@ -32,7 +32,7 @@ pub(super) fn pk_mode(
 /// The mode at the reduced frequency `k` that the iteration reaches from `start`, with its speed (m/s).
 pub(super) fn pk_mode_at(
     structure: &Structure,
-    model: &dyn AerodynamicModel,
+    model: &dyn Transfer,
     k: ReducedFrequency,
     start: &Mode,
 ) -> Result<Option<(f64, Mode)>> {
@@ -44,7 +44,7 @@ pub(super) fn pk_mode_at(
 /// Iterates at the speed that belongs to each frequency.
 fn settle(
     structure: &Structure,
-    model: &dyn AerodynamicModel,
+    model: &dyn Transfer,
     speed: impl Fn(f64) -> f64,
     start: &Mode,
 ) -> Result<Option<Mode>> {
@@ -71,12 +71,7 @@ fn settle(
 }
 
 /// State matrix of `[q, q̇]` with the forces frozen at one frequency.
-fn frozen(
-    s: &Structure,
-    model: &dyn AerodynamicModel,
-    speed: f64,
-    omega: f64,
-) -> Result<DMatrix<f64>> {
+fn frozen(s: &Structure, model: &dyn Transfer, speed: f64, omega: f64) -> Result<DMatrix<f64>> {
     let k = ReducedFrequency::from_circular(omega, s.width_m, speed);
     // on the way to a mode a table is asked beyond its ends; no mode is taken from there
     let k = model.known_range().map_or(k, |range| {

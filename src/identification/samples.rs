@@ -3,7 +3,7 @@
 use super::basis::{Basis, index_of};
 use super::constrained::{LinearProblem, LinearSolution};
 use super::frequency_options::{FrequencyFit, FrequencyWeights, limits_by_entry};
-use crate::aerodynamics::AerodynamicModel;
+use crate::aerodynamics::Transfer;
 use crate::aerodynamics::derivatives::{Part, TransferSample};
 use crate::error::{Error, Result};
 use crate::section::Dof;
@@ -15,10 +15,7 @@ use nalgebra::Complex;
 const PAIRING_TOLERANCE: f64 = 0.05;
 
 /// Both parts of every entry of `model` at the reduced frequencies `ks`.
-pub fn sample_model(
-    model: &dyn AerodynamicModel,
-    ks: &[ReducedFrequency],
-) -> Result<Vec<TransferSample>> {
+pub fn sample_model(model: &dyn Transfer, ks: &[ReducedFrequency]) -> Result<Vec<TransferSample>> {
     let dofs = model.dofs();
     let mut samples = Vec::with_capacity(2 * ks.len() * dofs.len() * dofs.len());
     for &k in ks {

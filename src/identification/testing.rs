@@ -1,7 +1,7 @@
 //! Helpers of the tests of this module: the test points and records of the thesis, and an onset by plain bisection.
 
 use super::{Constraints, FrequencyFit, TimeFit};
-use crate::aerodynamics::{AerodynamicModel, Realizable};
+use crate::aerodynamics::{Realizable, Transfer};
 use crate::aeroelastic::CoupledSection;
 use crate::files::derivatives::TABLE_3_2_FREQUENCIES_HZ;
 use crate::section::SectionModel;
@@ -71,7 +71,7 @@ pub fn onset_above(model: &dyn Realizable, speed_m_s: f64) -> f64 {
 /// Forced-vibration records of Table 3.2 at the given speeds, one a speed and motion, B = 0.5 m: the exact linear response
 /// of `model` with white noise on the forces.
 pub fn records(
-    model: &dyn AerodynamicModel,
+    model: &dyn Transfer,
     speeds_m_s: &[f64],
     noise_fraction: f64,
     seed: u64,

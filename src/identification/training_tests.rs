@@ -6,7 +6,7 @@ use super::{
     TimeFit, fit_discrete, fit_records, fit_table,
 };
 use crate::aerodynamics::laguerre::{DiscreteTerm, impulse_response};
-use crate::aerodynamics::{AerodynamicModel, DiscreteLaguerre, LaguerreModel, RationalModel};
+use crate::aerodynamics::{DiscreteLaguerre, LaguerreModel, RationalModel, Transfer};
 use crate::files::derivatives::embedded;
 use crate::section::Dof;
 use crate::trained_model::Model;
@@ -21,10 +21,9 @@ fn at(k: f64) -> ReducedFrequency {
 }
 
 /// Largest difference of two models over several `K`, each entry relative to its own largest value over them.
-pub fn distance(a: &dyn AerodynamicModel, b: &dyn AerodynamicModel, ks: &[f64]) -> f64 {
-    let of = |m: &dyn AerodynamicModel| -> Vec<_> {
-        ks.iter().map(|k| m.transfer(at(*k)).unwrap()).collect()
-    };
+pub fn distance(a: &dyn Transfer, b: &dyn Transfer, ks: &[f64]) -> f64 {
+    let of =
+        |m: &dyn Transfer| -> Vec<_> { ks.iter().map(|k| m.transfer(at(*k)).unwrap()).collect() };
     let (a, b) = (of(a), of(b));
     let entries = 0..a[0].len();
     entries

@@ -5,7 +5,7 @@
 //! [`fit_discrete`], the one of bridge decks: a section of one degree of freedom with `B = V = 1` and `ρ = 2`, whose
 //! dimensionless motion and force are `u` and `y` themselves.
 
-use crate::aerodynamics::AerodynamicModel;
+use crate::aerodynamics::Transfer;
 use crate::aerodynamics::laguerre::{
     alpha_lower_bound, alpha_upper_bound, discrete_memory, impulse_response,
 };

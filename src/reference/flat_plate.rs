@@ -1,6 +1,6 @@
 //! The flat plate: Theodorsen's and Jones's, sections of textbooks and benchmarks, its response to gusts.
 
-use crate::aerodynamics::{AerodynamicModel, FlatPlate, RationalModel};
+use crate::aerodynamics::{FlatPlate, RationalModel, Transfer};
 use crate::aeroelastic::CoupledSection;
 use crate::buffeting::{
     Admittance, BuffetingProblem, Gust, GustComponent, GustForces, GustSpectrum, SpectrumShape,
@@ -28,7 +28,7 @@ pub(super) const WITHOUT_ROTARY: FlatPlate = FlatPlate {
 /// The onset by the determinant; a section that does not flutter is a failure here.
 pub(super) fn by_determinant(
     section: &SectionModel,
-    model: &dyn AerodynamicModel,
+    model: &dyn Transfer,
     range: ReducedFrequencyRange,
 ) -> Result<Onset> {
     determinant_onset("", &section.structure()?, model, range, 300.0)?

@@ -6,7 +6,7 @@ use crate::aerodynamics::derivatives::Extrapolation;
 use crate::aerodynamics::derivatives::InterpolatedTable;
 use crate::aerodynamics::derivatives::Interpolation;
 use crate::aerodynamics::laguerre::{alpha_lower_bound, alpha_upper_bound, impulse_response};
-use crate::aerodynamics::{AerodynamicModel, FlatPlate};
+use crate::aerodynamics::{FlatPlate, Transfer};
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
 use crate::files::derivatives::embedded;

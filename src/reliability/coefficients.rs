@@ -89,7 +89,7 @@ pub(super) fn replace(model: &mut Model, values: &[f64]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::aerodynamics::{AerodynamicModel, Lags, MinimumStateModel, RationalModel};
+    use crate::aerodynamics::{Lags, MinimumStateModel, RationalModel, Transfer};
     use crate::units::ReducedFrequency;
     use nalgebra::DMatrix;
 

@@ -8,7 +8,7 @@
 use super::coefficients;
 use super::plan::MonteCarloPlan;
 use super::scatter::{CovarianceFactor, factor_of, from_file};
-use crate::aerodynamics::AerodynamicModel;
+use crate::aerodynamics::Transfer;
 use crate::error::{Error, Result};
 use crate::trained_model::{Model, TrainedModel};
 use crate::uncertainty::{CoefficientUncertainty, SEARCHED_POLES};

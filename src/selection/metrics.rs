@@ -4,7 +4,7 @@
 //! `q = |G| A sin(ωt + φ + arg G)` with amplitude and phase of the recorded motion by least squares: the harmonic motion
 //! has lasted long enough there for the model's own transients to have died.
 
-use crate::aerodynamics::AerodynamicModel;
+use crate::aerodynamics::Transfer;
 use crate::comparison::{
     PhaseParameters, SignalPair, WarpingParameters, magnitude, magnitude_warped, peak, phase,
 };
@@ -165,7 +165,7 @@ impl Steady {
         })
     }
 
-    fn compare(&self, model: &dyn AerodynamicModel, i: usize) -> Result<CellMetrics> {
+    fn compare(&self, model: &dyn Transfer, i: usize) -> Result<CellMetrics> {
         let g = model.transfer(self.k)?[(i, i)];
         let angle = TAU * self.frequency_hz * self.step_s;
         let (a, b) = self.motion;

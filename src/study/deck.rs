@@ -9,7 +9,7 @@ use crate::aerodynamics::derivatives::InterpolatedTable;
 use crate::aerodynamics::derivatives::Interpolation;
 use crate::aerodynamics::derivatives::TransferSample;
 use crate::aerodynamics::derivatives::notation::Convention;
-use crate::aerodynamics::{AerodynamicModel, FlatPlate};
+use crate::aerodynamics::{FlatPlate, Transfer};
 use crate::error::{Error, Result};
 use crate::files::derivatives::ReadOptions;
 use crate::files::derivatives::embedded;
@@ -198,11 +198,11 @@ impl Deck {
 
     /// The deck as a force model that answers at every reduced frequency, and where it was tested (everywhere when
     /// `None`). Outside, a table holds values, from which nothing may be concluded
-    /// ([`AerodynamicModel::known_range`]).
+    /// ([`Transfer::known_range`]).
     ///
     /// # Errors
     /// [`Error::Input`] when the table lacks a derivative of the section.
-    pub fn model(&self) -> Result<(Box<dyn AerodynamicModel>, Option<ReducedFrequencyRange>)> {
+    pub fn model(&self) -> Result<(Box<dyn Transfer>, Option<ReducedFrequencyRange>)> {
         match &self.source {
             Source::Table(table) => {
                 let by = self.interpolation;

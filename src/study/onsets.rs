@@ -1,7 +1,7 @@
 //! Curves, onsets and divergence of all models of a study, side by side.
 
 use super::{Deck, StageFailure, SteppedAnswer, SteppedOnset, Study, attempt};
-use crate::aerodynamics::{AerodynamicModel, Realizable, Realization};
+use crate::aerodynamics::{Realizable, Realization, Transfer};
 use crate::aeroelastic::CoupledSection;
 use crate::error::Result;
 use crate::flutter::{

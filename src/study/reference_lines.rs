@@ -1,6 +1,6 @@
 //! Derivatives of a theory over reduced velocity, to stand beside measured ones.
 
-use crate::aerodynamics::AerodynamicModel;
+use crate::aerodynamics::Transfer;
 use crate::aerodynamics::derivatives::{Derivative, Part};
 use crate::error::Result;
 use crate::units::ReducedFrequency;
@@ -11,7 +11,7 @@ const POINTS: usize = 120;
 
 /// `V̂` and value of every derivative that `model` has, from `v_hat_max/120` to `v_hat_max`.
 pub fn derivative_lines(
-    model: &dyn AerodynamicModel,
+    model: &dyn Transfer,
     v_hat_max: f64,
 ) -> Result<BTreeMap<Derivative, Vec<(f64, f64)>>> {
     let dofs = model.dofs();

@@ -12,7 +12,7 @@ pub use steady::low_frequency_limit;
 use steady::{limit_onset, steady_flat_plate};
 
 use super::{Deck, Study};
-use crate::aerodynamics::{AerodynamicModel, FlatPlate, RationalModel, Realizable, Realization};
+use crate::aerodynamics::{FlatPlate, RationalModel, Realizable, Realization, Transfer};
 use crate::error::Result;
 use crate::flutter::{
     FlutterCurves, FlutterSearch, ModeAtOnset, OnsetMethod, SanityLines, classify,
@@ -89,7 +89,7 @@ pub struct Route {
 /// A force model with its name and where it may be asked.
 struct Forces<'a> {
     name: String,
-    model: &'a dyn AerodynamicModel,
+    model: &'a dyn Transfer,
     structure: &'a Structure,
     tested: Option<ReducedFrequencyRange>,
     /// Divergence, m/s.

@@ -3,7 +3,7 @@
 use super::columns::LinearModel;
 use super::design::Design;
 use super::speed_scatter::{self, Effect, POINTS, Slopes, SpeedScatter};
-use crate::aerodynamics::{AerodynamicModel, DiscreteLaguerre, TransferMatrix};
+use crate::aerodynamics::{DiscreteLaguerre, Transfer, TransferMatrix};
 use crate::error::{Error, Result};
 use crate::identification::basis::assemble;
 use crate::identification::form::Form;

@@ -6,7 +6,7 @@ use super::onset::onset_error;
 use super::record_covariance::record_uncertainty;
 use super::scattered::ScatteredTunnel;
 use crate::aerodynamics::derivatives::Part;
-use crate::aerodynamics::{AerodynamicModel, FlatPlate, RationalModel};
+use crate::aerodynamics::{FlatPlate, RationalModel, Transfer};
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, non_negative, positive};
 use crate::flutter::{Onset, OnsetSearch, determinant_onset, find_onset};
@@ -192,7 +192,7 @@ pub fn coverage(plan: &CoveragePlan, done: &(dyn Fn(usize) + Sync)) -> Result<Co
 
 struct Campaign {
     section: SectionModel,
-    model: Box<dyn AerodynamicModel + Sync>,
+    model: Box<dyn Transfer + Sync>,
     records: ScatteredTunnel,
     tunnel: TunnelPlan,
     fit: TimeFit,
@@ -223,7 +223,7 @@ impl Campaign {
         non_negative("speed_scatter", plan.speed_scatter)?;
         non_negative("run_scatter", plan.run_scatter)?;
         let section = SectionModel::table_4_1();
-        let model: Box<dyn AerodynamicModel + Sync> = match plan.truth {
+        let model: Box<dyn Transfer + Sync> = match plan.truth {
             Truth::Jones => Box::new(RationalModel::jones_flat_plate()),
             Truth::Theodorsen => Box::new(FlatPlate::default()),
         };

@@ -6,7 +6,7 @@ use super::onset::{
     OnsetError, ResampledOnset, Resampling, ResamplingPlan, onset_error, resample_onset,
 };
 use super::speed_onsets::{Contradiction, SpeedOnsets, speed_onsets};
-use crate::aerodynamics::AerodynamicModel;
+use crate::aerodynamics::Transfer;
 use crate::error::{Error, Result};
 use crate::flutter::{Onset, OnsetInterval, OnsetMethod, OnsetSearch};
 use crate::section::Structure;
@@ -89,7 +89,7 @@ impl ModelUncertainty {
     /// Interval of an onset of `model`, on any structure.
     pub fn interval(
         &self,
-        model: &dyn AerodynamicModel,
+        model: &dyn Transfer,
         structure: &Structure,
         onset: &Onset,
     ) -> Result<OnsetInterval> {
@@ -112,7 +112,7 @@ impl ModelUncertainty {
         })
     }
 
-    fn belongs_to(&self, model: &dyn AerodynamicModel, k: ReducedFrequency) -> Result<bool> {
+    fn belongs_to(&self, model: &dyn Transfer, k: ReducedFrequency) -> Result<bool> {
         let own = self.coefficients.model_at(&self.coefficients.values())?;
         if own.dofs() != model.dofs() {
             return Ok(false);

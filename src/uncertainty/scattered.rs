@@ -1,6 +1,6 @@
 //! A virtual campaign whose truth differs between mean speeds and between runs.
 
-use crate::aerodynamics::{AerodynamicModel, TransferMatrix};
+use crate::aerodynamics::{Transfer, TransferMatrix};
 use crate::error::Result;
 use crate::section::Dof;
 use crate::units::ReducedFrequency;
@@ -25,9 +25,9 @@ pub(super) struct ScatteredTunnel {
 }
 
 /// `i G(K)`.
-struct Turned<'a>(&'a dyn AerodynamicModel);
+struct Turned<'a>(&'a dyn Transfer);
 
-impl AerodynamicModel for Turned<'_> {
+impl Transfer for Turned<'_> {
     fn dofs(&self) -> &[Dof] {
         self.0.dofs()
     }
@@ -41,7 +41,7 @@ impl ScatteredTunnel {
     /// For a plan without noise.
     pub fn new(
         quiet: &TunnelPlan,
-        model: &dyn AerodynamicModel,
+        model: &dyn Transfer,
         width_m: f64,
         (speeds, runs): (f64, f64),
     ) -> Result<Self> {

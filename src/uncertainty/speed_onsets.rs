@@ -5,7 +5,7 @@ use super::derivatives::spread_over;
 use super::onset::{CONFIDENCE, OnsetError, error_at};
 use super::sensitivity::{onset_gradient, onset_nearby};
 use super::student::two_sided_quantile;
-use crate::aerodynamics::AerodynamicModel;
+use crate::aerodynamics::Transfer;
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
 use crate::flutter::{Onset, OnsetSearch, find_onset};

@@ -4,7 +4,7 @@ use super::motion::UnitMotion;
 use crate::aerodynamics::derivatives::{
     Derivative, DerivativePoint, DerivativeTable, Extrapolation, InterpolatedTable, Part,
 };
-use crate::aerodynamics::{AerodynamicModel, TransferMatrix};
+use crate::aerodynamics::{Transfer, TransferMatrix};
 use crate::error::{Error, Result};
 use crate::section::Dof;
 use crate::units::ReducedFrequency;
@@ -106,7 +106,7 @@ impl TestPoints {
 /// `scale_s` is `B/V`. The padding is at least as long as the record, so that what the wake remembers at its end
 /// does not come round to its beginning.
 pub(super) fn unit_response(
-    model: &dyn AerodynamicModel,
+    model: &dyn Transfer,
     unit: &UnitMotion,
     sampling_hz: f64,
     scale_s: f64,
@@ -129,7 +129,7 @@ pub(super) fn unit_response(
 /// Dimensionless force of each row, `[row][sample]`, to dimensionless motions that were zero before their first sample:
 /// the sum over the columns of `model`. `scale_s` is `B/V`.
 pub(super) fn response(
-    model: &dyn AerodynamicModel,
+    model: &dyn Transfer,
     motion: &[Vec<f64>],
     sampling_hz: f64,
     scale_s: f64,
@@ -180,7 +180,7 @@ impl Transforms {
     /// Calls `f` with every bin from zero to half the sampling frequency and `G` there.
     fn for_each_bin(
         &self,
-        model: &dyn AerodynamicModel,
+        model: &dyn Transfer,
         sampling_hz: f64,
         scale_s: f64,
         f: &mut dyn FnMut(usize, &TransferMatrix),

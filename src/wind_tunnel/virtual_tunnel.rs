@@ -19,7 +19,7 @@ use super::broadband::TrainingMotion;
 use super::motion::{Timing, UnitMotion};
 use super::records::{Record, RecordHeader};
 use super::virtual_forces::{TestPoints, unit_response};
-use crate::aerodynamics::AerodynamicModel;
+use crate::aerodynamics::Transfer;
 use crate::aerodynamics::derivatives::DerivativeTable;
 use crate::error::{Result, positive};
 use crate::files::derivatives::TABLE_3_2_FREQUENCIES_HZ;
@@ -134,7 +134,7 @@ impl TunnelPlan {
     /// that of half the sampling frequency.
     pub fn records_from_model(
         &self,
-        model: &dyn AerodynamicModel,
+        model: &dyn Transfer,
         name: &str,
         width_m: f64,
     ) -> Result<Vec<Record>> {
@@ -145,7 +145,7 @@ impl TunnelPlan {
     /// The same without noise, motion and forces `delay_s` late.
     pub(super) fn clean_from_model(
         &self,
-        model: &dyn AerodynamicModel,
+        model: &dyn Transfer,
         name: &str,
         width_m: f64,
         delay_s: f64,
@@ -162,7 +162,7 @@ impl TunnelPlan {
     /// One record a motion at one speed, without noise.
     pub(super) fn records_at_speed(
         &self,
-        model: &dyn AerodynamicModel,
+        model: &dyn Transfer,
         name: &str,
         width_m: f64,
         speed_m_s: f64,

@@ -1,6 +1,6 @@
 //! What an exported model must give, computed in process: onset by eigenvalues, trajectories to the last bit.
 
-use aerodeck::aerodynamics::{AerodynamicModel, Realizable};
+use aerodeck::aerodynamics::{Realizable, Transfer};
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::flutter::{OnsetSearch, divergence_speed, find_onset, trace_modes};
 use aerodeck::response::{Inputs, Outputs, SectionState, Stepper};

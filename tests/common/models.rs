@@ -2,7 +2,7 @@
 
 use aerodeck::aerodynamics::laguerre::FilterTerm;
 use aerodeck::aerodynamics::{
-    AerodynamicModel, DiscreteLaguerre, FilterBank, FlatPlate, LaguerreModel, RationalModel,
+    DiscreteLaguerre, FilterBank, FlatPlate, LaguerreModel, RationalModel, Transfer,
 };
 use aerodeck::section::{Dof, SectionModel};
 use aerodeck::trained_model::{Experiment, Model, Provenance, SCHEMA_VERSION, TrainedModel};

@@ -2,7 +2,7 @@
 
 use super::interpolation::{Curve, Interpolation};
 use super::{Derivative, DerivativePoint, DerivativeTable, Part};
-use crate::aerodynamics::{AerodynamicModel, TransferMatrix};
+use crate::aerodynamics::{Transfer, TransferMatrix};
 use crate::error::{Error, Result};
 use crate::section::Dof;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
@@ -17,7 +17,7 @@ pub enum Extrapolation {
     #[default]
     Refuse,
     /// What is interpolated keeps its value at the nearest point: to move a section or to follow a mode through, not to
-    /// answer from (see [`AerodynamicModel::known_range`]).
+    /// answer from (see [`Transfer::known_range`]).
     Hold,
 }
 
@@ -84,7 +84,7 @@ impl InterpolatedTable {
     }
 }
 
-impl AerodynamicModel for InterpolatedTable {
+impl Transfer for InterpolatedTable {
     fn dofs(&self) -> &[Dof] {
         &self.dofs
     }

@@ -8,7 +8,7 @@
 
 use super::notation::{Argument, Axes, Convention, Notation};
 use super::{Derivative, DerivativePoint, DerivativeTable, Part};
-use crate::aerodynamics::{AerodynamicModel, FlatPlate};
+use crate::aerodynamics::{FlatPlate, Transfer};
 use crate::section::Dof;
 
 /// Derivative, its usual size over the flat plate's, and how much that varies, as a standard deviation of the logarithm.

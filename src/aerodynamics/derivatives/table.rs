@@ -1,7 +1,7 @@
 //! A table of measured derivatives, each with its own reduced velocities.
 
 use super::{Derivative, Part, TransferSample};
-use crate::aerodynamics::AerodynamicModel;
+use crate::aerodynamics::Transfer;
 use crate::error::{Error, Result, positive};
 use crate::section::Dof;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange, SAME_SPEED, near_groups};
@@ -113,7 +113,7 @@ impl DerivativeTable {
     /// The derivatives of a model at every pair of speed and frequency, as a test of a deck of `width_m` would find them.
     pub fn sampled(
         name: impl Into<String>,
-        model: &dyn AerodynamicModel,
+        model: &dyn Transfer,
         width_m: f64,
         speeds_m_s: &[f64],
         frequencies_hz: &[f64],

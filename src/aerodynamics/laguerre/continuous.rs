@@ -3,7 +3,7 @@
 
 use super::bank::{FilterBank, side_by_side};
 use crate::aerodynamics::{
-    AerodynamicModel, ContinuousRealization, Realizable, Realization, TransferMatrix,
+    ContinuousRealization, Realizable, Realization, Transfer, TransferMatrix,
 };
 use crate::error::{Error, Result};
 use crate::section::Dof;
@@ -89,7 +89,7 @@ impl LaguerreModel {
     }
 }
 
-impl AerodynamicModel for LaguerreModel {
+impl Transfer for LaguerreModel {
     fn dofs(&self) -> &[Dof] {
         &self.dofs
     }

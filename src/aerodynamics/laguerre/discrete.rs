@@ -2,9 +2,7 @@
 
 use super::bank::side_by_side;
 use super::discrete_layout::Layout;
-use crate::aerodynamics::{
-    AerodynamicModel, DiscreteRealization, Realizable, Realization, TransferMatrix,
-};
+use crate::aerodynamics::{DiscreteRealization, Realizable, Realization, Transfer, TransferMatrix};
 use crate::error::{Error, Result, finite_numbers, positive};
 use crate::section::Dof;
 use crate::units::ReducedFrequency;
@@ -148,7 +146,7 @@ impl DiscreteLaguerre {
     }
 }
 
-impl AerodynamicModel for DiscreteLaguerre {
+impl Transfer for DiscreteLaguerre {
     fn dofs(&self) -> &[Dof] {
         &self.dofs
     }

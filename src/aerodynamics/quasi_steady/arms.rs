@@ -1,6 +1,6 @@
 //! The distances `B₁` of the corrected quasi-steady theory (1.18).
 
-use crate::aerodynamics::AerodynamicModel;
+use crate::aerodynamics::Transfer;
 use crate::error::{Error, Result, finite};
 use crate::section::Dof;
 use crate::units::ReducedFrequency;
@@ -49,7 +49,7 @@ impl Arms {
     ///
     /// # Errors
     /// Those of the model at `k`; [`Error::Numerical`] when a force does not depend on the vertical velocity.
-    pub fn from_model(model: &dyn AerodynamicModel, k: ReducedFrequency) -> Result<Self> {
+    pub fn from_model(model: &dyn Transfer, k: ReducedFrequency) -> Result<Self> {
         let g = model.transfer(k)?;
         let place = |dof: Dof| model.dofs().iter().position(|d| *d == dof);
         let (Some(y), Some(theta)) = (place(Dof::Vertical), place(Dof::Torsion)) else {

@@ -2,7 +2,7 @@
 
 use super::{Arms, CoefficientsAt};
 use crate::aerodynamics::{
-    AerodynamicModel, ContinuousRealization, Realizable, Realization, TransferMatrix,
+    ContinuousRealization, Realizable, Realization, Transfer, TransferMatrix,
 };
 use crate::error::Result;
 use crate::section::Dof;
@@ -82,7 +82,7 @@ impl LinearQuasiSteady {
     }
 }
 
-impl AerodynamicModel for LinearQuasiSteady {
+impl Transfer for LinearQuasiSteady {
     fn dofs(&self) -> &[Dof] {
         &self.dofs
     }

@@ -6,7 +6,7 @@
 
 use super::{RationalModel, check_square};
 use crate::aerodynamics::{
-    AerodynamicModel, ContinuousRealization, Realizable, Realization, TransferMatrix,
+    ContinuousRealization, Realizable, Realization, Transfer, TransferMatrix,
 };
 use crate::error::{Error, Result, positive};
 use crate::section::Dof;
@@ -80,7 +80,7 @@ impl MinimumStateModel {
     }
 }
 
-impl AerodynamicModel for MinimumStateModel {
+impl Transfer for MinimumStateModel {
     fn dofs(&self) -> &[Dof] {
         &self.dofs
     }

@@ -5,7 +5,7 @@ mod minimum_state;
 
 pub use minimum_state::MinimumStateModel;
 
-use super::{AerodynamicModel, ContinuousRealization, Realizable, Realization, TransferMatrix};
+use super::{ContinuousRealization, Realizable, Realization, Transfer, TransferMatrix};
 use crate::error::{Error, Result, positive};
 use crate::section::Dof;
 use crate::state_space::complex;
@@ -170,7 +170,7 @@ impl RationalModel {
     }
 }
 
-impl AerodynamicModel for RationalModel {
+impl Transfer for RationalModel {
     fn dofs(&self) -> &[Dof] {
         &self.dofs
     }

@@ -1,6 +1,6 @@
 //! The section that the current parameters describe, and what follows from it alone: onset and divergence.
 
-use crate::aerodynamics::{AerodynamicModel, Realization};
+use crate::aerodynamics::{Realization, Transfer};
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
 use crate::flutter::{FlutterSearch, OnsetSearch, divergence_speed, find_onset};

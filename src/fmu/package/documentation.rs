@@ -1,7 +1,7 @@
 //! `documentation/index.html` of an exported section, made from the variable table and the trained model.
 
 use super::runtime::Runtime;
-use crate::aerodynamics::{AerodynamicModel, Realizable};
+use crate::aerodynamics::{Realizable, Transfer};
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
 use crate::flutter::{

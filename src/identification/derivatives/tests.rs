@@ -3,7 +3,7 @@
 use super::*;
 use crate::aerodynamics::derivatives::Derivative;
 use crate::aerodynamics::derivatives::Part;
-use crate::aerodynamics::{AerodynamicModel, RationalModel};
+use crate::aerodynamics::{RationalModel, Transfer};
 use crate::files::derivatives::embedded;
 use crate::section::Dof;
 use crate::units::ReducedFrequency;

@@ -1,5 +1,5 @@
 use super::*;
-use crate::aerodynamics::{AerodynamicModel, FlatPlate};
+use crate::aerodynamics::{FlatPlate, Transfer};
 use crate::files::derivatives::embedded;
 use crate::identification::testing::{onset_m_s, records, sources};
 use crate::units::ReducedFrequency;

@@ -1,7 +1,7 @@
 //! Fits with the quasi-steady limit, against the figures of `tests/data/constrained_fit.py` (LAPACK's dgglse and SciPy).
 
 use super::*;
-use crate::aerodynamics::{AerodynamicModel, FlatPlate};
+use crate::aerodynamics::{FlatPlate, Transfer};
 use crate::identification::form::FeedThrough;
 use crate::identification::options::PoleSearch;
 use crate::identification::testing::{eight_k, table_alone};

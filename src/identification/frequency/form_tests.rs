@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::aerodynamics::{
-    AerodynamicModel, FlatPlate, Lags, MinimumStateModel, RationalModel, Realizable,
+    FlatPlate, Lags, MinimumStateModel, RationalModel, Realizable, Transfer,
 };
 use crate::files::derivatives::embedded;
 use crate::identification::options::PoleSearch;

@@ -1,5 +1,5 @@
 use super::*;
-use crate::aerodynamics::{AerodynamicModel, FlatPlate, RationalModel, Realizable};
+use crate::aerodynamics::{FlatPlate, RationalModel, Realizable, Transfer};
 use crate::aeroelastic::CoupledSection;
 use crate::identification::form::FeedThrough;
 use crate::identification::options::PoleSearch;

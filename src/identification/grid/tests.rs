@@ -1,7 +1,7 @@
 //! Cells of a grid against fits of their own.
 
 use super::*;
-use crate::aerodynamics::{AerodynamicModel, FlatPlate};
+use crate::aerodynamics::{FlatPlate, Transfer};
 use crate::identification::testing::{records, records_alone, sources};
 use crate::identification::{DiscreteFit, FeedThrough, PoleSearch, fit_discrete, fit_records};
 use crate::units::ReducedFrequency;

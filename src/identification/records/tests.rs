@@ -1,5 +1,5 @@
 use super::*;
-use crate::aerodynamics::{AerodynamicModel, FlatPlate, RationalModel};
+use crate::aerodynamics::{FlatPlate, RationalModel, Transfer};
 use crate::identification::Progress;
 use crate::identification::form::{FeedThrough, Form};
 use crate::identification::options::PoleSearch;

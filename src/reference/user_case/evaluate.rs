@@ -3,7 +3,7 @@
 use super::{Quantity, UserCase, UserFigure};
 use crate::aerodynamics::derivatives::Extrapolation;
 use crate::aerodynamics::derivatives::InterpolatedTable;
-use crate::aerodynamics::{AerodynamicModel, FlatPlate, Lags, RationalModel};
+use crate::aerodynamics::{FlatPlate, Lags, RationalModel, Transfer};
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
 use crate::files::derivatives::named_table;
@@ -25,7 +25,7 @@ const WIDE: ReducedFrequencyRange = ReducedFrequencyRange {
 /// A case with its forces loaded.
 pub(super) struct Loaded {
     structure: Structure,
-    model: Box<dyn AerodynamicModel>,
+    model: Box<dyn Transfer>,
     tested: Option<ReducedFrequencyRange>,
     speed_max: f64,
 }
@@ -35,7 +35,7 @@ impl Loaded {
     pub(super) fn new(case: &UserCase) -> Result<Self> {
         let a = &case.aerodynamics;
         let mut section = case.section.clone();
-        let (model, tested): (Box<dyn AerodynamicModel>, _) = if let Some(path) = &a.model {
+        let (model, tested): (Box<dyn Transfer>, _) = if let Some(path) = &a.model {
             let trained = TrainedModel::read(&case.directory.join(path))?;
             section.get_or_insert(trained.section);
             (Box::new(trained.model), Some(trained.tested_range))

@@ -1,6 +1,6 @@
 //! Models against test points in the frequency domain: transfer functions with their tolerance bands, and derivatives.
 
-use crate::aerodynamics::AerodynamicModel;
+use crate::aerodynamics::Transfer;
 use crate::aerodynamics::derivatives::{Derivative, DerivativeTable, Part};
 use crate::error::Result;
 use crate::section::Dof;
@@ -108,7 +108,7 @@ pub(super) fn compare_entries(
     group: &DerivativeTable,
     speed_m_s: f64,
     dofs: &[Dof],
-    models: &[(String, &dyn AerodynamicModel)],
+    models: &[(String, &dyn Transfer)],
 ) -> Result<Vec<EntryComparison>> {
     let mut all = Vec::with_capacity(dofs.len() * dofs.len());
     for (i, &force) in dofs.iter().enumerate() {
@@ -219,7 +219,7 @@ impl Unwrapped {
 pub(super) fn compare_derivatives(
     group: &DerivativeTable,
     dofs: &[Dof],
-    models: &[(String, &dyn AerodynamicModel)],
+    models: &[(String, &dyn Transfer)],
 ) -> Result<Vec<DerivativeComparison>> {
     let mut all = Vec::new();
     for derivative in Derivative::ALL {

@@ -5,7 +5,7 @@ use super::entries::{DerivativeComparison, EntryComparison, compare_derivatives,
 use super::score::{Score, ScoreSummary, summaries};
 use super::statements::{Statement, on_models};
 use super::{CompareOptions, TestedDeck, thesis_rational_functions};
-use crate::aerodynamics::AerodynamicModel;
+use crate::aerodynamics::Transfer;
 use crate::error::{Error, Result};
 use crate::identification::{FitReport, TimeFit, fit_discrete, fit_records, fit_table};
 use crate::section::Dof;
@@ -118,9 +118,9 @@ pub fn compare_models(
             fit_records(&sources, &TimeFit::default(), &|_| ())?,
         ),
     ];
-    let models: Vec<(String, &dyn AerodynamicModel)> = fits
+    let models: Vec<(String, &dyn Transfer)> = fits
         .iter()
-        .map(|(name, (model, _))| (name.clone(), model as &dyn AerodynamicModel))
+        .map(|(name, (model, _))| (name.clone(), model as &dyn Transfer))
         .collect();
     let pairs: Vec<_> = fits
         .iter()

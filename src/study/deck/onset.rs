@@ -4,7 +4,7 @@ use super::{Deck, EXACT_RANGE, Source};
 use crate::aerodynamics::derivatives::{
     DerivativeTable, Extrapolation, InterpolatedTable, Interpolation,
 };
-use crate::aerodynamics::{AerodynamicModel, FlatPlate, TransferMatrix};
+use crate::aerodynamics::{FlatPlate, Transfer, TransferMatrix};
 use crate::error::Result;
 use crate::flutter::{FlutterSearch, OnsetInterval, determinant_onset, static_part};
 use crate::section::Structure;

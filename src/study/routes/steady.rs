@@ -4,7 +4,7 @@
 use super::super::Study;
 use super::{Forces, RouteTable};
 use crate::aerodynamics::quasi_steady::QuasiSteady;
-use crate::aerodynamics::{AerodynamicModel, Lags, RationalModel};
+use crate::aerodynamics::{Lags, RationalModel, Transfer};
 use crate::aeroelastic::CoupledSection;
 use crate::aeroelastic::{EquilibriumEnd, static_equilibria};
 use crate::error::Result;
@@ -90,10 +90,7 @@ impl RouteTable {
 }
 
 /// `G ≈ Re G(K) + iK · Im G(K)/K` at a low `K`: affine in `iK`, the form of quasi-steady theory.
-pub fn low_frequency_limit(
-    model: &dyn AerodynamicModel,
-    k: ReducedFrequency,
-) -> Result<RationalModel> {
+pub fn low_frequency_limit(model: &dyn Transfer, k: ReducedFrequency) -> Result<RationalModel> {
     let g = model.transfer(k)?;
     let n = g.nrows();
     Ok(RationalModel {

@@ -2,7 +2,7 @@
 
 use super::{QUASI_STEADY, WindStudy};
 use crate::aerodynamics::quasi_steady::QuasiSteady;
-use crate::aerodynamics::{AerodynamicModel, FlatPlate, RationalModel};
+use crate::aerodynamics::{FlatPlate, RationalModel, Transfer};
 use crate::aeroelastic::static_equilibria;
 use crate::buffeting::{
     BuffetingProblem, BuffetingResponse, ComponentComparison, Ensemble, GustComponent, GustForces,
@@ -74,13 +74,13 @@ struct Setting<'a> {
     study: &'a WindStudy,
     structure: Structure,
     theory: Option<QuasiSteady>,
-    fixed: Option<Box<dyn AerodynamicModel>>,
+    fixed: Option<Box<dyn Transfer>>,
     tested: Option<ReducedFrequencyRange>,
 }
 
 /// Everything about one wind speed.
 struct AtSpeed {
-    moving: Option<Box<dyn AerodynamicModel>>,
+    moving: Option<Box<dyn Transfer>>,
     forces: GustForces,
 }
 
@@ -130,7 +130,7 @@ impl<'a> Setting<'a> {
         let theory = theory.transpose()?;
         let trained = study.trained_model()?;
         let tested = trained.as_ref().map(|m| m.tested_range);
-        let fixed: Option<Box<dyn AerodynamicModel>> = match study.aerodynamics.as_str() {
+        let fixed: Option<Box<dyn Transfer>> = match study.aerodynamics.as_str() {
             QUASI_STEADY => {
                 study.static_coefficients()?;
                 None

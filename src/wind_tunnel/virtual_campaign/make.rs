@@ -7,7 +7,7 @@ use super::forces::{Kinematics, Wrench, gravity_and_inertia, wind_coefficients};
 use super::plan::VirtualCampaignPlan;
 use super::truth::{AppliedDisturbances, CampaignTruth, TruthPoint};
 use crate::aerodynamics::derivatives::DerivativeTable;
-use crate::aerodynamics::{AerodynamicModel, TransferMatrix};
+use crate::aerodynamics::{Transfer, TransferMatrix};
 use crate::error::Result;
 use crate::section::Dof;
 use crate::units::ReducedFrequency;
@@ -49,7 +49,7 @@ impl VirtualCampaignPlan {
     /// A campaign on a deck of `width_m` with the forces of `model`, one run a motion and speed of the plan.
     pub fn from_model(
         &self,
-        model: &dyn AerodynamicModel,
+        model: &dyn Transfer,
         name: &str,
         width_m: f64,
     ) -> Result<VirtualCampaign> {

@@ -1,7 +1,7 @@
 //! The recordings against mechanics written out by hand, and the disturbances against what they should be.
 
 use super::*;
-use crate::aerodynamics::{AerodynamicModel, RationalModel};
+use crate::aerodynamics::{RationalModel, Transfer};
 use crate::files::derivatives::embedded;
 use crate::section::Dof;
 use crate::units::ReducedFrequency;

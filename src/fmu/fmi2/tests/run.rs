@@ -1,7 +1,7 @@
 //! Runs: the unit moves as the stepper in this process does, to the last bit.
 
 use super::*;
-use crate::aerodynamics::{AerodynamicModel, Realizable};
+use crate::aerodynamics::{Realizable, Transfer};
 use crate::aeroelastic::CoupledSection;
 use crate::flutter::{OnsetSearch, divergence_speed, find_onset};
 use crate::response::{Inputs, Outputs, Stepper};
