@@ -58,7 +58,7 @@ impl Instance {
     /// A new instance with every variable at its start value.
     ///
     /// # Errors
-    /// [`Error::Input`] for a model without a realisation, or whose section cannot be coupled with it.
+    /// [`crate::Error::Input`] for a model without a realisation, or whose section cannot be coupled with it.
     pub fn new(resources: Resources) -> Result<Self> {
         let layout = Layout::new(&resources.table)?;
         let model = &resources.model;

@@ -36,7 +36,7 @@ struct Finder<'a> {
 /// [`find_onset`]. The result does not depend on the number of threads.
 ///
 /// # Errors
-/// [`Error::Input`] naming the key of the plan that does not fit the model. Samples that fail are counted and named.
+/// [`crate::Error::Input`] naming the key of the plan that does not fit the model. Samples that fail are counted and named.
 pub fn monte_carlo(
     plan: &MonteCarloPlan,
     model: &TrainedModel,
