@@ -211,3 +211,44 @@ fn a_trained_model_buffets() {
         assert!(c["deviations"].as_f64().unwrap().abs() < 3.5, "{c}");
     }
 }
+
+/// Jones's plate on this section flutters at 76.68 m/s: below, every speed is answered; above, every speed is named.
+#[test]
+fn buffeting_answers_stable_speeds_and_names_the_others() {
+    let folder = TempDir::new().unwrap();
+    let lateral =
+        "lateral = { mass_kg_m = 22740.0, frequency_hz = 0.060, damping_ratio = 0.005 }\n";
+    write(&folder, lateral, "");
+    let file = folder.path().join("wind.toml");
+    let text = fs::read_to_string(&file)
+        .unwrap()
+        .replace("\"quasi-steady\"", "\"flat plate (Jones)\"")
+        .replace("speed_max_m_s = 60.0", "speed_max_m_s = 120.0")
+        .replace("speeds_m_s = [20.0, 35.0]", "speeds_m_s = [20.0, 110.0]");
+    fs::write(&file, text).unwrap();
+    let text = succeeds(folder.path(), &["buffeting", "wind.toml"]);
+    let answered: Vec<f64> = text
+        .lines()
+        .filter_map(|line| {
+            let words: Vec<&str> = line.split_whitespace().collect();
+            (words.len() == 5).then(|| words[0].parse().ok()).flatten()
+        })
+        .collect();
+    assert!(answered.len() > 5, "{text}");
+    assert!(answered.iter().all(|speed| *speed < 76.68), "{text}");
+    let named: Vec<f64> = text
+        .lines()
+        .filter_map(|line| {
+            line.strip_prefix("at ")?
+                .split_once(" m/s: the section is unstable")
+        })
+        .flat_map(|(speeds, _)| speeds.split(", "))
+        .map(|speed| speed.parse().unwrap())
+        .collect();
+    assert!(
+        named.contains(&110.0) && named.iter().all(|speed| *speed > 76.68),
+        "{text}"
+    );
+    assert!(text.contains("time domain at 20 m/s"), "{text}");
+    assert!(!text.contains("time domain at 110 m/s"), "{text}");
+}
