@@ -1,4 +1,4 @@
-//! Builds the FMU runtime, the shared library that every exported FMU holds, and hands it to `src/fmu/package.rs`.
+//! Builds the FMU runtime, the shared library that every exported FMU holds, and hands it to `src/fmu/package`.
 //!
 //! With the feature `cli` this script calls cargo once more on the same package without any
 //! feature, in the profile `fmu` and a target directory of its own, and copies the library to `OUT_DIR`, from where

@@ -50,19 +50,7 @@ pub fn read_table(path: impl AsRef<std::path::Path>) -> crate::Result<Derivative
     read_table_with(path, &ReadOptions::default()).map(|(table, _)| table)
 }
 
-/// The same with what the caller states about the convention of the file; the second value is the one the file is in.
-pub fn read_table_in(
-    path: impl AsRef<std::path::Path>,
-    stated: notation::StatedConvention,
-) -> crate::Result<(DerivativeTable, notation::Convention)> {
-    let options = ReadOptions {
-        convention: stated,
-        ..ReadOptions::default()
-    };
-    read_table_with(path, &options)
-}
-
-/// The same with all that can be stated.
+/// The same with what the caller states; the second value is the convention that the file is in.
 pub fn read_table_with(
     path: impl AsRef<std::path::Path>,
     options: &ReadOptions,
