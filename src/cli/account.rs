@@ -119,7 +119,7 @@ fn held(constraints: &ConstraintReport) -> String {
         );
     }
     if let Some(onset) = &constraints.onset {
-        let speed = |v: Option<f64>| v.map_or("none".to_owned(), |v| format!("{v:.3} m/s"));
+        let speed = |v: Option<f64>| v.map_or("not found".to_owned(), |v| format!("{v:.3} m/s"));
         let _ = write!(
             text,
             "; onset {} without them, {} with them",

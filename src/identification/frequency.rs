@@ -121,6 +121,7 @@ fn fit_linear(
         entries,
         form: &fit.form,
         wishes: Wishes {
+            dofs: dofs.to_vec(),
             k_max: tested.max.full_width(),
             constraints: fit.constraints,
             // every entry has met its own already

@@ -112,6 +112,7 @@ pub(super) fn fit_minimum_state(
         return Ok(alone);
     }
     task.wishes = Some(Wishes {
+        dofs: dofs.to_vec(),
         k_max: tested.max.full_width(),
         constraints: fit.constraints,
         // every force has met its own already

@@ -137,6 +137,7 @@ pub(crate) fn describe(weights: TimeWeights) -> &'static str {
 /// [`Error::Input`] for limits of degrees of freedom that are not there.
 pub(crate) fn wishes(fit: &TimeFit, dofs: &[Dof], tested: ReducedFrequencyRange) -> Result<Wishes> {
     Ok(Wishes {
+        dofs: dofs.to_vec(),
         k_max: tested.max.full_width(),
         constraints: fit.constraints,
         limits: limits_by_entry(dofs, &fit.limits)?,

@@ -2,7 +2,7 @@
 //! and three motions, wind from near zero to beyond the onset.
 
 use aerodeck::aerodynamics::RationalModel;
-use aerodeck::aerodynamics::derivatives::DerivativeTable;
+use aerodeck::aerodynamics::derivatives::{Derivative, DerivativePoint, DerivativeTable};
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::files::derivatives::embedded;
 use aerodeck::section::{SectionModel, Translation};
@@ -73,6 +73,22 @@ pub fn bluff_table() -> DerivativeTable {
     let v_hats = [1.0, 1.3, 1.8, 2.4, 3.2, 4.3, 5.8, 8.0];
     let frequencies = v_hats.map(|v_hat| 8.0 / (std::f64::consts::TAU * width * v_hat));
     DerivativeTable::sampled("bluff deck", &bluff_model(), width, &[8.0], &frequencies).unwrap()
+}
+
+/// A measured deck whose rotation is fed energy at every test point: its A2* made positive, `|A2*| + 0.1`.
+pub fn made_bluff(table: &DerivativeTable) -> DerivativeTable {
+    let points = table.derivatives().map(|derivative| {
+        let fed = |mut point: DerivativePoint| {
+            if derivative == Derivative::A2 {
+                point.value = point.value.abs() + 0.1;
+            }
+            point
+        };
+        let points = table.points(derivative).iter().cloned().map(fed);
+        (derivative, points.collect())
+    });
+    let name = format!("{} made bluff", table.name);
+    DerivativeTable::new(name, table.width_m, table.header.clone(), points.collect()).unwrap()
 }
 
 /// Largest growth rate (1/s) of the coupled section at a wind speed, over all eigenvalues.

@@ -8,11 +8,16 @@
 //! 2. damping in the limit of fast motion: `−(e₁ + e₁ᵀ) ⪰ δI`;
 //! 3. damping of every real mode shape above the tested range: `−sym Im G(K)/K ⪰ 0` at 40 `K` from `K_max` to `200 K_max`.
 //!
+//! A deck whose tests end with growth (a bluff one) keeps it: where `sym Im G/K` of heave and torsion at `K_max` has a
+//! positive part `P` in the fit that the data alone give, condition 3 reads `P (K_max/K)² − sym Im G(K)/K ⪰ 0`, since a
+//! fit damped from `K_max` on would be damped at the end of the tested range too, on the unsafe side.
+//!
 //! This is less than passivity, which a flat plate does not have either. All conditions are convex in the
 //! coefficients. For given poles the fit minimises the sum over the transfer functions of weighted squared residuals, each
 //! relative to the weighted data of its own — the objective of the search of poles — by cutting planes: whatever mode
 //! shape `v` a solution feeds gives the linear inequality `vᵀ(…)v ≤ 0` for the next.
 
+mod edge;
 mod equations;
 mod least_distance;
 mod report;
@@ -20,6 +25,8 @@ mod tangent;
 
 use super::basis::Basis;
 use crate::error::{Error, Result};
+use crate::section::Dof;
+use edge::Edge;
 use equations::{Equation, equations, satisfy};
 use least_distance::{Inequality, shortest};
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
@@ -57,6 +64,8 @@ pub enum Constraints {
 /// What is asked of a fit besides.
 #[derive(Debug, Clone)]
 pub(crate) struct Wishes {
+    /// Degrees of freedom, in the order of rows and columns.
+    pub dofs: Vec<Dof>,
     /// Highest tested reduced frequency.
     pub k_max: f64,
     pub constraints: Constraints,
@@ -101,11 +110,14 @@ struct Condition {
     /// Size of the matrix over that of `sym Im G/K` at the end of the tested range.
     scale: f64,
     margin: f64,
+    /// Share of the growth of the tests that is left here: `(K_max/K)²`.
+    own: f64,
 }
 
 /// The conditions on one model with given poles.
 pub(crate) struct Dissipation {
     n: usize,
+    dofs: Vec<Dof>,
     conditions: Vec<Condition>,
     /// Which list of rows belongs to a transfer function, row by row.
     rows_of: Vec<usize>,
@@ -151,6 +163,7 @@ impl Dissipation {
                     // without e₁ the filters alone are left, which fade
                     scale: if fast { 1.0 } else { ratio.powi(-2) },
                     margin: MARGIN,
+                    own: ratio.powi(-2),
                 }
             })
             .collect();
@@ -164,6 +177,7 @@ impl Dissipation {
                 k: None,
                 scale,
                 margin,
+                own: 0.0,
             }));
         }
         let mut distinct: Vec<&Basis> = Vec::new();
@@ -181,6 +195,7 @@ impl Dissipation {
             .collect();
         Self {
             n,
+            dofs: wishes.dofs.clone(),
             conditions,
             rows_of,
             rows,
@@ -205,16 +220,6 @@ impl Dissipation {
         (&full + full.transpose()) * 0.5
     }
 
-    /// The size against which margins and tolerances are measured: that of `sym Im G/K` at the end of the tested range,
-    /// which the data determine.
-    fn size(&self, coefficients: &[Vec<f64>]) -> f64 {
-        let size = match self.conditions.first() {
-            Some(_) => self.matrix(0, coefficients).norm(),
-            None => 1.0,
-        };
-        if size > 0.0 { size } else { 1.0 }
-    }
-
     /// The least of the joint objective under the conditions; `None` when least squares alone satisfy them.
     ///
     /// # Errors
@@ -222,14 +227,17 @@ impl Dissipation {
     pub fn solve(&self, entries: &[LinearEntry]) -> Result<Option<Solution>> {
         let width = entries.iter().map(LinearEntry::end).max().unwrap_or(0);
         let alone: Vec<Vec<f64>> = entries.iter().map(|e| e.values.clone()).collect();
-        let size = self.size(&alone);
+        let edge = match self.conditions.first() {
+            Some(_) => Edge::new(self.matrix(0, &alone), &self.dofs),
+            None => Edge::nothing(self.n),
+        };
         let (equalities, start) = satisfy(&self.equations, entries, width)?;
         let mut u = start.clone();
         let mut cuts: Vec<Cut> = Vec::new();
         let at_start: Vec<Vec<f64>> = entries.iter().map(|e| e.coefficients(&start)).collect();
         for _ in 0..ROUNDS {
             let coefficients: Vec<Vec<f64>> = entries.iter().map(|e| e.coefficients(&u)).collect();
-            let fed = self.fed(&coefficients, size);
+            let fed = self.fed(&coefficients, &edge);
             if fed.is_empty() {
                 if cuts.is_empty() && start.amax() == 0.0 {
                     return Ok(None);
@@ -237,7 +245,7 @@ impl Dissipation {
                 return Ok(Some(self.solution(
                     entries,
                     (u, coefficients),
-                    size,
+                    &edge,
                     &cuts,
                     equalities,
                 )));
@@ -246,7 +254,7 @@ impl Dissipation {
                 let plane = self.plane(
                     (condition, &direction),
                     entries,
-                    (&at_start, size),
+                    (&at_start, &edge),
                     &equalities,
                 );
                 cuts.push(Cut { condition, plane });
@@ -266,9 +274,9 @@ impl Dissipation {
     }
 
     /// Conditions that do not hold and the mode shapes that are fed; of neighbouring reduced frequencies only the worst.
-    fn fed(&self, coefficients: &[Vec<f64>], size: f64) -> Vec<(usize, DVector<f64>)> {
+    fn fed(&self, coefficients: &[Vec<f64>], edge: &Edge) -> Vec<(usize, DVector<f64>)> {
         let eigen: Vec<_> = (0..self.conditions.len())
-            .map(|c| self.excesses(c, coefficients, size))
+            .map(|c| self.excesses(c, coefficients, edge))
             .collect();
         let worst = |c: usize| eigen[c].0.max();
         let sampled = |c: usize| c < eigen.len() && self.conditions[c].k.is_some();
@@ -293,10 +301,13 @@ impl Dissipation {
         &self,
         condition: usize,
         coefficients: &[Vec<f64>],
-        size: f64,
+        edge: &Edge,
     ) -> (DVector<f64>, DMatrix<f64>) {
-        let Condition { scale, margin, .. } = self.conditions[condition];
-        let matrix = self.matrix(condition, coefficients) / (size * scale);
+        let Condition {
+            scale, margin, own, ..
+        } = self.conditions[condition];
+        let beyond = self.matrix(condition, coefficients) - &edge.own * own;
+        let matrix = beyond / (edge.size * scale);
         let eigen = SymmetricEigen::new(matrix);
         (eigen.eigenvalues.add_scalar(margin), eigen.eigenvectors)
     }
@@ -316,21 +327,23 @@ impl Dissipation {
         gradient
     }
 
-    /// The plane `vᵀ M v ≤ −margin`, in the free numbers from the start on.
+    /// The plane `vᵀ M v ≤ own growth − margin`, in the free numbers from the start on.
     fn plane(
         &self,
         (condition, v): (usize, &DVector<f64>),
         entries: &[LinearEntry],
-        (start, size): (&[Vec<f64>], f64),
+        (start, edge): (&[Vec<f64>], &Edge),
         equalities: &[DVector<f64>],
     ) -> Inequality {
         let mut gradient = self.gradient(condition, v.as_slice(), entries);
         take_away(&mut gradient, equalities);
-        let Condition { scale, margin, .. } = self.conditions[condition];
-        let at_start = v.dot(&(self.matrix(condition, start) * v));
+        let Condition {
+            scale, margin, own, ..
+        } = self.conditions[condition];
+        let allowed = v.dot(&(&edge.own * v)) * own - margin * scale * edge.size;
         Inequality {
             gradient,
-            bound: -margin * scale * size - at_start,
+            bound: allowed - v.dot(&(self.matrix(condition, start) * v)),
         }
     }
 
@@ -338,7 +351,7 @@ impl Dissipation {
         &self,
         entries: &[LinearEntry],
         (free, coefficients): (DVector<f64>, Vec<Vec<f64>>),
-        size: f64,
+        edge: &Edge,
         cuts: &[Cut],
         equalities: Vec<DVector<f64>>,
     ) -> Solution {
@@ -350,7 +363,7 @@ impl Dissipation {
             if !cuts.iter().any(|cut| cut.condition == c) {
                 continue;
             }
-            let (excesses, directions) = self.excesses(c, &coefficients, size);
+            let (excesses, directions) = self.excesses(c, &coefficients, edge);
             for (m, excess) in excesses.iter().enumerate() {
                 let v = directions.column(m).into_owned();
                 if *excess > -ACTIVE {

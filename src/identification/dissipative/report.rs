@@ -14,7 +14,7 @@ const ONE_MOTION: f64 = 0.95;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ConstraintKind {
-    /// `−vᵀ Im G(K)/K v ≥ 0` at one `K` above the tested range.
+    /// `−vᵀ Im G(K)/K v ≥ 0`, or no more than the growth with which the tests end, at one `K` above the tested range.
     AboveTestedRange,
     /// `−vᵀ e₁ v ≥ δ/2`.
     FastMotion,
@@ -242,8 +242,16 @@ fn sentence(run: &[ActiveConstraint], whose: &str, dofs: &[Dof]) -> String {
             } else {
                 format!("K = {low:.3}")
             };
+            let own = run.iter().map(|c| c.held).fold(0.0, f64::max);
+            let at = if own > 0.0 {
+                format!(
+                    "the growth with which the tests end, fading with K² (Im G/K {own:+.3} there)"
+                )
+            } else {
+                "zero".to_owned()
+            };
             format!(
-                "{whose} damping at {place} is held at zero: {}",
+                "{whose} damping at {place} is held at {at}: {}",
                 would("damping", "Im G/K")
             )
         }
