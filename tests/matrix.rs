@@ -21,6 +21,17 @@ fn the_bluff_deck_is_unstable_from_the_start() {
 }
 
 #[test]
+fn measured_decks_made_bluff_differ_in_a2_alone() {
+    for deck in matrix::decks() {
+        let bluff = matrix::made_bluff(&deck);
+        assert!(bluff.points(Derivative::A2).iter().all(|p| p.value >= 0.1));
+        for derivative in deck.derivatives().filter(|d| *d != Derivative::A2) {
+            assert_eq!(bluff.points(derivative), deck.points(derivative));
+        }
+    }
+}
+
+#[test]
 fn the_matrix_has_all_decks_and_sections() {
     assert_eq!(matrix::decks().len(), 5);
     let motions: Vec<usize> = matrix::sections()
