@@ -5,11 +5,13 @@
 //! fourth-order Magnus integration with sub-steps. With the discrete Laguerre model the force is sampled and held every
 //! `Δt = Δs B/V`; between samples the structure moves exactly under the held force.
 
+mod prescribed;
 mod quasi_steady;
 mod sampled;
 mod step_cache;
 mod varying_speed;
 
+pub use prescribed::{ForceAhead, Given, KnownMotion, PrescribedForces, StripFlow};
 pub use quasi_steady::{NonlinearRun, NonlinearSection};
 
 use crate::aerodynamics::Realization;
