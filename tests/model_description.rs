@@ -18,8 +18,8 @@ fn golden(kind: &str) -> PathBuf {
 }
 
 fn describe(json: &[u8]) -> String {
-    let resources = Resources::from_bytes(json).unwrap();
-    model_description(&resources.model, &resources.table, &resources.guid).unwrap()
+    let resources = Resources::from_bytes(json, None).unwrap();
+    model_description(&resources).unwrap()
 }
 
 #[test]

@@ -5,13 +5,13 @@
 
 use super::identity::MODEL_IDENTIFIER;
 use super::log_categories::LOG_CATEGORIES;
+use super::resources::Resources;
 use super::si::Unit;
 use super::standard::Word;
 use super::variables::{Causality, Value, Variable, VariableTable};
 use super::xml::Element;
 use crate::error::{Error, Result};
-use crate::trained_model::{Experiment, TrainedModel};
-use uuid::Uuid;
+use crate::trained_model::Experiment;
 
 /// More communication points than this make FMPy double the step of the default experiment.
 const MAX_DEFAULT_STEPS: f64 = 1000.0;
@@ -20,11 +20,21 @@ const MAX_DEFAULT_STEPS: f64 = 1000.0;
 ///
 /// # Errors
 /// [`Error::Input`] when a number cannot stand in a description (not finite).
-pub fn model_description(
-    model: &TrainedModel,
-    table: &VariableTable,
-    guid: &Uuid,
-) -> Result<String> {
+pub fn model_description(resources: &Resources) -> Result<String> {
+    let Resources {
+        model,
+        force,
+        table,
+        guid,
+    } = resources;
+    let what = match force {
+        None => "Bridge deck section under self-excited wind forces",
+        Some(_) => "Self-excited wind forces on a bridge deck, for a structure outside",
+    };
+    let naming = match force {
+        Some(options) if options.named_strips => "structured",
+        _ => "flat",
+    };
     let variables = table.variables().iter().enumerate();
     let variables = variables
         .map(|(i, v)| scalar(i, v))
@@ -41,7 +51,7 @@ pub fn model_description(
         .with(
             "description",
             line(&format!(
-                "Bridge deck section under self-excited wind forces ({}), forces per unit length; data: {}",
+                "{what} ({}), forces per unit length; data: {}",
                 model.model.kind(),
                 model.provenance.source
             )),
@@ -54,8 +64,11 @@ pub fn model_description(
                 model.provenance.licence
             )),
         )
-        .with("generationTool", concat!("aerodeck ", env!("CARGO_PKG_VERSION")))
-        .with("variableNamingConvention", "flat")
+        .with(
+            "generationTool",
+            concat!("aerodeck ", env!("CARGO_PKG_VERSION")),
+        )
+        .with("variableNamingConvention", naming)
         .containing([
             co_simulation(),
             Element::new("UnitDefinitions").containing(units(table)?),
@@ -135,7 +148,7 @@ fn number(x: f64) -> Result<String> {
 
 fn scalar(reference: usize, v: &Variable) -> Result<Element> {
     Ok(Element::new("ScalarVariable")
-        .with("name", v.name)
+        .with("name", &v.name)
         .with("valueReference", reference)
         .with("description", &v.description)
         .with("causality", v.causality.word())

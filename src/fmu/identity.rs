@@ -12,18 +12,20 @@ pub const MODEL_IDENTIFIER: &str = "aerodeck_section";
 /// Namespace of the digests of this program.
 const NAMESPACE: Uuid = Uuid::from_u128(0x6f1d_9c52_77a4_5b0e_9f3a_2d84_c1e6_40b7);
 
-/// The identity of an exported section: UUID version 5 of interface version, variable table and the bytes of
-/// `resources/model.json`.
+/// The identity of an exported section: UUID version 5 of interface version, variable table and the bytes of the
+/// files in `resources/`.
 ///
 /// The runtime computes it anew from what it finds in the archive, so that a description, a binary and a model of
 /// different exports are never mixed.
-pub fn guid(table: &VariableTable, model_json: &[u8]) -> Uuid {
+pub fn guid(table: &VariableTable, files: &[&[u8]]) -> Uuid {
     let mut text = format!("interface {INTERFACE_VERSION}\n");
     for (reference, variable) in table.variables().iter().enumerate() {
         text.push_str(&line(reference, variable));
     }
     let mut bytes = text.into_bytes();
-    bytes.extend_from_slice(model_json);
+    for file in files {
+        bytes.extend_from_slice(file);
+    }
     Uuid::new_v5(&NAMESPACE, &bytes)
 }
 

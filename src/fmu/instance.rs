@@ -1,16 +1,19 @@
-//! An exported section in motion: what the shells of every FMI version drive.
+//! An exported unit in motion: what the shells of every FMI version drive.
 //!
 //! Time is the importer's communication point plus its step, never a sum of steps. Inputs hold at the start of a step
 //! and run on with the rates that were set for them (zero unless set); at its end they stand where those rates have
-//! taken them. Outputs are computed once per step when first asked for, onset and divergence when first asked for after
-//! a change of parameters.
+//! taken them. Outputs are computed once per step when first asked for.
 
+mod derivatives;
+mod force_unit;
 mod layout;
 mod saving;
 mod section;
-mod sensitivity;
+mod section_derivatives;
+mod section_unit;
 mod serialized;
 mod stepping;
+mod unit;
 mod values;
 
 pub use layout::DataType;
@@ -20,37 +23,23 @@ use super::lifecycle::{Call, State};
 use super::refusal::{Answer, Refusal, Severity};
 use super::resources::Resources;
 use super::variables::VariableTable;
-use crate::aerodynamics::{Realizable, Realization};
 use crate::error::Result;
-use crate::response::{Inputs, Outputs, Stepper};
+use force_unit::ForceUnit;
 use layout::Layout;
 use saving::{Experiment, Memory};
-
-/// Searches for growth of one instance at most: one takes as long as some thousand steps, and an importer may change
-/// parameters at every communication point.
-const GROWTH_SEARCHES: usize = 32;
+use section_unit::SectionUnit;
+use unit::Unit;
 
 /// One instance; instances share nothing.
 #[derive(Debug)]
 pub struct Instance {
     resources: Resources,
     layout: Layout,
-    aerodynamics: Realization,
+    unit: Box<dyn Unit>,
     memory: Memory,
     /// The memory at the beginning.
     fresh: Memory,
-    /// Stepper of the current parameters; `None` after they have changed.
-    stepper: Option<Stepper>,
-    /// While initialising: the state has to be made anew from the values at release.
-    release_pending: bool,
     outputs_current: bool,
-    onset_current: bool,
-    /// Whether growth below the onset has been looked for with the current parameters.
-    growth_known: bool,
-    /// Searches for growth that this instance may still do.
-    growth_searches_left: usize,
-    inputs: Inputs,
-    outputs: Outputs,
     notices: Vec<String>,
 }
 
@@ -61,30 +50,24 @@ impl Instance {
     /// [`crate::Error::Input`] for a model without a realisation, or whose section cannot be coupled with it.
     pub fn new(resources: Resources) -> Result<Self> {
         let layout = Layout::new(&resources.table)?;
-        let model = &resources.model;
-        let aerodynamics = model.model.realize();
-        let dofs = layout.force.len();
-        let states = 2 * dofs + aerodynamics.states();
-        let fresh = Memory::new(&resources.table, &layout, states);
+        let mut unit: Box<dyn Unit> = match &resources.force {
+            Some(options) => Box::new(ForceUnit::new(&resources, options)?),
+            None => Box::new(SectionUnit::new(&resources)?),
+        };
+        let fresh = Memory::new(&resources.table, unit.as_ref());
+        let mut memory = fresh.clone();
+        // a section that cannot be coupled is no model to run: say so now
+        unit.prepare(&resources, &mut memory)?;
         let mut instance = Self {
             memory: fresh.clone(),
             fresh,
-            aerodynamics,
-            stepper: None,
-            release_pending: true,
+            unit,
             outputs_current: false,
-            onset_current: false,
-            growth_known: false,
-            growth_searches_left: GROWTH_SEARCHES,
-            inputs: Inputs::steady(0.0, dofs),
-            outputs: Outputs::default(),
             notices: Vec::new(),
             layout,
             resources,
         };
-        // a section that cannot be coupled is no model to run: say so now
-        instance.stepper = Some(instance.new_stepper(&instance.memory.values)?);
-        instance.watch_growth();
+        instance.watch();
         Ok(instance)
     }
 
@@ -162,17 +145,17 @@ impl Instance {
             );
         }
         self.memory.state = State::Initialization;
-        self.release_pending = true;
+        self.unit.begin_initialization();
         self.outputs_current = false;
     }
 
-    /// Releases the section.
+    /// Ends the initialisation: the section is released.
     ///
     /// # Errors
     /// When parameters and initial values give no section that can move.
     pub fn exit_initialization(&mut self) -> Answer<()> {
-        self.prepare()?;
-        self.watch_growth();
+        self.unit.prepare(&self.resources, &mut self.memory)?;
+        self.watch();
         self.memory.state = State::StepComplete;
         Ok(())
     }
@@ -188,57 +171,9 @@ impl Instance {
         self.replace_memory(fresh);
     }
 
-    /// Says, once for each set of parameters, where the section grows although nothing was tested there.
-    fn watch_growth(&mut self) {
-        if self.growth_known || self.growth_searches_left == 0 {
-            return;
-        }
-        self.growth_known = true;
-        self.growth_searches_left -= 1;
-        match self.growth(&self.memory.values) {
-            Ok(growth) if growth.is_none() => {}
-            Ok(growth) => self.notices.push(format!(
-                "with these parameters the section {}",
-                growth.explain()
-            )),
-            // no reason to end a run
-            Err(e) => self
-                .notices
-                .push(format!("growth below the onset could not be judged: {e}")),
-        }
-        if self.growth_searches_left == 0 {
-            self.notices.push(format!(
-                "growth below the onset is no longer looked for after {GROWTH_SEARCHES} changes of parameters"
-            ));
-        }
-    }
-
-    fn new_stepper(&self, values: &[f64]) -> Result<Stepper> {
-        let Resources { model, table, .. } = &self.resources;
-        section::coupled_section(model, table, &self.aerodynamics, values).map(Stepper::new)
-    }
-
-    /// Makes stepper and, while initialising, state fit the current values.
-    fn prepare(&mut self) -> Answer<()> {
-        if self.stepper.is_none() {
-            self.stepper = Some(self.new_stepper(&self.memory.values)?);
-        }
-        if self.release_pending && self.memory.state == State::Initialization {
-            if let Some(stepper) = &self.stepper {
-                self.memory.section = self.release(stepper, &self.memory.values)?;
-            }
-            self.release_pending = false;
-        }
-        Ok(())
-    }
-
-    /// State at release with the initial values in `values`.
-    fn release(&self, stepper: &Stepper, values: &[f64]) -> Result<crate::response::SectionState> {
-        let pick = |places: &[usize]| places.iter().map(|i| values[*i]).collect::<Vec<_>>();
-        stepper.released(
-            &pick(&self.layout.initial_displacement),
-            &pick(&self.layout.initial_rate),
-        )
+    fn watch(&mut self) {
+        self.unit
+            .watch(&self.resources, &self.memory, &mut self.notices);
     }
 }
 

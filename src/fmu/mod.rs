@@ -1,9 +1,10 @@
-//! The coupled section as a co-simulation slave: version-neutral instance, variables, resources, packing, importer.
+//! The coupled section, or its forces alone, as a co-simulation slave: version-neutral instance, variables, resources, packing, importer.
 
 #[cfg(feature = "cli")]
 pub mod description;
 #[allow(unsafe_code)]
 pub mod fmi2;
+pub mod force_options;
 pub mod identity;
 #[cfg(feature = "cli")]
 #[allow(unsafe_code)]

@@ -1,5 +1,6 @@
 //! The folder `resources/` of an unpacked archive: its location as importers write it, and the model in it.
 
+use super::force_options::{FORCE_FILE, ForceOptions};
 use super::identity;
 use super::variables::VariableTable;
 use crate::error::{Error, Result};
@@ -15,6 +16,8 @@ pub const MODEL_FILE: &str = "model.json";
 pub struct Resources {
     /// The trained model.
     pub model: TrainedModel,
+    /// What makes it a unit of forces alone; `None` for the coupled section.
+    pub force: Option<ForceOptions>,
     /// Its variables.
     pub table: VariableTable,
     /// Identity of table and model file.
@@ -43,27 +46,45 @@ impl Resources {
             Some(raw) if !coded.exists() && raw.exists() => raw,
             _ => coded,
         };
-        let bytes = std::fs::read(&file).map_err(|e| Error::io(&file, e))?;
-        Self::from_bytes(&bytes).map_err(|e| e.in_file(&file))
+        let read = |file: &Path| std::fs::read(file).map_err(|e| Error::io(file, e));
+        let force = file.with_file_name(FORCE_FILE);
+        let options = if force.exists() {
+            Some(read(&force)?)
+        } else {
+            None
+        };
+        Self::from_bytes(&read(&file)?, options.as_deref()).map_err(|e| e.in_file(&file))
     }
 
-    /// The same from the bytes of the file.
+    /// The same from the bytes of the model's file and, for forces alone, of the file of their options.
     ///
     /// # Errors
-    /// [`Error::Input`] for bytes that are no trained model.
-    pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
-        let text = std::str::from_utf8(bytes).map_err(|e| {
-            Error::input(
-                format!("byte {}", e.valid_up_to()),
-                "UTF-8 text",
-                "other bytes",
-            )
-        })?;
-        let model = TrainedModel::from_json(text)?;
-        let table = VariableTable::new(&model)?;
-        let guid = identity::guid(&table, bytes);
-        Ok(Self { model, table, guid })
+    /// [`Error::Input`] for bytes that are no trained model, or no options that fit it.
+    pub fn from_bytes(bytes: &[u8], options: Option<&[u8]>) -> Result<Self> {
+        let model = TrainedModel::from_json(text(bytes)?)?;
+        let force = options
+            .map(|options| ForceOptions::from_json(text(options)?).map_err(|e| e.at(FORCE_FILE)))
+            .transpose()?;
+        let table = VariableTable::new(&model, force.as_ref())?;
+        let files: Vec<&[u8]> = std::iter::once(bytes).chain(options).collect();
+        let guid = identity::guid(&table, &files);
+        Ok(Self {
+            model,
+            force,
+            table,
+            guid,
+        })
     }
+}
+
+fn text(bytes: &[u8]) -> Result<&str> {
+    std::str::from_utf8(bytes).map_err(|e| {
+        Error::input(
+            format!("byte {}", e.valid_up_to()),
+            "UTF-8 text",
+            "other bytes",
+        )
+    })
 }
 
 /// The folder of a resource location: `file:/a`, `file:///a`, `file:////a` and `file://localhost/a`, percent-coded,

@@ -90,6 +90,10 @@ pub static RADIAN_PER_SECOND2: Unit = coherent(
         factor: DEGREES_PER_RADIAN,
     }],
 );
+/// Force, N.
+pub static NEWTON: Unit = coherent("N", (1, 1, -2, 0), &[]);
+/// Moment, N·m.
+pub static NEWTON_METRE: Unit = coherent("N.m", (1, 2, -2, 0), &[]);
 /// Force per length, N/m.
 pub static NEWTON_PER_METRE: Unit = coherent("N/m", (1, 0, -2, 0), &[]);
 /// Moment per length, N·m/m.

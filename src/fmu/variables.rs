@@ -1,11 +1,13 @@
-//! The one variable table of an exported section.
+//! The one variable table of an exported unit.
 //!
 //! Value references, getters and setters, `modelDescription.xml`, the digest that ties binary and archive together and
 //! the documentation page are all made from it. The value reference of a variable is its place in the table, over all
 //! types.
 
 mod dependencies;
+mod force;
 mod parameters;
+mod real;
 mod section;
 #[cfg(test)]
 mod tests;
@@ -14,6 +16,7 @@ mod words;
 pub use super::standard::{Causality, Initial, Variability};
 pub use parameters::SectionParameter;
 
+use super::force_options::ForceOptions;
 use super::si::Unit;
 use crate::error::{Error, Result};
 use crate::section::Dof;
@@ -107,6 +110,36 @@ pub enum Role {
     Calculated(Calculated),
     /// Never changes.
     Constant,
+    /// Motion of a degree of freedom of a strip, counted from zero.
+    Motion(usize, Response, Dof),
+    /// Self-excited force on a strip.
+    Force(usize, ForceOutput, Dof),
+    /// A property of a strip.
+    Strip(usize, StripParameter),
+    /// How far ahead of the motion the force is put out, in communication steps.
+    Prediction,
+    /// Which derivatives of the motion the importer sets.
+    MotionDerivatives,
+}
+
+/// A force on a strip.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ForceOutput {
+    /// Per unit length of span.
+    PerLength,
+    /// On the whole strip.
+    Total,
+}
+
+/// A property of a strip.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StripParameter {
+    /// Deck width `B`.
+    Width,
+    /// Length of span.
+    Length,
+    /// Wind speed at the strip over the input.
+    WindFactor,
 }
 
 /// One known that an unknown of the initialisation depends on.
@@ -122,7 +155,7 @@ pub struct InitialDependency {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Variable {
     /// Name, unique in the table.
-    pub name: &'static str,
+    pub name: String,
     /// What it means, with sign and reference.
     pub description: String,
     /// What it stands for.
@@ -167,15 +200,20 @@ pub struct VariableTable {
 }
 
 impl VariableTable {
-    /// The table of a trained model.
+    /// The table of a trained model: of its coupled section or, with options, of its forces alone.
     ///
     /// # Errors
     /// [`Error::Input`] when a start value is not finite or outside the limits of its variable.
-    pub fn new(model: &TrainedModel) -> Result<Self> {
-        let mut table = Self {
-            variables: section::variables(model)?,
+    pub fn new(model: &TrainedModel, force: Option<&ForceOptions>) -> Result<Self> {
+        let variables = match force {
+            None => {
+                let mut variables = section::variables(model)?;
+                dependencies::fill(&mut variables, model);
+                variables
+            }
+            Some(options) => force::variables(model, options)?,
         };
-        dependencies::fill(&mut table.variables, model);
+        let table = Self { variables };
         table.variables.iter().try_for_each(check_start)?;
         Ok(table)
     }

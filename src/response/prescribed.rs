@@ -106,8 +106,24 @@ impl PrescribedForces {
     }
 
     /// Points of time at which motion has been given so far, at most those that are kept.
-    pub fn points(state: &[f64]) -> usize {
+    fn points(state: &[f64]) -> usize {
         state[0] as usize
+    }
+
+    /// Time of the newest point, s.
+    pub fn newest_s(state: &[f64]) -> Option<f64> {
+        (Self::points(state) > 0).then_some(state[2])
+    }
+
+    /// As if the deck had not moved so far and no force acted: the points stay, their motion becomes zero.
+    pub fn forget(&self, state: &mut [f64]) {
+        for strip in state[SHARED..].chunks_mut(self.per_strip()) {
+            let first = 1 + self.realization.states();
+            strip[1..first].fill(0.0);
+            for point in strip[first..].chunks_mut(NUMBERS) {
+                point[..3].fill(0.0);
+            }
+        }
     }
 
     /// Takes the motion of a new point of time: the filters go to it along the cubic that now is known. At the first
@@ -116,12 +132,7 @@ impl PrescribedForces {
     /// # Errors
     /// [`Error::Input`] for a point that is not later than the newest and for a step of more than ten thousand parts;
     /// [`Error::Numerical`] for a filter that does not settle, and beyond the range of numbers.
-    pub fn take(
-        &mut self,
-        state: &mut Vec<f64>,
-        given: &Given,
-        strips: &[StripFlow],
-    ) -> Result<()> {
+    pub fn take(&mut self, state: &mut [f64], given: &Given, strips: &[StripFlow]) -> Result<()> {
         if Self::points(state) > 0 && given.time_s <= state[2] {
             return Err(Error::input(
                 "prescribed motion",
@@ -129,7 +140,7 @@ impl PrescribedForces {
                 format!("{} s", given.time_s),
             ));
         }
-        let mut new = state.clone();
+        let mut new = state.to_vec();
         self.enter(&mut new, given);
         let points = Self::points(&new);
         for (s, flow) in strips.iter().enumerate() {
@@ -157,7 +168,7 @@ impl PrescribedForces {
                 &mut self.buffers,
             )?;
         }
-        *state = new;
+        state.copy_from_slice(&new);
         Ok(())
     }
 

@@ -5,18 +5,35 @@ use crate::cli::answer::Answer;
 use crate::cli::progress::Progress;
 use crate::cli::stages;
 use crate::error::{Error, Result};
-use crate::fmu::package::{Overwrite, Runtime, growth_of, write_fmu};
+use crate::fmu::force_options::{ForceOptions, MAX_STRIPS};
+use crate::fmu::package::{Export, Overwrite, Runtime, growth_of, write_fmu};
+use crate::trained_model::TrainedModel;
 use std::path::PathBuf;
 
-/// Pack a trained model (`model.json`, see `train`) as an FMI 2.0 co-simulation FMU
+/// Pack a trained model (`model.json`, see `train`) as an FMI 2.0 co-simulation FMU: the section in its forces, or the
+/// forces alone beside a structure of your own
 ///
 /// Example: aerodeck fmu export model.json --out deck_section.fmu
+/// Example: aerodeck fmu export model.json --kind force --strips 40 --strip-length 25 --out force.fmu
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Args {
     /// The trained model.
     model: PathBuf,
-    /// The FMU; by default `deck_section.fmu` beside the model.
+    /// What is packed: the section of the model with its forces, or its forces alone.
+    #[arg(long, value_enum, default_value_t = Kind::Section)]
+    kind: Kind,
+    /// Strips of a force FMU, whose variables are named strip[1].heave …; without, one strip with plain names.
+    #[arg(long)]
+    strips: Option<usize>,
+    /// Length of each strip, m [default: 1].
+    #[arg(long)]
+    strip_length: Option<f64>,
+    /// How far ahead of the motion a force FMU puts its forces out, in communication steps: 1.5 for an importer that
+    /// holds them over its next step, 0 for none [default: 1.5].
+    #[arg(long)]
+    prediction: Option<f64>,
+    /// The FMU; by default `deck_section.fmu` or `deck_force.fmu` beside the model.
     #[arg(long)]
     out: Option<PathBuf>,
     /// Replace a file that is there.
@@ -27,13 +44,58 @@ pub struct Args {
     allow_unstable: bool,
 }
 
+/// What is packed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Kind {
+    Section,
+    Force,
+}
+
+impl Args {
+    /// The options of a force FMU.
+    fn force(&self, model: &TrainedModel) -> Result<Option<ForceOptions>> {
+        let mut options = ForceOptions::single(model.section.width_m);
+        if self.kind == Kind::Section {
+            let given = [
+                ("--strips", self.strips.is_some()),
+                ("--strip-length", self.strip_length.is_some()),
+                ("--prediction", self.prediction.is_some()),
+            ];
+            return match given.into_iter().find(|(_, given)| *given) {
+                None => Ok(None),
+                Some((flag, _)) => Err(Error::input(
+                    flag,
+                    "--kind force with it: a coupled section has no strips and no prediction",
+                    "--kind section",
+                )),
+            };
+        }
+        options.strips[0].length_m = self.strip_length.unwrap_or(options.strips[0].length_m);
+        options.prediction_steps = self.prediction.unwrap_or(options.prediction_steps);
+        if let Some(count) = self.strips {
+            options.named_strips = true;
+            // one more than is allowed says enough
+            options.strips = vec![options.strips[0].clone(); count.min(MAX_STRIPS + 1)];
+        }
+        options.validate()?;
+        Ok(Some(options))
+    }
+}
+
 /// Runs the command.
 pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     let model = stages::read_model(&args.model)?;
-    let path = args
-        .out
-        .clone()
-        .unwrap_or_else(|| args.model.with_file_name(stages::FMU_FILE));
+    let path = args.out.clone().unwrap_or_else(|| {
+        args.model.with_file_name(match args.kind {
+            Kind::Section => stages::FMU_FILE,
+            Kind::Force => "deck_force.fmu",
+        })
+    });
+    let export = Export {
+        growing: stages::growing(args.allow_unstable),
+        force: args.force(&model)?,
+    };
+    let strips = export.force.as_ref().map(|f| f.strips.len());
     let runtimes = Runtime::available()?;
     let overwrite = if args.force {
         Overwrite::Replace
@@ -41,8 +103,7 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
         Overwrite::Refuse
     };
     let stage = progress.stage("packing the FMU");
-    let growing = stages::growing(args.allow_unstable);
-    write_fmu(&path, &model, &runtimes, overwrite, growing).map_err(|e| match e {
+    write_fmu(&path, &model, &runtimes, overwrite, export).map_err(|e| match e {
         Error::Input(mut input) if !args.force && path.exists() => {
             input.expected.push_str(" (or --force)");
             Error::Input(input)
@@ -53,8 +114,13 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     let growth = growth_of(&model)?;
     let platforms: Vec<_> = runtimes.iter().map(|r| r.platform.to_string()).collect();
     let mut text = format!(
-        "wrote {}: {}, {}, for {}\n",
+        "wrote {}: {}{}, {}, for {}\n",
         path.display(),
+        match strips {
+            None => String::new(),
+            Some(1) => "forces on one strip of ".to_owned(),
+            Some(n) => format!("forces on {n} strips of "),
+        },
         model.name,
         crate::trained_model::Model::kind(&model.model),
         platforms.join(", ")
@@ -62,6 +128,6 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     text.push_str(&account::growth(&model.name, &growth));
     Answer::new(
         text,
-        &serde_json::json!({ "fmu": path, "model": model.name, "platforms": platforms, "growth": growth }),
+        &serde_json::json!({ "fmu": path, "strips": strips, "model": model.name, "platforms": platforms, "growth": growth }),
     )
 }

@@ -66,7 +66,7 @@ impl Archive {
         std::fs::write(folder.path().join("model.json"), json).unwrap();
         Self {
             folder,
-            resources: Resources::from_bytes(json.as_bytes()).unwrap(),
+            resources: Resources::from_bytes(json.as_bytes(), None).unwrap(),
         }
     }
 

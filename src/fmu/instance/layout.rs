@@ -4,9 +4,8 @@ use super::Instance;
 use crate::error::{Error, Result};
 use crate::fmu::lifecycle::{State, StateSet, gettable_in, settable_in};
 use crate::fmu::refusal::{Answer, Refusal};
-use crate::fmu::variables::{Causality, Response, Role, Value, Variable, VariableTable};
+use crate::fmu::variables::{Causality, Role, Value, Variable, VariableTable};
 use crate::response::wind_at_rest;
-use crate::section::Dof;
 
 /// Type of a variable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -26,7 +25,7 @@ pub enum DataType {
 pub(super) enum Source {
     /// Stored; an input.
     Input,
-    /// Stored; a property of the section.
+    /// Stored; a property of the section or of a strip.
     Section,
     /// Stored; displacement or rate at release.
     Release,
@@ -38,6 +37,23 @@ pub(super) enum Source {
     Response,
     /// Computed from the parameters.
     Calculated,
+}
+
+impl Source {
+    /// Where the value of a variable with this role comes from.
+    pub fn of(role: Role) -> Self {
+        match role {
+            Role::WindSpeed | Role::ExternalForce(_) | Role::Motion(..) => Self::Input,
+            Role::Section(_) | Role::Strip(..) | Role::Prediction | Role::MotionDerivatives => {
+                Self::Section
+            }
+            Role::InitialDisplacement(_) | Role::InitialRate(_) => Self::Release,
+            Role::OnsetSearchLimit => Self::Limit,
+            Role::Constant => Self::Constant,
+            Role::Response(..) | Role::Force(..) => Self::Response,
+            Role::Calculated(_) => Self::Calculated,
+        }
+    }
 }
 
 /// All that a getter or setter needs to know of a variable.
@@ -60,15 +76,7 @@ impl Access {
                 Value::Boolean(_) => DataType::Boolean,
                 Value::String(_) => DataType::String,
             },
-            source: match v.role {
-                Role::WindSpeed | Role::ExternalForce(_) => Source::Input,
-                Role::Section(_) => Source::Section,
-                Role::InitialDisplacement(_) | Role::InitialRate(_) => Source::Release,
-                Role::OnsetSearchLimit => Source::Limit,
-                Role::Constant => Source::Constant,
-                Role::Response(..) => Source::Response,
-                Role::Calculated(_) => Source::Calculated,
-            },
+            source: Source::of(v.role),
             gettable: gettable_in(v.causality),
             settable: settable_in(v.causality, v.variability),
             min: v.min.unwrap_or(f64::NEG_INFINITY),
@@ -77,58 +85,25 @@ impl Access {
     }
 }
 
-/// Places of the variables by what they stand for; a place is the index into the table and into the stored values.
+/// The variables by place, which is the index into the table and into the stored values.
 #[derive(Debug, Clone)]
 pub(super) struct Layout {
     access: Vec<Access>,
-    /// Wind speed.
-    pub wind_speed: usize,
-    /// External force of each degree of freedom.
-    pub force: Vec<usize>,
-    /// Displacement, rate, acceleration and self-excited force of each degree of freedom.
-    pub responses: Vec<[usize; 4]>,
-    /// Entry of the section's state that a variable is, for displacements and rates; by place.
-    pub state_entry: Vec<Option<usize>>,
-    /// Displacement at release of each degree of freedom.
-    pub initial_displacement: Vec<usize>,
-    /// Rate at release of each degree of freedom.
-    pub initial_rate: Vec<usize>,
-    /// Upper end of the onset search.
-    pub search_limit: usize,
+    wind_speed: usize,
+}
+
+/// Place of the variable with this role.
+pub(super) fn place(table: &VariableTable, role: Role) -> Result<usize> {
+    table
+        .find(role)
+        .ok_or_else(|| Error::Numerical(format!("variable table: nothing stands for {role:?}")))
 }
 
 impl Layout {
     pub fn new(table: &VariableTable) -> Result<Self> {
-        let dofs = table.dofs();
-        let place = |role: Role| {
-            table.find(role).ok_or_else(|| {
-                Error::Numerical(format!("variable table: nothing stands for {role:?}"))
-            })
-        };
-        let each = |role: fn(Dof) -> Role| -> Result<Vec<usize>> {
-            dofs.iter().map(|&dof| place(role(dof))).collect()
-        };
-        let mut responses = vec![[0; 4]; dofs.len()];
-        for (places, &dof) in responses.iter_mut().zip(&dofs) {
-            for (slot, response) in places.iter_mut().zip(Response::ALL) {
-                *slot = place(Role::Response(response, dof))?;
-            }
-        }
-        let mut state_entry = vec![None; table.variables().len()];
-        for (i, places) in responses.iter().enumerate() {
-            // the state begins with all displacements, then all rates
-            state_entry[places[0]] = Some(i);
-            state_entry[places[1]] = Some(dofs.len() + i);
-        }
         Ok(Self {
             access: table.variables().iter().map(Access::of).collect(),
-            state_entry,
-            wind_speed: place(Role::WindSpeed)?,
-            force: each(Role::ExternalForce)?,
-            responses,
-            initial_displacement: each(Role::InitialDisplacement)?,
-            initial_rate: each(Role::InitialRate)?,
-            search_limit: place(Role::OnsetSearchLimit)?,
+            wind_speed: place(table, Role::WindSpeed)?,
         })
     }
 

@@ -1,6 +1,7 @@
 //! Everything that changes in an instance, and snapshots of it: plain clones, and the same as bytes.
 
-use super::layout::{Layout, Source};
+use super::layout::Source;
+use super::unit::Unit;
 use super::{Instance, serialized};
 use crate::fmu::lifecycle::State;
 use crate::fmu::refusal::{Answer, Refusal};
@@ -21,18 +22,19 @@ pub(super) struct Memory {
     pub state: State,
     /// Set by the set-up of the experiment.
     pub experiment: Option<Experiment>,
-    /// Point of time of `section`, s.
+    /// Point of time of `system`, s.
     pub time: f64,
     /// One number a variable; truth values are 0 and 1, texts 0.
     pub values: Vec<f64>,
-    /// Rates of the inputs: wind speed, then the external forces.
+    /// Rates of the inputs: wind speed, then the others.
     pub input_rates: Vec<f64>,
-    pub section: SectionState,
+    /// State of what is simulated.
+    pub system: SectionState,
 }
 
 impl Memory {
     /// The start values of the table, at rest.
-    pub fn new(table: &VariableTable, layout: &Layout, states: usize) -> Self {
+    pub fn new(table: &VariableTable, unit: &dyn Unit) -> Self {
         let start = |value: &Value| match value {
             Value::Real(start) => start.unwrap_or(0.0),
             Value::Integer(start) => f64::from(start.unwrap_or(0)),
@@ -44,11 +46,8 @@ impl Memory {
             experiment: None,
             time: 0.0,
             values: table.variables().iter().map(|v| start(&v.value)).collect(),
-            input_rates: vec![0.0; 1 + layout.force.len()],
-            section: SectionState {
-                values: vec![0.0; states],
-                phase: 0.0,
-            },
+            input_rates: vec![0.0; unit.inputs().len()],
+            system: unit.at_rest(),
         }
     }
 }
@@ -99,27 +98,21 @@ impl Instance {
 
     /// Whatever the parameters of both memories share stays computed.
     pub(super) fn replace_memory(&mut self, mut memory: Memory) {
-        let same = |source: Source, a: &[f64], b: &[f64]| {
-            (0..a.len())
-                .filter(|place| self.layout.source(*place) == source)
-                .all(|place| a[place].to_bits() == b[place].to_bits())
+        let (layout, old) = (&self.layout, &self.memory);
+        let same = |source: Source| {
+            let places = (0..old.values.len()).filter(|place| layout.source(*place) == source);
+            let bits = |values: &[f64], place: usize| values[place].to_bits();
+            places
+                .into_iter()
+                .all(|p| bits(&old.values, p) == bits(&memory.values, p))
         };
-        let same_section = same(Source::Section, &memory.values, &self.memory.values);
-        let same_limit = same(Source::Limit, &memory.values, &self.memory.values);
-        if !same_section {
-            self.stepper = None;
-        }
-        self.onset_current &= same_section && same_limit;
-        self.growth_known &= same_section && same_limit;
-        if self.onset_current {
-            for place in 0..memory.values.len() {
-                if self.layout.source(place) == Source::Calculated {
-                    memory.values[place] = self.memory.values[place];
-                }
-            }
-        }
+        let (section, limit) = (same(Source::Section), same(Source::Limit));
+        let same = |source: Source| match source {
+            Source::Section => section,
+            _ => limit,
+        };
+        self.unit.replace(&mut memory, old, &same);
         self.memory = memory;
-        self.release_pending = true;
         self.outputs_current = false;
     }
 

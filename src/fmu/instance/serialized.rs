@@ -32,7 +32,7 @@ fn counts(memory: &Memory) -> [usize; 3] {
     [
         memory.values.len(),
         memory.input_rates.len(),
-        memory.section.values.len(),
+        memory.system.values.len(),
     ]
 }
 
@@ -56,8 +56,8 @@ pub(super) fn write(memory: &Memory, guid: &Uuid) -> Vec<u8> {
         .into_iter()
         .chain(memory.values.iter().copied())
         .chain(memory.input_rates.iter().copied())
-        .chain(memory.section.values.iter().copied())
-        .chain([memory.section.phase]);
+        .chain(memory.system.values.iter().copied())
+        .chain([memory.system.phase]);
     for number in numbers {
         bytes.extend_from_slice(&number.to_le_bytes());
     }
@@ -99,13 +99,13 @@ pub(super) fn read(bytes: &[u8], guid: &Uuid, like: &Memory) -> Result<Memory> {
         time,
         values: reader.numbers(like.values.len())?,
         input_rates: reader.numbers(like.input_rates.len())?,
-        section: crate::response::SectionState {
-            values: reader.numbers(like.section.values.len())?,
+        system: crate::response::SectionState {
+            values: reader.numbers(like.system.values.len())?,
             phase: reader.number()?,
         },
     };
-    if !(0.0..1.0).contains(&memory.section.phase) {
-        let found = memory.section.phase.to_string();
+    if !(0.0..1.0).contains(&memory.system.phase) {
+        let found = memory.system.phase.to_string();
         return Err(refused("phase", "a number in [0, 1)", found));
     }
     let expected = digest(&bytes[..bytes.len() - reader.bytes.len()], guid);

@@ -28,20 +28,15 @@ impl Instance {
         Ok(())
     }
 
-    pub(super) fn advance(&mut self, step: f64) -> Answer<()> {
-        self.prepare()?;
-        self.load_inputs();
-        if let Some(stepper) = &mut self.stepper {
-            stepper.advance(&mut self.memory.section, &self.inputs, step)?;
-        }
+    fn advance(&mut self, step: f64) -> Answer<()> {
+        self.unit.prepare(&self.resources, &mut self.memory)?;
+        self.unit.advance(&self.resources, &mut self.memory, step)?;
         // after the step: one that is refused is refused at once
-        if !self.growth_known {
-            self.watch_growth();
-        }
+        self.watch();
         Ok(())
     }
 
-    pub(super) fn check_step(&self, point: f64, step: f64) -> Answer<()> {
+    fn check_step(&self, point: f64, step: f64) -> Answer<()> {
         let time = self.memory.time;
         if !(step.is_finite() && step > 0.0) {
             return Err(Refusal::error(format!(
@@ -67,27 +62,15 @@ impl Instance {
         }
     }
 
-    pub(super) fn load_inputs(&mut self) {
-        let (values, rates) = (&self.memory.values, &self.memory.input_rates);
-        self.inputs.wind_speed_m_s = values[self.layout.wind_speed];
-        self.inputs.wind_speed_rate_m_s2 = rates[0];
-        for (i, place) in self.layout.force.iter().enumerate() {
-            self.inputs.force[i] = values[*place];
-            self.inputs.force_rate[i] = rates[i + 1];
-        }
-    }
-
-    pub(super) fn run_inputs_on(&mut self, step: f64) {
+    fn run_inputs_on(&mut self, step: f64) {
         let values = &mut self.memory.values;
-        let before = values[self.layout.wind_speed];
-        let inputs =
-            std::iter::once(self.layout.wind_speed).chain(self.layout.force.iter().copied());
-        for (place, rate) in inputs.zip(&self.memory.input_rates) {
+        let inputs = self.unit.inputs();
+        let before = values[inputs[0]];
+        for (place, rate) in inputs.iter().zip(&self.memory.input_rates) {
             if *rate != 0.0 {
-                values[place] += rate * step;
+                values[*place] += rate * step;
             }
         }
-        let wind = self.layout.wind_speed;
-        values[wind] = wind_at_rest(values[wind], before);
+        values[inputs[0]] = wind_at_rest(values[inputs[0]], before);
     }
 }

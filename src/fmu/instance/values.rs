@@ -2,13 +2,7 @@
 
 use super::Instance;
 use super::layout::{DataType, Source};
-use super::section::{self, OnsetCard};
-use crate::error::Result;
-use crate::flutter::{OnsetSearch, UnwantedGrowth, unwanted_growth};
 use crate::fmu::refusal::{Answer, Refusal};
-use crate::fmu::resources::Resources;
-use crate::fmu::variables::Role;
-use crate::response::Outputs;
 
 impl Instance {
     /// Values of real variables.
@@ -50,14 +44,18 @@ impl Instance {
         let (place, access) = self.readable(reference, wanted)?;
         match access.source {
             Source::Response if !self.outputs_current => {
-                self.prepare()?;
+                self.unit.prepare(&self.resources, &mut self.memory)?;
                 // what is part of the state needs no output equation
-                if let Some(entry) = self.layout.state_entry[place] {
-                    return Ok(self.memory.section.values[entry]);
+                if let Some(value) = self.unit.held_output(&self.memory, place) {
+                    return Ok(value);
                 }
-                self.refresh_outputs()?;
+                self.unit.outputs(&self.resources, &mut self.memory)?;
+                self.outputs_current = true;
             }
-            Source::Calculated if !self.onset_current => self.refresh_onset(),
+            Source::Calculated => {
+                self.unit
+                    .calculate(&self.resources, &mut self.memory, &mut self.notices);
+            }
             _ => {}
         }
         Ok(self.memory.values[place])
@@ -76,6 +74,10 @@ impl Instance {
         for (reference, value) in references.iter().zip(values) {
             let place = *reference as usize;
             self.store(place, self.layout.settled(place, *value));
+            let input = self.layout.source(place) == Source::Input;
+            if input && self.unit.input_set(&mut self.memory, place) {
+                self.outputs_current = false;
+            }
         }
         Ok(())
     }
@@ -97,20 +99,7 @@ impl Instance {
         }
         self.memory.values[place] = value;
         self.outputs_current = false;
-        match self.layout.source(place) {
-            Source::Section => {
-                self.stepper = None;
-                self.onset_current = false;
-                self.growth_known = false;
-                self.release_pending = true;
-            }
-            Source::Release => self.release_pending = true,
-            Source::Limit => {
-                self.onset_current = false;
-                self.growth_known = false;
-            }
-            _ => {}
-        }
+        self.unit.changed(self.layout.source(place));
     }
 
     /// Sets first rates of inputs, per second: all of them or none.
@@ -135,80 +124,20 @@ impl Instance {
         for (reference, rate) in references.iter().zip(rates) {
             let index = self.input_index(*reference)?;
             self.memory.input_rates[index] = *rate;
+            self.unit.input_rate_set(&mut self.memory, index);
         }
         Ok(())
     }
 
-    /// Place among the inputs: wind speed, then the external forces.
+    /// Place among the inputs.
     pub(super) fn input_index(&self, reference: u32) -> Answer<usize> {
         let (place, _) = self.typed(reference, DataType::Real)?;
-        let forces = self.layout.force.iter().copied();
-        std::iter::once(self.layout.wind_speed)
-            .chain(forces)
-            .position(|input| input == place)
-            .ok_or_else(|| {
-                let name = self.table().variables()[place].name;
-                Refusal::error(format!("`{name}` is no input"))
-            })
+        let mut inputs = self.unit.inputs().iter();
+        inputs.position(|input| *input == place).ok_or_else(|| {
+            let name = &self.table().variables()[place].name;
+            Refusal::error(format!("`{name}` is no input"))
+        })
     }
-
-    pub(super) fn refresh_outputs(&mut self) -> Answer<()> {
-        self.prepare()?;
-        self.load_inputs();
-        if let Some(stepper) = &mut self.stepper {
-            stepper.outputs(&self.memory.section, &self.inputs, &mut self.outputs)?;
-        }
-        check_finite(&self.outputs)?;
-        for (i, places) in self.layout.responses.iter().enumerate() {
-            for (place, list) in places.iter().zip(self.outputs.lists()) {
-                self.memory.values[*place] = list[i];
-            }
-        }
-        self.outputs_current = true;
-        Ok(())
-    }
-
-    /// Searches onset and divergence for the current parameters. A search that fails is no reason to end a run.
-    pub(super) fn refresh_onset(&mut self) {
-        let card = self.onset_card(&self.memory.values);
-        for (place, variable) in self.resources.table.variables().iter().enumerate() {
-            if let Role::Calculated(which) = variable.role {
-                self.memory.values[place] = card.value(which);
-            }
-        }
-        self.notices.extend(card.warnings);
-        self.onset_current = true;
-    }
-
-    /// Growth below the onset for the parameters in `values`.
-    pub(super) fn growth(&self, values: &[f64]) -> Result<UnwantedGrowth> {
-        let Resources { model, table, .. } = &self.resources;
-        let section = section::coupled_section(model, table, &self.aerodynamics, values)?;
-        let search = OnsetSearch {
-            speed_max_m_s: values[self.layout.search_limit],
-            ..OnsetSearch::default()
-        };
-        unwanted_growth(&section, &search, Some(model.tested_range))
-    }
-
-    pub(super) fn onset_card(&self, values: &[f64]) -> OnsetCard {
-        let Resources { model, table, .. } = &self.resources;
-        let limit = values[self.layout.search_limit];
-        match section::coupled_section(model, table, &self.aerodynamics, values) {
-            Ok(section) => OnsetCard::search(model, &section, limit),
-            Err(why) => OnsetCard::unknown(limit, &why),
-        }
-    }
-}
-
-/// Refuses outputs that no number holds any more.
-pub(super) fn check_finite(outputs: &Outputs) -> Answer<()> {
-    if outputs.lists().into_iter().flatten().all(|x| x.is_finite()) {
-        return Ok(());
-    }
-    Err(Refusal::discard(
-        "outputs: the motion has grown beyond the range of numbers",
-    ))
 }
 
 /// Rates are known to the first order.

@@ -7,8 +7,9 @@ use crate::error::{Error, Result};
 use crate::flutter::{
     FlutterSearch, Onset, OnsetSearch, divergence_speed, find_onset, unwanted_growth,
 };
+use crate::fmu::force_options::ForceOptions;
 use crate::fmu::resources::Resources;
-use crate::fmu::variables::{Causality, SectionParameter, Value, Variability, Variable};
+use crate::fmu::variables::{Causality, Role, SectionParameter, Value, Variability, Variable};
 use crate::section::Dof;
 use crate::trained_model::{Model, TrainedModel};
 use crate::units::{ReducedFrequency, ReducedVelocity};
@@ -35,7 +36,11 @@ pub fn documentation(resources: &Resources, runtimes: &[Runtime]) -> Result<Stri
         groups: groups(resources.table.variables()),
         range: Range::of(model),
         speeds: speeds(model),
-        stability: stability(model)?,
+        stability: match &resources.force {
+            None => stability(model)?,
+            Some(_) => Vec::new(),
+        },
+        force: resources.force.as_ref(),
         sampling: Sampling::of(model),
     };
     page.render()
@@ -57,6 +62,7 @@ struct Page<'a> {
     range: Range,
     speeds: Vec<Speeds>,
     stability: Vec<String>,
+    force: Option<&'a ForceOptions>,
     sampling: Option<Sampling>,
 }
 
@@ -68,7 +74,7 @@ struct Group {
 }
 
 struct Row {
-    name: &'static str,
+    name: String,
     kind: &'static str,
     unit: String,
     start: String,
@@ -80,7 +86,11 @@ fn groups(variables: &[Variable]) -> Vec<Group> {
     let group = |title, note, belongs: &dyn Fn(&Variable) -> bool| Group {
         title,
         note,
-        rows: variables.iter().filter(|v| belongs(v)).map(row).collect(),
+        rows: variables
+            .iter()
+            .filter(|v| belongs(v) && of_first_strip(v))
+            .map(row)
+            .collect(),
     };
     vec![
         group(
@@ -108,6 +118,14 @@ fn groups(variables: &[Variable]) -> Vec<Group> {
     ]
 }
 
+/// All strips have the same variables.
+fn of_first_strip(v: &Variable) -> bool {
+    !matches!(
+        v.role,
+        Role::Motion(1.., ..) | Role::Force(1.., ..) | Role::Strip(1.., _)
+    )
+}
+
 fn row(v: &Variable) -> Row {
     let unit = v.unit.map_or("–", |u| u.name);
     let limit = |sign: &str, value: Option<f64>| value.map(|x| format!("{sign} {x}"));
@@ -116,7 +134,7 @@ fn row(v: &Variable) -> Row {
         .chain(limit("≤", v.max))
         .collect();
     Row {
-        name: v.name,
+        name: v.name.clone(),
         kind: v.value.type_name(),
         unit: v.display_unit.map_or_else(
             || unit.to_owned(),

@@ -12,6 +12,7 @@ pub use growth::{Growing, growth_of};
 pub use runtime::{RUNTIME_DIR_VARIABLE, Runtime};
 
 use super::description::model_description;
+use super::force_options::{FORCE_FILE, ForceOptions};
 use super::resources::{MODEL_FILE, Resources};
 use crate::error::{Error, Result};
 use crate::trained_model::TrainedModel;
@@ -42,25 +43,52 @@ pub enum Overwrite {
     Replace,
 }
 
+/// What is exported of a model: its section in its forces or, with options, its forces alone.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Export {
+    /// What becomes of a model that makes its own section grow where it should not.
+    pub growing: Growing,
+    /// Strips for a structure outside; `None` for the coupled section.
+    pub force: Option<ForceOptions>,
+}
+
+impl From<Growing> for Export {
+    fn from(growing: Growing) -> Self {
+        Self {
+            growing,
+            force: None,
+        }
+    }
+}
+
 /// The FMU of a trained model as the bytes of its archive, with these runtimes in it.
 ///
 /// # Errors
 /// [`Error::Input`] for a model that cannot be exported, for no runtime at all, and for two of one platform;
 /// [`Error::Numerical`] for a model that grows where it should not, unless that is allowed.
-pub fn package(model: &TrainedModel, runtimes: &[Runtime], growing: Growing) -> Result<Vec<u8>> {
+pub fn package(
+    model: &TrainedModel,
+    runtimes: &[Runtime],
+    export: impl Into<Export>,
+) -> Result<Vec<u8>> {
+    let Export { growing, force } = export.into();
     growth::check(model, growing)?;
+    let options = force.map(|force| force.to_json()).transpose()?;
     if runtimes.is_empty() {
         let expected = "a runtime for at least one platform";
         return Err(Error::input("FMU", expected, "none"));
     }
     let json = model.to_json()?;
-    let resources = Resources::from_bytes(json.as_bytes())?;
-    let xml = model_description(&resources.model, &resources.table, &resources.guid)?;
+    let resources = Resources::from_bytes(json.as_bytes(), options.as_deref().map(str::as_bytes))?;
+    let xml = model_description(&resources)?;
     let page = documentation(&resources, runtimes)?;
     let mut files: BTreeMap<String, Vec<u8>> = BTreeMap::new();
     files.insert("modelDescription.xml".into(), xml.into_bytes());
     files.insert("model.png".into(), ICON.to_vec());
     files.insert(format!("resources/{MODEL_FILE}"), json.into_bytes());
+    if let Some(options) = options {
+        files.insert(format!("resources/{FORCE_FILE}"), options.into_bytes());
+    }
     files.insert("documentation/index.html".into(), page.into_bytes());
     let licences = "documentation/licenses";
     files.insert(
@@ -95,9 +123,9 @@ pub fn write_fmu(
     model: &TrainedModel,
     runtimes: &[Runtime],
     overwrite: Overwrite,
-    growing: Growing,
+    export: impl Into<Export>,
 ) -> Result<()> {
-    let bytes = package(model, runtimes, growing)?;
+    let bytes = package(model, runtimes, export)?;
     let folder = match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
         _ => Path::new("."),

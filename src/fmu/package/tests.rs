@@ -51,7 +51,7 @@ fn archives_are_reproducible_and_complete() {
 fn the_page_names_everything_and_loads_nothing() {
     for kind in ["rational", "continuous_laguerre", "discrete_laguerre"] {
         let json = model(kind).to_json().unwrap();
-        let resources = Resources::from_bytes(json.as_bytes()).unwrap();
+        let resources = Resources::from_bytes(json.as_bytes(), None).unwrap();
         let page = documentation(&resources, &embedded()).unwrap();
         for v in resources.table.variables() {
             assert!(
@@ -167,8 +167,9 @@ fn a_model_that_grows_where_nothing_was_tested_is_exported_only_on_request() {
 #[test]
 fn an_instance_says_where_it_grows_when_made_and_after_its_parameters_have_changed() {
     use crate::fmu::instance::Instance;
-    let resources =
-        |model: &TrainedModel| Resources::from_bytes(model.to_json().unwrap().as_bytes()).unwrap();
+    let resources = |model: &TrainedModel| {
+        Resources::from_bytes(model.to_json().unwrap().as_bytes(), None).unwrap()
+    };
     let growth = |notices: Vec<String>| {
         let about = |n: &String| n.contains("grows where it should not");
         notices.iter().filter(|n| about(n)).count()
@@ -183,7 +184,7 @@ fn an_instance_says_where_it_grows_when_made_and_after_its_parameters_have_chang
     let damping = |instance: &Instance| {
         let variables = instance.table().variables();
         let is_damping = |name: &str| name.contains("heave") && name.contains("damping");
-        let place = variables.iter().position(|v| is_damping(v.name)).unwrap();
+        let place = variables.iter().position(|v| is_damping(&v.name)).unwrap();
         [u32::try_from(place).unwrap()]
     };
     // enough structural damping beats the made-up energy; taking it away brings the growth back

@@ -1,17 +1,17 @@
 //! The variables of the coupled section, in the order of the table.
 
 use super::parameters::SectionParameter;
+use super::real::{
+    CALCULATED, FIXED, INPUT, OUTPUT, SMALLEST, SPEED, TUNABLE, constants, force_scale, nominal,
+    real,
+};
 use super::words::{Words, motion, words};
-use super::{Calculated, Causality, Initial, Response, Role, Value, Variability, Variable};
-use crate::aerodynamics::Realizable;
-use crate::error::{Error, Result};
+use super::{Calculated, Response, Role, Value, Variable};
+use crate::error::Result;
 use crate::fmu::si::{self, Unit};
 use crate::section::{Dof, SectionModel};
 use crate::trained_model::{Model, TrainedModel};
-use std::f64::consts::TAU;
 
-/// Smallest width, density and mass: positive, and small enough for any model deck.
-const SMALLEST: f64 = 1e-6;
 /// Smallest inertia per length, kg·m²/m.
 const SMALLEST_INERTIA: f64 = 1e-9;
 
@@ -32,87 +32,17 @@ pub(super) fn variables(model: &TrainedModel) -> Result<Vec<Variable>> {
     Ok(table)
 }
 
-/// A real variable without start, unit or limits.
-fn real(
-    name: &'static str,
-    role: Role,
-    (causality, variability): (Causality, Variability),
-    description: impl Into<String>,
-) -> Variable {
-    let initial = match causality {
-        Causality::Input => None,
-        Causality::Parameter => Some(Initial::Exact),
-        _ => Some(Initial::Calculated),
-    };
-    Variable {
-        name,
-        description: description.into(),
-        role,
-        causality,
-        variability,
-        initial,
-        value: Value::Real(None),
-        unit: None,
-        display_unit: None,
-        quantity: None,
-        min: None,
-        max: None,
-        nominal: None,
-        direct_inputs: Vec::new(),
-        initial_dependencies: Vec::new(),
-    }
-}
-
-impl Variable {
-    fn start(mut self, value: f64) -> Self {
-        self.value = Value::Real(Some(value));
-        self
-    }
-
-    fn quantity(mut self, quantity: &'static str, unit: Option<&'static Unit>) -> Self {
-        (self.quantity, self.unit) = (Some(quantity), unit);
-        self
-    }
-
-    /// Shown in the first display unit of its unit, if there is one.
-    fn shown(mut self) -> Self {
-        let display = self.unit.and_then(|u| u.display.first());
-        self.display_unit = display.map(|d| d.name);
-        self
-    }
-
-    /// Degrees help, kilometres per hour of a vibrating deck do not.
-    fn shown_if(self, wanted: bool) -> Self {
-        if wanted { self.shown() } else { self }
-    }
-
-    fn min(mut self, min: f64) -> Self {
-        self.min = Some(min);
-        self
-    }
-
-    fn nominal(mut self, size: f64) -> Self {
-        self.nominal = Some(size);
-        self
-    }
-}
-
-const INPUT: (Causality, Variability) = (Causality::Input, Variability::Continuous);
-const OUTPUT: (Causality, Variability) = (Causality::Output, Variability::Continuous);
-const TUNABLE: (Causality, Variability) = (Causality::Parameter, Variability::Tunable);
-const FIXED: (Causality, Variability) = (Causality::Parameter, Variability::Fixed);
-const CALCULATED: (Causality, Variability) = (Causality::CalculatedParameter, Variability::Tunable);
-const LOCAL: (Causality, Variability) = (Causality::Local, Variability::Constant);
-const SPEED: Option<&Unit> = Some(&si::METRE_PER_SECOND);
-
-fn inputs(model: &TrainedModel, dofs: &[Dof]) -> Vec<Variable> {
+pub(super) fn wind_speed(model: &TrainedModel) -> Variable {
     let text = "Mean wind speed V, normal to the span";
-    let wind = real("wind_speed", Role::WindSpeed, INPUT, text)
+    real("wind_speed", Role::WindSpeed, INPUT, text)
         .start(model.experiment.wind_speed_m_s)
         .quantity("Velocity", SPEED)
         .shown()
         .min(0.0)
-        .nominal(10.0);
+        .nominal(10.0)
+}
+
+fn inputs(model: &TrainedModel, dofs: &[Dof]) -> Vec<Variable> {
     let external = dofs.iter().map(|&dof| {
         let w = words(dof);
         let text = format!("External {}", w.force);
@@ -121,7 +51,7 @@ fn inputs(model: &TrainedModel, dofs: &[Dof]) -> Vec<Variable> {
             .quantity(w.force_quantity, Some(w.units[3]))
             .nominal(force_scale(model, dof))
     });
-    std::iter::once(wind).chain(external).collect()
+    std::iter::once(wind_speed(model)).chain(external).collect()
 }
 
 fn outputs(model: &TrainedModel, dofs: &[Dof]) -> Vec<Variable> {
@@ -288,72 +218,9 @@ fn calculated_parameters() -> Vec<Variable> {
     ]
 }
 
-fn constants(model: &TrainedModel) -> Result<Vec<Variable>> {
-    let constant = |name, value, text: &str| Variable {
-        initial: Some(Initial::Exact),
-        value,
-        ..real(name, Role::Constant, LOCAL, text)
-    };
-    let text = |text: &str| Value::String(text.to_owned());
-    let states = model.model.realize().states();
-    let states = i32::try_from(states)
-        .map_err(|_| Error::input("model", "fewer filter states", states.to_string()))?;
-    let version = env!("CARGO_PKG_VERSION");
-    Ok(vec![
-        constant(
-            "filters",
-            Value::Integer(Some(states)),
-            "Number of filter states of the aerodynamic model",
-        ),
-        constant(
-            "model_kind",
-            text(model.model.kind()),
-            "Kind of the aerodynamic model",
-        ),
-        constant("model_name", text(&model.name), "Name of the trained model"),
-        constant(
-            "aerodeck_version",
-            text(version),
-            "Version of the program that made this unit",
-        ),
-    ])
-}
-
-fn capitalized(text: &str) -> String {
+pub(super) fn capitalized(text: &str) -> String {
     let mut letters = text.chars();
     letters
         .next()
         .map_or_else(String::new, |c| c.to_uppercase().chain(letters).collect())
-}
-
-/// Usual size: displacements of 2 % of the width and rotations of 1°, at the still-air frequency.
-fn nominal(model: &TrainedModel, dof: Dof, response: Response) -> f64 {
-    let size = if dof == Dof::Torsion {
-        1f64.to_radians()
-    } else {
-        0.02 * model.section.width_m
-    };
-    let omega = TAU * SectionParameter::Frequency(dof).value_in(&model.section);
-    match response {
-        Response::Displacement => power_of_ten(size),
-        Response::Rate => power_of_ten(size * omega),
-        Response::Acceleration => power_of_ten(size * omega * omega),
-        Response::SelfExcitedForce => force_scale(model, dof),
-    }
-}
-
-/// Usual size of forces: inertia times the usual acceleration.
-fn force_scale(model: &TrainedModel, dof: Dof) -> f64 {
-    let inertia = SectionParameter::Inertia(dof).value_in(&model.section);
-    power_of_ten(inertia * nominal(model, dof, Response::Acceleration))
-}
-
-/// The power of ten nearest to `x` on a logarithmic scale; one when `x` is no positive number.
-fn power_of_ten(x: f64) -> f64 {
-    // through text, because 10f64.powi rounds
-    format!("1e{}", x.log10().round() as i32)
-        .parse()
-        .ok()
-        .filter(|p: &f64| x > 0.0 && p.is_normal())
-        .unwrap_or(1.0)
 }

@@ -11,11 +11,14 @@ fn fixture(kind: &str) -> TrainedModel {
     TrainedModel::from_json(&std::fs::read_to_string(path).unwrap()).unwrap()
 }
 
-fn names(table: &VariableTable, places: &[usize]) -> Vec<&'static str> {
-    places.iter().map(|i| table.variables()[*i].name).collect()
+fn names<'a>(table: &'a VariableTable, places: &[usize]) -> Vec<&'a str> {
+    places
+        .iter()
+        .map(|i| table.variables()[*i].name.as_str())
+        .collect()
 }
 
-fn direct(table: &VariableTable, output: &str) -> Vec<&'static str> {
+fn direct<'a>(table: &'a VariableTable, output: &str) -> Vec<&'a str> {
     let place = table.find_name(output).unwrap();
     names(table, &table.variables()[place].direct_inputs)
 }
@@ -23,9 +26,9 @@ fn direct(table: &VariableTable, output: &str) -> Vec<&'static str> {
 #[test]
 fn names_are_unique_and_numbers_carry_units() {
     for kind in ["continuous_laguerre", "rational", "discrete_laguerre"] {
-        let table = VariableTable::new(&fixture(kind)).unwrap();
+        let table = VariableTable::new(&fixture(kind), None).unwrap();
         for (i, v) in table.variables().iter().enumerate() {
-            assert_eq!(table.find_name(v.name), Some(i));
+            assert_eq!(table.find_name(&v.name), Some(i));
             let ratio = v.name.ends_with("ratio") || v.name.ends_with("reduced_velocity");
             let real = matches!(v.value, Value::Real(_));
             assert_eq!(v.unit.is_some(), real && !ratio, "{}", v.name);
@@ -41,11 +44,11 @@ fn names_are_unique_and_numbers_carry_units() {
 
 #[test]
 fn added_mass_couples_every_force_into_every_acceleration() {
-    let with = VariableTable::new(&fixture("rational")).unwrap();
+    let with = VariableTable::new(&fixture("rational"), None).unwrap();
     let all = ["wind_speed", "external_lift", "external_moment"];
     assert_eq!(direct(&with, "heave_acceleration"), all);
     assert_eq!(direct(&with, "moment"), all);
-    let without = VariableTable::new(&fixture("discrete_laguerre")).unwrap();
+    let without = VariableTable::new(&fixture("discrete_laguerre"), None).unwrap();
     assert_eq!(direct(&without, "heave_acceleration"), all[..2]);
     assert_eq!(direct(&without, "moment"), all[..1]);
     for table in [&with, &without] {
@@ -66,7 +69,7 @@ fn a_lateral_support_brings_its_variables() {
         stiffness_n_m2: None,
         damping_ratio: 0.003,
     });
-    let table = VariableTable::new(&model).unwrap();
+    let table = VariableTable::new(&model, None).unwrap();
     assert_eq!(table.dofs(), Dof::THREE);
     for name in [
         "external_drag",
@@ -89,7 +92,7 @@ fn a_lateral_support_brings_its_variables() {
 fn start_values_outside_their_limits_are_refused() {
     let mut model = fixture("rational");
     model.section.vertical.mass_kg_m = 1e-9;
-    let message = VariableTable::new(&model).unwrap_err().to_string();
+    let message = VariableTable::new(&model, None).unwrap_err().to_string();
     assert_eq!(
         message,
         "start value of mass: expected a finite number (minimum 0.000001, maximum none), found 0.000000001"

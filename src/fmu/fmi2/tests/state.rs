@@ -34,7 +34,7 @@ fn reset_restores_every_default() {
         unit.ok(unit.reset());
         for v in &variables {
             if let crate::fmu::variables::Value::Real(Some(start)) = v.value {
-                assert_eq!(unit.get([v.name]), [start], "{}", v.name);
+                assert_eq!(unit.get([v.name.as_str()]), [start], "{}", v.name);
             }
         }
         unit.start();

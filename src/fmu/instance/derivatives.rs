@@ -1,0 +1,117 @@
+//! Derivatives: of outputs in time, and of unknowns with respect to inputs, initial values and parameters.
+
+use super::Instance;
+use super::layout::{DataType, Source};
+use super::values::check_order;
+use crate::fmu::lifecycle::State;
+use crate::fmu::refusal::{Answer, Refusal};
+use crate::fmu::variables::Role;
+
+impl Instance {
+    /// First time derivatives of outputs, per second, with the current input rates.
+    ///
+    /// # Errors
+    /// A reference that is no output, or another order than one.
+    pub fn output_rates(
+        &mut self,
+        references: &[u32],
+        orders: &[i32],
+        rates: &mut [f64],
+    ) -> Answer<()> {
+        for (reference, order) in references.iter().zip(orders) {
+            self.response_of(*reference)?;
+            check_order(*order)?;
+        }
+        if references.is_empty() {
+            return Ok(());
+        }
+        let outputs = references
+            .iter()
+            .map(|r| self.response_of(*r))
+            .collect::<Answer<Vec<_>>>()?;
+        self.unit.prepare(&self.resources, &mut self.memory)?;
+        let found = self
+            .unit
+            .output_rates(&self.resources, &mut self.memory, &outputs)?;
+        rates.copy_from_slice(&found);
+        Ok(())
+    }
+
+    /// `Σ (∂unknown/∂known) seed`: outputs with respect to inputs; while initialising also outputs and calculated
+    /// parameters with respect to initial values (exact) and section properties (central differences).
+    ///
+    /// # Errors
+    /// References that are no such unknowns or knowns in the current state; a derivative that does not exist.
+    pub fn directional_derivative(
+        &mut self,
+        unknowns: &[u32],
+        knowns: &[u32],
+        seeds: &[f64],
+        results: &mut [f64],
+    ) -> Answer<()> {
+        let unknowns = unknowns
+            .iter()
+            .map(|r| self.unknown(*r))
+            .collect::<Answer<Vec<_>>>()?;
+        let knowns = knowns
+            .iter()
+            .map(|r| self.known(*r))
+            .collect::<Answer<Vec<_>>>()?;
+        self.unit.prepare(&self.resources, &mut self.memory)?;
+        let mut sums = vec![0.0; unknowns.len()];
+        for (known, seed) in knowns.into_iter().zip(seeds) {
+            let column =
+                self.unit
+                    .derivatives(&self.resources, &mut self.memory, known, &unknowns)?;
+            for (sum, derivative) in sums.iter_mut().zip(column) {
+                *sum += seed * derivative;
+            }
+        }
+        if !sums.iter().all(|x| x.is_finite()) {
+            return Err(Refusal::discard(
+                "directional derivative: beyond the range of numbers",
+            ));
+        }
+        results.copy_from_slice(&sums);
+        Ok(())
+    }
+
+    fn response_of(&self, reference: u32) -> Answer<Role> {
+        let (place, access) = self.typed(reference, DataType::Real)?;
+        let variable = &self.table().variables()[place];
+        if access.source == Source::Response {
+            Ok(variable.role)
+        } else {
+            Err(Refusal::error(format!("`{}` is no output", variable.name)))
+        }
+    }
+
+    fn unknown(&self, reference: u32) -> Answer<Role> {
+        let (place, access) = self.typed(reference, DataType::Real)?;
+        let variable = &self.table().variables()[place];
+        match access.source {
+            Source::Response => Ok(variable.role),
+            Source::Calculated if self.memory.state == State::Initialization => Ok(variable.role),
+            _ => Err(self.refused(place, "unknown")),
+        }
+    }
+
+    /// Place of a known.
+    fn known(&self, reference: u32) -> Answer<usize> {
+        let (place, access) = self.typed(reference, DataType::Real)?;
+        let initializing = self.memory.state == State::Initialization;
+        match access.source {
+            Source::Input => Ok(place),
+            Source::Section | Source::Release | Source::Limit if initializing => Ok(place),
+            _ => Err(self.refused(place, "known")),
+        }
+    }
+
+    fn refused(&self, place: usize, what: &str) -> Refusal {
+        Refusal::error(format!(
+            "directional derivative: `{}` is no {what} in the state `{}`",
+            self.table().variables()[place].name,
+            self.memory.state.name()
+        ))
+    }
+}

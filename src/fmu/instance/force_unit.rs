@@ -1,0 +1,322 @@
+//! Forces alone: strips of deck whose structure is the importer's.
+//!
+//! The forces put out are those at the instant at which they will act, `prediction` communication steps after the
+//! motion that was set for the last step. When the importer has set newer motion since, they follow from that as well.
+
+use super::layout::{Source, place};
+use super::saving::Memory;
+use super::unit::Unit;
+use crate::aerodynamics::Realizable;
+use crate::error::Result;
+use crate::fmu::force_options::ForceOptions;
+use crate::fmu::refusal::{Answer, Refusal};
+use crate::fmu::resources::Resources;
+use crate::fmu::variables::{ForceOutput, Response, Role, SectionParameter, StripParameter};
+use crate::response::{ForceAhead, Given, KnownMotion, PrescribedForces, SectionState, StripFlow};
+
+/// Relative step of the differences with respect to wind and parameters.
+const RELATIVE_STEP: f64 = 1e-5;
+
+/// How a number of the motion has been set since the last step.
+const NOT_SET: f64 = 0.0;
+const SET: f64 = 1.0;
+/// A rate by the derivative of the input below it.
+const SET_AS_DERIVATIVE: f64 = 2.0;
+
+/// See the module. The state is the time from the newest motion to the instant of the forces (s), how each number of
+/// the motion has been set since, then the state of the forces.
+#[derive(Debug)]
+pub(super) struct ForceUnit {
+    forces: PrescribedForces,
+    /// Wind, then the motion: strip by strip, displacement, rate and acceleration of each degree of freedom.
+    inputs: Vec<usize>,
+    /// Force and total force, in the order of the motion.
+    outputs: Vec<[usize; 2]>,
+    /// Width, length, wind factor of each strip.
+    strips: Vec<[usize; 3]>,
+    density: usize,
+    prediction: usize,
+    derivatives: usize,
+}
+
+/// What acts on the strips.
+struct Conditions {
+    flows: Vec<StripFlow>,
+    density: f64,
+}
+
+impl ForceUnit {
+    /// The forces of a trained model.
+    ///
+    /// # Errors
+    /// [`crate::Error::Numerical`] for a table that is not one of forces.
+    pub fn new(resources: &Resources, options: &ForceOptions) -> Result<Self> {
+        let table = &resources.table;
+        let dofs = resources.model.section.dofs();
+        let (mut inputs, mut outputs) = (vec![place(table, Role::WindSpeed)?], Vec::new());
+        let mut strips = Vec::with_capacity(options.strips.len());
+        for s in 0..options.strips.len() {
+            for &dof in &dofs {
+                for response in &Response::ALL[..3] {
+                    inputs.push(place(table, Role::Motion(s, *response, dof))?);
+                }
+                let force = |kind| place(table, Role::Force(s, kind, dof));
+                outputs.push([force(ForceOutput::PerLength)?, force(ForceOutput::Total)?]);
+            }
+            let of = |which| place(table, Role::Strip(s, which));
+            strips.push([
+                of(StripParameter::Width)?,
+                of(StripParameter::Length)?,
+                of(StripParameter::WindFactor)?,
+            ]);
+        }
+        Ok(Self {
+            forces: PrescribedForces::new(resources.model.model.realize(), dofs),
+            inputs,
+            outputs,
+            strips,
+            density: place(table, Role::Section(SectionParameter::AirDensity))?,
+            prediction: place(table, Role::Prediction)?,
+            derivatives: place(table, Role::MotionDerivatives)?,
+        })
+    }
+
+    /// Numbers of the motion.
+    fn motions(&self) -> usize {
+        self.inputs.len() - 1
+    }
+
+    /// Where the state of the forces begins.
+    fn first(&self) -> usize {
+        1 + self.motions()
+    }
+
+    fn conditions(&self, values: &[f64]) -> Conditions {
+        let flow = |[width, _, factor]: &[usize; 3]| StripFlow {
+            width_m: values[*width],
+            wind_factor: values[*factor],
+        };
+        Conditions {
+            flows: self.strips.iter().map(flow).collect(),
+            density: values[self.density],
+        }
+    }
+
+    /// The motion as it has been set.
+    fn motion(&self, memory: &Memory) -> Vec<KnownMotion> {
+        let set = &memory.system.values[1..self.first()];
+        let stated = memory.values[self.derivatives];
+        let coordinate = |i: usize| {
+            let at = |order: usize| memory.values[self.inputs[1 + 3 * i + order]];
+            let mut values = [at(0), at(1), at(2)];
+            let by_derivative = set[3 * i + 1] == SET_AS_DERIVATIVE;
+            if by_derivative {
+                values[1] = memory.input_rates[1 + 3 * i];
+            }
+            let known = if stated >= 0.0 {
+                1 + stated as usize
+            } else {
+                let order = |o: usize| set[3 * i + o] != NOT_SET;
+                1 + usize::from(order(1)) + usize::from(order(1) && order(2) && !by_derivative)
+            };
+            KnownMotion { values, known }
+        };
+        (0..self.motions() / 3).map(coordinate).collect()
+    }
+
+    /// Forces of all strips in the order of the motion. `renewed` says that there is motion of the present time.
+    fn ahead(&mut self, memory: &Memory, renewed: bool) -> Result<Vec<ForceAhead>> {
+        let Conditions { flows, density } = self.conditions(&memory.values);
+        let mut state = memory.system.values[self.first()..].to_vec();
+        let mut ahead_s = memory.system.values[0];
+        if renewed {
+            let motion = self.motion(memory);
+            if let Some(newest) = PrescribedForces::newest_s(&state) {
+                ahead_s = (newest + ahead_s - memory.time).max(0.0);
+            }
+            let given = Given {
+                time_s: memory.time,
+                wind_speed_m_s: memory.values[self.inputs[0]],
+                motion: &motion,
+            };
+            self.forces.take(&mut state, &given, &flows)?;
+        }
+        let n = self.forces.dofs().len();
+        let mut found = vec![ForceAhead::default(); self.outputs.len()];
+        for (s, (flow, forces)) in flows.iter().zip(found.chunks_mut(n)).enumerate() {
+            self.forces
+                .ahead(&state, (s, flow), ahead_s, density, forces)?;
+        }
+        Ok(found)
+    }
+
+    /// Whether there is motion of the present time that no step has taken yet.
+    fn renewed(&self, memory: &Memory) -> bool {
+        let [flags, state] = [
+            &memory.system.values[1..self.first()],
+            &memory.system.values[self.first()..],
+        ];
+        let newest = PrescribedForces::newest_s(state);
+        newest.is_none_or(|t| t < memory.time && flags.iter().any(|f| *f != NOT_SET))
+    }
+
+    fn entry(&self, memory: &Memory, forces: &[ForceAhead], role: Role) -> ForceAhead {
+        let Role::Force(s, kind, dof) = role else {
+            return ForceAhead::default();
+        };
+        let dofs = self.forces.dofs();
+        let index = dofs.iter().position(|d| *d == dof).unwrap_or(0);
+        let ForceAhead { force, rate } = forces[s * dofs.len() + index];
+        let factor = match kind {
+            ForceOutput::PerLength => 1.0,
+            ForceOutput::Total => memory.values[self.strips[s][1]],
+        };
+        ForceAhead {
+            force: factor * force,
+            rate: factor * rate,
+        }
+    }
+
+    /// Forces follow the motion linearly: those of a unit of one number of it, in a flow at rest.
+    fn by_motion(&mut self, memory: &Memory, index: usize) -> Result<Vec<ForceAhead>> {
+        let mut unit = memory.clone();
+        for place in &self.inputs[1..] {
+            unit.values[*place] = 0.0;
+        }
+        unit.input_rates.fill(0.0);
+        unit.values[self.inputs[index]] = 1.0;
+        if (index - 1) % 3 == 1 {
+            unit.system.values[index] = SET;
+        }
+        let first = self.first();
+        self.forces.forget(&mut unit.system.values[first..]);
+        self.ahead(&unit, true)
+    }
+}
+
+impl Unit for ForceUnit {
+    fn inputs(&self) -> &[usize] {
+        &self.inputs
+    }
+
+    fn at_rest(&self) -> SectionState {
+        let mut values = vec![NOT_SET; self.first()];
+        values.extend(self.forces.rest(self.strips.len()));
+        SectionState { values, phase: 0.0 }
+    }
+
+    fn changed(&mut self, _: Source) {}
+
+    fn input_set(&mut self, memory: &mut Memory, place: usize) -> bool {
+        match self.inputs[1..].iter().position(|input| *input == place) {
+            Some(motion) => {
+                memory.system.values[1 + motion] = SET;
+                true
+            }
+            None => false,
+        }
+    }
+
+    fn input_rate_set(&mut self, memory: &mut Memory, index: usize) {
+        // of a displacement
+        if index > 0 && (index - 1) % 3 == 0 && memory.system.values[index + 1] == NOT_SET {
+            memory.system.values[index + 1] = SET_AS_DERIVATIVE;
+        }
+    }
+
+    fn replace(&mut self, _: &mut Memory, _: &Memory, _: &dyn Fn(Source) -> bool) {}
+
+    fn prepare(&mut self, _: &Resources, _: &mut Memory) -> Result<()> {
+        Ok(())
+    }
+
+    fn advance(&mut self, _: &Resources, memory: &mut Memory, step: f64) -> Answer<()> {
+        let motion = self.motion(memory);
+        let flows = self.conditions(&memory.values).flows;
+        let given = Given {
+            time_s: memory.time,
+            wind_speed_m_s: memory.values[self.inputs[0]],
+            motion: &motion,
+        };
+        let first = self.first();
+        let before = memory.system.values.clone();
+        self.forces
+            .take(&mut memory.system.values[first..], &given, &flows)?;
+        memory.system.values[0] = memory.values[self.prediction] * step;
+        memory.system.values[1..first].fill(NOT_SET);
+        // a force that cannot be put out is refused with its step
+        match self.ahead(memory, false) {
+            Ok(forces) => {
+                self.put_out(memory, &forces);
+                Ok(())
+            }
+            Err(why) => {
+                memory.system.values = before;
+                Err(why.into())
+            }
+        }
+    }
+
+    fn outputs(&mut self, _: &Resources, memory: &mut Memory) -> Answer<()> {
+        let forces = self.ahead(memory, self.renewed(memory))?;
+        if !forces.iter().all(|f| f.force.is_finite()) {
+            return Err(Refusal::discard(
+                "outputs: the forces have grown beyond the range of numbers",
+            ));
+        }
+        self.put_out(memory, &forces);
+        Ok(())
+    }
+
+    fn output_rates(
+        &mut self,
+        _: &Resources,
+        memory: &mut Memory,
+        outputs: &[Role],
+    ) -> Answer<Vec<f64>> {
+        let forces = self.ahead(memory, self.renewed(memory))?;
+        let rate = |role: &Role| self.entry(memory, &forces, *role).rate;
+        Ok(outputs.iter().map(rate).collect())
+    }
+
+    fn derivatives(
+        &mut self,
+        resources: &Resources,
+        memory: &mut Memory,
+        known: usize,
+        unknowns: &[Role],
+    ) -> Answer<Vec<f64>> {
+        if let Some(index) = self.inputs[1..].iter().position(|input| *input == known) {
+            let forces = self.by_motion(memory, index + 1)?;
+            let entry = |role: &Role| self.entry(memory, &forces, *role).force;
+            return Ok(unknowns.iter().map(entry).collect());
+        }
+        let variable = &resources.table.variables()[known];
+        let value = memory.values[known];
+        let step = RELATIVE_STEP * value.abs().max(RELATIVE_STEP);
+        let low = (value - step).max(variable.min.unwrap_or(f64::NEG_INFINITY));
+        let high = (value + step).min(variable.max.unwrap_or(f64::INFINITY));
+        let renewed = self.renewed(memory);
+        let mut at = |value: f64| -> Result<Vec<f64>> {
+            let mut other = memory.clone();
+            other.values[known] = value;
+            let forces = self.ahead(&other, renewed)?;
+            let entry = |role: &Role| self.entry(&other, &forces, *role).force;
+            Ok(unknowns.iter().map(entry).collect())
+        };
+        let (below, above) = (at(low)?, at(high)?);
+        let difference = |(a, b): (&f64, &f64)| (b - a) / (high - low);
+        Ok(below.iter().zip(&above).map(difference).collect())
+    }
+}
+
+impl ForceUnit {
+    fn put_out(&self, memory: &mut Memory, forces: &[ForceAhead]) {
+        let n = self.forces.dofs().len();
+        for (i, ([per_length, total], force)) in self.outputs.iter().zip(forces).enumerate() {
+            let length = memory.values[self.strips[i / n][1]];
+            memory.values[*per_length] = force.force;
+            memory.values[*total] = force.force * length;
+        }
+    }
+}

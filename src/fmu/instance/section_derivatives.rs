@@ -1,0 +1,214 @@
+//! Derivatives of a section. Outputs are linear in state and forces, `y = C(V) z + D w`, so their derivatives are
+//! products with the same matrices; the derivative with respect to the wind speed is closed too. Only section
+//! properties are differenced.
+
+use super::layout::Source;
+use super::saving::Memory;
+use super::section_unit::{SectionUnit, check_finite};
+use crate::aerodynamics::Realization;
+use crate::aeroelastic::CoupledSection;
+use crate::error::Result;
+use crate::fmu::refusal::Answer;
+use crate::fmu::resources::Resources;
+use crate::fmu::variables::Role;
+use crate::response::{Inputs, Outputs, SectionState, Stepper};
+use crate::section::Dof;
+use nalgebra::{DMatrix, DVector};
+
+/// Relative step of the central differences: truncation about 1e-8, rounding of an onset search about 1e-9.
+const RELATIVE_STEP: f64 = 1e-4;
+/// Step of a parameter that is zero.
+const STEP_FROM_ZERO: f64 = 1e-6;
+
+impl SectionUnit {
+    /// `ẏ = C ż + D ẇ + (∂y/∂V) V̇` of all outputs.
+    pub(super) fn time_derivative(&mut self, memory: &Memory) -> Answer<Outputs> {
+        self.load_inputs(memory);
+        let Some(stepper) = &mut self.stepper else {
+            return Ok(Outputs::default());
+        };
+        let velocity = SectionState {
+            values: stepper.state_derivative(&memory.system, &self.inputs)?,
+            phase: 0.0,
+        };
+        let driven = Inputs {
+            force: self.inputs.force_rate.clone(),
+            ..Inputs::steady(self.inputs.wind_speed_m_s, self.inputs.force.len())
+        };
+        let mut rates = Outputs::default();
+        stepper.outputs(&velocity, &driven, &mut rates)?;
+        let by_speed = speed_sensitivity(
+            stepper.section(),
+            &memory.system,
+            self.inputs.wind_speed_m_s,
+        );
+        add(&mut rates, &by_speed, self.inputs.wind_speed_rate_m_s2);
+        check_finite(&rates)?;
+        Ok(rates)
+    }
+
+    /// Derivatives of all unknowns with respect to one known.
+    pub(super) fn column(
+        &mut self,
+        resources: &Resources,
+        memory: &Memory,
+        known: usize,
+        unknowns: &[Role],
+    ) -> Answer<Vec<f64>> {
+        let outputs = match Source::of(resources.table.variables()[known].role) {
+            Source::Input => self.by_input(memory, known)?,
+            Source::Release => self.by_release(memory, known)?,
+            _ => return self.by_difference(resources, memory, known, unknowns),
+        };
+        Ok(unknowns.iter().map(|u| pick(&outputs, *u)).collect())
+    }
+
+    fn by_input(&mut self, memory: &Memory, known: usize) -> Result<Outputs> {
+        self.load_inputs(memory);
+        let speed = self.inputs.wind_speed_m_s;
+        let Some(stepper) = &mut self.stepper else {
+            return Ok(Outputs::default());
+        };
+        if known == self.places.wind_speed {
+            let section = stepper.section();
+            return Ok(speed_sensitivity(section, &memory.system, speed));
+        }
+        let mut unit = Inputs::steady(speed, self.places.force.len());
+        for (force, place) in unit.force.iter_mut().zip(&self.places.force) {
+            *force = f64::from(u8::from(*place == known));
+        }
+        let at_rest = SectionState {
+            values: vec![0.0; memory.system.values.len()],
+            phase: 0.0,
+        };
+        let mut outputs = Outputs::default();
+        stepper.outputs(&at_rest, &unit, &mut outputs)?;
+        Ok(outputs)
+    }
+
+    /// The release is linear in its displacements and rates.
+    fn by_release(&mut self, memory: &Memory, known: usize) -> Result<Outputs> {
+        let mut unit = vec![0.0; memory.values.len()];
+        unit[known] = 1.0;
+        let speed = memory.values[self.places.wind_speed];
+        let still = Inputs::steady(speed, self.places.force.len());
+        let mut outputs = Outputs::default();
+        if let Some(stepper) = &self.stepper {
+            let state = self.release(stepper, &unit)?;
+            if let Some(stepper) = &mut self.stepper {
+                stepper.outputs(&state, &still, &mut outputs)?;
+            }
+        }
+        Ok(outputs)
+    }
+
+    /// Central differences; one-sided where the parameter would leave its limits.
+    fn by_difference(
+        &mut self,
+        resources: &Resources,
+        memory: &Memory,
+        known: usize,
+        unknowns: &[Role],
+    ) -> Answer<Vec<f64>> {
+        let variable = &resources.table.variables()[known];
+        let value = memory.values[known];
+        let step = if value == 0.0 {
+            STEP_FROM_ZERO
+        } else {
+            RELATIVE_STEP * value.abs()
+        };
+        let low = (value - step).max(variable.min.unwrap_or(f64::NEG_INFINITY));
+        let high = (value + step).min(variable.max.unwrap_or(f64::INFINITY));
+        let below = self.with_value(resources, memory, (known, low), unknowns)?;
+        let above = self.with_value(resources, memory, (known, high), unknowns)?;
+        let difference = |(a, b): (&f64, &f64)| (b - a) / (high - low);
+        Ok(below.iter().zip(&above).map(difference).collect())
+    }
+
+    /// The unknowns with one other value.
+    fn with_value(
+        &mut self,
+        resources: &Resources,
+        memory: &Memory,
+        (place, value): (usize, f64),
+        unknowns: &[Role],
+    ) -> Answer<Vec<f64>> {
+        let mut values = memory.values.clone();
+        values[place] = value;
+        let wants = |wanted: fn(&Role) -> bool| unknowns.iter().any(wanted);
+        let mut outputs = Outputs::default();
+        if wants(|u| matches!(u, Role::Response(..))) {
+            let mut stepper: Stepper = self.new_stepper(resources, &values)?;
+            let state = self.release(&stepper, &values)?;
+            self.load_inputs(memory);
+            stepper.outputs(&state, &self.inputs, &mut outputs)?;
+        }
+        let card = if wants(|u| matches!(u, Role::Calculated(_))) {
+            Some(self.onset_card(resources, &values))
+        } else {
+            None
+        };
+        let value = |unknown: &Role| match (unknown, &card) {
+            (Role::Calculated(which), Some(card)) => card.value(*which),
+            (other, _) => pick(&outputs, *other),
+        };
+        Ok(unknowns.iter().map(value).collect())
+    }
+}
+
+/// The entry of `outputs` that a role stands for; zero for what inputs and release do not act on.
+pub(super) fn pick(outputs: &Outputs, role: Role) -> f64 {
+    let Role::Response(response, dof) = role else {
+        return 0.0;
+    };
+    let list = outputs.lists()[response as usize];
+    let index = match dof {
+        Dof::Vertical => 0,
+        Dof::Lateral => 1,
+        Dof::Torsion => list.len().saturating_sub(1),
+    };
+    list.get(index).copied().unwrap_or(0.0)
+}
+
+fn add(outputs: &mut Outputs, other: &Outputs, factor: f64) {
+    let lists = [
+        (&mut outputs.displacement, &other.displacement),
+        (&mut outputs.rate, &other.rate),
+        (&mut outputs.acceleration, &other.acceleration),
+        (&mut outputs.self_excited_force, &other.self_excited_force),
+    ];
+    for (list, terms) in lists {
+        for (sum, term) in list.iter_mut().zip(terms) {
+            *sum += factor * term;
+        }
+    }
+}
+
+/// `∂y/∂V` at a given state and external force. With `P(e)` the physical scaling, the aerodynamic part of the equation
+/// of motion is `½ρV² P(e₀) q + ½ρVB P(e₁) q̇ + ½ρV² diag(B, B, B²) C x`; the acceleration follows through
+/// `(M − ½ρB² P(e₂))⁻¹`, the force as `M` times the acceleration.
+fn speed_sensitivity(section: &CoupledSection, state: &SectionState, speed: f64) -> Outputs {
+    let s = section.structure();
+    let n = s.dofs.len();
+    let part =
+        |from: usize, count: usize| DVector::from_column_slice(&state.values[from..from + count]);
+    let filters = part(2 * n, state.values.len() - 2 * n);
+    let (rho, width) = (s.air_density_kg_m3, s.width_m);
+    let scale = DMatrix::from_diagonal(&DVector::from_fn(n, |i, _| s.dofs[i].force_scale(width)));
+    let direct = match section.aerodynamics() {
+        Realization::Continuous(c) => {
+            s.scaled(&c.e0) * part(0, n) * (rho * speed)
+                + s.scaled(&c.e1) * part(n, n) * (0.5 * rho * width)
+                + scale * (&c.c * filters) * (rho * speed)
+        }
+        Realization::Discrete(d) => scale * (&d.c * filters) * (rho * speed),
+    };
+    let acceleration = section.inverse_mass() * direct;
+    let force = &s.mass * &acceleration;
+    Outputs {
+        displacement: vec![0.0; n],
+        rate: vec![0.0; n],
+        acceleration: acceleration.as_slice().to_vec(),
+        self_excited_force: force.as_slice().to_vec(),
+    }
+}

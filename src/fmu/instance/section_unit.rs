@@ -1,0 +1,316 @@
+//! The coupled section: a structure in self-excited wind forces. Onset and divergence are searched for when first asked
+//! for after a change of parameters.
+
+use super::layout::{Source, place};
+use super::saving::Memory;
+use super::section::{self, OnsetCard};
+use super::section_derivatives::pick;
+use super::unit::Unit;
+use crate::aerodynamics::{Realizable, Realization};
+use crate::error::Result;
+use crate::flutter::{OnsetSearch, UnwantedGrowth, unwanted_growth};
+use crate::fmu::lifecycle::State;
+use crate::fmu::refusal::{Answer, Refusal};
+use crate::fmu::resources::Resources;
+use crate::fmu::variables::{Response, Role, VariableTable};
+use crate::response::{Inputs, Outputs, SectionState, Stepper};
+use crate::section::Dof;
+
+/// Searches for growth of one instance at most: one takes as long as some thousand steps, and an importer may change
+/// parameters at every communication point.
+const GROWTH_SEARCHES: usize = 32;
+
+/// Places of the variables by what they stand for.
+#[derive(Debug)]
+pub(super) struct Places {
+    pub wind_speed: usize,
+    /// External force of each degree of freedom.
+    pub force: Vec<usize>,
+    /// Displacement, rate, acceleration and self-excited force of each degree of freedom.
+    responses: Vec<[usize; 4]>,
+    /// Entry of the section's state that a variable is, for displacements and rates; by place.
+    state_entry: Vec<Option<usize>>,
+    /// Displacement at release of each degree of freedom.
+    initial_displacement: Vec<usize>,
+    /// Rate at release of each degree of freedom.
+    initial_rate: Vec<usize>,
+    search_limit: usize,
+    /// Onset and divergence.
+    calculated: Vec<usize>,
+}
+
+impl Places {
+    fn new(table: &VariableTable) -> Result<Self> {
+        let dofs = table.dofs();
+        let each = |role: fn(Dof) -> Role| -> Result<Vec<usize>> {
+            dofs.iter().map(|&dof| place(table, role(dof))).collect()
+        };
+        let mut responses = vec![[0; 4]; dofs.len()];
+        for (places, &dof) in responses.iter_mut().zip(&dofs) {
+            for (slot, response) in places.iter_mut().zip(Response::ALL) {
+                *slot = place(table, Role::Response(response, dof))?;
+            }
+        }
+        let mut state_entry = vec![None; table.variables().len()];
+        for (i, places) in responses.iter().enumerate() {
+            // the state begins with all displacements, then all rates
+            state_entry[places[0]] = Some(i);
+            state_entry[places[1]] = Some(dofs.len() + i);
+        }
+        Ok(Self {
+            state_entry,
+            wind_speed: place(table, Role::WindSpeed)?,
+            force: each(Role::ExternalForce)?,
+            responses,
+            initial_displacement: each(Role::InitialDisplacement)?,
+            initial_rate: each(Role::InitialRate)?,
+            search_limit: place(table, Role::OnsetSearchLimit)?,
+            calculated: (0..table.variables().len())
+                .filter(|i| matches!(table.variables()[*i].role, Role::Calculated(_)))
+                .collect(),
+        })
+    }
+}
+
+/// See the module.
+#[derive(Debug)]
+pub(super) struct SectionUnit {
+    pub places: Places,
+    inputs_at: Vec<usize>,
+    aerodynamics: Realization,
+    /// Stepper of the current parameters; `None` after they have changed.
+    pub stepper: Option<Stepper>,
+    /// While initialising: the state has to be made anew from the values at release.
+    release_pending: bool,
+    onset_current: bool,
+    /// Whether growth below the onset has been looked for with the current parameters.
+    growth_known: bool,
+    /// Searches for growth that this instance may still do.
+    growth_searches_left: usize,
+    pub inputs: Inputs,
+    outputs: Outputs,
+}
+
+impl SectionUnit {
+    /// The section of a trained model.
+    ///
+    /// # Errors
+    /// [`crate::Error::Input`] for a model without a realisation.
+    pub fn new(resources: &Resources) -> Result<Self> {
+        let places = Places::new(&resources.table)?;
+        let inputs = std::iter::once(places.wind_speed).chain(places.force.iter().copied());
+        Ok(Self {
+            inputs_at: inputs.collect(),
+            inputs: Inputs::steady(0.0, places.force.len()),
+            places,
+            aerodynamics: resources.model.model.realize(),
+            stepper: None,
+            release_pending: true,
+            onset_current: false,
+            growth_known: false,
+            growth_searches_left: GROWTH_SEARCHES,
+            outputs: Outputs::default(),
+        })
+    }
+
+    pub fn new_stepper(&self, resources: &Resources, values: &[f64]) -> Result<Stepper> {
+        let Resources { model, table, .. } = resources;
+        section::coupled_section(model, table, &self.aerodynamics, values).map(Stepper::new)
+    }
+
+    /// State at release with the initial values in `values`.
+    pub fn release(&self, stepper: &Stepper, values: &[f64]) -> Result<SectionState> {
+        let pick = |places: &[usize]| places.iter().map(|i| values[*i]).collect::<Vec<_>>();
+        stepper.released(
+            &pick(&self.places.initial_displacement),
+            &pick(&self.places.initial_rate),
+        )
+    }
+
+    pub fn load_inputs(&mut self, memory: &Memory) {
+        let (values, rates) = (&memory.values, &memory.input_rates);
+        self.inputs.wind_speed_m_s = values[self.places.wind_speed];
+        self.inputs.wind_speed_rate_m_s2 = rates[0];
+        for (i, place) in self.places.force.iter().enumerate() {
+            self.inputs.force[i] = values[*place];
+            self.inputs.force_rate[i] = rates[i + 1];
+        }
+    }
+
+    /// Growth below the onset for the parameters in `values`.
+    fn growth(&self, resources: &Resources, values: &[f64]) -> Result<UnwantedGrowth> {
+        let Resources { model, table, .. } = resources;
+        let section = section::coupled_section(model, table, &self.aerodynamics, values)?;
+        let search = OnsetSearch {
+            speed_max_m_s: values[self.places.search_limit],
+            ..OnsetSearch::default()
+        };
+        unwanted_growth(&section, &search, Some(model.tested_range))
+    }
+
+    pub fn onset_card(&self, resources: &Resources, values: &[f64]) -> OnsetCard {
+        let Resources { model, table, .. } = resources;
+        let limit = values[self.places.search_limit];
+        match section::coupled_section(model, table, &self.aerodynamics, values) {
+            Ok(section) => OnsetCard::search(model, &section, limit),
+            Err(why) => OnsetCard::unknown(limit, &why),
+        }
+    }
+}
+
+impl Unit for SectionUnit {
+    fn inputs(&self) -> &[usize] {
+        &self.inputs_at
+    }
+
+    fn at_rest(&self) -> SectionState {
+        SectionState {
+            values: vec![0.0; 2 * self.places.force.len() + self.aerodynamics.states()],
+            phase: 0.0,
+        }
+    }
+
+    fn changed(&mut self, source: Source) {
+        match source {
+            Source::Section => {
+                self.stepper = None;
+                self.onset_current = false;
+                self.growth_known = false;
+                self.release_pending = true;
+            }
+            Source::Release => self.release_pending = true,
+            Source::Limit => {
+                self.onset_current = false;
+                self.growth_known = false;
+            }
+            _ => {}
+        }
+    }
+
+    fn begin_initialization(&mut self) {
+        self.release_pending = true;
+    }
+
+    fn replace(&mut self, new: &mut Memory, old: &Memory, same: &dyn Fn(Source) -> bool) {
+        let same_section = same(Source::Section);
+        if !same_section {
+            self.stepper = None;
+        }
+        let same_limit = same(Source::Limit);
+        self.onset_current &= same_section && same_limit;
+        self.growth_known &= same_section && same_limit;
+        if self.onset_current {
+            for place in &self.places.calculated {
+                new.values[*place] = old.values[*place];
+            }
+        }
+        self.release_pending = true;
+    }
+
+    fn prepare(&mut self, resources: &Resources, memory: &mut Memory) -> Result<()> {
+        if self.stepper.is_none() {
+            self.stepper = Some(self.new_stepper(resources, &memory.values)?);
+        }
+        if self.release_pending && memory.state == State::Initialization {
+            if let Some(stepper) = &self.stepper {
+                memory.system = self.release(stepper, &memory.values)?;
+            }
+            self.release_pending = false;
+        }
+        Ok(())
+    }
+
+    /// Says where the section grows although nothing was tested there.
+    fn watch(&mut self, resources: &Resources, memory: &Memory, notices: &mut Vec<String>) {
+        if self.growth_known || self.growth_searches_left == 0 {
+            return;
+        }
+        self.growth_known = true;
+        self.growth_searches_left -= 1;
+        match self.growth(resources, &memory.values) {
+            Ok(growth) if growth.is_none() => {}
+            Ok(growth) => notices.push(format!(
+                "with these parameters the section {}",
+                growth.explain()
+            )),
+            // no reason to end a run
+            Err(e) => notices.push(format!("growth below the onset could not be judged: {e}")),
+        }
+        if self.growth_searches_left == 0 {
+            notices.push(format!(
+                "growth below the onset is no longer looked for after {GROWTH_SEARCHES} changes of parameters"
+            ));
+        }
+    }
+
+    fn advance(&mut self, _: &Resources, memory: &mut Memory, step: f64) -> Answer<()> {
+        self.load_inputs(memory);
+        if let Some(stepper) = &mut self.stepper {
+            stepper.advance(&mut memory.system, &self.inputs, step)?;
+        }
+        Ok(())
+    }
+
+    fn held_output(&self, memory: &Memory, place: usize) -> Option<f64> {
+        self.places.state_entry[place].map(|entry| memory.system.values[entry])
+    }
+
+    fn outputs(&mut self, _: &Resources, memory: &mut Memory) -> Answer<()> {
+        self.load_inputs(memory);
+        if let Some(stepper) = &mut self.stepper {
+            stepper.outputs(&memory.system, &self.inputs, &mut self.outputs)?;
+        }
+        check_finite(&self.outputs)?;
+        for (i, places) in self.places.responses.iter().enumerate() {
+            for (place, list) in places.iter().zip(self.outputs.lists()) {
+                memory.values[*place] = list[i];
+            }
+        }
+        Ok(())
+    }
+
+    /// Onset and divergence. A search that fails is no reason to end a run.
+    fn calculate(&mut self, resources: &Resources, memory: &mut Memory, notices: &mut Vec<String>) {
+        if self.onset_current {
+            return;
+        }
+        let card = self.onset_card(resources, &memory.values);
+        for (place, variable) in resources.table.variables().iter().enumerate() {
+            if let Role::Calculated(which) = variable.role {
+                memory.values[place] = card.value(which);
+            }
+        }
+        notices.extend(card.warnings);
+        self.onset_current = true;
+    }
+
+    fn output_rates(
+        &mut self,
+        _: &Resources,
+        memory: &mut Memory,
+        outputs: &[Role],
+    ) -> Answer<Vec<f64>> {
+        let all = self.time_derivative(memory)?;
+        Ok(outputs.iter().map(|role| pick(&all, *role)).collect())
+    }
+
+    fn derivatives(
+        &mut self,
+        resources: &Resources,
+        memory: &mut Memory,
+        known: usize,
+        unknowns: &[Role],
+    ) -> Answer<Vec<f64>> {
+        self.column(resources, memory, known, unknowns)
+    }
+}
+
+/// Refuses outputs that no number holds any more.
+pub(super) fn check_finite(outputs: &Outputs) -> Answer<()> {
+    if outputs.lists().into_iter().flatten().all(|x| x.is_finite()) {
+        return Ok(());
+    }
+    Err(Refusal::discard(
+        "outputs: the motion has grown beyond the range of numbers",
+    ))
+}

@@ -1,0 +1,95 @@
+//! What an exported unit simulates, behind its variables and its life cycle.
+
+use super::layout::Source;
+use super::saving::Memory;
+use crate::error::Result;
+use crate::fmu::refusal::Answer;
+use crate::fmu::resources::Resources;
+use crate::fmu::variables::Role;
+use crate::response::SectionState;
+use std::fmt::Debug;
+
+/// The system behind an instance. Everything that changes in time stands in the [`Memory`]; a unit holds what follows
+/// from it and is made anew when it has changed.
+pub(super) trait Unit: Debug + Send {
+    /// Places of the inputs, in the order of their rates; the wind speed comes first.
+    fn inputs(&self) -> &[usize];
+
+    /// The state of a new instance.
+    fn at_rest(&self) -> SectionState;
+
+    /// A stored value of this kind has changed.
+    fn changed(&mut self, source: Source);
+
+    /// An input has been set, whatever its value was; returns whether outputs change with it.
+    fn input_set(&mut self, _memory: &mut Memory, _place: usize) -> bool {
+        false
+    }
+
+    /// The rate of the input with this index has been set.
+    fn input_rate_set(&mut self, _memory: &mut Memory, _index: usize) {}
+
+    /// The initialisation begins.
+    fn begin_initialization(&mut self) {}
+
+    /// Another memory takes the place of `old`: whatever both share stays computed.
+    fn replace(&mut self, new: &mut Memory, old: &Memory, same: &dyn Fn(Source) -> bool);
+
+    /// Makes what follows from the parameters and, while initialising, the state.
+    ///
+    /// # Errors
+    /// When the values give nothing that can be simulated.
+    fn prepare(&mut self, resources: &Resources, memory: &mut Memory) -> Result<()>;
+
+    /// Says, once for each set of parameters, what a user must know of them.
+    fn watch(&mut self, _resources: &Resources, _memory: &Memory, _notices: &mut Vec<String>) {}
+
+    /// One step of `step` seconds from the time of the memory. On an error everything is as it was.
+    ///
+    /// # Errors
+    /// When the step cannot be computed.
+    fn advance(&mut self, resources: &Resources, memory: &mut Memory, step: f64) -> Answer<()>;
+
+    /// The output at `place` where it is part of the state.
+    fn held_output(&self, _memory: &Memory, _place: usize) -> Option<f64> {
+        None
+    }
+
+    /// Writes all outputs into the memory.
+    ///
+    /// # Errors
+    /// When they cannot be computed.
+    fn outputs(&mut self, resources: &Resources, memory: &mut Memory) -> Answer<()>;
+
+    /// Writes what is calculated from the parameters into the memory.
+    fn calculate(
+        &mut self,
+        _resources: &Resources,
+        _memory: &mut Memory,
+        _notices: &mut Vec<String>,
+    ) {
+    }
+
+    /// First time derivatives of these outputs, per second.
+    ///
+    /// # Errors
+    /// When they cannot be computed.
+    fn output_rates(
+        &mut self,
+        resources: &Resources,
+        memory: &mut Memory,
+        outputs: &[Role],
+    ) -> Answer<Vec<f64>>;
+
+    /// Derivatives of these unknowns with respect to the value at `known`.
+    ///
+    /// # Errors
+    /// When they do not exist.
+    fn derivatives(
+        &mut self,
+        resources: &Resources,
+        memory: &mut Memory,
+        known: usize,
+        unknowns: &[Role],
+    ) -> Answer<Vec<f64>>;
+}
