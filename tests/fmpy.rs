@@ -16,7 +16,8 @@ mod python;
 mod three_dof;
 
 use aerodeck::files::derivatives::embedded;
-use aerodeck::fmu::package::{Growing, Overwrite, Runtime, write_fmu};
+use aerodeck::fmu::force_options::ForceOptions;
+use aerodeck::fmu::package::{Export, Growing, Overwrite, Runtime, write_fmu};
 use aerodeck::identification::{Form, FrequencyFit, fit_table};
 use aerodeck::section::{Dof, SectionModel};
 use aerodeck::trained_model::{Experiment, Provenance, SCHEMA_VERSION, TrainedModel};
@@ -84,12 +85,34 @@ fn export() -> PathBuf {
     let lateral = three_dof::trained(Form::default(), 3.9);
     let fmu = folder.join("three_dof.fmu");
     write_fmu(&fmu, &lateral, &runtimes, Overwrite::Refuse, Growing::Allow).unwrap();
+    export_forces(&folder, &runtimes);
     let text = serde_json::to_string(&json!({
         "models": Value::Object(expected), "three_dof": in_process::three_dof(&lateral),
     }))
     .unwrap();
     fs::write(folder.join("expected.json"), text).unwrap();
     folder
+}
+
+/// Forces on a flat plate for the full-scale section, on one strip and on three.
+fn export_forces(folder: &Path, runtimes: &[Runtime]) {
+    let text = fs::read_to_string(models::model_file("rational")).unwrap();
+    let mut model = TrainedModel::from_json(&text).unwrap();
+    model.section = SectionModel::iabse_1_1a();
+    let single = ForceOptions::single(model.section.width_m);
+    let strips = ForceOptions {
+        strips: vec![single.strips[0].clone(); 3],
+        named_strips: true,
+        ..single.clone()
+    };
+    for (name, options) in [("force", single), ("force_strips", strips)] {
+        let export = Export {
+            growing: Growing::Refuse,
+            force: Some(options),
+        };
+        let fmu = folder.join(format!("{name}.fmu"));
+        write_fmu(&fmu, &model, runtimes, Overwrite::Refuse, export).unwrap();
+    }
 }
 
 /// The number in front of `passed` in pytest's last lines.
