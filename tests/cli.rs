@@ -116,6 +116,35 @@ fn every_stage_is_a_command() {
             serde_json::from_str(&succeeds(at, &["fmu", "check", &fmu, "--json"])).unwrap();
         assert_eq!(check["findings"], Value::Array(vec![]), "{kind}");
         assert!(check["trials"].as_array().unwrap().len() > 5);
+        // the forces alone, on strips
+        let fmu = format!("{kind}_force.fmu");
+        let force = ["--kind", "force", "--strips", "3", "--strip-length", "2.5"];
+        let export = ["fmu", "export", &model, "--out", &fmu, "--json"];
+        let said = succeeds(at, &[&export[..], &force].concat());
+        let export: Value = serde_json::from_str(&said).unwrap();
+        assert_eq!(export["strips"], 3);
+        let check: Value =
+            serde_json::from_str(&succeeds(at, &["fmu", "check", &fmu, "--json"])).unwrap();
+        assert_eq!(check["findings"], Value::Array(vec![]), "{kind}");
+    }
+    for (wrong, words) in [
+        (&["--strips", "3"][..], &["--strips", "--kind force"][..]),
+        (
+            &["--kind", "force", "--strips", "0"],
+            &["strips", "1 to 10000"],
+        ),
+        (
+            &["--kind", "force", "--prediction", "3.5"],
+            &["prediction", "0 to 3"],
+        ),
+        (
+            &["--kind", "force", "--strip-length", "0"],
+            &["length", "positive"],
+        ),
+    ] {
+        let export = ["fmu", "export", "model.json", "--out", "none.fmu"];
+        refused(at, &[&export[..], wrong].concat(), words);
+        assert!(!at.join("none.fmu").exists());
     }
     let first = fs::read(at.join("laguerre.fmu")).unwrap();
     refused(

@@ -115,7 +115,8 @@ mod tests {
             options.validate().map_err(|e| e.to_string())
         };
         assert_eq!(with(|_| ()), Ok(()));
-        let refused: [(fn(&mut ForceOptions), &str); 6] = [
+        type Change = fn(&mut ForceOptions);
+        let refused: [(Change, &str); 6] = [
             (|o| o.strips.clear(), "strips: expected 1 to 10000, found 0"),
             (
                 |o| o.strips.push(o.strips[0].clone()),

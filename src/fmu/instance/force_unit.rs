@@ -219,7 +219,8 @@ impl Unit for ForceUnit {
 
     fn input_rate_set(&mut self, memory: &mut Memory, index: usize) {
         // of a displacement
-        if index > 0 && (index - 1) % 3 == 0 && memory.system.values[index + 1] == NOT_SET {
+        if index > 0 && (index - 1).is_multiple_of(3) && memory.system.values[index + 1] == NOT_SET
+        {
             memory.system.values[index + 1] = SET_AS_DERIVATIVE;
         }
     }
