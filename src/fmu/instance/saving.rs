@@ -47,7 +47,7 @@ impl Memory {
             input_rates: vec![0.0; 1 + layout.force.len()],
             section: SectionState {
                 values: vec![0.0; states],
-                phase: 0.0,
+                ..SectionState::default()
             },
         }
     }

@@ -55,7 +55,7 @@ impl Instance {
         };
         let velocity = SectionState {
             values: stepper.state_derivative(&self.memory.section, &self.inputs)?,
-            phase: 0.0,
+            ..SectionState::default()
         };
         let driven = Inputs {
             force: self.inputs.force_rate.clone(),
@@ -175,7 +175,7 @@ impl Instance {
         }
         let at_rest = SectionState {
             values: vec![0.0; self.memory.section.values.len()],
-            phase: 0.0,
+            ..SectionState::default()
         };
         let mut outputs = Outputs::default();
         stepper.outputs(&at_rest, &unit, &mut outputs)?;
