@@ -223,7 +223,6 @@ impl Stepper {
             self.advance_by_series(state, inputs, step_s)?;
         }
         state.last_wind_m_s = Some(inputs.wind_speed_m_s);
-        drop_what_died_out(&mut state.values);
         Ok(())
     }
 
@@ -239,7 +238,7 @@ impl Stepper {
         load(&mut self.operand, &state.values, inputs);
         let columns = active_columns(inputs, state.values.len());
         apply(step, &self.operand[..columns], &mut state.values);
-        if state.values.iter().all(|x| x.is_finite()) {
+        if settled(&mut state.values) {
             return Ok(());
         }
         let before = &self.operand[..state.values.len()];
@@ -268,6 +267,7 @@ impl Stepper {
         drive.force[0][..n].copy_from_slice(&inputs.force);
         drive.force[1][..n].copy_from_slice(&inputs.force_rate);
         if self.series.advance(&mut state.values, &drive, step, parts) {
+            settled(&mut state.values);
             Ok(())
         } else {
             Err(overgrown())
@@ -349,12 +349,20 @@ fn active_columns(inputs: &Inputs, states: usize) -> usize {
     }
 }
 
-fn drop_what_died_out(values: &mut [f64]) {
-    for x in values {
-        if x.abs() < DIED_OUT {
+/// Whether all values are finite; those that have died out become zero. Looks at all of them without a branch: this is
+/// part of every step.
+fn settled(values: &mut [f64]) -> bool {
+    let (mut finite, mut small) = (true, false);
+    for x in values.iter() {
+        finite &= x.is_finite();
+        small |= x.abs() < DIED_OUT;
+    }
+    if small {
+        for x in values.iter_mut().filter(|x| x.abs() < DIED_OUT) {
             *x = 0.0;
         }
     }
+    finite
 }
 
 /// Whether a step may take so many sub-steps.

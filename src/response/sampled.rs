@@ -4,8 +4,7 @@
 use super::packed::{Packed, apply};
 use super::series::Drive;
 use super::{
-    Inputs, MAX_DOFS, PARTS_OF_A_MATRIX, SectionState, Stepper, check_substeps, drop_what_died_out,
-    overgrown,
+    Inputs, MAX_DOFS, PARTS_OF_A_MATRIX, SectionState, Stepper, check_substeps, overgrown, settled,
 };
 use crate::aerodynamics::Realization;
 use crate::aeroelastic::CoupledSection;
@@ -122,10 +121,9 @@ impl Stepper {
                 remaining = 0.0;
             }
         }
-        if !next.values.iter().all(|x| x.is_finite()) {
+        if !settled(&mut next.values) {
             return Err(overgrown());
         }
-        drop_what_died_out(&mut next.values);
         *state = next;
         Ok(())
     }
