@@ -183,9 +183,17 @@ impl Instance {
     /// Growth below the onset for the parameters in `values`.
     pub(super) fn growth(&self, values: &[f64]) -> Result<UnwantedGrowth> {
         let Resources { model, table, .. } = &self.resources;
+        let speed_max_m_s = values[self.layout.search_limit];
         let section = section::coupled_section(model, table, &self.aerodynamics, values)?;
+        if let Some(onset) = section::plain_onset(model, table, values, speed_max_m_s) {
+            return Ok(UnwantedGrowth {
+                scanned_to_m_s: onset.speed_m_s,
+                bands: Vec::new(),
+            });
+        }
+        section::check_searchable(&section)?;
         let search = OnsetSearch {
-            speed_max_m_s: values[self.layout.search_limit],
+            speed_max_m_s,
             ..OnsetSearch::default()
         };
         unwanted_growth(&section, &search, Some(model.tested_range))
@@ -195,7 +203,10 @@ impl Instance {
         let Resources { model, table, .. } = &self.resources;
         let limit = values[self.layout.search_limit];
         match section::coupled_section(model, table, &self.aerodynamics, values) {
-            Ok(section) => OnsetCard::search(model, &section, limit),
+            Ok(section) => {
+                let plain = section::plain_onset(model, table, values, limit);
+                OnsetCard::search(model, &section, limit, plain)
+            }
             Err(why) => OnsetCard::unknown(limit, &why),
         }
     }
