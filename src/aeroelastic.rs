@@ -291,7 +291,7 @@ impl CoupledSection {
     }
 
     /// `½ρV² diag(B, B, B²) C`, n×N.
-    fn force_of_filters(&self, c: &DMatrix<f64>, speed: f64) -> DMatrix<f64> {
+    pub(crate) fn force_of_filters(&self, c: &DMatrix<f64>, speed: f64) -> DMatrix<f64> {
         let s = &self.structure;
         let q = 0.5 * s.air_density_kg_m3 * speed * speed;
         DMatrix::from_fn(c.nrows(), c.ncols(), |i, l| {

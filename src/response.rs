@@ -1,15 +1,17 @@
 //! Time response of the coupled section by exact steps.
 //!
-//! At constant wind speed a step of any size is exact for inputs that are held or run on a straight line over it
-//! (one matrix exponential, cached per wind speed and step). While the wind speed changes, the step is a
-//! fourth-order Magnus integration with sub-steps. With the discrete Laguerre model the force is sampled and held every
-//! `Δt = Δs B/V`; between samples the structure moves exactly under the held force.
+//! A step of any size is exact for wind and forces that are held or run on a straight line over it. At constant wind
+//! speed it is one product with a matrix exponential, cached per wind speed and step; where the wind changes, within the
+//! step or since the last one, a Taylor series of the motion, which needs no matrix. With the discrete Laguerre model the
+//! dimensionless force is sampled every `Δt = Δs B/V`; between samples the section moves exactly under that force and
+//! the present dynamic pressure.
 
+mod packed;
 mod prescribed;
 mod quasi_steady;
 mod sampled;
+mod series;
 mod step_cache;
-mod varying_speed;
 
 pub use prescribed::{ForceAhead, Given, KnownMotion, PrescribedForces, StripFlow};
 pub use quasi_steady::{NonlinearRun, NonlinearSection};
@@ -19,13 +21,18 @@ use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, finite_numbers, non_negative, positive};
 use crate::section::Dof;
 use nalgebra::{DMatrix, DVector};
-use step_cache::{StepCache, apply};
+use packed::apply;
+use sampled::Sampling;
+use series::{Drive, Series};
+use step_cache::StepCache;
 
 /// Degrees of freedom at most: heave, sway, rotation.
 const MAX_DOFS: usize = Dof::THREE.len();
 /// Samples of the force, or parts of a changing wind, that one step may take: beyond, it is refused at once. Each costs
-/// some ten microseconds.
+/// about a microsecond.
 const MAX_SUBSTEPS: f64 = 1e5;
+/// Parts of a series that cost as much as a matrix exponential.
+const PARTS_OF_A_MATRIX: f64 = 32.0;
 /// A wind below zero by this part of the wind before it (of 1 m/s at least) is at rest: what rounding leaves of a ramp
 /// of some ten thousand steps.
 const REST: f64 = 1e-9;
@@ -84,12 +91,15 @@ impl Inputs {
 }
 
 /// State of the section in motion.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct SectionState {
     /// `[q, q̇, x]`: displacements (m, rad), rates, filter states (dimensionless).
     pub values: Vec<f64>,
     /// Part of `Δs` that has passed since the last sample of the discrete model, in `[0, 1)`; 0 for continuous models.
     pub phase: f64,
+    /// Wind speed at the start of the last step of a continuous model, m/s; none since the release. A wind that stays is
+    /// worth a matrix. It is part of the state, so that a step from here always gives the same bits.
+    pub last_wind_m_s: Option<f64>,
 }
 
 /// What the section does at an instant; vectors in the order of the degrees of freedom.
@@ -122,6 +132,9 @@ impl Outputs {
 pub struct Stepper {
     section: CoupledSection,
     cache: StepCache,
+    series: Series,
+    /// Of the discrete model.
+    sampling: Option<Sampling>,
     /// `[z, w, ẇ]` of the step at hand.
     operand: Vec<f64>,
 }
@@ -131,6 +144,8 @@ impl Stepper {
     pub fn new(section: CoupledSection) -> Self {
         let operand = vec![0.0; section.states() + 2 * section.structure().dofs.len()];
         Self {
+            series: Series::new(&section),
+            sampling: Sampling::of(&section),
             section,
             cache: StepCache::default(),
             operand,
@@ -166,7 +181,10 @@ impl Stepper {
             })?;
             values.extend(filters.iter());
         }
-        Ok(SectionState { values, phase: 0.0 })
+        Ok(SectionState {
+            values,
+            ..SectionState::default()
+        })
     }
 
     /// Advances `state` by `step_s` seconds. On an error the state is as it was.
@@ -195,25 +213,67 @@ impl Stepper {
                 wind_at_rest(end, before),
             )?;
         }
-        if matches!(self.section.aerodynamics(), Realization::Discrete(_)) {
+        if self.sampling.is_some() {
             return self.advance_sampled(state, inputs, step_s);
         }
-        if inputs.wind_speed_rate_m_s2 != 0.0 {
-            return self.advance_varying_speed(state, inputs, step_s);
+        let same_wind = state
+            .last_wind_m_s
+            .is_none_or(|last| last == inputs.wind_speed_m_s);
+        if inputs.wind_speed_rate_m_s2 == 0.0 && same_wind {
+            self.advance_by_matrix(state, inputs, step_s)?;
+        } else {
+            self.advance_by_series(state, inputs, step_s)?;
         }
+        state.last_wind_m_s = Some(inputs.wind_speed_m_s);
+        Ok(())
+    }
+
+    fn advance_by_matrix(
+        &mut self,
+        state: &mut SectionState,
+        inputs: &Inputs,
+        step: f64,
+    ) -> Result<()> {
         let step = self
             .cache
-            .full_system(&self.section, inputs.wind_speed_m_s, step_s)?;
+            .full_system(&self.section, inputs.wind_speed_m_s, step)?;
         load(&mut self.operand, &state.values, inputs);
         let columns = active_columns(inputs, state.values.len());
         apply(step, &self.operand[..columns], &mut state.values);
-        if state.values.iter().all(|x| x.is_finite()) {
-            drop_what_died_out(&mut state.values);
+        if settled(&mut state.values) {
             return Ok(());
         }
         let before = &self.operand[..state.values.len()];
         state.values.copy_from_slice(before);
         Err(overgrown())
+    }
+
+    fn advance_by_series(
+        &mut self,
+        state: &mut SectionState,
+        inputs: &Inputs,
+        step: f64,
+    ) -> Result<()> {
+        let (wind, wind_rate) = (inputs.wind_speed_m_s, inputs.wind_speed_rate_m_s2);
+        let parts = self.series.parts(wind + wind_rate.abs() * step, step);
+        if wind_rate == 0.0 && (parts.is_nan() || parts > PARTS_OF_A_MATRIX) {
+            return self.advance_by_matrix(state, inputs, step);
+        }
+        check_substeps(parts, step)?;
+        let mut drive = Drive {
+            wind,
+            wind_rate,
+            force: Default::default(),
+        };
+        let n = inputs.force.len();
+        drive.force[0][..n].copy_from_slice(&inputs.force);
+        drive.force[1][..n].copy_from_slice(&inputs.force_rate);
+        if self.series.advance(&mut state.values, &drive, step, parts) {
+            settled(&mut state.values);
+            Ok(())
+        } else {
+            Err(overgrown())
+        }
     }
 
     /// Motion, accelerations and self-excited forces at the instant of `state`.
@@ -257,8 +317,9 @@ impl Stepper {
         inputs.check(n)?;
         let z = DVector::from_column_slice(&state.values);
         let w = DVector::from_column_slice(&inputs.force);
-        if let Realization::Discrete(d) = self.section.aerodynamics() {
-            let force = self.held_force(d, &state.values, inputs.wind_speed_m_s.max(0.0));
+        if let Some(sampling) = &self.sampling {
+            let force = sampling.force(&state.values, inputs.wind_speed_m_s.max(0.0));
+            let force = DVector::from_column_slice(&force[..n]);
             let (a, b) = self.section.structure_alone();
             let motion = a * z.rows(0, 2 * n) + b * (w + force);
             let mut derivative = vec![0.0; state.values.len()];
@@ -290,12 +351,20 @@ fn active_columns(inputs: &Inputs, states: usize) -> usize {
     }
 }
 
-fn drop_what_died_out(values: &mut [f64]) {
-    for x in values {
-        if x.abs() < DIED_OUT {
+/// Whether all values are finite; those that have died out become zero. Looks at all of them without a branch: this is
+/// part of every step.
+fn settled(values: &mut [f64]) -> bool {
+    let (mut finite, mut small) = (true, false);
+    for x in values.iter() {
+        finite &= x.is_finite();
+        small |= x.abs() < DIED_OUT;
+    }
+    if small {
+        for x in values.iter_mut().filter(|x| x.abs() < DIED_OUT) {
             *x = 0.0;
         }
     }
+    finite
 }
 
 /// Whether a step may take so many sub-steps.

@@ -1,81 +1,12 @@
 //! Exact steps against an independent integration and against the sampled system's own matrices.
 
-use aerodeck::aerodynamics::{DiscreteLaguerre, RationalModel, Realizable};
-use aerodeck::aeroelastic::{CoupledSection, CoupledSystem};
-use aerodeck::response::{Inputs, Outputs, SectionState, Stepper};
-use aerodeck::section::{Dof, SectionModel};
-use nalgebra::{DMatrix, DVector};
+#[path = "common/steppers.rs"]
+mod steppers;
 
-fn jones() -> Stepper {
-    let structure = SectionModel::table_4_1().structure().unwrap();
-    let aero = RationalModel::jones_flat_plate().realize();
-    Stepper::new(CoupledSection::new(structure, aero).unwrap())
-}
-
-fn discrete() -> Stepper {
-    let structure = SectionModel::table_4_1().structure().unwrap();
-    let model = DiscreteLaguerre::shared(
-        Dof::TWO.to_vec(),
-        0.6,
-        0.08,
-        vec![
-            DMatrix::from_row_slice(2, 3, &[-2.0, 0.5, 0.8, -0.4, 0.1, 0.1]),
-            DMatrix::from_row_slice(2, 3, &[4.0, 0.6, -0.3, 1.0, 0.2, -0.1]),
-        ],
-        vec![0.0; 2],
-    );
-    Stepper::new(CoupledSection::new(structure, model.realize()).unwrap())
-}
-
-fn distance(a: &[f64], b: &[f64]) -> f64 {
-    let scale = a.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-    a.iter()
-        .zip(b)
-        .map(|(x, y)| (x - y).abs() / scale)
-        .fold(0.0, f64::max)
-}
-
-fn blown(speed: f64) -> Inputs {
-    Inputs {
-        wind_speed_m_s: speed,
-        wind_speed_rate_m_s2: 0.0,
-        force: vec![3.0, -0.2],
-        force_rate: vec![-5.0, 0.7],
-    }
-}
-
-/// Classical Runge–Kutta of fourth order on `Stepper::state_derivative`, small steps.
-fn runge_kutta(
-    stepper: &Stepper,
-    start: &SectionState,
-    inputs: &Inputs,
-    h: f64,
-    steps: usize,
-) -> Vec<f64> {
-    let tau = h / steps as f64;
-    let derivative = |z: &DVector<f64>, t: f64| {
-        let mut now = inputs.clone();
-        now.wind_speed_m_s += inputs.wind_speed_rate_m_s2 * t;
-        for (w, rate) in now.force.iter_mut().zip(&inputs.force_rate) {
-            *w += rate * t;
-        }
-        let state = SectionState {
-            values: z.as_slice().to_vec(),
-            phase: 0.0,
-        };
-        DVector::from_vec(stepper.state_derivative(&state, &now).unwrap())
-    };
-    let mut z = DVector::from_column_slice(&start.values);
-    for i in 0..steps {
-        let t = i as f64 * tau;
-        let k1 = derivative(&z, t);
-        let k2 = derivative(&(&z + &k1 * (tau / 2.0)), t + tau / 2.0);
-        let k3 = derivative(&(&z + &k2 * (tau / 2.0)), t + tau / 2.0);
-        let k4 = derivative(&(&z + &k3 * tau), t + tau);
-        z += (k1 + k2 * 2.0 + k3 * 2.0 + k4) * (tau / 6.0);
-    }
-    z.as_slice().to_vec()
-}
+use aerodeck::aeroelastic::CoupledSystem;
+use aerodeck::response::{Inputs, Outputs, Stepper};
+use nalgebra::DVector;
+use steppers::{blown, discrete, distance, jones, runge_kutta};
 
 #[test]
 fn a_step_is_the_solution_of_the_differential_equation() {
@@ -107,36 +38,6 @@ fn one_step_is_two_halves() {
         let off = distance(&whole.values, &halves.values);
         assert!(off < 1e-12, "{off:e}");
     }
-}
-
-#[test]
-fn changing_wind_is_fourth_order_or_better_and_restores_the_constant_case() {
-    let mut stepper = jones();
-    let start = stepper.released(&[0.01, 0.02], &[0.0, 0.0]).unwrap();
-    let gust = Inputs {
-        wind_speed_rate_m_s2: 20.0,
-        ..blown(25.0)
-    };
-    let mut state = start.clone();
-    stepper.advance(&mut state, &gust, 0.3).unwrap();
-    let reference = runge_kutta(&stepper, &start, &gust, 0.3, 4000);
-    let off = distance(&reference, &state.values);
-    assert!(off < 1e-6, "{off:e}");
-    // halving the step of a smooth ramp changes the result only within that error
-    let mut two = start.clone();
-    stepper.advance(&mut two, &gust, 0.15).unwrap();
-    let later = Inputs {
-        wind_speed_m_s: gust.wind_speed_m_s + 0.15 * gust.wind_speed_rate_m_s2,
-        force: gust
-            .force
-            .iter()
-            .zip(&gust.force_rate)
-            .map(|(w, r)| w + 0.15 * r)
-            .collect(),
-        ..gust.clone()
-    };
-    stepper.advance(&mut two, &later, 0.15).unwrap();
-    assert!(distance(&reference, &two.values) < 1e-6);
 }
 
 /// Steps of exactly Δt repeat `z(k+1) = A z(k)` of the corrected equation (B.4).
@@ -250,13 +151,6 @@ fn a_wind_that_ramps_to_rest_comes_to_rest() {
 fn steps_of_too_many_parts_are_refused_at_once() {
     let at = |stepper: &mut Stepper, inputs: &Inputs, step: f64| {
         let mut state = stepper.released(&[0.01, 0.0], &[0.0, 0.0]).unwrap();
-        // the fastest of five: other work on the machine does not count
-        let spent = (0..5).map(|_| {
-            let begin = std::time::Instant::now();
-            assert!(stepper.advance(&mut state, inputs, step).is_err());
-            begin.elapsed()
-        });
-        assert!(spent.min().unwrap().as_millis() < 10);
         let message = stepper.advance(&mut state, inputs, step).unwrap_err();
         assert!(
             message.to_string().contains("at most 100000 sub-steps"),
@@ -268,7 +162,33 @@ fn steps_of_too_many_parts_are_refused_at_once() {
     }
     let mut rising = Inputs::steady(10.0, 2);
     rising.wind_speed_rate_m_s2 = 1e-3;
-    at(&mut jones(), &rising, 1e5);
+    for (wind, rate, step) in [(10.0, 1e-3, 1e5), (1.0, 1e12, 1.0), (1e200, 1e200, 1.0)] {
+        rising.wind_speed_m_s = wind;
+        rising.wind_speed_rate_m_s2 = rate;
+        at(&mut jones(), &rising, step);
+        at(&mut discrete(), &rising, step);
+    }
+}
+
+/// Winds that no anemometer shows are calm: no division by them, no sample for ages.
+#[test]
+fn the_lightest_breeze_is_still_air() {
+    for wind in [1e-9, 1e-100, 1e-320] {
+        for mut stepper in [jones(), discrete()] {
+            let mut state = stepper.released(&[0.01, 0.02], &[0.0, 0.0]).unwrap();
+            let mut still = state.clone();
+            let breeze = Inputs::steady(wind, 2);
+            stepper.advance(&mut state, &breeze, 1.0).unwrap();
+            stepper
+                .advance(&mut still, &Inputs::steady(0.0, 2), 1.0)
+                .unwrap();
+            // the wind acts in proportion to its speed
+            assert!(distance(&still.values, &state.values) < 1e-8);
+            let mut outputs = Outputs::default();
+            stepper.outputs(&state, &breeze, &mut outputs).unwrap();
+            stepper.state_derivative(&state, &breeze).unwrap();
+        }
+    }
 }
 
 /// A decay of hours ends at zero, not among the numbers that are slow to compute with.

@@ -1,33 +1,92 @@
-//! Steps of the discrete Laguerre model: force sampled and held every `Δt = Δs B/V`.
+//! Steps of the discrete Laguerre model: the dimensionless force is sampled and held every `Δt = Δs B/V`. The dynamic
+//! pressure is that of the wind at every instant, so that nothing depends on where communication points fall.
 
-use super::step_cache::apply;
-use super::{Inputs, SectionState, Stepper, check_substeps, drop_what_died_out, overgrown};
-use crate::aerodynamics::{DiscreteRealization, Realization};
+use super::packed::{Packed, apply};
+use super::series::Drive;
+use super::{
+    Inputs, MAX_DOFS, PARTS_OF_A_MATRIX, SectionState, Stepper, check_substeps, overgrown, settled,
+};
+use crate::aerodynamics::Realization;
+use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
-use nalgebra::DVector;
 
 /// A sample closer to the end of the step than this part of `Δs` is taken: the phase is known to rounding only.
 const SAMPLE_TOLERANCE: f64 = 1e-10;
+/// A phase ends before the sample that rounding would make it reach.
+const LAST_PHASE: f64 = 1.0 - f64::EPSILON;
 
-impl Stepper {
-    /// Force of the filters, `½ρV² diag(B, B, B²) C S`, per unit length (n).
-    pub(super) fn held_force(
-        &self,
-        model: &DiscreteRealization,
-        values: &[f64],
-        speed: f64,
-    ) -> DVector<f64> {
-        let s = self.section.structure();
-        let n = s.dofs.len();
-        let pressure = 0.5 * s.air_density_kg_m3 * speed * speed;
-        let filters = DVector::from_column_slice(&values[2 * n..]);
-        let mut force = &model.c * filters;
-        for (i, f) in force.iter_mut().enumerate() {
-            *f *= pressure * s.dofs[i].force_scale(s.width_m);
-        }
-        force
+/// What the filters of the discrete model do at a sample, and the force they give.
+#[derive(Debug, Clone)]
+pub(super) struct Sampling {
+    dofs: usize,
+    /// Way of the wind from sample to sample, `Δs B`, m.
+    way_m: f64,
+    /// `½ρ diag(B, B, B²) C`: forces on `S` at 1 m/s.
+    force: Packed,
+    /// `[A, B diag(1/B, 1/B, 1)]` on `[S, q]`.
+    next: Packed,
+    /// `[S, q]`.
+    operand: Vec<f64>,
+}
+
+impl Sampling {
+    /// None for a continuous model.
+    pub fn of(section: &CoupledSection) -> Option<Self> {
+        let Realization::Discrete(d) = section.aerodynamics() else {
+            return None;
+        };
+        let s = section.structure();
+        let (n, filters) = (s.dofs.len(), d.a.nrows());
+        Some(Self {
+            dofs: n,
+            way_m: d.delta_s * s.width_m,
+            force: Packed::of(&section.force_of_filters(&d.c, 1.0)),
+            next: Packed::new(filters, filters + n, |l, j| {
+                if j < filters {
+                    d.a[(l, j)]
+                } else {
+                    d.b[(l, j - filters)] * s.dofs[j - filters].motion_scale(s.width_m)
+                }
+            }),
+            operand: vec![0.0; filters + n],
+        })
     }
 
+    /// Force of the filters at a wind speed, per unit length.
+    pub fn force(&self, values: &[f64], speed: f64) -> [f64; MAX_DOFS] {
+        let mut force = [0.0; MAX_DOFS];
+        apply(&self.force, &values[2 * self.dofs..], &mut force);
+        force.map(|f| f * (speed * speed))
+    }
+
+    /// `S(k+1) = A S(k) + B r(k+1)`.
+    fn sample(&mut self, values: &mut [f64]) {
+        let filters = self.operand.len() - self.dofs;
+        self.operand[..filters].copy_from_slice(&values[2 * self.dofs..]);
+        self.operand[filters..].copy_from_slice(&values[..self.dofs]);
+        apply(&self.next, &self.operand, &mut values[2 * self.dofs..]);
+    }
+
+    /// Wind and forces from `time` after the start of the step on.
+    fn drive(&self, values: &[f64], inputs: &Inputs, time: f64) -> Drive {
+        let rate = inputs.wind_speed_rate_m_s2;
+        let wind = wind_after(inputs, time);
+        let mut force = [[0.0; MAX_DOFS]; 3];
+        let held = self.force(values, 1.0);
+        for (i, (w, w_rate)) in inputs.force.iter().zip(&inputs.force_rate).enumerate() {
+            force[0][i] = w + w_rate * time + held[i] * wind * wind;
+            force[1][i] = w_rate + 2.0 * held[i] * wind * rate;
+            force[2][i] = held[i] * rate * rate;
+        }
+        Drive {
+            wind,
+            wind_rate: rate,
+            force,
+        }
+    }
+}
+
+impl Stepper {
     /// Moves the structure from sample to sample; the last piece ends between two samples.
     pub(super) fn advance_sampled(
         &mut self,
@@ -35,74 +94,74 @@ impl Stepper {
         inputs: &Inputs,
         step: f64,
     ) -> Result<()> {
-        let Realization::Discrete(model) = self.section.aerodynamics().clone() else {
-            return Err(Error::Numerical("step: the model is not sampled".into()));
-        };
-        let width = self.section.structure().width_m;
+        let way = self.sampling()?.way_m;
         let mean = inputs.wind_speed_m_s + 0.5 * inputs.wind_speed_rate_m_s2 * step;
-        check_substeps((mean * step / (model.delta_s * width)).ceil(), step)?;
+        let samples = (mean * step / way).ceil();
+        let parts = match inputs.wind_speed_rate_m_s2 {
+            0.0 => 0.0,
+            _ => self.series.parts(0.0, step),
+        };
+        check_substeps(samples + parts, step)?;
         let mut next = state.clone();
-        let mut now = inputs.clone();
-        let mut remaining = step;
+        let (mut time, mut remaining) = (0.0, step);
         while remaining > 0.0 {
-            let distance = (1.0 - next.phase) * model.delta_s * width;
-            let wait = time_to_cover(distance, now.wind_speed_m_s, now.wind_speed_rate_m_s2);
+            let (wind, rate) = (wind_after(inputs, time), inputs.wind_speed_rate_m_s2);
+            let wait = time_to_cover((1.0 - next.phase) * way, wind, rate);
             let sampled = remaining >= wait * (1.0 - SAMPLE_TOLERANCE);
             let piece = if sampled { wait } else { remaining };
-            self.move_structure(&model, &mut next, &now, piece)?;
-            let travelled =
-                (now.wind_speed_m_s + 0.5 * now.wind_speed_rate_m_s2 * piece) * piece / width;
-            advance_inputs(&mut now, piece);
+            self.move_structure(&mut next, inputs, time, piece)?;
             if sampled {
-                self.sample(&model, &mut next);
+                self.sampling()?.sample(&mut next.values);
                 next.phase = 0.0;
+                time += piece;
                 remaining = (remaining - piece).max(0.0);
             } else {
-                next.phase += travelled / model.delta_s;
+                let travelled = (wind + 0.5 * rate * piece) * piece;
+                next.phase = (next.phase + travelled / way).clamp(0.0, LAST_PHASE);
                 remaining = 0.0;
             }
         }
-        if !next.values.iter().all(|x| x.is_finite()) {
+        if !settled(&mut next.values) {
             return Err(overgrown());
         }
-        drop_what_died_out(&mut next.values);
         *state = next;
         Ok(())
     }
 
-    /// Structure alone under the held force and the external one.
+    fn sampling(&mut self) -> Result<&mut Sampling> {
+        let none = || Error::Numerical("step: the model is not sampled".into());
+        self.sampling.as_mut().ok_or_else(none)
+    }
+
+    /// Structure alone under the force of the filters and the external one, from `time` on.
     fn move_structure(
         &mut self,
-        model: &DiscreteRealization,
         state: &mut SectionState,
         inputs: &Inputs,
+        time: f64,
         piece: f64,
     ) -> Result<()> {
         if piece <= 0.0 {
             return Ok(());
         }
-        let n = inputs.force.len();
-        let force = self.held_force(model, &state.values, inputs.wind_speed_m_s);
-        let mut operand = Vec::with_capacity(4 * n);
-        operand.extend_from_slice(&state.values[..2 * n]);
-        operand.extend(force.iter().zip(&inputs.force).map(|(held, w)| held + w));
-        operand.extend_from_slice(&inputs.force_rate);
-        let step = self.cache.structure(&self.section, piece)?;
-        apply(step, &operand, &mut state.values[..2 * n]);
+        let drive = self.sampling()?.drive(&state.values, inputs, time);
+        let motion = &mut state.values[..2 * inputs.force.len()];
+        let parts = self.series.parts(0.0, piece);
+        if drive.wind_rate == 0.0 && parts > PARTS_OF_A_MATRIX {
+            let n = inputs.force.len();
+            let operand = [motion, &drive.force[0][..n], &drive.force[1][..n]].concat();
+            let step = self.cache.structure(&self.section, piece)?;
+            apply(step, &operand, motion);
+        } else if !self.series.advance(motion, &drive, piece, parts) {
+            return Err(overgrown());
+        }
         Ok(())
     }
+}
 
-    /// `S(k+1) = A S(k) + B r(k+1)`.
-    fn sample(&self, model: &DiscreteRealization, state: &mut SectionState) {
-        let s = self.section.structure();
-        let n = s.dofs.len();
-        let motion = DVector::from_fn(n, |i, _| {
-            state.values[i] * s.dofs[i].motion_scale(s.width_m)
-        });
-        let filters = DVector::from_column_slice(&state.values[2 * n..]);
-        let new = &model.a * filters + &model.b * motion;
-        state.values[2 * n..].copy_from_slice(new.as_slice());
-    }
+/// Wind speed `time` after the start of a step; rounding must not turn a wind that comes to rest into a negative one.
+fn wind_after(inputs: &Inputs, time: f64) -> f64 {
+    (inputs.wind_speed_m_s + inputs.wind_speed_rate_m_s2 * time).max(0.0)
 }
 
 /// Time in which the wind covers `distance`, starting at `speed` with the acceleration `rate`; infinite if never.
@@ -123,13 +182,5 @@ fn time_to_cover(distance: f64, speed: f64, rate: f64) -> f64 {
         2.0 * distance / sum
     } else {
         f64::INFINITY
-    }
-}
-
-fn advance_inputs(inputs: &mut Inputs, piece: f64) {
-    // rounding must not turn a wind that comes to rest into a negative one
-    inputs.wind_speed_m_s = (inputs.wind_speed_m_s + inputs.wind_speed_rate_m_s2 * piece).max(0.0);
-    for (w, rate) in inputs.force.iter_mut().zip(&inputs.force_rate) {
-        *w += rate * piece;
     }
 }

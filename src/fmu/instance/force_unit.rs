@@ -202,7 +202,10 @@ impl Unit for ForceUnit {
     fn at_rest(&self) -> SectionState {
         let mut values = vec![NOT_SET; self.first()];
         values.extend(self.forces.rest(self.strips.len()));
-        SectionState { values, phase: 0.0 }
+        SectionState {
+            values,
+            ..SectionState::default()
+        }
     }
 
     fn changed(&mut self, _: Source) {}

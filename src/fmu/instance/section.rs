@@ -3,11 +3,14 @@
 use crate::aerodynamics::{Realization, Transfer};
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
-use crate::flutter::{FlutterSearch, OnsetSearch, divergence_speed, find_onset};
+use crate::flutter::{
+    FlutterSearch, LinearForces, OnsetSearch, OnsetSweep, SweepOutcome, SweptOnset,
+    divergence_speed, find_onset,
+};
 use crate::fmu::variables::{Calculated, Role, SectionParameter, VariableTable};
 use crate::section::{Dof, SectionModel};
-use crate::trained_model::TrainedModel;
-use crate::units::ReducedFrequency;
+use crate::trained_model::{Model, TrainedModel};
+use crate::units::{ReducedFrequency, ReducedVelocity};
 
 /// The section of the model with the parameters in `values` (one number a variable of `table`).
 ///
@@ -77,6 +80,44 @@ pub(super) fn coupled_section(
     CoupledSection::new(structure, aerodynamics.clone())
 }
 
+/// The onset up to `limit` m/s where it is plain: inside the tested range, with nothing that grows below it. A sweep
+/// sees every crossing in some ten microseconds; whatever else it sees is for the search of all eigenvalues to judge.
+pub(super) fn plain_onset(
+    model: &TrainedModel,
+    table: &VariableTable,
+    values: &[f64],
+    limit: f64,
+) -> Option<SweptOnset> {
+    let tested = Some(model.tested_range);
+    let forces = match &model.model {
+        Model::Laguerre(m) => LinearForces::of_laguerre(m, tested),
+        Model::Rational(m) => LinearForces::of_rational(m, tested),
+        Model::MinimumState(m) => LinearForces::of_rational(&m.to_roger(), tested),
+        Model::DiscreteLaguerre(_) => return None,
+    };
+    let section = section_model(model, table, values);
+    let sweep = OnsetSweep::new(forces, &section.structure().ok()?, limit).ok()?;
+    match sweep.onset(&section, sweep.forces().coefficients()) {
+        Ok(SweepOutcome::Onset(o)) if o.in_tested_range && o.spurious == 0 => Some(o),
+        _ => None,
+    }
+}
+
+/// States at most whose eigenvalues are searched, for about a second: the time grows with their third power.
+const SEARCHED_STATES: usize = 100;
+
+/// Refuses a search of all eigenvalues that would seem to hang.
+pub(super) fn check_searchable(section: &CoupledSection) -> Result<()> {
+    match section.states() {
+        states if states > SEARCHED_STATES => Err(Error::input(
+            "search of all eigenvalues",
+            format!("at most {SEARCHED_STATES} states"),
+            states.to_string(),
+        )),
+        _ => Ok(()),
+    }
+}
+
 /// Onset and divergence of a section.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct OnsetCard {
@@ -89,7 +130,12 @@ pub(super) struct OnsetCard {
 impl OnsetCard {
     /// Searches up to `limit` m/s. What is not found is the limit itself, with frequency and reduced velocity zero; so is
     /// what cannot be searched for, with a warning: parameters that are legal must not make a getter fail.
-    pub fn search(model: &TrainedModel, section: &CoupledSection, limit: f64) -> Self {
+    pub fn search(
+        model: &TrainedModel,
+        section: &CoupledSection,
+        limit: f64,
+        plain: Option<SweptOnset>,
+    ) -> Self {
         let mut card = Self::nothing_found(limit, Vec::new());
         let unknown =
             |what: &str, why: &Error| format!("{what} is not known for these parameters: {why}");
@@ -101,6 +147,16 @@ impl OnsetCard {
                 }
             }
             Err(why) => card.warnings.push(unknown("divergence", &why)),
+        }
+        if let Some(onset) = plain {
+            let width = section.structure().width_m;
+            let velocity = ReducedVelocity::from(ReducedFrequency::from_circular(
+                std::f64::consts::TAU * onset.frequency_hz,
+                width,
+                onset.speed_m_s,
+            ));
+            card.set_onset(onset.speed_m_s, onset.frequency_hz, velocity, true);
+            return card;
         }
         match onset_of(model, section, limit) {
             Ok(found) => card.take(found),
@@ -145,13 +201,16 @@ impl OnsetCard {
             }
             FlutterSearch::StableUpTo(_) => return,
         };
-        self.set(Calculated::OnsetSpeed, at.0);
-        self.set(Calculated::OnsetFrequency, at.1);
-        self.set(Calculated::OnsetReducedVelocity, at.2.v_star());
-        self.set(Calculated::OnsetFound, 1.0);
-        let tested = f64::from(u8::from(tested == Some(true)));
-        self.set(Calculated::OnsetInTestedRange, tested);
+        self.set_onset(at.0, at.1, at.2, tested == Some(true));
         self.warnings.extend(warnings);
+    }
+
+    fn set_onset(&mut self, speed: f64, frequency: f64, velocity: ReducedVelocity, tested: bool) {
+        self.set(Calculated::OnsetSpeed, speed);
+        self.set(Calculated::OnsetFrequency, frequency);
+        self.set(Calculated::OnsetReducedVelocity, velocity.v_star());
+        self.set(Calculated::OnsetFound, 1.0);
+        self.set(Calculated::OnsetInTestedRange, f64::from(u8::from(tested)));
     }
 
     fn set(&mut self, which: Calculated, value: f64) {
@@ -165,6 +224,7 @@ impl OnsetCard {
 }
 
 fn onset_of(model: &TrainedModel, section: &CoupledSection, limit: f64) -> Result<FlutterSearch> {
+    check_searchable(section)?;
     let search = OnsetSearch {
         speed_max_m_s: limit,
         ..OnsetSearch::default()

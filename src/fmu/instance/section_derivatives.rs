@@ -29,7 +29,7 @@ impl SectionUnit {
         };
         let velocity = SectionState {
             values: stepper.state_derivative(&memory.system, &self.inputs)?,
-            phase: 0.0,
+            ..SectionState::default()
         };
         let driven = Inputs {
             force: self.inputs.force_rate.clone(),
@@ -79,7 +79,7 @@ impl SectionUnit {
         }
         let at_rest = SectionState {
             values: vec![0.0; memory.system.values.len()],
-            phase: 0.0,
+            ..SectionState::default()
         };
         let mut outputs = Outputs::default();
         stepper.outputs(&at_rest, &unit, &mut outputs)?;

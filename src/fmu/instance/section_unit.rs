@@ -140,9 +140,17 @@ impl SectionUnit {
     /// Growth below the onset for the parameters in `values`.
     fn growth(&self, resources: &Resources, values: &[f64]) -> Result<UnwantedGrowth> {
         let Resources { model, table, .. } = resources;
+        let speed_max_m_s = values[self.places.search_limit];
         let section = section::coupled_section(model, table, &self.aerodynamics, values)?;
+        if let Some(onset) = section::plain_onset(model, table, values, speed_max_m_s) {
+            return Ok(UnwantedGrowth {
+                scanned_to_m_s: onset.speed_m_s,
+                bands: Vec::new(),
+            });
+        }
+        section::check_searchable(&section)?;
         let search = OnsetSearch {
-            speed_max_m_s: values[self.places.search_limit],
+            speed_max_m_s,
             ..OnsetSearch::default()
         };
         unwanted_growth(&section, &search, Some(model.tested_range))
@@ -152,7 +160,10 @@ impl SectionUnit {
         let Resources { model, table, .. } = resources;
         let limit = values[self.places.search_limit];
         match section::coupled_section(model, table, &self.aerodynamics, values) {
-            Ok(section) => OnsetCard::search(model, &section, limit),
+            Ok(section) => {
+                let plain = section::plain_onset(model, table, values, limit);
+                OnsetCard::search(model, &section, limit, plain)
+            }
             Err(why) => OnsetCard::unknown(limit, &why),
         }
     }
@@ -166,7 +177,7 @@ impl Unit for SectionUnit {
     fn at_rest(&self) -> SectionState {
         SectionState {
             values: vec![0.0; 2 * self.places.force.len() + self.aerodynamics.states()],
-            phase: 0.0,
+            ..SectionState::default()
         }
     }
 

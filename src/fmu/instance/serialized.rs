@@ -3,7 +3,7 @@
 //! ```text
 //! magic "AERODECK" · version u32 · identity 16 bytes · number of values, inputs, states u32 each
 //! state code u8 · experiment u8 (bit 0: set up, bit 1: with a stop time) · start, stop, time f64
-//! values f64… · input rates f64… · section state f64… · phase f64
+//! values f64… · input rates f64… · section state f64… · phase f64 · last wind f64 (-1 for none)
 //! digest of all bytes before, 16 bytes
 //! ```
 
@@ -13,14 +13,16 @@ use crate::fmu::lifecycle::State;
 use uuid::Uuid;
 
 const MAGIC: &[u8; 8] = b"AERODECK";
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
+/// Stands for no last wind.
+const NO_WIND: f64 = -1.0;
 const HEADER: usize = 8 + 4 + 16 + 3 * 4 + 2;
 const DIGEST: usize = 16;
 
 /// Length in bytes of every saved state of an instance with this memory.
 pub(super) fn length(memory: &Memory) -> usize {
-    // start, stop, time, phase
-    HEADER + 8 * (4 + counts(memory).iter().sum::<usize>()) + DIGEST
+    // start, stop, time, phase, last wind
+    HEADER + 8 * (5 + counts(memory).iter().sum::<usize>()) + DIGEST
 }
 
 /// Tells damaged bytes from whole ones: a changed digit would go unnoticed otherwise.
@@ -57,7 +59,10 @@ pub(super) fn write(memory: &Memory, guid: &Uuid) -> Vec<u8> {
         .chain(memory.values.iter().copied())
         .chain(memory.input_rates.iter().copied())
         .chain(memory.system.values.iter().copied())
-        .chain([memory.system.phase]);
+        .chain([
+            memory.system.phase,
+            memory.system.last_wind_m_s.unwrap_or(NO_WIND),
+        ]);
     for number in numbers {
         bytes.extend_from_slice(&number.to_le_bytes());
     }
@@ -102,6 +107,7 @@ pub(super) fn read(bytes: &[u8], guid: &Uuid, like: &Memory) -> Result<Memory> {
         system: crate::response::SectionState {
             values: reader.numbers(like.system.values.len())?,
             phase: reader.number()?,
+            last_wind_m_s: Some(reader.number()?).filter(|wind| *wind >= 0.0),
         },
     };
     if !(0.0..1.0).contains(&memory.system.phase) {

@@ -186,22 +186,38 @@ fn an_experiment_that_is_not_set_up_starts_at_zero() {
     unit.ok(unit.step(0.0, 0.1));
 }
 
+/// The continuous fixture with so many filters of heave, nearly all of which do nothing.
+fn many_filters(count: usize) -> TrainedModel {
+    let mut model = Archive::fixture("continuous_laguerre").resources.model;
+    let Model::Laguerre(filters) = &mut model.model else {
+        panic!("the fixture has filters");
+    };
+    let term = &mut filters.terms[0];
+    term.poles = crate::aerodynamics::FilterBank::laguerre(0.3, count).unwrap();
+    term.coefficients = nalgebra::DMatrix::from_element(2, count, 1e-9);
+    model
+}
+
 /// More states than any memory holds: refused before a matrix is made.
 #[test]
 fn models_of_too_many_states_are_refused() {
-    let Model::Laguerre(mut filters) = Archive::fixture("continuous_laguerre")
-        .resources
-        .model
-        .model
-    else {
-        panic!("the fixture has filters");
-    };
-    let mut model = Archive::fixture("continuous_laguerre").resources.model;
-    let term = &mut filters.terms[0];
-    term.poles = crate::aerodynamics::FilterBank::laguerre(0.3, 100_000).unwrap();
-    term.coefficients = nalgebra::DMatrix::zeros(2, 100_000);
-    model.model = Model::Laguerre(filters);
-    let json = serde_json::to_string(&model).unwrap();
+    let json = serde_json::to_string(&many_filters(100_000)).unwrap();
     let message = TrainedModel::from_json(&json).unwrap_err().to_string();
     assert!(message.contains("at most 1000 states"), "{message}");
+}
+
+/// Eigenvalues by the thousand would take minutes: where the onset is not plain, nothing is searched.
+#[test]
+fn sections_of_many_states_are_not_searched() {
+    let mut model = many_filters(300);
+    model.experiment.onset_search_limit_m_s = 5.0;
+    let unit = Unit::instantiate(Archive::of(&model.to_json().unwrap()));
+    unit.ok(unsafe { fmi2SetDebugLogging(unit.handle, 1, 0, null()) });
+    unit.ok(unit.set_up());
+    unit.ok(unit.enter());
+    assert_eq!(unit.get(["onset_speed"]), [5.0]);
+    assert!(!unit.flag("onset_found"));
+    assert!(warned(&unit, "at most 100 states"));
+    unit.ok(unit.exit());
+    unit.ok(unit.step(0.0, 0.01));
 }

@@ -1,0 +1,321 @@
+//! Steps by the Taylor series of the motion: no matrix exponential where the wind changes, and no allocation.
+//!
+//! The wind runs on a straight line over a step, so that the equation of motion has coefficients of second degree in
+//! time, and the series `y(t + sτ) = Σ yₖ sᵏ` follows term by term (`V` the wind at the start, `v = V̇τ`, forces
+//! `w₀ + w₁s + w₂s²`):
+//!
+//! ```text
+//! q̇ₖ₊₁ = τ/(k+1) (A₀[q̇, q]ₖ + V dₖ + v dₖ₋₁ + V² fₖ + 2Vv fₖ₋₁ + v² fₖ₋₂ + M⁻¹wₖ)      d = A₁ q̇, f = A₂ [q, x]
+//! qₖ₊₁ = τ/(k+1) q̇ₖ,    xₖ₊₁ = τ/(k+1) (V gₖ + v gₖ₋₁)                                  g = G [q, x]
+//! ```
+//!
+//! It converges for every step; parts of bounded norm keep its terms from cancelling. It ends when what is left out is
+//! below rounding, so that nothing is lost against the exponential: the wind's change costs no accuracy.
+
+use super::MAX_DOFS;
+use super::packed::{Packed, apply};
+use crate::aerodynamics::Realization;
+use crate::aeroelastic::CoupledSection;
+use nalgebra::DMatrix;
+
+/// Norm of one part: its terms grow to some `e²` times the motion at most, which costs two or three bits.
+const NORM_OF_PART: f64 = 3.0;
+/// What the series may leave out, relative to its largest term.
+const LEFT_OUT: f64 = f64::EPSILON / 8.0;
+/// Terms of a part at most: 3⁶⁰/60! = 5e-54.
+const MAX_TERMS: usize = 60;
+
+/// Wind and external forces over a step, polynomials of the time since its start.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Drive {
+    /// Wind speed, m/s.
+    pub wind: f64,
+    /// Its rate, m/s².
+    pub wind_rate: f64,
+    /// Forces and their coefficients of first and second degree, per unit length.
+    pub force: [[f64; MAX_DOFS]; 3],
+}
+
+/// Largest row sums of the scaled system, by the power of the wind speed that they go with.
+#[derive(Debug, Clone, Copy, Default)]
+struct Norms {
+    rate: f64,
+    structure: f64,
+    damping: f64,
+    pressure: f64,
+    filters: f64,
+}
+
+/// A section ready for series. Motion is scaled by powers of two to numbers of one size, exactly: displacements by their
+/// motion scale, rates by a frequency as well.
+#[derive(Debug, Clone)]
+pub(super) struct Series {
+    dofs: usize,
+    /// Factor from a displacement to its scaled value.
+    scale: [f64; MAX_DOFS],
+    /// Unit of the rates, rad/s.
+    rate: f64,
+    /// `[A₀; A₁]` on `[q̇, q]`.
+    structure: Packed,
+    /// `[A₂; G]` on `[q, x]`.
+    aerodynamic: Packed,
+    /// `M⁻¹`, scaled.
+    force: DMatrix<f64>,
+    norms: Norms,
+    work: Work,
+}
+
+/// Memory of a step.
+#[derive(Debug, Clone)]
+struct Work {
+    /// `[q̇, q, x]`, scaled.
+    sum: Vec<f64>,
+    term: Vec<f64>,
+    /// `[A₀[q̇, q]; d]` of this term and the one before.
+    structure: [Vec<f64>; 2],
+    /// `[f; g]` of this term and the two before.
+    aerodynamic: [Vec<f64>; 3],
+}
+
+impl Series {
+    /// The section; of a sampled model the structure alone.
+    pub fn new(section: &CoupledSection) -> Self {
+        let s = section.structure();
+        let n = s.dofs.len();
+        let mut scale = [1.0; MAX_DOFS];
+        for (scale, dof) in scale.iter_mut().zip(&s.dofs) {
+            *scale = power_of_two(dof.motion_scale(s.width_m));
+        }
+        let stiffest = (section.inverse_mass() * &s.stiffness).diagonal().amax();
+        let rate = power_of_two(if stiffest > 0.0 { stiffest.sqrt() } else { 1.0 });
+        let (structure, aerodynamic) = matrices(section, &scale[..n], rate);
+        let filters = aerodynamic.nrows() - n;
+        let norms = Norms {
+            rate,
+            structure: row_sum(&structure, 0..n),
+            damping: row_sum(&structure, n..2 * n),
+            pressure: row_sum(&aerodynamic, 0..n),
+            filters: row_sum(&aerodynamic, n..n + filters),
+        };
+        let force = DMatrix::from_fn(n, n, |i, j| {
+            section.inverse_mass()[(i, j)] * scale[i] / rate
+        });
+        Self {
+            dofs: n,
+            scale,
+            rate,
+            structure: Packed::of(&structure),
+            aerodynamic: Packed::of(&aerodynamic),
+            force,
+            norms,
+            work: Work {
+                sum: vec![0.0; 2 * n + filters],
+                term: vec![0.0; 2 * n + filters],
+                structure: [vec![0.0; 2 * n], vec![0.0; 2 * n]],
+                aerodynamic: std::array::from_fn(|_| vec![0.0; n + filters]),
+            },
+        }
+    }
+
+    /// Norm of a step in winds up to `wind`.
+    fn norm(&self, wind: f64, step: f64) -> f64 {
+        let n = &self.norms;
+        let motion = n.structure + wind * (n.damping + wind * n.pressure);
+        step * n.rate.max(motion).max(wind * n.filters)
+    }
+
+    /// Parts into which a step is cut in winds up to `wind`; not a number where the norm is none.
+    pub fn parts(&self, wind: f64, step: f64) -> f64 {
+        let parts = self.norm(wind, step) / NORM_OF_PART;
+        if parts > 1.0 { parts.ceil() } else { 1.0 }
+    }
+
+    /// Advances `[q, q̇, x]` (of a sampled model `[q, q̇]`) by a step of so many parts. Says whether the result is finite;
+    /// the values are changed only then.
+    pub fn advance(&mut self, values: &mut [f64], drive: &Drive, step: f64, parts: f64) -> bool {
+        let (n, rate) = (self.dofs, self.rate);
+        for i in 0..n {
+            self.work.sum[i] = values[n + i] * (self.scale[i] / rate);
+            self.work.sum[n + i] = values[i] * self.scale[i];
+        }
+        self.work.sum[2 * n..].copy_from_slice(&values[2 * n..]);
+        let tau = step / parts;
+        for i in 0..parts as usize {
+            self.part(drive, i as f64 * tau, tau);
+        }
+        let sum = &self.work.sum;
+        if !sum.iter().all(|x| x.is_finite()) {
+            return false;
+        }
+        for i in 0..n {
+            values[n + i] = sum[i] * (rate / self.scale[i]);
+            values[i] = sum[n + i] / self.scale[i];
+        }
+        values[2 * n..].copy_from_slice(&sum[2 * n..]);
+        true
+    }
+
+    /// One part from the time `start` on.
+    fn part(&mut self, drive: &Drive, start: f64, tau: f64) {
+        // rounding must not turn a wind that comes to rest into a negative one
+        let wind = (drive.wind + drive.wind_rate * start).max(0.0);
+        let change = drive.wind_rate * tau;
+        let push = self.accelerations(drive, start, tau);
+        let norm = self.norm(wind + change.abs(), tau);
+        let work = &mut self.work;
+        let mut largest = work.begin();
+        let mut last = [0.0; 3];
+        for k in 0..MAX_TERMS {
+            work.structure.swap(0, 1);
+            work.aerodynamic.rotate_right(1);
+            apply(
+                &self.structure,
+                &work.term[..2 * self.dofs],
+                &mut work.structure[0],
+            );
+            apply(
+                &self.aerodynamic,
+                &work.term[self.dofs..],
+                &mut work.aerodynamic[0],
+            );
+            let push = push.get(k).copied().unwrap_or_default();
+            let factor = tau / (k + 1) as f64;
+            work.next_term(self.dofs, factor, self.rate, (wind, change), &push);
+            let size = largest_of(&work.term);
+            largest = if size > largest { size } else { largest };
+            last = [size, last[0], last[1]];
+            // each term to come is below norm/(k+2) times the largest of those it is made from
+            let made_from = if change == 0.0 { 1 } else { 3 };
+            let rest = norm * largest_of(&last[..made_from]);
+            let settled = rest <= LEFT_OUT * (k + 2) as f64 * largest;
+            if k >= 2 && (settled || rest.is_nan()) {
+                break;
+            }
+        }
+    }
+
+    /// Scaled accelerations by the external forces from `start` on, for a time in units of `tau`.
+    fn accelerations(&self, drive: &Drive, start: f64, tau: f64) -> [[f64; MAX_DOFS]; 3] {
+        let [w0, w1, w2] = &drive.force;
+        let mut push = [[0.0; MAX_DOFS]; 3];
+        for j in 0..self.dofs {
+            let now = w0[j] + start * (w1[j] + start * w2[j]);
+            let slope = tau * (w1[j] + 2.0 * start * w2[j]);
+            let bend = tau * tau * w2[j];
+            if now == 0.0 && slope == 0.0 && bend == 0.0 {
+                continue;
+            }
+            for (push, by_time) in push.iter_mut().zip([now, slope, bend]) {
+                for (push, by_force) in push.iter_mut().zip(self.force.column(j).iter()) {
+                    *push += by_force * by_time;
+                }
+            }
+        }
+        push
+    }
+}
+
+impl Work {
+    /// Makes the sum so far the first term, with none before it; gives its largest entry.
+    fn begin(&mut self) -> f64 {
+        self.term.copy_from_slice(&self.sum);
+        self.structure[0].fill(0.0);
+        self.aerodynamic[..2].iter_mut().for_each(|g| g.fill(0.0));
+        largest_of(&self.term)
+    }
+
+    /// Replaces the term by the next one and adds it to the sum.
+    fn next_term(
+        &mut self,
+        n: usize,
+        factor: f64,
+        rate: f64,
+        (wind, change): (f64, f64),
+        push: &[f64; MAX_DOFS],
+    ) {
+        let [s, s_before] = &self.structure;
+        let [g, g_before, g_first] = &self.aerodynamic;
+        for i in 0..n {
+            let velocity = self.term[i];
+            let mut sum = s[i] + push[i] + wind * (s[n + i] + wind * g[i]);
+            if change != 0.0 {
+                sum += change * (s_before[n + i] + 2.0 * wind * g_before[i] + change * g_first[i]);
+            }
+            self.term[i] = factor * sum;
+            self.term[n + i] = factor * rate * velocity;
+        }
+        let (now, before) = (factor * wind, factor * change);
+        let filters = &mut self.term[2 * n..];
+        for ((x, g), g_before) in filters.iter_mut().zip(&g[n..]).zip(&g_before[n..]) {
+            *x = now * g + before * g_before;
+        }
+        for (sum, term) in self.sum.iter_mut().zip(&self.term) {
+            *sum += term;
+        }
+    }
+}
+
+/// `[A₀; A₁]` on `[q̇, q]` and `[A₂; G]` on `[q, x]`, scaled.
+fn matrices(section: &CoupledSection, scale: &[f64], rate: f64) -> (DMatrix<f64>, DMatrix<f64>) {
+    let s = section.structure();
+    let n = scale.len();
+    let inverse_mass = section.inverse_mass();
+    let mut structure = DMatrix::zeros(2 * n, 2 * n);
+    // accelerations by rates and by displacements, both in scaled units
+    let by_rate = |m: DMatrix<f64>| DMatrix::from_fn(n, n, |i, j| m[(i, j)] * scale[i] / scale[j]);
+    let by_motion = |m: DMatrix<f64>| by_rate(m) / rate;
+    structure
+        .view_mut((0, 0), (n, n))
+        .copy_from(&by_rate(-(inverse_mass * &s.damping)));
+    structure
+        .view_mut((0, n), (n, n))
+        .copy_from(&by_motion(-(inverse_mass * &s.stiffness)));
+    let Realization::Continuous(c) = section.aerodynamics() else {
+        return (structure, DMatrix::zeros(n, n));
+    };
+    let half_rho = 0.5 * s.air_density_kg_m3;
+    structure.view_mut((n, 0), (n, n)).copy_from(&by_rate(
+        inverse_mass * s.scaled(&c.e1) * (half_rho * s.width_m),
+    ));
+    let filters = c.a.nrows();
+    let mut aerodynamic = DMatrix::zeros(n + filters, n + filters);
+    aerodynamic
+        .view_mut((0, 0), (n, n))
+        .copy_from(&by_motion(inverse_mass * s.scaled(&c.e0) * half_rho));
+    // at 1 m/s
+    let by_filters = inverse_mass * section.force_of_filters(&c.c, 1.0);
+    for (i, scale) in scale.iter().enumerate() {
+        let row = by_filters.row(i) * (scale / rate);
+        aerodynamic.view_mut((i, n), (1, filters)).copy_from(&row);
+        let drive = s.dofs[i].motion_scale(s.width_m) / (s.width_m * scale);
+        aerodynamic
+            .view_mut((n, i), (filters, 1))
+            .copy_from(&(c.b.column(i) * drive));
+    }
+    aerodynamic
+        .view_mut((n, n), (filters, filters))
+        .copy_from(&(&c.a / s.width_m));
+    (structure, aerodynamic)
+}
+
+/// The power of two below a positive number.
+fn power_of_two(x: f64) -> f64 {
+    const EXPONENT: u64 = 0x7FF << 52;
+    f64::from_bits(x.max(f64::MIN_POSITIVE).to_bits() & EXPONENT)
+}
+
+fn row_sum(m: &DMatrix<f64>, rows: std::ops::Range<usize>) -> f64 {
+    let sum = |i: usize| m.row(i).iter().map(|x| x.abs()).sum::<f64>();
+    rows.map(sum).fold(0.0, f64::max)
+}
+
+/// Largest magnitude; what is no number counts nothing.
+fn largest_of(values: &[f64]) -> f64 {
+    let mut largest = 0.0;
+    for x in values {
+        if x.abs() > largest {
+            largest = x.abs();
+        }
+    }
+    largest
+}

@@ -1,0 +1,120 @@
+//! The onset that an instance calculates for its parameters is that of the search of all eigenvalues, on every deck; so is
+//! its word on growth below.
+
+use aerodeck::aerodynamics::Realizable;
+use aerodeck::aeroelastic::CoupledSection;
+use aerodeck::files::derivatives::embedded;
+use aerodeck::flutter::{OnsetSearch, find_onset, unwanted_growth};
+use aerodeck::fmu::instance::Instance;
+use aerodeck::fmu::resources::Resources;
+use aerodeck::identification::{FeedThrough, Form, FrequencyFit, PoleSearch, fit_table};
+use aerodeck::section::{Dof, SectionModel};
+use aerodeck::trained_model::{Experiment, Provenance, SCHEMA_VERSION, TrainedModel};
+
+const LIMIT: f64 = 60.0;
+const CALCULATED: [&str; 3] = ["onset_speed", "onset_frequency", "onset_reduced_velocity"];
+
+fn trained(deck: &str, form: Form, poles: &[f64]) -> TrainedModel {
+    let deck = embedded::deck(deck).unwrap();
+    let fit = FrequencyFit {
+        form,
+        poles: PoleSearch::fixed(poles),
+        ..FrequencyFit::default()
+    };
+    let (model, report) = fit_table(&deck.samples(&Dof::TWO), &Dof::TWO, &fit).unwrap();
+    TrainedModel {
+        schema_version: SCHEMA_VERSION,
+        name: deck.header.source.clone(),
+        section: SectionModel::table_4_1(),
+        model,
+        tested_range: report.tested_range,
+        provenance: Provenance {
+            source: deck.header.source.clone(),
+            licence: deck.header.licence.clone(),
+            method: report.method,
+            aerodeck_version: env!("CARGO_PKG_VERSION").into(),
+            notes: vec![],
+        },
+        experiment: Experiment {
+            wind_speed_m_s: 20.0,
+            initial_vertical_m: 0.01,
+            initial_rotation_rad: 0.0,
+            stop_time_s: 10.0,
+            step_size_s: 0.01,
+            onset_search_limit_m_s: LIMIT,
+        },
+    }
+}
+
+fn reference(instance: &Instance, name: &str) -> u32 {
+    let variables = instance.table().variables();
+    variables.iter().position(|v| v.name == name).unwrap() as u32
+}
+
+fn calculated(instance: &mut Instance) -> [f64; 3] {
+    let references = CALCULATED.map(|name| reference(instance, name));
+    let mut values = [0.0; 3];
+    instance.reals(&references, &mut values).unwrap();
+    values
+}
+
+/// Every deck with filters and with lags, and a light, a heavy and a slack section.
+#[test]
+fn calculated_onsets_are_those_of_the_search() {
+    let search = OnsetSearch {
+        speed_max_m_s: LIMIT,
+        ..OnsetSearch::default()
+    };
+    let laguerre = Form::Laguerre {
+        filters: 3,
+        feed_through: FeedThrough::default(),
+        pole_per_transfer_function: false,
+    };
+    let rational = Form::Rational {
+        lags: 2,
+        added_mass: true,
+    };
+    let mut onsets = 0;
+    for deck in embedded::names() {
+        for (form, poles) in [(&laguerre, &[0.5][..]), (&rational, &[0.2, 0.8])] {
+            let model = trained(deck, form.clone(), poles);
+            let tested = Some(model.tested_range);
+            let json = model.to_json().unwrap();
+            let mut instance =
+                Instance::new(Resources::from_bytes(json.as_bytes(), None).unwrap()).unwrap();
+            let grows = instance.take_notices().iter().any(|n| n.contains("grows"));
+            instance.enter_initialization();
+            for (mass, twist_hz) in [(15.0, 5.0), (8.0, 5.0), (40.0, 4.0), (15.0, 2.5)] {
+                let places = ["mass", "torsion_frequency"].map(|n| reference(&instance, n));
+                instance.set_reals(&places, &[mass, twist_hz]).unwrap();
+                let mut section = model.section.clone();
+                section.vertical.mass_kg_m = mass;
+                section.torsion.frequency_hz = Some(twist_hz);
+                let structure = section.structure().unwrap();
+                let section = CoupledSection::new(structure, model.model.realize()).unwrap();
+                let found = find_onset("", &section, &search, tested).unwrap();
+                if (mass, twist_hz) == (15.0, 5.0) {
+                    let growth = unwanted_growth(&section, &search, tested).unwrap();
+                    assert_eq!(grows, !growth.is_none(), "{deck}: {}", growth.explain());
+                }
+                let Some(onset) = found.onset().filter(|o| o.in_tested_range == Some(true)) else {
+                    continue;
+                };
+                onsets += 1;
+                let expected = [
+                    onset.speed_m_s,
+                    onset.frequency_hz,
+                    onset.reduced_velocity.v_star(),
+                ];
+                for (now, expected) in calculated(&mut instance).iter().zip(expected) {
+                    // the search halves and bisects to some 1e-11
+                    assert!(
+                        (now / expected - 1.0).abs() < 1e-9,
+                        "{deck}, {mass} kg/m, {twist_hz} Hz: {now} against {expected}"
+                    );
+                }
+            }
+        }
+    }
+    assert!(onsets >= 12, "{onsets} onsets in the tested range only");
+}
