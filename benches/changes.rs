@@ -125,7 +125,7 @@ fn stepped(
 
 fn parameters(model: &TrainedModel) {
     let json = model.to_json().expect("a model");
-    let resources = || Resources::from_bytes(json.as_bytes()).expect("resources");
+    let resources = || Resources::from_bytes(json.as_bytes(), None).expect("resources");
     let mut instance = Instance::new(resources()).expect("an instance");
     let place = |name| {
         let variables = instance.table().variables();

@@ -13,6 +13,7 @@ mod section_derivatives;
 mod section_unit;
 mod serialized;
 mod stepping;
+mod trust;
 mod unit;
 mod values;
 

@@ -87,6 +87,21 @@ pub enum Calculated {
     OnsetInTestedRange,
     /// Whether divergence was found below the search limit.
     DivergenceFound,
+    /// Whether nothing grows below the onset at reduced frequencies that were not tested.
+    StableBelowOnset,
+}
+
+/// What is known of the present moment: how far from flutter, and whether the answer can be trusted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Status {
+    /// Onset speed less the wind speed.
+    FlutterMargin,
+    /// Smallest damping ratio of the modes at the wind speed.
+    DampingNow,
+    /// Whether every motion, at its frequency in still air, lies in the tested range at the wind speed.
+    WindInTestedRange,
+    /// Whether the rotation is one of linear theory.
+    AmplitudeInLinearRange,
 }
 
 /// The quantity behind a variable: what getters and setters dispatch on.
@@ -108,6 +123,8 @@ pub enum Role {
     OnsetSearchLimit,
     /// Computed from the parameters.
     Calculated(Calculated),
+    /// Computed from parameters, wind and state.
+    Status(Status),
     /// Never changes.
     Constant,
     /// Motion of a degree of freedom of a strip, counted from zero.

@@ -37,6 +37,8 @@ pub(super) enum Source {
     Response,
     /// Computed from the parameters.
     Calculated,
+    /// Computed from parameters, wind and state, whenever it is asked for.
+    Status,
 }
 
 impl Source {
@@ -52,6 +54,7 @@ impl Source {
             Role::Constant => Self::Constant,
             Role::Response(..) | Role::Force(..) => Self::Response,
             Role::Calculated(_) => Self::Calculated,
+            Role::Status(_) => Self::Status,
         }
     }
 }

@@ -4,8 +4,8 @@ use crate::aerodynamics::{Realization, Transfer};
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
 use crate::flutter::{
-    FlutterSearch, LinearForces, OnsetSearch, OnsetSweep, SweepOutcome, SweptOnset,
-    divergence_speed, find_onset,
+    FlutterSearch, LinearForces, OnsetSearch, OnsetSweep, SweepOutcome, SweptOnset, UnwantedGrowth,
+    divergence_speed, find_onset, unwanted_growth,
 };
 use crate::fmu::variables::{Calculated, Role, SectionParameter, VariableTable};
 use crate::section::{Dof, SectionModel};
@@ -107,7 +107,7 @@ pub(super) fn plain_onset(
 const SEARCHED_STATES: usize = 100;
 
 /// Refuses a search of all eigenvalues that would seem to hang.
-pub(super) fn check_searchable(section: &CoupledSection) -> Result<()> {
+fn check_searchable(section: &CoupledSection) -> Result<()> {
     match section.states() {
         states if states > SEARCHED_STATES => Err(Error::input(
             "search of all eigenvalues",
@@ -122,7 +122,7 @@ pub(super) fn check_searchable(section: &CoupledSection) -> Result<()> {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct OnsetCard {
     /// The calculated parameters in their order; truth values are 0 and 1.
-    values: [f64; 7],
+    values: [f64; 8],
     /// What a reader must know before using the numbers.
     pub warnings: Vec<String>,
 }
@@ -156,12 +156,16 @@ impl OnsetCard {
                 onset.speed_m_s,
             ));
             card.set_onset(onset.speed_m_s, onset.frequency_hz, velocity, true);
+            card.set(Calculated::StableBelowOnset, 1.0);
             return card;
         }
         match onset_of(model, section, limit) {
             Ok(found) => card.take(found),
             Err(why) => card.warnings.push(unknown("flutter onset", &why)),
         }
+        // what cannot be judged is not called stable
+        let stable = growth_of(model, section, limit).is_ok_and(|growth| growth.is_none());
+        card.set(Calculated::StableBelowOnset, f64::from(u8::from(stable)));
         card
     }
 
@@ -173,7 +177,7 @@ impl OnsetCard {
 
     fn nothing_found(limit: f64, warnings: Vec<String>) -> Self {
         let mut card = Self {
-            values: [0.0; 7],
+            values: [0.0; 8],
             warnings,
         };
         card.set(Calculated::OnsetSpeed, limit);
@@ -221,6 +225,20 @@ impl OnsetCard {
     pub fn value(&self, which: Calculated) -> f64 {
         self.values[which as usize]
     }
+}
+
+/// Growth below the onset, up to `limit` m/s.
+pub(super) fn growth_of(
+    model: &TrainedModel,
+    section: &CoupledSection,
+    limit: f64,
+) -> Result<UnwantedGrowth> {
+    check_searchable(section)?;
+    let search = OnsetSearch {
+        speed_max_m_s: limit,
+        ..OnsetSearch::default()
+    };
+    unwanted_growth(section, &search, Some(model.tested_range))
 }
 
 fn onset_of(model: &TrainedModel, section: &CoupledSection, limit: f64) -> Result<FlutterSearch> {

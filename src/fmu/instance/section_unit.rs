@@ -5,14 +5,15 @@ use super::layout::{Source, place};
 use super::saving::Memory;
 use super::section::{self, OnsetCard};
 use super::section_derivatives::pick;
+use super::trust::Told;
 use super::unit::Unit;
 use crate::aerodynamics::{Realizable, Realization};
 use crate::error::Result;
-use crate::flutter::{OnsetSearch, UnwantedGrowth, unwanted_growth};
+use crate::flutter::UnwantedGrowth;
 use crate::fmu::lifecycle::State;
 use crate::fmu::refusal::{Answer, Refusal};
 use crate::fmu::resources::Resources;
-use crate::fmu::variables::{Response, Role, VariableTable};
+use crate::fmu::variables::{Calculated, Response, Role, VariableTable};
 use crate::response::{Inputs, Outputs, SectionState, Stepper};
 use crate::section::Dof;
 
@@ -37,6 +38,7 @@ pub(super) struct Places {
     search_limit: usize,
     /// Onset and divergence.
     calculated: Vec<usize>,
+    pub onset_speed: usize,
 }
 
 impl Places {
@@ -65,6 +67,7 @@ impl Places {
             initial_displacement: each(Role::InitialDisplacement)?,
             initial_rate: each(Role::InitialRate)?,
             search_limit: place(table, Role::OnsetSearchLimit)?,
+            onset_speed: place(table, Role::Calculated(Calculated::OnsetSpeed))?,
             calculated: (0..table.variables().len())
                 .filter(|i| matches!(table.variables()[*i].role, Role::Calculated(_)))
                 .collect(),
@@ -87,6 +90,7 @@ pub(super) struct SectionUnit {
     growth_known: bool,
     /// Searches for growth that this instance may still do.
     growth_searches_left: usize,
+    pub told: Told,
     pub inputs: Inputs,
     outputs: Outputs,
 }
@@ -109,6 +113,7 @@ impl SectionUnit {
             onset_current: false,
             growth_known: false,
             growth_searches_left: GROWTH_SEARCHES,
+            told: Told::default(),
             outputs: Outputs::default(),
         })
     }
@@ -148,12 +153,7 @@ impl SectionUnit {
                 bands: Vec::new(),
             });
         }
-        section::check_searchable(&section)?;
-        let search = OnsetSearch {
-            speed_max_m_s,
-            ..OnsetSearch::default()
-        };
-        unwanted_growth(&section, &search, Some(model.tested_range))
+        section::growth_of(model, &section, speed_max_m_s)
     }
 
     pub fn onset_card(&self, resources: &Resources, values: &[f64]) -> OnsetCard {
@@ -199,6 +199,7 @@ impl Unit for SectionUnit {
     }
 
     fn begin_initialization(&mut self) {
+        self.told = Told::default();
         self.release_pending = true;
     }
 
@@ -231,8 +232,9 @@ impl Unit for SectionUnit {
         Ok(())
     }
 
-    /// Says where the section grows although nothing was tested there.
+    /// Says also, once for each set of parameters, where the section grows although nothing was tested there.
     fn watch(&mut self, resources: &Resources, memory: &Memory, notices: &mut Vec<String>) {
+        self.watch_trust(resources, memory, notices);
         if self.growth_known || self.growth_searches_left == 0 {
             return;
         }
@@ -293,6 +295,16 @@ impl Unit for SectionUnit {
         }
         notices.extend(card.warnings);
         self.onset_current = true;
+    }
+
+    fn status(
+        &mut self,
+        resources: &Resources,
+        memory: &mut Memory,
+        role: Role,
+        notices: &mut Vec<String>,
+    ) -> f64 {
+        self.present(resources, memory, role, notices)
     }
 
     fn output_rates(

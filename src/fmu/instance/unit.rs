@@ -41,7 +41,7 @@ pub(super) trait Unit: Debug + Send {
     /// When the values give nothing that can be simulated.
     fn prepare(&mut self, resources: &Resources, memory: &mut Memory) -> Result<()>;
 
-    /// Says, once for each set of parameters, what a user must know of them.
+    /// Says what a user must know of the parameters and of the present state, each thing once.
     fn watch(&mut self, _resources: &Resources, _memory: &Memory, _notices: &mut Vec<String>) {}
 
     /// One step of `step` seconds from the time of the memory. On an error everything is as it was.
@@ -68,6 +68,17 @@ pub(super) trait Unit: Debug + Send {
         _memory: &mut Memory,
         _notices: &mut Vec<String>,
     ) {
+    }
+
+    /// What is known of the present moment; a number that cannot be found is zero, with a notice.
+    fn status(
+        &mut self,
+        _resources: &Resources,
+        _memory: &mut Memory,
+        _role: Role,
+        _notices: &mut Vec<String>,
+    ) -> f64 {
+        0.0
     }
 
     /// First time derivatives of these outputs, per second.

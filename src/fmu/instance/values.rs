@@ -52,6 +52,12 @@ impl Instance {
                 self.unit.outputs(&self.resources, &mut self.memory)?;
                 self.outputs_current = true;
             }
+            Source::Status => {
+                let role = self.table().variables()[place].role;
+                self.unit.prepare(&self.resources, &mut self.memory)?;
+                let (resources, memory) = (&self.resources, &mut self.memory);
+                return Ok(self.unit.status(resources, memory, role, &mut self.notices));
+            }
             Source::Calculated => {
                 self.unit
                     .calculate(&self.resources, &mut self.memory, &mut self.notices);

@@ -1,6 +1,8 @@
 //! What depends on what: the structure of outputs while stepping, and of all unknowns while initialising.
 
-use super::{Causality, InitialDependency, Response, Role, SectionParameter, Variable, find};
+use super::{
+    Causality, InitialDependency, Response, Role, SectionParameter, Status, Variable, find,
+};
 use crate::aerodynamics::{Realizable, Realization};
 use crate::section::Dof;
 use crate::trained_model::TrainedModel;
@@ -18,6 +20,21 @@ pub(super) fn fill(variables: &mut [Variable], model: &TrainedModel) {
                 initial_knowns(variables, response, dof, coupling),
             ),
             Role::Calculated(_) => (Vec::new(), parameters(variables)),
+            Role::Status(status) => {
+                let wind = places(variables, |role| {
+                    role == Role::WindSpeed && status != Status::AmplitudeInLinearRange
+                });
+                let known = dependent(wind.iter().copied());
+                let stated = parameters(variables).into_iter();
+                let release = dependent(places(variables, |role| {
+                    role == Role::InitialDisplacement(Dof::Torsion)
+                }));
+                let known = match status {
+                    Status::AmplitudeInLinearRange => release,
+                    _ => stated.chain(known).collect(),
+                };
+                (wind, known)
+            }
             _ => continue,
         };
         initial.sort_by_key(|d| d.on);

@@ -84,6 +84,7 @@ impl Variable {
 
 pub(super) const INPUT: (Causality, Variability) = (Causality::Input, Variability::Continuous);
 pub(super) const OUTPUT: (Causality, Variability) = (Causality::Output, Variability::Continuous);
+pub(super) const DISCRETE: (Causality, Variability) = (Causality::Output, Variability::Discrete);
 pub(super) const TUNABLE: (Causality, Variability) = (Causality::Parameter, Variability::Tunable);
 pub(super) const FIXED: (Causality, Variability) = (Causality::Parameter, Variability::Fixed);
 pub(super) const CALCULATED: (Causality, Variability) =

@@ -2,11 +2,11 @@
 
 use super::parameters::SectionParameter;
 use super::real::{
-    CALCULATED, FIXED, INPUT, OUTPUT, SMALLEST, SPEED, TUNABLE, constants, force_scale, nominal,
-    real,
+    CALCULATED, DISCRETE, FIXED, INPUT, OUTPUT, SMALLEST, SPEED, TUNABLE, constants, force_scale,
+    nominal, real,
 };
 use super::words::{Words, motion, words};
-use super::{Calculated, Response, Role, Value, Variable};
+use super::{Calculated, Response, Role, Status, Value, Variable};
 use crate::error::Result;
 use crate::fmu::si::{self, Unit};
 use crate::section::{Dof, SectionModel};
@@ -29,6 +29,7 @@ pub(super) fn variables(model: &TrainedModel) -> Result<Vec<Variable>> {
     table.push(search_limit(model));
     table.extend(calculated_parameters());
     table.extend(constants(model)?);
+    table.extend(status());
     Ok(table)
 }
 
@@ -214,6 +215,44 @@ fn calculated_parameters() -> Vec<Variable> {
             "divergence_found",
             C::DivergenceFound,
             "Whether divergence was found up to onset_search_limit",
+        ),
+        flag(
+            "stable_below_onset",
+            C::StableBelowOnset,
+            "Whether nothing grows below onset_speed: false where the model feeds energy into motions outside the tested range",
+        ),
+    ]
+}
+
+/// What can be read while running in any importer, also in those that take outputs only.
+fn status() -> Vec<Variable> {
+    let output = |name, what, text: &str| real(name, Role::Status(what), DISCRETE, text);
+    let flag = |name, what, text: &str| Variable {
+        value: Value::Boolean(None),
+        ..output(name, what, text)
+    };
+    vec![
+        output(
+            "flutter_margin",
+            Status::FlutterMargin,
+            "onset_speed (or the search limit when none was found) less wind_speed",
+        )
+        .quantity("Velocity", SPEED),
+        output(
+            "damping_now",
+            Status::DampingNow,
+            "Smallest damping ratio of the modes at the present wind speed; negative when one grows",
+        )
+        .quantity("DampingRatio", None),
+        flag(
+            "wind_in_tested_range",
+            Status::WindInTestedRange,
+            "Whether every motion, at its frequency in still air, lies in the tested range at the present wind speed",
+        ),
+        flag(
+            "amplitude_in_linear_range",
+            Status::AmplitudeInLinearRange,
+            "Whether the rotation is at most 10 degrees, where linear forces end",
         ),
     ]
 }

@@ -1,0 +1,112 @@
+//! What is known of the present moment of a section: how far from flutter it is, and whether that can be trusted.
+
+use super::saving::Memory;
+use super::section_unit::SectionUnit;
+use super::unit::Unit;
+use crate::error::Result;
+use crate::fmu::resources::Resources;
+use crate::fmu::variables::{Role, Status};
+
+/// Rotation up to which forces are taken as linear: 10 degrees.
+const LINEAR_ROTATION_RAD: f64 = 10.0 * std::f64::consts::PI / 180.0;
+
+/// What has been said since the initialisation: a gust may cross a limit at every step.
+#[derive(Debug, Default)]
+pub(super) struct Told {
+    /// Whether the wind was in the tested range after the last step.
+    wind_was_tested: bool,
+    wind_left: bool,
+    rotation_left: bool,
+}
+
+impl SectionUnit {
+    /// One of the numbers of the present moment.
+    pub(super) fn present(
+        &mut self,
+        resources: &Resources,
+        memory: &mut Memory,
+        role: Role,
+        notices: &mut Vec<String>,
+    ) -> f64 {
+        let wind = memory.values[self.places.wind_speed];
+        let flag = |holds: bool| f64::from(u8::from(holds));
+        match role {
+            Role::Status(Status::FlutterMargin) => {
+                self.calculate(resources, memory, notices);
+                memory.values[self.places.onset_speed] - wind
+            }
+            Role::Status(Status::DampingNow) => match self.damping(wind) {
+                Ok(ratio) => ratio,
+                Err(why) => {
+                    notices.push(format!("damping_now is not known: {why}"));
+                    0.0
+                }
+            },
+            Role::Status(Status::WindInTestedRange) => {
+                let range = self.tested_winds(resources);
+                flag(range.is_some_and(|[low, high]| (low..=high).contains(&wind)))
+            }
+            Role::Status(Status::AmplitudeInLinearRange) => {
+                flag(self.rotation(memory).abs() <= LINEAR_ROTATION_RAD)
+            }
+            _ => 0.0,
+        }
+    }
+
+    /// Smallest damping ratio of the modes at a wind speed.
+    fn damping(&self, wind: f64) -> Result<f64> {
+        let Some(stepper) = &self.stepper else {
+            return Ok(0.0);
+        };
+        let modes = stepper.section().at(wind)?.eigenvalues()?;
+        let oscillating = modes.iter().filter(|z| z.im > 0.0);
+        let least = oscillating.map(|z| -z.re / z.norm()).reduce(f64::min);
+        Ok(least.unwrap_or(1.0))
+    }
+
+    /// Wind speeds (m/s) at which every motion, at its frequency in still air, lies in the tested range; `None` where
+    /// there are none.
+    fn tested_winds(&self, resources: &Resources) -> Option<[f64; 2]> {
+        let s = self.stepper.as_ref()?.section().structure();
+        let omega = (0..s.dofs.len()).map(|i| (s.stiffness[(i, i)] / s.mass[(i, i)]).sqrt());
+        let (slowest, fastest) =
+            omega.fold((f64::INFINITY, 0.0_f64), |(a, b), w| (a.min(w), b.max(w)));
+        let range = resources.model.tested_range;
+        let low = fastest * s.width_m / range.max.full_width();
+        let high = slowest * s.width_m / range.min.full_width();
+        (low <= high).then_some([low, high])
+    }
+
+    fn rotation(&self, memory: &Memory) -> f64 {
+        memory.system.values[self.places.force.len() - 1]
+    }
+
+    /// Says when the wind leaves the tested range, and when the rotation leaves linear theory; each once.
+    pub(super) fn watch_trust(
+        &mut self,
+        resources: &Resources,
+        memory: &Memory,
+        notices: &mut Vec<String>,
+    ) {
+        let wind = memory.values[self.places.wind_speed];
+        let tested = self.tested_winds(resources);
+        let inside = tested.is_some_and(|[low, high]| (low..=high).contains(&wind));
+        let leaves = self.told.wind_was_tested && !inside && !self.told.wind_left;
+        if let Some([low, high]) = tested.filter(|_| leaves) {
+            self.told.wind_left = true;
+            notices.push(format!(
+                "wind_speed = {wind} m/s leaves the speeds at which this section was tested, {low:.3} to {high:.3} m/s \
+                 at its frequencies in still air: the forces are extrapolated"
+            ));
+        }
+        self.told.wind_was_tested = inside;
+        let rotation = self.rotation(memory);
+        if rotation.abs() > LINEAR_ROTATION_RAD && !self.told.rotation_left {
+            self.told.rotation_left = true;
+            notices.push(format!(
+                "the rotation, {:.1} degrees, is beyond linear theory (about 10 degrees)",
+                rotation.to_degrees()
+            ));
+        }
+    }
+}
