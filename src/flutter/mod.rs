@@ -8,6 +8,7 @@ mod characteristic;
 mod curves;
 mod determinant;
 mod divergence;
+mod dynamic_stiffness;
 mod following;
 mod instability;
 mod missed;

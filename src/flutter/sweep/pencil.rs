@@ -23,6 +23,15 @@ pub(super) struct Supports<const N: usize> {
 }
 
 impl<const N: usize> Supports<N> {
+    /// Mass, damping and stiffness of one entry of the matrices.
+    pub(super) fn entry(&self, i: usize, j: usize) -> (f64, f64, f64) {
+        match i.abs_diff(j) {
+            0 => (self.mass[i], self.damping[i], self.stiffness[i]),
+            apart if apart == N - 1 => (self.coupling, 0.0, 0.0),
+            _ => (0.0, 0.0, 0.0),
+        }
+    }
+
     /// `Tᵀ G T`: heave is the first degree of freedom, rotation the last.
     pub(super) fn at_axis(&self, mut g: [[Complex64; N]; N]) -> [[Complex64; N]; N] {
         if self.axis != 0.0 {
