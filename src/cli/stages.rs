@@ -249,7 +249,7 @@ pub fn routes_figure(
     out: &mut OutputDir,
 ) -> Result<()> {
     let curves = &curves[..curves.len().min(MAX_CURVES)];
-    let drawn = |o: &&Onset| curves.iter().any(|c| c.model == o.model);
+    let drawn = |o: &&Onset| curves.iter().any(|c| c.model == o.at.model);
     let onsets: Vec<Onset> = onsets.iter().filter(drawn).cloned().collect();
     let options = VfVgOptions {
         title: Some(format!("{}: all routes", study.name)),

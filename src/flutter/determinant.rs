@@ -103,7 +103,7 @@ pub fn determinant_onset(
             if root.im > 0.0 && after.im <= 0.0 {
                 let (from, to) = ((at(i - 1), root), (at(i), after));
                 let onset = problem.refine(name, from, to, branch_name(dof))?;
-                if onset.speed_m_s <= speed_max_m_s {
+                if onset.at.speed_m_s <= speed_max_m_s {
                     findings.crossings.push(onset);
                 }
             }

@@ -5,6 +5,7 @@
 
 mod answer;
 mod characteristic;
+mod critical_point;
 mod curves;
 mod determinant;
 mod divergence;
@@ -25,6 +26,7 @@ mod tracking;
 mod unwanted;
 
 pub use answer::{FlutterSearch, StableRange, UnstableStart};
+pub use critical_point::CriticalPoint;
 pub use curves::{FlutterCurves, ModeBranch, ModePoint, trace_modes};
 pub use determinant::{determinant_onset, impedance};
 pub use divergence::{divergence_by_eigenvalues, divergence_speed, static_part};

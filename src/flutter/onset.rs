@@ -1,7 +1,8 @@
 //! The flutter onset as a result: everything a practitioner wants on the card.
 
+use super::critical_point::CriticalPoint;
 use crate::section::Structure;
-use crate::units::{ReducedFrequency, ReducedVelocity};
+use crate::units::ReducedFrequency;
 use nalgebra::{Complex, DVector};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -35,18 +36,9 @@ impl OnsetMethod {
 /// A flutter onset.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Onset {
-    /// Force model.
-    pub model: String,
-    /// Route by which it was found.
-    pub method: OnsetMethod,
-    /// Onset speed `V_F`, m/s.
-    pub speed_m_s: f64,
-    /// Frequency at onset, Hz.
-    pub frequency_hz: f64,
-    /// `V* = V/(fB)`.
-    pub reduced_velocity: ReducedVelocity,
-    /// `K = ωB/V`.
-    pub reduced_frequency: ReducedFrequency,
+    /// Onset speed `V_F` and the frequency there.
+    #[serde(flatten)]
+    pub at: CriticalPoint,
     /// `|y|/(B|θ|)`.
     pub mode_ratio: f64,
     /// Phase of `y` relative to `θ`, degrees in (−180, 180].
@@ -162,7 +154,7 @@ impl Onset {
             OnsetInterval::Undetermined { reason, .. } => Err(reason),
             OnsetInterval::Known { .. }
             | OnsetInterval::Spread { .. }
-            | OnsetInterval::None { .. } => Ok(self.speed_m_s),
+            | OnsetInterval::None { .. } => Ok(self.at.speed_m_s),
         }
     }
 
@@ -180,12 +172,7 @@ impl Onset {
         let theta = shape[shape.len() - 1];
         let k = ReducedFrequency::from_circular(omega, width, speed_m_s);
         Self {
-            model: model.to_owned(),
-            method,
-            speed_m_s,
-            frequency_hz: omega / TAU,
-            reduced_velocity: k.into(),
-            reduced_frequency: k,
+            at: CriticalPoint::new(model, method, speed_m_s, omega / TAU, k),
             mode_ratio: y.norm() / theta.norm(),
             phase_deg: (y / theta).arg().to_degrees(),
             damping_slope_s_m: None,

@@ -135,7 +135,7 @@ impl Follower for Tracker<'_> {
     }
 
     fn complete(&self, mut onset: Onset, low: &Modes, mode: &Mode) -> Result<Option<Onset>> {
-        let speed = onset.speed_m_s;
+        let speed = onset.at.speed_m_s;
         let nearby = self.mode_at(low, speed * (1.0 - SLOPE_STEP), mode.branch)?;
         let slope = damping_ratio(mode.lambda) - damping_ratio(nearby.lambda);
         onset.damping_slope_s_m = Some(slope / (speed * SLOPE_STEP));

@@ -46,7 +46,7 @@ fn state_each<'a>(
     let structure = study.section.structure()?;
     let by_roots = |o: &&mut Onset| {
         !matches!(
-            o.method,
+            o.at.method,
             OnsetMethod::Determinant | OnsetMethod::PkIteration
         )
     };
@@ -54,7 +54,7 @@ fn state_each<'a>(
         let own = models
             .iter()
             .zip(known)
-            .find(|(m, _)| m.name == onset.model);
+            .find(|(m, _)| m.name == onset.at.model);
         if let Some((model, known)) = own {
             onset.interval = interval_of(&structure, model, known, onset);
             onset

@@ -198,7 +198,7 @@ impl FlutterStudy {
         let (onsets, undetermined): (Vec<_>, Vec<_>) =
             all.into_iter().partition(|o| o.headline_m_s().is_ok());
         self.deviations
-            .retain(|d| !undetermined.iter().any(|o| o.model == d.model));
+            .retain(|d| !undetermined.iter().any(|o| o.at.model == d.model));
         self.onsets = onsets;
         self.undetermined.extend(undetermined);
     }
@@ -238,8 +238,8 @@ fn deviation(
     onset: &Onset,
     reference: &Onset,
 ) -> Result<Deviation> {
-    let percent = |speed: f64| 100.0 * (speed / reference.speed_m_s - 1.0);
-    let total = percent(onset.speed_m_s);
+    let percent = |speed: f64| 100.0 * (speed / reference.at.speed_m_s - 1.0);
+    let total = percent(onset.at.speed_m_s);
     let mut from_fit = None;
     if matches!(model.model.realize(), Realization::Discrete(_)) {
         let unheld = determinant_onset(
@@ -249,11 +249,11 @@ fn deviation(
             model.tested_range,
             study.speeds().speed_max_m_s,
         )?;
-        from_fit = unheld.onset().map(|o| percent(o.speed_m_s));
+        from_fit = unheld.onset().map(|o| percent(o.at.speed_m_s));
     }
     Ok(Deviation {
         model: model.name.clone(),
-        reference: reference.model.clone(),
+        reference: reference.at.model.clone(),
         percent: total,
         from_fit_percent: from_fit,
         from_held_force_percent: from_fit.map(|fit| total - fit),

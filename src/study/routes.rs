@@ -350,7 +350,7 @@ impl Forces<'_> {
             FlutterSearch::StableUpTo(_) => Vec::new(),
         };
         if let (Some(onset), Some(divergence)) = (onset, self.divergence_m_s)
-            && divergence < onset.speed_m_s
+            && divergence < onset.at.speed_m_s
         {
             warnings.push(format!(
                 "static divergence at {divergence:.3} m/s comes before flutter"
@@ -358,12 +358,12 @@ impl Forces<'_> {
         }
         warnings.extend(
             mode.iter()
-                .filter_map(|m| nearly_single(m, onset?.speed_m_s)),
+                .filter_map(|m| nearly_single(m, onset?.at.speed_m_s)),
         );
         Ok(Route {
             model: self.name.clone(),
             method,
-            v_hat: onset.map(|o| o.reduced_frequency.v_hat()),
+            v_hat: onset.map(|o| o.at.reduced_frequency.v_hat()),
             mode,
             divergence_m_s: self.divergence_m_s,
             tested_range: self.tested,

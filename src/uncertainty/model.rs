@@ -93,10 +93,10 @@ impl ModelUncertainty {
         structure: &Structure,
         onset: &Onset,
     ) -> Result<OnsetInterval> {
-        if onset.method == OnsetMethod::Determinant {
+        if onset.at.method == OnsetMethod::Determinant {
             return Ok(OnsetInterval::none("found without the model's realisation"));
         }
-        if !self.belongs_to(model, onset.reduced_frequency)? {
+        if !self.belongs_to(model, onset.at.reduced_frequency)? {
             return Ok(OnsetInterval::none(
                 "the covariance on file belongs to another training",
             ));

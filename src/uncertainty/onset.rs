@@ -40,7 +40,7 @@ pub fn onset_error(
     onset: &Onset,
     degrees_of_freedom: Option<f64>,
 ) -> Result<OnsetError> {
-    let at = (onset.speed_m_s, TAU * onset.frequency_hz);
+    let at = (onset.at.speed_m_s, TAU * onset.at.frequency_hz);
     error_at(estimate, structure, at, degrees_of_freedom)
 }
 
@@ -136,7 +136,7 @@ pub fn resample_onset(
 ) -> Result<Option<ResampledOnset>> {
     let draw = Draw::new(estimate, plan)?;
     let linear = estimate.linear()?;
-    let at = (onset.speed_m_s, TAU * onset.frequency_hz);
+    let at = (onset.at.speed_m_s, TAU * onset.at.frequency_hz);
     let drawn: Vec<Option<Option<f64>>> = (0..plan.replicates)
         .into_par_iter()
         .map(|r| {
@@ -183,7 +183,7 @@ fn solve(
         return Some(speed);
     }
     match find_onset("", &section, &plan.search, plan.tested) {
-        Ok(FlutterSearch::Onset(onset)) => Some(onset.speed_m_s),
+        Ok(FlutterSearch::Onset(onset)) => Some(onset.at.speed_m_s),
         _ => None,
     }
 }

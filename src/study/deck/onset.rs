@@ -79,7 +79,7 @@ impl Deck {
     ) -> OnsetInterval {
         let onset = |by: Interpolation| {
             let search = self.table_onset(by, table, structure, speed_max_m_s);
-            search.ok()?.onset().map(|o| o.speed_m_s)
+            search.ok()?.onset().map(|o| o.at.speed_m_s)
         };
         let onsets = Interpolation::ALL.map(|by| (by, onset(by)));
         let speeds = || onsets.iter().filter_map(|(_, speed)| *speed);
