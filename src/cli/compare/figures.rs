@@ -1,12 +1,12 @@
 //! From the results of the comparisons to what the figures take.
 
+use crate::comparison::forces::{History, ModelsComparison, Score};
 use crate::error::Result;
 use crate::report::{
     DerivativePlot, DerivativesPlot, Figure, MetricPanel, PlottedSeries, TimePanel, TransferCurve,
     TransferPlot, derivatives_figure, metrics_figure, time_history_figure, transfer_figure,
 };
 use crate::section::Dof;
-use crate::study::compare::{History, ModelsComparison, Score};
 
 /// The thesis's three metrics of every force over frequency, one line a label (Figures 3.20, 3.27 and 3.28).
 pub fn metrics_of(

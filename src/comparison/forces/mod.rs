@@ -10,6 +10,7 @@ mod entries;
 mod models;
 mod score;
 mod statements;
+mod trial;
 
 pub use decks::{DeckAccount, DecksComparison, compare_decks};
 pub use entries::{
@@ -64,6 +65,14 @@ impl Default for CompareOptions {
             seed: 1,
             scoring: Scoring::default(),
         }
+    }
+}
+
+impl CompareOptions {
+    /// The discrete Laguerre model in a few letters.
+    pub(crate) fn laguerre_name(&self) -> String {
+        let DiscreteFit { filters, alpha, .. } = &self.laguerre;
+        format!("L = {filters}, α = {alpha}")
     }
 }
 
