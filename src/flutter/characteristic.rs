@@ -7,6 +7,7 @@
 use super::dynamic_stiffness::{Complex64, Determinant, Small, ZERO, oscillator};
 use crate::aerodynamics::{ContinuousRealization, Realization};
 use crate::aeroelastic::CoupledSection;
+use crate::section::Support;
 use nalgebra::DVector;
 
 /// Degrees of freedom at most.
@@ -91,10 +92,12 @@ impl Characteristic {
         let [e0, e1, e2] = &self.feed_through;
         for i in 0..n {
             for j in 0..n {
-                let mass = self.mass[i][j] - b * b * e2[i][j];
-                let damping = self.damping[i][j] - speed * b * e1[i][j];
-                let stiffness = self.stiffness[i][j] - speed * speed * e0[i][j];
-                (value[i][j], derivative[i][j]) = oscillator(lambda, mass, damping, stiffness);
+                let with_air = Support {
+                    mass: self.mass[i][j] - b * b * e2[i][j],
+                    damping: self.damping[i][j] - speed * b * e1[i][j],
+                    stiffness: self.stiffness[i][j] - speed * speed * e0[i][j],
+                };
+                (value[i][j], derivative[i][j]) = oscillator(lambda, with_air);
             }
         }
         let l = self.filters;

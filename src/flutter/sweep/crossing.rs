@@ -78,8 +78,7 @@ fn singularity<const N: usize>(
     let (mut d, mut by_lambda, mut by_speed) = ([[ZERO; N]; N], [[ZERO; N]; N], [[ZERO; N]; N]);
     for i in 0..N {
         for j in 0..N {
-            let (mass, damping, stiffness) = s.entry(i, j);
-            let (value, rate) = oscillator(lambda, mass, damping, stiffness);
+            let (value, rate) = oscillator(lambda, s.entry(i, j));
             d[i][j] = value - g[i][j] * pressure;
             by_lambda[i][j] = rate - slope[i][j] * (lag * speed);
             by_speed[i][j] = g[i][j] * (-2.0 * air * speed) + slope[i][j] * lambda * lag;

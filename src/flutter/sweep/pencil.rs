@@ -4,6 +4,7 @@
 //! `A = M + ½ρB⁴/K² G(iK)` is a full complex matrix and `R`, `K_s` are diagonal. A static unbalance is an entry of `M`
 //! beside the diagonal; `G` is about the axis of the section ([`Supports::at_axis`]).
 
+use crate::section::Support;
 use nalgebra::Complex;
 
 type Complex64 = Complex<f64>;
@@ -23,12 +24,19 @@ pub(super) struct Supports<const N: usize> {
 }
 
 impl<const N: usize> Supports<N> {
-    /// Mass, damping and stiffness of one entry of the matrices.
-    pub(super) fn entry(&self, i: usize, j: usize) -> (f64, f64, f64) {
+    /// One entry of the three matrices.
+    pub(super) fn entry(&self, i: usize, j: usize) -> Support {
         match i.abs_diff(j) {
-            0 => (self.mass[i], self.damping[i], self.stiffness[i]),
-            apart if apart == N - 1 => (self.coupling, 0.0, 0.0),
-            _ => (0.0, 0.0, 0.0),
+            0 => Support {
+                mass: self.mass[i],
+                damping: self.damping[i],
+                stiffness: self.stiffness[i],
+            },
+            apart if apart == N - 1 => Support {
+                mass: self.coupling,
+                ..Support::default()
+            },
+            _ => Support::default(),
         }
     }
 
