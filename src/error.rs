@@ -59,7 +59,7 @@ fn lines(errors: &[Error]) -> String {
 }
 
 impl Error {
-    /// Wrong input at `place` (no file yet; see [`Error::in_file`]).
+    /// Wrong input at `place` (no file yet; see `Error::in_file`).
     pub fn input(
         place: impl Into<String>,
         expected: impl Into<String>,
@@ -92,7 +92,7 @@ impl Error {
 
     /// The same error, naming the file it came from (a file already named is kept).
     #[must_use]
-    pub fn in_file(mut self, path: impl AsRef<Path>) -> Self {
+    pub(crate) fn in_file(mut self, path: impl AsRef<Path>) -> Self {
         let path = path.as_ref();
         match &mut self {
             Self::Input(input) if input.file.is_none() => {
@@ -128,7 +128,7 @@ fn quoted(text: String) -> String {
 ///
 /// # Errors
 /// The one error there is, or [`Error::Several`].
-pub fn all_or_errors<T>(results: Vec<Result<T>>) -> Result<Vec<T>> {
+pub(crate) fn all_or_errors<T>(results: Vec<Result<T>>) -> Result<Vec<T>> {
     let (mut values, mut errors) = (Vec::with_capacity(results.len()), Vec::new());
     for result in results {
         match result {
@@ -170,7 +170,7 @@ pub fn finite(place: &str, value: f64) -> Result<f64> {
 ///
 /// # Errors
 /// [`Error::Input`] naming `place` otherwise.
-pub fn finite_numbers(place: &str, values: &[f64], count: usize) -> Result<()> {
+pub(crate) fn finite_numbers(place: &str, values: &[f64], count: usize) -> Result<()> {
     if values.len() == count && values.iter().all(|x| x.is_finite()) {
         return Ok(());
     }
@@ -182,7 +182,7 @@ pub fn finite_numbers(place: &str, values: &[f64], count: usize) -> Result<()> {
 ///
 /// # Errors
 /// [`Error::Input`] naming `place` otherwise.
-pub fn at_most(place: &str, value: f64, bound: f64) -> Result<()> {
+pub(crate) fn at_most(place: &str, value: f64, bound: f64) -> Result<()> {
     if value <= bound {
         Ok(())
     } else {
@@ -198,7 +198,7 @@ pub fn at_most(place: &str, value: f64, bound: f64) -> Result<()> {
 ///
 /// # Errors
 /// [`Error::Input`] naming `place` otherwise.
-pub fn non_negative(place: &str, value: f64) -> Result<f64> {
+pub(crate) fn non_negative(place: &str, value: f64) -> Result<f64> {
     if value.is_finite() && value >= 0.0 {
         Ok(value)
     } else {

@@ -7,7 +7,7 @@
 
 mod structure;
 
-pub use structure::{Entry, Structure};
+pub use structure::Structure;
 
 use crate::error::{Error, Result, finite, non_negative, positive};
 use nalgebra::DMatrix;
@@ -41,7 +41,7 @@ impl Dof {
         }
     }
     /// Factor from dimensionless force to force over `½ρV²`: `B` for forces, `B²` for the moment.
-    pub fn force_scale(self, width_m: f64) -> f64 {
+    pub(crate) fn force_scale(self, width_m: f64) -> f64 {
         if self == Dof::Torsion {
             width_m * width_m
         } else {
@@ -135,7 +135,7 @@ impl SectionModel {
     }
 
     /// Width (m), density (kg/m³) and, for heave and rotation, (inertia, frequency in Hz, damping ratio).
-    pub fn two_dof(
+    pub(crate) fn two_dof(
         width_m: f64,
         air_density_kg_m3: f64,
         vertical: (f64, f64, f64),

@@ -15,7 +15,7 @@ use std::path::Path;
 pub const SCHEMA_VERSION: u32 = 1;
 /// Newest version that is read and written. Version 2: discrete Laguerre filters of single transfer functions, rational
 /// functions with lags of each force, minimum-state form.
-pub const NEWEST_SCHEMA_VERSION: u32 = 2;
+pub(crate) const NEWEST_SCHEMA_VERSION: u32 = 2;
 
 /// States of a realisation at most, a hundred times those of any model that was ever fitted: its matrices are full.
 const MAX_STATES: usize = 1000;

@@ -46,7 +46,7 @@ impl GustSeries {
     ///
     /// # Errors
     /// [`Error::Input`] for a duration that is not positive.
-    pub fn calm(duration_s: f64) -> Result<Self> {
+    pub(crate) fn calm(duration_s: f64) -> Result<Self> {
         Self::new(
             positive("duration", duration_s)?,
             vec![0.0; 2],
@@ -65,12 +65,12 @@ impl GustSeries {
     }
 
     /// `u` at the samples, m/s.
-    pub fn along_m_s(&self) -> &[f64] {
+    pub(crate) fn along_m_s(&self) -> &[f64] {
         &self.along_m_s
     }
 
     /// `w` at the samples, m/s.
-    pub fn vertical_m_s(&self) -> &[f64] {
+    pub(crate) fn vertical_m_s(&self) -> &[f64] {
         &self.vertical_m_s
     }
 

@@ -47,7 +47,7 @@ impl Admittance {
     }
 
     /// The factor at a reduced frequency; 1 at zero.
-    pub fn amplitude(&self, frequency: ReducedFrequency) -> Complex<f64> {
+    pub(crate) fn amplitude(&self, frequency: ReducedFrequency) -> Complex<f64> {
         let k = frequency.semi_chord();
         match self {
             Self::None => Complex::new(1.0, 0.0),

@@ -38,7 +38,7 @@ pub struct BuffetingResponse {
 ///
 /// # Errors
 /// Those of the model; [`Error::Numerical`] where the impedance is singular.
-pub fn response_spectrum(
+pub(crate) fn response_spectrum(
     problem: &BuffetingProblem<'_>,
     frequency_hz: f64,
     speed_m_s: f64,
@@ -79,7 +79,7 @@ fn spectra_by_gust(
 /// # Errors
 /// [`Error::Input`] for parts that do not fit together; those of the model; [`Error::Numerical`] when the section is
 /// unstable at this speed.
-pub fn buffeting_response(
+pub(crate) fn buffeting_response(
     problem: &BuffetingProblem<'_>,
     speed_m_s: f64,
     tested: Option<ReducedFrequencyRange>,

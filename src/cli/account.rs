@@ -251,7 +251,7 @@ pub fn growth(model: &str, growth: &UnwantedGrowth) -> String {
 }
 
 /// As [`growth`], for every model of a study.
-pub fn growths(all: &[ModelGrowth]) -> String {
+pub(crate) fn growths(all: &[ModelGrowth]) -> String {
     all.iter().map(|g| growth(&g.model, &g.growth)).collect()
 }
 
@@ -277,7 +277,7 @@ pub fn divergence(all: &[Divergence]) -> String {
 }
 
 /// What was assumed in reading the deck, and what looks wrong in it.
-pub fn deck_warnings(deck: &Deck) -> String {
+pub(crate) fn deck_warnings(deck: &Deck) -> String {
     let warnings = deck.warnings();
     warnings
         .iter()
@@ -291,6 +291,6 @@ pub fn deviations(all: &[Deviation]) -> String {
 }
 
 /// A length without the digits that its computation left behind, m.
-pub fn to_tenths_of_mm(length_m: f64) -> f64 {
+pub(crate) fn to_tenths_of_mm(length_m: f64) -> f64 {
     (length_m * 1e4).round() / 1e4
 }

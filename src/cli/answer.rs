@@ -27,7 +27,7 @@ impl Answer {
 
     /// The same answer of a check that did or did not pass.
     #[must_use]
-    pub fn with_verdict(mut self, passed: bool) -> Self {
+    pub(crate) fn with_verdict(mut self, passed: bool) -> Self {
         self.passed = passed;
         self
     }

@@ -41,11 +41,11 @@ impl Progress {
 }
 
 /// A stage under way.
-pub struct Stage(ProgressBar);
+pub(crate) struct Stage(ProgressBar);
 
 impl Stage {
     /// `done` of `total` steps are done.
-    pub fn at(&self, done: u64, total: u64) {
+    pub(crate) fn at(&self, done: u64, total: u64) {
         self.0.set_length(total);
         self.0.set_position(done);
     }

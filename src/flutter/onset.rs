@@ -149,7 +149,7 @@ impl Onset {
     ///
     /// # Errors
     /// Why it may not.
-    pub fn headline_m_s(&self) -> std::result::Result<f64, &str> {
+    pub(crate) fn headline_m_s(&self) -> std::result::Result<f64, &str> {
         match &self.interval {
             OnsetInterval::Undetermined { reason, .. } => Err(reason),
             OnsetInterval::Known { .. }

@@ -30,7 +30,7 @@ const NEARLY_STILL: f64 = 1e-3;
 
 /// Answer of quasi-steady theory.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct QuasiSteadyOnset {
+pub(crate) struct QuasiSteadyOnset {
     /// The lowest onset, or up to where there is none: the highest speed, or the end of the equilibrium.
     pub search: FlutterSearch,
     /// What kind of instability the onset is, if there is one.
@@ -43,7 +43,7 @@ pub struct QuasiSteadyOnset {
 ///
 /// # Errors
 /// [`Error::Input`] for a search range that is none; those of [`static_equilibria`] and of the eigenvalues.
-pub fn quasi_steady_onset(
+pub(crate) fn quasi_steady_onset(
     name: &str,
     structure: &Structure,
     theory: &QuasiSteady,

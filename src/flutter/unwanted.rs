@@ -26,7 +26,7 @@ pub struct UnwantedGrowth {
 /// Looks for growth below the onset of `section` that rests on no test: all of it at reduced frequencies outside
 /// `tested`. Growth that goes on into the tested range is a property of the deck (a bluff one may be unstable from the
 /// start) and is left to the search for the onset.
-pub fn unwanted_growth(
+pub(crate) fn unwanted_growth(
     section: &CoupledSection,
     search: &OnsetSearch,
     tested: Option<ReducedFrequencyRange>,

@@ -95,7 +95,7 @@ impl DiscreteFit {
 ///
 /// # Errors
 /// [`Error::Input`] for impossible options and for records as in [`super::fit_records`].
-pub fn fit_discrete(
+pub(crate) fn fit_discrete(
     records: &[&dyn RecordSource],
     fit: &DiscreteFit,
     progress: OnProgress<'_>,

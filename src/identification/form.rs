@@ -156,7 +156,7 @@ impl Form {
     }
 
     /// How many numbers a search of the poles has to find.
-    pub fn free_poles(&self) -> usize {
+    pub(crate) fn free_poles(&self) -> usize {
         match self {
             Self::Laguerre { .. } => 1,
             _ => self.filters(),
@@ -236,7 +236,7 @@ impl Form {
     }
 
     /// Whether every force has poles of its own.
-    pub fn poles_per_force(&self) -> bool {
+    pub(crate) fn poles_per_force(&self) -> bool {
         matches!(self, Self::RationalPerForce { .. })
     }
 

@@ -20,7 +20,7 @@ const CHUNK: usize = 2048;
 const SPEEDS: usize = 200;
 
 /// Called with the samples done and all of them, from any thread.
-pub type OnSamples<'a> = &'a (dyn Fn(usize, usize) + Sync);
+pub(crate) type OnSamples<'a> = &'a (dyn Fn(usize, usize) + Sync);
 
 /// Finds the onset of one sample.
 struct Finder<'a> {

@@ -113,7 +113,7 @@ impl ButterworthLowPass {
     }
 
     /// Amplitude that a harmonic keeps at one passage.
-    pub fn gain(&self, frequency_hz: f64, sampling_hz: f64) -> f64 {
+    pub(crate) fn gain(&self, frequency_hz: f64, sampling_hz: f64) -> f64 {
         let z = Complex::from_polar(1.0, -2.0 * PI * frequency_hz / sampling_hz);
         let of_one = |s: &Section| {
             let above = z * (z * s.b[2] + s.b[1]) + s.b[0];
@@ -124,7 +124,7 @@ impl ButterworthLowPass {
     }
 
     /// Samples that a signal must exceed to be filtered.
-    pub fn padding(&self) -> usize {
+    pub(crate) fn padding(&self) -> usize {
         3 * (self.order + 1)
     }
 
@@ -137,7 +137,7 @@ impl ButterworthLowPass {
     ///
     /// # Errors
     /// [`Error::Input`] for a signal not longer than [`Self::padding`].
-    pub fn zero_phase(&self, signal: &[f64]) -> Result<Vec<f64>> {
+    pub(crate) fn zero_phase(&self, signal: &[f64]) -> Result<Vec<f64>> {
         let (n, pad) = (signal.len(), self.padding());
         if n <= pad {
             return Err(Error::input(

@@ -129,7 +129,7 @@ impl Deck {
     }
 
     /// Name of the deck's own model, searched by the determinant.
-    pub fn own_model_name(&self) -> String {
+    pub(crate) fn own_model_name(&self) -> String {
         match &self.source {
             Source::Table(_) => "interpolated table".to_owned(),
             Source::FlatPlate => "flat plate (exact)".to_owned(),
@@ -137,7 +137,7 @@ impl Deck {
     }
 
     /// Records of the virtual tunnel, one a motion and speed.
-    pub fn virtual_records(&self, study: &Study) -> Result<Vec<Record>> {
+    pub(crate) fn virtual_records(&self, study: &Study) -> Result<Vec<Record>> {
         match &self.source {
             Source::Table(table) => study.tunnel.records_from_table(table, &self.dofs),
             Source::FlatPlate => study.tunnel.records_from_model(
@@ -258,7 +258,7 @@ impl RecordSet {
     }
 
     /// Records just written, still in memory.
-    pub fn staged(written: Vec<(PathBuf, Record)>) -> Result<Self> {
+    pub(crate) fn staged(written: Vec<(PathBuf, Record)>) -> Result<Self> {
         Self::open(written.into_iter().map(|(path, _)| path).collect())
     }
 
@@ -266,7 +266,7 @@ impl RecordSet {
     ///
     /// # Errors
     /// [`Error::Input`] when there are none although a model needs them; those of reading.
-    pub fn in_folder(study: &Study, folder: &Path) -> Result<Self> {
+    pub(crate) fn in_folder(study: &Study, folder: &Path) -> Result<Self> {
         let needed = study.models.iter().any(|m| m.table.is_none());
         let mut paths = Vec::new();
         if folder.is_dir() {

@@ -29,7 +29,7 @@ impl StageFailure {
 
 /// Whether an error is one of a file, to be mended before anything else is of use: it cannot be read or written, or what
 /// stands in it is wrong.
-pub fn is_of_a_file(error: &Error) -> bool {
+pub(crate) fn is_of_a_file(error: &Error) -> bool {
     match error {
         Error::Io { .. } => true,
         Error::Input(input) => input.file.is_some(),
@@ -39,10 +39,7 @@ pub fn is_of_a_file(error: &Error) -> bool {
 }
 
 /// The value of a stage; a failure is noted in `failed`.
-///
-/// # Errors
-/// Those of a file; see [`is_of_a_file`].
-pub fn attempt<T>(
+pub(crate) fn attempt<T>(
     failed: &mut Vec<StageFailure>,
     stage: impl Into<String>,
     result: Result<T>,

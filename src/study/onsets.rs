@@ -28,7 +28,7 @@ pub struct FlutterStudy {
     pub divergence: Vec<Divergence>,
     /// Each model's onset against the deck's own (exact, or interpolated table).
     pub deviations: Vec<Deviation>,
-    /// Onsets that the data leave so far open that they are no results; see [`Onset::headline_m_s`].
+    /// Onsets that the data leave so far open that they are no results; see `Onset::headline_m_s`.
     pub undetermined: Vec<Onset>,
     /// Growth of each trained model below its onset, by extrapolation alone.
     pub growth: Vec<ModelGrowth>,
@@ -204,7 +204,11 @@ impl FlutterStudy {
     }
 
     /// Puts the answer of the stepped FMU of `model` beside the others; returns the onset, if it was found.
-    pub fn take_stepped(&mut self, answer: SteppedAnswer, model: &str) -> Option<SteppedOnset> {
+    pub(crate) fn take_stepped(
+        &mut self,
+        answer: SteppedAnswer,
+        model: &str,
+    ) -> Option<SteppedOnset> {
         let search = match answer {
             SteppedAnswer::Onset(onset) => return Some(*onset),
             SteppedAnswer::UnstableAtOrBelow(start) => FlutterSearch::UnstableAtOrBelow(start),

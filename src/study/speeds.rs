@@ -130,7 +130,7 @@ impl SpeedRange {
     }
 
     /// Wind speeds of the curves, m/s.
-    pub fn curve_speeds_m_s(&self) -> Vec<f64> {
+    pub(crate) fn curve_speeds_m_s(&self) -> Vec<f64> {
         let last = (self.speeds - 1) as f64;
         let span = self.speed_max_m_s - self.speed_min_m_s;
         (0..self.speeds)

@@ -71,7 +71,7 @@ struct Alone {
 }
 
 /// Onsets by the tests at each speed, near that of all tests.
-pub fn speed_onsets(
+pub(crate) fn speed_onsets(
     estimate: &CoefficientUncertainty,
     structure: &Structure,
     onset: &Onset,

@@ -359,7 +359,7 @@ impl CoefficientUncertainty {
     /// for an estimate that was read from a file.
     ///
     /// The second value is why a speed alone does not tell.
-    pub fn at_each_speed(&self) -> Vec<(f64, Result<Self>)> {
+    pub(crate) fn at_each_speed(&self) -> Vec<(f64, Result<Self>)> {
         let Some(design) = &self.design else {
             return Vec::new();
         };

@@ -1,5 +1,8 @@
 //! The two routes to the error of an onset against each other and against re-solved onsets.
 
+use super::onset::{ResamplingPlan, onset_error, resample_onset};
+use super::sensitivity::onset_gradient;
+use super::speed_onsets::speed_onsets;
 use super::*;
 use crate::aerodynamics::derivatives::TransferSample;
 use crate::aerodynamics::{FlatPlate, RationalModel};

@@ -79,7 +79,7 @@ impl FilterBank {
 
     /// `x' = A x + b v` whose states are the filter outputs: `x_0' = −p_0 x_0 + √(2p_0) v` and
     /// `√(2p_{l−1}) (x_l' + p_l x_l) = √(2p_l) (x_{l−1}' − p_{l−1} x_{l−1})`.
-    pub fn matrices(&self) -> (DMatrix<f64>, DVector<f64>) {
+    pub(crate) fn matrices(&self) -> (DMatrix<f64>, DVector<f64>) {
         let n = self.len();
         let mut a = DMatrix::zeros(n, n);
         let mut b = DVector::zeros(n);

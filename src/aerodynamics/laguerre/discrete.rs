@@ -89,7 +89,7 @@ impl Recursion {
 }
 
 /// `A_L` (L×L) and `B_L` (L) of equation (4.2): `S(k+1) = A_L S(k) + B_L v(k+1)`.
-pub fn discrete_filter_matrices(alpha: f64, count: usize) -> (DMatrix<f64>, DVector<f64>) {
+pub(crate) fn discrete_filter_matrices(alpha: f64, count: usize) -> (DMatrix<f64>, DVector<f64>) {
     let recursion = Recursion::new(alpha);
     let unit = |l: usize| (0..count).map(|j| f64::from(u8::from(j == l))).collect();
     let columns: Vec<_> = (0..count).map(|l| recursion.next(unit(l), 0.0)).collect();
@@ -98,7 +98,7 @@ pub fn discrete_filter_matrices(alpha: f64, count: usize) -> (DMatrix<f64>, DVec
 }
 
 /// Impulse responses `g_0[k] … g_{L−1}[k]` for `k = 0 … samples−1`, as an L×samples matrix.
-pub fn impulse_response(alpha: f64, count: usize, samples: usize) -> DMatrix<f64> {
+pub(crate) fn impulse_response(alpha: f64, count: usize, samples: usize) -> DMatrix<f64> {
     let (a, mut state) = discrete_filter_matrices(alpha, count);
     let mut g = DMatrix::zeros(count, samples);
     for k in 0..samples {
@@ -132,7 +132,7 @@ impl DiscreteLaguerre {
     }
 
     /// `α` and the number of filters `L` when all transfer functions share them.
-    pub fn shared_parameters(&self) -> Option<(f64, usize)> {
+    pub(crate) fn shared_parameters(&self) -> Option<(f64, usize)> {
         let first = self.terms.first()?;
         let filters = first.coefficients.ncols();
         let one_a_motion = self.terms.len() == self.dofs.len();

@@ -5,10 +5,10 @@ use crate::error::{Error, Result};
 use crate::section::Dof;
 
 /// Sign convention and scaling of every table of static coefficients, as written in the header of its files.
-pub const TABLE_SIGN_CONVENTION: &str = "wind axes: drag along the relative wind, lift normal to it, up; moment and angle nose-up, moment about the axis of rotation; C_D = D/(rho V^2 B/2), C_L = L/(rho V^2 B/2), C_M = M/(rho V^2 B^2/2), B the full width";
+pub(crate) const TABLE_SIGN_CONVENTION: &str = "wind axes: drag along the relative wind, lift normal to it, up; moment and angle nose-up, moment about the axis of rotation; C_D = D/(rho V^2 B/2), C_L = L/(rho V^2 B/2), C_M = M/(rho V^2 B^2/2), B the full width";
 
 /// Units of the columns, as written in the header of the files.
-pub const TABLE_UNITS: &str = "angle_deg in degrees; c_d, c_l, c_m dimensionless";
+pub(crate) const TABLE_UNITS: &str = "angle_deg in degrees; c_d, c_l, c_m dimensionless";
 
 /// Tables of more than this range are no deck tests.
 const ANGLE_LIMIT_DEG: f64 = 180.0;
@@ -29,7 +29,7 @@ pub struct CoefficientRow {
     pub moment: f64,
 }
 
-/// Where a table comes from. Units and signs are [`TABLE_UNITS`] and [`TABLE_SIGN_CONVENTION`] for all tables.
+/// Where a table comes from. Units and signs are `TABLE_UNITS` and `TABLE_SIGN_CONVENTION` for all tables.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct CoefficientsHeader {
     /// Where the figures come from.
@@ -132,7 +132,7 @@ impl StaticCoefficients {
     }
 
     /// Lowest and highest tested angle, rad.
-    pub fn range_rad(&self) -> (f64, f64) {
+    pub(crate) fn range_rad(&self) -> (f64, f64) {
         let (low, high) = self.range_deg();
         (low.to_radians(), high.to_radians())
     }

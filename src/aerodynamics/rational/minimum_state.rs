@@ -66,7 +66,7 @@ impl MinimumStateModel {
     }
 
     /// The same as a function in Roger's form, with n states a lag: `a_{l+3} = D_l E_l`.
-    pub fn to_roger(&self) -> RationalModel {
+    pub(crate) fn to_roger(&self) -> RationalModel {
         RationalModel {
             dofs: self.dofs.clone(),
             a1: self.a1.clone(),

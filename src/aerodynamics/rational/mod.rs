@@ -34,7 +34,7 @@ impl Lags {
     }
 
     /// Lags of the force in row `i`; of the last row for an `i` beyond it.
-    pub fn of_force(&self, i: usize) -> &[f64] {
+    pub(crate) fn of_force(&self, i: usize) -> &[f64] {
         match self {
             Self::Shared(lags) => lags,
             Self::PerForce(rows) => rows.get(i).or(rows.last()).map_or(&[], Vec::as_slice),
@@ -132,7 +132,7 @@ impl RationalModel {
     }
 
     /// The different values of the `l`-th lag, each with the forces (rows) that have it: one for shared lags.
-    pub fn lag_groups(&self, l: usize) -> Vec<(f64, Vec<bool>)> {
+    pub(crate) fn lag_groups(&self, l: usize) -> Vec<(f64, Vec<bool>)> {
         let mut groups: Vec<(f64, Vec<bool>)> = Vec::new();
         for i in 0..self.dofs.len() {
             let lag = self.lags.of_force(i)[l];

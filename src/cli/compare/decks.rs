@@ -14,7 +14,7 @@ use std::fmt::Write as _;
 /// Example: aerodeck compare decks --out decks
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
-pub struct Args {
+pub(crate) struct Args {
     /// Embedded decks to compare.
     #[arg(long, value_delimiter = ',', default_values_t = THESIS_DECKS.map(str::to_owned))]
     decks: Vec<String>,

@@ -18,7 +18,7 @@ use std::path::PathBuf;
 
 /// Predicted against measured forces: one model on several decks, several models on one, or two signals of a file
 #[derive(clap::Subcommand)]
-pub enum Compare {
+pub(crate) enum Compare {
     Decks(decks::Args),
     Models(models::Args),
     Signals(signals::Args),

@@ -14,7 +14,7 @@ use std::fmt::Write as _;
 /// Example: aerodeck compare models --deck LN21-5200
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
-pub struct Args {
+pub(crate) struct Args {
     /// Embedded deck.
     #[arg(long, default_value = "LN21-5200")]
     deck: String,

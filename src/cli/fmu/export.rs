@@ -13,7 +13,7 @@ use std::path::PathBuf;
 /// Example: aerodeck fmu export model.json --out deck_section.fmu
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
-pub struct Args {
+pub(crate) struct Args {
     /// The trained model.
     model: PathBuf,
     /// The FMU; by default `deck_section.fmu` beside the model.

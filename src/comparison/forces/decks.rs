@@ -12,7 +12,7 @@ use serde::Serialize;
 
 /// What was done on one deck.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct DeckAccount {
+pub(crate) struct DeckAccount {
     /// Deck.
     pub deck: String,
     /// Width of the section model, m.
@@ -29,7 +29,7 @@ pub struct DeckAccount {
 
 /// Predicted against measured forces of several decks.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct DecksComparison {
+pub(crate) struct DecksComparison {
     /// What was asked for.
     pub options: CompareOptions,
     /// The decks.
@@ -47,7 +47,7 @@ pub struct DecksComparison {
 ///
 /// # Errors
 /// [`Error::Input`] for unknown decks and impossible options; those of fits and metrics.
-pub fn compare_decks(
+pub(crate) fn compare_decks(
     options: &CompareOptions,
     progress: &(dyn Fn(usize, usize) + Sync),
 ) -> Result<DecksComparison> {

@@ -19,7 +19,7 @@ const SHOWN_PERIODS: f64 = 3.0;
 
 /// A model that takes part.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Rival {
+pub(crate) struct Rival {
     /// Name in tables and figures.
     pub name: String,
     /// The fit in words.
@@ -34,7 +34,7 @@ pub struct Rival {
 
 /// A few periods of the forces due to one motion.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct History {
+pub(crate) struct History {
     /// Motion.
     pub motion: Dof,
     /// Force.
@@ -51,7 +51,7 @@ pub struct History {
 
 /// Models of one deck side by side.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ModelsComparison {
+pub(crate) struct ModelsComparison {
     /// What was asked for.
     pub options: CompareOptions,
     /// Deck.
@@ -79,7 +79,7 @@ pub struct ModelsComparison {
 ///
 /// # Errors
 /// [`Error::Input`] for anything but one deck; those of fits and metrics.
-pub fn compare_models(
+pub(crate) fn compare_models(
     options: &CompareOptions,
     progress: &(dyn Fn(usize, usize) + Sync),
 ) -> Result<ModelsComparison> {

@@ -14,7 +14,7 @@ pub enum Growing {
     Allow,
 }
 
-/// Growth below the onset of the section of a model, by extrapolation alone; see [`unwanted_growth`].
+/// Growth below the onset of the section of a model, by extrapolation alone; see `unwanted_growth`.
 pub fn growth_of(model: &TrainedModel) -> Result<UnwantedGrowth> {
     let section = CoupledSection::with_model(&model.section.structure()?, &model.model)?;
     let search = OnsetSearch {

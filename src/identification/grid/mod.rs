@@ -124,7 +124,7 @@ impl Grid {
     }
 
     /// Greatest number of filters.
-    pub fn filters_max(&self) -> usize {
+    pub(crate) fn filters_max(&self) -> usize {
         self.filters_max
     }
 
@@ -270,7 +270,7 @@ impl Grid {
     }
 
     /// Sum of squared residuals and of squared data of every force, weighted, in one stretch; `None` in one at rest.
-    pub fn residuals(
+    pub(crate) fn residuals(
         &self,
         stretch: usize,
         value: usize,

@@ -19,7 +19,7 @@ pub(crate) struct DiscreteColumns {
 
 impl DiscreteColumns {
     /// `filters` columns an input; `constant` puts a column of ones in front.
-    pub fn new(alphas: &[Vec<f64>], filters: usize, constant: bool) -> Self {
+    pub(crate) fn new(alphas: &[Vec<f64>], filters: usize, constant: bool) -> Self {
         let recursions = |alphas: &Vec<f64>| alphas.iter().map(|a| Recursion::new(*a)).collect();
         let inputs = alphas.first().map_or(0, Vec::len);
         Self {

@@ -74,7 +74,7 @@ impl AppliedLowPass {
 }
 
 /// Filters motion and force alike.
-pub fn apply(signals: &mut SectionSignals, filter: &ButterworthLowPass) -> Result<()> {
+pub(crate) fn apply(signals: &mut SectionSignals, filter: &ButterworthLowPass) -> Result<()> {
     for channel in signals.motion.iter_mut().chain(&mut signals.force) {
         *channel = filter.zero_phase(channel)?;
     }

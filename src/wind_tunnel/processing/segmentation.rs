@@ -42,7 +42,7 @@ impl HarmonicSegment {
 }
 
 /// The degree of freedom that moves most: displacements over the width of the model, rotation in rad.
-pub fn moving_dof(motion: &[Vec<f64>; 3], width_m: f64) -> Option<Dof> {
+pub(crate) fn moving_dof(motion: &[Vec<f64>; 3], width_m: f64) -> Option<Dof> {
     let size = |d: Dof| {
         let x = &motion[super::index(d)];
         let mean = x.iter().sum::<f64>() / x.len().max(1) as f64;
@@ -55,7 +55,7 @@ pub fn moving_dof(motion: &[Vec<f64>; 3], width_m: f64) -> Option<Dof> {
 }
 
 /// The harmonic stretches of a motion, in order; empty when it is something else.
-pub fn find_segments(
+pub(crate) fn find_segments(
     motion: &[f64],
     sampling_hz: f64,
     options: &SegmentOptions,
@@ -112,7 +112,7 @@ pub fn find_segments(
 ///
 /// # Errors
 /// [`Error::Input`] at `place` with the periods there are.
-pub fn whole_periods(place: &str, recording: &RawRecording, dof: Dof) -> Result<()> {
+pub(crate) fn whole_periods(place: &str, recording: &RawRecording, dof: Dof) -> Result<()> {
     let motion = super::still_air::from_rest(&recording.motion[super::index(dof)]);
     let amplitude = motion.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     let periods = upward_passages(&motion, HYSTERESIS * amplitude)

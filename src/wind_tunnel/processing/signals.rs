@@ -35,7 +35,7 @@ impl SectionSignals {
 }
 
 /// Greatest absolute value and root mean square.
-pub fn peak_and_rms(x: &[f64]) -> (f64, f64) {
+pub(crate) fn peak_and_rms(x: &[f64]) -> (f64, f64) {
     let peak = x.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
     let square: f64 = x.iter().map(|v| v * v).sum();
     (peak, (square / x.len().max(1) as f64).sqrt())

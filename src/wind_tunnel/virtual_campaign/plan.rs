@@ -288,7 +288,7 @@ impl VirtualCampaignPlan {
     ///
     /// # Errors
     /// [`Error::Numerical`] when it cannot be written as TOML.
-    pub fn to_toml(&self) -> Result<String> {
+    pub(crate) fn to_toml(&self) -> Result<String> {
         toml::to_string(self).map_err(|e| Error::Numerical(e.to_string()))
     }
 }

@@ -90,7 +90,7 @@ pub struct Convention {
 
 impl Convention {
     /// The notation with the axes and the argument it is usually printed with.
-    pub fn usual(notation: Notation) -> Self {
+    pub(crate) fn usual(notation: Notation) -> Self {
         Self {
             notation,
             argument: notation.usual_argument(),
@@ -99,7 +99,7 @@ impl Convention {
     }
 
     /// Value in this convention over the value in the crate's.
-    pub fn factor(&self, derivative: Derivative, k: ReducedFrequency) -> f64 {
+    pub(crate) fn factor(&self, derivative: Derivative, k: ReducedFrequency) -> f64 {
         self.axes.sign(derivative) * self.notation.factor(derivative, k)
     }
 
@@ -151,7 +151,7 @@ impl StatedConvention {
     }
 
     /// For writing: what is not stated is as usual for the notation, the notation itself as in the crate.
-    pub fn or_usual(self) -> Convention {
+    pub(crate) fn or_usual(self) -> Convention {
         let usual = Convention::usual(self.notation.unwrap_or_default());
         Convention {
             argument: self.argument.unwrap_or(usual.argument),

@@ -18,7 +18,7 @@ mod names;
 
 pub use argument::Argument;
 pub use convention::{Axes, Convention, StatedConvention};
-pub use expressed::{ExpressedDerivative, ExpressedPoint, ExpressedTable};
+pub(crate) use expressed::{ExpressedDerivative, ExpressedPoint, ExpressedTable};
 
 use super::{Derivative, Part};
 use crate::error::{Error, Result};
@@ -77,7 +77,7 @@ impl Notation {
     }
 
     /// The axes this notation is usually printed with.
-    pub fn usual_axes(self) -> Axes {
+    pub(crate) fn usual_axes(self) -> Axes {
         match self {
             Self::Scanlan | Self::Polimi => Axes::HeaveUp,
             Self::Classical | Self::Starossek => Axes::HeaveDown,
@@ -85,7 +85,7 @@ impl Notation {
     }
 
     /// The argument this notation is usually tabulated over.
-    pub fn usual_argument(self) -> Argument {
+    pub(crate) fn usual_argument(self) -> Argument {
         match self {
             Self::Scanlan => Argument::VHat,
             Self::Classical | Self::Polimi => Argument::VStar,
@@ -113,7 +113,7 @@ impl Notation {
     }
 
     /// What a value of Scanlan's with ½ is multiplied with to give the value in this notation, in the same axes.
-    pub fn factor(self, derivative: Derivative, k: ReducedFrequency) -> f64 {
+    pub(crate) fn factor(self, derivative: Derivative, k: ReducedFrequency) -> f64 {
         let k = k.full_width();
         let turning = |dof: Dof| i32::from(dof == Dof::Torsion);
         match self {
