@@ -121,7 +121,7 @@ impl CoupledSection {
     }
 
     /// The realised aerodynamic model about the axis of the section.
-    pub fn aerodynamics(&self) -> &Realization {
+    pub(crate) fn aerodynamics(&self) -> &Realization {
         &self.aerodynamics
     }
 
@@ -131,7 +131,7 @@ impl CoupledSection {
     }
 
     /// Number of states `[q, q̇, x]`.
-    pub fn states(&self) -> usize {
+    pub(crate) fn states(&self) -> usize {
         2 * self.structure.dofs.len() + self.aerodynamics.states()
     }
 

@@ -60,7 +60,7 @@ fn lines(errors: &[Error]) -> String {
 
 impl Error {
     /// Wrong input at `place` (no file yet; see `Error::in_file`).
-    pub fn input(
+    pub(crate) fn input(
         place: impl Into<String>,
         expected: impl Into<String>,
         found: impl Into<String>,
@@ -74,7 +74,7 @@ impl Error {
     }
 
     /// A failed file operation.
-    pub fn io(path: impl AsRef<Path>, source: std::io::Error) -> Self {
+    pub(crate) fn io(path: impl AsRef<Path>, source: std::io::Error) -> Self {
         Self::Io {
             path: path.as_ref().to_path_buf(),
             source,
@@ -83,7 +83,7 @@ impl Error {
 
     /// The same error at another place.
     #[must_use]
-    pub fn at(mut self, place: impl Into<String>) -> Self {
+    pub(crate) fn at(mut self, place: impl Into<String>) -> Self {
         if let Self::Input(input) = &mut self {
             input.place = place.into();
         }

@@ -49,7 +49,7 @@ impl Dof {
         }
     }
     /// Symbol of the motion: `y`, `x`, `θ`.
-    pub fn symbol(self) -> &'static str {
+    pub(crate) fn symbol(self) -> &'static str {
         match self {
             Dof::Vertical => "y",
             Dof::Lateral => "x",
@@ -57,7 +57,7 @@ impl Dof {
         }
     }
     /// Name of the motion in words.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Dof::Vertical => "vertical",
             Dof::Lateral => "lateral",

@@ -61,7 +61,7 @@ impl ReducedFrequency {
         0.5 * self.0
     }
     /// `V̂ = V/(ωB) = 1/K`.
-    pub fn v_hat(self) -> f64 {
+    pub(crate) fn v_hat(self) -> f64 {
         1.0 / self.0
     }
     /// Circular frequency `ω = K V/B`, rad/s.
@@ -77,7 +77,7 @@ pub struct ReducedVelocity(f64);
 
 impl ReducedVelocity {
     /// From `V* = V/(fB)` itself.
-    pub const fn new(v_star: f64) -> Self {
+    pub(crate) const fn new(v_star: f64) -> Self {
         Self(v_star)
     }
     /// `V* = V/(fB)`.

@@ -55,7 +55,7 @@ impl GustSeries {
     }
 
     /// Time step, s.
-    pub fn step_s(&self) -> f64 {
+    pub(crate) fn step_s(&self) -> f64 {
         self.step_s
     }
 
@@ -75,7 +75,7 @@ impl GustSeries {
     }
 
     /// `(u, w)` at a time, m/s; held before the first and after the last sample.
-    pub fn at(&self, time_s: f64) -> (f64, f64) {
+    pub(crate) fn at(&self, time_s: f64) -> (f64, f64) {
         let last = self.along_m_s.len() - 1;
         let place = (time_s / self.step_s).clamp(0.0, last as f64);
         let i = (place as usize).min(last - 1);

@@ -39,7 +39,7 @@ impl Admittance {
     ///
     /// # Errors
     /// [`crate::Error::Input`] naming the key below `place`.
-    pub fn validate(&self, place: &str) -> Result<()> {
+    pub(crate) fn validate(&self, place: &str) -> Result<()> {
         if let Self::Davenport { decay } = self {
             positive(&format!("{place}.decay"), *decay)?;
         }

@@ -48,7 +48,7 @@ impl Turbulence {
     ///
     /// # Errors
     /// [`Error::Input`] naming the key below `place`; for no component at all.
-    pub fn validate(&self, place: &str) -> Result<()> {
+    pub(crate) fn validate(&self, place: &str) -> Result<()> {
         let parts = [("along", &self.along), ("vertical", &self.vertical)];
         if parts.iter().all(|(_, gust)| gust.is_none()) {
             return Err(Error::input(

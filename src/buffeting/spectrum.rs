@@ -140,7 +140,7 @@ impl GustSpectrum {
     ///
     /// # Errors
     /// [`Error::Input`] naming the key below `place`.
-    pub fn validate(&self, place: &str) -> Result<()> {
+    pub(crate) fn validate(&self, place: &str) -> Result<()> {
         positive(&format!("{place}.length_m"), self.length_m)?;
         positive(&format!("{place}.intensity"), self.intensity)?;
         if self.intensity >= 1.0 {
@@ -159,7 +159,12 @@ impl GustSpectrum {
     }
 
     /// `S(f)`, one-sided, m²/s² per Hz.
-    pub fn density(&self, component: GustComponent, frequency_hz: f64, speed_m_s: f64) -> f64 {
+    pub(crate) fn density(
+        &self,
+        component: GustComponent,
+        frequency_hz: f64,
+        speed_m_s: f64,
+    ) -> f64 {
         let time = self.length_m / speed_m_s;
         let sigma = self.sigma_m_s(speed_m_s);
         sigma * sigma * time * self.shape.formula(component).density(frequency_hz * time)

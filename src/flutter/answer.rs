@@ -113,7 +113,7 @@ impl FlutterSearch {
     }
 
     /// Where the section is known to grow: the onset lies there, or there or below.
-    pub fn critical(&self) -> Option<&CriticalPoint> {
+    pub(crate) fn critical(&self) -> Option<&CriticalPoint> {
         match self {
             Self::Onset(onset) => Some(&onset.at),
             Self::UnstableAtOrBelow(start) => Some(&start.at),
@@ -158,7 +158,7 @@ impl UnstableStart {
     }
 
     /// The answer in words.
-    pub fn explain(&self) -> String {
+    pub(crate) fn explain(&self) -> String {
         format!(
             "unstable at and below {:.3} m/s, the lowest speed that could be judged: {} branch, {:.4} Hz, K {:.4}, \
              growth {:+.4} 1/s ({})",
@@ -174,7 +174,7 @@ impl UnstableStart {
 
 impl StableRange {
     /// The answer in words.
-    pub fn explain(&self) -> String {
+    pub(crate) fn explain(&self) -> String {
         if self.from_m_s > self.to_m_s {
             let why = self
                 .not_judged

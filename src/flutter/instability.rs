@@ -34,7 +34,7 @@ pub enum Instability {
 
 impl Instability {
     /// The kind in words.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Self::CoupledFlutter => "coupled flutter",
             Self::TorsionDrivenFlutter => "torsion-driven flutter (A2* > 0)",

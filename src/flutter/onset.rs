@@ -23,7 +23,7 @@ pub enum OnsetMethod {
 
 impl OnsetMethod {
     /// The route in a word.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Eigenvalues => "eigenvalues",
             Self::Determinant => "determinant",
@@ -104,7 +104,7 @@ pub enum OnsetInterval {
 
 impl OnsetInterval {
     /// The interval of `half_width_m_s` to both sides of a speed.
-    pub fn about(
+    pub(crate) fn about(
         speed_m_s: f64,
         half_width_m_s: f64,
         standard_error_m_s: f64,
@@ -137,7 +137,7 @@ impl OnsetInterval {
     }
 
     /// No interval, for this reason.
-    pub fn none(reason: impl Into<String>) -> Self {
+    pub(crate) fn none(reason: impl Into<String>) -> Self {
         Self::None {
             reason: reason.into(),
         }

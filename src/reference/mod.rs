@@ -101,7 +101,7 @@ pub enum Citation {
 
 impl Citation {
     /// The source in words.
-    pub fn words(&self) -> String {
+    pub(crate) fn words(&self) -> String {
         match self {
             Self::Published(text) => format!("published: {text}"),
             Self::Computed(text) => format!("computed: {text}"),

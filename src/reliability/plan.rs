@@ -114,7 +114,7 @@ impl MonteCarloPlan {
     ///
     /// # Errors
     /// [`Error::Input`] naming the key.
-    pub fn validate(&self) -> Result<()> {
+    pub(crate) fn validate(&self) -> Result<()> {
         let wrong =
             |key: &str, expected: &str, found: String| Err(Error::input(key, expected, found));
         if self.schema != PLAN_SCHEMA {

@@ -33,7 +33,7 @@ impl Structure {
 
     /// The same structure with only those of its degrees of freedom that are among `dofs`; the others are locked.
     #[must_use]
-    pub fn only(&self, dofs: &[Dof]) -> Self {
+    pub(crate) fn only(&self, dofs: &[Dof]) -> Self {
         let kept: Vec<usize> = (0..self.dofs.len())
             .filter(|i| dofs.contains(&self.dofs[*i]))
             .collect();

@@ -70,7 +70,7 @@ impl ButterworthLowPass {
     /// # Errors
     /// [`Error::Input`] for an order that is not 1 to 12, frequencies that are not positive, and a cut-off that is not
     /// below half the sampling frequency.
-    pub fn new(order: usize, cutoff_hz: f64, sampling_hz: f64) -> Result<Self> {
+    pub(crate) fn new(order: usize, cutoff_hz: f64, sampling_hz: f64) -> Result<Self> {
         positive("sampling_hz", sampling_hz)?;
         positive("low-pass cutoff_hz", cutoff_hz)?;
         if !(1..=ORDER_AT_MOST).contains(&order) {
@@ -100,16 +100,6 @@ impl ButterworthLowPass {
             sections.insert(0, Section::single(away_from_one(order.div_ceil(2)).re));
         }
         Ok(Self { order, sections })
-    }
-
-    /// Order of one passage.
-    pub fn order(&self) -> usize {
-        self.order
-    }
-
-    /// The sections, in the order in which they run.
-    pub fn sections(&self) -> &[Section] {
-        &self.sections
     }
 
     /// Amplitude that a harmonic keeps at one passage.

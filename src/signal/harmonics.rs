@@ -19,7 +19,7 @@ pub struct Plateau {
 
 impl Plateau {
     /// Its samples.
-    pub fn range(&self) -> Range<usize> {
+    pub(crate) fn range(&self) -> Range<usize> {
         self.first..self.first + self.samples
     }
 }

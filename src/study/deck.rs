@@ -111,7 +111,7 @@ impl Deck {
     }
 
     /// The deck in words.
-    pub fn description(&self) -> String {
+    pub(crate) fn description(&self) -> String {
         match &self.source {
             Source::Table(table) => format!("{}: {}", table.name, table.header.source),
             Source::FlatPlate => "flat plate, Theodorsen's theory, exact".to_owned(),
@@ -119,7 +119,7 @@ impl Deck {
     }
 
     /// Licence notice of the data.
-    pub fn licence(&self) -> String {
+    pub(crate) fn licence(&self) -> String {
         match &self.source {
             // the notice has to go wherever the figures go
             Source::Table(_) if self.built_in => embedded::LICENCE.to_owned(),
@@ -152,7 +152,11 @@ impl Deck {
     ///
     /// # Errors
     /// [`Error::Input`] for a group that does not exist.
-    pub fn samples(&self, study: &Study, groups: Option<&[usize]>) -> Result<Vec<TransferSample>> {
+    pub(crate) fn samples(
+        &self,
+        study: &Study,
+        groups: Option<&[usize]>,
+    ) -> Result<Vec<TransferSample>> {
         match &self.source {
             Source::Table(table) => {
                 let Some(groups) = groups else {
@@ -184,7 +188,7 @@ impl Deck {
     }
 
     /// The measured table; `None` for the flat plate.
-    pub fn table(&self) -> Option<&DerivativeTable> {
+    pub(crate) fn table(&self) -> Option<&DerivativeTable> {
         match &self.source {
             Source::Table(table) => Some(table),
             Source::FlatPlate => None,
@@ -192,7 +196,7 @@ impl Deck {
     }
 
     /// What was assumed in reading the table, and what looks wrong in it.
-    pub fn warnings(&self) -> Vec<String> {
+    pub(crate) fn warnings(&self) -> Vec<String> {
         self.warnings.clone()
     }
 
@@ -202,7 +206,7 @@ impl Deck {
     ///
     /// # Errors
     /// [`Error::Input`] when the table lacks a derivative of the section.
-    pub fn model(&self) -> Result<(Box<dyn Transfer>, Option<ReducedFrequencyRange>)> {
+    pub(crate) fn model(&self) -> Result<(Box<dyn Transfer>, Option<ReducedFrequencyRange>)> {
         match &self.source {
             Source::Table(table) => {
                 let by = self.interpolation;
@@ -252,7 +256,7 @@ pub struct RecordSet {
 
 impl RecordSet {
     /// The records that the study states.
-    pub fn measured(study: &Study) -> Result<Self> {
+    pub(crate) fn measured(study: &Study) -> Result<Self> {
         let paths = study.deck.records.iter().map(|p| study.directory.join(p));
         Self::open(paths.collect())
     }
@@ -315,7 +319,7 @@ impl RecordSet {
     ///
     /// # Errors
     /// [`Error::Input`] for a group that does not exist.
-    pub fn select(&self, groups: Option<&[usize]>) -> Result<Vec<&dyn RecordSource>> {
+    pub(crate) fn select(&self, groups: Option<&[usize]>) -> Result<Vec<&dyn RecordSource>> {
         let chosen = chosen(groups, self.groups_m_s.len())?;
         let inside = |record: &&RecordFile| {
             let speed = record.header().mean_speed_m_s;

@@ -14,7 +14,7 @@ pub struct StageFailure {
 
 impl StageFailure {
     /// A stage and why it failed.
-    pub fn new(stage: impl Into<String>, reason: impl ToString) -> Self {
+    pub(crate) fn new(stage: impl Into<String>, reason: impl ToString) -> Self {
         Self {
             stage: stage.into(),
             reason: reason.to_string(),
@@ -22,7 +22,7 @@ impl StageFailure {
     }
 
     /// The failure in words.
-    pub fn explain(&self) -> String {
+    pub(crate) fn explain(&self) -> String {
         format!("FAILED {}: {}", self.stage, self.reason)
     }
 }

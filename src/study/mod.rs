@@ -223,7 +223,7 @@ impl Study {
     }
 
     /// Wind speeds of curves, searches, Monte Carlo analysis and FMU.
-    pub fn speeds(&self) -> SpeedRange {
+    pub(crate) fn speeds(&self) -> SpeedRange {
         self.flutter.range(&self.section)
     }
 
@@ -231,7 +231,7 @@ impl Study {
     ///
     /// # Errors
     /// [`Error::Input`] when `export.model` names none of the models.
-    pub fn exported(&self) -> Result<&ModelBlock> {
+    pub(crate) fn exported(&self) -> Result<&ModelBlock> {
         let Some(name) = &self.export.model else {
             return self
                 .models

@@ -132,7 +132,7 @@ pub fn flutter_study(study: &Study, deck: &Deck, trained: &[TrainedModel]) -> Re
 
 impl OnsetSummary {
     /// The answer in words.
-    pub fn explain(&self) -> String {
+    pub(crate) fn explain(&self) -> String {
         StableRange {
             from_m_s: self.stable_from_m_s,
             to_m_s: self.stable_up_to_m_s,
@@ -266,7 +266,7 @@ fn deviation(
 
 impl Deviation {
     /// The deviation in words.
-    pub fn explain(&self) -> String {
+    pub(crate) fn explain(&self) -> String {
         let side = if self.percent < 0.0 { "below" } else { "above" };
         let mut text = format!(
             "{}: {:.1} % {side} {}",

@@ -44,7 +44,7 @@ pub struct SteppedRun {
 
 impl SteppedOnset {
     /// In words.
-    pub fn explain(&self) -> String {
+    pub(crate) fn explain(&self) -> String {
         let runs: Vec<String> = self
             .runs
             .iter()
@@ -77,15 +77,6 @@ impl SteppedAnswer {
         match self {
             Self::Onset(onset) => Some(onset),
             Self::UnstableAtOrBelow(_) | Self::StableUpTo(_) => None,
-        }
-    }
-
-    /// In words.
-    pub fn explain(&self) -> String {
-        match self {
-            Self::Onset(onset) => onset.explain(),
-            Self::UnstableAtOrBelow(start) => format!("FMU stepped: {}", start.explain()),
-            Self::StableUpTo(range) => format!("FMU stepped: {}", range.explain()),
         }
     }
 }

@@ -224,7 +224,7 @@ impl CoefficientUncertainty {
     }
 
     /// The estimates.
-    pub fn values(&self) -> Vec<f64> {
+    pub(crate) fn values(&self) -> Vec<f64> {
         self.parameters.iter().map(|p| p.value).collect()
     }
 

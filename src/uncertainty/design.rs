@@ -113,7 +113,7 @@ impl Design {
     ///
     /// # Errors
     /// [`Error::Numerical`] when the blocks do not determine all parameters or are fewer than two.
-    pub fn new(blocks: Vec<Block>, tangent: Option<DMatrix<f64>>) -> Result<Self> {
+    pub(crate) fn new(blocks: Vec<Block>, tangent: Option<DMatrix<f64>>) -> Result<Self> {
         if blocks.len() < 2 {
             return Err(Error::Numerical(format!(
                 "covariance: {} independent block(s), at least two are needed",
@@ -231,7 +231,7 @@ impl Design {
     }
 
     /// The blocks.
-    pub fn blocks(&self) -> &[Block] {
+    pub(crate) fn blocks(&self) -> &[Block] {
         &self.blocks
     }
 
@@ -255,7 +255,7 @@ impl Design {
     ///
     /// # Errors
     /// [`Error::Numerical`] when the group does not determine all parameters.
-    pub fn alone(
+    pub(crate) fn alone(
         &self,
         groups: &[usize],
         group: usize,
@@ -289,7 +289,7 @@ impl Design {
     }
 
     /// Names of the blocks.
-    pub fn names(&self) -> Vec<String> {
+    pub(crate) fn names(&self) -> Vec<String> {
         self.blocks.iter().map(|b| b.name.clone()).collect()
     }
 

@@ -69,7 +69,7 @@ impl OnsetError {
     }
 
     /// The interval for a card.
-    pub fn interval(&self) -> OnsetInterval {
+    pub(crate) fn interval(&self) -> OnsetInterval {
         OnsetInterval::about(
             self.speed_m_s,
             self.half_width_m_s(),

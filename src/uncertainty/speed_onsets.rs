@@ -216,7 +216,7 @@ fn band(
 
 impl SpeedOnsets {
     /// One line with the onset of every speed; none for tests at one speed.
-    pub fn explain(&self) -> Option<String> {
+    pub(crate) fn explain(&self) -> Option<String> {
         if self.each.is_empty() {
             return None;
         }
@@ -248,7 +248,7 @@ impl SpeedOnsets {
 
 impl Contradiction {
     /// In words, with what to do.
-    pub fn explain(&self) -> String {
+    pub(crate) fn explain(&self) -> String {
         let ([v1, v2], [u1, u2]) = (self.mean_speeds_m_s, self.onsets_m_s);
         format!(
             "the mean speeds contradict each other: onset {u1:.3} m/s by the tests at {v1:.2} m/s, {u2:.3} m/s by those at \

@@ -16,7 +16,7 @@ impl TunnelPlan {
     ///
     /// # Errors
     /// [`Error::Input`] naming the key.
-    pub fn validate(&self) -> Result<()> {
+    pub(crate) fn validate(&self) -> Result<()> {
         for (key, list) in [
             ("frequencies_hz", &self.frequencies_hz),
             ("speeds_m_s", &self.speeds_m_s),

@@ -55,7 +55,7 @@ impl Rig {
     ///
     /// # Errors
     /// [`Error::Input`] naming the key: no cell, a length that is not positive, axes that are no rotation.
-    pub fn validate(&self) -> Result<()> {
+    pub(crate) fn validate(&self) -> Result<()> {
         positive("rig.model_length_m", self.model_length_m)?;
         positive("rig.model_width_m", self.model_width_m)?;
         for (key, stated) in [
@@ -143,13 +143,8 @@ impl RawRecording {
     }
 
     /// Number of samples.
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.cells.first().map_or(0, |c| c[0].len())
-    }
-
-    /// Whether there is no sample.
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
     }
 }
 

@@ -43,7 +43,7 @@ impl Interpolation {
     ];
 
     /// The word for it in studies.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Self::ModifiedAkima => "modified_akima",
             Self::CubicSpline => "cubic_spline",
@@ -54,7 +54,7 @@ impl Interpolation {
     }
 
     /// The same for people.
-    pub fn title(self) -> &'static str {
+    pub(crate) fn title(self) -> &'static str {
         match self {
             Self::ModifiedAkima => "modified Akima over ln K",
             Self::CubicSpline => "cubic spline over ln K",

@@ -152,7 +152,7 @@ impl DerivativeTable {
     }
 
     /// The degrees of freedom that the table covers completely.
-    pub fn dofs(&self) -> &'static [Dof] {
+    pub(crate) fn dofs(&self) -> &'static [Dof] {
         if self.points.len() == Derivative::ALL.len() {
             &Dof::THREE
         } else {
@@ -189,7 +189,7 @@ impl DerivativeTable {
     }
 
     /// The range of `K` in which every derivative among `dofs` was tested.
-    pub fn tested_range(&self, dofs: &[Dof]) -> ReducedFrequencyRange {
+    pub(crate) fn tested_range(&self, dofs: &[Dof]) -> ReducedFrequencyRange {
         let ranges = |d: Derivative| {
             ReducedFrequencyRange::spanning(self.points(d).iter().map(DerivativePoint::k))
         };
@@ -209,7 +209,7 @@ impl DerivativeTable {
 
     /// Mean wind speed of each group of test points, m/s, rising; empty when the source does not give speeds.
     /// Speeds less than 5 % apart belong to one group.
-    pub fn speed_groups(&self) -> Vec<f64> {
+    pub(crate) fn speed_groups(&self) -> Vec<f64> {
         self.grouped_speeds()
             .iter()
             .map(|group| group.iter().sum::<f64>() / group.len() as f64)

@@ -31,7 +31,7 @@ impl FilterBank {
     ///
     /// # Errors
     /// [`Error::Input`] when a pole is not positive or there is none.
-    pub fn new(poles: Vec<f64>) -> Result<Self> {
+    pub(crate) fn new(poles: Vec<f64>) -> Result<Self> {
         if poles.is_empty() {
             return Err(Error::input("filter bank: poles", "at least one", "none"));
         }
@@ -50,18 +50,13 @@ impl FilterBank {
     }
 
     /// Poles in the order of the chain.
-    pub fn poles(&self) -> &[f64] {
+    pub(crate) fn poles(&self) -> &[f64] {
         &self.poles
     }
 
     /// Number of filters `L`.
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.poles.len()
-    }
-
-    /// Never true: a bank has at least one filter.
-    pub fn is_empty(&self) -> bool {
-        self.poles.is_empty()
     }
 
     /// `Λ_0(p) … Λ_{L−1}(p)` in closed form at the complex frequency `p` (on the axis, `p = iK`).

@@ -147,7 +147,7 @@ impl DiscreteLaguerre {
     ///
     /// # Errors
     /// [`Error::Input`] naming the field that does not fit.
-    pub fn validate(&self) -> Result<()> {
+    pub(crate) fn validate(&self) -> Result<()> {
         let place = |field: &str| format!("discrete Laguerre model: {field}");
         positive(&place("delta_s"), self.delta_s)?;
         let n = self.dofs.len();

@@ -51,7 +51,7 @@ pub(crate) fn discrete_memory(alpha: f64, count: usize) -> usize {
 impl FilterBank {
     /// Memory of the chain in steps of `delta_s` (dimensionless time): from there on `|λ_l(s)| √Δs ≤ 0.01` for every filter,
     /// the measure of `discrete_memory` for continuous filters.
-    pub fn memory(&self, delta_s: f64) -> Result<usize> {
+    pub(crate) fn memory(&self, delta_s: f64) -> Result<usize> {
         let (a, b) = self.matrices();
         let phi = c2d(
             &a,

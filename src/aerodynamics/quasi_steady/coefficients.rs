@@ -59,7 +59,7 @@ pub struct CoefficientsAt {
 
 impl CoefficientsAt {
     /// The coefficient of the force on a degree of freedom and its slope, per rad.
-    pub fn of(&self, dof: Dof) -> (f64, f64) {
+    pub(crate) fn of(&self, dof: Dof) -> (f64, f64) {
         match dof {
             Dof::Vertical => (self.lift, self.lift_slope),
             Dof::Lateral => (self.drag, self.drag_slope),
@@ -93,7 +93,7 @@ impl StaticCoefficients {
     ///
     /// # Errors
     /// [`Error::Input`] naming the row, from 1.
-    pub fn new(
+    pub(crate) fn new(
         name: impl Into<String>,
         header: CoefficientsHeader,
         rows: Vec<CoefficientRow>,
@@ -117,17 +117,17 @@ impl StaticCoefficients {
     }
 
     /// Name of the deck.
-    pub fn name(&self) -> &str {
+    pub(crate) fn name(&self) -> &str {
         &self.name
     }
 
     /// Where the figures come from.
-    pub fn header(&self) -> &CoefficientsHeader {
+    pub(crate) fn header(&self) -> &CoefficientsHeader {
         &self.header
     }
 
     /// The tested angles.
-    pub fn rows(&self) -> &[CoefficientRow] {
+    pub(crate) fn rows(&self) -> &[CoefficientRow] {
         &self.rows
     }
 
@@ -147,7 +147,7 @@ impl StaticCoefficients {
     ///
     /// # Errors
     /// [`Error::Input`] naming the angle when it lies outside the table.
-    pub fn at(&self, angle_rad: f64) -> Result<CoefficientsAt> {
+    pub(crate) fn at(&self, angle_rad: f64) -> Result<CoefficientsAt> {
         let (low, high) = self.range_rad();
         if !(low - ROUNDING_RAD..=high + ROUNDING_RAD).contains(&angle_rad) {
             let (low, high) = self.range_deg();

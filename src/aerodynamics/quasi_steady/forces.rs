@@ -54,12 +54,12 @@ impl QuasiSteady {
     }
 
     /// The static coefficients.
-    pub fn coefficients(&self) -> &StaticCoefficients {
+    pub(crate) fn coefficients(&self) -> &StaticCoefficients {
         &self.coefficients
     }
 
     /// Degrees of freedom, in the order of the forces.
-    pub fn dofs(&self) -> &[Dof] {
+    pub(crate) fn dofs(&self) -> &[Dof] {
         &self.dofs
     }
 

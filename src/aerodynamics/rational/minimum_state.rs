@@ -45,7 +45,7 @@ impl MinimumStateModel {
     ///
     /// # Errors
     /// [`Error::Input`] naming the field that does not fit.
-    pub fn validate(&self) -> Result<()> {
+    pub(crate) fn validate(&self) -> Result<()> {
         const PLACE: &str = "minimum-state model";
         let (n, m) = (self.dofs.len(), self.lags.len());
         check_square(PLACE, n, &[&self.a1, &self.a2, &self.a3])?;

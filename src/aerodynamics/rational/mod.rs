@@ -26,7 +26,7 @@ pub enum Lags {
 
 impl Lags {
     /// Number of lags of a force.
-    pub fn count(&self) -> usize {
+    pub(crate) fn count(&self) -> usize {
         match self {
             Self::Shared(lags) => lags.len(),
             Self::PerForce(rows) => rows.first().map_or(0, Vec::len),
@@ -45,7 +45,7 @@ impl Lags {
     ///
     /// # Errors
     /// [`Error::Input`] saying what does not fit.
-    pub fn validate(&self, n: usize) -> Result<()> {
+    pub(crate) fn validate(&self, n: usize) -> Result<()> {
         const PLACE: &str = "rational model: lags";
         let lists = match self {
             Self::Shared(lags) => std::slice::from_ref(lags),
@@ -115,7 +115,7 @@ impl RationalModel {
     ///
     /// # Errors
     /// [`Error::Input`] naming the field that does not fit.
-    pub fn validate(&self) -> Result<()> {
+    pub(crate) fn validate(&self) -> Result<()> {
         let n = self.dofs.len();
         let mut terms = vec![&self.a1, &self.a2, &self.a3];
         terms.extend(&self.lag_terms);

@@ -24,7 +24,7 @@ pub(super) enum Cell {
 
 impl Cell {
     /// The content as text.
-    pub fn text(&self) -> String {
+    pub(crate) fn text(&self) -> String {
         match self {
             Self::Number(x) => x.to_string(),
             Self::Text(text) => text.clone(),

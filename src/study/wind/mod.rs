@@ -239,7 +239,7 @@ impl WindStudy {
 
 impl CoefficientsBlock {
     /// Quasi-steady theory with its arms for these degrees of freedom; paths are read against `directory`.
-    pub fn theory(&self, directory: &Path, dofs: &[Dof]) -> Result<QuasiSteady> {
+    pub(crate) fn theory(&self, directory: &Path, dofs: &[Dof]) -> Result<QuasiSteady> {
         let arms = match (&self.arms, &self.arms_from) {
             (Some(arms), _) => *arms,
             (None, Some(source)) => {

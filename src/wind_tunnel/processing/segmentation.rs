@@ -35,7 +35,7 @@ pub struct HarmonicSegment {
 
 impl HarmonicSegment {
     /// Samples of the whole segment in a recording of `count` samples.
-    pub fn range(&self, sampling_hz: f64, count: usize) -> Range<usize> {
+    pub(crate) fn range(&self, sampling_hz: f64, count: usize) -> Range<usize> {
         let at = |t: f64| ((t * sampling_hz).round().max(0.0) as usize).min(count);
         at(self.segment.start_s)..at(self.segment.end_s)
     }

@@ -24,13 +24,8 @@ pub struct SectionSignals {
 
 impl SectionSignals {
     /// Number of samples.
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.force[0].len()
-    }
-
-    /// Whether there is no sample.
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
     }
 }
 

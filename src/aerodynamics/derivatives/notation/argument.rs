@@ -26,7 +26,7 @@ impl Argument {
     pub const ALL: [Self; 4] = [Self::VHat, Self::VStar, Self::KFull, Self::KSemi];
 
     /// The word for it in commands and studies, and the name of its column.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Self::VHat => "v_hat",
             Self::VStar => "v_star",
@@ -36,7 +36,7 @@ impl Argument {
     }
 
     /// Name with definition, as it stands in the header of files.
-    pub fn definition(self) -> &'static str {
+    pub(crate) fn definition(self) -> &'static str {
         match self {
             Self::VHat => "v_hat = V/(omega B)",
             Self::VStar => "v_star = V/(f B)",

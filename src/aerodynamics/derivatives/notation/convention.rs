@@ -25,7 +25,7 @@ impl Axes {
     pub const ALL: [Self; 2] = [Self::HeaveUp, Self::HeaveDown];
 
     /// The word for it in commands and studies.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Self::HeaveUp => "heave_up",
             Self::HeaveDown => "heave_down",
@@ -33,7 +33,7 @@ impl Axes {
     }
 
     /// The axes in words, as in the header of files.
-    pub fn words(self) -> &'static str {
+    pub(crate) fn words(self) -> &'static str {
         match self {
             Self::HeaveUp => {
                 "heave and lift up, rotation and moment nose-up, sway and drag downwind"
@@ -46,7 +46,7 @@ impl Axes {
 
     /// −1 for a derivative that changes its sign when heave and lift are turned round: those that couple heave or lift
     /// with something else.
-    pub fn sign(self, derivative: Derivative) -> f64 {
+    pub(crate) fn sign(self, derivative: Derivative) -> f64 {
         let couples =
             (derivative.force() == Dof::Vertical) != (derivative.motion() == Dof::Vertical);
         if self == Self::HeaveDown && couples {
@@ -104,7 +104,7 @@ impl Convention {
     }
 
     /// Symbol of a number for people: `H1*`, `h1*`, `c″_hh`.
-    pub fn symbol(&self, derivative: Derivative) -> String {
+    pub(crate) fn symbol(&self, derivative: Derivative) -> String {
         super::names::symbol(self.notation, derivative)
     }
 }
@@ -138,7 +138,8 @@ pub struct StatedConvention {
 
 impl StatedConvention {
     /// Only the notation.
-    pub fn notation(notation: Notation) -> Self {
+    #[cfg(test)]
+    pub(crate) fn notation(notation: Notation) -> Self {
         Self {
             notation: Some(notation),
             ..Self::default()
@@ -146,7 +147,7 @@ impl StatedConvention {
     }
 
     /// Whether nothing is stated.
-    pub fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         *self == Self::default()
     }
 
@@ -165,7 +166,7 @@ impl StatedConvention {
     ///
     /// # Errors
     /// [`Error::Input`] for a contradiction, and for a notation or an argument that nobody states.
-    pub fn with_file(self, file: Self) -> Result<Convention> {
+    pub(crate) fn with_file(self, file: Self) -> Result<Convention> {
         let notation = agree("notation", self.notation, file.notation)?
             .ok_or_else(|| unstated("notation", &Notation::ALL.map(Notation::name).join(", ")))?;
         let argument = agree("argument", self.argument, file.argument)?

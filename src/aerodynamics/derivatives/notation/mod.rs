@@ -57,7 +57,7 @@ impl Notation {
     ];
 
     /// The word for it in files, studies and commands.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Scanlan => "scanlan",
             Self::Classical => "classical",
@@ -67,7 +67,7 @@ impl Notation {
     }
 
     /// The notation for people.
-    pub fn title(self) -> &'static str {
+    pub(crate) fn title(self) -> &'static str {
         match self {
             Self::Scanlan => "Scanlan with 1/2",
             Self::Classical => "classical (Scanlan without 1/2)",
@@ -95,7 +95,7 @@ impl Notation {
 
     /// The definition, as it stands in the header of files: force per unit length due to harmonic motion `e^{iωt}`, `z`
     /// heave, `x` sway, `theta` rotation, in the axes stated beside it.
-    pub fn definition(self) -> &'static str {
+    pub(crate) fn definition(self) -> &'static str {
         match self {
             Self::Scanlan => {
                 "with K = omega B/V: lift = (rho V^2 B/2) K^2 [(H4 + i H1) z/B + (H6 + i H5) x/B + (H3 + i H2) theta]; drag the same with (P6 + i P5) z/B + (P4 + i P1) x/B + (P3 + i P2) theta; moment = (rho V^2 B^2/2) K^2 [(A4 + i A1) z/B + (A6 + i A5) x/B + (A3 + i A2) theta]"
