@@ -48,6 +48,12 @@ pub enum Error {
     /// A computation did not reach a usable result.
     #[error("{0}")]
     Numerical(String),
+    /// Modes that are asked for one by one cannot be told apart.
+    #[error("{0}")]
+    NotDistinct(String),
+    /// The section grows where only a stable one has an answer, or may be exported.
+    #[error("{0}")]
+    Unstable(String),
     /// Several of these, in the order of what they are about; one line each.
     #[error("{}", lines(.0))]
     Several(Vec<Error>),

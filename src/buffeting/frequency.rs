@@ -77,7 +77,7 @@ fn spectra_by_gust(
 /// `tested` is the range of reduced frequencies in which the model was tested.
 ///
 /// # Errors
-/// [`Error::Input`] for parts that do not fit together; those of the model; [`Error::Numerical`] when the section is
+/// [`Error::Input`] for parts that do not fit together; those of the model; [`Error::Unstable`] when the section is
 /// unstable at this speed.
 pub(crate) fn buffeting_response(
     problem: &BuffetingProblem<'_>,
@@ -87,7 +87,7 @@ pub(crate) fn buffeting_response(
     problem.validate()?;
     let unstable = unstable_roots(problem, speed_m_s)?;
     if unstable > 0 {
-        return Err(Error::Numerical(format!(
+        return Err(Error::Unstable(format!(
             "buffeting at {speed_m_s} m/s: the section is unstable there ({unstable} growing roots), no response is stationary"
         )));
     }

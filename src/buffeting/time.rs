@@ -116,7 +116,7 @@ struct Grid {
 ///
 /// # Errors
 /// [`Error::Input`] for a plan that cannot be, a model without realisation, and records shorter than their warm-up;
-/// [`Error::Numerical`] when the section is unstable at this speed.
+/// [`Error::Unstable`] when the section is unstable at this speed.
 pub(crate) fn time_ensemble(
     problem: &BuffetingProblem<'_>,
     speed_m_s: f64,
@@ -166,7 +166,7 @@ fn grid(
         .map(|z| -z.re)
         .fold(f64::INFINITY, f64::min);
     if slowest <= 0.0 {
-        return Err(Error::Numerical(format!(
+        return Err(Error::Unstable(format!(
             "buffeting at {speed_m_s} m/s: the section is unstable there"
         )));
     }

@@ -4,7 +4,7 @@ use super::output::OutputDir;
 use super::progress::Progress;
 use crate::error::{Error, Result};
 use crate::flutter::{FlutterCurves, Onset};
-use crate::fmu::package::{Growing, Runtime, growth_of, package};
+use crate::fmu::package::{Growing, Runtime, package};
 use crate::identification::{self, FitReport};
 use crate::report::{PNG_SCALE, VfVgOptions, vf_vg_figure};
 use crate::study::{
@@ -257,8 +257,7 @@ pub(crate) fn routes_figure(
 /// Packs a model with all runtimes that are there.
 pub fn export(model: &TrainedModel, growing: Growing, progress: &Progress) -> Result<Vec<u8>> {
     let stage = progress.stage("packing the FMU");
-    let bytes =
-        package(model, &Runtime::available()?, growing).map_err(|e| or_allow_unstable(e, model))?;
+    let bytes = package(model, &Runtime::available()?, growing).map_err(or_allow_unstable)?;
     drop(stage);
     Ok(bytes)
 }
@@ -273,10 +272,10 @@ pub fn growing(allowed: bool) -> Growing {
 }
 
 /// A refused export with the flag that allows it.
-pub(crate) fn or_allow_unstable(error: Error, model: &TrainedModel) -> Error {
+pub(crate) fn or_allow_unstable(error: Error) -> Error {
     match error {
-        Error::Numerical(text) if growth_of(model).is_ok_and(|g| !g.is_none()) => {
-            Error::Numerical(format!("{text} (--allow-unstable exports it all the same)"))
+        Error::Unstable(text) => {
+            Error::Unstable(format!("{text} (--allow-unstable exports it all the same)"))
         }
         other => other,
     }

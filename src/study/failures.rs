@@ -34,7 +34,7 @@ pub(crate) fn is_of_a_file(error: &Error) -> bool {
         Error::Io { .. } => true,
         Error::Input(input) => input.file.is_some(),
         Error::Several(errors) => errors.iter().any(is_of_a_file),
-        Error::Numerical(_) => false,
+        Error::Numerical(_) | Error::NotDistinct(_) | Error::Unstable(_) => false,
     }
 }
 

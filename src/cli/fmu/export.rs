@@ -47,7 +47,7 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
             input.expected.push_str(" (or --force)");
             Error::Input(input)
         }
-        other => stages::or_allow_unstable(other, &model),
+        other => stages::or_allow_unstable(other),
     })?;
     drop(stage);
     let growth = growth_of(&model)?;

@@ -33,7 +33,7 @@ pub(super) fn check(model: &TrainedModel, growing: Growing) -> Result<()> {
     if growth.is_none() {
         return Ok(());
     }
-    Err(Error::Numerical(format!(
+    Err(Error::Unstable(format!(
         "{} is not exported: it {}",
         model.name,
         growth.explain()
