@@ -53,7 +53,7 @@ impl CoupledSystem {
     }
 
     /// The state matrix: of `ż = A z`, or of `z(k+1) = A z(k)`.
-    pub fn state_matrix(&self) -> &DMatrix<f64> {
+    pub(crate) fn state_matrix(&self) -> &DMatrix<f64> {
         match self {
             Self::Continuous(s) => &s.a,
             Self::Sampled(s) => &s.a,
@@ -61,7 +61,7 @@ impl CoupledSystem {
     }
 
     /// The eigenvalue of the state matrix that belongs to the continuous-time eigenvalue `lambda`.
-    pub fn matrix_eigenvalue(&self, lambda: Complex<f64>) -> Complex<f64> {
+    pub(crate) fn matrix_eigenvalue(&self, lambda: Complex<f64>) -> Complex<f64> {
         match self {
             Self::Continuous(_) => lambda,
             Self::Sampled(s) => (lambda * s.time.step).exp(),
@@ -126,7 +126,7 @@ impl CoupledSection {
     }
 
     /// `(M − ½ρB² P(e₂))⁻¹`, n×n.
-    pub fn inverse_mass(&self) -> &DMatrix<f64> {
+    pub(crate) fn inverse_mass(&self) -> &DMatrix<f64> {
         &self.inverse_mass
     }
 

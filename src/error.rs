@@ -48,6 +48,12 @@ pub enum Error {
     /// A computation did not reach a usable result.
     #[error("{0}")]
     Numerical(String),
+    /// Modes that are asked for one by one cannot be told apart.
+    #[error("{0}")]
+    NotDistinct(String),
+    /// The section grows where only a stable one has an answer, or may be exported.
+    #[error("{0}")]
+    Unstable(String),
     /// Several of these, in the order of what they are about; one line each.
     #[error("{}", lines(.0))]
     Several(Vec<Error>),
@@ -59,8 +65,8 @@ fn lines(errors: &[Error]) -> String {
 }
 
 impl Error {
-    /// Wrong input at `place` (no file yet; see [`Error::in_file`]).
-    pub fn input(
+    /// Wrong input at `place` (no file yet; see `Error::in_file`).
+    pub(crate) fn input(
         place: impl Into<String>,
         expected: impl Into<String>,
         found: impl Into<String>,
@@ -74,7 +80,7 @@ impl Error {
     }
 
     /// A failed file operation.
-    pub fn io(path: impl AsRef<Path>, source: std::io::Error) -> Self {
+    pub(crate) fn io(path: impl AsRef<Path>, source: std::io::Error) -> Self {
         Self::Io {
             path: path.as_ref().to_path_buf(),
             source,
@@ -83,7 +89,7 @@ impl Error {
 
     /// The same error at another place.
     #[must_use]
-    pub fn at(mut self, place: impl Into<String>) -> Self {
+    pub(crate) fn at(mut self, place: impl Into<String>) -> Self {
         if let Self::Input(input) = &mut self {
             input.place = place.into();
         }
@@ -92,7 +98,7 @@ impl Error {
 
     /// The same error, naming the file it came from (a file already named is kept).
     #[must_use]
-    pub fn in_file(mut self, path: impl AsRef<Path>) -> Self {
+    pub(crate) fn in_file(mut self, path: impl AsRef<Path>) -> Self {
         let path = path.as_ref();
         match &mut self {
             Self::Input(input) if input.file.is_none() => {
@@ -128,7 +134,7 @@ fn quoted(text: String) -> String {
 ///
 /// # Errors
 /// The one error there is, or [`Error::Several`].
-pub fn all_or_errors<T>(results: Vec<Result<T>>) -> Result<Vec<T>> {
+pub(crate) fn all_or_errors<T>(results: Vec<Result<T>>) -> Result<Vec<T>> {
     let (mut values, mut errors) = (Vec::with_capacity(results.len()), Vec::new());
     for result in results {
         match result {
@@ -170,7 +176,7 @@ pub fn finite(place: &str, value: f64) -> Result<f64> {
 ///
 /// # Errors
 /// [`Error::Input`] naming `place` otherwise.
-pub fn finite_numbers(place: &str, values: &[f64], count: usize) -> Result<()> {
+pub(crate) fn finite_numbers(place: &str, values: &[f64], count: usize) -> Result<()> {
     if values.len() == count && values.iter().all(|x| x.is_finite()) {
         return Ok(());
     }
@@ -182,7 +188,7 @@ pub fn finite_numbers(place: &str, values: &[f64], count: usize) -> Result<()> {
 ///
 /// # Errors
 /// [`Error::Input`] naming `place` otherwise.
-pub fn at_most(place: &str, value: f64, bound: f64) -> Result<()> {
+pub(crate) fn at_most(place: &str, value: f64, bound: f64) -> Result<()> {
     if value <= bound {
         Ok(())
     } else {
@@ -198,7 +204,7 @@ pub fn at_most(place: &str, value: f64, bound: f64) -> Result<()> {
 ///
 /// # Errors
 /// [`Error::Input`] naming `place` otherwise.
-pub fn non_negative(place: &str, value: f64) -> Result<f64> {
+pub(crate) fn non_negative(place: &str, value: f64) -> Result<f64> {
     if value.is_finite() && value >= 0.0 {
         Ok(value)
     } else {

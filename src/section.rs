@@ -7,7 +7,7 @@
 
 mod structure;
 
-pub use structure::{Entry, Structure};
+pub use structure::Structure;
 
 use crate::error::{Error, Result, finite, non_negative, positive};
 use nalgebra::DMatrix;
@@ -41,7 +41,7 @@ impl Dof {
         }
     }
     /// Factor from dimensionless force to force over `½ρV²`: `B` for forces, `B²` for the moment.
-    pub fn force_scale(self, width_m: f64) -> f64 {
+    pub(crate) fn force_scale(self, width_m: f64) -> f64 {
         if self == Dof::Torsion {
             width_m * width_m
         } else {
@@ -49,7 +49,7 @@ impl Dof {
         }
     }
     /// Symbol of the motion: `y`, `x`, `θ`.
-    pub fn symbol(self) -> &'static str {
+    pub(crate) fn symbol(self) -> &'static str {
         match self {
             Dof::Vertical => "y",
             Dof::Lateral => "x",
@@ -57,7 +57,7 @@ impl Dof {
         }
     }
     /// Name of the motion in words.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Dof::Vertical => "vertical",
             Dof::Lateral => "lateral",
@@ -135,7 +135,7 @@ impl SectionModel {
     }
 
     /// Width (m), density (kg/m³) and, for heave and rotation, (inertia, frequency in Hz, damping ratio).
-    pub fn two_dof(
+    pub(crate) fn two_dof(
         width_m: f64,
         air_density_kg_m3: f64,
         vertical: (f64, f64, f64),
@@ -184,11 +184,11 @@ impl SectionModel {
     /// both or neither of frequency and stiffness, and for a centre of mass as far from the axis as the radius of
     /// gyration or farther.
     pub fn structure(&self) -> Result<Structure> {
-        let supports: Vec<_> = self.diagonal()?.into_iter().flatten().collect();
-        let diagonal = |pick: fn(&(f64, f64, f64)) -> f64| {
+        let supports: Vec<_> = self.supports()?.into_iter().flatten().collect();
+        let diagonal = |pick: fn(&Support) -> f64| {
             DMatrix::from_diagonal(&supports.iter().map(pick).collect::<Vec<_>>().into())
         };
-        let mut mass = diagonal(|s| s.0);
+        let mut mass = diagonal(|s| s.mass);
         let torsion = supports.len() - 1;
         if self.mass_offset_m.is_some() {
             mass[(0, torsion)] = self.static_coupling();
@@ -200,13 +200,13 @@ impl SectionModel {
             air_density_kg_m3: self.air_density_kg_m3,
             axis_offset_m: self.axis_offset_m.unwrap_or(0.0),
             mass,
-            damping: diagonal(|s| s.1),
-            stiffness: diagonal(|s| s.2),
+            damping: diagonal(|s| s.damping),
+            stiffness: diagonal(|s| s.stiffness),
         })
     }
 
-    /// (mass, damping, stiffness) of the vertical, lateral and torsional support.
-    pub(crate) fn diagonal(&self) -> Result<[Option<(f64, f64, f64)>; 3]> {
+    /// The vertical, lateral and torsional support.
+    pub(crate) fn supports(&self) -> Result<[Option<Support>; 3]> {
         positive("section.width_m", self.width_m)?;
         positive("section.air_density_kg_m3", self.air_density_kg_m3)?;
         let heave = translation_support("section.vertical", &self.vertical)?;
@@ -219,7 +219,7 @@ impl SectionModel {
         if let Some(e) = self.mass_offset_m {
             finite("section.mass_offset_m", e)?;
             // about the axis J = J_cg + m e²
-            let radius = (twist.0 / heave.0).sqrt();
+            let radius = (twist.mass / heave.mass).sqrt();
             if e.abs() >= radius {
                 return Err(Error::input(
                     "section.mass_offset_m",
@@ -232,7 +232,7 @@ impl SectionModel {
     }
 }
 
-fn rotation_support(place: &str, s: &Rotation) -> Result<(f64, f64, f64)> {
+fn rotation_support(place: &str, s: &Rotation) -> Result<Support> {
     support(
         place,
         ("inertia_kg_m2_m", s.inertia_kg_m2_m),
@@ -242,7 +242,7 @@ fn rotation_support(place: &str, s: &Rotation) -> Result<(f64, f64, f64)> {
     )
 }
 
-fn translation_support(place: &str, s: &Translation) -> Result<(f64, f64, f64)> {
+fn translation_support(place: &str, s: &Translation) -> Result<Support> {
     support(
         place,
         ("mass_kg_m", s.mass_kg_m),
@@ -252,14 +252,21 @@ fn translation_support(place: &str, s: &Translation) -> Result<(f64, f64, f64)> 
     )
 }
 
-/// (mass, damping, stiffness) of one support.
+/// One degree of freedom by itself, in the units of its row of the structure's matrices.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct Support {
+    pub mass: f64,
+    pub damping: f64,
+    pub stiffness: f64,
+}
+
 fn support(
     place: &str,
     (inertia_key, inertia): (&str, f64),
     frequency_hz: Option<f64>,
     (stiffness_key, stiffness): (&str, Option<f64>),
     damping_ratio: f64,
-) -> Result<(f64, f64, f64)> {
+) -> Result<Support> {
     // the place is put together only where something is wrong: this is called for every sample of a random section
     let at = |key: &str, checked: fn(&str, f64) -> Result<f64>, value: f64| {
         checked("", value).map_err(|e| e.at(format!("{place}.{key}")))
@@ -280,11 +287,11 @@ fn support(
             ));
         }
     };
-    Ok((
-        inertia,
-        2.0 * damping_ratio * (stiffness * inertia).sqrt(),
+    Ok(Support {
+        mass: inertia,
+        damping: 2.0 * damping_ratio * (stiffness * inertia).sqrt(),
         stiffness,
-    ))
+    })
 }
 
 #[cfg(test)]

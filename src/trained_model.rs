@@ -15,7 +15,7 @@ use std::path::Path;
 pub const SCHEMA_VERSION: u32 = 1;
 /// Newest version that is read and written. Version 2: discrete Laguerre filters of single transfer functions, rational
 /// functions with lags of each force, minimum-state form.
-pub const NEWEST_SCHEMA_VERSION: u32 = 2;
+pub(crate) const NEWEST_SCHEMA_VERSION: u32 = 2;
 
 /// States of a realisation at most, a hundred times those of any model that was ever fitted: its matrices are full.
 const MAX_STATES: usize = 1000;
@@ -46,7 +46,7 @@ impl Model {
     }
 
     /// Lowest version of the file layout that can hold the model.
-    pub fn schema_version(&self) -> u32 {
+    pub(crate) fn schema_version(&self) -> u32 {
         match self {
             Self::Rational(m) if matches!(m.lags, Lags::PerForce(_)) => NEWEST_SCHEMA_VERSION,
             Self::MinimumState(_) => NEWEST_SCHEMA_VERSION,
@@ -155,7 +155,7 @@ pub struct Experiment {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TrainedModel {
-    /// Version of the file layout, at least [`Model::schema_version`].
+    /// Version of the file layout, at least `Model::schema_version`.
     pub schema_version: u32,
     /// Name of the deck or study.
     pub name: String,
@@ -176,7 +176,7 @@ impl TrainedModel {
     ///
     /// # Errors
     /// [`Error::Io`] when it cannot be read; those of [`TrainedModel::from_json`], naming the file.
-    pub fn read(path: &Path) -> Result<Self> {
+    pub(crate) fn read(path: &Path) -> Result<Self> {
         let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, e))?;
         Self::from_json(&text).map_err(|e| e.in_file(path))
     }
@@ -215,7 +215,7 @@ impl TrainedModel {
     ///
     /// # Errors
     /// [`Error::Input`] naming the key.
-    pub fn validate(&self) -> Result<()> {
+    pub(crate) fn validate(&self) -> Result<()> {
         self.section.structure()?;
         self.model.validate()?;
         if self.schema_version < self.model.schema_version() {

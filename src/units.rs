@@ -8,11 +8,11 @@ use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
 /// Mean speeds whose neighbours are within this ratio belong to one group of test points.
-pub const SAME_SPEED: f64 = 1.05;
+pub(crate) const SAME_SPEED: f64 = 1.05;
 
 /// `values` rising, split where one is more than `ratio` times the one before. Every value is in exactly one group (none
 /// is empty), whatever the order in which they come.
-pub fn near_groups(values: impl IntoIterator<Item = f64>, ratio: f64) -> Vec<Vec<f64>> {
+pub(crate) fn near_groups(values: impl IntoIterator<Item = f64>, ratio: f64) -> Vec<Vec<f64>> {
     let mut values: Vec<f64> = values.into_iter().collect();
     values.sort_by(f64::total_cmp);
     values
@@ -22,7 +22,7 @@ pub fn near_groups(values: impl IntoIterator<Item = f64>, ratio: f64) -> Vec<Vec
 }
 
 /// The group of [`near_groups`] that `value` is in, or else the one below it.
-pub fn group_of(groups: &[Vec<f64>], value: f64) -> usize {
+pub(crate) fn group_of(groups: &[Vec<f64>], value: f64) -> usize {
     groups.partition_point(|g| g[0] <= value).saturating_sub(1)
 }
 
@@ -37,7 +37,7 @@ impl ReducedFrequency {
         Self(k)
     }
     /// From circular frequency `ω` (rad/s), width `B` (m) and speed `V` (m/s).
-    pub fn from_circular(omega_rad_s: f64, width_m: f64, speed_m_s: f64) -> Self {
+    pub(crate) fn from_circular(omega_rad_s: f64, width_m: f64, speed_m_s: f64) -> Self {
         Self(omega_rad_s * width_m / speed_m_s)
     }
     /// From frequency `f` (Hz), width `B` (m) and speed `V` (m/s).
@@ -45,11 +45,11 @@ impl ReducedFrequency {
         Self::from_circular(TAU * frequency_hz, width_m, speed_m_s)
     }
     /// From the semi-chord reduced frequency `k = ωb/V`, `b = B/2`.
-    pub fn from_semi_chord(k: f64) -> Self {
+    pub(crate) fn from_semi_chord(k: f64) -> Self {
         Self(2.0 * k)
     }
     /// From `V̂ = V/(ωB) = 1/K`, the abscissa of the NTNU workbooks.
-    pub fn from_v_hat(v_hat: f64) -> Self {
+    pub(crate) fn from_v_hat(v_hat: f64) -> Self {
         Self(1.0 / v_hat)
     }
     /// `K = ωB/V`.
@@ -57,15 +57,15 @@ impl ReducedFrequency {
         self.0
     }
     /// `k = ωb/V = K/2`.
-    pub fn semi_chord(self) -> f64 {
+    pub(crate) fn semi_chord(self) -> f64 {
         0.5 * self.0
     }
     /// `V̂ = V/(ωB) = 1/K`.
-    pub fn v_hat(self) -> f64 {
+    pub(crate) fn v_hat(self) -> f64 {
         1.0 / self.0
     }
     /// Circular frequency `ω = K V/B`, rad/s.
-    pub fn circular(self, width_m: f64, speed_m_s: f64) -> f64 {
+    pub(crate) fn circular(self, width_m: f64, speed_m_s: f64) -> f64 {
         self.0 * speed_m_s / width_m
     }
 }
@@ -77,7 +77,7 @@ pub struct ReducedVelocity(f64);
 
 impl ReducedVelocity {
     /// From `V* = V/(fB)` itself.
-    pub const fn new(v_star: f64) -> Self {
+    pub(crate) const fn new(v_star: f64) -> Self {
         Self(v_star)
     }
     /// `V* = V/(fB)`.
@@ -109,7 +109,7 @@ pub struct ReducedFrequencyRange {
 
 impl ReducedFrequencyRange {
     /// The smallest range holding all of `values`; `None` when there are none.
-    pub fn spanning(values: impl IntoIterator<Item = ReducedFrequency>) -> Option<Self> {
+    pub(crate) fn spanning(values: impl IntoIterator<Item = ReducedFrequency>) -> Option<Self> {
         values.into_iter().fold(None, |range: Option<Self>, k| {
             Some(range.map_or(Self { min: k, max: k }, |r| Self {
                 min: if k < r.min { k } else { r.min },

@@ -102,9 +102,9 @@ fn calculated_onsets_are_those_of_the_search() {
                 };
                 onsets += 1;
                 let expected = [
-                    onset.speed_m_s,
-                    onset.frequency_hz,
-                    onset.reduced_velocity.v_star(),
+                    onset.at.speed_m_s,
+                    onset.at.frequency_hz,
+                    onset.at.reduced_velocity.v_star(),
                 ];
                 for (now, expected) in calculated(&mut instance).iter().zip(expected) {
                     // the search halves and bisects to some 1e-11

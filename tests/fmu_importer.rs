@@ -80,11 +80,11 @@ fn onset_by_stepping_is_onset_by_eigenvalues() {
             let off = |a: f64, b: f64| (a / b - 1.0).abs();
             let message = format!("{kind} at {step} s: {found:#?} against {expected:#?}");
             assert!(
-                off(found.speed_m_s, expected.speed_m_s) < tolerance,
+                off(found.speed_m_s, expected.at.speed_m_s) < tolerance,
                 "{message}"
             );
             assert!(
-                off(found.frequency_hz, expected.frequency_hz) < tolerance,
+                off(found.frequency_hz, expected.at.frequency_hz) < tolerance,
                 "{message}"
             );
             assert!(

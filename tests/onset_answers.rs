@@ -65,13 +65,13 @@ fn both_unstable(table: &DerivativeTable, structure: &Structure) -> f64 {
     let by_iteration = pk_onset("", structure, &model, &SEARCH, Some(range)).unwrap();
     let (a, b) = (unstable(&by_determinant), unstable(&by_iteration));
     assert!(
-        (a.speed_m_s / b.speed_m_s - 1.0).abs() < 0.02,
+        (a.at.speed_m_s / b.at.speed_m_s - 1.0).abs() < 0.02,
         "{a:?} {b:?}"
     );
     assert_eq!((&a.branch, a.in_tested_range), (&b.branch, Some(true)));
-    let at_end = range.max.full_width() / b.reduced_frequency.full_width() - 1.0;
+    let at_end = range.max.full_width() / b.at.reduced_frequency.full_width() - 1.0;
     assert!(at_end.abs() < 1e-9, "{b:?}");
-    b.speed_m_s
+    b.at.speed_m_s
 }
 
 #[test]
@@ -85,12 +85,12 @@ fn a_bluff_deck_is_unstable_where_its_table_begins_by_every_route() {
     let coupled = CoupledSection::with_model(&structure, &bluff).unwrap();
     let range = held(&table).tested_range();
     let exact = find_onset("", &coupled, &SEARCH, None).unwrap();
-    let onset = exact.onset().unwrap().speed_m_s;
+    let onset = exact.onset().unwrap().at.speed_m_s;
     assert!((1.4..1.6).contains(&onset), "{onset}");
     let judged = find_onset("", &coupled, &SEARCH, Some(range)).unwrap();
     let start = unstable(&judged);
     assert!(
-        (start.speed_m_s / speed - 1.0).abs() < 0.02,
+        (start.at.speed_m_s / speed - 1.0).abs() < 0.02,
         "{start:?} {speed}"
     );
     assert!(
@@ -100,9 +100,12 @@ fn a_bluff_deck_is_unstable_where_its_table_begins_by_every_route() {
             .any(|w| w.contains("outside the tested range"))
     );
     let said = judged.explain();
-    assert!(said.starts_with(&format!("unstable at and below {:.3} m/s", start.speed_m_s)));
+    assert!(said.starts_with(&format!(
+        "unstable at and below {:.3} m/s",
+        start.at.speed_m_s
+    )));
     let iterated = pk_onset("", &structure, &bluff, &SEARCH, Some(range)).unwrap();
-    assert!((unstable(&iterated).speed_m_s / speed - 1.0).abs() < 0.02);
+    assert!((unstable(&iterated).at.speed_m_s / speed - 1.0).abs() < 0.02);
     // and the sweep behind Monte Carlo, with and without a tested range
     let sweep = |tested| {
         let forces = LinearForces::of_rational(&bluff, tested);
@@ -130,7 +133,7 @@ fn cut_tables_are_unstable_where_they_begin() {
         let full = held(&embedded::deck(deck).unwrap());
         let range = full.tested_range();
         let whole = determinant_onset("", &structure, &full, range, 60.0).unwrap();
-        let onset = whole.onset().unwrap().speed_m_s;
+        let onset = whole.onset().unwrap().at.speed_m_s;
         let speed = both_unstable(&cut(deck, k_max), &structure);
         assert!(
             onset < speed && speed < 2.0 * onset,
@@ -149,10 +152,10 @@ fn a_section_unstable_at_rest_has_no_onset() {
     let bluff = matrix::bluff_model();
     let coupled = CoupledSection::with_model(&structure, &bluff).unwrap();
     let found = find_onset("", &coupled, &SEARCH, None).unwrap();
-    assert!(unstable(&found).speed_m_s < 0.1, "{found:?}");
+    assert!(unstable(&found).at.speed_m_s < 0.1, "{found:?}");
     assert_eq!(unstable(&found).branch, "torsion");
     let found = pk_onset("", &structure, &bluff, &SEARCH, None).unwrap();
-    assert!(unstable(&found).speed_m_s < 0.1, "{found:?}");
+    assert!(unstable(&found).at.speed_m_s < 0.1, "{found:?}");
     let forces = LinearForces::of_rational(&bluff, None);
     let coefficients = forces.coefficients().to_vec();
     let sweep = OnsetSweep::new(forces, &structure, 60.0).unwrap();
@@ -162,7 +165,7 @@ fn a_section_unstable_at_rest_has_no_onset() {
     let jones = RationalModel::jones_flat_plate();
     let plate = CoupledSection::with_model(&structure, &jones).unwrap();
     let found = find_onset("", &plate, &SEARCH, None).unwrap();
-    assert!(found.onset().unwrap().speed_m_s > 30.0, "{found:?}");
+    assert!(found.onset().unwrap().at.speed_m_s > 30.0, "{found:?}");
     // a structure that feeds itself
     let mut fed = SectionModel::table_4_1().structure().unwrap();
     fed.damping[(1, 1)] *= -1.0;
@@ -172,7 +175,7 @@ fn a_section_unstable_at_rest_has_no_onset() {
         max: ReducedFrequency::from_full_width(1.0),
     };
     let found = find_onset("", &coupled, &SEARCH, None).unwrap();
-    assert!(unstable(&found).speed_m_s < 0.1, "{found:?}");
+    assert!(unstable(&found).at.speed_m_s < 0.1, "{found:?}");
     let found = find_onset("", &coupled, &SEARCH, Some(tested)).unwrap();
     assert!(found.critical_speed_m_s().is_some(), "{found:?}");
 }
@@ -227,7 +230,7 @@ fn modes_that_cannot_be_told_apart_do_not_end_the_search() {
     let coupled = CoupledSection::with_model(&structure, &model).unwrap();
     let found = find_onset("", &coupled, &SEARCH, Some(report.tested_range)).unwrap();
     let onset = found.onset().unwrap();
-    assert!((30.0..45.0).contains(&onset.speed_m_s), "{onset:?}");
+    assert!((30.0..45.0).contains(&onset.at.speed_m_s), "{onset:?}");
 }
 
 /// A branch keeps its shape: at speeds at which heave is overdamped its branch ends instead of becoming another.

@@ -31,6 +31,7 @@ fn onset_m_s(records: &[Record]) -> f64 {
         .unwrap()
         .onset()
         .unwrap()
+        .at
         .speed_m_s
 }
 

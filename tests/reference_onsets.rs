@@ -57,8 +57,8 @@ fn jones_by_eigenvalues_and_by_determinant() {
     let section = SectionModel::iabse_1_1a();
     let onset = jones_onset(&section);
     let second = jones_onset_by_determinant(&section);
-    near(second.speed_m_s / onset.speed_m_s, 1.0, 1e-10);
-    near(second.frequency_hz / onset.frequency_hz, 1.0, 1e-10);
+    near(second.at.speed_m_s / onset.at.speed_m_s, 1.0, 1e-10);
+    near(second.at.frequency_hz / onset.at.frequency_hz, 1.0, 1e-10);
     near(second.mode_ratio, onset.mode_ratio, 1e-8);
     near(second.phase_deg, onset.phase_deg, 1e-6);
 }
@@ -69,8 +69,8 @@ fn an_overdamped_mode_hides_no_onset() {
     let section = SectionModel::table_4_1();
     let onset = jones_onset(&section);
     let second = jones_onset_by_determinant(&section);
-    near(second.speed_m_s / onset.speed_m_s, 1.0, 1e-10);
-    near(second.frequency_hz / onset.frequency_hz, 1.0, 1e-10);
+    near(second.at.speed_m_s / onset.at.speed_m_s, 1.0, 1e-10);
+    near(second.at.frequency_hz / onset.at.frequency_hz, 1.0, 1e-10);
     let structure = section.structure().unwrap();
     let aero = RationalModel::jones_flat_plate().realize();
     let coupled = CoupledSection::new(structure, aero).unwrap();

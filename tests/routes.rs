@@ -61,11 +61,11 @@ fn three_routes_on_one_force_model() {
     ];
     let onsets = found.each_ref().map(|f| f.onset().unwrap().clone());
     for o in &onsets {
-        near(o.speed_m_s, 76.6790, 5e-5);
-        near(o.frequency_hz, 0.19319, 5e-6);
+        near(o.at.speed_m_s, 76.6790, 5e-5);
+        near(o.at.frequency_hz, 0.19319, 5e-6);
         near(o.mode_ratio, 0.65745, 5e-6);
         near(o.phase_deg, -160.343, 5e-4);
-        near(o.speed_m_s / onsets[0].speed_m_s, 1.0, 1e-10);
+        near(o.at.speed_m_s / onsets[0].at.speed_m_s, 1.0, 1e-10);
         let slope = o.damping_slope_s_m.unwrap() / onsets[0].damping_slope_s_m.unwrap();
         // the slope of the first is a one-sided difference over 1e-5 of the speed
         near(slope, 1.0, 1e-3);
@@ -137,7 +137,7 @@ fn torsional_flutter_is_named() {
     let onset = found.onset().unwrap();
     let v_hat = 1.6 + 4.0 * 0.003 * 0.6 / (1.19 * 0.0625) / 0.1;
     let speed = v_hat * TAU * 5.0 * 0.5;
-    near(onset.speed_m_s, speed, 1e-8);
+    near(onset.at.speed_m_s, speed, 1e-8);
     let mode = classify(&structure, &model, onset, model.tested_range(), 100.0).unwrap();
     assert_eq!(mode.kind, Instability::TorsionalFlutter);
     assert!(mode.kind.single_dof() && mode.participation[1].energy_share > 0.999);
@@ -153,7 +153,7 @@ fn torsional_flutter_is_named() {
         speeds: 100,
     };
     let iterated = pk_onset("", &structure, &model, &search, None).unwrap();
-    near(iterated.onset().unwrap().speed_m_s, speed, 1e-8);
+    near(iterated.onset().unwrap().at.speed_m_s, speed, 1e-8);
 }
 
 /// Likewise heave with `H1* > 0`: `½ρB² H1* = 2ζm`.
@@ -164,7 +164,7 @@ fn galloping_is_named() {
     let found = determinant_onset("", &structure, &model, model.tested_range(), 60.0).unwrap();
     let onset = found.onset().unwrap();
     let v_hat = 1.0 + 4.0 * 0.003 * 15.0 / (1.19 * 0.25) / 0.5;
-    near(onset.speed_m_s, v_hat * TAU * 2.0 * 0.5, 1e-8);
+    near(onset.at.speed_m_s, v_hat * TAU * 2.0 * 0.5, 1e-8);
     let mode = classify(&structure, &model, onset, model.tested_range(), 60.0).unwrap();
     assert_eq!(mode.kind, Instability::Galloping);
 }

@@ -55,18 +55,21 @@ fn same_onset(model: &TrainedModel, speed_max: f64) {
     let divergence = divergence_by_eigenvalues(&section, speed_max).unwrap();
     match (&expected, &found) {
         (FlutterSearch::Onset(a), SteppedAnswer::Onset(b)) => {
-            let off = b.onset.speed_m_s / a.speed_m_s - 1.0;
+            let off = b.onset.at.speed_m_s / a.at.speed_m_s - 1.0;
             assert!(off.abs() < 1e-4, "{a:?} {b:?}");
         }
         // stepping ends where divergence hides every oscillation, and says so
         (FlutterSearch::Onset(a), SteppedAnswer::StableUpTo(b)) => {
-            assert!(divergence.is_some_and(|v| v < a.speed_m_s), "{a:?} {b:?}");
-            assert!(b.not_judged.is_some() && b.to_m_s < a.speed_m_s);
+            assert!(
+                divergence.is_some_and(|v| v < a.at.speed_m_s),
+                "{a:?} {b:?}"
+            );
+            assert!(b.not_judged.is_some() && b.to_m_s < a.at.speed_m_s);
         }
         (FlutterSearch::StableUpTo(_), SteppedAnswer::StableUpTo(_)) => {}
         (FlutterSearch::UnstableAtOrBelow(a), SteppedAnswer::UnstableAtOrBelow(b)) => {
             assert!(
-                (b.speed_m_s / a.speed_m_s - 1.0).abs() < 0.01,
+                (b.at.speed_m_s / a.at.speed_m_s - 1.0).abs() < 0.01,
                 "{a:?} {b:?}"
             );
         }
@@ -95,7 +98,7 @@ fn growth_at_the_first_speed_sends_the_search_down() {
     let model = rational(matrix::bluff_model(), SectionModel::table_4_1());
     let (expected, found) = answers(&model, 60.0);
     let (a, b) = (expected.onset().unwrap(), found.onset().unwrap());
-    assert!((b.onset.speed_m_s / a.speed_m_s - 1.0).abs() < 1e-4);
+    assert!((b.onset.at.speed_m_s / a.at.speed_m_s - 1.0).abs() < 1e-4);
     // tested from K = 1 down: unstable at and below the speed that belongs to it, by both
     let mut tested = model;
     tested.tested_range.max = ReducedFrequency::from_full_width(1.0);
@@ -107,7 +110,7 @@ fn growth_at_the_first_speed_sends_the_search_down() {
         panic!("{found:?}")
     };
     assert!(
-        (b.speed_m_s / a.speed_m_s - 1.0).abs() < 1e-3,
+        (b.at.speed_m_s / a.at.speed_m_s - 1.0).abs() < 1e-3,
         "{a:?} {b:?}"
     );
 }

@@ -131,7 +131,7 @@ fn growth_in_every_test_is_answered_by_every_model() {
         for named in matrix::sections() {
             let results = answers_from_tables(folder.path(), "deck.csv", &named.section);
             let case = format!("{}, {}", deck.name, named.name);
-            let of_table = |u: &&UnstableStart| u.method == OnsetMethod::Determinant;
+            let of_table = |u: &&UnstableStart| u.at.method == OnsetMethod::Determinant;
             let table = results.unstable.iter().find(of_table).expect(&case);
             assert_eq!(results.onsets, [], "{case}");
             assert_eq!(results.stable.len(), 0, "{case}");
@@ -139,11 +139,11 @@ fn growth_in_every_test_is_answered_by_every_model() {
             let sways = table.branch == "lateral";
             assert_eq!(sways, case == "LN21-5500, IABSE 1.1a, sway 0.05 Hz");
             for start in results.unstable.iter().filter(|_| !sways) {
-                let ratio = start.speed_m_s / table.speed_m_s;
+                let ratio = start.at.speed_m_s / table.at.speed_m_s;
                 assert!(
                     (ratio - 1.0).abs() < 0.03,
                     "{case}, {}: {ratio}",
-                    start.model
+                    start.at.model
                 );
             }
             for growth in &results.growth {

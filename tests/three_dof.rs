@@ -78,7 +78,7 @@ fn onset_of_the_table_by_the_determinant() {
         (4.1, [36.569_595, 3.981_875, 0.459_110, -173.774]),
     ] {
         let o = table_onset(lateral_hz);
-        let found = [o.speed_m_s, o.frequency_hz, o.mode_ratio, o.phase_deg];
+        let found = [o.at.speed_m_s, o.at.frequency_hz, o.mode_ratio, o.phase_deg];
         for (found, expected) in found.iter().zip(expected) {
             // the digits given
             assert!(
@@ -104,8 +104,8 @@ fn three_routes_agree_on_fitted_models() {
         let first = by_eigenvalues.onset().unwrap();
         for other in others {
             let other = other.onset().unwrap();
-            assert!((other.speed_m_s / first.speed_m_s - 1.0).abs() < 1e-9);
-            assert!((other.frequency_hz / first.frequency_hz - 1.0).abs() < 1e-9);
+            assert!((other.at.speed_m_s / first.at.speed_m_s - 1.0).abs() < 1e-9);
+            assert!((other.at.frequency_hz / first.at.frequency_hz - 1.0).abs() < 1e-9);
             assert!((other.mode_ratio / first.mode_ratio - 1.0).abs() < 1e-6);
             let slopes = (
                 other.damping_slope_s_m.unwrap(),
@@ -115,11 +115,11 @@ fn three_routes_agree_on_fitted_models() {
             assert!((slopes.0 / slopes.1 - 1.0).abs() < 1e-3, "{slopes:?}");
         }
         // and the fit is near the table: the scatter of its two test speeds
-        let table = table_onset(3.9).speed_m_s;
+        let table = table_onset(3.9).at.speed_m_s;
         assert!(
-            (first.speed_m_s / table - 1.0).abs() < 0.03,
+            (first.at.speed_m_s / table - 1.0).abs() < 0.03,
             "{} {table}",
-            first.speed_m_s
+            first.at.speed_m_s
         );
         let steady = model
             .model

@@ -190,14 +190,14 @@ fn every_route_gives_one_onset() {
             let by_eigenvalues = by_eigenvalues.unwrap().unwrap();
             assert!((by_eigenvalues / divergence - 1.0).abs() < 1e-9);
             let onset = find_onset("", &coupled, &search, None).unwrap();
-            let onset = onset.onset().unwrap().speed_m_s;
+            let onset = onset.onset().unwrap().at.speed_m_s;
             let mut others = vec![
                 pk_onset("", &s, &jones, &search, None).unwrap(),
                 determinant_onset("", &s, &jones, range, search.speed_max_m_s).unwrap(),
                 determinant_onset("", &chord, &jones, range, search.speed_max_m_s).unwrap(),
             ];
             for found in others.drain(..) {
-                let speed = found.onset().unwrap().speed_m_s;
+                let speed = found.onset().unwrap().at.speed_m_s;
                 assert!(
                     (speed / onset - 1.0).abs() < 1e-8,
                     "{} {offsets:?}: {speed} {onset}",

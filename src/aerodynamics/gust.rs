@@ -46,7 +46,7 @@ impl GustSeries {
     ///
     /// # Errors
     /// [`Error::Input`] for a duration that is not positive.
-    pub fn calm(duration_s: f64) -> Result<Self> {
+    pub(crate) fn calm(duration_s: f64) -> Result<Self> {
         Self::new(
             positive("duration", duration_s)?,
             vec![0.0; 2],
@@ -55,7 +55,7 @@ impl GustSeries {
     }
 
     /// Time step, s.
-    pub fn step_s(&self) -> f64 {
+    pub(crate) fn step_s(&self) -> f64 {
         self.step_s
     }
 
@@ -65,17 +65,17 @@ impl GustSeries {
     }
 
     /// `u` at the samples, m/s.
-    pub fn along_m_s(&self) -> &[f64] {
+    pub(crate) fn along_m_s(&self) -> &[f64] {
         &self.along_m_s
     }
 
     /// `w` at the samples, m/s.
-    pub fn vertical_m_s(&self) -> &[f64] {
+    pub(crate) fn vertical_m_s(&self) -> &[f64] {
         &self.vertical_m_s
     }
 
     /// `(u, w)` at a time, m/s; held before the first and after the last sample.
-    pub fn at(&self, time_s: f64) -> (f64, f64) {
+    pub(crate) fn at(&self, time_s: f64) -> (f64, f64) {
         let last = self.along_m_s.len() - 1;
         let place = (time_s / self.step_s).clamp(0.0, last as f64);
         let i = (place as usize).min(last - 1);

@@ -17,7 +17,8 @@ pub use flat_plate::FlatPlate;
 pub use gust::GustSeries;
 pub use laguerre::{DiscreteLaguerre, FilterBank, FilterTerm, LaguerreModel};
 pub use rational::{Lags, MinimumStateModel, RationalModel};
-pub use realization::{ContinuousRealization, DiscreteRealization, Realization};
+pub(crate) use realization::DiscreteRealization;
+pub use realization::{ContinuousRealization, Realization};
 
 use crate::error::Result;
 use crate::section::Dof;
@@ -25,7 +26,7 @@ use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use nalgebra::{Complex, DMatrix};
 
 /// `G(K)`, n×n, dimensionless.
-pub type TransferMatrix = DMatrix<Complex<f64>>;
+pub(crate) type TransferMatrix = DMatrix<Complex<f64>>;
 
 /// A linear model of the self-excited forces.
 pub trait Transfer: Send + Sync {

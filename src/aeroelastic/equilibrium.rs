@@ -58,14 +58,14 @@ pub struct LastEquilibrium {
 
 impl EquilibriumEnd {
     /// Wind speed, m/s.
-    pub fn speed_m_s(&self) -> f64 {
+    pub(crate) fn speed_m_s(&self) -> f64 {
         match self {
             Self::Divergence(last) | Self::OutsideTable(last) => last.speed_m_s,
         }
     }
 
     /// In words.
-    pub fn explain(&self) -> String {
+    pub(crate) fn explain(&self) -> String {
         let (what, last) = match self {
             Self::Divergence(last) => ("torsional divergence", last),
             Self::OutsideTable(last) => ("the rotation leaves the table of coefficients", last),

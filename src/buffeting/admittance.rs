@@ -39,7 +39,7 @@ impl Admittance {
     ///
     /// # Errors
     /// [`crate::Error::Input`] naming the key below `place`.
-    pub fn validate(&self, place: &str) -> Result<()> {
+    pub(crate) fn validate(&self, place: &str) -> Result<()> {
         if let Self::Davenport { decay } = self {
             positive(&format!("{place}.decay"), *decay)?;
         }
@@ -47,7 +47,7 @@ impl Admittance {
     }
 
     /// The factor at a reduced frequency; 1 at zero.
-    pub fn amplitude(&self, frequency: ReducedFrequency) -> Complex<f64> {
+    pub(crate) fn amplitude(&self, frequency: ReducedFrequency) -> Complex<f64> {
         let k = frequency.semi_chord();
         match self {
             Self::None => Complex::new(1.0, 0.0),

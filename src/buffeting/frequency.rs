@@ -38,7 +38,7 @@ pub struct BuffetingResponse {
 ///
 /// # Errors
 /// Those of the model; [`Error::Numerical`] where the impedance is singular.
-pub fn response_spectrum(
+pub(crate) fn response_spectrum(
     problem: &BuffetingProblem<'_>,
     frequency_hz: f64,
     speed_m_s: f64,
@@ -77,9 +77,9 @@ fn spectra_by_gust(
 /// `tested` is the range of reduced frequencies in which the model was tested.
 ///
 /// # Errors
-/// [`Error::Input`] for parts that do not fit together; those of the model; [`Error::Numerical`] when the section is
+/// [`Error::Input`] for parts that do not fit together; those of the model; [`Error::Unstable`] when the section is
 /// unstable at this speed.
-pub fn buffeting_response(
+pub(crate) fn buffeting_response(
     problem: &BuffetingProblem<'_>,
     speed_m_s: f64,
     tested: Option<ReducedFrequencyRange>,
@@ -87,7 +87,7 @@ pub fn buffeting_response(
     problem.validate()?;
     let unstable = unstable_roots(problem, speed_m_s)?;
     if unstable > 0 {
-        return Err(Error::Numerical(format!(
+        return Err(Error::Unstable(format!(
             "buffeting at {speed_m_s} m/s: the section is unstable there ({unstable} growing roots), no response is stationary"
         )));
     }

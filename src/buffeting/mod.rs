@@ -14,9 +14,12 @@ mod synthesis;
 mod time;
 
 pub use admittance::Admittance;
-pub use frequency::{BuffetingResponse, buffeting_response, response_spectrum};
-pub use problem::{BuffetingProblem, Gust, GustForces, Turbulence};
+pub use frequency::BuffetingResponse;
+pub(crate) use frequency::{buffeting_response, response_spectrum};
+pub(crate) use problem::{BuffetingProblem, GustForces};
+pub use problem::{Gust, Turbulence};
 pub use spectrum::{GustComponent, GustSpectrum, SpectrumFormula, SpectrumShape};
-pub use stability::unstable_roots;
-pub use synthesis::{GustSample, synthesise};
-pub use time::{ComponentComparison, Ensemble, TimePlan, compare, time_ensemble};
+pub(crate) use stability::unstable_roots;
+pub(crate) use synthesis::synthesise;
+pub use time::{ComponentComparison, Ensemble, compare};
+pub(crate) use time::{TimePlan, time_ensemble};

@@ -37,7 +37,7 @@ pub struct Turbulence {
 
 impl Turbulence {
     /// One component, if it is there.
-    pub fn component(&self, component: GustComponent) -> Option<&Gust> {
+    pub(crate) fn component(&self, component: GustComponent) -> Option<&Gust> {
         match component {
             GustComponent::Along => self.along.as_ref(),
             GustComponent::Vertical => self.vertical.as_ref(),
@@ -48,7 +48,7 @@ impl Turbulence {
     ///
     /// # Errors
     /// [`Error::Input`] naming the key below `place`; for no component at all.
-    pub fn validate(&self, place: &str) -> Result<()> {
+    pub(crate) fn validate(&self, place: &str) -> Result<()> {
         let parts = [("along", &self.along), ("vertical", &self.vertical)];
         if parts.iter().all(|(_, gust)| gust.is_none()) {
             return Err(Error::input(
@@ -70,7 +70,7 @@ impl Turbulence {
 
 /// Dimensionless forces by the gusts without admittance: `q = A (u/V, w/V)`.
 #[derive(Debug, Clone, PartialEq)]
-pub struct GustForces {
+pub(crate) struct GustForces {
     dofs: Vec<Dof>,
     /// n×2.
     matrix: DMatrix<f64>,
@@ -78,7 +78,7 @@ pub struct GustForces {
 
 impl GustForces {
     /// The thin plate: lift `2π w/V`, moment about mid-chord `(π/2) w/V`.
-    pub fn flat_plate() -> Self {
+    pub(crate) fn flat_plate() -> Self {
         Self {
             dofs: Dof::TWO.to_vec(),
             matrix: DMatrix::from_row_slice(2, 2, &[0.0, 2.0 * PI, 0.0, PI / 2.0]),
@@ -86,7 +86,7 @@ impl GustForces {
     }
 
     /// The buffeting matrix of quasi-steady theory (1.12d).
-    pub fn quasi_steady(theory: &LinearQuasiSteady) -> Self {
+    pub(crate) fn quasi_steady(theory: &LinearQuasiSteady) -> Self {
         Self {
             dofs: theory.dofs().to_vec(),
             matrix: theory.buffeting().clone(),
@@ -94,14 +94,14 @@ impl GustForces {
     }
 
     /// Degrees of freedom of the rows.
-    pub fn dofs(&self) -> &[Dof] {
+    pub(crate) fn dofs(&self) -> &[Dof] {
         &self.dofs
     }
 }
 
 /// A section in turbulence.
 #[derive(Clone, Copy)]
-pub struct BuffetingProblem<'a> {
+pub(crate) struct BuffetingProblem<'a> {
     /// The suspended section.
     pub structure: &'a Structure,
     /// Its self-excited forces.
@@ -117,7 +117,7 @@ impl BuffetingProblem<'_> {
     ///
     /// # Errors
     /// [`Error::Input`] when they have not, and those of [`Turbulence::validate`].
-    pub fn validate(&self) -> Result<()> {
+    pub(crate) fn validate(&self) -> Result<()> {
         let dofs = &self.structure.dofs;
         for (place, found) in [
             ("buffeting: model", self.model.dofs()),
@@ -135,7 +135,7 @@ impl BuffetingProblem<'_> {
     }
 
     /// Force per unit length by a gust of 1 m/s of one component at a frequency, admittance included (n).
-    pub fn gust_force(
+    pub(crate) fn gust_force(
         &self,
         component: GustComponent,
         frequency_hz: f64,
@@ -173,7 +173,7 @@ impl BuffetingProblem<'_> {
     ///
     /// # Errors
     /// Those of the model; [`Error::Numerical`] when the impedance is singular.
-    pub fn gust_to_motion(
+    pub(crate) fn gust_to_motion(
         &self,
         frequency_hz: f64,
         speed_m_s: f64,

@@ -18,7 +18,7 @@ pub enum GustComponent {
 
 impl GustComponent {
     /// Both, in the order of the columns of a buffeting matrix.
-    pub const BOTH: [GustComponent; 2] = [GustComponent::Along, GustComponent::Vertical];
+    pub(crate) const BOTH: [GustComponent; 2] = [GustComponent::Along, GustComponent::Vertical];
 }
 
 /// Shape of a spectrum over `x = fL/V`, all of the form `f S/σ² = a x (1 + e xᶜ)/(1 + b xᶜ)ᵈ`.
@@ -140,7 +140,7 @@ impl GustSpectrum {
     ///
     /// # Errors
     /// [`Error::Input`] naming the key below `place`.
-    pub fn validate(&self, place: &str) -> Result<()> {
+    pub(crate) fn validate(&self, place: &str) -> Result<()> {
         positive(&format!("{place}.length_m"), self.length_m)?;
         positive(&format!("{place}.intensity"), self.intensity)?;
         if self.intensity >= 1.0 {
@@ -154,20 +154,20 @@ impl GustSpectrum {
     }
 
     /// Standard deviation at a mean wind speed, m/s.
-    pub fn sigma_m_s(&self, speed_m_s: f64) -> f64 {
+    pub(crate) fn sigma_m_s(&self, speed_m_s: f64) -> f64 {
         self.intensity * speed_m_s
     }
 
     /// `S(f)`, one-sided, m²/s² per Hz.
-    pub fn density(&self, component: GustComponent, frequency_hz: f64, speed_m_s: f64) -> f64 {
+    pub(crate) fn density(
+        &self,
+        component: GustComponent,
+        frequency_hz: f64,
+        speed_m_s: f64,
+    ) -> f64 {
         let time = self.length_m / speed_m_s;
         let sigma = self.sigma_m_s(speed_m_s);
         sigma * sigma * time * self.shape.formula(component).density(frequency_hz * time)
-    }
-
-    /// Integral of the formula over all frequencies, as a part of `σ²`: printed constants are rounded.
-    pub fn integral(&self, component: GustComponent) -> f64 {
-        self.shape.formula(component).integral()
     }
 }
 
@@ -205,7 +205,7 @@ mod tests {
                         s.density(component, f, 30.0) * f * 10f64.ln() * 14.0 / f64::from(steps)
                     })
                     .sum();
-                let integral = s.integral(component);
+                let integral = s.shape.formula(component).integral();
                 // beyond 1e7 Hz and below 1e-7 Hz lie 1e-5 of the variance
                 assert!((sum / 2.25 - integral).abs() < 2e-5, "{sum} {integral}");
                 assert!((integral - 1.0).abs() < 1e-3, "{integral}");

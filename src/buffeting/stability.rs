@@ -42,7 +42,7 @@ impl BuffetingProblem<'_> {
 /// # Errors
 /// [`Error::Input`] for a speed that is not positive; those of the model; [`Error::Numerical`] at an onset itself, where
 /// the impedance is singular.
-pub fn unstable_roots(problem: &BuffetingProblem<'_>, speed_m_s: f64) -> Result<usize> {
+pub(crate) fn unstable_roots(problem: &BuffetingProblem<'_>, speed_m_s: f64) -> Result<usize> {
     positive("wind speed", speed_m_s)?;
     let (low, high) = problem.natural_range_hz();
     let at = |f: f64| problem.determinant(f, speed_m_s);

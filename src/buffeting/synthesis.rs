@@ -28,7 +28,7 @@ const GAUSS_3: [(f64, f64); 3] = [
 
 /// One period of turbulence and of the gust forces.
 #[derive(Debug, Clone, PartialEq)]
-pub struct GustSample {
+pub(crate) struct GustSample {
     /// The gusts themselves.
     pub gusts: GustSeries,
     /// Gust forces per unit length (n), each at all samples: N/m, N·m/m.
@@ -42,7 +42,7 @@ pub struct GustSample {
 /// # Errors
 /// [`Error::Input`] for parts that do not fit together, a step that is not positive and a number of samples that is odd or
 /// not between 16 and 2²⁴.
-pub fn synthesise(
+pub(crate) fn synthesise(
     problem: &BuffetingProblem<'_>,
     speed_m_s: f64,
     (step_s, samples): (f64, usize),

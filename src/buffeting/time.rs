@@ -24,7 +24,7 @@ const DECAY_TIMES_BY_DEFAULT: f64 = 40.0;
 /// How many records, how long, how fine.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub struct TimePlan {
+pub(crate) struct TimePlan {
     /// Number of records, at least 2: their scatter gives the standard error.
     pub records: usize,
     /// Seed of the first record; the others follow.
@@ -116,8 +116,8 @@ struct Grid {
 ///
 /// # Errors
 /// [`Error::Input`] for a plan that cannot be, a model without realisation, and records shorter than their warm-up;
-/// [`Error::Numerical`] when the section is unstable at this speed.
-pub fn time_ensemble(
+/// [`Error::Unstable`] when the section is unstable at this speed.
+pub(crate) fn time_ensemble(
     problem: &BuffetingProblem<'_>,
     speed_m_s: f64,
     plan: &TimePlan,
@@ -166,7 +166,7 @@ fn grid(
         .map(|z| -z.re)
         .fold(f64::INFINITY, f64::min);
     if slowest <= 0.0 {
-        return Err(Error::Numerical(format!(
+        return Err(Error::Unstable(format!(
             "buffeting at {speed_m_s} m/s: the section is unstable there"
         )));
     }

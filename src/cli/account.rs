@@ -173,12 +173,12 @@ pub fn onsets(
         let _ = writeln!(
             text,
             "{:<22} {:<12} {:>9.3} {:>19} {:>8.4} {:>8.3} {:>8.4} {:>8.1}  {:<9} {}",
-            o.model,
-            o.method.name(),
-            o.speed_m_s,
+            o.at.model,
+            o.at.method.name(),
+            o.at.speed_m_s,
             interval(&o.interval),
-            o.frequency_hz,
-            o.reduced_velocity.v_star(),
+            o.at.frequency_hz,
+            o.at.reduced_velocity.v_star(),
             o.mode_ratio,
             o.phase_deg,
             o.branch,
@@ -191,18 +191,23 @@ pub fn onsets(
     }
     for o in undetermined {
         let reason = o.headline_m_s().err().unwrap_or_default();
-        let _ = writeln!(text, "{:<22} {:<12} {reason}", o.model, o.method.name());
+        let _ = writeln!(
+            text,
+            "{:<22} {:<12} {reason}",
+            o.at.model,
+            o.at.method.name()
+        );
     }
     for s in unstable {
-        let method = s.method.name();
-        let _ = writeln!(text, "{:<22} {method:<12} {}", s.model, s.explain());
+        let method = s.at.method.name();
+        let _ = writeln!(text, "{:<22} {method:<12} {}", s.at.model, s.explain());
     }
     for s in stable {
         let method = s.method.name();
         let _ = writeln!(text, "{:<22} {method:<12} {}", s.model, s.explain());
     }
     for o in onsets {
-        let place = format!("{} ({})", o.model, o.method.name());
+        let place = format!("{} ({})", o.at.model, o.at.method.name());
         let _ = match &o.interval {
             OnsetInterval::None { reason } => writeln!(text, "no interval: {place}: {reason}"),
             OnsetInterval::Spread { of, .. } => {
@@ -212,12 +217,12 @@ pub fn onsets(
             OnsetInterval::Known { .. } => Ok(()),
         };
         for warning in &o.warnings {
-            let _ = writeln!(text, "warning: {}: {warning}", o.model);
+            let _ = writeln!(text, "warning: {}: {warning}", o.at.model);
         }
     }
     for s in unstable {
         for warning in &s.warnings {
-            let _ = writeln!(text, "warning: {}: {warning}", s.model);
+            let _ = writeln!(text, "warning: {}: {warning}", s.at.model);
         }
     }
     text
@@ -246,7 +251,7 @@ pub fn growth(model: &str, growth: &UnwantedGrowth) -> String {
 }
 
 /// As [`growth`], for every model of a study.
-pub fn growths(all: &[ModelGrowth]) -> String {
+pub(crate) fn growths(all: &[ModelGrowth]) -> String {
     all.iter().map(|g| growth(&g.model, &g.growth)).collect()
 }
 
@@ -272,7 +277,7 @@ pub fn divergence(all: &[Divergence]) -> String {
 }
 
 /// What was assumed in reading the deck, and what looks wrong in it.
-pub fn deck_warnings(deck: &Deck) -> String {
+pub(crate) fn deck_warnings(deck: &Deck) -> String {
     let warnings = deck.warnings();
     warnings
         .iter()
@@ -286,6 +291,6 @@ pub fn deviations(all: &[Deviation]) -> String {
 }
 
 /// A length without the digits that its computation left behind, m.
-pub fn to_tenths_of_mm(length_m: f64) -> f64 {
+pub(crate) fn to_tenths_of_mm(length_m: f64) -> f64 {
     (length_m * 1e4).round() / 1e4
 }

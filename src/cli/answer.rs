@@ -16,7 +16,7 @@ impl Answer {
     ///
     /// # Errors
     /// [`Error::Numerical`] when the value cannot be written as JSON.
-    pub fn new(text: String, value: &impl Serialize) -> Result<Self> {
+    pub(crate) fn new(text: String, value: &impl Serialize) -> Result<Self> {
         let json = serde_json::to_value(value).map_err(|e| Error::Numerical(e.to_string()))?;
         Ok(Self {
             text,
@@ -27,23 +27,23 @@ impl Answer {
 
     /// The same answer of a check that did or did not pass.
     #[must_use]
-    pub fn with_verdict(mut self, passed: bool) -> Self {
+    pub(crate) fn with_verdict(mut self, passed: bool) -> Self {
         self.passed = passed;
         self
     }
 
     /// Readable account, ending in a new line.
-    pub fn text(&self) -> &str {
+    pub(crate) fn text(&self) -> &str {
         &self.text
     }
 
     /// The same as indented JSON.
-    pub fn json(&self) -> String {
+    pub(crate) fn json(&self) -> String {
         format!("{:#}", self.json)
     }
 
     /// Whether every check passed.
-    pub fn passed(&self) -> bool {
+    pub(crate) fn passed(&self) -> bool {
         self.passed
     }
 }

@@ -5,7 +5,7 @@ use std::panic::{AssertUnwindSafe, PanicHookInfo, catch_unwind, set_hook};
 use std::sync::Once;
 
 /// Exit code for a fault of the program, as `sysexits.h` has it for internal errors.
-pub const OWN_FAULT: u8 = 70;
+pub(crate) const OWN_FAULT: u8 = 70;
 
 /// Several threads may fail of one cause: one apology is enough.
 static SAID: Once = Once::new();
@@ -36,7 +36,7 @@ fn apologise(info: &PanicHookInfo<'_>) {
 }
 
 /// The exit code of `body`; [`OWN_FAULT`] when it panicked, here or in a thread that it waited for.
-pub fn guarded(body: impl FnOnce() -> u8) -> u8 {
+pub(crate) fn guarded(body: impl FnOnce() -> u8) -> u8 {
     catch_unwind(AssertUnwindSafe(body)).unwrap_or_else(|payload| {
         // dropping what was thrown could fail again
         std::mem::forget(payload);

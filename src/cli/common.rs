@@ -6,7 +6,7 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 /// Says at once what is hardly meant in a file, since it may be the cause of a failure to come.
-pub fn warn(file: &Path, warnings: &[String]) {
+pub(crate) fn warn(file: &Path, warnings: &[String]) {
     for warning in warnings {
         // standard error may be closed
         let _ = writeln!(std::io::stderr(), "warning: {}: {warning}", file.display());
@@ -15,7 +15,7 @@ pub fn warn(file: &Path, warnings: &[String]) {
 
 /// A study file and the folder of its results.
 #[derive(clap::Args)]
-pub struct StudyArgs {
+pub(crate) struct StudyArgs {
     /// The study file.
     pub study: PathBuf,
     /// Folder of the results; by default the folder of the study file.
@@ -25,19 +25,19 @@ pub struct StudyArgs {
 
 impl StudyArgs {
     /// Reads the study.
-    pub fn read(&self) -> Result<Study> {
+    pub(crate) fn read(&self) -> Result<Study> {
         let study = Study::read(&self.study)?;
         warn(&self.study, &study_warnings(&study));
         Ok(study)
     }
 
     /// Folder of the results.
-    pub fn directory(&self) -> PathBuf {
+    pub(crate) fn directory(&self) -> PathBuf {
         self.out.clone().unwrap_or_else(|| self.beside())
     }
 
     /// Folder of the study file.
-    pub fn beside(&self) -> PathBuf {
+    pub(crate) fn beside(&self) -> PathBuf {
         let parent = self.study.parent().filter(|p| !p.as_os_str().is_empty());
         parent.unwrap_or(Path::new(".")).to_path_buf()
     }

@@ -12,7 +12,7 @@ use std::fmt::Write as _;
 /// Example: aerodeck coverage --repetitions 500 --noise-correlation 0.1
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
-pub struct Args {
+pub(crate) struct Args {
     /// Number of repetitions.
     #[arg(long, default_value_t = 500)]
     repetitions: usize,

@@ -16,7 +16,7 @@ const STUDY_FILE: &str = "study.toml";
 /// Example: aerodeck demo --out first-look
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
-pub struct Args {
+pub(crate) struct Args {
     /// Where the results go.
     #[arg(long, default_value = "aerodeck-out")]
     out: PathBuf,

@@ -17,7 +17,7 @@ use crate::trained_model::TrainedModel;
 /// Example: aerodeck flutter study.toml --all
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
-pub struct Args {
+pub(crate) struct Args {
     #[command(flatten)]
     study: StudyArgs,
     /// Every route side by side: eigenvalues, determinant, p-k iteration, quasi-steady limit, flat plate, Selberg and

@@ -13,7 +13,7 @@ static BUSY: Mutex<()> = Mutex::new(());
 const ATTEMPTS: usize = 50;
 
 /// Not interrupted as long as the guard lives.
-pub fn uninterrupted() -> MutexGuard<'static, ()> {
+pub(crate) fn uninterrupted() -> MutexGuard<'static, ()> {
     BUSY.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
@@ -22,22 +22,22 @@ fn temporary() -> MutexGuard<'static, Vec<PathBuf>> {
 }
 
 /// A folder or file that is removed when this is dropped or the program is interrupted.
-pub struct Temporary(PathBuf);
+pub(crate) struct Temporary(PathBuf);
 
 impl Temporary {
     /// Takes charge of `path`.
-    pub fn new(path: PathBuf) -> Self {
+    pub(crate) fn new(path: PathBuf) -> Self {
         temporary().push(path.clone());
         Self(path)
     }
 
     /// Where it is.
-    pub fn path(&self) -> &Path {
+    pub(crate) fn path(&self) -> &Path {
         &self.0
     }
 
     /// The same under another name.
-    pub fn renamed(&mut self, path: PathBuf) {
+    pub(crate) fn renamed(&mut self, path: PathBuf) {
         let mut all = temporary();
         all.retain(|p| *p != self.0);
         all.push(path.clone());

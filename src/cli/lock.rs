@@ -7,11 +7,11 @@ use std::io::{Read as _, Write as _};
 use std::path::Path;
 
 /// Name of the lock, which exists while a run writes into the folder.
-pub const LOCK_FILE: &str = ".aerodeck-lock";
+pub(crate) const LOCK_FILE: &str = ".aerodeck-lock";
 
 /// The right to write into a folder. The operating system takes the lock back when the process ends, however it ends,
 /// so that a file left behind locks nobody out.
-pub struct FolderLock {
+pub(crate) struct FolderLock {
     // removed first, then closed: nobody can take a lock on a file that is about to go
     _name: Temporary,
     _file: File,
@@ -22,7 +22,7 @@ impl FolderLock {
     ///
     /// # Errors
     /// [`Error::Input`] naming the other process while one has it; [`Error::Io`] when the file cannot be written.
-    pub fn take(folder: &Path) -> Result<Self> {
+    pub(crate) fn take(folder: &Path) -> Result<Self> {
         let path = folder.join(LOCK_FILE);
         loop {
             let mut file = OpenOptions::new()

@@ -167,7 +167,7 @@ fn code(error: &Error) -> u8 {
     match error {
         Error::Io { source, .. } if no_room(source.kind()) => FAILED,
         Error::Input(_) | Error::Io { .. } => WRONG_INPUT,
-        Error::Numerical(_) => FAILED,
+        Error::Numerical(_) | Error::NotDistinct(_) | Error::Unstable(_) => FAILED,
         Error::Several(errors) => errors.iter().map(code).max().unwrap_or(FAILED),
     }
 }

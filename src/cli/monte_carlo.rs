@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 /// Example: aerodeck monte-carlo scatter.toml --samples 100000
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
-pub struct Args {
+pub(crate) struct Args {
     /// What is random (`.toml`); names the trained model.
     plan: PathBuf,
     /// Number of samples instead of that of the file.

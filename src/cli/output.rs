@@ -17,7 +17,7 @@ const COMPLETE: &str = ".aerodeck-complete-";
 /// Files are staged in a folder inside. [`OutputDir::commit`] first renames that folder, which marks it as complete, then
 /// moves its files; a process killed in between leaves a complete folder, whose files the next run puts in place. The
 /// file announced last is taken away before and moved last: where it stands, all others stand.
-pub struct OutputDir {
+pub(crate) struct OutputDir {
     directory: PathBuf,
     created: bool,
     staging: Temporary,
@@ -28,7 +28,7 @@ pub struct OutputDir {
 
 /// One file that was put in place, or left.
 #[derive(Debug, Clone, serde::Serialize)]
-pub struct Written {
+pub(crate) struct Written {
     /// Its path.
     pub path: PathBuf,
     /// Whether a file of that name was there before.
@@ -43,7 +43,7 @@ impl OutputDir {
     ///
     /// # Errors
     /// [`Error::Io`] when it cannot be made or written to; [`Error::Input`] while another run writes into it.
-    pub fn new(directory: &Path) -> Result<Self> {
+    pub(crate) fn new(directory: &Path) -> Result<Self> {
         let created = !directory.exists();
         fs::create_dir_all(directory).map_err(|e| Error::io(directory, e))?;
         let lock = FolderLock::take(directory)?;
@@ -63,12 +63,12 @@ impl OutputDir {
     }
 
     /// Where the file will stand.
-    pub fn target(&self, name: impl AsRef<Path>) -> PathBuf {
+    pub(crate) fn target(&self, name: impl AsRef<Path>) -> PathBuf {
         self.directory.join(name)
     }
 
     /// Where all files announced so far will stand.
-    pub fn targets(&self) -> Vec<PathBuf> {
+    pub(crate) fn targets(&self) -> Vec<PathBuf> {
         self.files.iter().map(|name| self.target(name)).collect()
     }
 
@@ -76,7 +76,7 @@ impl OutputDir {
     ///
     /// # Errors
     /// [`Error::Io`] when a folder of the name cannot be made.
-    pub fn stage(&mut self, name: impl AsRef<Path>) -> Result<PathBuf> {
+    pub(crate) fn stage(&mut self, name: impl AsRef<Path>) -> Result<PathBuf> {
         let name = name.as_ref();
         let path = self.staged(name);
         if let Some(parent) = path.parent() {
@@ -94,13 +94,13 @@ impl OutputDir {
     ///
     /// # Errors
     /// [`Error::Io`].
-    pub fn write(&mut self, name: impl AsRef<Path>, bytes: impl AsRef<[u8]>) -> Result<()> {
+    pub(crate) fn write(&mut self, name: impl AsRef<Path>, bytes: impl AsRef<[u8]>) -> Result<()> {
         let path = self.stage(name)?;
         fs::write(&path, bytes).map_err(|e| Error::io(path, e))
     }
 
     /// Takes back a staged file.
-    pub fn discard(&mut self, name: impl AsRef<Path>) {
+    pub(crate) fn discard(&mut self, name: impl AsRef<Path>) {
         let name = name.as_ref();
         self.files.retain(|f| f != name);
         let _ = fs::remove_file(self.staged(name));
@@ -111,7 +111,7 @@ impl OutputDir {
     ///
     /// # Errors
     /// [`Error::Io`] when a file cannot be read.
-    pub fn keep_edited(&mut self, name: impl AsRef<Path>, force: bool) -> Result<bool> {
+    pub(crate) fn keep_edited(&mut self, name: impl AsRef<Path>, force: bool) -> Result<bool> {
         let name = name.as_ref();
         let keep = !force && self.differs(name)?;
         if keep {
@@ -126,7 +126,7 @@ impl OutputDir {
     ///
     /// # Errors
     /// [`Error::Input`] naming the file; [`Error::Io`] when a file cannot be read.
-    pub fn refuse_edited(&self, name: &str, force: bool, instead: &str) -> Result<()> {
+    pub(crate) fn refuse_edited(&self, name: &str, force: bool, instead: &str) -> Result<()> {
         if force || !self.differs(Path::new(name))? {
             return Ok(());
         }
@@ -155,7 +155,7 @@ impl OutputDir {
     ///
     /// # Errors
     /// [`Error::Io`] when a file cannot be moved.
-    pub fn commit(mut self) -> Result<Vec<Written>> {
+    pub(crate) fn commit(mut self) -> Result<Vec<Written>> {
         let _busy = uninterrupted();
         self.mark_complete()?;
         let names = std::mem::take(&mut self.files);

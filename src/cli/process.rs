@@ -46,7 +46,7 @@ const STUDY: &str = "study.toml";
 /// Example: aerodeck process campaign.toml --out results
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
-pub struct Args {
+pub(crate) struct Args {
     /// The campaign file.
     campaign: PathBuf,
     /// Folder of the results.

@@ -10,12 +10,12 @@ pub struct Progress {
 
 impl Progress {
     /// Progress that is shown or not (and never when standard error is not a terminal).
-    pub fn new(shown: bool) -> Self {
+    pub(crate) fn new(shown: bool) -> Self {
         Self { shown }
     }
 
     /// A stage of unknown length; ends when the returned bar is dropped.
-    pub fn stage(&self, what: &str) -> Stage {
+    pub(crate) fn stage(&self, what: &str) -> Stage {
         let bar = self.bar(ProgressBar::new_spinner(), "{spinner} {msg} {elapsed}");
         bar.set_message(what.to_owned());
         bar.enable_steady_tick(Duration::from_millis(100));
@@ -23,7 +23,7 @@ impl Progress {
     }
 
     /// A stage that counts; see [`Stage::at`].
-    pub fn steps(&self, what: &str) -> Stage {
+    pub(crate) fn steps(&self, what: &str) -> Stage {
         let bar = self.bar(ProgressBar::new(1), "{msg} [{bar:30}] {pos}/{len} {eta}");
         bar.set_message(what.to_owned());
         Stage(bar)
@@ -41,11 +41,11 @@ impl Progress {
 }
 
 /// A stage under way.
-pub struct Stage(ProgressBar);
+pub(crate) struct Stage(ProgressBar);
 
 impl Stage {
     /// `done` of `total` steps are done.
-    pub fn at(&self, done: u64, total: u64) {
+    pub(crate) fn at(&self, done: u64, total: u64) {
         self.0.set_length(total);
         self.0.set_position(done);
     }

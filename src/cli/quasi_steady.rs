@@ -27,7 +27,7 @@ const TABLE_LINES: usize = 15;
 /// Example: aerodeck quasi-steady wind.toml
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
-pub struct Args {
+pub(crate) struct Args {
     #[command(flatten)]
     wind: WindArgs,
 }

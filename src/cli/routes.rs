@@ -6,7 +6,7 @@ use crate::study::{Route, RouteTable};
 use std::fmt::Write as _;
 
 /// The table, the handbook lines, the cards and what was left out.
-pub fn account(table: &RouteTable, speed_max_m_s: f64) -> String {
+pub(crate) fn account(table: &RouteTable, speed_max_m_s: f64) -> String {
     let mut text = format!(
         "{:<26} {:<14} {:>8} {:>7} {:>7} {:>6} {:>8} {:>7} {:>9} {:<9} {:>8}  {}\n",
         "Force model",
@@ -58,10 +58,10 @@ fn row(route: &Route) -> String {
         ),
         FlutterSearch::Onset(o) => format!(
             "{name:<26} {method:<14} {:>8.3} {:>7.4} {:>7.3} {:>6.3} {:>8.4} {:>7.1} {:>9.5} {:<9} {divergence:>8}  {}; {}\n",
-            o.speed_m_s,
-            o.frequency_hz,
-            o.reduced_velocity.v_star(),
-            o.reduced_frequency.v_hat(),
+            o.at.speed_m_s,
+            o.at.frequency_hz,
+            o.at.reduced_velocity.v_star(),
+            o.at.reduced_frequency.v_hat(),
             o.mode_ratio,
             o.phase_deg,
             o.damping_slope_s_m.unwrap_or(f64::NAN),
@@ -143,11 +143,11 @@ fn card(route: &Route, sanity: Option<&SanityLines>, speed_max_m_s: f64) -> Stri
 fn found(o: &Onset, route: &Route) -> String {
     let mut text = format!(
         "  V_F {:.3} m/s at {:.4} Hz; V* = V/(fB) {:.3}, V̂ = V/(ωB) {:.3}, K {:.4}",
-        o.speed_m_s,
-        o.frequency_hz,
-        o.reduced_velocity.v_star(),
-        o.reduced_frequency.v_hat(),
-        o.reduced_frequency.full_width()
+        o.at.speed_m_s,
+        o.at.frequency_hz,
+        o.at.reduced_velocity.v_star(),
+        o.at.reduced_frequency.v_hat(),
+        o.at.reduced_frequency.full_width()
     );
     let _ = match &route.tested_range {
         Some(range) => writeln!(

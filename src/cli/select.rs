@@ -19,14 +19,14 @@ use std::path::{Path, PathBuf};
 /// More values of a pole than any figure shows.
 const MOST_VALUES: usize = 2000;
 /// Name of the recommended model in a study.
-pub const SELECTED: &str = "selected";
+pub(crate) const SELECTED: &str = "selected";
 
 /// Choose the number of filters and their pole (or decay factor) by the error on records left out
 ///
 /// Example: aerodeck select study.toml --filters 8 --values 25 --write selected.toml
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
-pub struct Args {
+pub(crate) struct Args {
     #[command(flatten)]
     study: StudyArgs,
     #[command(flatten)]
@@ -44,7 +44,7 @@ pub struct Args {
 
 /// Among which models is chosen.
 #[derive(clap::Args)]
-pub struct Choice {
+pub(crate) struct Choice {
     /// Continuous filters over `L` and `p`, or the thesis's discrete ones over `L` and `α`.
     #[arg(long, value_enum, default_value_t = Kind::Continuous)]
     kind: Kind,
@@ -145,7 +145,11 @@ fn judge(
 }
 
 /// The study with the recommended model in front, as `select = true` asks for; that key is done with.
-pub fn with_selected(study: &Study, records: &RecordSet, progress: &Progress) -> Result<Study> {
+pub(crate) fn with_selected(
+    study: &Study,
+    records: &RecordSet,
+    progress: &Progress,
+) -> Result<Study> {
     let chosen = records.select(study.deck.speed_groups.as_deref())?;
     let choice = Choice::default();
     let (_, selection) = judge(&choice, study, &chosen, progress)?;

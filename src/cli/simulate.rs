@@ -22,7 +22,7 @@ const MAX_STEPS: f64 = 1e7;
 /// Example: aerodeck simulate model.json --wind-speed 35 --stop-time 20
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
-pub struct Args {
+pub(crate) struct Args {
     /// The trained model (see `train`).
     model: PathBuf,
     /// Wind speed, m/s; by default that of the model's experiment, just below the onset.

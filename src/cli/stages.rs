@@ -4,7 +4,7 @@ use super::output::OutputDir;
 use super::progress::Progress;
 use crate::error::{Error, Result};
 use crate::flutter::{FlutterCurves, Onset};
-use crate::fmu::package::{Growing, Runtime, growth_of, package};
+use crate::fmu::package::{Growing, Runtime, package};
 use crate::identification::{self, FitReport};
 use crate::report::{PNG_SCALE, VfVgOptions, vf_vg_figure};
 use crate::study::{
@@ -19,21 +19,21 @@ use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
 /// Folder of the records in the output directory.
-pub const RECORDS: &str = "records";
+pub(crate) const RECORDS: &str = "records";
 /// Folder of the trained models.
-pub const MODELS: &str = "models";
+pub(crate) const MODELS: &str = "models";
 /// Folder of the fit reports.
-pub const FITS: &str = "fits";
+pub(crate) const FITS: &str = "fits";
 /// Ending of the uncertainties, in the folder of the fit reports.
-pub const UNCERTAINTY: &str = "uncertainty.json";
+pub(crate) const UNCERTAINTY: &str = "uncertainty.json";
 /// The model that goes into the FMU.
-pub const MODEL_FILE: &str = "model.json";
+pub(crate) const MODEL_FILE: &str = "model.json";
 /// The FMU.
-pub const FMU_FILE: &str = "deck_section.fmu";
+pub(crate) const FMU_FILE: &str = "deck_section.fmu";
 /// Force models that can be told apart in one figure.
-pub const MAX_CURVES: usize = 7;
+pub(crate) const MAX_CURVES: usize = 7;
 /// Stem of the figure of frequencies and damping ratios.
-pub const FIGURE: &str = "flutter";
+pub(crate) const FIGURE: &str = "flutter";
 
 /// Writes the records of the virtual tunnel; gives the paths at which they stand for now.
 pub fn tunnel(
@@ -58,9 +58,6 @@ pub fn tunnel(
 /// Trains every model and writes model and report; without records (`None`) those that are fitted to the table.
 ///
 /// A model that cannot be trained is noted in `failed`.
-///
-/// # Errors
-/// Those of writing; that of the first model when none can be trained for wrong input.
 pub fn train(
     study: &Study,
     deck: &Deck,
@@ -146,10 +143,7 @@ fn report_json(report: &FitReport) -> Result<String> {
 }
 
 /// Reads the models that `train` wrote; one that is not there is noted in `failed`.
-///
-/// # Errors
-/// Those of reading; the first when there is no model at all.
-pub fn read_models(
+pub(crate) fn read_models(
     study: &Study,
     directory: &Path,
     failed: &mut Vec<StageFailure>,
@@ -173,7 +167,7 @@ pub fn read_models(
 }
 
 /// Reads one trained model.
-pub fn read_model(path: &Path) -> Result<TrainedModel> {
+pub(crate) fn read_model(path: &Path) -> Result<TrainedModel> {
     if !path.exists() {
         return Err(Error::input(
             "",
@@ -186,7 +180,7 @@ pub fn read_model(path: &Path) -> Result<TrainedModel> {
 }
 
 /// Reads the uncertainties that `train` wrote beside the models.
-pub fn read_uncertainties(
+pub(crate) fn read_uncertainties(
     models: &[TrainedModel],
     directory: &Path,
 ) -> Result<Vec<KnownUncertainty>> {
@@ -221,7 +215,7 @@ pub fn flutter(
 }
 
 /// The V-f and V-g figure as SVG and PNG.
-pub fn flutter_figure(
+pub(crate) fn flutter_figure(
     study: &Study,
     results: &FlutterStudy,
     further: &[Onset],
@@ -242,14 +236,14 @@ pub fn flutter_figure(
 }
 
 /// The same figure for all routes, as far as there are colours.
-pub fn routes_figure(
+pub(crate) fn routes_figure(
     study: &Study,
     curves: &[FlutterCurves],
     onsets: &[Onset],
     out: &mut OutputDir,
 ) -> Result<()> {
     let curves = &curves[..curves.len().min(MAX_CURVES)];
-    let drawn = |o: &&Onset| curves.iter().any(|c| c.model == o.model);
+    let drawn = |o: &&Onset| curves.iter().any(|c| c.model == o.at.model);
     let onsets: Vec<Onset> = onsets.iter().filter(drawn).cloned().collect();
     let options = VfVgOptions {
         title: Some(format!("{}: all routes", study.name)),
@@ -263,8 +257,7 @@ pub fn routes_figure(
 /// Packs a model with all runtimes that are there.
 pub fn export(model: &TrainedModel, growing: Growing, progress: &Progress) -> Result<Vec<u8>> {
     let stage = progress.stage("packing the FMU");
-    let bytes =
-        package(model, &Runtime::available()?, growing).map_err(|e| or_allow_unstable(e, model))?;
+    let bytes = package(model, &Runtime::available()?, growing).map_err(or_allow_unstable)?;
     drop(stage);
     Ok(bytes)
 }
@@ -279,10 +272,10 @@ pub fn growing(allowed: bool) -> Growing {
 }
 
 /// A refused export with the flag that allows it.
-pub fn or_allow_unstable(error: Error, model: &TrainedModel) -> Error {
+pub(crate) fn or_allow_unstable(error: Error) -> Error {
     match error {
-        Error::Numerical(text) if growth_of(model).is_ok_and(|g| !g.is_none()) => {
-            Error::Numerical(format!("{text} (--allow-unstable exports it all the same)"))
+        Error::Unstable(text) => {
+            Error::Unstable(format!("{text} (--allow-unstable exports it all the same)"))
         }
         other => other,
     }

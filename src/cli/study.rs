@@ -23,7 +23,7 @@ use std::path::PathBuf;
 /// Example: aerodeck study study.toml --out results
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
-pub struct Args {
+pub(crate) struct Args {
     #[command(flatten)]
     study: StudyArgs,
     /// Export a model that grows below its onset, at reduced frequencies that were not tested.
@@ -33,7 +33,7 @@ pub struct Args {
 
 /// What `summary.json` holds.
 #[derive(Serialize)]
-pub struct Summary {
+pub(crate) struct Summary {
     /// Program and version.
     pub generator: String,
     /// Name of the study.
@@ -72,7 +72,7 @@ pub struct Summary {
 
 /// A fit in short.
 #[derive(Serialize)]
-pub struct FitSummary {
+pub(crate) struct FitSummary {
     /// Name of the model.
     pub model: String,
     /// Full account.
@@ -91,7 +91,7 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
 
 /// The whole chain into `out`. A stage that fails is reported in its place and leaves the others as they are; then the
 /// answer did not pass.
-pub fn run_chain(
+pub(crate) fn run_chain(
     study: &Study,
     mut out: OutputDir,
     growing: Growing,

@@ -18,7 +18,7 @@ const PRINTED_M_S: f64 = 37.6;
 /// Example: aerodeck thesis
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
-pub struct Args {}
+pub(crate) struct Args {}
 
 /// Runs the command.
 pub fn run(_: &Args, progress: &Progress) -> Result<Answer> {

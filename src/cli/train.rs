@@ -14,7 +14,7 @@ use crate::study::{Deck, ModelGrowth, RecordSet, attempt};
 /// Example: aerodeck train study.toml
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
-pub struct Args {
+pub(crate) struct Args {
     #[command(flatten)]
     study: StudyArgs,
 }

@@ -14,7 +14,7 @@ use std::fmt::Write as _;
 /// Example: aerodeck tunnel study.toml
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
-pub struct Args {
+pub(crate) struct Args {
     #[command(flatten)]
     study: StudyArgs,
 }

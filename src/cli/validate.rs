@@ -13,7 +13,7 @@ use std::path::PathBuf;
 /// Example: aerodeck validate --case my_bridge.toml --case my_deck.toml
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
-pub struct Args {
+pub(crate) struct Args {
     /// One case by name; by default, all.
     name: Option<String>,
     /// A case of your own (`.toml`); may be given several times.

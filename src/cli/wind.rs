@@ -12,7 +12,7 @@ const EXAMPLE_FILE: &str = "wind.toml";
 
 /// The wind file, and where results go.
 #[derive(clap::Args)]
-pub struct WindArgs {
+pub(crate) struct WindArgs {
     /// The wind file: section, aerodynamics, turbulence. Left out, an example is used and written beside the results.
     pub file: Option<PathBuf>,
     /// Folder of the results; by default that of the file, or `aerodeck-out`.
@@ -25,7 +25,7 @@ pub struct WindArgs {
 
 impl WindArgs {
     /// The wind file or the example, and the folder of the results, in which the example then stands.
-    pub fn open(&self) -> Result<(WindStudy, OutputDir)> {
+    pub(crate) fn open(&self) -> Result<(WindStudy, OutputDir)> {
         let Some(file) = &self.file else {
             let text = example_wind_study_text();
             let study = WindStudy::from_toml(text, PathBuf::new())?;
@@ -46,13 +46,17 @@ impl WindArgs {
 }
 
 /// Writes a figure as SVG and PNG.
-pub fn write_figure(out: &mut OutputDir, stem: &str, figure: &Figure) -> Result<()> {
+pub(crate) fn write_figure(out: &mut OutputDir, stem: &str, figure: &Figure) -> Result<()> {
     out.write(format!("{stem}.svg"), figure.svg())?;
     out.write(format!("{stem}.png"), figure.png(PNG_SCALE)?)
 }
 
 /// A result as indented JSON.
-pub fn write_json(out: &mut OutputDir, name: &str, value: &impl serde::Serialize) -> Result<()> {
+pub(crate) fn write_json(
+    out: &mut OutputDir,
+    name: &str,
+    value: &impl serde::Serialize,
+) -> Result<()> {
     let mut text =
         serde_json::to_string_pretty(value).map_err(|e| Error::Numerical(e.to_string()))?;
     text.push('\n');

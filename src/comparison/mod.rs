@@ -16,12 +16,14 @@
 //! | [`bicoherence`] | `M_b` | quadratic coupling of frequencies |
 //!
 //! Metrics are functions of a [`SignalPair`] and of a parameter struct with documented defaults; they return
-//! the value with the quantities it was made from ([`Metric`]). They know nothing of bridges.
+//! the value with the quantities it was made from ([`Metric`]). They know nothing of bridges; [`forces`] applies them to the
+//! forces that models predict for the records of a deck.
 
 mod amplitude;
 mod bicoherence;
 mod density;
 mod dtw;
+pub mod forces;
 mod gamma;
 mod kde;
 mod morlet;

@@ -55,7 +55,7 @@ impl<'a> SignalPair<'a> {
     }
 
     /// Time between samples, s.
-    pub const fn time_step_s(&self) -> f64 {
+    pub(crate) const fn time_step_s(&self) -> f64 {
         self.time_step_s
     }
 

@@ -31,12 +31,12 @@ const SIGNS: &str = "u along the mean wind without the mean; w up";
 const JITTER: f64 = 1e-3;
 
 /// Names of the columns, which may stand in any order.
-pub const GUST_COLUMNS: [&str; 3] = ["time_s", "u_m_s", "w_m_s"];
+pub(crate) const GUST_COLUMNS: [&str; 3] = ["time_s", "u_m_s", "w_m_s"];
 
 /// Reads a series of gusts.
 ///
 /// # Errors
-/// [`Error::Io`] when the file cannot be read, else those of [`parse_gusts`] with the file named.
+/// [`Error::Io`] when the file cannot be read, else those of `parse_gusts` with the file named.
 pub fn read_gusts(path: impl AsRef<Path>) -> Result<GustSeries> {
     let path = path.as_ref();
     let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, e))?;
@@ -48,7 +48,7 @@ pub fn read_gusts(path: impl AsRef<Path>) -> Result<GustSeries> {
 /// # Errors
 /// [`Error::Input`] naming the line: wrong header or columns, text or NaN in numbers, times that do not start at zero or
 /// are not equally spaced, fewer than two samples.
-pub fn parse_gusts(text: &str) -> Result<GustSeries> {
+pub(crate) fn parse_gusts(text: &str) -> Result<GustSeries> {
     let mut header = CommentHeader::new(&[FORMAT], &KEYS, &[]);
     for line in text.lines() {
         if !header.take(line)? {
@@ -101,7 +101,7 @@ pub fn parse_gusts(text: &str) -> Result<GustSeries> {
 }
 
 /// Writes a series; [`parse_gusts`] gives the same gusts back, bit for bit.
-pub fn write_gusts(
+pub(crate) fn write_gusts(
     name: &str,
     source: &str,
     gusts: &GustSeries,

@@ -23,7 +23,7 @@ pub(crate) struct CommentHeader {
 
 impl CommentHeader {
     /// A header that allows `keys`, those in `repeated` more than once; the first line says one of `formats`.
-    pub fn new(
+    pub(crate) fn new(
         formats: &'static [&'static str],
         keys: &'static [&'static str],
         repeated: &'static [&'static str],
@@ -38,7 +38,7 @@ impl CommentHeader {
     }
 
     /// Takes the next line of the file; `false` when it is no comment, so the header is over.
-    pub fn take(&mut self, line: &str) -> Result<bool> {
+    pub(crate) fn take(&mut self, line: &str) -> Result<bool> {
         let Some(comment) = line.strip_prefix('#').map(str::trim) else {
             return Ok(false);
         };
@@ -71,35 +71,35 @@ impl CommentHeader {
     }
 
     /// Number of lines taken.
-    pub fn lines(&self) -> usize {
+    pub(crate) fn lines(&self) -> usize {
         self.lines
     }
 
     /// All lines with this key, in order.
-    pub fn all(&self, key: &str) -> impl Iterator<Item = &Entry> {
+    pub(crate) fn all(&self, key: &str) -> impl Iterator<Item = &Entry> {
         self.entries.iter().filter(move |e| e.key == key)
     }
 
     /// The line with this key.
-    pub fn optional(&self, key: &str) -> Option<&Entry> {
+    pub(crate) fn optional(&self, key: &str) -> Option<&Entry> {
         self.all(key).next()
     }
 
     /// The text behind this key, empty when there is no such line.
-    pub fn text(&self, key: &str) -> String {
+    pub(crate) fn text(&self, key: &str) -> String {
         self.optional(key)
             .map_or_else(String::new, |e| e.value.clone())
     }
 
     /// The line with this key, which must be there and not be empty.
-    pub fn required(&self, key: &str) -> Result<&Entry> {
+    pub(crate) fn required(&self, key: &str) -> Result<&Entry> {
         self.optional(key)
             .filter(|e| !e.value.is_empty())
             .ok_or_else(|| Error::input("header", format!("a line `# {key}: …`"), "none"))
     }
 
     /// Checks that the line with this key, which must be there, says `expected`.
-    pub fn must_say(&self, key: &str, expected: &str) -> Result<()> {
+    pub(crate) fn must_say(&self, key: &str, expected: &str) -> Result<()> {
         let entry = self.required(key)?;
         if entry.value == expected {
             return Ok(());
@@ -108,12 +108,12 @@ impl CommentHeader {
     }
 
     /// Writes the first line of a file.
-    pub fn write_format(out: &mut dyn Write, format: &str) -> std::io::Result<()> {
+    pub(crate) fn write_format(out: &mut dyn Write, format: &str) -> std::io::Result<()> {
         writeln!(out, "# {format}")
     }
 
     /// Writes one line; a line break inside `value` would end the comment and becomes a blank.
-    pub fn write_line(
+    pub(crate) fn write_line(
         out: &mut dyn Write,
         key: &str,
         value: impl std::fmt::Display,
@@ -125,22 +125,22 @@ impl CommentHeader {
 
 impl Entry {
     /// Where it stands: `line 8 (width_m)`.
-    pub fn place(&self) -> String {
+    pub(crate) fn place(&self) -> String {
         format!("line {} ({})", self.line, self.key)
     }
 
     /// The error that something else was `expected` here.
-    pub fn wrong(&self, expected: &str) -> Error {
+    pub(crate) fn wrong(&self, expected: &str) -> Error {
         Error::input(self.place(), expected, format!("`{}`", self.value))
     }
 
     /// The value as a number.
-    pub fn number(&self) -> Result<f64> {
+    pub(crate) fn number(&self) -> Result<f64> {
         self.value.parse().map_err(|_| self.wrong("a number"))
     }
 
     /// The value as a positive number.
-    pub fn positive(&self) -> Result<f64> {
+    pub(crate) fn positive(&self) -> Result<f64> {
         crate::error::positive(&self.place(), self.number()?)
     }
 }

@@ -1,8 +1,9 @@
 //! What a search for flutter answers: an onset, growth from the lowest speed that could be judged, or none.
 
+use super::critical_point::CriticalPoint;
 use super::onset::{Onset, OnsetMethod};
 use crate::section::Structure;
-use crate::units::{ReducedFrequency, ReducedFrequencyRange, ReducedVelocity};
+use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use nalgebra::Complex;
 use serde::Serialize;
 use std::f64::consts::TAU;
@@ -25,18 +26,9 @@ pub enum FlutterSearch {
 /// Growth at the lowest speed at which a mode could be judged.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct UnstableStart {
-    /// Force model.
-    pub model: String,
-    /// Route by which it was found.
-    pub method: OnsetMethod,
-    /// The lowest speed that could be judged, m/s; the onset is there or below.
-    pub speed_m_s: f64,
-    /// Frequency of the growing motion there, Hz.
-    pub frequency_hz: f64,
-    /// `V* = V/(fB)`.
-    pub reduced_velocity: ReducedVelocity,
-    /// `K = ωB/V`.
-    pub reduced_frequency: ReducedFrequency,
+    /// The lowest speed that could be judged, at or below which the onset is, and the growing motion there.
+    #[serde(flatten)]
+    pub at: CriticalPoint,
     /// Real part of the eigenvalue, 1/s.
     pub growth_rate_per_s: f64,
     /// Branch that grows.
@@ -120,19 +112,24 @@ impl FlutterSearch {
         }
     }
 
-    /// A speed at which the section is known to grow, m/s: the onset lies there, or there or below.
-    pub fn critical_speed_m_s(&self) -> Option<f64> {
+    /// Where the section is known to grow: the onset lies there, or there or below.
+    pub(crate) fn critical(&self) -> Option<&CriticalPoint> {
         match self {
-            Self::Onset(onset) => Some(onset.speed_m_s),
-            Self::UnstableAtOrBelow(start) => Some(start.speed_m_s),
+            Self::Onset(onset) => Some(&onset.at),
+            Self::UnstableAtOrBelow(start) => Some(&start.at),
             Self::StableUpTo(_) => None,
         }
+    }
+
+    /// Its speed, m/s.
+    pub fn critical_speed_m_s(&self) -> Option<f64> {
+        self.critical().map(|at| at.speed_m_s)
     }
 
     /// The answer in words.
     pub fn explain(&self) -> String {
         match self {
-            Self::Onset(o) => format!("onset at {:.3} m/s", o.speed_m_s),
+            Self::Onset(o) => format!("onset at {:.3} m/s", o.at.speed_m_s),
             Self::UnstableAtOrBelow(start) => start.explain(),
             Self::StableUpTo(range) => range.explain(),
         }
@@ -151,12 +148,7 @@ impl UnstableStart {
     ) -> Self {
         let k = ReducedFrequency::from_circular(lambda.im, structure.width_m, speed_m_s);
         Self {
-            model: model.to_owned(),
-            method,
-            speed_m_s,
-            frequency_hz: lambda.im / TAU,
-            reduced_velocity: k.into(),
-            reduced_frequency: k,
+            at: CriticalPoint::new(model, method, speed_m_s, lambda.im / TAU, k),
             growth_rate_per_s: lambda.re,
             branch,
             in_tested_range: None,
@@ -166,14 +158,14 @@ impl UnstableStart {
     }
 
     /// The answer in words.
-    pub fn explain(&self) -> String {
+    pub(crate) fn explain(&self) -> String {
         format!(
             "unstable at and below {:.3} m/s, the lowest speed that could be judged: {} branch, {:.4} Hz, K {:.4}, \
              growth {:+.4} 1/s ({})",
-            self.speed_m_s,
+            self.at.speed_m_s,
             self.branch,
-            self.frequency_hz,
-            self.reduced_frequency.full_width(),
+            self.at.frequency_hz,
+            self.at.reduced_frequency.full_width(),
             self.growth_rate_per_s,
             self.reason
         )
@@ -182,7 +174,7 @@ impl UnstableStart {
 
 impl StableRange {
     /// The answer in words.
-    pub fn explain(&self) -> String {
+    pub(crate) fn explain(&self) -> String {
         if self.from_m_s > self.to_m_s {
             let why = self
                 .not_judged
@@ -219,13 +211,13 @@ pub(super) struct Findings {
 pub(super) fn choose(mut found: Findings, tested: Option<ReducedFrequencyRange>) -> FlutterSearch {
     found
         .crossings
-        .sort_by(|a, b| a.speed_m_s.total_cmp(&b.speed_m_s));
+        .sort_by(|a, b| a.at.speed_m_s.total_cmp(&b.at.speed_m_s));
     found
         .starts
-        .sort_by(|a, b| a.speed_m_s.total_cmp(&b.speed_m_s));
+        .sort_by(|a, b| a.at.speed_m_s.total_cmp(&b.at.speed_m_s));
     let inside = |k: ReducedFrequency| tested.map(|range| range.contains(k));
     for onset in &mut found.crossings {
-        onset.in_tested_range = inside(onset.reduced_frequency);
+        onset.in_tested_range = inside(onset.at.reduced_frequency);
     }
     let (crossings, starts) = (&found.crossings, &found.starts);
     let onset = crossings
@@ -241,7 +233,7 @@ pub(super) fn choose(mut found: Findings, tested: Option<ReducedFrequencyRange>)
         trusted => trusted,
     };
     match (onset, start) {
-        (Some(o), Some(s)) if starts[s].speed_m_s <= crossings[o].speed_m_s => found.start(s),
+        (Some(o), Some(s)) if starts[s].at.speed_m_s <= crossings[o].at.speed_m_s => found.start(s),
         (Some(o), _) => found.onset(o),
         (None, Some(s)) => found.start(s),
         (None, None) => FlutterSearch::StableUpTo(found.judged),
@@ -262,14 +254,16 @@ impl Findings {
     /// Whether an onset or growth at this speed is among them.
     pub(super) fn knows(&self, speed_m_s: f64) -> bool {
         let same = |v: f64| (v / speed_m_s - 1.0).abs() < SAME_SPEED;
-        self.crossings.iter().any(|o| same(o.speed_m_s))
-            || self.starts.iter().any(|s| same(s.speed_m_s))
+        self.crossings.iter().any(|o| same(o.at.speed_m_s))
+            || self.starts.iter().any(|s| same(s.at.speed_m_s))
     }
 
     fn onset(mut self, chosen: usize) -> FlutterSearch {
         let mut onset = self.crossings.swap_remove(chosen);
-        let (spurious, warnings) =
-            self.below(onset.speed_m_s, "probably spurious, a sign of over-fitting");
+        let (spurious, warnings) = self.below(
+            onset.at.speed_m_s,
+            "probably spurious, a sign of over-fitting",
+        );
         onset.spurious_speeds_m_s.extend(spurious);
         onset.warnings.extend(warnings);
         onset.warnings.append(&mut self.warnings);
@@ -277,7 +271,7 @@ impl Findings {
             onset.warnings.push(format!(
                 "V* {:.2} at this onset lies outside the tested range: the model is extrapolating, the onset may be \
                  spurious",
-                onset.reduced_velocity.v_star()
+                onset.at.reduced_velocity.v_star()
             ));
         }
         FlutterSearch::Onset(Box::new(onset))
@@ -285,7 +279,7 @@ impl Findings {
 
     fn start(mut self, chosen: usize) -> FlutterSearch {
         let mut start = self.starts.swap_remove(chosen);
-        let (_, warnings) = self.below(start.speed_m_s, "an extrapolation");
+        let (_, warnings) = self.below(start.at.speed_m_s, "an extrapolation");
         start.warnings.extend(warnings);
         start.warnings.append(&mut self.warnings);
         FlutterSearch::UnstableAtOrBelow(Box::new(start))
@@ -296,25 +290,22 @@ impl Findings {
         let crossings = self
             .crossings
             .iter()
-            .map(|o| (o.speed_m_s, o.reduced_velocity, &o.branch, "loses damping"));
-        let starts = self
-            .starts
-            .iter()
-            .map(|s| (s.speed_m_s, s.reduced_velocity, &s.branch, "grows"));
+            .map(|o| (&o.at, &o.branch, "loses damping"));
+        let starts = self.starts.iter().map(|s| (&s.at, &s.branch, "grows"));
         let mut below: Vec<_> = crossings
             .chain(starts)
-            .filter(|(speed, ..)| *speed < speed_m_s)
+            .filter(|(at, ..)| at.speed_m_s < speed_m_s)
             .collect();
-        below.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let warning = |(speed, v, branch, what): &(f64, ReducedVelocity, &String, &str)| {
+        below.sort_by(|a, b| a.0.speed_m_s.total_cmp(&b.0.speed_m_s));
+        let warning = |(at, branch, what): &(&CriticalPoint, &String, &str)| {
             format!(
-                "the model also {what} at {speed:.3} m/s (V* {:.2}, {branch} branch), outside the tested range: \
-                 {verdict}",
-                v.v_star()
+                "the model also {what} at {:.3} m/s (V* {:.2}, {branch} branch), outside the tested range: {verdict}",
+                at.speed_m_s,
+                at.reduced_velocity.v_star()
             )
         };
         (
-            below.iter().map(|b| b.0).collect(),
+            below.iter().map(|b| b.0.speed_m_s).collect(),
             below.iter().map(warning).collect(),
         )
     }

@@ -4,9 +4,11 @@
 //! written so that still air is no special case. The filter matrices of this crate are lower triangular, so one
 //! evaluation is a forward substitution: much cheaper than the eigenvalues of the whole state matrix.
 
+use super::dynamic_stiffness::{Complex64, Determinant, Small, ZERO, oscillator};
 use crate::aerodynamics::{ContinuousRealization, Realization};
 use crate::aeroelastic::CoupledSection;
-use nalgebra::{Complex, DVector};
+use crate::section::Support;
+use nalgebra::DVector;
 
 /// Degrees of freedom at most.
 const MAX_DOFS: usize = 3;
@@ -14,11 +16,6 @@ const MAX_DOFS: usize = 3;
 const MAX_NEWTON_STEPS: usize = 15;
 /// Relative size of the last Newton step; the next would be its square.
 const NEWTON_TOLERANCE: f64 = 1e-13;
-
-type Complex64 = Complex<f64>;
-type Small = [[Complex64; MAX_DOFS]; MAX_DOFS];
-
-const ZERO: Complex64 = Complex64::new(0.0, 0.0);
 
 /// Matrices of the problem, scaled to physical motion and force once.
 #[derive(Debug, Clone)]
@@ -40,8 +37,8 @@ pub(super) struct Characteristic {
 
 /// Value and derivative of `D` at one `λ`.
 struct Evaluation {
-    value: Small,
-    derivative: Small,
+    value: Small<MAX_DOFS>,
+    derivative: Small<MAX_DOFS>,
 }
 
 impl Characteristic {
@@ -95,11 +92,12 @@ impl Characteristic {
         let [e0, e1, e2] = &self.feed_through;
         for i in 0..n {
             for j in 0..n {
-                let mass = self.mass[i][j] - b * b * e2[i][j];
-                let damping = self.damping[i][j] - speed * b * e1[i][j];
-                let stiffness = self.stiffness[i][j] - speed * speed * e0[i][j];
-                value[i][j] = (lambda * mass + damping) * lambda + stiffness;
-                derivative[i][j] = lambda * (2.0 * mass) + damping;
+                let with_air = Support {
+                    mass: self.mass[i][j] - b * b * e2[i][j],
+                    damping: self.damping[i][j] - speed * b * e1[i][j],
+                    stiffness: self.stiffness[i][j] - speed * speed * e0[i][j],
+                };
+                (value[i][j], derivative[i][j]) = oscillator(lambda, with_air);
             }
         }
         let l = self.filters;
@@ -155,15 +153,14 @@ impl Characteristic {
         let mut lambda = start;
         for _ in 0..MAX_NEWTON_STEPS {
             let at = self.evaluate(lambda, speed, work);
-            let (determinant, adjugate) = determinant_and_adjugate(&at.value, self.n);
-            let slope = trace_of_product(&adjugate, &at.derivative, self.n);
-            let step = determinant / slope;
+            let determinant = Determinant::of(&at.value, self.n);
+            let step = determinant.value / determinant.along(&at.derivative);
             if !(step.re.is_finite() && step.im.is_finite()) {
                 return None;
             }
             lambda -= step;
             if step.norm() <= NEWTON_TOLERANCE * lambda.norm() {
-                return Some((lambda, largest_column(&adjugate, self.n)));
+                return Some((lambda, determinant.null_vector()));
             }
         }
         None
@@ -177,54 +174,4 @@ fn scaled_input(aero: &ContinuousRealization, scale: impl Fn(usize) -> f64) -> V
             aero.b.column(j).iter().map(|x| s * x).collect::<Vec<_>>()
         })
         .collect()
-}
-
-/// Determinant and adjugate of the leading n×n block, n ≤ 3. `D adj(D) = det(D) I`, so at a root the columns of `adj(D)`
-/// are the null vector; `(det D)' = tr(adj(D) D')`.
-pub(super) fn determinant_and_adjugate<const M: usize>(
-    d: &[[Complex64; M]; M],
-    n: usize,
-) -> (Complex64, [[Complex64; M]; M]) {
-    let mut adjugate = [[ZERO; M]; M];
-    match n {
-        1 => adjugate[0][0] = Complex64::new(1.0, 0.0),
-        2 => {
-            adjugate[0][0] = d[1][1];
-            adjugate[0][1] = -d[0][1];
-            adjugate[1][0] = -d[1][0];
-            adjugate[1][1] = d[0][0];
-        }
-        _ => {
-            for (i, row) in adjugate.iter_mut().enumerate() {
-                for (j, x) in row.iter_mut().enumerate() {
-                    // cofactor of entry (j, i), indices cyclic so that the sign comes by itself
-                    let (r1, r2) = ((j + 1) % 3, (j + 2) % 3);
-                    let (c1, c2) = ((i + 1) % 3, (i + 2) % 3);
-                    *x = d[r1][c1] * d[r2][c2] - d[r1][c2] * d[r2][c1];
-                }
-            }
-        }
-    }
-    let determinant = (0..n).map(|k| d[0][k] * adjugate[k][0]).sum();
-    (determinant, adjugate)
-}
-
-/// `tr(A B)` of the leading n×n blocks.
-pub(super) fn trace_of_product<const M: usize>(
-    a: &[[Complex64; M]; M],
-    b: &[[Complex64; M]; M],
-    n: usize,
-) -> Complex64 {
-    (0..n)
-        .flat_map(|i| (0..n).map(move |k| (i, k)))
-        .map(|(i, k)| a[i][k] * b[k][i])
-        .sum()
-}
-
-fn largest_column(m: &Small, n: usize) -> DVector<Complex64> {
-    let size = |j: &usize| (0..n).map(|i| m[i][*j].norm_sqr()).sum::<f64>();
-    let j = (0..n)
-        .max_by(|a, b| size(a).total_cmp(&size(b)))
-        .unwrap_or(0);
-    DVector::from_fn(n, |i, _| m[i][j])
 }

@@ -126,7 +126,7 @@ pub fn trace_modes(
         }
         modes = match tracker.advance(&modes, speed) {
             Ok(modes) => modes,
-            Err(Error::Numerical(why)) => {
+            Err(Error::NotDistinct(why) | Error::Numerical(why)) => {
                 ended = Some(why);
                 break;
             }

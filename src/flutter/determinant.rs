@@ -34,12 +34,21 @@ pub fn impedance(
     omega: f64,
 ) -> Result<DMatrix<Complex<f64>>> {
     let k = ReducedFrequency::from_circular(omega, structure.width_m, speed_m_s);
-    let force = structure.to_physical(&model.transfer(k)?);
-    let pressure = 0.5 * structure.air_density_kg_m3 * speed_m_s * speed_m_s;
     Ok(complex(&structure.mass) * Complex::new(-omega * omega, 0.0)
         + complex(&structure.damping) * Complex::new(0.0, omega)
         + complex(&structure.stiffness)
-        - force * Complex::new(pressure, 0.0))
+        - self_excited(structure, model, k, speed_m_s)?)
+}
+
+/// Self-excited forces of unit motions, `½ρV² P(G(K))`: N/m and N·m/m for m and rad.
+pub(super) fn self_excited(
+    structure: &Structure,
+    model: &dyn Transfer,
+    k: ReducedFrequency,
+    speed_m_s: f64,
+) -> Result<DMatrix<Complex<f64>>> {
+    let pressure = 0.5 * structure.air_density_kg_m3 * speed_m_s * speed_m_s;
+    Ok(structure.to_physical(&model.transfer(k)?) * Complex::from(pressure))
 }
 
 /// Lowest speed up to `speed_max_m_s` at which the section flutters at a reduced frequency inside `range`.
@@ -94,7 +103,7 @@ pub fn determinant_onset(
             if root.im > 0.0 && after.im <= 0.0 {
                 let (from, to) = ((at(i - 1), root), (at(i), after));
                 let onset = problem.refine(name, from, to, branch_name(dof))?;
-                if onset.speed_m_s <= speed_max_m_s {
+                if onset.at.speed_m_s <= speed_max_m_s {
                     findings.crossings.push(onset);
                 }
             }

@@ -36,7 +36,7 @@ pub fn divergence_speed(
 /// The static part of forces `g` (n×n) known at a low reduced frequency only: what rotation causes in phase with it
 /// (`H3*`, `A3*`, `P3*`). A displacement that is held causes no force; what a table shows for it in phase (`H4*`, `A4*`)
 /// is of the rate of motion, and left in it moved the divergence of a published section by 4 % to the unsafe side.
-pub fn static_part(dofs: &[Dof], g: &TransferMatrix) -> TransferMatrix {
+pub(crate) fn static_part(dofs: &[Dof], g: &TransferMatrix) -> TransferMatrix {
     TransferMatrix::from_fn(g.nrows(), g.ncols(), |i, j| match dofs[j] {
         Dof::Torsion => g[(i, j)].re.into(),
         Dof::Vertical | Dof::Lateral => 0.0.into(),

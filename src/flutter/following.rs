@@ -113,7 +113,7 @@ impl<F: Follower> Watch<'_, F> {
         let (s, branch) = (self.follower.structure(), self.follower.name(mode.branch));
         let at = (speed, mode.lambda);
         let mut start = UnstableStart::new(self.model, F::METHOD, s, at, branch, reason);
-        let k = start.reduced_frequency;
+        let k = start.at.reduced_frequency;
         start.in_tested_range = self.tested.map(|range| range.contains(k));
         start
     }

@@ -34,7 +34,7 @@ pub enum Instability {
 
 impl Instability {
     /// The kind in words.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Self::CoupledFlutter => "coupled flutter",
             Self::TorsionDrivenFlutter => "torsion-driven flutter (A2* > 0)",
@@ -83,9 +83,9 @@ pub fn classify(
     range: ReducedFrequencyRange,
     speed_max_m_s: f64,
 ) -> Result<ModeAtOnset> {
-    let k = onset.reduced_frequency;
-    let omega = k.circular(structure.width_m, onset.speed_m_s);
-    let resistance = impedance(structure, model, onset.speed_m_s, omega)?;
+    let k = onset.at.reduced_frequency;
+    let omega = k.circular(structure.width_m, onset.at.speed_m_s);
+    let resistance = impedance(structure, model, onset.at.speed_m_s, omega)?;
     let shape = null_vector(structure, &resistance, omega)?;
     let velocity = shape.map(|z| z * Complex::new(0.0, omega));
     let momentum = structure.mass.map(|x| Complex::new(x, 0.0)) * &velocity;

@@ -24,7 +24,7 @@ impl Scan<'_> {
         let speeds = found
             .crossings
             .iter()
-            .map(|o| (o.speed_m_s, o.reduced_frequency));
+            .map(|o| (o.at.speed_m_s, o.at.reduced_frequency));
         let to_m_s = speeds
             .filter(|(_, k)| self.tested.is_none_or(|range| range.contains(*k)))
             .map(|(speed, _)| speed)

@@ -5,9 +5,11 @@
 
 mod answer;
 mod characteristic;
+mod critical_point;
 mod curves;
 mod determinant;
 mod divergence;
+mod dynamic_stiffness;
 mod following;
 mod instability;
 mod missed;
@@ -24,14 +26,17 @@ mod tracking;
 mod unwanted;
 
 pub use answer::{FlutterSearch, StableRange, UnstableStart};
+pub use critical_point::CriticalPoint;
 pub use curves::{FlutterCurves, ModeBranch, ModePoint, trace_modes};
 pub use determinant::{determinant_onset, impedance};
-pub use divergence::{divergence_by_eigenvalues, divergence_speed, static_part};
+pub(crate) use divergence::static_part;
+pub use divergence::{divergence_by_eigenvalues, divergence_speed};
 pub use instability::{Instability, ModeAtOnset, Participation, classify};
 pub use onset::{Onset, OnsetInterval, OnsetMethod};
 pub use pk::{pk_curves, pk_onset, quasi_pk_mode};
-pub use quasi_steady::{QuasiSteadyOnset, quasi_steady_modes, quasi_steady_onset};
-pub use sanity::{SanityLines, sanity_lines};
+pub use quasi_steady::quasi_steady_modes;
+pub(crate) use quasi_steady::{QuasiSteadyOnset, quasi_steady_onset};
+pub(crate) use sanity::{SanityLines, sanity_lines};
 pub use scan::{GrowthBand, growth_scan};
 pub use search::{OnsetSearch, find_onset};
 pub use sweep::{LinearForces, OnsetSweep, SweepOutcome, SweptOnset};

@@ -1,7 +1,8 @@
 //! The flutter onset as a result: everything a practitioner wants on the card.
 
+use super::critical_point::CriticalPoint;
 use crate::section::Structure;
-use crate::units::{ReducedFrequency, ReducedVelocity};
+use crate::units::ReducedFrequency;
 use nalgebra::{Complex, DVector};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -22,7 +23,7 @@ pub enum OnsetMethod {
 
 impl OnsetMethod {
     /// The route in a word.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Eigenvalues => "eigenvalues",
             Self::Determinant => "determinant",
@@ -35,18 +36,9 @@ impl OnsetMethod {
 /// A flutter onset.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Onset {
-    /// Force model.
-    pub model: String,
-    /// Route by which it was found.
-    pub method: OnsetMethod,
-    /// Onset speed `V_F`, m/s.
-    pub speed_m_s: f64,
-    /// Frequency at onset, Hz.
-    pub frequency_hz: f64,
-    /// `V* = V/(fB)`.
-    pub reduced_velocity: ReducedVelocity,
-    /// `K = ωB/V`.
-    pub reduced_frequency: ReducedFrequency,
+    /// Onset speed `V_F` and the frequency there.
+    #[serde(flatten)]
+    pub at: CriticalPoint,
     /// `|y|/(B|θ|)`.
     pub mode_ratio: f64,
     /// Phase of `y` relative to `θ`, degrees in (−180, 180].
@@ -112,7 +104,7 @@ pub enum OnsetInterval {
 
 impl OnsetInterval {
     /// The interval of `half_width_m_s` to both sides of a speed.
-    pub fn about(
+    pub(crate) fn about(
         speed_m_s: f64,
         half_width_m_s: f64,
         standard_error_m_s: f64,
@@ -145,7 +137,7 @@ impl OnsetInterval {
     }
 
     /// No interval, for this reason.
-    pub fn none(reason: impl Into<String>) -> Self {
+    pub(crate) fn none(reason: impl Into<String>) -> Self {
         Self::None {
             reason: reason.into(),
         }
@@ -157,12 +149,12 @@ impl Onset {
     ///
     /// # Errors
     /// Why it may not.
-    pub fn headline_m_s(&self) -> std::result::Result<f64, &str> {
+    pub(crate) fn headline_m_s(&self) -> std::result::Result<f64, &str> {
         match &self.interval {
             OnsetInterval::Undetermined { reason, .. } => Err(reason),
             OnsetInterval::Known { .. }
             | OnsetInterval::Spread { .. }
-            | OnsetInterval::None { .. } => Ok(self.speed_m_s),
+            | OnsetInterval::None { .. } => Ok(self.at.speed_m_s),
         }
     }
 
@@ -180,12 +172,7 @@ impl Onset {
         let theta = shape[shape.len() - 1];
         let k = ReducedFrequency::from_circular(omega, width, speed_m_s);
         Self {
-            model: model.to_owned(),
-            method,
-            speed_m_s,
-            frequency_hz: omega / TAU,
-            reduced_velocity: k.into(),
-            reduced_frequency: k,
+            at: CriticalPoint::new(model, method, speed_m_s, omega / TAU, k),
             mode_ratio: y.norm() / theta.norm(),
             phase_deg: (y / theta).arg().to_degrees(),
             damping_slope_s_m: None,

@@ -304,7 +304,7 @@ impl Follower for Iteration<'_> {
             // the damping jumps through zero: the iteration changed to another root
             return Ok(None);
         }
-        let (speed, omega) = (onset.speed_m_s, mode.lambda.im);
+        let (speed, omega) = (onset.at.speed_m_s, mode.lambda.im);
         onset.damping_slope_s_m = damping_slope(self.structure, self.model, speed, omega);
         Ok(Some(onset))
     }

@@ -5,6 +5,7 @@
 //! imaginary; for damped modes it means by frequency and damping what measured derivatives mean, not what the
 //! eigenvalues of a realisation mean.
 
+use super::determinant::self_excited;
 use super::following::Mode;
 use super::tracking::oscillates;
 use crate::aerodynamics::Transfer;
@@ -12,7 +13,7 @@ use crate::error::{Error, Result};
 use crate::section::Structure;
 use crate::state_space::{eigenvalues, eigenvector, first_order};
 use crate::units::ReducedFrequency;
-use nalgebra::{Complex, DMatrix};
+use nalgebra::DMatrix;
 
 /// The iteration contracts by about ten a round; one that needs more than this has no solution.
 const MAX_ROUNDS: usize = 200;
@@ -80,8 +81,7 @@ fn frozen(s: &Structure, model: &dyn Transfer, speed: f64, omega: f64) -> Result
                 .clamp(range.min.full_width(), range.max.full_width()),
         )
     });
-    let force = s.to_physical(&model.transfer(k)?)
-        * Complex::from(0.5 * s.air_density_kg_m3 * speed * speed);
+    let force = self_excited(s, model, k, speed)?;
     let inverse = s
         .mass
         .clone()

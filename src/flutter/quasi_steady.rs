@@ -30,7 +30,7 @@ const NEARLY_STILL: f64 = 1e-3;
 
 /// Answer of quasi-steady theory.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct QuasiSteadyOnset {
+pub(crate) struct QuasiSteadyOnset {
     /// The lowest onset, or up to where there is none: the highest speed, or the end of the equilibrium.
     pub search: FlutterSearch,
     /// What kind of instability the onset is, if there is one.
@@ -43,7 +43,7 @@ pub struct QuasiSteadyOnset {
 ///
 /// # Errors
 /// [`Error::Input`] for a search range that is none; those of [`static_equilibria`] and of the eigenvalues.
-pub fn quasi_steady_onset(
+pub(crate) fn quasi_steady_onset(
     name: &str,
     structure: &Structure,
     theory: &QuasiSteady,
@@ -184,7 +184,7 @@ fn described(name: &str, structure: &Structure, theory: &QuasiSteady, speed: f64
     );
     let slope = damping_ratio(mode.lambda) - damping_ratio(nearby.lambda);
     onset.damping_slope_s_m = Some(slope / (speed * SLOPE_STEP));
-    let v_star = onset.reduced_velocity.v_star();
+    let v_star = onset.at.reduced_velocity.v_star();
     if v_star < LEAST_REDUCED_VELOCITY {
         onset.warnings.push(format!(
             "V* {v_star:.2} at this onset is below {LEAST_REDUCED_VELOCITY}: quasi-steady theory does not hold there"
@@ -227,7 +227,7 @@ mod tests {
         let section = CoupledSection::with_model(&structure, &linear).unwrap();
         let eigenvalues = find_onset("plate", &section, &search, None).unwrap();
         let eigenvalues = eigenvalues.onset().unwrap();
-        assert!((onset.speed_m_s / eigenvalues.speed_m_s - 1.0).abs() < 1e-9);
+        assert!((onset.at.speed_m_s / eigenvalues.at.speed_m_s - 1.0).abs() < 1e-9);
         assert!((onset.mode_ratio / eigenvalues.mode_ratio - 1.0).abs() < 1e-6);
         let slopes = (onset.damping_slope_s_m, eigenvalues.damping_slope_s_m);
         assert!((slopes.0.unwrap() / slopes.1.unwrap() - 1.0).abs() < 1e-3);
@@ -238,11 +238,11 @@ mod tests {
         let determinant =
             crate::flutter::determinant_onset("plate", &structure, &linear, range, 80.0).unwrap();
         let determinant = determinant.onset().unwrap();
-        assert!((onset.speed_m_s / determinant.speed_m_s - 1.0).abs() < 1e-8);
-        assert!((onset.frequency_hz / determinant.frequency_hz - 1.0).abs() < 1e-8);
+        assert!((onset.at.speed_m_s / determinant.at.speed_m_s - 1.0).abs() < 1e-8);
+        assert!((onset.at.frequency_hz / determinant.at.frequency_hz - 1.0).abs() < 1e-8);
         assert!(
             onset.warnings.iter().any(|w| w.contains("does not hold"))
-                == (onset.reduced_velocity.v_star() < 10.0)
+                == (onset.at.reduced_velocity.v_star() < 10.0)
         );
     }
 
@@ -271,9 +271,9 @@ mod tests {
         let onset = found.search.onset().unwrap();
         let exact = s.damping[(0, 0)] / (0.5 * s.air_density_kg_m3 * s.width_m * 2.0);
         assert!(
-            (onset.speed_m_s / exact - 1.0).abs() < 1e-9,
+            (onset.at.speed_m_s / exact - 1.0).abs() < 1e-9,
             "{} {exact}",
-            onset.speed_m_s
+            onset.at.speed_m_s
         );
         assert_eq!(onset.branch, "vertical");
         assert_eq!(

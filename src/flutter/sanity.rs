@@ -17,7 +17,7 @@ use std::f64::consts::{PI, TAU};
 
 /// Handbook onsets of a section, m/s.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct SanityLines {
+pub(crate) struct SanityLines {
     /// Selberg's formula with the factor 0.44.
     pub selberg_m_s: f64,
     /// Selberg's formula as rounded in handbooks, with the factor 3.72.
@@ -28,7 +28,7 @@ pub struct SanityLines {
 
 /// Selberg's and Rocard's onsets; `None` for a section whose rotation is not faster than its heave, or that does not
 /// turn about its mid-chord with the centre of mass there: the formulas say nothing of these.
-pub fn sanity_lines(structure: &Structure) -> Option<SanityLines> {
+pub(crate) fn sanity_lines(structure: &Structure) -> Option<SanityLines> {
     let at = |dof: Dof| structure.dofs.iter().position(|d| *d == dof);
     let (y, theta) = (at(Dof::Vertical)?, at(Dof::Torsion)?);
     let (mass, inertia) = (structure.mass[(y, y)], structure.mass[(theta, theta)]);

@@ -57,7 +57,7 @@ impl GrowthBand {
     }
 
     /// The band in words.
-    pub fn explain(&self) -> String {
+    pub(crate) fn explain(&self) -> String {
         let tested = if self.extrapolated() {
             ", outside the tested range"
         } else {

@@ -68,7 +68,7 @@ pub fn find_onset(
     let mut found = Findings::judged(scan.judged(search.speed_max_m_s)?);
     match follow(model, &scan, &speeds, &mut found) {
         // without names the answer still stands
-        Err(Error::Numerical(why)) => found.warnings.push(format!(
+        Err(Error::NotDistinct(why) | Error::Numerical(why)) => found.warnings.push(format!(
             "{why}: modes beyond that were not followed but found among all eigenvalues"
         )),
         other => other?,

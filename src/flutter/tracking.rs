@@ -50,7 +50,7 @@ impl<'a> Tracker<'a> {
         let all = natural_modes(self.section)?;
         let speed = start_speed(self.section, &all);
         self.matched(&Modes { speed, all }, speed)?.ok_or_else(|| {
-            Error::Numerical(format!(
+            Error::NotDistinct(format!(
                 "mode tracking: the structural modes are not distinct at {speed} m/s"
             ))
         })
@@ -122,7 +122,7 @@ impl Follower for Tracker<'_> {
                 halvings = 0;
                 step = speed - at.speed;
             } else {
-                return Err(Error::Numerical(format!(
+                return Err(Error::NotDistinct(format!(
                     "mode tracking: two modes cannot be told apart near {target:.4} m/s"
                 )));
             }
@@ -135,7 +135,7 @@ impl Follower for Tracker<'_> {
     }
 
     fn complete(&self, mut onset: Onset, low: &Modes, mode: &Mode) -> Result<Option<Onset>> {
-        let speed = onset.speed_m_s;
+        let speed = onset.at.speed_m_s;
         let nearby = self.mode_at(low, speed * (1.0 - SLOPE_STEP), mode.branch)?;
         let slope = damping_ratio(mode.lambda) - damping_ratio(nearby.lambda);
         onset.damping_slope_s_m = Some(slope / (speed * SLOPE_STEP));

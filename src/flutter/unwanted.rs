@@ -6,7 +6,7 @@ use super::scan::{GrowthBand, growth_scan};
 use super::search::{OnsetSearch, find_onset};
 use crate::aeroelastic::CoupledSection;
 use crate::error::Result;
-use crate::units::{ReducedFrequency, ReducedFrequencyRange};
+use crate::units::ReducedFrequencyRange;
 use serde::Serialize;
 
 /// The scan goes this much beyond the onset, to see whether growth below goes on into the tested range.
@@ -35,12 +35,12 @@ pub fn unwanted_growth(
     let answer = find_onset(OnsetMethod::Eigenvalues.name(), section, search, tested).ok();
     let highest = search.speed_max_m_s;
     // the scan ends at the first speed, growth counts that begins below the second
-    let (limit, below) = match answer.as_ref().and_then(critical) {
-        Some((speed, k)) if tested.is_some_and(|range| k > range.max) => {
+    let (limit, below) = match answer.as_ref().and_then(FlutterSearch::critical) {
+        Some(at) if tested.is_some_and(|range| at.reduced_frequency > range.max) => {
             // no mode grows inside the tested range: the answer itself is made up
-            (highest, speed * (1.0 + BELOW))
+            (highest, at.speed_m_s * (1.0 + BELOW))
         }
-        Some((speed, _)) if speed > 0.0 => (speed, speed * (1.0 - BELOW)),
+        Some(at) if at.speed_m_s > 0.0 => (at.speed_m_s, at.speed_m_s * (1.0 - BELOW)),
         _ => (highest, highest),
     };
     let mut bands = growth_scan(section, 0.0, limit * BEYOND, tested)?;
@@ -49,15 +49,6 @@ pub fn unwanted_growth(
         scanned_to_m_s: limit,
         bands,
     })
-}
-
-/// Speed and reduced frequency at which the section is unstable first.
-fn critical(answer: &FlutterSearch) -> Option<(f64, ReducedFrequency)> {
-    match answer {
-        FlutterSearch::Onset(o) => Some((o.speed_m_s, o.reduced_frequency)),
-        FlutterSearch::UnstableAtOrBelow(s) => Some((s.speed_m_s, s.reduced_frequency)),
-        FlutterSearch::StableUpTo(_) => None,
-    }
 }
 
 impl UnwantedGrowth {
@@ -89,6 +80,7 @@ mod tests {
     use super::*;
     use crate::aerodynamics::{Lags, RationalModel, Realizable};
     use crate::section::SectionModel;
+    use crate::units::ReducedFrequency;
 
     fn range(min: f64, max: f64) -> ReducedFrequencyRange {
         ReducedFrequencyRange {
@@ -154,12 +146,12 @@ mod tests {
         };
         let tested = range(0.1, 1.5);
         let answer = find_onset("", &section, &search, Some(tested)).unwrap();
-        let onset = critical(&answer).unwrap();
-        assert!(onset.1 > tested.max, "{answer:?}");
+        let onset = answer.critical().unwrap();
+        assert!(onset.reduced_frequency > tested.max, "{answer:?}");
         let bad = unwanted_growth(&section, &search, Some(tested)).unwrap();
         assert!(!bad.is_none(), "{}", bad.explain());
         assert!((bad.scanned_to_m_s - 10.0).abs() < 1e-12);
-        assert!(bad.bands[0].from_m_s <= onset.0 * (1.0 + BELOW));
+        assert!(bad.bands[0].from_m_s <= onset.speed_m_s * (1.0 + BELOW));
     }
 
     #[test]

@@ -35,7 +35,7 @@ pub(crate) struct Filters {
 
 impl Basis {
     /// The basis of `form` with the poles `poles`, one a filter.
-    pub fn new(form: &Form, poles: &[f64]) -> Result<Self> {
+    pub(crate) fn new(form: &Form, poles: &[f64]) -> Result<Self> {
         let orthonormal = || FilterBank::new(poles.to_vec()).map(Chain::Orthonormal);
         let chain = match form {
             Form::Rational { .. } | Form::RationalPerForce { .. } | Form::MinimumState { .. } => {
@@ -51,7 +51,7 @@ impl Basis {
 
     /// Orthonormal filters that span the same space: for the search of poles, whose objective depends on the space
     /// only.
-    pub fn orthonormal(form: &Form, poles: &[f64]) -> Result<Self> {
+    pub(crate) fn orthonormal(form: &Form, poles: &[f64]) -> Result<Self> {
         Ok(Self {
             feed: form.feed_through(),
             chain: Chain::Orthonormal(FilterBank::new(poles.to_vec())?),
@@ -59,7 +59,7 @@ impl Basis {
     }
 
     /// Whether another basis has the same columns.
-    pub fn same_columns(&self, other: &Self) -> bool {
+    pub(crate) fn same_columns(&self, other: &Self) -> bool {
         let kind = std::mem::discriminant::<Chain>;
         self.feed == other.feed
             && kind(&self.chain) == kind(&other.chain)
@@ -67,24 +67,24 @@ impl Basis {
     }
 
     /// Poles of the filters.
-    pub fn poles(&self) -> &[f64] {
+    pub(crate) fn poles(&self) -> &[f64] {
         match &self.chain {
             Chain::Orthonormal(bank) => bank.poles(),
             Chain::Lags(lags) => lags,
         }
     }
 
-    pub fn feed(&self) -> FeedThrough {
+    pub(crate) fn feed(&self) -> FeedThrough {
         self.feed
     }
 
     /// Number of columns of one input.
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.feed.count() + self.poles().len()
     }
 
     /// Values of all columns at the complex frequency `p = iK`.
-    pub fn columns(&self, p: Complex<f64>) -> Vec<Complex<f64>> {
+    pub(crate) fn columns(&self, p: Complex<f64>) -> Vec<Complex<f64>> {
         let powers = [Complex::new(1.0, 0.0), p, p * p];
         let mut columns: Vec<_> = self.feed.orders().map(|order| powers[order]).collect();
         match &self.chain {
@@ -95,7 +95,7 @@ impl Basis {
     }
 
     /// Value and slope `d/dp` of all columns at `p = 0`.
-    pub fn at_zero(&self) -> [Vec<f64>; 2] {
+    pub(crate) fn at_zero(&self) -> [Vec<f64>; 2] {
         let feed = |order: usize| {
             self.feed
                 .orders()
@@ -125,7 +125,7 @@ impl Basis {
     }
 
     /// Names of the columns as in the equations: `e0 … c0 …`, or `a1 … a4 …`.
-    pub fn names(&self) -> Vec<String> {
+    pub(crate) fn names(&self) -> Vec<String> {
         let (feed, shift, filter, first) = match self.chain {
             Chain::Orthonormal(_) => ("e", 0, "c", 0),
             Chain::Lags(_) => ("a", 1, "a", 4),
@@ -139,7 +139,7 @@ impl Basis {
     }
 
     /// The filters as a linear system driven by the motion.
-    pub fn filters(&self) -> Filters {
+    pub(crate) fn filters(&self) -> Filters {
         match &self.chain {
             Chain::Orthonormal(bank) => {
                 let (a, on_motion) = bank.matrices();

@@ -58,7 +58,11 @@ impl LinearProblem {
     /// # Errors
     /// [`Error::Input`] for fewer rows than unknowns, columns that the rows do not determine and constraints that cannot
     /// be met together.
-    pub fn solve(&self, place: &str, names: &dyn Fn(usize) -> String) -> Result<LinearSolution> {
+    pub(crate) fn solve(
+        &self,
+        place: &str,
+        names: &dyn Fn(usize) -> String,
+    ) -> Result<LinearSolution> {
         let spread = self.spread(place)?;
         let unknowns = spread.unknowns();
         enough_rows(place, self.rows.len(), unknowns)?;
@@ -227,7 +231,7 @@ impl Spread {
 
 impl LinearSolution {
     /// Residuals of the ridge with given coefficients, of the columns that have one.
-    pub fn penalty<'a>(&'a self, coefficients: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
+    pub(crate) fn penalty<'a>(&'a self, coefficients: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
         self.ridge
             .iter()
             .map(|(c, factor)| factor * coefficients[*c])
@@ -238,7 +242,7 @@ impl LinearSolution {
     ///
     /// # Errors
     /// [`Error::Numerical`] for a singular factor.
-    pub fn spread(&self) -> Result<DMatrix<f64>> {
+    pub(crate) fn spread(&self) -> Result<DMatrix<f64>> {
         let inverse = self.factor.inverse_upper(self.unknowns)?;
         Ok(match &self.spread {
             Spread::Columns(columns) => {
@@ -253,7 +257,7 @@ impl LinearSolution {
     }
 
     /// `(AᵀA)⁻¹` of the free unknowns, spread over all coefficients.
-    pub fn inverse_gram(&self) -> Result<DMatrix<f64>> {
+    pub(crate) fn inverse_gram(&self) -> Result<DMatrix<f64>> {
         let small = self.factor.inverse_gram(self.unknowns)?;
         let n = self.coefficients.len();
         match &self.spread {

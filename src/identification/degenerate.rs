@@ -10,7 +10,7 @@ use crate::trained_model::Model;
 use nalgebra::DMatrix;
 
 /// Lags closer than this ratio have columns that differ by less than 2 % of their size at any K.
-pub const NEAR_EQUAL_RATIO: f64 = 1.05;
+pub(crate) const NEAR_EQUAL_RATIO: f64 = 1.05;
 /// Cosine above which two rows of `E` count as parallel.
 const PARALLEL: f64 = 0.99;
 /// A state whose force is smaller than this part of the largest does nothing.

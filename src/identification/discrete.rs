@@ -55,7 +55,7 @@ impl DiscreteFit {
     ///
     /// # Errors
     /// [`Error::Input`] naming the key.
-    pub fn validate(&self) -> Result<()> {
+    pub(crate) fn validate(&self) -> Result<()> {
         each_once(self.own.iter().map(|o| (o.force, o.motion)))?;
         let own = self.own.iter().map(|o| ("own.", o.filters, o.alpha));
         for (key, filters, alpha) in own.chain([("", Some(self.filters), Some(self.alpha))]) {
@@ -95,7 +95,7 @@ impl DiscreteFit {
 ///
 /// # Errors
 /// [`Error::Input`] for impossible options and for records as in [`super::fit_records`].
-pub fn fit_discrete(
+pub(crate) fn fit_discrete(
     records: &[&dyn RecordSource],
     fit: &DiscreteFit,
     progress: OnProgress<'_>,

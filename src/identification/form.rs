@@ -132,7 +132,7 @@ impl Default for Form {
 
 impl Form {
     /// Number of filters or lags.
-    pub fn filters(&self) -> usize {
+    pub(crate) fn filters(&self) -> usize {
         match self {
             Self::Laguerre { filters, .. } | Self::TakenakaMalmquist { filters, .. } => *filters,
             Self::Rational { lags, .. } | Self::RationalPerForce { lags, .. } => *lags,
@@ -141,7 +141,7 @@ impl Form {
     }
 
     /// Feed-through terms.
-    pub fn feed_through(&self) -> FeedThrough {
+    pub(crate) fn feed_through(&self) -> FeedThrough {
         match self {
             Self::Laguerre { feed_through, .. } | Self::TakenakaMalmquist { feed_through, .. } => {
                 *feed_through
@@ -156,7 +156,7 @@ impl Form {
     }
 
     /// How many numbers a search of the poles has to find.
-    pub fn free_poles(&self) -> usize {
+    pub(crate) fn free_poles(&self) -> usize {
         match self {
             Self::Laguerre { .. } => 1,
             _ => self.filters(),
@@ -164,7 +164,7 @@ impl Form {
     }
 
     /// Whether every transfer function has poles of its own.
-    pub fn pole_per_transfer_function(&self) -> bool {
+    pub(crate) fn pole_per_transfer_function(&self) -> bool {
         match self {
             Self::Laguerre {
                 pole_per_transfer_function,
@@ -236,7 +236,7 @@ impl Form {
     }
 
     /// Whether every force has poles of its own.
-    pub fn poles_per_force(&self) -> bool {
+    pub(crate) fn poles_per_force(&self) -> bool {
         matches!(self, Self::RationalPerForce { .. })
     }
 

@@ -114,7 +114,7 @@ impl FrequencyFit {
     ///
     /// # Errors
     /// [`Error::Input`] naming the key.
-    pub fn validate(&self) -> Result<()> {
+    pub(crate) fn validate(&self) -> Result<()> {
         self.form.validate()?;
         self.poles.validate(&self.form)?;
         validate_own(&self.form, &self.own)?;

@@ -17,7 +17,7 @@ const RANK_TOLERANCE: f64 = 1e-12;
 
 /// Accumulates rows of an overdetermined linear system with one or more right-hand sides.
 #[derive(Debug, Clone)]
-pub struct StreamingQr {
+pub(crate) struct StreamingQr {
     columns: usize,
     right_hand_sides: usize,
     /// `[R | Qᵀb]`, columns×(columns + right-hand sides).
@@ -32,7 +32,7 @@ pub struct StreamingQr {
 
 impl StreamingQr {
     /// An empty system of `columns` unknowns and `right_hand_sides` right-hand sides.
-    pub fn new(columns: usize, right_hand_sides: usize) -> Self {
+    pub(crate) fn new(columns: usize, right_hand_sides: usize) -> Self {
         let width = columns + right_hand_sides;
         Self {
             columns,
@@ -46,7 +46,7 @@ impl StreamingQr {
     }
 
     /// Adds one row `[regressors | right-hand sides]`.
-    pub fn push_row(&mut self, row: &[f64]) {
+    pub(crate) fn push_row(&mut self, row: &[f64]) {
         debug_assert_eq!(row.len(), self.columns + self.right_hand_sides);
         for (c, value) in row.iter().enumerate() {
             self.pending[c * BLOCK_ROWS + self.pending_rows] = *value;
@@ -59,7 +59,7 @@ impl StreamingQr {
     }
 
     /// Adds rows given as columns of one length: regressors first, then right-hand sides.
-    pub fn push_columns(&mut self, columns: &[&[f64]]) {
+    pub(crate) fn push_columns(&mut self, columns: &[&[f64]]) {
         debug_assert_eq!(columns.len(), self.columns + self.right_hand_sides);
         let rows = columns.first().map_or(0, |c| c.len());
         let mut at = 0;
@@ -102,7 +102,7 @@ impl StreamingQr {
     }
 
     /// The factorisation of all rows so far.
-    pub fn finish(mut self) -> Factor {
+    pub(crate) fn finish(mut self) -> Factor {
         self.factor_pending();
         Factor {
             r: self.upper.columns(0, self.columns).into_owned(),
@@ -175,7 +175,7 @@ fn subtract(to: &mut [f64], factor: f64, v: &[f64]) {
 
 /// `[R | Qᵀb]` of an accumulated system.
 #[derive(Debug, Clone)]
-pub struct Factor {
+pub(crate) struct Factor {
     /// Upper triangular, n×n.
     r: DMatrix<f64>,
     /// n×m.
@@ -187,7 +187,7 @@ pub struct Factor {
 
 impl Factor {
     /// Number of columns.
-    pub fn columns(&self) -> usize {
+    pub(crate) fn columns(&self) -> usize {
         self.r.ncols()
     }
 
@@ -202,7 +202,7 @@ impl Factor {
     }
 
     /// Number of rows that went in.
-    pub fn rows(&self) -> usize {
+    pub(crate) fn rows(&self) -> usize {
         self.rows
     }
 
@@ -222,7 +222,7 @@ impl Factor {
     }
 
     /// First of the `leading` columns that the data do not determine: zero, or a combination of those before it.
-    pub fn undetermined(&self, leading: usize) -> Option<usize> {
+    pub(crate) fn undetermined(&self, leading: usize) -> Option<usize> {
         (0..leading).find(|&j| {
             let norm = self.column_norm(j);
             norm == 0.0 || self.r[(j, j)].abs() < RANK_TOLERANCE * norm
@@ -230,7 +230,7 @@ impl Factor {
     }
 
     /// Euclidean norm of column `j` of the system.
-    pub fn column_norm(&self, j: usize) -> f64 {
+    pub(crate) fn column_norm(&self, j: usize) -> f64 {
         self.r.column(j).norm()
     }
 
@@ -238,7 +238,7 @@ impl Factor {
     ///
     /// # Errors
     /// [`Error::Numerical`] when a column is not determined by the rows.
-    pub fn solve(&self, leading: usize) -> Result<DMatrix<f64>> {
+    pub(crate) fn solve(&self, leading: usize) -> Result<DMatrix<f64>> {
         if let Some(column) = self.undetermined(leading) {
             return Err(Error::Numerical(format!(
                 "least squares: column {column} of {leading} is not determined by the {} rows",
@@ -252,23 +252,23 @@ impl Factor {
     }
 
     /// Sum of squared residuals of right-hand side `m` with the best coefficients of the `leading` columns.
-    pub fn residual_sum(&self, leading: usize, m: usize) -> f64 {
+    pub(crate) fn residual_sum(&self, leading: usize, m: usize) -> f64 {
         self.rest[m] + self.qtb.column(m).rows_range(leading..).norm_squared()
     }
 
     /// Sum of squared residuals of right-hand side `m` with given coefficients of all columns.
-    pub fn residual_sum_of(&self, coefficients: &[f64], m: usize) -> f64 {
+    pub(crate) fn residual_sum_of(&self, coefficients: &[f64], m: usize) -> f64 {
         let c = nalgebra::DVector::from_column_slice(coefficients);
         self.rest[m] + (self.qtb.column(m) - &self.r * c).norm_squared()
     }
 
     /// Sum of squares of right-hand side `m`.
-    pub fn total_sum(&self, m: usize) -> f64 {
+    pub(crate) fn total_sum(&self, m: usize) -> f64 {
         self.residual_sum(0, m)
     }
 
     /// Condition number of the `leading` columns, each scaled to unit norm; infinite for a zero column.
-    pub fn condition(&self, leading: usize) -> f64 {
+    pub(crate) fn condition(&self, leading: usize) -> f64 {
         let mut scaled = self.r.view((0, 0), (leading, leading)).into_owned();
         for (j, mut column) in scaled.column_iter_mut().enumerate() {
             let norm = self.column_norm(j);
@@ -290,7 +290,7 @@ impl Factor {
     ///
     /// # Errors
     /// [`Error::Numerical`] when a column is not determined by the rows.
-    pub fn inverse_upper(&self, leading: usize) -> Result<DMatrix<f64>> {
+    pub(crate) fn inverse_upper(&self, leading: usize) -> Result<DMatrix<f64>> {
         let identity = DMatrix::identity(leading, leading);
         self.r
             .view((0, 0), (leading, leading))
@@ -303,14 +303,14 @@ impl Factor {
     ///
     /// # Errors
     /// [`Error::Numerical`] when a column is not determined by the rows.
-    pub fn inverse_gram(&self, leading: usize) -> Result<DMatrix<f64>> {
+    pub(crate) fn inverse_gram(&self, leading: usize) -> Result<DMatrix<f64>> {
         let inverse = self.inverse_upper(leading)?;
         Ok(&inverse * inverse.transpose())
     }
 
     /// How much the terms of a fit cancel: the largest `‖column · coefficient‖` over the norm of the fitted
     /// right-hand side. Near one for a sound fit; large numbers mean differences of large terms.
-    pub fn cancellation(&self, coefficients: &[f64], m: usize) -> f64 {
+    pub(crate) fn cancellation(&self, coefficients: &[f64], m: usize) -> f64 {
         let fitted = self.qtb.column(m).rows_range(..coefficients.len()).norm();
         let largest = coefficients
             .iter()

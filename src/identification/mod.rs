@@ -28,7 +28,8 @@ pub(crate) mod time;
 #[cfg(test)]
 mod training_tests;
 
-pub use discrete::{DiscreteFit, fit_discrete};
+pub use discrete::DiscreteFit;
+pub(crate) use discrete::fit_discrete;
 pub use dissipative::{
     ActiveConstraint, ConstraintCost, ConstraintKind, ConstraintReport, Constraints, OnsetEffect,
 };
@@ -36,13 +37,14 @@ pub use form::{FeedThrough, Form};
 pub use frequency::fit_table;
 pub use frequency_options::{FrequencyFit, FrequencyWeights, QuasiSteadyLimit};
 pub use grid::{CellFit, Grid, GridAxis, StretchLabel};
-pub use least_squares::{Factor, StreamingQr};
 pub use options::{PoleSearch, TimeFit, TimeWeights};
 pub use own::{OwnDecay, OwnFilters, StaticTerm};
 pub use records::fit_records;
+pub(crate) use report::CANCELLATION_LIMIT;
 pub use report::{
-    AlphaGuideline, CANCELLATION_LIMIT, CONDITION_LIMIT, Coefficient, EntryReport, FitReport,
-    MemoryReport, OrderReport, SearchPoint, SearchReport, StaticReport,
+    AlphaGuideline, Coefficient, EntryReport, FitReport, MemoryReport, OrderReport, SearchPoint,
+    SearchReport, StaticReport,
 };
 pub use samples::sample_model;
-pub use time::pass::{OnProgress, Progress};
+pub(crate) use time::pass::OnProgress;
+pub use time::pass::Progress;

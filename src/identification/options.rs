@@ -151,7 +151,7 @@ impl TimeFit {
     ///
     /// # Errors
     /// [`Error::Input`] naming the key.
-    pub fn validate(&self) -> Result<()> {
+    pub(crate) fn validate(&self) -> Result<()> {
         self.form.validate_for_records()?;
         self.poles.validate(&self.form)?;
         validate_own(&self.form, &self.own)?;

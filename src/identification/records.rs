@@ -167,7 +167,7 @@ pub(crate) struct Rows {
 
 impl Rows {
     /// For a search of poles.
-    pub const THINNED: Self = Self {
+    pub(crate) const THINNED: Self = Self {
         orthonormal: true,
         thinned: true,
         stretches: 0,
@@ -252,7 +252,7 @@ impl<'a> RecordFit<'a> {
     }
 
     /// One pass with the given candidates, a chain of filters for each input, all of one length.
-    pub fn pass(
+    pub(crate) fn pass(
         &self,
         candidates: &[Vec<Vec<f64>>],
         rows: Rows,

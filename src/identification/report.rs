@@ -9,9 +9,9 @@ use nalgebra::DMatrix;
 use serde::Serialize;
 
 /// Terms this many times larger than their sum say that the fit lives on differences of large numbers.
-pub const CANCELLATION_LIMIT: f64 = 30.0;
+pub(crate) const CANCELLATION_LIMIT: f64 = 30.0;
 /// Scaled columns above this condition number leave fewer than half of the digits to the coefficients.
-pub const CONDITION_LIMIT: f64 = 1e8;
+pub(crate) const CONDITION_LIMIT: f64 = 1e8;
 
 /// Account of one fit.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -66,7 +66,7 @@ pub struct StaticReport {
 pub struct MemoryReport {
     /// Name of the record.
     pub record: String,
-    /// Memory of the slowest filters in samples of the fit, see [`crate::aerodynamics::laguerre::MEMORY_LIMIT`].
+    /// Memory of the slowest filters in samples of the fit, see `discrete_memory`.
     pub memory_samples: usize,
     /// Samples before the motion starts, or before the first row of the fit when that is later.
     pub available_samples: usize,
@@ -76,7 +76,7 @@ pub struct MemoryReport {
 
 impl MemoryReport {
     /// Whether nothing before the record is remembered when the motion starts.
-    pub fn is_sufficient(&self) -> bool {
+    pub(crate) fn is_sufficient(&self) -> bool {
         self.available_samples >= self.memory_samples
     }
 }

@@ -67,7 +67,7 @@ pub(crate) struct Row {
 
 impl Row {
     /// The part of complex columns that the sample sees.
-    pub fn of<'a>(&self, columns: &'a [Complex<f64>]) -> impl Iterator<Item = f64> + 'a {
+    pub(crate) fn of<'a>(&self, columns: &'a [Complex<f64>]) -> impl Iterator<Item = f64> + 'a {
         let part = self.part;
         columns.iter().map(move |z| match part {
             Part::Real => z.re,
@@ -78,7 +78,7 @@ impl Row {
 
 impl Entry {
     /// Name for messages.
-    pub fn name(&self) -> String {
+    pub(crate) fn name(&self) -> String {
         format!(
             "samples of the {} force due to {} motion",
             self.force.name(),
@@ -87,7 +87,7 @@ impl Entry {
     }
 
     /// Weighted sum of squares of the samples.
-    pub fn total(&self) -> f64 {
+    pub(crate) fn total(&self) -> f64 {
         self.rows.iter().map(|r| (r.weight * r.value).powi(2)).sum()
     }
 
@@ -95,7 +95,7 @@ impl Entry {
     ///
     /// # Errors
     /// Fewer samples than columns, columns they do not determine, limits that the basis cannot meet.
-    pub fn fit(&self, basis: &Basis) -> Result<LinearSolution> {
+    pub(crate) fn fit(&self, basis: &Basis) -> Result<LinearSolution> {
         let feed = basis.feed().count();
         let mut problem = LinearProblem {
             ridge: (0..basis.len())
@@ -118,7 +118,7 @@ impl Entry {
     }
 
     /// Weighted residuals of given coefficients times the share of the entry.
-    pub fn weighted_residuals<'a>(
+    pub(crate) fn weighted_residuals<'a>(
         &'a self,
         basis: &Basis,
         coefficients: &[f64],
@@ -130,7 +130,7 @@ impl Entry {
     }
 
     /// Residuals of given coefficients, unweighted, in the order of the rows.
-    pub fn residuals(&self, basis: &Basis, coefficients: &[f64]) -> Vec<f64> {
+    pub(crate) fn residuals(&self, basis: &Basis, coefficients: &[f64]) -> Vec<f64> {
         self.rows
             .iter()
             .map(|row| {

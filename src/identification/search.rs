@@ -35,7 +35,7 @@ impl Bounds {
     ///
     /// # Errors
     /// Bounds without room for `count` poles.
-    pub fn resolve(
+    pub(crate) fn resolve(
         options: &PoleSearch,
         tested: ReducedFrequencyRange,
         count: usize,
@@ -64,7 +64,7 @@ impl Bounds {
     }
 
     /// Ordered poles from free variables.
-    pub fn poles(&self, free: &[f64]) -> Vec<f64> {
+    pub(crate) fn poles(&self, free: &[f64]) -> Vec<f64> {
         let slack = self.slack(free.len());
         // the largest share is scaled to one, so that none overflows
         let top = free.iter().copied().fold(0.0, f64::max);
@@ -81,7 +81,7 @@ impl Bounds {
     }
 
     /// Free variables of ordered poles; poles on or beyond a bound are taken a little inside.
-    pub fn free(&self, poles: &[f64]) -> Vec<f64> {
+    pub(crate) fn free(&self, poles: &[f64]) -> Vec<f64> {
         let slack = self.slack(poles.len());
         let mut before = self.min.ln() - self.min_ratio.ln();
         let mut shares: Vec<f64> = poles
@@ -107,7 +107,7 @@ impl Bounds {
     }
 
     /// Ordered sets of `count` poles from a logarithmic grid that keep the least ratio.
-    pub fn grid(&self, count: usize, points: usize) -> Vec<Vec<f64>> {
+    pub(crate) fn grid(&self, count: usize, points: usize) -> Vec<Vec<f64>> {
         // several axes share what one would have: about a hundred sets
         let points = match count {
             1 => points,
@@ -135,7 +135,7 @@ impl Bounds {
     }
 
     /// Whether the poles are ordered, apart and inside.
-    pub fn admits(&self, poles: &[f64]) -> bool {
+    pub(crate) fn admits(&self, poles: &[f64]) -> bool {
         let inside = |p: &f64| *p >= self.min * (1.0 - 1e-12) && *p <= self.max * (1.0 + 1e-12);
         poles.iter().all(inside)
             && poles

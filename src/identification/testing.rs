@@ -9,7 +9,7 @@ use crate::units::ReducedFrequency;
 use crate::wind_tunnel::{Record, RecordSource, TunnelPlan};
 
 /// A fit to a table by least squares alone, for what is to be recovered exactly or was computed so.
-pub fn table_alone() -> FrequencyFit {
+pub(crate) fn table_alone() -> FrequencyFit {
     FrequencyFit {
         constraints: Constraints::None,
         ..FrequencyFit::default()
@@ -17,7 +17,7 @@ pub fn table_alone() -> FrequencyFit {
 }
 
 /// The same for records.
-pub fn records_alone() -> TimeFit {
+pub(crate) fn records_alone() -> TimeFit {
     TimeFit {
         constraints: Constraints::None,
         ..TimeFit::default()
@@ -25,7 +25,7 @@ pub fn records_alone() -> TimeFit {
 }
 
 /// Reduced frequencies of the eight motions at one speed, B = 0.5 m.
-pub fn eight_k(speed_m_s: f64) -> Vec<ReducedFrequency> {
+pub(crate) fn eight_k(speed_m_s: f64) -> Vec<ReducedFrequency> {
     TABLE_3_2_FREQUENCIES_HZ
         .iter()
         .map(|&f| ReducedFrequency::from_hertz(f, 0.5, speed_m_s))
@@ -48,7 +48,7 @@ pub fn onset_m_s(model: &dyn Realizable) -> f64 {
 }
 
 /// The same above another speed.
-pub fn onset_above(model: &dyn Realizable, speed_m_s: f64) -> f64 {
+pub(crate) fn onset_above(model: &dyn Realizable, speed_m_s: f64) -> f64 {
     let structure = SectionModel::table_4_1().structure().unwrap();
     let section = CoupledSection::with_model(&structure, model).unwrap();
     let mut low = speed_m_s;

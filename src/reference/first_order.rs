@@ -6,9 +6,7 @@
 //! dimensionless motion and force are `u` and `y` themselves.
 
 use crate::aerodynamics::Transfer;
-use crate::aerodynamics::laguerre::{
-    alpha_lower_bound, alpha_upper_bound, discrete_memory, impulse_response,
-};
+use crate::aerodynamics::laguerre::{alpha_lower_bound, alpha_upper_bound, impulse_response};
 use crate::error::{Error, Result, positive};
 use crate::identification::{DiscreteFit, StaticTerm, fit_discrete};
 use crate::section::Dof;
@@ -295,11 +293,6 @@ impl FirstOrderExample {
             model.collect(),
         ]
     }
-
-    /// Memory of the filters of the example, samples.
-    pub fn memory_samples(&self) -> usize {
-        discrete_memory(self.alpha, self.filters)
-    }
 }
 
 fn relative_error(found: &[f64], exact: &[f64]) -> f64 {
@@ -311,6 +304,7 @@ fn relative_error(found: &[f64], exact: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::aerodynamics::laguerre::discrete_memory;
 
     /// "L = 3, α = 0.85" and what the thesis says of its figures: α bounds 0.8283 and 0.889, |g_3| = 0.0096 at the end of
     /// the memory, a better fit towards the upper bound, "really precisely approximated already with four filters".
@@ -321,7 +315,8 @@ mod tests {
         assert!((lower - 0.8283).abs() < 5e-5, "{lower}");
         assert!((upper - 0.889).abs() < 1e-3, "{upper}");
         assert!((results.last_value - 0.0096).abs() < 5e-5);
-        assert!(results.example.memory_samples() as f64 * 0.005 < results.example.rest_s);
+        let memory = discrete_memory(results.example.alpha, results.example.filters);
+        assert!(memory as f64 * 0.005 < results.example.rest_s);
         let error = |label: &str| {
             let mut trials = results.by_alpha.iter().chain(&results.by_order);
             trials.find(|t| t.label == label).unwrap().worst_in_band

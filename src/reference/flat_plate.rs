@@ -39,7 +39,7 @@ pub(super) fn by_determinant(
 
 pub(super) fn table_4_1() -> Result<Vec<f64>> {
     let onset = by_determinant(&SectionModel::table_4_1(), &FlatPlate::default(), WIDE)?;
-    Ok(vec![onset.speed_m_s, onset.frequency_hz])
+    Ok(vec![onset.at.speed_m_s, onset.at.frequency_hz])
 }
 
 pub(super) fn iabse_onset() -> Result<Vec<f64>> {
@@ -50,14 +50,14 @@ pub(super) fn iabse_onset() -> Result<Vec<f64>> {
     let divergence = divergence_speed(&section.structure()?, &steady)?
         .ok_or_else(|| Error::Numerical("no divergence".into()))?;
     Ok(vec![
-        onset.speed_m_s,
-        onset.speed_m_s,
-        onset.frequency_hz,
+        onset.at.speed_m_s,
+        onset.at.speed_m_s,
+        onset.at.frequency_hz,
         onset.mode_ratio,
         onset.phase_deg,
-        onset.reduced_velocity.v_star(),
-        with_rotary.speed_m_s,
-        with_rotary.frequency_hz,
+        onset.at.reduced_velocity.v_star(),
+        with_rotary.at.speed_m_s,
+        with_rotary.at.frequency_hz,
         divergence,
     ])
 }
@@ -82,7 +82,7 @@ pub(super) fn iabse_by_iteration() -> Result<Vec<f64>> {
         .onset()
         .cloned()
         .ok_or_else(|| Error::Numerical("no onset up to 100 m/s".into()))?;
-    Ok(vec![onset.speed_m_s, onset.frequency_hz])
+    Ok(vec![onset.at.speed_m_s, onset.at.frequency_hz])
 }
 
 /// Frequency (Hz) and damping ratio: torsion at 15 to 75 m/s, heave at 15 to 60 m/s.
@@ -129,9 +129,9 @@ pub(super) fn fung() -> Result<Vec<f64>> {
     );
     let onset = by_determinant(&section, &FlatPlate::default(), WIDE)?;
     Ok(vec![
-        onset.speed_m_s,
-        onset.frequency_hz * TAU,
-        onset.reduced_frequency.semi_chord(),
+        onset.at.speed_m_s,
+        onset.at.frequency_hz * TAU,
+        onset.at.reduced_frequency.semi_chord(),
     ])
 }
 
@@ -154,8 +154,8 @@ pub(super) fn typical(a: f64) -> Result<Vec<f64>> {
     section.mass_offset_m = Some(0.1);
     let onset = by_determinant(&section, &FlatPlate::default(), WIDE)?;
     Ok(vec![
-        onset.speed_m_s,
-        TAU * onset.frequency_hz,
+        onset.at.speed_m_s,
+        TAU * onset.at.frequency_hz,
         divergence(&section)?,
     ])
 }
@@ -180,9 +180,9 @@ pub(super) fn unbalanced() -> Result<Vec<f64>> {
     .cloned()
     .ok_or_else(|| Error::Numerical("no onset up to 42 m/s".into()))?;
     Ok(vec![
-        onset.speed_m_s,
-        onset.frequency_hz,
-        by_iteration.speed_m_s,
+        onset.at.speed_m_s,
+        onset.at.frequency_hz,
+        by_iteration.at.speed_m_s,
         divergence(&section)?,
     ])
 }
@@ -222,15 +222,19 @@ pub(super) fn jones_onset() -> Result<Vec<f64>> {
     let onset = by_eigenvalues(&coupled(&section)?, 120.0, None)?;
     let second = by_determinant(&section, &RationalModel::jones_flat_plate(), WIDE)?;
     let mut figures = vec![
-        onset.speed_m_s,
-        onset.frequency_hz,
+        onset.at.speed_m_s,
+        onset.at.frequency_hz,
         onset.mode_ratio,
         onset.phase_deg,
-        second.speed_m_s,
+        second.at.speed_m_s,
     ];
     for density in [1.20, 1.25] {
         section.air_density_kg_m3 = density;
-        figures.push(by_eigenvalues(&coupled(&section)?, 120.0, None)?.speed_m_s);
+        figures.push(
+            by_eigenvalues(&coupled(&section)?, 120.0, None)?
+                .at
+                .speed_m_s,
+        );
     }
     Ok(figures)
 }

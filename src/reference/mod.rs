@@ -2,7 +2,7 @@
 //!
 //! The figures stand in `data/reference`, one file per source; here stands how each case is computed. The same list serves the
 //! tests, `aerodeck validate` and the table in the README. "Published" figures are printed in the source named; "computed" ones
-//! were obtained with NumPy and SciPy, independently of this crate. Users write cases of their own as [`UserCase`].
+//! were obtained with NumPy and SciPy, independently of this crate. Users write cases of their own as `UserCase`.
 
 mod first_order;
 mod flat_plate;
@@ -12,7 +12,7 @@ mod user_case;
 
 pub use first_order::{FirstOrderExample, FirstOrderResults, SampledTransfer};
 pub use table::validation_table;
-pub use user_case::{CASE_SCHEMA, Quantity, UserAerodynamics, UserCase, UserFigure};
+pub(crate) use user_case::UserCase;
 
 use crate::aerodynamics::derivatives::Interpolation;
 use crate::error::{Error, Result};
@@ -101,7 +101,7 @@ pub enum Citation {
 
 impl Citation {
     /// The source in words.
-    pub fn words(&self) -> String {
+    pub(crate) fn words(&self) -> String {
         match self {
             Self::Published(text) => format!("published: {text}"),
             Self::Computed(text) => format!("computed: {text}"),

@@ -74,7 +74,7 @@ pub(super) fn flat_plate_fits() -> Result<Vec<f64>> {
 
 fn onset_of_fit(model: &Model) -> Result<f64> {
     let section = CoupledSection::with_model(&SectionModel::table_4_1().structure()?, model)?;
-    Ok(by_eigenvalues(&section, 80.0, None)?.speed_m_s)
+    Ok(by_eigenvalues(&section, 80.0, None)?.at.speed_m_s)
 }
 
 fn lags(model: &Model) -> Vec<f64> {
@@ -111,7 +111,7 @@ pub(super) fn thesis_flat_plate() -> Result<Vec<f64>> {
     let mut figures = Vec::new();
     for filters in [3, 5] {
         let onset = discrete_onset(&records, filters)?;
-        figures.extend([onset.speed_m_s, onset.frequency_hz]);
+        figures.extend([onset.at.speed_m_s, onset.at.frequency_hz]);
     }
     Ok(figures)
 }
@@ -125,10 +125,10 @@ pub(super) fn thesis_headline() -> Result<Vec<f64>> {
     };
     let (first, second) = (at(0)?, at(1)?);
     Ok(vec![
-        first.speed_m_s,
-        first.speed_m_s,
-        first.frequency_hz,
-        second.speed_m_s,
+        first.at.speed_m_s,
+        first.at.speed_m_s,
+        first.at.frequency_hz,
+        second.at.speed_m_s,
     ])
 }
 
@@ -160,10 +160,10 @@ pub(super) fn random_motion() -> Result<Vec<f64>> {
     let coupled = CoupledSection::with_model(&structure, &model)?;
     let trained = by_eigenvalues(&coupled, 120.0, Some(report.tested_range))?;
     Ok(vec![
-        reduced(exact.speed_m_s),
-        exact.speed_m_s,
-        exact.frequency_hz,
-        reduced(trained.speed_m_s),
+        reduced(exact.at.speed_m_s),
+        exact.at.speed_m_s,
+        exact.at.frequency_hz,
+        reduced(trained.at.speed_m_s),
     ])
 }
 
@@ -180,7 +180,7 @@ pub(super) fn laguerre_flat_plate() -> Result<Vec<f64>> {
     };
     let (model, report) = fit_records(&sources(&records), &fit, &|_| {})?;
     Ok(vec![
-        onset_of_records(&model, report.tested_range)?.speed_m_s,
+        onset_of_records(&model, report.tested_range)?.at.speed_m_s,
     ])
 }
 
@@ -204,7 +204,9 @@ pub(super) fn dissipative() -> Result<Vec<f64>> {
             let (model, _) = fit_table(&samples, &Dof::TWO, &FrequencyFit::default())?;
             let coupled = CoupledSection::with_model(&section.structure()?, &model)?;
             let tested = Some(table.tested_range(&Dof::TWO));
-            let onset = by_eigenvalues(&coupled, *speed_max_m_s, tested)?.speed_m_s;
+            let onset = by_eigenvalues(&coupled, *speed_max_m_s, tested)?
+                .at
+                .speed_m_s;
             figures.push(onset);
             for i in 1..=SPEEDS_BELOW {
                 // up to just below the onset, from near still air
@@ -227,7 +229,9 @@ pub(super) fn over_decks(onset: fn(&DerivativeTable) -> Result<f64>) -> Result<V
 pub(super) fn interpolated(table: &DerivativeTable, by: Interpolation) -> Result<f64> {
     let model = InterpolatedTable::by(by, table, &Dof::TWO, Extrapolation::Refuse)?;
     let range = model.tested_range();
-    Ok(by_determinant(&SectionModel::table_4_1(), &model, range)?.speed_m_s)
+    Ok(by_determinant(&SectionModel::table_4_1(), &model, range)?
+        .at
+        .speed_m_s)
 }
 
 pub(super) fn rational(
@@ -256,7 +260,7 @@ pub(super) fn fitted(table: &DerivativeTable, fit: FrequencyFit) -> Result<f64> 
     let (model, _) = fit_table(&table.samples(&Dof::TWO), &Dof::TWO, &fit)?;
     let section = CoupledSection::with_model(&SectionModel::table_4_1().structure()?, &model)?;
     let tested = Some(table.tested_range(&Dof::TWO));
-    Ok(by_eigenvalues(&section, 50.0, tested)?.speed_m_s)
+    Ok(by_eigenvalues(&section, 50.0, tested)?.at.speed_m_s)
 }
 
 pub(super) fn rational_ln21_5200() -> Result<Vec<f64>> {
@@ -335,11 +339,15 @@ pub(super) fn table_errors() -> Result<Vec<f64>> {
     ] {
         let mut errors = Vec::new();
         for section in &sections {
-            let exact = by_determinant(section, &FlatPlate::default(), WIDE)?.speed_m_s;
+            let exact = by_determinant(section, &FlatPlate::default(), WIDE)?
+                .at
+                .speed_m_s;
             for v_hats in reduced_velocities() {
                 let table = tabulated(&v_hats)?;
                 let model = InterpolatedTable::by(by, &table, &Dof::TWO, Extrapolation::Refuse)?;
-                let onset = by_determinant(section, &model, model.tested_range())?.speed_m_s;
+                let onset = by_determinant(section, &model, model.tested_range())?
+                    .at
+                    .speed_m_s;
                 errors.push(100.0 * (onset / exact - 1.0));
             }
         }

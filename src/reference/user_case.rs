@@ -14,12 +14,12 @@ use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
 /// Version of the case file.
-pub const CASE_SCHEMA: u32 = 1;
+pub(crate) const CASE_SCHEMA: u32 = 1;
 
 /// Contents of a case file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct UserCase {
+pub(crate) struct UserCase {
     /// [`CASE_SCHEMA`].
     pub schema: u32,
     /// Name of the case.
@@ -49,7 +49,7 @@ fn usual_speed_max() -> f64 {
 /// The forces of a case: exactly one of these.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct UserAerodynamics {
+pub(crate) struct UserAerodynamics {
     /// Theodorsen's flat plate; `rotary_inertia` keeps the apparent rotary inertia.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub flat_plate: Option<UserFlatPlate>,
@@ -70,7 +70,7 @@ pub struct UserAerodynamics {
 /// Options of the flat plate.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct UserFlatPlate {
+pub(crate) struct UserFlatPlate {
     /// Keep the apparent rotary inertia of the air (the `π/64` term of `A3*`).
     pub rotary_inertia: bool,
 }
@@ -78,7 +78,7 @@ pub struct UserFlatPlate {
 /// `G = a₁ + a₂ p + a₃ p² + Σ a_{l+3} p/(p + d_l)`; rows of matrices are forces, in the order of the section.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct UserRational {
+pub(crate) struct UserRational {
     /// `a₁`.
     #[serde(with = "crate::state_space::rows")]
     pub a1: DMatrix<f64>,
@@ -99,7 +99,7 @@ pub struct UserRational {
 /// One expected figure.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct UserFigure {
+pub(crate) struct UserFigure {
     /// What.
     pub quantity: Quantity,
     /// Route of the onset; left out, eigenvalues where the forces have a realisation, else the determinant.
@@ -125,7 +125,7 @@ pub struct UserFigure {
 /// What a figure of a case file can be.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Quantity {
+pub(crate) enum Quantity {
     /// Onset speed, m/s.
     OnsetSpeed,
     /// Frequency at onset, Hz.
@@ -154,7 +154,7 @@ pub enum Quantity {
 
 impl Quantity {
     /// Name and unit in words.
-    pub fn words(self) -> (&'static str, &'static str) {
+    pub(crate) fn words(self) -> (&'static str, &'static str) {
         match self {
             Self::OnsetSpeed => ("onset speed", "m/s"),
             Self::OnsetFrequency => ("frequency at onset", "Hz"),
@@ -181,7 +181,7 @@ impl UserCase {
     ///
     /// # Errors
     /// [`Error::Io`] when it cannot be read; [`Error::Input`] with file and line for everything that is wrong in it.
-    pub fn read(path: &Path) -> Result<Self> {
+    pub(crate) fn read(path: &Path) -> Result<Self> {
         toml_lines::read(path, Self::from_toml)
     }
 
@@ -189,7 +189,7 @@ impl UserCase {
     ///
     /// # Errors
     /// [`Error::Input`] with line and key.
-    pub fn from_toml(text: &str, directory: PathBuf) -> Result<Self> {
+    pub(crate) fn from_toml(text: &str, directory: PathBuf) -> Result<Self> {
         toml_lines::parse("a case file", text, |case: &mut Self| {
             case.directory = directory;
             case.validate()
@@ -228,7 +228,7 @@ impl UserCase {
     }
 
     /// Computes every figure. A computation that fails is a result that has not passed.
-    pub fn run(&self) -> Vec<CaseResult> {
+    pub(crate) fn run(&self) -> Vec<CaseResult> {
         let loaded = Loaded::new(self);
         let judge = |figure: &UserFigure| {
             let found = match &loaded {

@@ -18,9 +18,9 @@ mod scatter;
 
 pub use distribution::Distribution;
 pub use parameter::Parameter;
-pub use plan::{AerodynamicScatter, Correlation, MonteCarloPlan, PLAN_SCHEMA, RandomParameter};
+pub use plan::{AerodynamicScatter, Correlation, MonteCarloPlan, RandomParameter};
 pub use results::{DesignCheck, Failure, Histogram, MonteCarloResult, Quantile};
-pub use run::{OnSamples, monte_carlo};
+pub use run::monte_carlo;
 
 #[cfg(test)]
 mod tests;

@@ -103,7 +103,7 @@ impl Parameter {
     }
 
     /// The name in files.
-    pub fn name(self) -> String {
+    pub(crate) fn name(self) -> String {
         match serde_json::to_value(self) {
             Ok(serde_json::Value::String(name)) => name,
             _ => String::new(),

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
 /// Version of the file.
-pub const PLAN_SCHEMA: u32 = 1;
+pub(crate) const PLAN_SCHEMA: u32 = 1;
 /// More samples than this do not fit into memory.
 const MAX_SAMPLES: usize = 100_000_000;
 
@@ -16,7 +16,7 @@ const MAX_SAMPLES: usize = 100_000_000;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MonteCarloPlan {
-    /// [`PLAN_SCHEMA`].
+    /// `PLAN_SCHEMA`.
     pub schema: u32,
     /// The trained model (section and forces), a path against the folder of the file.
     pub model: PathBuf,
@@ -106,7 +106,7 @@ impl MonteCarloPlan {
     }
 
     /// The same error with the line of the key it names in `text`, for what shows only beside the model.
-    pub fn locate(text: &str, error: Error) -> Error {
+    pub(crate) fn locate(text: &str, error: Error) -> Error {
         toml_lines::with_line(text, error)
     }
 
@@ -114,7 +114,7 @@ impl MonteCarloPlan {
     ///
     /// # Errors
     /// [`Error::Input`] naming the key.
-    pub fn validate(&self) -> Result<()> {
+    pub(crate) fn validate(&self) -> Result<()> {
         let wrong =
             |key: &str, expected: &str, found: String| Err(Error::input(key, expected, found));
         if self.schema != PLAN_SCHEMA {

@@ -20,7 +20,7 @@ const CHUNK: usize = 2048;
 const SPEEDS: usize = 200;
 
 /// Called with the samples done and all of them, from any thread.
-pub type OnSamples<'a> = &'a (dyn Fn(usize, usize) + Sync);
+pub(crate) type OnSamples<'a> = &'a (dyn Fn(usize, usize) + Sync);
 
 /// Finds the onset of one sample.
 struct Finder<'a> {
@@ -133,15 +133,15 @@ impl<'a> Finder<'a> {
         let found = find_onset(&self.model.name, &coupled, &self.search, tested)?;
         Ok(match found {
             FlutterSearch::Onset(o) => SweepOutcome::Onset(SweptOnset {
-                speed_m_s: o.speed_m_s,
-                frequency_hz: o.frequency_hz,
+                speed_m_s: o.at.speed_m_s,
+                frequency_hz: o.at.frequency_hz,
                 in_tested_range: o.in_tested_range != Some(false),
                 spurious: o.spurious_speeds_m_s.len(),
             }),
             FlutterSearch::UnstableAtOrBelow(start) => {
                 SweepOutcome::UnstableAtOrBelow(SweptOnset {
-                    speed_m_s: start.speed_m_s,
-                    frequency_hz: start.frequency_hz,
+                    speed_m_s: start.at.speed_m_s,
+                    frequency_hz: start.at.frequency_hz,
                     in_tested_range: start.in_tested_range != Some(false),
                     spurious: 0,
                 })

@@ -137,7 +137,7 @@ fn samples_are_those_of_single_searches() {
             speeds: 100,
         };
         let found = find_onset("", &coupled, &search, Some(model.tested_range)).unwrap();
-        speeds.push(found.onset().unwrap().speed_m_s);
+        speeds.push(found.onset().unwrap().at.speed_m_s);
     }
     let mean = speeds.iter().sum::<f64>() / 1000.0;
     let fewer = MonteCarloPlan {

@@ -18,7 +18,7 @@ const NOSE_UP_DEG: f64 = 9.0;
 const TURN: (f64, f64) = (72.0, 33.0);
 
 /// Two panels with the positive directions of motion and force in both axes, wind from the left.
-pub fn axes_sketch() -> Figure {
+pub(crate) fn axes_sketch() -> Figure {
     let (width, height) = (2.0 * PANEL.0, PANEL.1);
     let mut svg = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" \

@@ -69,8 +69,8 @@ pub fn vf_vg_figure(
     }
     let mut stated = Vec::new();
     for onset in onsets {
-        let colour = colour_of(&onset.model, curves)?;
-        upright.push((onset.speed_m_s, colour));
+        let colour = colour_of(&onset.at.model, curves)?;
+        upright.push((onset.at.speed_m_s, colour));
         mark_onset(&mut frequency, &mut damping, onset, colour);
         stated.push(Entry::new(statement(onset), onset_ink(onset, colour)));
     }
@@ -174,7 +174,7 @@ fn colour_of(model: &str, curves: &[FlutterCurves]) -> Result<&'static str> {
 fn onset_ink(onset: &Onset, colour: &'static str) -> Ink {
     Ink::Dots {
         colour,
-        shape: match onset.method {
+        shape: match onset.at.method {
             OnsetMethod::Eigenvalues => Shape::Circle,
             OnsetMethod::Determinant => Shape::Diamond,
             OnsetMethod::FmuStepping => Shape::Square,
@@ -186,26 +186,26 @@ fn onset_ink(onset: &Onset, colour: &'static str) -> Ink {
 }
 
 fn mark_onset(frequency: &mut Panel, damping: &mut Panel, onset: &Onset, colour: &'static str) {
-    let name = format!("onset of {}", onset.model);
-    let at_frequency = (onset.speed_m_s, onset.frequency_hz);
-    let at_zero = (onset.speed_m_s, 0.0);
+    let name = format!("onset of {}", onset.at.model);
+    let at_frequency = (onset.at.speed_m_s, onset.at.frequency_hz);
+    let at_zero = (onset.at.speed_m_s, 0.0);
     frequency.add(&name, vec![at_frequency], onset_ink(onset, colour));
     damping.add(&name, vec![at_zero], onset_ink(onset, colour));
     let note = |panel: &mut Panel, at, text| panel.notes.push(Note { at, text, colour });
     note(
         frequency,
         at_frequency,
-        format!("{} Hz", significant(onset.frequency_hz)),
+        format!("{} Hz", significant(onset.at.frequency_hz)),
     );
     note(
         damping,
         at_zero,
-        format!("{} m/s", significant(onset.speed_m_s)),
+        format!("{} m/s", significant(onset.at.speed_m_s)),
     );
     if !onset.spurious_speeds_m_s.is_empty() {
         let crosses = onset.spurious_speeds_m_s.iter().map(|v| (*v, 0.0));
         damping.add(
-            format!("spurious crossings of {}", onset.model),
+            format!("spurious crossings of {}", onset.at.model),
             crosses.collect(),
             Ink::dots(colour, Shape::Cross),
         );
@@ -216,12 +216,12 @@ fn mark_onset(frequency: &mut Panel, damping: &mut Panel, onset: &Onset, colour:
 fn statement(onset: &Onset) -> String {
     format!(
         "Onset {}: V = {} m/s, f = {} Hz, V/(fB) = {}, {} branch ({})",
-        onset.model,
-        significant(onset.speed_m_s),
-        significant(onset.frequency_hz),
-        significant(onset.reduced_velocity.v_star()),
+        onset.at.model,
+        significant(onset.at.speed_m_s),
+        significant(onset.at.frequency_hz),
+        significant(onset.at.reduced_velocity.v_star()),
         onset.branch,
-        onset.method.name(),
+        onset.at.method.name(),
     )
 }
 

@@ -32,7 +32,7 @@ const TICKS: usize = 7;
 
 /// One map.
 #[derive(Debug, Clone, PartialEq)]
-pub struct HeatMap {
+pub(crate) struct HeatMap {
     /// Line above it.
     pub title: String,
     /// Name of the parameter along the abscissa.
@@ -57,7 +57,7 @@ pub struct HeatMap {
 ///
 /// # Errors
 /// [`Error::Input`] for no maps, maps of other sizes than their axes say, and maps without a finite value.
-pub fn heat_map_figure(title: &str, maps: &[HeatMap], columns: usize) -> Result<Figure> {
+pub(crate) fn heat_map_figure(title: &str, maps: &[HeatMap], columns: usize) -> Result<Figure> {
     const PLACE: &str = "heat map";
     if maps.is_empty() || columns == 0 {
         return Err(Error::input(PLACE, "at least one map", "none"));

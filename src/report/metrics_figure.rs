@@ -11,7 +11,7 @@ use crate::error::Result;
 
 /// One metric of one force.
 #[derive(Debug, Clone, PartialEq)]
-pub struct MetricPanel {
+pub(crate) struct MetricPanel {
     /// Name of metric and force.
     pub title: String,
     /// Frequency (Hz) and metric (0 to 1), one series a deck or model.
@@ -22,7 +22,11 @@ pub struct MetricPanel {
 ///
 /// # Errors
 /// [`crate::Error::Input`] for no data, numbers that are not finite, and more labels than colours.
-pub fn metrics_figure(title: &str, panels: &[MetricPanel], columns: usize) -> Result<Figure> {
+pub(crate) fn metrics_figure(
+    title: &str,
+    panels: &[MetricPanel],
+    columns: usize,
+) -> Result<Figure> {
     const PLACE: &str = "metrics";
     let labels = labels_of(panels.iter().flat_map(|p| &p.series));
     let line = |i: usize| -> Result<Ink> { Ok(Ink::line(colour(PLACE, i)?, dash(i))) };

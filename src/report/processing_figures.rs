@@ -19,7 +19,11 @@ const PERIODS: f64 = 3.0;
 ///
 /// # Errors
 /// [`Error::Input`] for a run without stages or numbers that are not finite.
-pub fn processing_figure(run: &RunReport, stages: &[StageSignals], dof: Dof) -> Result<Figure> {
+pub(crate) fn processing_figure(
+    run: &RunReport,
+    stages: &[StageSignals],
+    dof: Dof,
+) -> Result<Figure> {
     let Some(last) = stages.last() else {
         return Err(Error::input(PLACE, "stages", "none"));
     };

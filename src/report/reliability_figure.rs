@@ -16,7 +16,7 @@ const PLACE: &str = "distribution of the onset";
 ///
 /// # Errors
 /// [`Error::Input`] when there is no onset to draw.
-pub fn onset_distribution_figure(result: &MonteCarloResult) -> Result<Figure> {
+pub(crate) fn onset_distribution_figure(result: &MonteCarloResult) -> Result<Figure> {
     let h = &result.histogram;
     if h.counts.is_empty() {
         return Err(Error::input(PLACE, "at least one onset", "none"));

@@ -11,7 +11,7 @@ use crate::error::Result;
 
 /// A transfer function at several frequencies.
 #[derive(Debug, Clone, PartialEq)]
-pub struct TransferCurve {
+pub(crate) struct TransferCurve {
     /// Name in the legend.
     pub label: String,
     /// Abscissa, magnitude, phase in degrees.
@@ -20,7 +20,7 @@ pub struct TransferCurve {
 
 /// One transfer function: two panels side by side.
 #[derive(Debug, Clone, PartialEq)]
-pub struct TransferPlot {
+pub(crate) struct TransferPlot {
     /// Name above the panels.
     pub name: String,
     /// What the models are compared with.
@@ -39,7 +39,11 @@ pub struct TransferPlot {
 ///
 /// # Errors
 /// [`crate::Error::Input`] for no data, numbers that are not finite, and more models than colours.
-pub fn transfer_figure(title: &str, x_label: &str, plots: &[TransferPlot]) -> Result<Figure> {
+pub(crate) fn transfer_figure(
+    title: &str,
+    x_label: &str,
+    plots: &[TransferPlot],
+) -> Result<Figure> {
     const PLACE: &str = "transfer functions";
     let mut labels: Vec<String> = Vec::new();
     for curve in plots.iter().flat_map(|p| &p.models) {

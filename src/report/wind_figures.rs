@@ -34,7 +34,11 @@ fn titled(title: &str) -> Option<String> {
 ///
 /// # Errors
 /// [`crate::Error::Input`] for no points and numbers that are not finite.
-pub fn equilibrium_figure(title: &str, dofs: &[Dof], path: &EquilibriumPath) -> Result<Figure> {
+pub(crate) fn equilibrium_figure(
+    title: &str,
+    dofs: &[Dof],
+    path: &EquilibriumPath,
+) -> Result<Figure> {
     const PLACE: &str = "static equilibrium";
     let line = Ink::line(colour(PLACE, 0)?, None);
     let last = dofs.len() - 1;
@@ -77,7 +81,7 @@ pub fn equilibrium_figure(title: &str, dofs: &[Dof], path: &EquilibriumPath) -> 
 ///
 /// # Errors
 /// [`crate::Error::Input`] for no points and numbers that are not finite.
-pub fn buffeting_rms_figure(title: &str, study: &BuffetingStudy) -> Result<Figure> {
+pub(crate) fn buffeting_rms_figure(title: &str, study: &BuffetingStudy) -> Result<Figure> {
     const PLACE: &str = "RMS over wind speed";
     let total = Ink::line(colour(PLACE, 0)?, None);
     let parts = [
@@ -147,7 +151,7 @@ fn has_gust(study: &BuffetingStudy, j: usize) -> bool {
 ///
 /// # Errors
 /// [`crate::Error::Input`] for no points and numbers that are not finite.
-pub fn buffeting_spectra_figure(
+pub(crate) fn buffeting_spectra_figure(
     title: &str,
     dofs: &[Dof],
     spectra: &SpectrumCurve,

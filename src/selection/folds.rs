@@ -28,7 +28,7 @@ pub(super) struct Folds {
 }
 
 impl Folds {
-    pub fn new(labels: &[StretchLabel]) -> Self {
+    pub(crate) fn new(labels: &[StretchLabel]) -> Self {
         Self {
             speeds: groups(labels, |l| Some(l.mean_speed_m_s)),
             frequencies: groups(labels, |l| l.frequency_hz),
@@ -37,7 +37,7 @@ impl Folds {
 
     /// All numbers of filters of one value of the axis; `None` where a fit without a fold fails or nothing can be left
     /// out.
-    pub fn validate(&self, grid: &Grid, value: usize) -> Vec<Option<CrossValidation>> {
+    pub(crate) fn validate(&self, grid: &Grid, value: usize) -> Vec<Option<CrossValidation>> {
         // none of a fit that failed, of those that did not perhaps nothing to leave out
         let errors = |folds: &[Vec<usize>]| -> Vec<Option<Option<Vec<f64>>>> {
             let mut of_filters = vec![Some(Vec::new()); grid.filters_max()];

@@ -60,7 +60,7 @@ fn onset(
     let found = find_onset("", &section, search, Some(tested))?;
     let limit = match &found {
         FlutterSearch::Onset(onset) => {
-            verdict.onset_m_s = Some(onset.speed_m_s);
+            verdict.onset_m_s = Some(onset.at.speed_m_s);
             for speed in &onset.spurious_speeds_m_s {
                 verdict.rejected.push(format!(
                     "spurious onset at {speed:.3} m/s outside the tested range"
@@ -69,15 +69,15 @@ fn onset(
             if onset.in_tested_range == Some(false) {
                 verdict.rejected.push(format!(
                     "spurious onset at {:.3} m/s outside the tested range, and none inside",
-                    onset.speed_m_s
+                    onset.at.speed_m_s
                 ));
             }
-            onset.speed_m_s
+            onset.at.speed_m_s
         }
         FlutterSearch::UnstableAtOrBelow(start) => {
-            verdict.onset_m_s = Some(start.speed_m_s);
+            verdict.onset_m_s = Some(start.at.speed_m_s);
             verdict.rejected.push(start.explain());
-            start.speed_m_s
+            start.at.speed_m_s
         }
         FlutterSearch::StableUpTo(range) => range.to_m_s,
     };

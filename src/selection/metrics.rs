@@ -27,7 +27,7 @@ const WARPING_PERIODS: f64 = 0.25;
 
 /// Metrics of one cell.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct CellMetrics {
+pub(crate) struct CellMetrics {
     /// Phase `M_φ`, sub-sample lag.
     pub phase: f64,
     /// Peak `M_p`.
@@ -40,7 +40,7 @@ pub struct CellMetrics {
 
 /// Metrics of one force due to one motion over the whole grid.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct MetricGrid {
+pub(crate) struct MetricGrid {
     /// Record.
     pub record: String,
     /// Force that is compared.
@@ -58,7 +58,7 @@ pub struct MetricGrid {
 ///
 /// # Errors
 /// [`Error::Input`] when no record has segments; those of reading and of the metrics.
-pub fn metric_grid(
+pub(crate) fn metric_grid(
     grid: &Grid,
     records: &[&dyn RecordSource],
     frequency_hz: f64,

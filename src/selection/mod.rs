@@ -13,7 +13,7 @@ mod recommend;
 
 pub use cells::{Cell, Selection, SelectionPlan, select};
 pub use folds::CrossValidation;
-pub use metrics::{CellMetrics, MetricGrid, metric_grid};
+pub(crate) use metrics::{CellMetrics, MetricGrid, metric_grid};
 pub use recommend::Recommendation;
 
 #[cfg(test)]

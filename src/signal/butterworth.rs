@@ -70,7 +70,7 @@ impl ButterworthLowPass {
     /// # Errors
     /// [`Error::Input`] for an order that is not 1 to 12, frequencies that are not positive, and a cut-off that is not
     /// below half the sampling frequency.
-    pub fn new(order: usize, cutoff_hz: f64, sampling_hz: f64) -> Result<Self> {
+    pub(crate) fn new(order: usize, cutoff_hz: f64, sampling_hz: f64) -> Result<Self> {
         positive("sampling_hz", sampling_hz)?;
         positive("low-pass cutoff_hz", cutoff_hz)?;
         if !(1..=ORDER_AT_MOST).contains(&order) {
@@ -102,18 +102,8 @@ impl ButterworthLowPass {
         Ok(Self { order, sections })
     }
 
-    /// Order of one passage.
-    pub fn order(&self) -> usize {
-        self.order
-    }
-
-    /// The sections, in the order in which they run.
-    pub fn sections(&self) -> &[Section] {
-        &self.sections
-    }
-
     /// Amplitude that a harmonic keeps at one passage.
-    pub fn gain(&self, frequency_hz: f64, sampling_hz: f64) -> f64 {
+    pub(crate) fn gain(&self, frequency_hz: f64, sampling_hz: f64) -> f64 {
         let z = Complex::from_polar(1.0, -2.0 * PI * frequency_hz / sampling_hz);
         let of_one = |s: &Section| {
             let above = z * (z * s.b[2] + s.b[1]) + s.b[0];
@@ -124,7 +114,7 @@ impl ButterworthLowPass {
     }
 
     /// Samples that a signal must exceed to be filtered.
-    pub fn padding(&self) -> usize {
+    pub(crate) fn padding(&self) -> usize {
         3 * (self.order + 1)
     }
 
@@ -137,7 +127,7 @@ impl ButterworthLowPass {
     ///
     /// # Errors
     /// [`Error::Input`] for a signal not longer than [`Self::padding`].
-    pub fn zero_phase(&self, signal: &[f64]) -> Result<Vec<f64>> {
+    pub(crate) fn zero_phase(&self, signal: &[f64]) -> Result<Vec<f64>> {
         let (n, pad) = (signal.len(), self.padding());
         if n <= pad {
             return Err(Error::input(

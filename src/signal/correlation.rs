@@ -4,7 +4,7 @@ use rustfft::FftPlanner;
 use rustfft::num_complex::Complex64;
 
 /// `c(n) = Σ_k X₂[k+n] X₁[k]`, `|n| < N`: a positive lag means that `X₂` comes later.
-pub struct CrossCorrelation {
+pub(crate) struct CrossCorrelation {
     /// `c(n)` at `n mod M`, M large enough that nothing wraps round.
     values: Vec<f64>,
     /// `Σ_{k<n} X[k]²` for n = 0…N, of reference and compared signal.
@@ -13,7 +13,7 @@ pub struct CrossCorrelation {
 
 impl CrossCorrelation {
     /// Of two signals of equal length.
-    pub fn new(reference: &[f64], compared: &[f64]) -> Self {
+    pub(crate) fn new(reference: &[f64], compared: &[f64]) -> Self {
         let mut product = cross_spectrum(reference, compared);
         let size = product.len();
         FftPlanner::new()
@@ -27,12 +27,12 @@ impl CrossCorrelation {
     }
 
     /// Number of samples N.
-    pub fn sample_count(&self) -> usize {
+    pub(crate) fn sample_count(&self) -> usize {
         self.cumulated_energy[0].len() - 1
     }
 
     /// `√(Σ X₁² Σ X₂²)` over the samples that overlap at a lag: by Schwarz's inequality the largest `|c|` can be.
-    pub fn overlap_energy(&self, lag: isize) -> f64 {
+    pub(crate) fn overlap_energy(&self, lag: isize) -> f64 {
         let count = self.sample_count();
         let shift = lag.unsigned_abs().min(count);
         let [first, second] = &self.cumulated_energy;
@@ -47,7 +47,7 @@ impl CrossCorrelation {
     }
 
     /// `c` at a whole lag; zero where the signals do not overlap.
-    pub fn at(&self, lag: isize) -> f64 {
+    pub(crate) fn at(&self, lag: isize) -> f64 {
         if lag.unsigned_abs() >= self.sample_count() {
             return 0.0;
         }
@@ -55,12 +55,12 @@ impl CrossCorrelation {
     }
 
     /// Whole lag at which `c` itself is largest, the first of equal ones.
-    pub fn largest(&self) -> isize {
+    pub(crate) fn largest(&self) -> isize {
         self.largest_by(|c| c)
     }
 
     /// Whole lag at which `|c|` is largest, the first of equal ones.
-    pub fn largest_magnitude(&self) -> isize {
+    pub(crate) fn largest_magnitude(&self) -> isize {
         self.largest_by(f64::abs)
     }
 

@@ -18,7 +18,7 @@ const REFINEMENTS: usize = 3;
 
 /// A delay between two signals.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Delay {
+pub(crate) struct Delay {
     /// By how many samples the second signal is later.
     pub samples: f64,
     /// The same by the parabola alone, for comparison.
@@ -31,7 +31,7 @@ pub struct Delay {
 ///
 /// # Errors
 /// [`Error::Input`] when a signal is zero throughout, or nowhere like the other.
-pub fn delay(reference: &[f64], compared: &[f64]) -> Result<Delay> {
+pub(crate) fn delay(reference: &[f64], compared: &[f64]) -> Result<Delay> {
     let count = reference.len().max(compared.len());
     let padded = |x: &[f64]| {
         let mut x = x.to_vec();

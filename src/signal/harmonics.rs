@@ -19,14 +19,14 @@ pub struct Plateau {
 
 impl Plateau {
     /// Its samples.
-    pub fn range(&self) -> Range<usize> {
+    pub(crate) fn range(&self) -> Range<usize> {
         self.first..self.first + self.samples
     }
 }
 
 /// `x(t) ≈ a + b(t − t_c) + Σ_n Re(Z_n e^{inωt})`, `t` from the beginning of the signal, `t_c` the middle of the stretch.
 #[derive(Debug, Clone, PartialEq)]
-pub struct HarmonicFit {
+pub(crate) struct HarmonicFit {
     /// Frequency `ω/2π` of the first harmonic, Hz.
     pub frequency_hz: f64,
     /// `t_c`, s.
@@ -43,7 +43,7 @@ pub struct HarmonicFit {
 
 impl HarmonicFit {
     /// Harmonics alone at `t_s`, and their rate of change, 1/s.
-    pub fn oscillation(&self, t_s: f64) -> (f64, f64) {
+    pub(crate) fn oscillation(&self, t_s: f64) -> (f64, f64) {
         let omega = TAU * self.frequency_hz;
         let turn = Complex::from_polar(1.0, omega * t_s);
         let mut power = Complex::new(1.0, 0.0);
@@ -56,13 +56,8 @@ impl HarmonicFit {
         (value, rate)
     }
 
-    /// Constant and trend at `t_s`.
-    pub fn baseline(&self, t_s: f64) -> f64 {
-        self.offset + self.slope_per_s * (t_s - self.centre_s)
-    }
-
     /// Complex amplitude of the first harmonic.
-    pub fn fundamental(&self) -> Complex<f64> {
+    pub(crate) fn fundamental(&self) -> Complex<f64> {
         self.amplitudes.first().copied().unwrap_or_default()
     }
 }
@@ -73,7 +68,7 @@ impl HarmonicFit {
 /// # Errors
 /// [`Error::Input`] for a range outside the signal; [`Error::Numerical`] for fewer samples than unknowns or a stretch too short
 /// to tell the harmonics from the trend.
-pub fn fit_harmonics(
+pub(crate) fn fit_harmonics(
     signal: &[f64],
     range: Range<usize>,
     sampling_hz: f64,
@@ -145,7 +140,7 @@ pub fn fit_harmonics(
 }
 
 /// One harmonic, all samples used.
-pub fn fit_sine(
+pub(crate) fn fit_sine(
     signal: &[f64],
     range: Range<usize>,
     sampling_hz: f64,
@@ -155,7 +150,7 @@ pub fn fit_sine(
 }
 
 /// The frequency of the harmonic near `frequency_hz` in `range`, from the phases of its two halves.
-pub fn refine_frequency(
+pub(crate) fn refine_frequency(
     signal: &[f64],
     range: Range<usize>,
     sampling_hz: f64,
@@ -251,7 +246,8 @@ mod tests {
         assert!((fit.amplitudes[1] - Complex::new(0.0, -0.1)).norm() < 1e-11);
         assert!((fit.slope_per_s + 0.2).abs() < 1e-11 && fit.residual_rms < 1e-6);
         let (t, h) = (7.123, 1e-5);
-        let whole = |t: f64| fit.oscillation(t).0 + fit.baseline(t);
+        let line = |t: f64| fit.offset + fit.slope_per_s * (t - fit.centre_s);
+        let whole = |t: f64| fit.oscillation(t).0 + line(t);
         assert!((whole(t) - x(t)).abs() < 1e-11);
         let difference = (fit.oscillation(t + h).0 - fit.oscillation(t - h).0) / (2.0 * h);
         // ω³h²/6

@@ -11,8 +11,10 @@ mod resample;
 mod samples;
 
 pub use butterworth::ButterworthLowPass;
-pub use correlation::CrossCorrelation;
-pub use delay::{Delay, delay};
-pub use harmonics::{HarmonicFit, Plateau, fit_harmonics, fit_sine, plateau, refine_frequency};
-pub use resample::{delayed, resampled, value_at};
-pub use samples::{clipped_stretches, median, rate, robust_deviation};
+pub(crate) use correlation::CrossCorrelation;
+pub(crate) use delay::delay;
+pub(crate) use harmonics::{HarmonicFit, fit_harmonics, fit_sine, refine_frequency};
+pub use harmonics::{Plateau, plateau};
+pub(crate) use resample::{delayed, resampled};
+pub(crate) use samples::{clipped_stretches, robust_deviation};
+pub use samples::{median, rate};

@@ -28,7 +28,7 @@ fn lagrange_weights(t: f64) -> [f64; NODES] {
 
 /// `signal` at the place `at`, in samples; before the first and after the last sample their value is held.
 /// A signal of fewer than six samples gives the nearest of them, an empty one zero.
-pub fn value_at(signal: &[f64], at: f64) -> f64 {
+pub(crate) fn value_at(signal: &[f64], at: f64) -> f64 {
     let Some(last) = signal.len().checked_sub(1) else {
         return 0.0;
     };
@@ -47,7 +47,7 @@ pub fn value_at(signal: &[f64], at: f64) -> f64 {
 }
 
 /// `y[k] = x(k − delay)`: the signal later by `delay` samples, which may be a fraction and negative.
-pub fn delayed(signal: &[f64], delay: f64) -> Vec<f64> {
+pub(crate) fn delayed(signal: &[f64], delay: f64) -> Vec<f64> {
     if delay == 0.0 {
         return signal.to_vec();
     }
@@ -58,7 +58,7 @@ pub fn delayed(signal: &[f64], delay: f64) -> Vec<f64> {
 
 /// The signal at the times `m · ratio`, in units of its own step; `ratio` of the steps is at least one. The last one or two
 /// samples, whose neighbours are not there, are left out.
-pub fn resampled(x: &[f64], ratio: f64) -> Vec<f64> {
+pub(crate) fn resampled(x: &[f64], ratio: f64) -> Vec<f64> {
     let mut out = Vec::with_capacity((x.len() as f64 / ratio) as usize + 1);
     loop {
         let at = out.len() as f64 * ratio;

@@ -15,7 +15,7 @@ pub fn median(values: &[f64]) -> f64 {
 }
 
 /// Standard deviation of a normal variable with the median absolute deviation of `values` from their median.
-pub fn robust_deviation(values: &[f64]) -> f64 {
+pub(crate) fn robust_deviation(values: &[f64]) -> f64 {
     let centre = median(values);
     let distances: Vec<f64> = values.iter().map(|x| (x - centre).abs()).collect();
     NORMAL_MAD * median(&distances)
@@ -29,7 +29,7 @@ const STEPS_AT_LEAST: f64 = 3.0;
 
 /// First sample and length of every stretch of eight or more equal samples at the highest or lowest value.
 /// A rest at the end of the range (a motion to one side) is none: the channel must have come there from elsewhere and go back.
-pub fn clipped_stretches(samples: &[f64]) -> Vec<(usize, usize)> {
+pub(crate) fn clipped_stretches(samples: &[f64]) -> Vec<(usize, usize)> {
     let low = samples.iter().copied().fold(f64::INFINITY, f64::min);
     let high = samples.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let smallest = samples

@@ -111,7 +111,7 @@ impl Deck {
     }
 
     /// The deck in words.
-    pub fn description(&self) -> String {
+    pub(crate) fn description(&self) -> String {
         match &self.source {
             Source::Table(table) => format!("{}: {}", table.name, table.header.source),
             Source::FlatPlate => "flat plate, Theodorsen's theory, exact".to_owned(),
@@ -119,7 +119,7 @@ impl Deck {
     }
 
     /// Licence notice of the data.
-    pub fn licence(&self) -> String {
+    pub(crate) fn licence(&self) -> String {
         match &self.source {
             // the notice has to go wherever the figures go
             Source::Table(_) if self.built_in => embedded::LICENCE.to_owned(),
@@ -129,7 +129,7 @@ impl Deck {
     }
 
     /// Name of the deck's own model, searched by the determinant.
-    pub fn own_model_name(&self) -> String {
+    pub(crate) fn own_model_name(&self) -> String {
         match &self.source {
             Source::Table(_) => "interpolated table".to_owned(),
             Source::FlatPlate => "flat plate (exact)".to_owned(),
@@ -137,7 +137,7 @@ impl Deck {
     }
 
     /// Records of the virtual tunnel, one a motion and speed.
-    pub fn virtual_records(&self, study: &Study) -> Result<Vec<Record>> {
+    pub(crate) fn virtual_records(&self, study: &Study) -> Result<Vec<Record>> {
         match &self.source {
             Source::Table(table) => study.tunnel.records_from_table(table, &self.dofs),
             Source::FlatPlate => study.tunnel.records_from_model(
@@ -152,7 +152,11 @@ impl Deck {
     ///
     /// # Errors
     /// [`Error::Input`] for a group that does not exist.
-    pub fn samples(&self, study: &Study, groups: Option<&[usize]>) -> Result<Vec<TransferSample>> {
+    pub(crate) fn samples(
+        &self,
+        study: &Study,
+        groups: Option<&[usize]>,
+    ) -> Result<Vec<TransferSample>> {
         match &self.source {
             Source::Table(table) => {
                 let Some(groups) = groups else {
@@ -184,7 +188,7 @@ impl Deck {
     }
 
     /// The measured table; `None` for the flat plate.
-    pub fn table(&self) -> Option<&DerivativeTable> {
+    pub(crate) fn table(&self) -> Option<&DerivativeTable> {
         match &self.source {
             Source::Table(table) => Some(table),
             Source::FlatPlate => None,
@@ -192,7 +196,7 @@ impl Deck {
     }
 
     /// What was assumed in reading the table, and what looks wrong in it.
-    pub fn warnings(&self) -> Vec<String> {
+    pub(crate) fn warnings(&self) -> Vec<String> {
         self.warnings.clone()
     }
 
@@ -202,7 +206,7 @@ impl Deck {
     ///
     /// # Errors
     /// [`Error::Input`] when the table lacks a derivative of the section.
-    pub fn model(&self) -> Result<(Box<dyn Transfer>, Option<ReducedFrequencyRange>)> {
+    pub(crate) fn model(&self) -> Result<(Box<dyn Transfer>, Option<ReducedFrequencyRange>)> {
         match &self.source {
             Source::Table(table) => {
                 let by = self.interpolation;
@@ -252,13 +256,13 @@ pub struct RecordSet {
 
 impl RecordSet {
     /// The records that the study states.
-    pub fn measured(study: &Study) -> Result<Self> {
+    pub(crate) fn measured(study: &Study) -> Result<Self> {
         let paths = study.deck.records.iter().map(|p| study.directory.join(p));
         Self::open(paths.collect())
     }
 
     /// Records just written, still in memory.
-    pub fn staged(written: Vec<(PathBuf, Record)>) -> Result<Self> {
+    pub(crate) fn staged(written: Vec<(PathBuf, Record)>) -> Result<Self> {
         Self::open(written.into_iter().map(|(path, _)| path).collect())
     }
 
@@ -266,7 +270,7 @@ impl RecordSet {
     ///
     /// # Errors
     /// [`Error::Input`] when there are none although a model needs them; those of reading.
-    pub fn in_folder(study: &Study, folder: &Path) -> Result<Self> {
+    pub(crate) fn in_folder(study: &Study, folder: &Path) -> Result<Self> {
         let needed = study.models.iter().any(|m| m.table.is_none());
         let mut paths = Vec::new();
         if folder.is_dir() {
@@ -315,7 +319,7 @@ impl RecordSet {
     ///
     /// # Errors
     /// [`Error::Input`] for a group that does not exist.
-    pub fn select(&self, groups: Option<&[usize]>) -> Result<Vec<&dyn RecordSource>> {
+    pub(crate) fn select(&self, groups: Option<&[usize]>) -> Result<Vec<&dyn RecordSource>> {
         let chosen = chosen(groups, self.groups_m_s.len())?;
         let inside = |record: &&RecordFile| {
             let speed = record.header().mean_speed_m_s;

@@ -6,6 +6,6 @@ pub fn demo_study_text() -> &'static str {
 }
 
 /// Text of the study that repeats the thesis's headline.
-pub fn thesis_study_text() -> &'static str {
+pub(crate) fn thesis_study_text() -> &'static str {
     include_str!("thesis_study.toml")
 }

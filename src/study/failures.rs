@@ -14,7 +14,7 @@ pub struct StageFailure {
 
 impl StageFailure {
     /// A stage and why it failed.
-    pub fn new(stage: impl Into<String>, reason: impl ToString) -> Self {
+    pub(crate) fn new(stage: impl Into<String>, reason: impl ToString) -> Self {
         Self {
             stage: stage.into(),
             reason: reason.to_string(),
@@ -22,27 +22,24 @@ impl StageFailure {
     }
 
     /// The failure in words.
-    pub fn explain(&self) -> String {
+    pub(crate) fn explain(&self) -> String {
         format!("FAILED {}: {}", self.stage, self.reason)
     }
 }
 
 /// Whether an error is one of a file, to be mended before anything else is of use: it cannot be read or written, or what
 /// stands in it is wrong.
-pub fn is_of_a_file(error: &Error) -> bool {
+pub(crate) fn is_of_a_file(error: &Error) -> bool {
     match error {
         Error::Io { .. } => true,
         Error::Input(input) => input.file.is_some(),
         Error::Several(errors) => errors.iter().any(is_of_a_file),
-        Error::Numerical(_) => false,
+        Error::Numerical(_) | Error::NotDistinct(_) | Error::Unstable(_) => false,
     }
 }
 
 /// The value of a stage; a failure is noted in `failed`.
-///
-/// # Errors
-/// Those of a file; see [`is_of_a_file`].
-pub fn attempt<T>(
+pub(crate) fn attempt<T>(
     failed: &mut Vec<StageFailure>,
     stage: impl Into<String>,
     result: Result<T>,

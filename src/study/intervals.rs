@@ -8,11 +8,11 @@ use crate::trained_model::TrainedModel;
 use crate::uncertainty::ModelUncertainty;
 
 /// Uncertainty of one model, or why it is not known.
-pub type KnownUncertainty = std::result::Result<Box<ModelUncertainty>, String>;
+pub(crate) type KnownUncertainty = std::result::Result<Box<ModelUncertainty>, String>;
 
 /// Gives every onset of a trained model its interval, in the order of `models`; onsets that the data do not determine are
 /// no onsets any more (see [`FlutterStudy::undetermined`]).
-pub fn state_intervals(
+pub(crate) fn state_intervals(
     results: &mut FlutterStudy,
     study: &Study,
     models: &[TrainedModel],
@@ -24,7 +24,7 @@ pub fn state_intervals(
 }
 
 /// As [`state_intervals`] for the onsets that a table of routes found by eigenvalues.
-pub fn state_route_intervals(
+pub(crate) fn state_route_intervals(
     table: &mut RouteTable,
     study: &Study,
     models: &[TrainedModel],
@@ -46,7 +46,7 @@ fn state_each<'a>(
     let structure = study.section.structure()?;
     let by_roots = |o: &&mut Onset| {
         !matches!(
-            o.method,
+            o.at.method,
             OnsetMethod::Determinant | OnsetMethod::PkIteration
         )
     };
@@ -54,7 +54,7 @@ fn state_each<'a>(
         let own = models
             .iter()
             .zip(known)
-            .find(|(m, _)| m.name == onset.model);
+            .find(|(m, _)| m.name == onset.at.model);
         if let Some((model, known)) = own {
             onset.interval = interval_of(&structure, model, known, onset);
             onset
@@ -66,7 +66,7 @@ fn state_each<'a>(
 }
 
 /// Interval of one onset of one model. A sensitivity that fails is a reason, not an error: the onset stands.
-pub fn interval_of(
+pub(crate) fn interval_of(
     structure: &Structure,
     model: &TrainedModel,
     known: &KnownUncertainty,

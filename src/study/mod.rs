@@ -3,7 +3,6 @@
 //! Every stage of the chain is a function from values to values, so that each command of the program, the demo and a
 //! script of somebody else run the same code.
 
-pub mod compare;
 mod deck;
 mod defaults;
 mod failures;
@@ -19,22 +18,25 @@ mod stepped;
 mod wind;
 
 pub use deck::{Deck, RecordSet};
-pub use defaults::{demo_study_text, thesis_study_text};
-pub use failures::{StageFailure, attempt, is_of_a_file};
-pub use intervals::{KnownUncertainty, interval_of, state_intervals, state_route_intervals};
+pub use defaults::demo_study_text;
+pub(crate) use defaults::thesis_study_text;
+pub use failures::StageFailure;
+pub(crate) use failures::{attempt, is_of_a_file};
+pub(crate) use intervals::{KnownUncertainty, interval_of, state_intervals, state_route_intervals};
 pub use models::{TrainedWithReport, train_one};
 pub use onsets::{Deviation, Divergence, FlutterStudy, ModelGrowth, OnsetSummary, flutter_study};
-pub use plausibility::{section_warnings, study_warnings};
-pub use processed::{processed_study_text, read_section};
-pub use reference_lines::derivative_lines;
-pub use routes::{FailedRoute, Route, RouteTable, low_frequency_limit, route_table};
+pub(crate) use plausibility::{section_warnings, study_warnings};
+pub(crate) use processed::{processed_study_text, read_section};
+pub(crate) use reference_lines::derivative_lines;
+pub use routes::low_frequency_limit;
+pub(crate) use routes::{Route, RouteTable, route_table};
 pub use speeds::{FlutterBlock, SpeedRange};
 pub use stepped::{SteppedAnswer, SteppedOnset, stepped_onset};
-pub use wind::{
-    BuffetingStudy, CoefficientsBlock, QuasiSteadyStudy, SimulatedMotion, SpectrumCurve,
-    SpeedLeftOut, TimeDomain, WindStudy, buffeting_study, example_wind_study_text,
+pub(crate) use wind::{
+    BuffetingStudy, QuasiSteadyStudy, SimulatedMotion, SpectrumCurve, WindStudy, buffeting_study,
     quasi_steady_study, simulated_motion,
 };
+pub use wind::{CoefficientsBlock, example_wind_study_text};
 
 use crate::aerodynamics::derivatives::notation::StatedConvention;
 use crate::aerodynamics::derivatives::{Interpolation, Missing};
@@ -47,13 +49,13 @@ use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
 /// Version of the study file.
-pub const STUDY_SCHEMA: u32 = 1;
+pub(crate) const STUDY_SCHEMA: u32 = 1;
 
 /// Contents of a study file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Study {
-    /// [`STUDY_SCHEMA`].
+    /// `STUDY_SCHEMA`.
     pub schema: u32,
     /// Name of the study.
     pub name: String,
@@ -221,7 +223,7 @@ impl Study {
     }
 
     /// Wind speeds of curves, searches, Monte Carlo analysis and FMU.
-    pub fn speeds(&self) -> SpeedRange {
+    pub(crate) fn speeds(&self) -> SpeedRange {
         self.flutter.range(&self.section)
     }
 
@@ -229,7 +231,7 @@ impl Study {
     ///
     /// # Errors
     /// [`Error::Input`] when `export.model` names none of the models.
-    pub fn exported(&self) -> Result<&ModelBlock> {
+    pub(crate) fn exported(&self) -> Result<&ModelBlock> {
         let Some(name) = &self.export.model else {
             return self
                 .models
@@ -264,7 +266,7 @@ fn require_section(text: &str) -> Result<()> {
 }
 
 /// The name of a model as part of a file name.
-pub fn slug(name: &str) -> String {
+pub(crate) fn slug(name: &str) -> String {
     let mut slug = String::new();
     for c in name.chars() {
         if c.is_alphanumeric() {
@@ -278,7 +280,7 @@ pub fn slug(name: &str) -> String {
 
 impl ModelBlock {
     /// The name as part of a file name.
-    pub fn slug(&self) -> String {
+    pub(crate) fn slug(&self) -> String {
         slug(&self.name)
     }
 

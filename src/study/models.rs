@@ -84,7 +84,7 @@ pub fn train_one(
             &constraints.unconstrained,
             report.tested_range,
         );
-        let speed = |search: &FlutterSearch| search.onset().map(|o| o.speed_m_s);
+        let speed = |search: &FlutterSearch| search.onset().map(|o| o.at.speed_m_s);
         constraints.onset = Some(OnsetEffect {
             without_m_s: alone.ok().as_ref().and_then(speed),
             with_m_s: speed(&search),

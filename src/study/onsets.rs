@@ -28,7 +28,7 @@ pub struct FlutterStudy {
     pub divergence: Vec<Divergence>,
     /// Each model's onset against the deck's own (exact, or interpolated table).
     pub deviations: Vec<Deviation>,
-    /// Onsets that the data leave so far open that they are no results; see [`Onset::headline_m_s`].
+    /// Onsets that the data leave so far open that they are no results; see `Onset::headline_m_s`.
     pub undetermined: Vec<Onset>,
     /// Growth of each trained model below its onset, by extrapolation alone.
     pub growth: Vec<ModelGrowth>,
@@ -132,7 +132,7 @@ pub fn flutter_study(study: &Study, deck: &Deck, trained: &[TrainedModel]) -> Re
 
 impl OnsetSummary {
     /// The answer in words.
-    pub fn explain(&self) -> String {
+    pub(crate) fn explain(&self) -> String {
         StableRange {
             from_m_s: self.stable_from_m_s,
             to_m_s: self.stable_up_to_m_s,
@@ -198,13 +198,17 @@ impl FlutterStudy {
         let (onsets, undetermined): (Vec<_>, Vec<_>) =
             all.into_iter().partition(|o| o.headline_m_s().is_ok());
         self.deviations
-            .retain(|d| !undetermined.iter().any(|o| o.model == d.model));
+            .retain(|d| !undetermined.iter().any(|o| o.at.model == d.model));
         self.onsets = onsets;
         self.undetermined.extend(undetermined);
     }
 
     /// Puts the answer of the stepped FMU of `model` beside the others; returns the onset, if it was found.
-    pub fn take_stepped(&mut self, answer: SteppedAnswer, model: &str) -> Option<SteppedOnset> {
+    pub(crate) fn take_stepped(
+        &mut self,
+        answer: SteppedAnswer,
+        model: &str,
+    ) -> Option<SteppedOnset> {
         let search = match answer {
             SteppedAnswer::Onset(onset) => return Some(*onset),
             SteppedAnswer::UnstableAtOrBelow(start) => FlutterSearch::UnstableAtOrBelow(start),
@@ -238,8 +242,8 @@ fn deviation(
     onset: &Onset,
     reference: &Onset,
 ) -> Result<Deviation> {
-    let percent = |speed: f64| 100.0 * (speed / reference.speed_m_s - 1.0);
-    let total = percent(onset.speed_m_s);
+    let percent = |speed: f64| 100.0 * (speed / reference.at.speed_m_s - 1.0);
+    let total = percent(onset.at.speed_m_s);
     let mut from_fit = None;
     if matches!(model.model.realize(), Realization::Discrete(_)) {
         let unheld = determinant_onset(
@@ -249,11 +253,11 @@ fn deviation(
             model.tested_range,
             study.speeds().speed_max_m_s,
         )?;
-        from_fit = unheld.onset().map(|o| percent(o.speed_m_s));
+        from_fit = unheld.onset().map(|o| percent(o.at.speed_m_s));
     }
     Ok(Deviation {
         model: model.name.clone(),
-        reference: reference.model.clone(),
+        reference: reference.at.model.clone(),
         percent: total,
         from_fit_percent: from_fit,
         from_held_force_percent: from_fit.map(|fit| total - fit),
@@ -262,7 +266,7 @@ fn deviation(
 
 impl Deviation {
     /// The deviation in words.
-    pub fn explain(&self) -> String {
+    pub(crate) fn explain(&self) -> String {
         let side = if self.percent < 0.0 { "below" } else { "above" };
         let mut text = format!(
             "{}: {:.1} % {side} {}",

@@ -25,7 +25,7 @@ const MOST_AMPLITUDE: f64 = 0.5;
 const LEAST_ROTATION_DEG: f64 = 0.05;
 
 /// What is hardly meant in a section: one sentence a key, with the likely reason.
-pub fn section_warnings(section: &SectionModel) -> Vec<String> {
+pub(crate) fn section_warnings(section: &SectionModel) -> Vec<String> {
     let mut found = Vec::new();
     let (width, density) = (section.width_m, section.air_density_kg_m3);
     if width > WIDEST_M {
@@ -115,7 +115,7 @@ fn frequency_warning(name: &str, frequency_hz: Option<f64>, width_m: f64) -> Opt
 }
 
 /// The same for a study: section and virtual tunnel.
-pub fn study_warnings(study: &Study) -> Vec<String> {
+pub(crate) fn study_warnings(study: &Study) -> Vec<String> {
     let mut found = section_warnings(&study.section);
     let width = study.section.width_m;
     let plan = &study.tunnel;

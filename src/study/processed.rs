@@ -19,7 +19,7 @@ const HEAD: &str =
 ///
 /// # Errors
 /// [`Error::Numerical`] when the study cannot be written.
-pub fn processed_study_text(
+pub(crate) fn processed_study_text(
     raw: &RawCampaign,
     (base, section): (Option<&Study>, Option<&SectionModel>),
     table: &str,
@@ -84,7 +84,7 @@ fn marked_place(raw: &RawCampaign, dofs: &[Dof]) -> String {
 ///
 /// # Errors
 /// [`Error::Io`] when it cannot be read; [`Error::Input`] with file and line when its `[section]` is none.
-pub fn read_section(path: &Path) -> Result<SectionModel> {
+pub(crate) fn read_section(path: &Path) -> Result<SectionModel> {
     #[derive(Deserialize)]
     struct OnlySection {
         section: SectionModel,

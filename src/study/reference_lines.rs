@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 const POINTS: usize = 120;
 
 /// `V̂` and value of every derivative that `model` has, from `v_hat_max/120` to `v_hat_max`.
-pub fn derivative_lines(
+pub(crate) fn derivative_lines(
     model: &dyn Transfer,
     v_hat_max: f64,
 ) -> Result<BTreeMap<Derivative, Vec<(f64, f64)>>> {

@@ -37,7 +37,7 @@ const FLAT_PLATE: &str = "flat plate, same structure";
 
 /// All routes of one study.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct RouteTable {
+pub(crate) struct RouteTable {
     /// One entry a route and force model.
     pub routes: Vec<Route>,
     /// Handbook formulas; `null` when they say nothing about this section.
@@ -52,7 +52,7 @@ pub struct RouteTable {
 
 /// A route without an answer.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct FailedRoute {
+pub(crate) struct FailedRoute {
     /// Force model.
     pub model: String,
     /// How the onset was looked for; `null` where the force model itself could not be used.
@@ -63,7 +63,7 @@ pub struct FailedRoute {
 
 /// The answer of one route: everything on the onset card.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Route {
+pub(crate) struct Route {
     /// Force model.
     pub model: String,
     /// How the onset was found.
@@ -100,7 +100,11 @@ struct Forces<'a> {
 
 /// Compares all routes for the trained models of a study and its deck. A route that fails is listed with its reason and
 /// takes no other with it.
-pub fn route_table(study: &Study, deck: &Deck, trained: &[TrainedModel]) -> Result<RouteTable> {
+pub(crate) fn route_table(
+    study: &Study,
+    deck: &Deck,
+    trained: &[TrainedModel],
+) -> Result<RouteTable> {
     let structure = study.section.structure()?;
     let mut table = RouteTable {
         routes: Vec::new(),
@@ -350,7 +354,7 @@ impl Forces<'_> {
             FlutterSearch::StableUpTo(_) => Vec::new(),
         };
         if let (Some(onset), Some(divergence)) = (onset, self.divergence_m_s)
-            && divergence < onset.speed_m_s
+            && divergence < onset.at.speed_m_s
         {
             warnings.push(format!(
                 "static divergence at {divergence:.3} m/s comes before flutter"
@@ -358,12 +362,12 @@ impl Forces<'_> {
         }
         warnings.extend(
             mode.iter()
-                .filter_map(|m| nearly_single(m, onset?.speed_m_s)),
+                .filter_map(|m| nearly_single(m, onset?.at.speed_m_s)),
         );
         Ok(Route {
             model: self.name.clone(),
             method,
-            v_hat: onset.map(|o| o.reduced_frequency.v_hat()),
+            v_hat: onset.map(|o| o.at.reduced_frequency.v_hat()),
             mode,
             divergence_m_s: self.divergence_m_s,
             tested_range: self.tested,

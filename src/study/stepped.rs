@@ -1,7 +1,9 @@
 //! Onset of an exported FMU, found by stepping it through its C interface: the third route.
 
 use crate::error::{Error, Result};
-use crate::flutter::{Onset, OnsetInterval, OnsetMethod, StableRange, UnstableStart};
+use crate::flutter::{
+    CriticalPoint, Onset, OnsetInterval, OnsetMethod, StableRange, UnstableStart,
+};
 use crate::fmu::importer::{
     Fmu, GrowthPoint, SteppedOnset as Found, SteppedSearch, SteppingSearch, growth_by_stepping,
     onset_by_stepping,
@@ -42,7 +44,7 @@ pub struct SteppedRun {
 
 impl SteppedOnset {
     /// In words.
-    pub fn explain(&self) -> String {
+    pub(crate) fn explain(&self) -> String {
         let runs: Vec<String> = self
             .runs
             .iter()
@@ -75,15 +77,6 @@ impl SteppedAnswer {
         match self {
             Self::Onset(onset) => Some(onset),
             Self::UnstableAtOrBelow(_) | Self::StableUpTo(_) => None,
-        }
-    }
-
-    /// In words.
-    pub fn explain(&self) -> String {
-        match self {
-            Self::Onset(onset) => onset.explain(),
-            Self::UnstableAtOrBelow(start) => format!("FMU stepped: {}", start.explain()),
-            Self::StableUpTo(range) => format!("FMU stepped: {}", range.explain()),
         }
     }
 }
@@ -171,12 +164,13 @@ fn unstable(model: &TrainedModel, at: GrowthPoint, reason: String) -> SteppedAns
     let speed_m_s = at.speed_m_s;
     let k = ReducedFrequency::from_hertz(at.frequency_hz, model.section.width_m, speed_m_s);
     SteppedAnswer::UnstableAtOrBelow(Box::new(UnstableStart {
-        model: model.name.clone(),
-        method: OnsetMethod::FmuStepping,
-        speed_m_s,
-        frequency_hz: at.frequency_hz,
-        reduced_velocity: k.into(),
-        reduced_frequency: k,
+        at: CriticalPoint::new(
+            &model.name,
+            OnsetMethod::FmuStepping,
+            speed_m_s,
+            at.frequency_hz,
+            k,
+        ),
         growth_rate_per_s: at.growth_rate_per_s,
         branch: "dominant".to_owned(),
         in_tested_range: Some(model.tested_range.contains(k)),
@@ -189,12 +183,13 @@ fn as_onset(model: &TrainedModel, found: &Found) -> Onset {
     let k =
         ReducedFrequency::from_hertz(found.frequency_hz, model.section.width_m, found.speed_m_s);
     Onset {
-        model: model.name.clone(),
-        method: OnsetMethod::FmuStepping,
-        speed_m_s: found.speed_m_s,
-        frequency_hz: found.frequency_hz,
-        reduced_velocity: k.into(),
-        reduced_frequency: k,
+        at: CriticalPoint::new(
+            &model.name,
+            OnsetMethod::FmuStepping,
+            found.speed_m_s,
+            found.frequency_hz,
+            k,
+        ),
         mode_ratio: found.mode_ratio.unwrap_or(f64::NAN),
         phase_deg: found.phase_deg,
         damping_slope_s_m: None,

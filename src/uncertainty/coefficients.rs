@@ -165,7 +165,7 @@ impl CoefficientUncertainty {
     }
 
     /// The transfer matrix at every `K`, and its derivatives with respect to the parameters, by central differences.
-    pub fn transfer_slopes(
+    pub(crate) fn transfer_slopes(
         &self,
         ks: &[ReducedFrequency],
     ) -> Result<Vec<(TransferMatrix, Vec<TransferMatrix>)>> {
@@ -193,7 +193,7 @@ impl CoefficientUncertainty {
     }
 
     /// Places of the coefficients of every transfer function, row by row; poles and static terms are nobody's.
-    pub fn own_coefficients(&self) -> Vec<Vec<usize>> {
+    pub(crate) fn own_coefficients(&self) -> Vec<Vec<usize>> {
         let coefficients = match &self.coordinates {
             Coordinates::Continuous { searched, .. } => self.parameters.len() - searched.len(),
             Coordinates::Discrete { .. } => self.parameters.len(),
@@ -213,7 +213,7 @@ impl CoefficientUncertainty {
     }
 
     /// What is wrong with the form of the model whatever the data, if anything: its onset is biased, and no scatter shows it.
-    pub fn known_bias(&self) -> Option<&'static str> {
+    pub(crate) fn known_bias(&self) -> Option<&'static str> {
         match &self.coordinates {
             Coordinates::Continuous { .. } => None,
             Coordinates::Discrete { .. } => Some(
@@ -224,7 +224,7 @@ impl CoefficientUncertainty {
     }
 
     /// The estimates.
-    pub fn values(&self) -> Vec<f64> {
+    pub(crate) fn values(&self) -> Vec<f64> {
         self.parameters.iter().map(|p| p.value).collect()
     }
 
@@ -232,7 +232,7 @@ impl CoefficientUncertainty {
     ///
     /// # Errors
     /// [`Error::Input`] for another number of parameters or a pole that is not positive.
-    pub fn model_at(&self, values: &[f64]) -> Result<Model> {
+    pub(crate) fn model_at(&self, values: &[f64]) -> Result<Model> {
         let n = self.dofs.len();
         let expected = self.parameters.len();
         if values.len() != expected {
@@ -298,7 +298,7 @@ impl CoefficientUncertainty {
     ///
     /// # Errors
     /// Chains whose columns cannot be told apart.
-    pub fn linear(&self) -> Result<Option<LinearModel>> {
+    pub(crate) fn linear(&self) -> Result<Option<LinearModel>> {
         match &self.coordinates {
             Coordinates::Continuous {
                 form,
@@ -330,7 +330,7 @@ impl CoefficientUncertainty {
 
     /// Degrees of freedom of that standard error; `None` for an estimate that was read from a file, which no longer knows
     /// its data.
-    pub fn degrees_of_freedom(&self, gradient: &[f64]) -> Option<f64> {
+    pub(crate) fn degrees_of_freedom(&self, gradient: &[f64]) -> Option<f64> {
         let design = self.design.as_ref()?;
         let gradient = DVector::from_column_slice(gradient);
         Some(speed_scatter::degrees_of_freedom(
@@ -341,7 +341,7 @@ impl CoefficientUncertainty {
     }
 
     /// Adds a draw of the scatter between speeds to parameters that were drawn from the blocks.
-    pub fn scatter_speeds(&self, values: &mut [f64], normal: &mut dyn FnMut() -> f64) {
+    pub(crate) fn scatter_speeds(&self, values: &mut [f64], normal: &mut dyn FnMut() -> f64) {
         for column in self.effects.iter().flat_map(|e| e.columns.column_iter()) {
             let z = normal();
             for (value, change) in values.iter_mut().zip(column.iter()) {
@@ -355,7 +355,7 @@ impl CoefficientUncertainty {
     ///
     /// # Errors
     /// [`Error::Numerical`] when the weighted blocks do not determine all parameters.
-    pub fn reweighted(&self, weights: &[f64]) -> Result<Option<Vec<f64>>> {
+    pub(crate) fn reweighted(&self, weights: &[f64]) -> Result<Option<Vec<f64>>> {
         let Some(design) = &self.design else {
             return Ok(None);
         };
@@ -368,7 +368,7 @@ impl CoefficientUncertainty {
     ///
     /// The covariance of an entry is its block of the covariance of all parameters, so that standard errors are the roots of
     /// its diagonal. Coefficients move with the searched poles: whoever draws models needs all parameters.
-    pub fn enter(&self, report: &mut FitReport) {
+    pub(crate) fn enter(&self, report: &mut FitReport) {
         let own = self.own_coefficients();
         for (entry, own) in report.entries.iter_mut().zip(&own) {
             if own.len() != entry.coefficients.len() {

@@ -29,7 +29,7 @@ pub(super) struct Expansion {
 
 impl Expansion {
     /// For a chain of poles, with room for their derivatives where they were `searched`.
-    pub fn new(form: &Form, chain: &[f64], searched: bool) -> Result<Self> {
+    pub(crate) fn new(form: &Form, chain: &[f64], searched: bool) -> Result<Self> {
         let mut extended = chain.to_vec();
         if searched {
             extended.extend(form.collapse(chain));
@@ -53,7 +53,12 @@ impl Expansion {
     }
 
     /// Derivatives of the whole transfer function with coefficients `values` with respect to the free poles, E×m.
-    pub fn jacobian(&self, form: &Form, free: &[f64], values: &[f64]) -> Result<DMatrix<f64>> {
+    pub(crate) fn jacobian(
+        &self,
+        form: &Form,
+        free: &[f64],
+        values: &[f64],
+    ) -> Result<DMatrix<f64>> {
         let pairs = (0..free.len()).map(|m| moved_pole(form, free, m));
         let pairs = pairs.collect::<Result<Vec<_>>>()?;
         let sum = |basis: &Basis, p: Complex<f64>| -> Complex<f64> {
@@ -108,7 +113,7 @@ impl Expansion {
 /// A pole far from the estimate with coefficients that were not refitted for it makes no sense; the linear model is
 /// what the covariance speaks of, however far it is followed.
 #[derive(Debug, Clone)]
-pub struct LinearModel {
+pub(crate) struct LinearModel {
     form: Form,
     dofs: Vec<Dof>,
     estimate: Vec<f64>,
@@ -161,7 +166,7 @@ impl LinearModel {
     ///
     /// # Errors
     /// Coefficients that are not finite.
-    pub fn model_at(&self, values: &[f64]) -> Result<Model> {
+    pub(crate) fn model_at(&self, values: &[f64]) -> Result<Model> {
         let poles = self.estimate.len() - self.searched;
         let moved = DVector::from_fn(self.searched, |m, _| {
             values[poles + m] - self.estimate[poles + m]

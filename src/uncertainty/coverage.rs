@@ -277,12 +277,13 @@ impl Campaign {
         campaign.true_onset_m_s = found
             .onset()
             .ok_or_else(|| Error::Numerical("coverage: the truth does not flutter".into()))?
+            .at
             .speed_m_s;
         let (_, onset, tested) = campaign.fitted(campaign.records.straight())?;
         campaign.tested = tested;
         let onset = onset
             .ok_or_else(|| Error::Numerical("coverage: the fit without noise is stable".into()))?;
-        campaign.bias_m_s = onset.speed_m_s - campaign.true_onset_m_s;
+        campaign.bias_m_s = onset.at.speed_m_s - campaign.true_onset_m_s;
         Ok(campaign)
     }
 
@@ -319,7 +320,7 @@ impl Campaign {
         };
         let error = onset_error(&estimate, &self.section.structure()?, &onset, None)?;
         Ok(Some(Run {
-            onset_m_s: onset.speed_m_s,
+            onset_m_s: onset.at.speed_m_s,
             standard_error_m_s: error.standard_error_m_s,
             half_width_m_s: error.half_width_m_s(),
             degrees_of_freedom: error.degrees_of_freedom,

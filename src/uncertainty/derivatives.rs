@@ -28,7 +28,7 @@ pub struct DerivativeInterval {
 }
 
 /// All derivatives of the model at the reduced frequencies `ks`.
-pub fn derivative_intervals(
+pub(crate) fn derivative_intervals(
     estimate: &CoefficientUncertainty,
     ks: &[ReducedFrequency],
 ) -> Result<Vec<DerivativeInterval>> {
@@ -64,7 +64,7 @@ pub fn derivative_intervals(
 }
 
 /// `points` reduced frequencies from one end of a range to the other, logarithmic.
-pub fn spread_over(range: ReducedFrequencyRange, points: usize) -> Vec<ReducedFrequency> {
+pub(crate) fn spread_over(range: ReducedFrequencyRange, points: usize) -> Vec<ReducedFrequency> {
     let (low, high) = (range.min.full_width(), range.max.full_width());
     let last = points.max(2) as f64 - 1.0;
     (0..points)

@@ -35,7 +35,7 @@ pub(crate) struct Block {
 
 impl Block {
     /// Rows, residuals and working variance of several forces, one below the other.
-    pub fn stacked(
+    pub(crate) fn stacked(
         (name, speed_m_s, k): (String, Option<f64>, Option<f64>),
         parts: &[(DMatrix<f64>, DVector<f64>, f64)],
     ) -> Self {
@@ -54,7 +54,7 @@ impl Block {
     }
 
     /// Several blocks as one, of the speed and frequency of the first.
-    pub fn joined(name: String, blocks: &[Self]) -> Self {
+    pub(crate) fn joined(name: String, blocks: &[Self]) -> Self {
         let count = blocks.iter().map(|b| b.residual.len()).sum();
         let width = blocks.first().map_or(0, |b| b.rows.ncols());
         let mut joined = Self {
@@ -113,7 +113,7 @@ impl Design {
     ///
     /// # Errors
     /// [`Error::Numerical`] when the blocks do not determine all parameters or are fewer than two.
-    pub fn new(blocks: Vec<Block>, tangent: Option<DMatrix<f64>>) -> Result<Self> {
+    pub(crate) fn new(blocks: Vec<Block>, tangent: Option<DMatrix<f64>>) -> Result<Self> {
         if blocks.len() < 2 {
             return Err(Error::Numerical(format!(
                 "covariance: {} independent block(s), at least two are needed",
@@ -145,7 +145,7 @@ impl Design {
     ///
     /// # Errors
     /// Rows that are not finite.
-    pub fn with_blocks(&self, blocks: Vec<Block>) -> Result<Self> {
+    pub(crate) fn with_blocks(&self, blocks: Vec<Block>) -> Result<Self> {
         let p = self.inverse.nrows();
         let working = blocks.iter().fold(DMatrix::zeros(p, p), |sum, b| {
             sum + b.rows.tr_mul(&scaled(&b.rows, &b.variance))
@@ -204,7 +204,7 @@ impl Design {
 
     /// How much larger the contributions of groups of blocks are than those of the blocks, in the metric of the fit:
     /// one for independent blocks, the number of blocks in a group where all say the same.
-    pub fn coherence(&self, groups: &[usize]) -> f64 {
+    pub(crate) fn coherence(&self, groups: &[usize]) -> f64 {
         let count = groups.iter().max().map_or(0, |g| g + 1);
         let mut sums = vec![DVector::zeros(self.inverse.nrows()); count];
         let size = |score: &DVector<f64>| score.dot(&(&self.inverse * score));
@@ -219,7 +219,7 @@ impl Design {
     }
 
     /// The blocks put together in groups.
-    pub fn merged(self, groups: &[usize], names: &[String]) -> Vec<Block> {
+    pub(crate) fn merged(self, groups: &[usize], names: &[String]) -> Vec<Block> {
         let mut parts: Vec<Vec<Block>> = names.iter().map(|_| Vec::new()).collect();
         for (block, group) in self.blocks.into_iter().zip(groups) {
             parts[*group].push(block);
@@ -231,17 +231,17 @@ impl Design {
     }
 
     /// The blocks.
-    pub fn blocks(&self) -> &[Block] {
+    pub(crate) fn blocks(&self) -> &[Block] {
         &self.blocks
     }
 
     /// `M⁻¹`, P×P.
-    pub fn inverse(&self) -> &DMatrix<f64> {
+    pub(crate) fn inverse(&self) -> &DMatrix<f64> {
         &self.inverse
     }
 
     /// The blocks of each of `count` groups as one block, with the residuals of the common fit.
-    pub fn clusters(&self, groups: &[usize], count: usize) -> Vec<Block> {
+    pub(crate) fn clusters(&self, groups: &[usize], count: usize) -> Vec<Block> {
         let of = |group: usize| -> Vec<Block> {
             let own = self.blocks.iter().zip(groups).filter(|(_, g)| **g == group);
             own.map(|(b, _)| b.clone()).collect()
@@ -255,7 +255,7 @@ impl Design {
     ///
     /// # Errors
     /// [`Error::Numerical`] when the group does not determine all parameters.
-    pub fn alone(
+    pub(crate) fn alone(
         &self,
         groups: &[usize],
         group: usize,
@@ -289,12 +289,12 @@ impl Design {
     }
 
     /// Names of the blocks.
-    pub fn names(&self) -> Vec<String> {
+    pub(crate) fn names(&self) -> Vec<String> {
         self.blocks.iter().map(|b| b.name.clone()).collect()
     }
 
     /// Contribution of each block to the errors of the parameters, P×G.
-    pub fn contributions(&self) -> DMatrix<f64> {
+    pub(crate) fn contributions(&self) -> DMatrix<f64> {
         let columns: Vec<DVector<f64>> = self
             .blocks
             .iter()
@@ -305,7 +305,7 @@ impl Design {
     }
 
     /// Satterthwaite's degrees of freedom of the variance of `contrast · parameters`, under the working variances.
-    pub fn degrees_of_freedom(&self, contrast: &DVector<f64>) -> f64 {
+    pub(crate) fn degrees_of_freedom(&self, contrast: &DVector<f64>) -> f64 {
         let along = &self.inverse * contrast;
         let u: Vec<DVector<f64>> = self
             .blocks
@@ -348,7 +348,7 @@ impl Design {
     ///
     /// # Errors
     /// [`Error::Numerical`] when the weighted blocks do not determine all parameters.
-    pub fn reweighted(&self, weights: &[f64]) -> Result<DVector<f64>> {
+    pub(crate) fn reweighted(&self, weights: &[f64]) -> Result<DVector<f64>> {
         let inner = |rows: &DMatrix<f64>| along(rows, self.tangent.as_ref());
         let own = match &self.tangent {
             Some(t) => t.tr_mul(&(&self.inverse * t)),

@@ -9,8 +9,8 @@
 //! See [`CoefficientUncertainty::assumption`] for what is assumed in each case.
 //!
 //! The onset follows by two routes that check each other: the gradient of the onset speed by eigenvalue sensitivities
-//! ([`onset_error`], the interval that is printed), and onsets solved anew for resampled blocks or drawn coefficients
-//! ([`resample_onset`]). Intervals hold scatter only; [`coverage`] shows bias beside it where the truth is known.
+//! (`onset_error`, the interval that is printed), and onsets solved anew for resampled blocks or drawn coefficients
+//! (`resample_onset`). Intervals hold scatter only; [`coverage`] shows bias beside it where the truth is known.
 
 mod coefficients;
 mod columns;
@@ -30,19 +30,16 @@ mod student;
 mod table_covariance;
 
 pub use coefficients::{CoefficientUncertainty, Coordinates, Parameter, SearchedPole};
-pub use columns::LinearModel;
 pub use coverage::{CoveragePlan, CoverageReport, Share, Truth, coverage};
-pub use derivatives::{DerivativeInterval, derivative_intervals, spread_over};
+pub use derivatives::DerivativeInterval;
 pub use model::ModelUncertainty;
-pub use onset::{
-    CONFIDENCE, OnsetError, ResampledOnset, Resampling, ResamplingPlan, onset_error, resample_onset,
-};
-pub use parameters::SEARCHED_POLES;
-pub use record_covariance::{discrete_uncertainty, record_uncertainty};
-pub use sensitivity::onset_gradient;
-pub use speed_onsets::{Contradiction, SpeedOnset, SpeedOnsets, speed_onsets};
+pub use onset::{OnsetError, ResampledOnset, Resampling};
+pub(crate) use parameters::SEARCHED_POLES;
+pub(crate) use record_covariance::discrete_uncertainty;
+pub use record_covariance::record_uncertainty;
+pub use speed_onsets::{Contradiction, SpeedOnset, SpeedOnsets};
 pub use speed_scatter::{ForceScatter, SpeedScatter};
-pub use student::{incomplete_beta, two_sided_quantile};
+pub(crate) use student::incomplete_beta;
 pub use table_covariance::table_uncertainty;
 
 #[cfg(test)]

@@ -43,7 +43,7 @@ pub struct ModelUncertainty {
 
 impl ModelUncertainty {
     /// Carries the covariance of the coefficients to derivatives and onset.
-    pub fn new(
+    pub(crate) fn new(
         coefficients: CoefficientUncertainty,
         structure: &Structure,
         onset: Option<&Onset>,
@@ -87,16 +87,16 @@ impl ModelUncertainty {
     }
 
     /// Interval of an onset of `model`, on any structure.
-    pub fn interval(
+    pub(crate) fn interval(
         &self,
         model: &dyn Transfer,
         structure: &Structure,
         onset: &Onset,
     ) -> Result<OnsetInterval> {
-        if onset.method == OnsetMethod::Determinant {
+        if onset.at.method == OnsetMethod::Determinant {
             return Ok(OnsetInterval::none("found without the model's realisation"));
         }
-        if !self.belongs_to(model, onset.reduced_frequency)? {
+        if !self.belongs_to(model, onset.at.reduced_frequency)? {
             return Ok(OnsetInterval::none(
                 "the covariance on file belongs to another training",
             ));
@@ -125,7 +125,7 @@ impl ModelUncertainty {
     ///
     /// # Errors
     /// [`Error::Input`] with line and column for text that is not such a file.
-    pub fn from_json(text: &str) -> Result<Self> {
+    pub(crate) fn from_json(text: &str) -> Result<Self> {
         serde_json::from_str(text).map_err(|e| {
             Error::input(
                 format!("line {}, column {}", e.line(), e.column()),
@@ -139,14 +139,14 @@ impl ModelUncertainty {
     ///
     /// # Errors
     /// [`Error::Numerical`] when a number cannot be written.
-    pub fn to_json(&self) -> Result<String> {
+    pub(crate) fn to_json(&self) -> Result<String> {
         let text =
             serde_json::to_string_pretty(self).map_err(|e| Error::Numerical(e.to_string()))?;
         Ok(text + "\n")
     }
 
     /// What a reader must know of the onset: that the mean speeds contradict each other.
-    pub fn warning(&self) -> Option<String> {
+    pub(crate) fn warning(&self) -> Option<String> {
         self.speeds
             .contradiction
             .as_ref()
@@ -154,7 +154,7 @@ impl ModelUncertainty {
     }
 
     /// The onset's interval with its two checks, in words.
-    pub fn explain(&self) -> Option<String> {
+    pub(crate) fn explain(&self) -> Option<String> {
         let onset = self.onset.as_ref()?;
         if let OnsetInterval::Undetermined { reason, .. } = onset.interval() {
             return Some(format!("onset {reason}"));

@@ -17,7 +17,7 @@ use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
 /// Confidence of every interval.
-pub const CONFIDENCE: f64 = 0.95;
+pub(crate) const CONFIDENCE: f64 = 0.95;
 
 /// Onset with its standard error.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -34,13 +34,13 @@ pub struct OnsetError {
 /// Standard error of an onset by the delta method, `√(gᵀ C g)` with the gradient `g` of the onset speed.
 ///
 /// `degrees_of_freedom` stands in where the estimate no longer knows its data.
-pub fn onset_error(
+pub(crate) fn onset_error(
     estimate: &CoefficientUncertainty,
     structure: &Structure,
     onset: &Onset,
     degrees_of_freedom: Option<f64>,
 ) -> Result<OnsetError> {
-    let at = (onset.speed_m_s, TAU * onset.frequency_hz);
+    let at = (onset.at.speed_m_s, TAU * onset.at.frequency_hz);
     error_at(estimate, structure, at, degrees_of_freedom)
 }
 
@@ -64,12 +64,12 @@ pub(super) fn error_at(
 
 impl OnsetError {
     /// Half the width of the interval, m/s: Student's quantile times the standard error.
-    pub fn half_width_m_s(&self) -> f64 {
+    pub(crate) fn half_width_m_s(&self) -> f64 {
         two_sided_quantile(CONFIDENCE, self.degrees_of_freedom) * self.standard_error_m_s
     }
 
     /// The interval for a card.
-    pub fn interval(&self) -> OnsetInterval {
+    pub(crate) fn interval(&self) -> OnsetInterval {
         OnsetInterval::about(
             self.speed_m_s,
             self.half_width_m_s(),
@@ -112,7 +112,7 @@ pub struct ResampledOnset {
 
 /// What a resampling needs besides the estimate.
 #[derive(Debug, Clone, Copy)]
-pub struct ResamplingPlan {
+pub(crate) struct ResamplingPlan {
     /// How parameters are drawn.
     pub resampling: Resampling,
     /// Number of replicates.
@@ -128,7 +128,7 @@ pub struct ResamplingPlan {
 /// Draws parameters and solves the onset anew for each draw, in parallel. Searched poles move the transfer function
 /// along its slope (see [`super::LinearModel`]). The answer does not depend on the number of
 /// threads. `None` for blocks of an estimate that no longer knows its data.
-pub fn resample_onset(
+pub(crate) fn resample_onset(
     estimate: &CoefficientUncertainty,
     structure: &Structure,
     onset: &Onset,
@@ -136,7 +136,7 @@ pub fn resample_onset(
 ) -> Result<Option<ResampledOnset>> {
     let draw = Draw::new(estimate, plan)?;
     let linear = estimate.linear()?;
-    let at = (onset.speed_m_s, TAU * onset.frequency_hz);
+    let at = (onset.at.speed_m_s, TAU * onset.at.frequency_hz);
     let drawn: Vec<Option<Option<f64>>> = (0..plan.replicates)
         .into_par_iter()
         .map(|r| {
@@ -183,7 +183,7 @@ fn solve(
         return Some(speed);
     }
     match find_onset("", &section, &plan.search, plan.tested) {
-        Ok(FlutterSearch::Onset(onset)) => Some(onset.speed_m_s),
+        Ok(FlutterSearch::Onset(onset)) => Some(onset.at.speed_m_s),
         _ => None,
     }
 }

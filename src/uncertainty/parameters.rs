@@ -15,7 +15,8 @@ pub(super) const STEP: f64 = 1e-5;
 const AT_BOUND: f64 = 0.01;
 
 /// How the assumption of a covariance says that searched poles are in it.
-pub const SEARCHED_POLES: &str = "searched poles are parameters through their Jacobian columns";
+pub(crate) const SEARCHED_POLES: &str =
+    "searched poles are parameters through their Jacobian columns";
 
 /// Name of a pole and its transfer function (force, motion); none when all share it.
 pub(super) type PoleName = (String, Option<(Dof, Dof)>);
@@ -74,7 +75,7 @@ pub(super) fn free_poles(form: &Form, options: &PoleSearch, report: &FitReport) 
 
 impl FreePoles {
     /// How poles enter, in words.
-    pub fn sentence(&self) -> String {
+    pub(crate) fn sentence(&self) -> String {
         let mut text = if self.searched.is_empty() {
             "poles count as known".to_owned()
         } else {

@@ -205,7 +205,7 @@ impl Entries {
 ///
 /// # Errors
 /// As [`record_uncertainty`].
-pub fn discrete_uncertainty(
+pub(crate) fn discrete_uncertainty(
     records: &[&dyn RecordSource],
     fit: &DiscreteFit,
     model: &Model,

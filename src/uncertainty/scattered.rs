@@ -39,7 +39,7 @@ impl Transfer for Turned<'_> {
 
 impl ScatteredTunnel {
     /// For a plan without noise.
-    pub fn new(
+    pub(crate) fn new(
         quiet: &TunnelPlan,
         model: &dyn Transfer,
         width_m: f64,
@@ -60,12 +60,12 @@ impl ScatteredTunnel {
     }
 
     /// Records of the truth itself.
-    pub fn straight(&self) -> &[Record] {
+    pub(crate) fn straight(&self) -> &[Record] {
         &self.straight
     }
 
     /// Records of one campaign.
-    pub fn draw(&self, seed: u64) -> Vec<Record> {
+    pub(crate) fn draw(&self, seed: u64) -> Vec<Record> {
         let mut records = self.straight.clone();
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         random.set_stream(STREAM);

@@ -37,7 +37,7 @@ fn section_at(
 ///
 /// # Errors
 /// [`Error::Numerical`] when the growth rate does not cross zero with speed.
-pub fn onset_gradient(
+pub(crate) fn onset_gradient(
     estimate: &CoefficientUncertainty,
     structure: &Structure,
     (speed_m_s, omega): (f64, f64),

@@ -71,7 +71,7 @@ struct Alone {
 }
 
 /// Onsets by the tests at each speed, near that of all tests.
-pub fn speed_onsets(
+pub(crate) fn speed_onsets(
     estimate: &CoefficientUncertainty,
     structure: &Structure,
     onset: &Onset,
@@ -110,7 +110,7 @@ pub fn speed_onsets(
         .filter(|((z, limit), _, _)| z.abs() > *limit)
         .max_by(|x, y| x.0.0.abs().total_cmp(&y.0.0.abs()));
     if let Some(((z, _), a, b)) = worst {
-        let at = (onset.speed_m_s, TAU * onset.frequency_hz);
+        let at = (onset.at.speed_m_s, TAU * onset.at.frequency_hz);
         let gradient = onset_gradient(estimate, structure, at)?;
         let (force, motion) = greatest_part(estimate, &gradient, (a, b));
         let (k_low, k_high) = band((force, motion), tested, (a, b))?;
@@ -136,7 +136,7 @@ fn own_onset(
 ) -> Result<OnsetError> {
     let model = own.model_at(&own.values())?;
     let section = CoupledSection::with_model(structure, &model)?;
-    let near = (onset.speed_m_s, TAU * onset.frequency_hz);
+    let near = (onset.at.speed_m_s, TAU * onset.at.frequency_hz);
     let at = match onset_nearby(&section, near) {
         Ok(Some(speed)) => (speed, near.1),
         _ => {
@@ -144,7 +144,7 @@ fn own_onset(
             let other = found.onset().ok_or_else(|| {
                 Error::Numerical(format!("no onset up to {} m/s", search.speed_max_m_s))
             })?;
-            (other.speed_m_s, TAU * other.frequency_hz)
+            (other.at.speed_m_s, TAU * other.at.frequency_hz)
         }
     };
     error_at(own, structure, at, None)
@@ -216,7 +216,7 @@ fn band(
 
 impl SpeedOnsets {
     /// One line with the onset of every speed; none for tests at one speed.
-    pub fn explain(&self) -> Option<String> {
+    pub(crate) fn explain(&self) -> Option<String> {
         if self.each.is_empty() {
             return None;
         }
@@ -248,7 +248,7 @@ impl SpeedOnsets {
 
 impl Contradiction {
     /// In words, with what to do.
-    pub fn explain(&self) -> String {
+    pub(crate) fn explain(&self) -> String {
         let ([v1, v2], [u1, u2]) = (self.mean_speeds_m_s, self.onsets_m_s);
         format!(
             "the mean speeds contradict each other: onset {u1:.3} m/s by the tests at {v1:.2} m/s, {u2:.3} m/s by those at \

@@ -324,7 +324,7 @@ impl Judge<'_> {
 
 impl SpeedScatter {
     /// In words.
-    pub fn describe(&self) -> String {
+    pub(crate) fn describe(&self) -> String {
         let speeds: Vec<String> = self.speeds_m_s.iter().map(|v| format!("{v:.2}")).collect();
         let speeds = speeds.join(", ");
         if !self.counted {
@@ -359,7 +359,7 @@ impl CoefficientUncertainty {
     /// for an estimate that was read from a file.
     ///
     /// The second value is why a speed alone does not tell.
-    pub fn at_each_speed(&self) -> Vec<(f64, Result<Self>)> {
+    pub(crate) fn at_each_speed(&self) -> Vec<(f64, Result<Self>)> {
         let Some(design) = &self.design else {
             return Vec::new();
         };
@@ -371,7 +371,7 @@ impl CoefficientUncertainty {
     }
 
     /// Reduced frequencies of the blocks, where they have one and are known.
-    pub fn tested_range(&self) -> Option<ReducedFrequencyRange> {
+    pub(crate) fn tested_range(&self) -> Option<ReducedFrequencyRange> {
         let ks = self.design.as_ref()?.blocks().iter().filter_map(|b| b.k);
         ReducedFrequencyRange::spanning(ks.map(ReducedFrequency::from_full_width))
     }

@@ -5,7 +5,7 @@ use libm::lgamma;
 use std::convert::Infallible;
 
 /// `t` with `P(|T| ≤ t) = confidence` for `degrees_of_freedom > 0` (not necessarily whole).
-pub fn two_sided_quantile(confidence: f64, degrees_of_freedom: f64) -> f64 {
+pub(crate) fn two_sided_quantile(confidence: f64, degrees_of_freedom: f64) -> f64 {
     let nu = degrees_of_freedom.max(0.5);
     let inside = |t: f64| 1.0 - incomplete_beta(nu / (nu + t * t), 0.5 * nu, 0.5);
     let (low, mut high) = (0.0, 2.0);
@@ -20,7 +20,7 @@ pub fn two_sided_quantile(confidence: f64, degrees_of_freedom: f64) -> f64 {
 
 /// Regularised incomplete beta function `I_x(a, b)` (DLMF 8.17.22), by the continued fraction on the side where it
 /// converges.
-pub fn incomplete_beta(x: f64, a: f64, b: f64) -> f64 {
+pub(crate) fn incomplete_beta(x: f64, a: f64, b: f64) -> f64 {
     if x <= 0.0 {
         return 0.0;
     }

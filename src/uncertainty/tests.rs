@@ -1,5 +1,8 @@
 //! The two routes to the error of an onset against each other and against re-solved onsets.
 
+use super::onset::{ResamplingPlan, onset_error, resample_onset};
+use super::sensitivity::onset_gradient;
+use super::speed_onsets::speed_onsets;
 use super::*;
 use crate::aerodynamics::derivatives::TransferSample;
 use crate::aerodynamics::{FlatPlate, RationalModel};
@@ -107,13 +110,13 @@ fn different(seed: u64) -> Vec<TransferSample> {
 fn intervals_hold_a_truth_that_differs_between_speeds() {
     let fit = two_poles(PoleSearch::fixed(&[0.091, 0.6]));
     let jones = Model::Rational(RationalModel::jones_flat_plate());
-    let truth = onset(&jones).speed_m_s;
+    let truth = onset(&jones).at.speed_m_s;
     let (mut held, mut counted) = (0, 0);
     for seed in 0..200 {
         let (model, estimate) = fitted(&different(seed), &fit);
         let found = onset(&model);
         let error = onset_error(&estimate, &structure(), &found, None).unwrap();
-        held += usize::from((found.speed_m_s - truth).abs() <= error.half_width_m_s());
+        held += usize::from((found.at.speed_m_s - truth).abs() <= error.half_width_m_s());
         let speeds = estimate.speeds.clone().unwrap();
         counted += usize::from(speeds.counted);
         assert!(error.degrees_of_freedom < 12.0, "{error:?}");
@@ -147,9 +150,9 @@ fn joint_intervals_of_decks_hold_the_onset_of_each_speed() {
         for speed in &speeds.each {
             let own = speed.onset.as_ref().unwrap();
             assert!(
-                (own.speed_m_s - at.speed_m_s).abs() <= half,
+                (own.speed_m_s - at.at.speed_m_s).abs() <= half,
                 "{name}: {own:?} outside {:.3} ± {half:.3}",
-                at.speed_m_s
+                at.at.speed_m_s
             );
         }
         if let Some(c) = &speeds.contradiction {
@@ -221,8 +224,8 @@ fn gradients_are_differences_of_onsets() {
     let discrete = discrete_uncertainty(&sources, &fit, &model, &|_| ()).unwrap();
     for (model, estimate) in [continuous, (model, discrete)] {
         let at = onset(&model);
-        let omega = std::f64::consts::TAU * at.frequency_hz;
-        let gradient = onset_gradient(&estimate, &structure(), (at.speed_m_s, omega)).unwrap();
+        let omega = std::f64::consts::TAU * at.at.frequency_hz;
+        let gradient = onset_gradient(&estimate, &structure(), (at.at.speed_m_s, omega)).unwrap();
         let values = estimate.values();
         let largest = gradient.iter().fold(0.0_f64, |m, g| m.max(g.abs()));
         for (p, g) in gradient.iter().enumerate() {
@@ -230,7 +233,7 @@ fn gradients_are_differences_of_onsets() {
             let moved = |by: f64| {
                 let mut moved = values.clone();
                 moved[p] += by;
-                onset(&estimate.model_at(&moved).unwrap()).speed_m_s
+                onset(&estimate.model_at(&moved).unwrap()).at.speed_m_s
             };
             let difference = (moved(h) - moved(-h)) / (2.0 * h);
             // truncation: h² of the third derivative; onsets are exact to 1e-12 or so
@@ -262,7 +265,7 @@ fn stated_errors_are_the_scatter_of_repeated_tables() {
             let (model, estimate) = fitted(&scattered(seed), &fit);
             let found = onset(&model);
             let error = onset_error(&estimate, &structure(), &found, None).unwrap();
-            speeds.push(found.speed_m_s);
+            speeds.push(found.at.speed_m_s);
             stated += error.standard_error_m_s.powi(2) / runs as f64;
         }
         let mean = speeds.iter().sum::<f64>() / runs as f64;

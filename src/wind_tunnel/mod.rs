@@ -15,8 +15,9 @@ mod virtual_forces;
 mod virtual_tunnel;
 
 pub use broadband::TrainingMotion;
-pub use prediction::predicted_forces;
-pub use raw::{CELL_CHANNELS, LoadCell, RawCampaign, RawRecording, RawRun, Rig};
-pub use record_file::{RecordFile, SAMPLES_AT_LEAST, read_record, write_record};
+pub(crate) use prediction::predicted_forces;
+pub(crate) use raw::CELL_CHANNELS;
+pub use raw::{LoadCell, RawCampaign, RawRecording, RawRun, Rig};
+pub(crate) use record_file::{RecordFile, SAMPLES_AT_LEAST, write_record};
 pub use records::{Record, RecordBlock, RecordHeader, RecordSource, Segment};
 pub use virtual_tunnel::TunnelPlan;

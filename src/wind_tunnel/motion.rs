@@ -16,7 +16,7 @@ pub(super) struct RampedSine {
 
 impl RampedSine {
     /// Displacement, velocity (1/s) and acceleration (1/s²) at `t` from the beginning of the stretch.
-    pub fn at(&self, t_s: f64) -> [f64; 3] {
+    pub(crate) fn at(&self, t_s: f64) -> [f64; 3] {
         let [w, w_rate, w_second] = window(t_s, self.duration_s, self.ramp_s);
         let omega = self.omega_rad_s;
         let (sin, cos) = (omega * t_s).sin_cos();
@@ -75,7 +75,7 @@ pub(super) struct Timing {
 
 impl UnitMotion {
     /// Rest for `still_s`, then `segment_s` at each frequency, all of it `delay_s` later.
-    pub fn new(frequencies_hz: &[f64], timing: Timing) -> Self {
+    pub(crate) fn new(frequencies_hz: &[f64], timing: Timing) -> Self {
         let start = |i: usize| timing.still_s + i as f64 * timing.segment_s;
         let segments: Vec<Segment> = frequencies_hz
             .iter()

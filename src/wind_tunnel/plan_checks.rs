@@ -16,7 +16,7 @@ impl TunnelPlan {
     ///
     /// # Errors
     /// [`Error::Input`] naming the key.
-    pub fn validate(&self) -> Result<()> {
+    pub(crate) fn validate(&self) -> Result<()> {
         for (key, list) in [
             ("frequencies_hz", &self.frequencies_hz),
             ("speeds_m_s", &self.speeds_m_s),
@@ -49,7 +49,7 @@ impl TunnelPlan {
     }
 
     /// Numbers that were likely meant in another unit, in words; the plan can be carried out all the same.
-    pub fn hints(&self) -> Vec<String> {
+    pub(crate) fn hints(&self) -> Vec<String> {
         let frequencies = self.frequencies_hz.iter();
         let speeds = self.speeds_m_s.iter();
         frequencies

@@ -16,7 +16,7 @@ use nalgebra::{Matrix3, Rotation3, Vector3};
 use serde::{Deserialize, Serialize};
 
 /// Names of the six channels of a load cell, in their order: forces in N, moments in N·m.
-pub const CELL_CHANNELS: [&str; 6] = ["fx", "fy", "fz", "mx", "my", "mz"];
+pub(crate) const CELL_CHANNELS: [&str; 6] = ["fx", "fy", "fz", "mx", "my", "mz"];
 
 /// One six-component load cell of a rig.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -55,7 +55,7 @@ impl Rig {
     ///
     /// # Errors
     /// [`Error::Input`] naming the key: no cell, a length that is not positive, axes that are no rotation.
-    pub fn validate(&self) -> Result<()> {
+    pub(crate) fn validate(&self) -> Result<()> {
         positive("rig.model_length_m", self.model_length_m)?;
         positive("rig.model_width_m", self.model_width_m)?;
         for (key, stated) in [
@@ -73,13 +73,13 @@ impl Rig {
 
 impl LoadCell {
     /// Rotation from the cell's axes to the global ones while the model is turned nose-up by `theta_rad`.
-    pub fn axes_at(&self, theta_rad: f64) -> Matrix3<f64> {
+    pub(crate) fn axes_at(&self, theta_rad: f64) -> Matrix3<f64> {
         self.turn(theta_rad) * Matrix3::from_fn(|i, j| self.axes[i][j])
     }
 
     /// Position relative to the centre of rotation while the model is turned nose-up by `theta_rad`, global axes, m.
     /// The centre and the cell move with heave and sway, so these do not show.
-    pub fn position_at(&self, theta_rad: f64) -> Vector3<f64> {
+    pub(crate) fn position_at(&self, theta_rad: f64) -> Vector3<f64> {
         self.turn(theta_rad) * Vector3::from(self.position_m)
     }
 
@@ -121,7 +121,7 @@ pub struct RawRecording {
     pub sampling_hz: f64,
     /// Motion as measured: vertical m, lateral m, torsion rad; a channel that was not recorded is empty.
     pub motion: [Vec<f64>; 3],
-    /// For every cell of the rig, its six channels in the order of [`CELL_CHANNELS`], local axes: N, N·m.
+    /// For every cell of the rig, its six channels in the order of `CELL_CHANNELS`, local axes: N, N·m.
     pub cells: Vec<[Vec<f64>; 6]>,
     /// Wind speed, m/s; empty when there was no channel.
     pub wind_speed_m_s: Vec<f64>,
@@ -143,13 +143,8 @@ impl RawRecording {
     }
 
     /// Number of samples.
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.cells.first().map_or(0, |c| c[0].len())
-    }
-
-    /// Whether there is no sample.
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
     }
 }
 

@@ -5,7 +5,7 @@
 //! Forces are self-excited ones per unit length, N/m and N·m/m. Reading streams the file in blocks of bounded size.
 
 use super::record_format::{RecordColumns, read_head, text, write_head};
-use super::records::{Record, RecordBlock, RecordHeader, RecordSource};
+use super::records::{RecordBlock, RecordHeader, RecordSource};
 use crate::error::{Error, Result};
 use std::fmt::Write as _;
 use std::fs::File;
@@ -13,7 +13,7 @@ use std::io::{BufRead, BufReader, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 /// Fewest samples that a record may have.
-pub const SAMPLES_AT_LEAST: usize = 64;
+pub(crate) const SAMPLES_AT_LEAST: usize = 64;
 
 /// Samples a block.
 const BLOCK_SAMPLES: usize = 4096;
@@ -26,7 +26,7 @@ const DRIFT: f64 = 1e-3;
 
 /// A record in a CSV file, read block by block whenever asked.
 #[derive(Debug, Clone, PartialEq)]
-pub struct RecordFile {
+pub(crate) struct RecordFile {
     path: PathBuf,
     header: RecordHeader,
     columns: RecordColumns,
@@ -38,7 +38,7 @@ impl RecordFile {
     /// # Errors
     /// [`Error::Io`]; [`Error::Input`] with file and line for a header line or column that is missing, unknown or
     /// wrong.
-    pub fn open(path: impl AsRef<Path>) -> Result<Self> {
+    pub(crate) fn open(path: impl AsRef<Path>) -> Result<Self> {
         let path = path.as_ref().to_path_buf();
         let file = File::open(&path).map_err(|e| Error::io(&path, e))?;
         let read = || -> Result<Self> {
@@ -84,16 +84,11 @@ impl RecordSource for RecordFile {
     }
 }
 
-/// Reads a whole record into memory.
-pub fn read_record(path: impl AsRef<Path>) -> Result<Record> {
-    Record::whole(&RecordFile::open(path)?)
-}
-
-/// Writes a record; [`read_record`] gives the same numbers back, bit for bit.
+/// Writes a record; [`RecordFile`] gives the same numbers back, bit for bit.
 ///
 /// # Errors
 /// Those of reading `record`; [`Error::Io`] naming the record when `out` fails.
-pub fn write_record(record: &dyn RecordSource, out: &mut dyn Write) -> Result<()> {
+pub(crate) fn write_record(record: &dyn RecordSource, out: &mut dyn Write) -> Result<()> {
     let header = record.header();
     let io = |e| Error::io(&header.name, e);
     write_head(header, out).map_err(io)?;

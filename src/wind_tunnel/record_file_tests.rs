@@ -3,6 +3,11 @@
 use super::super::TunnelPlan;
 use super::*;
 use crate::aerodynamics::FlatPlate;
+use crate::wind_tunnel::Record;
+
+fn read(path: &Path) -> Result<Record> {
+    Record::whole(&RecordFile::open(path)?)
+}
 
 /// A short noisy record of two degrees of freedom: 2 s of rest and 8 s of motion at 200 Hz.
 fn record() -> Record {
@@ -34,7 +39,7 @@ fn in_file(text: &[u8]) -> tempfile::NamedTempFile {
 /// What reading `text` complains of, without the file, which has to stand first.
 fn complaint(text: impl AsRef<[u8]>) -> String {
     let file = in_file(text.as_ref());
-    let message = read_record(file.path()).unwrap_err().to_string();
+    let message = read(file.path()).unwrap_err().to_string();
     let start = format!("{}: ", file.path().display());
     message.strip_prefix(&start).unwrap().to_owned()
 }
@@ -44,7 +49,7 @@ fn write_and_read_give_the_same_bits() {
     let record = record();
     let text = written(&record);
     let file = in_file(text.as_bytes());
-    let again = read_record(file.path()).unwrap();
+    let again = read(file.path()).unwrap();
     assert_eq!(again, record);
     assert_eq!(written(&again), text);
     let bits = |r: &Record| -> Vec<u64> {
@@ -54,7 +59,7 @@ fn write_and_read_give_the_same_bits() {
     assert_eq!(bits(&again), bits(&record));
     // A file of Windows has other line ends.
     let file = in_file(text.replace('\n', "\r\n").as_bytes());
-    assert_eq!(read_record(file.path()).unwrap(), record);
+    assert_eq!(read(file.path()).unwrap(), record);
 }
 
 #[test]

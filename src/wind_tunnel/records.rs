@@ -75,7 +75,7 @@ impl Record {
     ///
     /// # Errors
     /// What the source cannot give.
-    pub fn whole(source: &dyn RecordSource) -> Result<Self> {
+    pub(crate) fn whole(source: &dyn RecordSource) -> Result<Self> {
         let header = source.header().clone();
         let mut motion = vec![Vec::new(); header.dofs.len()];
         let mut force = motion.clone();

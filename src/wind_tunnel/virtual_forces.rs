@@ -31,7 +31,7 @@ impl TestPoints {
     ///
     /// # Errors
     /// [`Error::Input`] when derivatives of the column were tested in ranges of `K` that share no test point.
-    pub fn new(group: &DerivativeTable, dofs: &[Dof], motion: Dof) -> Result<Self> {
+    pub(crate) fn new(group: &DerivativeTable, dofs: &[Dof], motion: Dof) -> Result<Self> {
         let column = |part| {
             dofs.iter()
                 .map(move |force| Derivative::of(*force, motion, part))

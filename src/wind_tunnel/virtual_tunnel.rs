@@ -132,7 +132,7 @@ impl TunnelPlan {
     /// # Errors
     /// [`crate::Error::Input`] for an impossible plan or width; those of the model, which is asked at every `K` from zero to
     /// that of half the sampling frequency.
-    pub fn records_from_model(
+    pub(crate) fn records_from_model(
         &self,
         model: &dyn Transfer,
         name: &str,
@@ -194,7 +194,7 @@ impl TunnelPlan {
     }
 
     /// What records of `table` take for granted; `None` when it says all that they need.
-    pub fn assumption(&self, table: &DerivativeTable) -> Option<String> {
+    pub(crate) fn assumption(&self, table: &DerivativeTable) -> Option<String> {
         table.speed_groups().is_empty().then(|| {
             let speed = self.speeds_m_s.first().copied().unwrap_or(f64::NAN);
             format!(
@@ -331,7 +331,7 @@ impl TunnelPlan {
     }
 
     /// Noise on every force of record number `index`; each record draws from a stream of its own.
-    pub fn add_noise(&self, record: &mut Record, index: usize) {
+    pub(crate) fn add_noise(&self, record: &mut Record, index: usize) {
         if self.noise_fraction == 0.0 {
             return;
         }

@@ -27,7 +27,6 @@ pub const ARROWS: &[Row] = &[
     row("units", &[]),
     row("state_space", &[]),
     row("signal", &[]),
-    row("comparison", &["signal", "state_space"]),
     row("section", &["units"]),
     row("aerodynamics", &["units", "section", "state_space"]),
     row("files", &["aerodynamics+"]),
@@ -57,6 +56,10 @@ pub const ARROWS: &[Row] = &[
             // what a fit returns
             "trained_model::Model",
         ],
+    ),
+    row(
+        "comparison",
+        &["signal", "identification+", "wind_tunnel+", "files"],
     ),
     row("aeroelastic", &["aerodynamics+"]),
     row("flutter", &["aeroelastic+"]),

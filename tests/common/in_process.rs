@@ -39,7 +39,7 @@ pub fn expectations(model: &TrainedModel, golden: Option<&Path>) -> Value {
     let onset = search.onset().unwrap();
     json!({
         "description": golden,
-        "onset": { "speed_m_s": onset.speed_m_s, "frequency_hz": onset.frequency_hz },
+        "onset": { "speed_m_s": onset.at.speed_m_s, "frequency_hz": onset.at.frequency_hz },
         "default_mode": least_damped_mode(&coupled, model.experiment.wind_speed_m_s),
         "tuned": [
             tuned(model, &[]),
@@ -105,9 +105,9 @@ fn tuned(model: &TrainedModel, parameters: &[(&str, f64)]) -> Value {
     json!({
         "parameters": parameters.iter().map(|(n, v)| ((*n).to_owned(), json!(v))).collect::<Map<_, _>>(),
         "calculated": {
-            "onset_speed": onset.map_or(limit, |o| o.speed_m_s),
-            "onset_frequency": onset.map_or(0.0, |o| o.frequency_hz),
-            "onset_reduced_velocity": onset.map_or(0.0, |o| o.reduced_velocity.v_star()),
+            "onset_speed": onset.map_or(limit, |o| o.at.speed_m_s),
+            "onset_frequency": onset.map_or(0.0, |o| o.at.frequency_hz),
+            "onset_reduced_velocity": onset.map_or(0.0, |o| o.at.reduced_velocity.v_star()),
             "divergence_speed": divergence.unwrap_or(limit),
             "onset_found": onset.is_some(),
             "onset_in_tested_range": onset.is_some_and(|o| o.in_tested_range == Some(true)),
@@ -282,7 +282,7 @@ pub fn three_dof(model: &TrainedModel) -> Value {
     };
     let found = find_onset("", &coupled, &search, Some(model.tested_range)).unwrap();
     let onset = found.onset().unwrap();
-    let onset = json!({ "speed_m_s": onset.speed_m_s, "frequency_hz": onset.frequency_hz });
+    let onset = json!({ "speed_m_s": onset.at.speed_m_s, "frequency_hz": onset.at.frequency_hz });
     let mut stepper = Stepper::new(coupled);
     let e = &model.experiment;
     let release = [e.initial_vertical_m, 0.0, e.initial_rotation_rad];

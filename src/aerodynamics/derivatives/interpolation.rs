@@ -43,7 +43,7 @@ impl Interpolation {
     ];
 
     /// The word for it in studies.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Self::ModifiedAkima => "modified_akima",
             Self::CubicSpline => "cubic_spline",
@@ -54,7 +54,7 @@ impl Interpolation {
     }
 
     /// The same for people.
-    pub fn title(self) -> &'static str {
+    pub(crate) fn title(self) -> &'static str {
         match self {
             Self::ModifiedAkima => "modified Akima over ln K",
             Self::CubicSpline => "cubic spline over ln K",
@@ -132,7 +132,7 @@ pub(super) struct Curve {
 
 impl Curve {
     /// `points` of one derivative with the number of the speed group of each; there is at least one.
-    pub fn new(
+    pub(crate) fn new(
         interpolation: Interpolation,
         part: Part,
         points: &[(DerivativePoint, usize)],
@@ -173,7 +173,7 @@ impl Curve {
     }
 
     /// The part of `G` at `k`; beyond the points the quantity keeps its value at the nearest one.
-    pub fn at(&self, k: ReducedFrequency) -> f64 {
+    pub(crate) fn at(&self, k: ReducedFrequency) -> f64 {
         let full = k.full_width();
         let value = self.quantity(self.interpolation.abscissa(k));
         // from the quantity to G; at K = 0 only what is held matters

@@ -21,7 +21,7 @@ pub enum Missing {
 
 impl Missing {
     /// The word for it in studies and commands.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Zero => "zero",
             Self::QuasiSteady => "quasi_steady",

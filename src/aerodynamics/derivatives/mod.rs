@@ -19,7 +19,8 @@ pub use interpolated::{Extrapolation, InterpolatedTable};
 pub use interpolation::Interpolation;
 #[cfg(feature = "cli")]
 pub use missing::Missing;
-pub use table::{DerivativePoint, DerivativeTable, SIGN_CONVENTION, TableHeader, UNITS};
+pub use table::{DerivativePoint, DerivativeTable, TableHeader};
+pub(crate) use table::{SIGN_CONVENTION, UNITS};
 
 use crate::section::Dof;
 

@@ -35,7 +35,7 @@ struct Signature([f64; 5]);
 impl DerivativeTable {
     /// What looks wrong in the table: signs, sizes and units that are those of another convention. Empty when nothing does.
     /// `label` is the convention that the file states, or that was stated for it.
-    pub fn hints(&self, label: &Convention) -> Vec<String> {
+    pub(crate) fn hints(&self, label: &Convention) -> Vec<String> {
         let mut hints = Vec::new();
         if self.width_m > WIDEST_M {
             hints.push(format!(

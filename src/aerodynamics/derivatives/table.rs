@@ -8,10 +8,11 @@ use crate::units::{ReducedFrequency, ReducedFrequencyRange, SAME_SPEED, near_gro
 use std::collections::BTreeMap;
 
 /// Sign convention and scaling of every table of this project, as written in the header of its files.
-pub const SIGN_CONVENTION: &str = "y and lift up, theta and moment nose-up, x and drag downwind; q = G r with q = F/(rho V^2 B/2), M/(rho V^2 B^2/2), r = (y/B, x/B, theta); G_yy = K^2 (H4 + i H1), G_ytheta = K^2 (H3 + i H2), G_thetay = K^2 (A4 + i A1), G_thetatheta = K^2 (A3 + i A2)";
+pub(crate) const SIGN_CONVENTION: &str = "y and lift up, theta and moment nose-up, x and drag downwind; q = G r with q = F/(rho V^2 B/2), M/(rho V^2 B^2/2), r = (y/B, x/B, theta); G_yy = K^2 (H4 + i H1), G_ytheta = K^2 (H3 + i H2), G_thetay = K^2 (A4 + i A1), G_thetatheta = K^2 (A3 + i A2)";
 
 /// Units of the columns, as written in the header of the files.
-pub const UNITS: &str = "mean_speed_m_s in m/s; v_hat = V/(omega B) = 1/K and value dimensionless";
+pub(crate) const UNITS: &str =
+    "mean_speed_m_s in m/s; v_hat = V/(omega B) = 1/K and value dimensionless";
 
 /// Test points of one derivative: more than any tunnel measures, few enough for every reader and fit.
 const POINTS_AT_MOST: usize = 10_000;
@@ -43,7 +44,7 @@ impl DerivativePoint {
     }
 }
 
-/// Where a table comes from. Units and sign convention are [`UNITS`] and [`SIGN_CONVENTION`] for all tables.
+/// Where a table comes from. Units and sign convention are `UNITS` and `SIGN_CONVENTION` for all tables.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct TableHeader {
     /// Where the figures come from.
@@ -151,7 +152,7 @@ impl DerivativeTable {
     }
 
     /// The degrees of freedom that the table covers completely.
-    pub fn dofs(&self) -> &'static [Dof] {
+    pub(crate) fn dofs(&self) -> &'static [Dof] {
         if self.points.len() == Derivative::ALL.len() {
             &Dof::THREE
         } else {
@@ -163,7 +164,7 @@ impl DerivativeTable {
     ///
     /// # Errors
     /// [`Error::Input`] listing those that are missing.
-    pub fn require(&self, dofs: &[Dof]) -> Result<()> {
+    pub(crate) fn require(&self, dofs: &[Dof]) -> Result<()> {
         let missing: Vec<&str> = coupling(dofs)
             .filter(|d| !self.points.contains_key(d))
             .map(Derivative::name)
@@ -180,7 +181,7 @@ impl DerivativeTable {
     }
 
     /// All numbers that the table says about `G` among `dofs`: `K²` times each derivative at its own `K`.
-    /// Entries that the table does not hold (see [`DerivativeTable::require`]) are left out.
+    /// Entries that the table does not hold (see `DerivativeTable::require`) are left out.
     pub fn samples(&self, dofs: &[Dof]) -> Vec<TransferSample> {
         coupling(dofs)
             .flat_map(|d| self.points(d).iter().map(move |point| sample(d, point)))
@@ -188,7 +189,7 @@ impl DerivativeTable {
     }
 
     /// The range of `K` in which every derivative among `dofs` was tested.
-    pub fn tested_range(&self, dofs: &[Dof]) -> ReducedFrequencyRange {
+    pub(crate) fn tested_range(&self, dofs: &[Dof]) -> ReducedFrequencyRange {
         let ranges = |d: Derivative| {
             ReducedFrequencyRange::spanning(self.points(d).iter().map(DerivativePoint::k))
         };
@@ -208,7 +209,7 @@ impl DerivativeTable {
 
     /// Mean wind speed of each group of test points, m/s, rising; empty when the source does not give speeds.
     /// Speeds less than 5 % apart belong to one group.
-    pub fn speed_groups(&self) -> Vec<f64> {
+    pub(crate) fn speed_groups(&self) -> Vec<f64> {
         self.grouped_speeds()
             .iter()
             .map(|group| group.iter().sum::<f64>() / group.len() as f64)
@@ -226,7 +227,7 @@ impl DerivativeTable {
     /// # Errors
     /// [`Error::Input`] when there is no such group, or a derivative was not measured in it. A table without speeds is one
     /// group.
-    pub fn at_speed_group(&self, i: usize) -> Result<Self> {
+    pub(crate) fn at_speed_group(&self, i: usize) -> Result<Self> {
         let groups = self.grouped_speeds();
         if groups.is_empty() && i == 0 {
             return Ok(self.clone());

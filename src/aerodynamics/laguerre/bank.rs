@@ -31,7 +31,7 @@ impl FilterBank {
     ///
     /// # Errors
     /// [`Error::Input`] when a pole is not positive or there is none.
-    pub fn new(poles: Vec<f64>) -> Result<Self> {
+    pub(crate) fn new(poles: Vec<f64>) -> Result<Self> {
         if poles.is_empty() {
             return Err(Error::input("filter bank: poles", "at least one", "none"));
         }
@@ -50,18 +50,13 @@ impl FilterBank {
     }
 
     /// Poles in the order of the chain.
-    pub fn poles(&self) -> &[f64] {
+    pub(crate) fn poles(&self) -> &[f64] {
         &self.poles
     }
 
     /// Number of filters `L`.
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.poles.len()
-    }
-
-    /// Never true: a bank has at least one filter.
-    pub fn is_empty(&self) -> bool {
-        self.poles.is_empty()
     }
 
     /// `Λ_0(p) … Λ_{L−1}(p)` in closed form at the complex frequency `p` (on the axis, `p = iK`).
@@ -79,7 +74,7 @@ impl FilterBank {
 
     /// `x' = A x + b v` whose states are the filter outputs: `x_0' = −p_0 x_0 + √(2p_0) v` and
     /// `√(2p_{l−1}) (x_l' + p_l x_l) = √(2p_l) (x_{l−1}' − p_{l−1} x_{l−1})`.
-    pub fn matrices(&self) -> (DMatrix<f64>, DVector<f64>) {
+    pub(crate) fn matrices(&self) -> (DMatrix<f64>, DVector<f64>) {
         let n = self.len();
         let mut a = DMatrix::zeros(n, n);
         let mut b = DVector::zeros(n);

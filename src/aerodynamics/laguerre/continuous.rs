@@ -52,7 +52,7 @@ impl LaguerreModel {
     ///
     /// # Errors
     /// [`Error::Input`] naming the field that does not fit.
-    pub fn validate(&self) -> Result<()> {
+    pub(crate) fn validate(&self) -> Result<()> {
         let n = self.dofs.len();
         let finite = |m: &DMatrix<f64>| m.iter().all(|x| x.is_finite());
         for (name, m) in [("e0", &self.e0), ("e1", &self.e1), ("e2", &self.e2)] {

@@ -39,29 +39,66 @@ pub struct DiscreteLaguerre {
     pub static_term: Vec<f64>,
 }
 
-/// `A_L` (L×L) and `B_L` (L) of equation (4.2): `S(k+1) = A_L S(k) + B_L v(k+1)`.
-pub fn discrete_filter_matrices(alpha: f64, count: usize) -> (DMatrix<f64>, DVector<f64>) {
-    let root = alpha.sqrt();
-    // (2.33) read as x_l[k] = √α x_l[k−1] + √α x_{l−1}[k] − x_{l−1}[k−1]
-    let mut a = DMatrix::zeros(count, count);
-    let mut b = DVector::zeros(count);
-    for l in 0..count {
-        if l == 0 {
-            b[0] = (1.0 - alpha).sqrt();
-        } else {
-            for j in 0..l {
-                a[(l, j)] = root * a[(l - 1, j)];
-            }
-            a[(l, l - 1)] -= 1.0;
-            b[l] = root * b[l - 1];
+/// The recursion (2.33) of a chain of filters, `x_0[k] = √α x_0[k−1] + √(1−α) v[k]` and
+/// `x_l[k] = √α x_l[k−1] + √α x_{l−1}[k] − x_{l−1}[k−1]`.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Recursion {
+    root: f64,
+    gain: f64,
+}
+
+impl Recursion {
+    pub(crate) fn new(alpha: f64) -> Self {
+        Self {
+            root: alpha.sqrt(),
+            gain: (1.0 - alpha).sqrt(),
         }
-        a[(l, l)] += root;
     }
-    (a, b)
+
+    /// Carries the filter states on over the samples of a motion and writes every filter's output to a stretch of `stride`
+    /// numbers. One filter after the other, each over all samples: the recursions only look back.
+    pub(crate) fn advance(self, state: &mut [f64], motion: &[f64], out: &mut [f64], stride: usize) {
+        let rows = motion.len();
+        let Some(mut last) = state.first().copied() else {
+            return;
+        };
+        for (x, v) in out[..rows].iter_mut().zip(motion) {
+            last = self.root * last + self.gain * v;
+            *x = last;
+        }
+        let mut before = std::mem::replace(&mut state[0], last);
+        for l in 1..state.len() {
+            let (head, tail) = out.split_at_mut(l * stride);
+            let below = &head[(l - 1) * stride..][..rows];
+            let (mut last, mut previous) = (state[l], before);
+            for (x, b) in tail[..rows].iter_mut().zip(below) {
+                last = self.root * (last + b) - previous;
+                previous = *b;
+                *x = last;
+            }
+            before = std::mem::replace(&mut state[l], last);
+        }
+    }
+
+    /// The states one sample later.
+    fn next(self, mut state: Vec<f64>, sample: f64) -> DVector<f64> {
+        let mut out = vec![0.0; state.len()];
+        self.advance(&mut state, &[sample], &mut out, 1);
+        DVector::from_vec(state)
+    }
+}
+
+/// `A_L` (L×L) and `B_L` (L) of equation (4.2): `S(k+1) = A_L S(k) + B_L v(k+1)`.
+pub(crate) fn discrete_filter_matrices(alpha: f64, count: usize) -> (DMatrix<f64>, DVector<f64>) {
+    let recursion = Recursion::new(alpha);
+    let unit = |l: usize| (0..count).map(|j| f64::from(u8::from(j == l))).collect();
+    let columns: Vec<_> = (0..count).map(|l| recursion.next(unit(l), 0.0)).collect();
+    let a = DMatrix::from_fn(count, count, |i, j| columns[j][i]);
+    (a, recursion.next(vec![0.0; count], 1.0))
 }
 
 /// Impulse responses `g_0[k] … g_{L−1}[k]` for `k = 0 … samples−1`, as an L×samples matrix.
-pub fn impulse_response(alpha: f64, count: usize, samples: usize) -> DMatrix<f64> {
+pub(crate) fn impulse_response(alpha: f64, count: usize, samples: usize) -> DMatrix<f64> {
     let (a, mut state) = discrete_filter_matrices(alpha, count);
     let mut g = DMatrix::zeros(count, samples);
     for k in 0..samples {
@@ -95,7 +132,7 @@ impl DiscreteLaguerre {
     }
 
     /// `α` and the number of filters `L` when all transfer functions share them.
-    pub fn shared_parameters(&self) -> Option<(f64, usize)> {
+    pub(crate) fn shared_parameters(&self) -> Option<(f64, usize)> {
         let first = self.terms.first()?;
         let filters = first.coefficients.ncols();
         let one_a_motion = self.terms.len() == self.dofs.len();
@@ -110,7 +147,7 @@ impl DiscreteLaguerre {
     ///
     /// # Errors
     /// [`Error::Input`] naming the field that does not fit.
-    pub fn validate(&self) -> Result<()> {
+    pub(crate) fn validate(&self) -> Result<()> {
         let place = |field: &str| format!("discrete Laguerre model: {field}");
         positive(&place("delta_s"), self.delta_s)?;
         let n = self.dofs.len();

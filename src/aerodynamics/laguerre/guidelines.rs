@@ -9,14 +9,14 @@ use std::f64::consts::TAU;
 
 /// A filter has died out when its impulse response stays below this for good (2.37); the squares of all samples of one
 /// response add up to one.
-pub const MEMORY_LIMIT: f64 = 0.01;
+pub(crate) const MEMORY_LIMIT: f64 = 0.01;
 
 /// Memory is counted up to here: longer than any record.
 const LONGEST_MEMORY: usize = 10_000_000;
 
 /// Lower bound of `α` for signals up to `f_max` sampled at `f_s` (2.36), both in Hz: the cut-off of the filters is then
 /// not above `f_max`.
-pub fn alpha_lower_bound(f_max_hz: f64, sampling_hz: f64) -> f64 {
+pub(crate) fn alpha_lower_bound(f_max_hz: f64, sampling_hz: f64) -> f64 {
     let c = (TAU * f_max_hz / sampling_hz).cos();
     (2.0 - c - (c * c - 4.0 * c + 3.0).sqrt()).powi(2)
 }
@@ -25,7 +25,7 @@ pub fn alpha_lower_bound(f_max_hz: f64, sampling_hz: f64) -> f64 {
 /// (2.37 with `|g_l[k]| ≤ 0.01` for all `k ≥ M`, since the filters oscillate).
 ///
 /// 0 when even the fastest filters remember more than that.
-pub fn alpha_upper_bound(count: usize, memory: usize) -> f64 {
+pub(crate) fn alpha_upper_bound(count: usize, memory: usize) -> f64 {
     let (mut low, mut high) = (0.0, 1.0 - 1e-6);
     // the memory is counted in whole samples: beyond this the bound does not move
     while high - low > 1e-9 {
@@ -40,7 +40,7 @@ pub fn alpha_upper_bound(count: usize, memory: usize) -> f64 {
 }
 
 /// Memory `M` of `count` discrete filters, samples: from there on `|g_l[k]| ≤ 0.01` for every one of them.
-pub fn discrete_memory(alpha: f64, count: usize) -> usize {
+pub(crate) fn discrete_memory(alpha: f64, count: usize) -> usize {
     let (a, b) = discrete_filter_matrices(alpha, count);
     let root = alpha.sqrt();
     // the responses spread over about this many samples and only decay behind them
@@ -50,8 +50,8 @@ pub fn discrete_memory(alpha: f64, count: usize) -> usize {
 
 impl FilterBank {
     /// Memory of the chain in steps of `delta_s` (dimensionless time): from there on `|λ_l(s)| √Δs ≤ 0.01` for every filter,
-    /// the measure of [`discrete_memory`] for continuous filters.
-    pub fn memory(&self, delta_s: f64) -> Result<usize> {
+    /// the measure of `discrete_memory` for continuous filters.
+    pub(crate) fn memory(&self, delta_s: f64) -> Result<usize> {
         let (a, b) = self.matrices();
         let phi = c2d(
             &a,

@@ -9,5 +9,7 @@ mod guidelines;
 
 pub use bank::FilterBank;
 pub use continuous::{FilterTerm, LaguerreModel};
-pub use discrete::{DiscreteLaguerre, DiscreteTerm, discrete_filter_matrices, impulse_response};
-pub use guidelines::{MEMORY_LIMIT, alpha_lower_bound, alpha_upper_bound, discrete_memory};
+pub(crate) use discrete::Recursion;
+pub use discrete::{DiscreteLaguerre, DiscreteTerm};
+pub(crate) use discrete::{discrete_filter_matrices, impulse_response};
+pub(crate) use guidelines::{alpha_lower_bound, alpha_upper_bound, discrete_memory};

@@ -24,7 +24,7 @@ pub struct Arms {
 
 impl Arms {
     /// The arm of one force component.
-    pub fn of(&self, dof: Dof) -> f64 {
+    pub(crate) fn of(&self, dof: Dof) -> f64 {
         match dof {
             Dof::Vertical => self.vertical,
             Dof::Lateral => self.lateral,
@@ -36,7 +36,7 @@ impl Arms {
     ///
     /// # Errors
     /// [`Error::Input`] naming the arm.
-    pub fn validate(&self) -> Result<()> {
+    pub(crate) fn validate(&self) -> Result<()> {
         for dof in Dof::THREE {
             finite(&format!("arms.{}", dof.name()), self.of(dof))?;
         }
@@ -49,7 +49,7 @@ impl Arms {
     ///
     /// # Errors
     /// Those of the model at `k`; [`Error::Numerical`] when a force does not depend on the vertical velocity.
-    pub fn from_model(model: &dyn Transfer, k: ReducedFrequency) -> Result<Self> {
+    pub(crate) fn from_model(model: &dyn Transfer, k: ReducedFrequency) -> Result<Self> {
         let g = model.transfer(k)?;
         let place = |dof: Dof| model.dofs().iter().position(|d| *d == dof);
         let (Some(y), Some(theta)) = (place(Dof::Vertical), place(Dof::Torsion)) else {

@@ -5,10 +5,10 @@ use crate::error::{Error, Result};
 use crate::section::Dof;
 
 /// Sign convention and scaling of every table of static coefficients, as written in the header of its files.
-pub const TABLE_SIGN_CONVENTION: &str = "wind axes: drag along the relative wind, lift normal to it, up; moment and angle nose-up, moment about the axis of rotation; C_D = D/(rho V^2 B/2), C_L = L/(rho V^2 B/2), C_M = M/(rho V^2 B^2/2), B the full width";
+pub(crate) const TABLE_SIGN_CONVENTION: &str = "wind axes: drag along the relative wind, lift normal to it, up; moment and angle nose-up, moment about the axis of rotation; C_D = D/(rho V^2 B/2), C_L = L/(rho V^2 B/2), C_M = M/(rho V^2 B^2/2), B the full width";
 
 /// Units of the columns, as written in the header of the files.
-pub const TABLE_UNITS: &str = "angle_deg in degrees; c_d, c_l, c_m dimensionless";
+pub(crate) const TABLE_UNITS: &str = "angle_deg in degrees; c_d, c_l, c_m dimensionless";
 
 /// Tables of more than this range are no deck tests.
 const ANGLE_LIMIT_DEG: f64 = 180.0;
@@ -29,7 +29,7 @@ pub struct CoefficientRow {
     pub moment: f64,
 }
 
-/// Where a table comes from. Units and signs are [`TABLE_UNITS`] and [`TABLE_SIGN_CONVENTION`] for all tables.
+/// Where a table comes from. Units and signs are `TABLE_UNITS` and `TABLE_SIGN_CONVENTION` for all tables.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct CoefficientsHeader {
     /// Where the figures come from.
@@ -59,7 +59,7 @@ pub struct CoefficientsAt {
 
 impl CoefficientsAt {
     /// The coefficient of the force on a degree of freedom and its slope, per rad.
-    pub fn of(&self, dof: Dof) -> (f64, f64) {
+    pub(crate) fn of(&self, dof: Dof) -> (f64, f64) {
         match dof {
             Dof::Vertical => (self.lift, self.lift_slope),
             Dof::Lateral => (self.drag, self.drag_slope),
@@ -93,7 +93,7 @@ impl StaticCoefficients {
     ///
     /// # Errors
     /// [`Error::Input`] naming the row, from 1.
-    pub fn new(
+    pub(crate) fn new(
         name: impl Into<String>,
         header: CoefficientsHeader,
         rows: Vec<CoefficientRow>,
@@ -117,22 +117,22 @@ impl StaticCoefficients {
     }
 
     /// Name of the deck.
-    pub fn name(&self) -> &str {
+    pub(crate) fn name(&self) -> &str {
         &self.name
     }
 
     /// Where the figures come from.
-    pub fn header(&self) -> &CoefficientsHeader {
+    pub(crate) fn header(&self) -> &CoefficientsHeader {
         &self.header
     }
 
     /// The tested angles.
-    pub fn rows(&self) -> &[CoefficientRow] {
+    pub(crate) fn rows(&self) -> &[CoefficientRow] {
         &self.rows
     }
 
     /// Lowest and highest tested angle, rad.
-    pub fn range_rad(&self) -> (f64, f64) {
+    pub(crate) fn range_rad(&self) -> (f64, f64) {
         let (low, high) = self.range_deg();
         (low.to_radians(), high.to_radians())
     }
@@ -147,7 +147,7 @@ impl StaticCoefficients {
     ///
     /// # Errors
     /// [`Error::Input`] naming the angle when it lies outside the table.
-    pub fn at(&self, angle_rad: f64) -> Result<CoefficientsAt> {
+    pub(crate) fn at(&self, angle_rad: f64) -> Result<CoefficientsAt> {
         let (low, high) = self.range_rad();
         if !(low - ROUNDING_RAD..=high + ROUNDING_RAD).contains(&angle_rad) {
             let (low, high) = self.range_deg();

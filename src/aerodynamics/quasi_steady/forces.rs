@@ -23,7 +23,7 @@ pub struct QuasiSteady {
 
 /// What the deck feels of the wind at one instant: mean wind, gusts and its own velocity.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct RelativeWind {
+pub(crate) struct RelativeWind {
     /// `V + u − ẋ`, m/s.
     pub along_m_s: f64,
     /// `w − ẏ`, m/s.
@@ -54,12 +54,12 @@ impl QuasiSteady {
     }
 
     /// The static coefficients.
-    pub fn coefficients(&self) -> &StaticCoefficients {
+    pub(crate) fn coefficients(&self) -> &StaticCoefficients {
         &self.coefficients
     }
 
     /// Degrees of freedom, in the order of the forces.
-    pub fn dofs(&self) -> &[Dof] {
+    pub(crate) fn dofs(&self) -> &[Dof] {
         &self.dofs
     }
 
@@ -67,7 +67,11 @@ impl QuasiSteady {
     ///
     /// # Errors
     /// [`Error::Input`] naming the angle of attack when it lies outside the table.
-    pub fn specific_forces(&self, rotation_rad: f64, wind: &RelativeWind) -> Result<[f64; 3]> {
+    pub(crate) fn specific_forces(
+        &self,
+        rotation_rad: f64,
+        wind: &RelativeWind,
+    ) -> Result<[f64; 3]> {
         let mut forces = [0.0; 3];
         for (force, dof) in forces.iter_mut().zip(&self.dofs) {
             let normal = wind.vertical_m_s - self.arms.of(*dof) * wind.rotation_m_s;
@@ -89,7 +93,7 @@ impl QuasiSteady {
     ///
     /// # Errors
     /// [`Error::Input`] naming the angle when it lies outside the table.
-    pub fn static_forces(&self, rotation_rad: f64) -> Result<(Vec<f64>, Vec<f64>)> {
+    pub(crate) fn static_forces(&self, rotation_rad: f64) -> Result<(Vec<f64>, Vec<f64>)> {
         let c = self.coefficients.at(rotation_rad)?;
         Ok(self.dofs.iter().map(|dof| c.of(*dof)).unzip())
     }
@@ -98,7 +102,7 @@ impl QuasiSteady {
     ///
     /// # Errors
     /// [`Error::Input`] naming the angle when it lies outside the table.
-    pub fn linearised(&self, rotation_rad: f64) -> Result<LinearQuasiSteady> {
+    pub(crate) fn linearised(&self, rotation_rad: f64) -> Result<LinearQuasiSteady> {
         let at = self.coefficients.at(rotation_rad)?;
         Ok(LinearQuasiSteady::new(
             &self.dofs,

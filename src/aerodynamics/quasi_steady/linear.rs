@@ -23,7 +23,7 @@ use serde::Serialize;
 /// which is `½ρVB e₁` for `R_ae` (1.12b), `½ρV² e₀` for `K_ae` (1.12c) and `½ρVB A` for `A_m` (1.12d) once scaled to
 /// physical motion and force.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct LinearQuasiSteady {
+pub(crate) struct LinearQuasiSteady {
     dofs: Vec<Dof>,
     rotation_rad: f64,
     arms: Arms,
@@ -38,7 +38,7 @@ pub struct LinearQuasiSteady {
 
 impl LinearQuasiSteady {
     /// From the coefficients at the rotation `θ₀` (rad) about which the theory is linear.
-    pub fn new(dofs: &[Dof], arms: Arms, rotation_rad: f64, at: CoefficientsAt) -> Self {
+    pub(crate) fn new(dofs: &[Dof], arms: Arms, rotation_rad: f64, at: CoefficientsAt) -> Self {
         let n = dofs.len();
         let by_u = |dof: Dof| 2.0 * at.of(dof).0;
         let by_w = |dof: Dof| match dof {
@@ -72,12 +72,12 @@ impl LinearQuasiSteady {
     }
 
     /// The arms `B₁ᵢ/B`.
-    pub fn arms(&self) -> Arms {
+    pub(crate) fn arms(&self) -> Arms {
         self.arms
     }
 
     /// Dimensionless forces by the gusts `(u/V, w/V)`, n×2.
-    pub fn buffeting(&self) -> &DMatrix<f64> {
+    pub(crate) fn buffeting(&self) -> &DMatrix<f64> {
         &self.buffeting
     }
 }

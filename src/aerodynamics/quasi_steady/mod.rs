@@ -10,9 +10,8 @@ mod forces;
 mod linear;
 
 pub use arms::Arms;
-pub use coefficients::{
-    CoefficientRow, CoefficientsAt, CoefficientsHeader, StaticCoefficients, TABLE_SIGN_CONVENTION,
-    TABLE_UNITS,
-};
-pub use forces::{QuasiSteady, RelativeWind};
-pub use linear::LinearQuasiSteady;
+pub use coefficients::{CoefficientRow, CoefficientsAt, CoefficientsHeader, StaticCoefficients};
+pub(crate) use coefficients::{TABLE_SIGN_CONVENTION, TABLE_UNITS};
+pub use forces::QuasiSteady;
+pub(crate) use forces::RelativeWind;
+pub(crate) use linear::LinearQuasiSteady;

@@ -45,7 +45,7 @@ impl MinimumStateModel {
     ///
     /// # Errors
     /// [`Error::Input`] naming the field that does not fit.
-    pub fn validate(&self) -> Result<()> {
+    pub(crate) fn validate(&self) -> Result<()> {
         const PLACE: &str = "minimum-state model";
         let (n, m) = (self.dofs.len(), self.lags.len());
         check_square(PLACE, n, &[&self.a1, &self.a2, &self.a3])?;
@@ -66,7 +66,7 @@ impl MinimumStateModel {
     }
 
     /// The same as a function in Roger's form, with n states a lag: `a_{l+3} = D_l E_l`.
-    pub fn to_roger(&self) -> RationalModel {
+    pub(crate) fn to_roger(&self) -> RationalModel {
         RationalModel {
             dofs: self.dofs.clone(),
             a1: self.a1.clone(),

@@ -26,7 +26,7 @@ pub enum Lags {
 
 impl Lags {
     /// Number of lags of a force.
-    pub fn count(&self) -> usize {
+    pub(crate) fn count(&self) -> usize {
         match self {
             Self::Shared(lags) => lags.len(),
             Self::PerForce(rows) => rows.first().map_or(0, Vec::len),
@@ -34,7 +34,7 @@ impl Lags {
     }
 
     /// Lags of the force in row `i`; of the last row for an `i` beyond it.
-    pub fn of_force(&self, i: usize) -> &[f64] {
+    pub(crate) fn of_force(&self, i: usize) -> &[f64] {
         match self {
             Self::Shared(lags) => lags,
             Self::PerForce(rows) => rows.get(i).or(rows.last()).map_or(&[], Vec::as_slice),
@@ -45,7 +45,7 @@ impl Lags {
     ///
     /// # Errors
     /// [`Error::Input`] saying what does not fit.
-    pub fn validate(&self, n: usize) -> Result<()> {
+    pub(crate) fn validate(&self, n: usize) -> Result<()> {
         const PLACE: &str = "rational model: lags";
         let lists = match self {
             Self::Shared(lags) => std::slice::from_ref(lags),
@@ -115,7 +115,7 @@ impl RationalModel {
     ///
     /// # Errors
     /// [`Error::Input`] naming the field that does not fit.
-    pub fn validate(&self) -> Result<()> {
+    pub(crate) fn validate(&self) -> Result<()> {
         let n = self.dofs.len();
         let mut terms = vec![&self.a1, &self.a2, &self.a3];
         terms.extend(&self.lag_terms);
@@ -132,7 +132,7 @@ impl RationalModel {
     }
 
     /// The different values of the `l`-th lag, each with the forces (rows) that have it: one for shared lags.
-    pub fn lag_groups(&self, l: usize) -> Vec<(f64, Vec<bool>)> {
+    pub(crate) fn lag_groups(&self, l: usize) -> Vec<(f64, Vec<bool>)> {
         let mut groups: Vec<(f64, Vec<bool>)> = Vec::new();
         for i in 0..self.dofs.len() {
             let lag = self.lags.of_force(i)[l];

@@ -13,7 +13,7 @@ use std::path::PathBuf;
 /// Example: aerodeck campaign check campaign.toml
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
-pub struct Args {
+pub(crate) struct Args {
     /// The campaign file.
     campaign: PathBuf,
 }

@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 /// Example: aerodeck campaign virtual LN21-5200 --out campaign
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
-pub struct Args {
+pub(crate) struct Args {
     /// Name of an embedded deck, `flat plate`, `jones`, or a table of derivatives (.csv, .xlsx).
     #[arg(default_value = "LN21-5200")]
     deck: String,

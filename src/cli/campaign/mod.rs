@@ -9,7 +9,7 @@ use crate::error::Result;
 
 /// Raw wind-tunnel campaigns: check the files of a laboratory, or invent a campaign with a known truth
 #[derive(clap::Subcommand)]
-pub enum Campaign {
+pub(crate) enum Campaign {
     Check(check::Args),
     Virtual(invent::Args),
 }

@@ -5,8 +5,8 @@ use super::{Common, beside_the_thesis, draw, metrics_table};
 use crate::cli::answer::Answer;
 use crate::cli::output::{OutputDir, list};
 use crate::cli::progress::Progress;
+use crate::comparison::forces::{DecksComparison, Score, THESIS_DECKS, compare_decks, score_table};
 use crate::error::Result;
-use crate::study::compare::{DecksComparison, THESIS_DECKS, compare_decks, score_table};
 use std::fmt::Write as _;
 
 /// Several girders, a Laguerre model each: metrics of the predicted forces side by side (thesis, section 3.5.4)
@@ -14,7 +14,7 @@ use std::fmt::Write as _;
 /// Example: aerodeck compare decks --out decks
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
-pub struct Args {
+pub(crate) struct Args {
     /// Embedded decks to compare.
     #[arg(long, value_delimiter = ',', default_values_t = THESIS_DECKS.map(str::to_owned))]
     decks: Vec<String>,
@@ -51,12 +51,11 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
                 "speed of the training"
             };
             let title = format!(
-                "Metrics of the predicted forces, {} motion, {which}, L = {}, α = {}",
+                "Metrics of the predicted forces, {} motion, {which}, {}",
                 motion.name(),
-                options.laguerre.filters,
-                options.laguerre.alpha
+                options.laguerre_name()
             );
-            let label = |s: &crate::study::compare::Score| {
+            let label = |s: &Score| {
                 if options.trained_on.is_some() || held_out {
                     format!("{} {:.2} m/s", s.deck, s.speed_m_s)
                 } else {

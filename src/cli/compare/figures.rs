@@ -1,15 +1,15 @@
 //! From the results of the comparisons to what the figures take.
 
+use crate::comparison::forces::{History, ModelsComparison, Score};
 use crate::error::Result;
 use crate::report::{
     DerivativePlot, DerivativesPlot, Figure, MetricPanel, PlottedSeries, TimePanel, TransferCurve,
     TransferPlot, derivatives_figure, metrics_figure, time_history_figure, transfer_figure,
 };
 use crate::section::Dof;
-use crate::study::compare::{History, ModelsComparison, Score};
 
 /// The thesis's three metrics of every force over frequency, one line a label (Figures 3.20, 3.27 and 3.28).
-pub fn metrics_of(
+pub(crate) fn metrics_of(
     title: &str,
     forces: &[Dof],
     scores: &[&Score],
@@ -48,7 +48,7 @@ fn force_name(force: Dof) -> &'static str {
 }
 
 /// Magnitude and phase with the bands (Figures 3.21 and 3.22).
-pub fn transfer_functions(results: &ModelsComparison) -> Result<Figure> {
+pub(crate) fn transfer_functions(results: &ModelsComparison) -> Result<Figure> {
     let plots: Vec<TransferPlot> = results
         .entries
         .iter()

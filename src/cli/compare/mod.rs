@@ -8,17 +8,17 @@ mod signals;
 use super::answer::Answer;
 use super::output::OutputDir;
 use super::progress::Progress;
+use crate::comparison::forces::{CompareOptions, ForceMetrics, ScoreSummary, Scoring, Statement};
 use crate::error::Result;
 use crate::identification::DiscreteFit;
 use crate::report::{Figure, PNG_SCALE};
 use crate::section::Dof;
-use crate::study::compare::{CompareOptions, ForceMetrics, ScoreSummary, Scoring, Statement};
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
 /// Predicted against measured forces: one model on several decks, several models on one, or two signals of a file
 #[derive(clap::Subcommand)]
-pub enum Compare {
+pub(crate) enum Compare {
     Decks(decks::Args),
     Models(models::Args),
     Signals(signals::Args),

@@ -5,8 +5,8 @@ use super::{Common, beside_the_thesis, draw, metrics_table};
 use crate::cli::answer::Answer;
 use crate::cli::output::{OutputDir, list};
 use crate::cli::progress::Progress;
+use crate::comparison::forces::{ModelsComparison, compare_models, inside, score_table};
 use crate::error::Result;
-use crate::study::compare::{ModelsComparison, compare_models, inside, score_table};
 use std::fmt::Write as _;
 
 /// Laguerre models against rational functions on one girder, in time and frequency (thesis, sections 3.5.5, 3.5.6)
@@ -14,7 +14,7 @@ use std::fmt::Write as _;
 /// Example: aerodeck compare models --deck LN21-5200
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
-pub struct Args {
+pub(crate) struct Args {
     /// Embedded deck.
     #[arg(long, default_value = "LN21-5200")]
     deck: String,

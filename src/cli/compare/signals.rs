@@ -19,7 +19,7 @@ use std::path::PathBuf;
 /// Example: aerodeck compare signals forces.csv --reference measured --compared predicted --sampling-hz 200
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
-pub struct Args {
+pub(crate) struct Args {
     /// CSV, MATLAB, HDF5 or TDMS file with both signals.
     file: PathBuf,
     /// Channel of the reference signal.

@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 /// Example: aerodeck derivatives convert LN21-5200 polimi.csv --to polimi
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
-pub struct Args {
+pub(crate) struct Args {
     #[command(flatten)]
     table: TableArgs,
     /// The result (.csv, .xlsx).

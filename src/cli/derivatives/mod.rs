@@ -19,7 +19,7 @@ use clap::Subcommand;
 
 /// Show tables of aerodynamic derivatives and convert them between notations
 #[derive(Subcommand)]
-pub enum Derivatives {
+pub(crate) enum Derivatives {
     Convert(convert::Args),
     Show(show::Args),
     Notations(notations::Args),

@@ -13,7 +13,7 @@ use std::path::PathBuf;
 /// Example: aerodeck derivatives notations --sketch figures
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
-pub struct Args {
+pub(crate) struct Args {
     /// Folder into which a sketch of the axes is drawn (axes.svg, axes.png).
     #[arg(long)]
     sketch: Option<PathBuf>,

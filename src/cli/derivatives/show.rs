@@ -12,7 +12,7 @@ use std::fmt::Write as _;
 /// Example: aerodeck derivatives show LN21-5200 --to polimi
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
-pub struct Args {
+pub(crate) struct Args {
     #[command(flatten)]
     table: TableArgs,
     /// Every test point instead of the ranges.

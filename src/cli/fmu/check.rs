@@ -12,7 +12,7 @@ use std::path::PathBuf;
 /// Example: aerodeck fmu check deck_section.fmu
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
-pub struct Args {
+pub(crate) struct Args {
     /// The FMU.
     fmu: PathBuf,
 }

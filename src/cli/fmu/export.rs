@@ -17,7 +17,7 @@ use std::path::PathBuf;
 /// Example: aerodeck fmu export model.json --kind force --strips 40 --strip-length 25 --out force.fmu
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
-pub struct Args {
+pub(crate) struct Args {
     /// The trained model.
     model: PathBuf,
     /// What is packed: the section of the model with its forces, or its forces alone.
@@ -108,7 +108,7 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
             input.expected.push_str(" (or --force)");
             Error::Input(input)
         }
-        other => stages::or_allow_unstable(other, &model),
+        other => stages::or_allow_unstable(other),
     })?;
     drop(stage);
     let growth = growth_of(&model)?;

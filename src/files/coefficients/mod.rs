@@ -34,7 +34,7 @@ use std::path::Path;
 const FORMAT: &str = "aerodeck static coefficients 1";
 
 /// Names of the columns, which may stand in any order.
-pub const COEFFICIENT_COLUMNS: [&str; 4] = ["angle_deg", "c_d", "c_l", "c_m"];
+pub(crate) const COEFFICIENT_COLUMNS: [&str; 4] = ["angle_deg", "c_d", "c_l", "c_m"];
 
 /// Keys of the header.
 const KEYS: [&str; 6] = [
@@ -50,7 +50,7 @@ const KEYS: [&str; 6] = [
 ///
 /// # Errors
 /// [`Error::Io`] when the file cannot be read, else those of [`parse_coefficients`] with the file named.
-pub fn read_coefficients(path: impl AsRef<Path>) -> Result<StaticCoefficients> {
+pub(crate) fn read_coefficients(path: impl AsRef<Path>) -> Result<StaticCoefficients> {
     let path = path.as_ref();
     let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, e))?;
     parse_coefficients(&text).map_err(|e| e.in_file(path))
@@ -61,7 +61,7 @@ pub fn read_coefficients(path: impl AsRef<Path>) -> Result<StaticCoefficients> {
 /// # Errors
 /// [`Error::Input`] naming line, expectation and finding: missing or unknown header keys and columns, another sign
 /// convention or other units, text or NaN in numbers, angles that do not rise, fewer than four rows.
-pub fn parse_coefficients(text: &str) -> Result<StaticCoefficients> {
+pub(crate) fn parse_coefficients(text: &str) -> Result<StaticCoefficients> {
     let mut header = CommentHeader::new(&[FORMAT], &KEYS, &[]);
     for line in text.lines() {
         if !header.take(line)? {
@@ -88,7 +88,7 @@ pub fn parse_coefficients(text: &str) -> Result<StaticCoefficients> {
     StaticCoefficients::new(header.required("name")?.value.clone(), provenance, rows)
 }
 
-/// Writes a table; [`parse_coefficients`] gives the same table back, bit for bit.
+/// Writes a table; `parse_coefficients` gives the same table back, bit for bit.
 pub fn write_coefficients(table: &StaticCoefficients, out: &mut dyn Write) -> std::io::Result<()> {
     CommentHeader::write_format(out, FORMAT)?;
     let header = table.header();
@@ -138,7 +138,7 @@ fn read_rows(text: &str, names_line: usize) -> Result<(Vec<CoefficientRow>, Vec<
 }
 
 /// The static coefficients of that name: an embedded table, or a file (`.csv`) whose path is read against `directory`.
-pub fn named_coefficients(
+pub(crate) fn named_coefficients(
     name: &str,
     directory: &std::path::Path,
 ) -> crate::Result<StaticCoefficients> {

@@ -44,7 +44,8 @@ use std::io::Write;
 use std::path::Path;
 
 /// Names of the columns in the crate's own convention; the fourth is called as the argument.
-pub const CSV_COLUMNS: [&str; 5] = ["derivative", "point", "mean_speed_m_s", "v_hat", "value"];
+pub(crate) const CSV_COLUMNS: [&str; 5] =
+    ["derivative", "point", "mean_speed_m_s", "v_hat", "value"];
 /// Place of the argument among them.
 const ARGUMENT: usize = 3;
 
@@ -57,14 +58,14 @@ type Rows = BTreeMap<Derivative, (Vec<DerivativePoint>, Vec<u64>)>;
 /// Reads a table in this project's CSV, in whatever convention its header states.
 ///
 /// # Errors
-/// [`Error::Io`] when the file cannot be read, else those of [`parse_csv`] with the file named.
+/// [`Error::Io`] when the file cannot be read, else those of `parse_csv` with the file named.
 pub fn read_csv(path: impl AsRef<Path>) -> Result<DerivativeTable> {
     read_csv_in(path, StatedConvention::default()).map(|(table, _)| table)
 }
 
 /// Reads a table in this project's CSV whose convention the caller states, all of it or in part; the second value is
 /// the convention that the file is in.
-pub fn read_csv_in(
+pub(crate) fn read_csv_in(
     path: impl AsRef<Path>,
     stated: StatedConvention,
 ) -> Result<(DerivativeTable, Convention)> {
@@ -77,7 +78,7 @@ pub fn read_csv_in(
 
 /// Reads a CSV table, this project's or a wide one (one row a reduced velocity, one column a derivative), with what the
 /// caller states.
-pub fn read_csv_with(
+pub(crate) fn read_csv_with(
     path: impl AsRef<Path>,
     options: &ReadOptions,
 ) -> Result<(DerivativeTable, Convention)> {
@@ -106,12 +107,15 @@ pub fn read_csv_with(
 /// [`Error::Input`] naming line, expectation and finding: missing or unknown header keys and columns, a convention that
 /// is not stated or contradicts itself, text in numbers, points out of order or twice, `V̂` not positive or not monotone
 /// in a speed group, missing derivatives.
-pub fn parse_csv(text: &str) -> Result<DerivativeTable> {
+pub(crate) fn parse_csv(text: &str) -> Result<DerivativeTable> {
     parse_csv_in(text, StatedConvention::default()).map(|(table, _)| table)
 }
 
 /// As [`parse_csv`], with what the caller states about the convention; the second value is the one the text is in.
-pub fn parse_csv_in(text: &str, stated: StatedConvention) -> Result<(DerivativeTable, Convention)> {
+pub(crate) fn parse_csv_in(
+    text: &str,
+    stated: StatedConvention,
+) -> Result<(DerivativeTable, Convention)> {
     let options = ReadOptions {
         convention: stated,
         ..ReadOptions::default()
@@ -160,13 +164,13 @@ fn parse_long(text: &str, options: &ReadOptions) -> Result<(DerivativeTable, Con
     Ok((table, convention))
 }
 
-/// Writes a table in this project's CSV and convention; [`parse_csv`] gives the same table back, bit for bit.
+/// Writes a table in this project's CSV and convention; `parse_csv` gives the same table back, bit for bit.
 pub fn write_csv(table: &DerivativeTable, out: &mut dyn Write) -> std::io::Result<()> {
     write_csv_in(table, &Convention::default(), out)
 }
 
 /// Writes points of a few derivatives, too few for a table, in the columns and convention of [`write_csv`]: what one motion alone tells.
-pub fn write_points(
+pub(crate) fn write_points(
     (name, width_m, header): (&str, f64, &TableHeader),
     points: &BTreeMap<Derivative, Vec<DerivativePoint>>,
     out: &mut dyn Write,
@@ -189,7 +193,7 @@ pub fn write_points(
 }
 
 /// Writes a table in this project's CSV in `convention`, which its header states.
-pub fn write_csv_in(
+pub(crate) fn write_csv_in(
     table: &DerivativeTable,
     convention: &Convention,
     out: &mut dyn Write,

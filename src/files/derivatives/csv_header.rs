@@ -47,7 +47,7 @@ pub(super) struct Head {
 
 impl Head {
     /// Reads the comment lines at the head of `text`.
-    pub fn read(text: &str) -> Result<Self> {
+    pub(crate) fn read(text: &str) -> Result<Self> {
         let mut header = CommentHeader::new(&FORMATS, &KEYS, &REPEATED);
         for line in text.lines() {
             if !header.take(line)? {
@@ -58,7 +58,7 @@ impl Head {
     }
 
     /// Number of comment lines.
-    pub fn lines(&self) -> usize {
+    pub(crate) fn lines(&self) -> usize {
         self.header.lines()
     }
 
@@ -66,7 +66,7 @@ impl Head {
     ///
     /// # Errors
     /// [`Error::Input`] with the line that says what cannot be, or contradicts another.
-    pub fn stated(&self) -> Result<StatedConvention> {
+    pub(crate) fn stated(&self) -> Result<StatedConvention> {
         let head = &self.header;
         let mut stated = StatedConvention::default();
         if head.optional("sign_convention").is_some() {
@@ -95,12 +95,12 @@ impl Head {
     }
 
     /// Name of the table.
-    pub fn name(&self) -> Result<String> {
+    pub(crate) fn name(&self) -> Result<String> {
         Ok(self.header.required("name")?.value.clone())
     }
 
     /// Width `B`, m, of a file that must state it unless the caller does.
-    pub fn width_m(&self, stated: Option<f64>) -> Result<f64> {
+    pub(crate) fn width_m(&self, stated: Option<f64>) -> Result<f64> {
         match self.width_stated(stated)? {
             Some(width) => Ok(width),
             None => self.header.required("width_m")?.positive(),
@@ -108,7 +108,7 @@ impl Head {
     }
 
     /// Width `B`, m, if the file or the caller states it; they may not contradict each other.
-    pub fn width_stated(&self, stated: Option<f64>) -> Result<Option<f64>> {
+    pub(crate) fn width_stated(&self, stated: Option<f64>) -> Result<Option<f64>> {
         let stated = stated
             .map(|width| crate::error::positive("width_m", width))
             .transpose()?;
@@ -125,7 +125,7 @@ impl Head {
     }
 
     /// Where the table comes from.
-    pub fn provenance(&self) -> Result<TableHeader> {
+    pub(crate) fn provenance(&self) -> Result<TableHeader> {
         let head = &self.header;
         let length = head.optional("model_length_m");
         Ok(TableHeader {

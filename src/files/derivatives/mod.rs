@@ -8,17 +8,18 @@ mod workbook;
 mod workbook_writer;
 mod xlsx_cells;
 
-pub use csv_file::{
-    CSV_COLUMNS, parse_csv, parse_csv_in, read_csv, read_csv_in, read_csv_with, write_csv,
-    write_csv_in, write_points,
-};
-pub use workbook::{TABLE_3_2_FREQUENCIES_HZ, WorkbookOptions, read_workbook, read_workbook_in};
-pub use workbook_writer::{workbook_bytes, workbook_bytes_in, write_workbook};
+#[cfg(test)]
+pub(crate) use csv_file::parse_csv_in;
+pub(crate) use csv_file::{parse_csv, read_csv_with, write_csv_in, write_points};
+pub use csv_file::{read_csv, write_csv};
+pub(crate) use workbook::{TABLE_3_2_FREQUENCIES_HZ, read_workbook_in};
+pub use workbook::{WorkbookOptions, read_workbook};
+pub(crate) use workbook_writer::{workbook_bytes, workbook_bytes_in};
 
 use crate::aerodynamics::derivatives::{DerivativeTable, Missing, notation};
 
 /// Whether `name` means a file that holds a table, not an embedded deck: it ends in `.csv` or `.xlsx`.
-pub fn is_table_file(name: &str) -> bool {
+pub(crate) fn is_table_file(name: &str) -> bool {
     let name = name.to_lowercase();
     name.ends_with(".csv") || name.ends_with(".xlsx")
 }
@@ -34,7 +35,7 @@ pub fn named_table(name: &str, directory: &std::path::Path) -> crate::Result<Der
 
 /// What a file of derivatives does not say of itself.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct ReadOptions {
+pub(crate) struct ReadOptions {
     /// Notation, argument and axes; what the file states must not contradict them.
     pub convention: notation::StatedConvention,
     /// Width of the section model, m.
@@ -51,7 +52,7 @@ pub fn read_table(path: impl AsRef<std::path::Path>) -> crate::Result<Derivative
 }
 
 /// The same with what the caller states; the second value is the convention that the file is in.
-pub fn read_table_with(
+pub(crate) fn read_table_with(
     path: impl AsRef<std::path::Path>,
     options: &ReadOptions,
 ) -> crate::Result<(DerivativeTable, notation::Convention)> {

@@ -30,7 +30,7 @@ use std::f64::consts::TAU;
 use std::path::Path;
 
 /// Frequencies of the tests, Hz, in test order at each speed (Table 3.2 of the thesis).
-pub const TABLE_3_2_FREQUENCIES_HZ: [f64; 8] = [0.25, 0.5, 0.8, 1.1, 1.4, 1.7, 2.0, 2.5];
+pub(crate) const TABLE_3_2_FREQUENCIES_HZ: [f64; 8] = [0.25, 0.5, 0.8, 1.1, 1.4, 1.7, 2.0, 2.5];
 
 /// Name of the sheet of notes.
 pub(super) const NOTES: &str = "Notes";
@@ -77,7 +77,7 @@ pub fn read_workbook(path: impl AsRef<Path>, options: &WorkbookOptions) -> Resul
 }
 
 /// The same; the second value is the convention that the workbook is in.
-pub fn read_workbook_in(
+pub(crate) fn read_workbook_in(
     path: impl AsRef<Path>,
     options: &WorkbookOptions,
 ) -> Result<(DerivativeTable, Convention)> {

@@ -15,13 +15,12 @@ use crate::files::derivatives::workbook::NOTES;
 use crate::files::derivatives::workbook::REDUCED_VELOCITIES;
 use crate::files::derivatives::workbook::SPEEDS;
 use rust_xlsxwriter::{Workbook, Worksheet, XlsxError};
-use std::path::Path;
 
 /// One number of a test point.
 type Number = fn(&ExpressedPoint) -> f64;
 
 /// The bytes of a workbook with the figures of `table`, in this project's convention, which is NTNU's.
-pub fn workbook_bytes(table: &DerivativeTable) -> Result<Vec<u8>> {
+pub(crate) fn workbook_bytes(table: &DerivativeTable) -> Result<Vec<u8>> {
     workbook_bytes_in(table, &Convention::default())
 }
 
@@ -30,7 +29,10 @@ pub fn workbook_bytes(table: &DerivativeTable) -> Result<Vec<u8>> {
 ///
 /// # Errors
 /// [`Error::Input`] when a point has no mean speed, which the layout needs; [`Error::Numerical`] when the workbook cannot be made.
-pub fn workbook_bytes_in(table: &DerivativeTable, convention: &Convention) -> Result<Vec<u8>> {
+pub(crate) fn workbook_bytes_in(
+    table: &DerivativeTable,
+    convention: &Convention,
+) -> Result<Vec<u8>> {
     let place = |d: Derivative| format!("table {}, {d}", table.name);
     for d in table.derivatives() {
         if table.points(d).iter().any(|p| p.mean_speed_m_s.is_none()) {
@@ -55,15 +57,6 @@ pub fn workbook_bytes_in(table: &DerivativeTable, convention: &Convention) -> Re
     }
     write_notes(book.add_worksheet(), table, convention).map_err(failed)?;
     book.save_to_buffer().map_err(failed)
-}
-
-/// Writes a workbook to `path`.
-///
-/// # Errors
-/// Those of [`workbook_bytes`]; [`Error::Io`].
-pub fn write_workbook(table: &DerivativeTable, path: impl AsRef<Path>) -> Result<()> {
-    let path = path.as_ref();
-    std::fs::write(path, workbook_bytes(table)?).map_err(|e| Error::io(path, e))
 }
 
 fn write_sheet(
@@ -119,7 +112,7 @@ mod tests {
     fn round_trip(table: &DerivativeTable) -> DerivativeTable {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("AerodynamicDerivatives_round.xlsx");
-        write_workbook(table, &path).unwrap();
+        std::fs::write(&path, workbook_bytes(table).unwrap()).unwrap();
         let options = WorkbookOptions {
             width_m: Some(table.width_m),
             ..WorkbookOptions::default()
@@ -151,7 +144,7 @@ mod tests {
         // and without being told the width, which the frequencies give
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("w.xlsx");
-        write_workbook(&table, &path).unwrap();
+        std::fs::write(&path, workbook_bytes(&table).unwrap()).unwrap();
         let again = read_workbook(&path, &WorkbookOptions::default()).unwrap();
         assert!((again.width_m / table.width_m - 1.0).abs() < 1e-12);
     }

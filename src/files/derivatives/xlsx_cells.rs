@@ -24,7 +24,7 @@ pub(super) enum Cell {
 
 impl Cell {
     /// The content as text.
-    pub fn text(&self) -> String {
+    pub(crate) fn text(&self) -> String {
         match self {
             Self::Number(x) => x.to_string(),
             Self::Text(text) => text.clone(),
@@ -40,12 +40,12 @@ pub(super) struct Sheet {
 
 impl Sheet {
     /// First row with a content.
-    pub fn first_row(&self) -> u32 {
+    pub(crate) fn first_row(&self) -> u32 {
         self.cells.keys().next().map_or(0, |(row, _)| *row)
     }
 
     /// Column and text of each cell in the first row.
-    pub fn titles(&self) -> Vec<(u32, String)> {
+    pub(crate) fn titles(&self) -> Vec<(u32, String)> {
         let first = self.first_row();
         self.cells
             .range((first, 0)..=(first, u32::MAX))
@@ -54,13 +54,13 @@ impl Sheet {
     }
 
     /// The titles in words.
-    pub fn title_words(&self) -> String {
+    pub(crate) fn title_words(&self) -> String {
         let titles: Vec<String> = self.titles().into_iter().map(|t| t.1).collect();
         format!("`{}`", titles.join("`, `"))
     }
 
     /// The last row in which one of `columns` holds something.
-    pub fn last_row(&self, columns: &[u32]) -> u32 {
+    pub(crate) fn last_row(&self, columns: &[u32]) -> u32 {
         let rows = self.cells.keys().filter(|(_, c)| columns.contains(c));
         rows.map(|(row, _)| *row).max().unwrap_or(0)
     }
@@ -77,7 +77,7 @@ impl Book {
     /// # Errors
     /// [`Error::Io`] for a file that is not there; [`Error::Input`] for one that is no workbook or unpacks to more than any
     /// table of derivatives needs.
-    pub fn open(path: &Path) -> Result<Self> {
+    pub(crate) fn open(path: &Path) -> Result<Self> {
         let file = File::open(path).map_err(|e| Error::io(path, e))?;
         check_size(file)?;
         let book = open_workbook(path).map_err(|e: calamine::XlsxError| no_workbook(&e))?;
@@ -85,12 +85,12 @@ impl Book {
     }
 
     /// Names of the sheets.
-    pub fn names(&self) -> Vec<String> {
+    pub(crate) fn names(&self) -> Vec<String> {
         self.book.sheet_names()
     }
 
     /// The sheet of this name, whose capitals do not count; `None` when there is none.
-    pub fn sheet(&mut self, wanted: &str) -> Result<Option<Sheet>> {
+    pub(crate) fn sheet(&mut self, wanted: &str) -> Result<Option<Sheet>> {
         let names = self.book.sheet_names();
         let found = names.iter().find(|n| n.trim().eq_ignore_ascii_case(wanted));
         let Some(name) = found else { return Ok(None) };

@@ -26,7 +26,7 @@ use std::path::Path;
 
 /// What one file, or one group of it, holds.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct ChannelSet {
+pub(crate) struct ChannelSet {
     /// Sampled channels in the order of the file.
     pub channels: Vec<Channel>,
     /// Single numbers and texts by name.
@@ -39,7 +39,7 @@ pub struct ChannelSet {
 
 /// One sampled channel.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Channel {
+pub(crate) struct Channel {
     /// Name, as a channel map has it.
     pub name: String,
     /// Samples in the unit of the file.
@@ -50,7 +50,7 @@ pub struct Channel {
 
 /// A single value.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Attribute {
+pub(crate) enum Attribute {
     /// A number.
     Number(f64),
     /// A text.
@@ -94,7 +94,7 @@ impl ChannelSet {
     /// # Errors
     /// [`Error::Io`]; [`Error::Input`] with the file for one that is truncated or corrupt, of an unknown kind, or
     /// without the group.
-    pub fn read(path: impl AsRef<Path>, group: Option<&str>) -> Result<Self> {
+    pub(crate) fn read(path: impl AsRef<Path>, group: Option<&str>) -> Result<Self> {
         let path = path.as_ref();
         let length = std::fs::metadata(path)
             .map_err(|e| Error::io(path, e))?
@@ -132,12 +132,12 @@ impl ChannelSet {
     }
 
     /// The channel of this name.
-    pub fn channel(&self, name: &str) -> Option<&Channel> {
+    pub(crate) fn channel(&self, name: &str) -> Option<&Channel> {
         self.channels.iter().find(|c| c.name == name)
     }
 
     /// The attribute of this name as a number.
-    pub fn number(&self, name: &str) -> Option<f64> {
+    pub(crate) fn number(&self, name: &str) -> Option<f64> {
         match self.attributes.get(name) {
             Some(Attribute::Number(x)) => Some(*x),
             _ => None,
@@ -145,7 +145,7 @@ impl ChannelSet {
     }
 
     /// Everything that is there, in words, for a message.
-    pub fn listing(&self) -> String {
+    pub(crate) fn listing(&self) -> String {
         let names: Vec<&str> = self.channels.iter().map(|c| c.name.as_str()).collect();
         let mut text = if names.is_empty() {
             "no channel".to_owned()

@@ -15,7 +15,7 @@ impl<'a> Bytes<'a> {
     ///
     /// # Errors
     /// [`Error::Input`] with the byte at which the file ends too early.
-    pub fn take(&mut self, count: usize) -> Result<&'a [u8]> {
+    pub(crate) fn take(&mut self, count: usize) -> Result<&'a [u8]> {
         let end = self.at.checked_add(count);
         let taken = end.and_then(|end| self.data.get(self.at..end));
         let Some(taken) = taken else {
@@ -34,7 +34,7 @@ impl<'a> Bytes<'a> {
     }
 
     /// `N` bytes, the least significant first.
-    pub fn little<const N: usize>(&mut self) -> Result<[u8; N]> {
+    pub(crate) fn little<const N: usize>(&mut self) -> Result<[u8; N]> {
         let mut bytes = [0; N];
         bytes.copy_from_slice(self.take(N)?);
         if self.big_endian {
@@ -43,16 +43,16 @@ impl<'a> Bytes<'a> {
         Ok(bytes)
     }
 
-    pub fn u32(&mut self) -> Result<u32> {
+    pub(crate) fn u32(&mut self) -> Result<u32> {
         Ok(u32::from_le_bytes(self.little()?))
     }
 
-    pub fn u64(&mut self) -> Result<u64> {
+    pub(crate) fn u64(&mut self) -> Result<u64> {
         Ok(u64::from_le_bytes(self.little()?))
     }
 
     /// A text with its length in front.
-    pub fn text(&mut self) -> Result<String> {
+    pub(crate) fn text(&mut self) -> Result<String> {
         let length = self.u32()? as usize;
         Ok(String::from_utf8_lossy(self.take(length)?).into_owned())
     }

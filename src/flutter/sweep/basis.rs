@@ -132,7 +132,7 @@ impl LinearForces {
     }
 
     /// Their names, `force.motion.term`, e.g. `vertical.torsion.e0`.
-    pub fn names(&self) -> &[String] {
+    pub(crate) fn names(&self) -> &[String] {
         &self.names
     }
 

@@ -2,10 +2,7 @@
 
 use super::basis::LinearForces;
 use super::pencil::Supports;
-use crate::flutter::characteristic::{determinant_and_adjugate, trace_of_product};
-use nalgebra::Complex;
-
-type Complex64 = Complex<f64>;
+use crate::flutter::dynamic_stiffness::{Complex64, Determinant, ZERO, oscillator};
 
 /// Relative size of the last Newton step.
 const TOLERANCE: f64 = 1e-13;
@@ -31,7 +28,7 @@ pub(super) fn refine<const N: usize>(
     (mut speed, mut omega): (f64, f64),
 ) -> Option<Crossing> {
     for _ in 0..STEPS {
-        let at = determinant(forces, coefficients, supports, speed, omega);
+        let at = singularity(forces, coefficients, supports, speed, omega);
         // i d_λ is the derivative along ω
         let (by_omega, by_speed) = (
             Complex64::new(-at.by_lambda.im, at.by_lambda.re),
@@ -57,21 +54,20 @@ pub(super) fn refine<const N: usize>(
     None
 }
 
-/// `det D(λ, V)` with its derivatives.
-struct Determinant {
+/// `D(λ, V)` of [`dynamic_stiffness`](crate::flutter::dynamic_stiffness) at `λ = iω`, its determinant with derivatives.
+struct Singularity {
     value: Complex64,
     by_lambda: Complex64,
     by_speed: Complex64,
 }
 
-/// `D = λ²M + λR + K − ½ρV²B² G(λB/V)` at `λ = iω`.
-fn determinant<const N: usize>(
+fn singularity<const N: usize>(
     forces: &LinearForces,
     coefficients: &[f64],
     s: &Supports<N>,
     speed: f64,
     omega: f64,
-) -> Determinant {
+) -> Singularity {
     let width = s.width;
     let p = Complex64::new(0.0, omega * width / speed);
     let (g, slope) = forces.transfer::<N>(p, coefficients);
@@ -79,26 +75,19 @@ fn determinant<const N: usize>(
     let lambda = Complex64::new(0.0, omega);
     let air = 0.5 * s.density * width * width;
     let (pressure, lag) = (air * speed * speed, air * width);
-    let zero = Complex64::new(0.0, 0.0);
-    let (mut d, mut by_lambda, mut by_speed) = ([[zero; N]; N], [[zero; N]; N], [[zero; N]; N]);
+    let (mut d, mut by_lambda, mut by_speed) = ([[ZERO; N]; N], [[ZERO; N]; N], [[ZERO; N]; N]);
     for i in 0..N {
         for j in 0..N {
-            d[i][j] = -g[i][j] * pressure;
-            by_lambda[i][j] = -slope[i][j] * (lag * speed);
+            let (value, rate) = oscillator(lambda, s.entry(i, j));
+            d[i][j] = value - g[i][j] * pressure;
+            by_lambda[i][j] = rate - slope[i][j] * (lag * speed);
             by_speed[i][j] = g[i][j] * (-2.0 * air * speed) + slope[i][j] * lambda * lag;
         }
-        let (m, r, k) = (s.mass[i], s.damping[i], s.stiffness[i]);
-        d[i][i] += Complex64::new(k - m * omega * omega, r * omega);
-        by_lambda[i][i] += lambda * (2.0 * m) + r;
     }
-    for (i, j) in [(0, N - 1), (N - 1, 0)] {
-        d[i][j] -= s.coupling * omega * omega;
-        by_lambda[i][j] += lambda * (2.0 * s.coupling);
-    }
-    let (value, adjugate) = determinant_and_adjugate(&d, N);
-    Determinant {
-        value,
-        by_lambda: trace_of_product(&adjugate, &by_lambda, N),
-        by_speed: trace_of_product(&adjugate, &by_speed, N),
+    let determinant = Determinant::of(&d, N);
+    Singularity {
+        value: determinant.value,
+        by_lambda: determinant.along(&by_lambda),
+        by_speed: determinant.along(&by_speed),
     }
 }

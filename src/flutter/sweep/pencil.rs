@@ -4,6 +4,7 @@
 //! `A = M + ½ρB⁴/K² G(iK)` is a full complex matrix and `R`, `K_s` are diagonal. A static unbalance is an entry of `M`
 //! beside the diagonal; `G` is about the axis of the section ([`Supports::at_axis`]).
 
+use crate::section::Support;
 use nalgebra::Complex;
 
 type Complex64 = Complex<f64>;
@@ -23,6 +24,22 @@ pub(super) struct Supports<const N: usize> {
 }
 
 impl<const N: usize> Supports<N> {
+    /// One entry of the three matrices.
+    pub(super) fn entry(&self, i: usize, j: usize) -> Support {
+        match i.abs_diff(j) {
+            0 => Support {
+                mass: self.mass[i],
+                damping: self.damping[i],
+                stiffness: self.stiffness[i],
+            },
+            apart if apart == N - 1 => Support {
+                mass: self.coupling,
+                ..Support::default()
+            },
+            _ => Support::default(),
+        }
+    }
+
     /// `Tᵀ G T`: heave is the first degree of freedom, rotation the last.
     pub(super) fn at_axis(&self, mut g: [[Complex64; N]; N]) -> [[Complex64; N]; N] {
         if self.axis != 0.0 {

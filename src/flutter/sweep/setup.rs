@@ -29,7 +29,7 @@ pub(super) fn grid(k_min: f64, tested_max: Option<f64>) -> Vec<f64> {
 
 /// Mass, damping, stiffness of the supports in units of the rotation. Does not allocate for values that are right.
 pub(super) fn supports<const N: usize>(section: &SectionModel) -> Result<Supports<N>> {
-    let usual = section.diagonal()?;
+    let usual = section.supports()?;
     let square = section.width_m * section.width_m;
     let mut s = Supports {
         width: section.width_m,
@@ -43,13 +43,13 @@ pub(super) fn supports<const N: usize>(section: &SectionModel) -> Result<Support
     };
     let mut used = 0;
     for (dof, support) in Dof::THREE.into_iter().zip(usual) {
-        let (Some((mass, damping, stiffness)), true) = (support, used < N) else {
+        let (Some(support), true) = (support, used < N) else {
             continue;
         };
         let scale = if dof == Dof::Torsion { 1.0 } else { square };
-        s.mass[used] = scale * mass;
-        s.damping[used] = scale * damping;
-        s.stiffness[used] = scale * stiffness;
+        s.mass[used] = scale * support.mass;
+        s.damping[used] = scale * support.damping;
+        s.stiffness[used] = scale * support.stiffness;
         used += 1;
     }
     Ok(s)

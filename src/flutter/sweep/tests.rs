@@ -79,7 +79,7 @@ fn compare(
         };
         match (sweep.onset(&s, &coefficients).unwrap(), full.onset()) {
             (SweepOutcome::Onset(fast), Some(slow))
-                if fast.speed_m_s < slow.speed_m_s * (1.0 - 1e-9)
+                if fast.speed_m_s < slow.at.speed_m_s * (1.0 - 1e-9)
                     && begins_to_grow(&coupled, fast.speed_m_s) =>
             {
                 // two crossings between neighbouring speeds of the search
@@ -89,11 +89,11 @@ fn compare(
             (SweepOutcome::Onset(fast), Some(slow)) => {
                 onsets += 1;
                 assert!(
-                    (fast.speed_m_s / slow.speed_m_s - 1.0).abs() < 1e-9,
+                    (fast.speed_m_s / slow.at.speed_m_s - 1.0).abs() < 1e-9,
                     "{sample}: {fast:?} {slow:?}"
                 );
                 assert!(
-                    (fast.frequency_hz / slow.frequency_hz - 1.0).abs() < 1e-9,
+                    (fast.frequency_hz / slow.at.frequency_hz - 1.0).abs() < 1e-9,
                     "{sample}"
                 );
                 assert_eq!(

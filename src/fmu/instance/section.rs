@@ -189,16 +189,16 @@ impl OnsetCard {
     fn take(&mut self, found: FlutterSearch) {
         let (at, tested, warnings) = match found {
             FlutterSearch::Onset(o) => (
-                (o.speed_m_s, o.frequency_hz, o.reduced_velocity),
+                (o.at.speed_m_s, o.at.frequency_hz, o.at.reduced_velocity),
                 o.in_tested_range,
                 o.warnings,
             ),
             FlutterSearch::UnstableAtOrBelow(start) => {
-                let (speed, why) = (start.speed_m_s, start.explain());
+                let (speed, why) = (start.at.speed_m_s, start.explain());
                 self.warnings
                     .push(format!("the onset lies at {speed:.3} m/s or lower: {why}"));
                 (
-                    (speed, start.frequency_hz, start.reduced_velocity),
+                    (speed, start.at.frequency_hz, start.at.reduced_velocity),
                     start.in_tested_range,
                     start.warnings,
                 )

@@ -241,10 +241,10 @@ fn onset_sentences(onset: &Onset) -> Vec<String> {
     let mut sentences = vec![format!(
         "Flutter onset at {} m/s with {} Hz, V* = {}, K = {}; |y|/(B|θ|) = {}, y leads θ by {}°. \
          Its reduced frequency lies {} the tested range.",
-        digits(onset.speed_m_s),
-        digits(onset.frequency_hz),
-        digits(onset.reduced_velocity.v_star()),
-        digits(onset.reduced_frequency.full_width()),
+        digits(onset.at.speed_m_s),
+        digits(onset.at.frequency_hz),
+        digits(onset.at.reduced_velocity.v_star()),
+        digits(onset.at.reduced_frequency.full_width()),
         digits(onset.mode_ratio),
         digits(onset.phase_deg),
         if onset.in_tested_range == Some(false) {

@@ -14,7 +14,7 @@ pub enum Growing {
     Allow,
 }
 
-/// Growth below the onset of the section of a model, by extrapolation alone; see [`unwanted_growth`].
+/// Growth below the onset of the section of a model, by extrapolation alone; see `unwanted_growth`.
 pub fn growth_of(model: &TrainedModel) -> Result<UnwantedGrowth> {
     let section = CoupledSection::with_model(&model.section.structure()?, &model.model)?;
     let search = OnsetSearch {
@@ -33,7 +33,7 @@ pub(super) fn check(model: &TrainedModel, growing: Growing) -> Result<()> {
     if growth.is_none() {
         return Ok(());
     }
-    Err(Error::Numerical(format!(
+    Err(Error::Unstable(format!(
         "{} is not exported: it {}",
         model.name,
         growth.explain()

@@ -93,7 +93,7 @@ impl IdentifiedDerivatives {
     }
 
     /// Mean speeds of all estimates, m/s, rising and in groups of test points.
-    pub fn speed_groups(&self) -> Vec<Vec<f64>> {
+    pub(crate) fn speed_groups(&self) -> Vec<Vec<f64>> {
         near_groups(self.estimates.iter().map(|e| e.mean_speed_m_s), SAME_SPEED)
     }
 
@@ -101,12 +101,12 @@ impl IdentifiedDerivatives {
     ///
     /// # Errors
     /// [`Error::Input`] when the runs did not drive both heave and rotation.
-    pub fn table(&self, name: &str, header: TableHeader) -> Result<DerivativeTable> {
+    pub(crate) fn table(&self, name: &str, header: TableHeader) -> Result<DerivativeTable> {
         DerivativeTable::new(name, self.width_m, header, self.points())
     }
 
     /// The points of every derivative that was identified, in the order of a table.
-    pub fn points(&self) -> BTreeMap<Derivative, Vec<DerivativePoint>> {
+    pub(crate) fn points(&self) -> BTreeMap<Derivative, Vec<DerivativePoint>> {
         let mut points = BTreeMap::<Derivative, Vec<DerivativePoint>>::new();
         for e in &self.estimates {
             points

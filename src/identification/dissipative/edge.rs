@@ -14,7 +14,7 @@ pub(super) struct Edge {
 
 impl Edge {
     /// Of the matrix `sym Im G/K` there, n×n in the order of `dofs`.
-    pub fn new(matrix: DMatrix<f64>, dofs: &[Dof]) -> Self {
+    pub(crate) fn new(matrix: DMatrix<f64>, dofs: &[Dof]) -> Self {
         let mut edge = Self::nothing(dofs.len());
         let size = matrix.norm();
         if size == 0.0 {
@@ -38,7 +38,7 @@ impl Edge {
     }
 
     /// Where nothing is asked.
-    pub fn nothing(n: usize) -> Self {
+    pub(crate) fn nothing(n: usize) -> Self {
         Self {
             size: 1.0,
             own: DMatrix::zeros(n, n),

@@ -76,7 +76,12 @@ impl Equation {
         gradient
     }
 
-    pub fn account(&self, n: usize, alone: &[Vec<f64>], held: &[Vec<f64>]) -> ActiveConstraint {
+    pub(crate) fn account(
+        &self,
+        n: usize,
+        alone: &[Vec<f64>],
+        held: &[Vec<f64>],
+    ) -> ActiveConstraint {
         ActiveConstraint {
             kind: self.kind,
             k: None,

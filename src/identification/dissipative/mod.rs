@@ -75,7 +75,7 @@ pub(crate) struct Wishes {
 
 impl Wishes {
     /// Whether anything is asked.
-    pub fn any(&self) -> bool {
+    pub(crate) fn any(&self) -> bool {
         self.constraints == Constraints::Dissipative || !self.limits.is_empty()
     }
 }
@@ -91,7 +91,7 @@ pub(crate) struct LinearEntry {
 
 impl LinearEntry {
     /// Coefficients at given free numbers.
-    pub fn coefficients(&self, u: &DVector<f64>) -> Vec<f64> {
+    pub(crate) fn coefficients(&self, u: &DVector<f64>) -> Vec<f64> {
         let moved = &self.spread * u.rows(self.at, self.spread.ncols());
         self.values.iter().zip(&moved).map(|(v, d)| v + d).collect()
     }
@@ -145,7 +145,7 @@ struct Cut {
 
 impl Dissipation {
     /// For the bases of all transfer functions, row by row.
-    pub fn new(bases: &[Basis], wishes: &Wishes) -> Self {
+    pub(crate) fn new(bases: &[Basis], wishes: &Wishes) -> Self {
         let k_max = wishes.k_max;
         let n = bases.len().isqrt();
         let feed = bases[0].feed();
@@ -224,7 +224,7 @@ impl Dissipation {
     ///
     /// # Errors
     /// [`Error::Numerical`] when no coefficients satisfy them.
-    pub fn solve(&self, entries: &[LinearEntry]) -> Result<Option<Solution>> {
+    pub(crate) fn solve(&self, entries: &[LinearEntry]) -> Result<Option<Solution>> {
         let width = entries.iter().map(LinearEntry::end).max().unwrap_or(0);
         let alone: Vec<Vec<f64>> = entries.iter().map(|e| e.values.clone()).collect();
         let edge = match self.conditions.first() {

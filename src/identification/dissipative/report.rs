@@ -190,7 +190,7 @@ impl ConstraintReport {
     }
 
     /// Largest rise of a residual, in percentage points, and where.
-    pub fn dearest(&self) -> Option<(&ConstraintCost, f64)> {
+    pub(crate) fn dearest(&self) -> Option<(&ConstraintCost, f64)> {
         self.costs
             .iter()
             .filter_map(|c| Some((c, 100.0 * (c.with? - c.without?))))

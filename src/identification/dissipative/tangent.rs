@@ -23,7 +23,7 @@ pub(crate) struct Tangent {
 
 impl Tangent {
     /// From the gradients of the constraints, in one scale for all unknowns.
-    pub fn new(gradients: impl Iterator<Item = DVector<f64>>) -> Self {
+    pub(crate) fn new(gradients: impl Iterator<Item = DVector<f64>>) -> Self {
         let mut taken: Vec<DVector<f64>> = Vec::new();
         for mut gradient in gradients {
             let norm = gradient.norm();
@@ -38,12 +38,12 @@ impl Tangent {
     }
 
     /// Number of directions that are taken.
-    pub fn count(&self) -> usize {
+    pub(crate) fn count(&self) -> usize {
         self.taken.len()
     }
 
     /// Orthonormal basis of the directions that are left, n×(n − taken).
-    pub fn basis(&self, n: usize) -> DMatrix<f64> {
+    pub(crate) fn basis(&self, n: usize) -> DMatrix<f64> {
         let mut left: Vec<DVector<f64>> = Vec::new();
         // the unit vectors that stick out furthest come first
         let out = |i: usize| 1.0 - self.taken.iter().map(|q| q[i] * q[i]).sum::<f64>();
@@ -69,7 +69,7 @@ impl Tangent {
 
     /// Covariance of the coefficients of one transfer function, from the variances of the free numbers of each without
     /// constraints: with the projector `P`, that of `P u`.
-    pub fn covariance(&self, entry: &LinearEntry, variances: &DVector<f64>) -> DMatrix<f64> {
+    pub(crate) fn covariance(&self, entry: &LinearEntry, variances: &DVector<f64>) -> DMatrix<f64> {
         let width = entry.spread.ncols();
         let mut rows = DMatrix::zeros(width, variances.len());
         for m in 0..width {

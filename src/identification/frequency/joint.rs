@@ -31,12 +31,12 @@ pub(super) struct JointFit<'a> {
 
 impl<'a> Joint<'a> {
     /// The constrained fit in the columns of the model.
-    pub fn at(&self, poles: &[Vec<f64>]) -> Result<JointFit<'a>> {
+    pub(crate) fn at(&self, poles: &[Vec<f64>]) -> Result<JointFit<'a>> {
         self.fit(poles, true)
     }
 
     /// Weighted residuals of all entries, as the search of poles takes them.
-    pub fn residuals(&self, poles: &[Vec<f64>]) -> Result<DVector<f64>> {
+    pub(crate) fn residuals(&self, poles: &[Vec<f64>]) -> Result<DVector<f64>> {
         // a ridge weighs the terms of the model themselves, else only the space counts
         let native = self.entries.iter().any(|e| e.ridge > 0.0);
         Ok(self.fit(poles, native)?.residuals())
@@ -79,7 +79,7 @@ impl<'a> Joint<'a> {
 
 impl JointFit<'_> {
     /// Coefficients of an entry.
-    pub fn coefficients(&self, e: usize) -> &[f64] {
+    pub(crate) fn coefficients(&self, e: usize) -> &[f64] {
         match &self.held {
             Some(held) => &held.coefficients[e],
             None => &self.solutions[e].coefficients,
@@ -99,7 +99,7 @@ impl JointFit<'_> {
 
     /// Covariance of the coefficients of an entry from the variances of the weighted residuals of all entries: what the
     /// active constraints take is known.
-    pub fn covariance(&self, e: usize, variances: &[Option<f64>]) -> Option<DMatrix<f64>> {
+    pub(crate) fn covariance(&self, e: usize, variances: &[Option<f64>]) -> Option<DMatrix<f64>> {
         let held = self.held.as_ref()?;
         variances[e]?;
         let mut each = Vec::new();

@@ -114,32 +114,32 @@ impl Grid {
     }
 
     /// Values along the axis.
-    pub fn values(&self) -> &[f64] {
+    pub(crate) fn values(&self) -> &[f64] {
         self.axis.values()
     }
 
     /// Symbol of the axis.
-    pub fn symbol(&self) -> &'static str {
+    pub(crate) fn symbol(&self) -> &'static str {
         self.axis.symbol()
     }
 
     /// Greatest number of filters.
-    pub fn filters_max(&self) -> usize {
+    pub(crate) fn filters_max(&self) -> usize {
         self.filters_max
     }
 
     /// Reduced frequencies of the records.
-    pub fn tested_range(&self) -> ReducedFrequencyRange {
+    pub(crate) fn tested_range(&self) -> ReducedFrequencyRange {
         self.tested
     }
 
     /// Degrees of freedom of rows and columns.
-    pub fn dofs(&self) -> &[Dof] {
+    pub(crate) fn dofs(&self) -> &[Dof] {
         &self.dofs
     }
 
     /// The stretches, in the order in which `keep` sees them.
-    pub fn labels(&self) -> &[StretchLabel] {
+    pub(crate) fn labels(&self) -> &[StretchLabel] {
         &self.labels
     }
 
@@ -270,7 +270,7 @@ impl Grid {
     }
 
     /// Sum of squared residuals and of squared data of every force, weighted, in one stretch; `None` in one at rest.
-    pub fn residuals(
+    pub(crate) fn residuals(
         &self,
         stretch: usize,
         value: usize,
@@ -291,7 +291,7 @@ impl Grid {
     }
 
     /// Input that moves in a stretch.
-    pub fn motion(&self, stretch: usize) -> Option<Dof> {
+    pub(crate) fn motion(&self, stretch: usize) -> Option<Dof> {
         self.pass.stretches[stretch]
             .set
             .first()
@@ -355,7 +355,7 @@ impl GridAxis {
     }
 
     /// Symbol of the parameter.
-    pub fn symbol(&self) -> &'static str {
+    pub(crate) fn symbol(&self) -> &'static str {
         match self {
             Self::Discrete(..) => "α",
             Self::Continuous(..) => "p",

@@ -192,7 +192,7 @@ impl<'a> ContinuousColumns<'a> {
     ///
     /// # Errors
     /// [`Error::Input`] for a cut-off at or above half the sampling frequency.
-    pub fn new(
+    pub(crate) fn new(
         record: &DimensionlessRecord,
         bases: &'a [Vec<Basis>],
         cutoff_hz: f64,

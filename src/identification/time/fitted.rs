@@ -28,7 +28,7 @@ impl<'a> Fitted<'a> {
     ///
     /// # Errors
     /// [`Error::Input`] for columns that are not determined, naming the motion that is silent.
-    pub fn new(
+    pub(crate) fn new(
         dofs: &'a [Dof],
         systems: ForceSystems,
         noise_ratio: f64,
@@ -65,7 +65,7 @@ impl<'a> Fitted<'a> {
     ///
     /// # Errors
     /// Constraints that no coefficients satisfy.
-    pub fn constrain(&mut self, bases: &[Basis], wishes: &Wishes) -> Result<()> {
+    pub(crate) fn constrain(&mut self, bases: &[Basis], wishes: &Wishes) -> Result<()> {
         let joint = Joint::new(&self.systems, bases, wishes)?;
         if joint.held.is_none() {
             return Ok(());
@@ -87,18 +87,18 @@ impl<'a> Fitted<'a> {
     }
 
     /// What holds the constrained fit; `None` where nothing does.
-    pub fn active(&self) -> Option<Vec<ActiveConstraint>> {
+    pub(crate) fn active(&self) -> Option<Vec<ActiveConstraint>> {
         Some(self.joint.as_ref()?.held.as_ref()?.active.clone())
     }
 
     /// Coefficients of a transfer function.
-    pub fn values(&self, i: usize, j: usize) -> Vec<f64> {
+    pub(crate) fn values(&self, i: usize, j: usize) -> Vec<f64> {
         let places = self.systems.places(i, j).into_iter();
         places.map(|p| self.coefficients[i][p]).collect()
     }
 
     /// The constant of force `i`, where one is estimated along.
-    pub fn constant(&self, i: usize) -> Option<f64> {
+    pub(crate) fn constant(&self, i: usize) -> Option<f64> {
         let has = self.systems.of_force(i).order.constant;
         has.then_some(self.coefficients[i][0])
     }
@@ -107,7 +107,7 @@ impl<'a> Fitted<'a> {
     ///
     /// # Errors
     /// [`Error::Numerical`] for systems without a solution.
-    pub fn constants(&self) -> Result<Vec<StaticReport>> {
+    pub(crate) fn constants(&self) -> Result<Vec<StaticReport>> {
         let mut reports = Vec::new();
         for (i, &force) in self.dofs.iter().enumerate() {
             let Some(value) = self.constant(i) else {
@@ -160,7 +160,7 @@ impl<'a> Fitted<'a> {
     ///
     /// # Errors
     /// [`Error::Numerical`] for systems without a solution; those of `named`.
-    pub fn reports(
+    pub(crate) fn reports(
         &self,
         named: impl Fn(usize) -> Result<(Vec<String>, Vec<f64>)>,
     ) -> Result<Vec<EntryReport>> {
@@ -209,7 +209,7 @@ impl<'a> Fitted<'a> {
 
     /// Objectives with fewer filters, from the same factorisation, for transfer functions of which all have the same
     /// `feed` columns before their filters.
-    pub fn orders(&self, feed: usize) -> Vec<OrderReport> {
+    pub(crate) fn orders(&self, feed: usize) -> Vec<OrderReport> {
         (1..=self.systems.counts[0] - feed)
             .map(|filters| OrderReport {
                 filters,

@@ -26,7 +26,7 @@ impl Joint {
     ///
     /// # Errors
     /// Rows that do not determine the coefficients, and constraints that no coefficients satisfy.
-    pub fn new(systems: &ForceSystems, bases: &[Basis], wishes: &Wishes) -> Result<Self> {
+    pub(crate) fn new(systems: &ForceSystems, bases: &[Basis], wishes: &Wishes) -> Result<Self> {
         let n = bases.len().isqrt();
         let apart = (0..n).all(|i| (0..n).all(|j| systems.alone(i, j).is_some()))
             && !systems.of_force(0).order.constant;
@@ -83,13 +83,13 @@ impl Joint {
     }
 
     /// Root mean square of the relative weighted residuals, with the constraints.
-    pub fn objective(&self) -> f64 {
+    pub(crate) fn objective(&self) -> f64 {
         let added = self.held.as_ref().map_or(0.0, |h| h.free.norm_squared());
         (self.least + added).sqrt()
     }
 
     /// Coefficients of a transfer function.
-    pub fn values(&self, e: usize) -> &[f64] {
+    pub(crate) fn values(&self, e: usize) -> &[f64] {
         match &self.held {
             Some(held) => &held.coefficients[e],
             None => &self.entries[e].values,
@@ -97,7 +97,7 @@ impl Joint {
     }
 
     /// The constant of force `i` where one is estimated along with the coefficients.
-    pub fn constant(&self, i: usize) -> f64 {
+    pub(crate) fn constant(&self, i: usize) -> f64 {
         match &self.held {
             Some(held) => self.whole[i].coefficients(&held.free)[0],
             None => self.whole[i].values[0],
@@ -105,7 +105,7 @@ impl Joint {
     }
 
     /// Covariance of the coefficients of a transfer function, from the variances of the weighted residuals of all forces.
-    pub fn covariance(&self, e: usize, variances: &[f64]) -> Option<DMatrix<f64>> {
+    pub(crate) fn covariance(&self, e: usize, variances: &[f64]) -> Option<DMatrix<f64>> {
         let held = self.held.as_ref()?;
         let per_force = self.whole.len() / variances.len();
         let mut each = Vec::new();

@@ -30,7 +30,7 @@ pub struct Progress {
 }
 
 /// Called after every record of every pass, from any thread.
-pub type OnProgress<'a> = &'a (dyn Fn(Progress) + Sync);
+pub(crate) type OnProgress<'a> = &'a (dyn Fn(Progress) + Sync);
 
 /// Consecutive samples, at most [`BLOCK_ROWS`], one slice a degree of freedom.
 pub(crate) struct Piece<'a> {
@@ -53,7 +53,7 @@ impl Signals {
 
 impl Piece<'_> {
     /// Number of samples.
-    pub fn rows(&self) -> usize {
+    pub(crate) fn rows(&self) -> usize {
         self.motion[0].len()
     }
 }

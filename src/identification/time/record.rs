@@ -128,32 +128,32 @@ impl DimensionlessRecord {
     }
 
     /// Name of the record.
-    pub fn name(&self) -> &str {
+    pub(crate) fn name(&self) -> &str {
         &self.header.name
     }
 
     /// Mean wind speed, m/s.
-    pub fn mean_speed_m_s(&self) -> f64 {
+    pub(crate) fn mean_speed_m_s(&self) -> f64 {
         self.header.mean_speed_m_s
     }
 
     /// Sampling step in dimensionless time.
-    pub fn delta_s(&self) -> f64 {
+    pub(crate) fn delta_s(&self) -> f64 {
         self.rate * self.step_s
     }
 
     /// Stretches of harmonic motion that the record states.
-    pub fn segments(&self) -> &[Segment] {
+    pub(crate) fn segments(&self) -> &[Segment] {
         &self.header.segments
     }
 
     /// Instants (s) at which one segment gives way to the next.
-    pub fn segment_starts(&self) -> Vec<f64> {
+    pub(crate) fn segment_starts(&self) -> Vec<f64> {
         self.segments().iter().skip(1).map(|s| s.start_s).collect()
     }
 
     /// Reduced frequencies of the segments; for other motions the band that holds their power.
-    pub fn tested_range(&self) -> Option<ReducedFrequencyRange> {
+    pub(crate) fn tested_range(&self) -> Option<ReducedFrequencyRange> {
         let k = |per_sample: f64| ReducedFrequency::from_full_width(per_sample / self.delta_s());
         if self.segments().is_empty() {
             let (low, high) = band(&self.signals.motion)?;
@@ -165,7 +165,7 @@ impl DimensionlessRecord {
     }
 
     /// Subtracts the mean of each force over the record; returns the means, dimensionless.
-    pub fn remove_means(&mut self) -> Vec<f64> {
+    pub(crate) fn remove_means(&mut self) -> Vec<f64> {
         let rows = f64::max(self.signals.len() as f64, 1.0);
         let remove = |force: &mut Vec<f64>| {
             let sums = force.chunks(BLOCK_ROWS).map(|c| c.iter().sum::<f64>());
@@ -178,7 +178,7 @@ impl DimensionlessRecord {
 
     /// The signals at the record's own step, or at the dimensionless step `delta_s` if that is longer, and that step in
     /// seconds.
-    pub fn at_step(&self, delta_s: Option<f64>) -> (Cow<'_, Signals>, f64) {
+    pub(crate) fn at_step(&self, delta_s: Option<f64>) -> (Cow<'_, Signals>, f64) {
         let ratio = delta_s.map_or(1.0, |d| d / self.delta_s());
         // a step equal but for rounding is the same step
         if ratio <= 1.0 + 1e-9 {
@@ -209,12 +209,12 @@ fn check_lengths(name: &str, block: &RecordBlock<'_>, n: usize, read: usize) -> 
 
 impl Signals {
     /// Number of samples.
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.motion[0].len()
     }
 
     /// Number of samples before any motion starts; all of them when none ever does.
-    pub fn still_samples(&self) -> usize {
+    pub(crate) fn still_samples(&self) -> usize {
         let departure = |k: usize| {
             let each = self.motion.iter().map(|m| (m[k] - m[0]).abs());
             each.fold(0.0, f64::max)

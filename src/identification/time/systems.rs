@@ -17,17 +17,17 @@ pub(crate) struct ColumnOrder {
 
 impl ColumnOrder {
     /// Number of columns with `active` inputs.
-    pub fn width(&self, active: usize) -> usize {
+    pub(crate) fn width(&self, active: usize) -> usize {
         self.leading(self.per_input, active)
     }
 
     /// Number of columns that the first `per_input` columns of each of `active` inputs take.
-    pub fn leading(&self, per_input: usize, active: usize) -> usize {
+    pub(crate) fn leading(&self, per_input: usize, active: usize) -> usize {
         usize::from(self.constant) + per_input * active
     }
 
     /// Column `c` of input `j` in the whole system.
-    pub fn index(&self, c: usize, j: usize) -> usize {
+    pub(crate) fn index(&self, c: usize, j: usize) -> usize {
         usize::from(self.constant) + c * self.inputs + j
     }
 
@@ -53,7 +53,7 @@ pub(crate) struct Systems {
 
 impl Pass {
     /// The systems of all candidates, from all stretches.
-    pub fn systems(&self) -> Vec<Rc<Systems>> {
+    pub(crate) fn systems(&self) -> Vec<Rc<Systems>> {
         let count = self.stretches.first().map_or(0, |s| s.factors.len());
         let all = |c: usize| Rc::new(Systems::new(self.order, self.stretches.iter(), c));
         (0..count).map(all).collect()
@@ -62,7 +62,7 @@ impl Pass {
 
 impl Systems {
     /// The systems of one candidate from weighted stretches: summed record by record, then over the records.
-    pub fn new<'a>(
+    pub(crate) fn new<'a>(
         order: ColumnOrder,
         stretches: impl Iterator<Item = &'a Stretch>,
         candidate: usize,
@@ -108,7 +108,7 @@ impl Systems {
     }
 
     /// The rows in which only input `j` moves, for force `i`, when no record moves two at once.
-    pub fn alone(&self, i: usize, j: usize) -> Option<&Factor> {
+    pub(crate) fn alone(&self, i: usize, j: usize) -> Option<&Factor> {
         let single = self.sets.iter().all(|(set, _)| set.len() < 2);
         let mut own = self.sets.iter().filter(|(set, _)| single && set == &[j]);
         own.next().map(|(_, factors)| &factors[i])
@@ -116,7 +116,7 @@ impl Systems {
 
     /// Root mean square, over forces and sets of inputs, of the weighted residual relative to the weighted data, with the
     /// first `per_input` columns of each input. Where one input moves alone, only the transfer functions `among` count.
-    pub fn objective(&self, per_input: usize, among: &dyn Fn(usize, usize) -> bool) -> f64 {
+    pub(crate) fn objective(&self, per_input: usize, among: &dyn Fn(usize, usize) -> bool) -> f64 {
         let (mut sum, mut count) = (0.0, 0.0);
         for (set, factors) in self.sets.iter().filter(|(set, _)| !set.is_empty()) {
             let leading = self.order.leading(per_input, set.len());
@@ -142,7 +142,7 @@ pub(crate) struct ForceSystems {
 
 impl ForceSystems {
     /// The systems that hold the rows of force `i`.
-    pub fn of_force(&self, i: usize) -> &Systems {
+    pub(crate) fn of_force(&self, i: usize) -> &Systems {
         &self.systems[if self.systems.len() == 1 { 0 } else { i }]
     }
 
@@ -158,12 +158,12 @@ impl ForceSystems {
     }
 
     /// The whole system of force `i`.
-    pub fn whole(&self, i: usize) -> Cow<'_, Factor> {
+    pub(crate) fn whole(&self, i: usize) -> Cow<'_, Factor> {
         reduced(&self.of_force(i).whole[i], &self.columns(i))
     }
 
     /// Places of all columns of motion `j` in the whole system of force `i`.
-    pub fn places(&self, i: usize, j: usize) -> Vec<usize> {
+    pub(crate) fn places(&self, i: usize, j: usize) -> Vec<usize> {
         let (order, columns) = (self.of_force(i).order, self.columns(i));
         let place = |c| {
             columns
@@ -174,7 +174,7 @@ impl ForceSystems {
     }
 
     /// The rows in which only motion `j` moves, for force `i`, when no record moves two at once.
-    pub fn alone(&self, i: usize, j: usize) -> Option<Cow<'_, Factor>> {
+    pub(crate) fn alone(&self, i: usize, j: usize) -> Option<Cow<'_, Factor>> {
         let systems = self.of_force(i);
         let leading = systems.order.leading(self.count(i, j), 1);
         let columns: Vec<usize> = (0..leading).collect();

@@ -110,10 +110,10 @@ impl Loaded {
             quantity => {
                 let onset = self.onset(figure.route)?;
                 match quantity {
-                    Quantity::OnsetSpeed => onset.speed_m_s,
-                    Quantity::OnsetFrequency => onset.frequency_hz,
-                    Quantity::OnsetReducedVelocity => onset.reduced_velocity.v_star(),
-                    Quantity::OnsetVHat => onset.reduced_frequency.v_hat(),
+                    Quantity::OnsetSpeed => onset.at.speed_m_s,
+                    Quantity::OnsetFrequency => onset.at.frequency_hz,
+                    Quantity::OnsetReducedVelocity => onset.at.reduced_velocity.v_star(),
+                    Quantity::OnsetVHat => onset.at.reduced_frequency.v_hat(),
                     Quantity::ModeRatio => onset.mode_ratio,
                     Quantity::Phase => onset.phase_deg,
                     _ => onset

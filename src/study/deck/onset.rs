@@ -13,7 +13,7 @@ use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 impl Deck {
     /// The forces on a section that is held, `G` at `K → 0` (n×n), and what a table does not say about them and was
     /// assumed.
-    pub fn static_transfer(&self) -> Result<(TransferMatrix, Option<String>)> {
+    pub(crate) fn static_transfer(&self) -> Result<(TransferMatrix, Option<String>)> {
         let (model, tested) = self.model()?;
         let Some(range) = tested else {
             let still = ReducedFrequency::from_full_width(0.0);
@@ -24,7 +24,11 @@ impl Deck {
     }
 
     /// Onset of the deck itself by the determinant; for a table with the spread between ways of interpolation.
-    pub fn own_onset(&self, structure: &Structure, speed_max_m_s: f64) -> Result<FlutterSearch> {
+    pub(crate) fn own_onset(
+        &self,
+        structure: &Structure,
+        speed_max_m_s: f64,
+    ) -> Result<FlutterSearch> {
         match &self.source {
             Source::Table(table) => {
                 let by = self.interpolation;
@@ -79,7 +83,7 @@ impl Deck {
     ) -> OnsetInterval {
         let onset = |by: Interpolation| {
             let search = self.table_onset(by, table, structure, speed_max_m_s);
-            search.ok()?.onset().map(|o| o.speed_m_s)
+            search.ok()?.onset().map(|o| o.at.speed_m_s)
         };
         let onsets = Interpolation::ALL.map(|by| (by, onset(by)));
         let speeds = || onsets.iter().filter_map(|(_, speed)| *speed);

@@ -29,7 +29,7 @@ impl RouteTable {
         let name = THEORY;
         let found = quasi_steady_onset(name, structure, theory, &study.speeds().search())?;
         // the mode at onset belongs to the linear forces about the equilibrium there
-        let speed = found.search.onset().map(|o| o.speed_m_s);
+        let speed = found.search.onset().map(|o| o.at.speed_m_s);
         let path = static_equilibria(structure, theory, speed.as_slice())?;
         let rotation = path.points.first().map_or(0.0, |p| p.rotation_rad);
         let linear = theory.linearised(rotation)?;
@@ -132,5 +132,5 @@ pub(super) fn limit_onset(
 ) -> Result<Option<f64>> {
     let section = CoupledSection::with_model(structure, limit)?;
     let found = find_onset("", &section, &study.speeds().search(), None)?;
-    Ok(found.onset().map(|o| o.speed_m_s))
+    Ok(found.onset().map(|o| o.at.speed_m_s))
 }

@@ -21,7 +21,7 @@ const SPECTRUM_REACH: (f64, f64) = (0.05, 8.0);
 
 /// Response to turbulence over wind speed.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct BuffetingStudy {
+pub(crate) struct BuffetingStudy {
     /// The self-excited forces in words.
     pub aerodynamics: String,
     /// Degrees of freedom, in the order of all vectors.
@@ -40,7 +40,7 @@ pub struct BuffetingStudy {
 
 /// A wind speed without a stationary response.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct SpeedLeftOut {
+pub(crate) struct SpeedLeftOut {
     /// The speed, m/s.
     pub speed_m_s: f64,
     /// Why.
@@ -49,7 +49,7 @@ pub struct SpeedLeftOut {
 
 /// Spectra at one wind speed.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct SpectrumCurve {
+pub(crate) struct SpectrumCurve {
     /// Mean wind speed, m/s.
     pub speed_m_s: f64,
     /// Frequencies, Hz.
@@ -62,7 +62,7 @@ pub struct SpectrumCurve {
 
 /// Both domains at one wind speed.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct TimeDomain {
+pub(crate) struct TimeDomain {
     /// The records.
     pub ensemble: Ensemble,
     /// Degree by degree of freedom.
@@ -86,7 +86,7 @@ struct AtSpeed {
 
 /// RMS over the speeds of the file, spectra, and the time domain where it is asked for. `progress` is told records done and
 /// all of them.
-pub fn buffeting_study(
+pub(crate) fn buffeting_study(
     study: &WindStudy,
     progress: &(dyn Fn(usize, usize) + Sync),
 ) -> Result<BuffetingStudy> {

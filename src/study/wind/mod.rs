@@ -3,8 +3,10 @@
 mod buffeting;
 mod quasi_steady;
 
-pub use buffeting::{BuffetingStudy, SpectrumCurve, SpeedLeftOut, TimeDomain, buffeting_study};
-pub use quasi_steady::{QuasiSteadyStudy, SimulatedMotion, quasi_steady_study, simulated_motion};
+pub(crate) use buffeting::{BuffetingStudy, SpectrumCurve, buffeting_study};
+pub(crate) use quasi_steady::{
+    QuasiSteadyStudy, SimulatedMotion, quasi_steady_study, simulated_motion,
+};
 
 use super::{FlutterBlock, SpeedRange};
 use crate::aerodynamics::derivatives::Extrapolation;
@@ -33,7 +35,7 @@ pub fn example_wind_study_text() -> &'static str {
 /// Contents of a wind file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct WindStudy {
+pub(crate) struct WindStudy {
     /// Version of the file, 1.
     pub schema: u32,
     /// Name in titles.
@@ -87,7 +89,7 @@ pub struct CoefficientsBlock {
 /// What is stepped in the time domain.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub struct TimeBlock {
+pub(crate) struct TimeBlock {
     /// Mean wind speeds, m/s; none by default.
     pub speeds_m_s: Vec<f64>,
     /// Records at each.
@@ -97,7 +99,7 @@ pub struct TimeBlock {
 /// A run with nonlinear quasi-steady forces, released from the static equilibrium.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct SimulationBlock {
+pub(crate) struct SimulationBlock {
     /// Mean wind speed, m/s.
     pub wind_speed_m_s: f64,
     /// Length of the run, s.
@@ -127,7 +129,7 @@ impl WindStudy {
     ///
     /// # Errors
     /// [`Error::Io`] when it cannot be read; [`Error::Input`] with file and line for everything that is wrong in it.
-    pub fn read(path: &Path) -> Result<Self> {
+    pub(crate) fn read(path: &Path) -> Result<Self> {
         toml_lines::read(path, Self::from_toml)
     }
 
@@ -135,7 +137,7 @@ impl WindStudy {
     ///
     /// # Errors
     /// [`Error::Input`] with line and key for everything that is wrong in it.
-    pub fn from_toml(text: &str, directory: PathBuf) -> Result<Self> {
+    pub(crate) fn from_toml(text: &str, directory: PathBuf) -> Result<Self> {
         toml_lines::parse("a wind file", text, |study: &mut Self| {
             study.directory = directory;
             study.validate()
@@ -184,7 +186,7 @@ impl WindStudy {
     ///
     /// # Errors
     /// [`Error::Io`] and those of the file.
-    pub fn trained_model(&self) -> Result<Option<TrainedModel>> {
+    pub(crate) fn trained_model(&self) -> Result<Option<TrainedModel>> {
         if !self.aerodynamics.ends_with(".json") {
             return Ok(None);
         }
@@ -195,7 +197,7 @@ impl WindStudy {
     ///
     /// # Errors
     /// [`Error::Input`] when there is neither.
-    pub fn section(&self) -> Result<SectionModel> {
+    pub(crate) fn section(&self) -> Result<SectionModel> {
         if let Some(section) = &self.section {
             return Ok(section.clone());
         }
@@ -210,7 +212,7 @@ impl WindStudy {
     }
 
     /// Wind speeds of all curves and of the search for the onset.
-    pub fn speed_range(&self) -> Result<SpeedRange> {
+    pub(crate) fn speed_range(&self) -> Result<SpeedRange> {
         Ok(self.speeds.range(&self.section()?))
     }
 
@@ -218,7 +220,7 @@ impl WindStudy {
     ///
     /// # Errors
     /// [`Error::Input`] when the file names none; those of reading.
-    pub fn static_coefficients(&self) -> Result<StaticCoefficients> {
+    pub(crate) fn static_coefficients(&self) -> Result<StaticCoefficients> {
         named_coefficients(&self.coefficients_block()?.source, &self.directory)
     }
 
@@ -229,7 +231,7 @@ impl WindStudy {
     }
 
     /// Quasi-steady theory with its arms.
-    pub fn quasi_steady(&self) -> Result<QuasiSteady> {
+    pub(crate) fn quasi_steady(&self) -> Result<QuasiSteady> {
         let dofs = self.section()?.dofs();
         self.coefficients_block()?.theory(&self.directory, &dofs)
     }
@@ -237,7 +239,7 @@ impl WindStudy {
 
 impl CoefficientsBlock {
     /// Quasi-steady theory with its arms for these degrees of freedom; paths are read against `directory`.
-    pub fn theory(&self, directory: &Path, dofs: &[Dof]) -> Result<QuasiSteady> {
+    pub(crate) fn theory(&self, directory: &Path, dofs: &[Dof]) -> Result<QuasiSteady> {
         let arms = match (&self.arms, &self.arms_from) {
             (Some(arms), _) => *arms,
             (None, Some(source)) => {

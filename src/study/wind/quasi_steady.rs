@@ -21,7 +21,7 @@ const LINE_POINTS: usize = 161;
 
 /// Results of quasi-steady theory over wind speed.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct QuasiSteadyStudy {
+pub(crate) struct QuasiSteadyStudy {
     /// Name of the coefficients.
     pub coefficients: String,
     /// Degrees of freedom, in the order of all vectors.
@@ -43,7 +43,7 @@ pub struct QuasiSteadyStudy {
 }
 
 /// Equilibria, linear models, modes and onset of a wind file.
-pub fn quasi_steady_study(study: &WindStudy) -> Result<QuasiSteadyStudy> {
+pub(crate) fn quasi_steady_study(study: &WindStudy) -> Result<QuasiSteadyStudy> {
     let structure = study.section()?.structure()?;
     let theory = study.quasi_steady()?;
     let table = theory.coefficients();
@@ -77,7 +77,7 @@ pub fn quasi_steady_study(study: &WindStudy) -> Result<QuasiSteadyStudy> {
 
 /// One run with nonlinear forces, and the same with the linear ones.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct SimulatedMotion {
+pub(crate) struct SimulatedMotion {
     /// Mean wind speed, m/s.
     pub speed_m_s: f64,
     /// Degrees of freedom.
@@ -102,7 +102,7 @@ pub struct SimulatedMotion {
 ///
 /// # Errors
 /// Those of the file's parts; [`Error::Numerical`] without an equilibrium at its wind speed.
-pub fn simulated_motion(study: &WindStudy) -> Result<Option<SimulatedMotion>> {
+pub(crate) fn simulated_motion(study: &WindStudy) -> Result<Option<SimulatedMotion>> {
     let Some(run) = &study.simulation else {
         return Ok(None);
     };

@@ -13,7 +13,7 @@ const ZERO_CELSIUS: f64 = 273.15;
 /// State of the air: either the density, or temperature and pressure.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Air {
+pub(crate) struct Air {
     /// Density, kg/m³.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub density_kg_m3: Option<f64>,
@@ -31,7 +31,7 @@ pub struct Air {
 impl Air {
     /// What `own` states, and what is common where it states nothing. A density of one's own puts temperature and
     /// pressure that are common out of force, and the other way round.
-    pub fn over(own: Self, common: Self) -> Self {
+    pub(crate) fn over(own: Self, common: Self) -> Self {
         let by_gas_law = own.temperature_c.is_some() || own.pressure_pa.is_some();
         Self {
             density_kg_m3: own
@@ -48,7 +48,7 @@ impl Air {
     }
 
     /// Whether nothing is stated.
-    pub fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         *self == Self::default()
     }
 
@@ -57,7 +57,7 @@ impl Air {
     /// # Errors
     /// [`Error::Input`] below `place` when neither a density nor temperature and pressure are stated, or both, or for
     /// values that air in a laboratory does not have.
-    pub fn density(&self, place: &str) -> Result<f64> {
+    pub(crate) fn density(&self, place: &str) -> Result<f64> {
         let key = |name: &str| format!("{place}.{name}");
         match (self.density_kg_m3, self.temperature_c, self.pressure_pa) {
             (Some(density), None, None) => within(&key("density_kg_m3"), density, (0.1, 10.0)),

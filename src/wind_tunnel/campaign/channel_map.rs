@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 /// One channel of the files.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct ChannelRef {
+pub(crate) struct ChannelRef {
     /// Name in the file.
     pub name: String,
     /// Unit; may be left out where the file states it.
@@ -26,7 +26,7 @@ pub struct ChannelRef {
 /// Which channel is what. Cells are named as in the rig.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct ChannelMap {
+pub(crate) struct ChannelMap {
     /// Time; may be left out where the sampling frequency is known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub time: Option<ChannelRef>,
@@ -62,7 +62,7 @@ pub struct ChannelMap {
 /// A channel of a cell, or the statement that there is none.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
-pub enum CellChannel {
+pub(crate) enum CellChannel {
     /// Measured.
     Measured(ChannelRef),
     /// Not measured: `"none"`. Taken as zero.
@@ -72,7 +72,7 @@ pub enum CellChannel {
 /// The word that says so.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum NotMeasured {
+pub(crate) enum NotMeasured {
     /// `"none"`.
     None,
 }
@@ -88,7 +88,7 @@ fn is_one(scale: &f64) -> bool {
 
 impl ChannelRef {
     /// A channel in a unit as it is.
-    pub fn new(name: impl Into<String>, unit: &str) -> Self {
+    pub(crate) fn new(name: impl Into<String>, unit: &str) -> Self {
         Self {
             name: name.into(),
             unit: Some(unit.to_owned()),
@@ -116,7 +116,12 @@ impl ChannelRef {
     /// # Errors
     /// [`Error::Input`] at `place` listing what the file holds when there is no such channel, and for units that are
     /// missing, do not fit, or differ from those that the file states.
-    pub fn samples(&self, place: &str, quantity: Quantity, set: &ChannelSet) -> Result<Vec<f64>> {
+    pub(crate) fn samples(
+        &self,
+        place: &str,
+        quantity: Quantity,
+        set: &ChannelSet,
+    ) -> Result<Vec<f64>> {
         let channel = set
             .channel(&self.name)
             .ok_or_else(|| self.missing(place, set))?;
@@ -134,10 +139,7 @@ impl ChannelRef {
     }
 
     /// A single number in SI units, or the mean of a channel.
-    ///
-    /// # Errors
-    /// Those of [`ChannelRef::samples`]; a number that is not finite.
-    pub fn number(&self, place: &str, quantity: Quantity, set: &ChannelSet) -> Result<f64> {
+    pub(crate) fn number(&self, place: &str, quantity: Quantity, set: &ChannelSet) -> Result<f64> {
         let value = match set.number(&self.name) {
             Some(number) => number * self.factor(place, quantity, None)?,
             None => mean(&self.samples(place, quantity, set)?),
@@ -185,7 +187,7 @@ pub(super) fn mean(samples: &[f64]) -> f64 {
 
 impl ChannelMap {
     /// The channel of a motion.
-    pub fn motion(&self, dof: Dof) -> Option<&ChannelRef> {
+    pub(crate) fn motion(&self, dof: Dof) -> Option<&ChannelRef> {
         match dof {
             Dof::Vertical => self.vertical.as_ref(),
             Dof::Lateral => self.lateral.as_ref(),
@@ -226,7 +228,7 @@ impl ChannelMap {
     /// # Errors
     /// [`Error::Input`] with the key: a unit that does not fit, a cell that the rig does not have or that has no map,
     /// a channel that a cell does not have or that has no map.
-    pub fn validate(&self, rig: &Rig) -> Result<()> {
+    pub(crate) fn validate(&self, rig: &Rig) -> Result<()> {
         for (key, channel, quantity) in self.single() {
             channel.validate(&key, quantity)?;
         }

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
 /// Version of the campaign file.
-pub const CAMPAIGN_SCHEMA: u32 = 1;
+pub(crate) const CAMPAIGN_SCHEMA: u32 = 1;
 
 /// Bounds that no campaign reaches: a typing error must not become hours or the whole memory.
 const SAMPLING_HZ_AT_MOST: f64 = 1e6;
@@ -22,7 +22,7 @@ const CELLS_AT_MOST: f64 = 64.0;
 /// Contents of a campaign file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Campaign {
+pub(crate) struct Campaign {
     /// [`CAMPAIGN_SCHEMA`].
     pub schema: u32,
     /// What was tested.
@@ -50,7 +50,7 @@ pub struct Campaign {
 /// What was tested.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct SectionBlock {
+pub(crate) struct SectionBlock {
     /// Name of the section.
     pub name: String,
     /// Where the data come from.
@@ -70,7 +70,7 @@ pub struct SectionBlock {
 /// What all recordings have in common.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct RecordingBlock {
+pub(crate) struct RecordingBlock {
     /// Sampling frequency, Hz; may be left out where the files state it or have a time channel.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sampling_hz: Option<f64>,
@@ -82,7 +82,7 @@ pub struct RecordingBlock {
 /// Layouts of files that need no channel map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum RecordingLayout {
+pub(crate) enum RecordingLayout {
     /// HDF5 of NTNU's tools, one group a run; entries of `channels` replace those of the layout.
     Ntnu,
 }
@@ -90,7 +90,7 @@ pub enum RecordingLayout {
 /// A recording: a file, or one group of it.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(untagged)]
-pub enum FileRef {
+pub(crate) enum FileRef {
     /// A whole file.
     File(PathBuf),
     /// A group (HDF5, TDMS) or struct (MATLAB) of a file.
@@ -105,7 +105,7 @@ pub enum FileRef {
 /// One motion at one wind speed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct RunBlock {
+pub(crate) struct RunBlock {
     /// Name, unlike that of any other run.
     pub name: String,
     /// What moves: one or several of vertical, lateral, torsion.
@@ -125,14 +125,14 @@ pub struct RunBlock {
 
 impl FileRef {
     /// The file.
-    pub fn file(&self) -> &Path {
+    pub(crate) fn file(&self) -> &Path {
         match self {
             Self::File(file) | Self::Group { file, .. } => file,
         }
     }
 
     /// The group, if it is not the whole file.
-    pub fn group(&self) -> Option<&str> {
+    pub(crate) fn group(&self) -> Option<&str> {
         match self {
             Self::File(_) => None,
             Self::Group { group, .. } => Some(group),
@@ -152,7 +152,7 @@ impl Campaign {
     ///
     /// # Errors
     /// [`Error::Io`] when it cannot be read; [`Error::Input`] with file and line for everything that is wrong in it.
-    pub fn read(path: impl AsRef<Path>) -> Result<Self> {
+    pub(crate) fn read(path: impl AsRef<Path>) -> Result<Self> {
         let path = path.as_ref();
         toml_lines::read(path, Self::from_toml)
     }
@@ -161,7 +161,7 @@ impl Campaign {
     ///
     /// # Errors
     /// [`Error::Input`] with line and key for everything that is wrong in it.
-    pub fn from_toml(text: &str, directory: PathBuf) -> Result<Self> {
+    pub(crate) fn from_toml(text: &str, directory: PathBuf) -> Result<Self> {
         toml_lines::parse("a campaign file", text, |campaign: &mut Self| {
             campaign.directory = directory;
             campaign.validate()
@@ -169,7 +169,7 @@ impl Campaign {
     }
 
     /// The channel map, that of a layout filled in.
-    pub fn channel_map(&self) -> ChannelMap {
+    pub(crate) fn channel_map(&self) -> ChannelMap {
         let own = &self.channels;
         if let Some(section) = &own.section {
             let mut map = own.clone();
@@ -206,7 +206,7 @@ impl Campaign {
     ///
     /// # Errors
     /// [`Error::Input`] for neither or both of `rig` and `channels.section`, and for a width or length that is not positive.
-    pub fn rig(&self) -> Result<Rig> {
+    pub(crate) fn rig(&self) -> Result<Rig> {
         match (&self.rig, &self.channels.section) {
             (Some(rig), None) => {
                 rig.validate()?;

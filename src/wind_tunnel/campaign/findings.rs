@@ -19,7 +19,7 @@ const SPEED_OFF_AT_MOST: f64 = 0.05;
 
 /// Something that a user should look at.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Finding {
+pub(crate) struct Finding {
     /// Name of the run; empty for the campaign file.
     pub run: String,
     /// Recording: `in wind` or `still air`; empty for the run as a whole.

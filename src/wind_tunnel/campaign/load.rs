@@ -14,7 +14,7 @@ use serde::Serialize;
 
 /// A campaign with all its recordings, and what is odd about them.
 #[derive(Debug, Clone, PartialEq)]
-pub struct CampaignReading {
+pub(crate) struct CampaignReading {
     /// The runs.
     pub raw: RawCampaign,
     /// What each run is, in the order of the runs.
@@ -25,7 +25,7 @@ pub struct CampaignReading {
 
 /// What a run is.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct RunSummary {
+pub(crate) struct RunSummary {
     /// Name.
     pub name: String,
     /// What moves.
@@ -42,7 +42,7 @@ pub struct RunSummary {
 
 /// What a recording is.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct RecordingSummary {
+pub(crate) struct RecordingSummary {
     /// File and group.
     pub source: String,
     /// Number of samples.
@@ -60,7 +60,7 @@ impl Campaign {
     /// [`Error::Io`]; [`Error::Input`] naming run, recording, channel and sample: a channel that the file does not
     /// hold (with those that it does), channels of unequal length or rate, samples that are no numbers, a unit that
     /// does not fit, a mean speed that is not positive, air of unknown density. The errors of all runs, in their order.
-    pub fn load(&self) -> Result<CampaignReading> {
+    pub(crate) fn load(&self) -> Result<CampaignReading> {
         let map = self.channel_map();
         let rig = self.rig()?;
         let read = self

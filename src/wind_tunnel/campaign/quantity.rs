@@ -4,7 +4,7 @@ use crate::error::{Error, Result};
 
 /// Kinds of channels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Quantity {
+pub(crate) enum Quantity {
     /// Displacement, m.
     Length,
     /// Rotation, rad.
@@ -58,7 +58,7 @@ const UNITS: &[(&str, Quantity, f64)] = &[
 
 impl Quantity {
     /// Name in words.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Length => "a length",
             Self::Angle => "an angle",
@@ -76,7 +76,7 @@ impl Quantity {
     ///
     /// # Errors
     /// [`Error::Input`] at `place` listing the units that this quantity may have.
-    pub fn factor(self, place: &str, unit: &str) -> Result<f64> {
+    pub(crate) fn factor(self, place: &str, unit: &str) -> Result<f64> {
         self.factor_of(unit).ok_or_else(|| {
             let own: Vec<&str> = UNITS
                 .iter()
@@ -89,7 +89,7 @@ impl Quantity {
     }
 
     /// The same; `None` for a unit that does not fit.
-    pub fn factor_of(self, unit: &str) -> Option<f64> {
+    pub(crate) fn factor_of(self, unit: &str) -> Option<f64> {
         let plain = normalised(unit);
         UNITS
             .iter()

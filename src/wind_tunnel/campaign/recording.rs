@@ -25,7 +25,7 @@ pub(super) struct Loading {
 
 impl Loading {
     /// Reads the file, or the group of it.
-    pub fn new(
+    pub(crate) fn new(
         (campaign, rig): (&Campaign, &Rig),
         map: &ChannelMap,
         run: &RunBlock,

@@ -12,7 +12,7 @@ pub(super) const CELL: &str = "section";
 /// Forces of the wind on the section, without inertia, about the centre of rotation; at least one.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct SectionForces {
+pub(crate) struct SectionForces {
     /// Lift, positive up.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lift: Option<ChannelRef>,
@@ -53,7 +53,7 @@ impl SectionForces {
     }
 
     /// Degrees of freedom whose force there is.
-    pub fn dofs(&self) -> Vec<Dof> {
+    pub(crate) fn dofs(&self) -> Vec<Dof> {
         let has = |d: &Dof| self.channel(*d).is_some();
         Dof::THREE.into_iter().filter(has).collect()
     }

@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 /// How recordings are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum FileFormat {
+pub(crate) enum FileFormat {
     /// One CSV file a recording, channels as the cells have them: reads back bit for bit.
     Csv,
     /// One HDF5 file in the layout of NTNU's tools, forces in fixed axes.
@@ -35,7 +35,7 @@ const TRUTH_COLUMNS: &str = "run,motion,force,frequency_hz,k,g_real,g_imaginary"
 ///
 /// # Errors
 /// [`Error::Io`]; those of `place`.
-pub fn write_virtual_campaign(
+pub(crate) fn write_virtual_campaign(
     made: &VirtualCampaign,
     format: FileFormat,
     place: &mut dyn FnMut(&Path) -> Result<PathBuf>,

@@ -3,7 +3,7 @@
 use super::*;
 use crate::aerodynamics::RationalModel;
 use crate::wind_tunnel::virtual_campaign::{VirtualCampaign, VirtualCampaignPlan};
-use crate::wind_tunnel::{RawCampaign, RawRecording, Rig, read_record};
+use crate::wind_tunnel::{RawCampaign, RawRecording, Record, RecordFile, Rig};
 use nalgebra::Vector3;
 use std::path::Path;
 
@@ -48,7 +48,8 @@ fn csv_reads_back_bit_for_bit() {
     // the truth stands beside it
     let truth = std::fs::read_to_string(folder.path().join("truth.csv")).unwrap();
     assert_eq!(truth.lines().count(), 1 + 2 * 2 * 2);
-    let record = read_record(folder.path().join("truth/Jones-torsion-8.17.csv")).unwrap();
+    let file = RecordFile::open(folder.path().join("truth/Jones-torsion-8.17.csv")).unwrap();
+    let record = Record::whole(&file).unwrap();
     assert_eq!(record.force, made.truth.records[1].force);
     let applied = std::fs::read_to_string(folder.path().join("disturbances.json")).unwrap();
     assert!(applied.contains("\"force_lag_s\": 0.0017"));

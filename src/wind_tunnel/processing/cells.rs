@@ -23,7 +23,11 @@ pub struct CellShare {
 }
 
 /// Lift (N), drag (N) and nose-up moment about the centre of rotation (N·m) on all cells together.
-pub fn sum_about_centre(cells: &[GlobalCell], rig: &Rig, rotation_rad: &[f64]) -> [Vec<f64>; 3] {
+pub(crate) fn sum_about_centre(
+    cells: &[GlobalCell],
+    rig: &Rig,
+    rotation_rad: &[f64],
+) -> [Vec<f64>; 3] {
     let count = cells.first().map_or(0, |c| c[0].len());
     let mut sum: [Vec<f64>; 3] = std::array::from_fn(|_| vec![0.0; count]);
     for (place, cell) in rig.cells.iter().zip(cells) {
@@ -39,7 +43,7 @@ pub fn sum_about_centre(cells: &[GlobalCell], rig: &Rig, rotation_rad: &[f64]) -
 }
 
 /// Means of every cell, for the report.
-pub fn shares(cells: &[GlobalCell], rig: &Rig) -> Vec<CellShare> {
+pub(crate) fn shares(cells: &[GlobalCell], rig: &Rig) -> Vec<CellShare> {
     let mean = |x: &[f64]| x.iter().sum::<f64>() / x.len().max(1) as f64;
     rig.cells
         .iter()
@@ -53,10 +57,14 @@ pub fn shares(cells: &[GlobalCell], rig: &Rig) -> Vec<CellShare> {
 }
 
 /// Force (x, y, z) and moment (x, y, z) at a cell in global axes: N, N·m.
-pub type GlobalCell = [Vec<f64>; 6];
+pub(crate) type GlobalCell = [Vec<f64>; 6];
 
 /// All cells of a recording in global axes; `rotation_rad` is the rotation of the model at each sample.
-pub fn to_global(recording: &RawRecording, rig: &Rig, rotation_rad: &[f64]) -> Vec<GlobalCell> {
+pub(crate) fn to_global(
+    recording: &RawRecording,
+    rig: &Rig,
+    rotation_rad: &[f64],
+) -> Vec<GlobalCell> {
     let turn = |(cell, channels): (&LoadCell, &[Vec<f64>; 6])| {
         let mut global: GlobalCell = std::array::from_fn(|_| Vec::with_capacity(recording.len()));
         let samples = channels.iter().map(Vec::len).min().unwrap_or(0);
@@ -77,7 +85,12 @@ pub fn to_global(recording: &RawRecording, rig: &Rig, rotation_rad: &[f64]) -> V
 }
 
 /// Moves the moments of a cell by `sign` times its arm from the centre of rotation: `m ± p × f`.
-pub fn move_moment(global: &mut GlobalCell, cell: &LoadCell, rotation_rad: &[f64], sign: f64) {
+pub(crate) fn move_moment(
+    global: &mut GlobalCell,
+    cell: &LoadCell,
+    rotation_rad: &[f64],
+    sign: f64,
+) {
     for k in 0..global[0].len() {
         let arm = cell.position_at(rotation_rad.get(k).copied().unwrap_or(0.0));
         let force = nalgebra::Vector3::from_fn(|i, _| global[i][k]);
@@ -89,7 +102,7 @@ pub fn move_moment(global: &mut GlobalCell, cell: &LoadCell, rotation_rad: &[f64
 }
 
 /// Back to the axes of a cell of a model at rest.
-pub fn to_cell_at_rest(global: &GlobalCell, cell: &LoadCell) -> GlobalCell {
+pub(crate) fn to_cell_at_rest(global: &GlobalCell, cell: &LoadCell) -> GlobalCell {
     let back = cell.axes_at(0.0).transpose();
     std::array::from_fn(|c| {
         let (triple, row) = (c / 3 * 3, c % 3);

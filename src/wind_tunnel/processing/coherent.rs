@@ -10,7 +10,7 @@ use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
 
 /// Regressors of one recording.
-pub struct Regressors {
+pub(crate) struct Regressors {
     degree: usize,
     count: usize,
     motion: Vec<f64>,
@@ -21,7 +21,7 @@ pub struct Regressors {
 
 /// The two parts of a force.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Parts {
+pub(crate) struct Parts {
     /// Follows the motion.
     pub coherent: Vec<f64>,
     /// Drifts.
@@ -30,7 +30,7 @@ pub struct Parts {
 
 impl Regressors {
     /// For a motion of any scale.
-    pub fn new(
+    pub(crate) fn new(
         motion: &[f64],
         sampling_hz: f64,
         segments: &[HarmonicSegment],
@@ -72,7 +72,7 @@ impl Regressors {
     ///
     /// # Errors
     /// [`Error::Numerical`] when too few samples are left.
-    pub fn fit(&self, force: &[f64], wild: &[bool]) -> Result<Parts> {
+    pub(crate) fn fit(&self, force: &[f64], wild: &[bool]) -> Result<Parts> {
         let smooth = self.degree + 1;
         let unknowns = smooth + 2 * self.stretches.len();
         let mut gram = DMatrix::<f64>::zeros(unknowns, unknowns);

@@ -33,7 +33,7 @@ pub struct CellDrift {
 
 /// Removes from every cell of `recording` a polynomial of `degree`, told from what follows `motion` in `segments`; `rotation_rad` is
 /// the rotation of the model at each sample.
-pub fn remove_cell_drift(
+pub(crate) fn remove_cell_drift(
     recording: &mut RawRecording,
     rig: &Rig,
     motion: &[f64],

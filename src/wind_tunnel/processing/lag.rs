@@ -40,12 +40,12 @@ pub struct StillAirInertia {
 
 impl StillAirInertia {
     /// Whether the inertia is no chance.
-    pub fn is_certain(&self) -> bool {
+    pub(crate) fn is_certain(&self) -> bool {
         self.inertia.abs() > CERTAIN * self.inertia_standard_error
     }
 
     /// Whether there is inertia enough to tell the lag to a fifth of a sample.
-    pub fn tells_lag(&self, sampling_hz: f64) -> bool {
+    pub(crate) fn tells_lag(&self, sampling_hz: f64) -> bool {
         self.lag_standard_error_s * sampling_hz < 0.2 && self.inertia > 0.0
     }
 }
@@ -61,7 +61,7 @@ struct Ratio {
 ///
 /// # Errors
 /// [`Error::Input`] naming `run` when the inertia says that a channel has the wrong sign or that two are exchanged.
-pub fn still_air_inertia(
+pub(crate) fn still_air_inertia(
     run: &str,
     still: &RawRecording,
     rig: &Rig,
@@ -234,7 +234,7 @@ fn weighted_fit(
 }
 
 /// One lag for a campaign: the mean of its runs by inverse variance, with its standard error; `None` when no run tells it.
-pub fn common_lag(runs: &[StillAirInertia], sampling_hz: f64) -> Option<(f64, f64)> {
+pub(crate) fn common_lag(runs: &[StillAirInertia], sampling_hz: f64) -> Option<(f64, f64)> {
     let telling = || runs.iter().filter(|r| r.tells_lag(sampling_hz));
     let weight = |r: &StillAirInertia| r.lag_standard_error_s.max(1e-12).powi(-2);
     let sum: f64 = telling().map(weight).sum();

@@ -62,7 +62,7 @@ pub fn design(
 
 impl AppliedLowPass {
     /// A warning when a test point is cut down.
-    pub fn warning(&self) -> Option<String> {
+    pub(crate) fn warning(&self) -> Option<String> {
         (self.kept_at_highest < 1.0 - LOSS_AT_MOST).then(|| {
             format!(
                 "the low-pass at {} Hz leaves {:.1} % of motion and force at the highest frequency of motion",
@@ -74,7 +74,7 @@ impl AppliedLowPass {
 }
 
 /// Filters motion and force alike.
-pub fn apply(signals: &mut SectionSignals, filter: &ButterworthLowPass) -> Result<()> {
+pub(crate) fn apply(signals: &mut SectionSignals, filter: &ButterworthLowPass) -> Result<()> {
     for channel in signals.motion.iter_mut().chain(&mut signals.force) {
         *channel = filter.zero_phase(channel)?;
     }

@@ -36,7 +36,8 @@ pub use options::{LowPassOptions, ProcessingOptions, Ramps, SegmentOptions, Spik
 pub use report::{
     DimensionlessFactors, ProcessingReport, RemovedDrift, RunReport, SignalToNoise, StageLevels,
 };
-pub use run::{ProcessedRun, StageSignals};
+pub(crate) use run::ProcessedRun;
+pub use run::StageSignals;
 pub use segmentation::HarmonicSegment;
 pub use signals::{SectionSignals, index};
 

@@ -129,7 +129,7 @@ impl ProcessingOptions {
     ///
     /// # Errors
     /// [`Error::Input`] naming the key.
-    pub fn validate(&self) -> Result<()> {
+    pub(crate) fn validate(&self) -> Result<()> {
         let wrong = |key: &str, expected: &str, found: String| {
             Err(Error::input(format!("processing.{key}"), expected, found))
         };

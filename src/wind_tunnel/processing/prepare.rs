@@ -24,7 +24,7 @@ pub(super) struct Prepared<'a> {
 }
 
 impl<'a> Prepared<'a> {
-    pub fn new(run: &'a RawRun, rig: &Rig, options: &ProcessingOptions) -> Result<Self> {
+    pub(crate) fn new(run: &'a RawRun, rig: &Rig, options: &ProcessingOptions) -> Result<Self> {
         let mut findings = check_run(run, rig)?;
         let width = rig.model_width_m;
         let moving = |r: &RawRecording, what: &str| {
@@ -72,7 +72,7 @@ impl<'a> Prepared<'a> {
     }
 
     /// Segments counted from the first covered sample.
-    pub fn covered_segments(&self, covered: &Range<usize>) -> Result<Vec<HarmonicSegment>> {
+    pub(crate) fn covered_segments(&self, covered: &Range<usize>) -> Result<Vec<HarmonicSegment>> {
         let rate = self.run.in_wind.sampling_hz;
         let shift_s = covered.start as f64 / rate;
         let last_s = covered.len() as f64 / rate;
@@ -103,7 +103,7 @@ impl<'a> Prepared<'a> {
     }
 
     /// Clipped stretches of both recordings in samples from the first covered one.
-    pub fn clipped(&self, covered: &Range<usize>, offset: f64) -> Vec<Range<usize>> {
+    pub(crate) fn clipped(&self, covered: &Range<usize>, offset: f64) -> Vec<Range<usize>> {
         let wind = self.findings.clipped_in_wind.iter().map(|c| (c, 0.0));
         let still = self.findings.clipped_still_air.iter().map(|c| (c, offset));
         let place = |x: f64| (x.max(0.0) as usize).min(covered.len());

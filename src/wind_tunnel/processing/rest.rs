@@ -25,7 +25,7 @@ pub struct CrossTalk {
 }
 
 /// Sets to zero what is no motion; nothing without segments.
-pub fn still_the_rest(
+pub(crate) fn still_the_rest(
     signals: &mut SectionSignals,
     driven: Dof,
     segments: &[HarmonicSegment],
@@ -89,7 +89,7 @@ pub fn rest(segments: &[HarmonicSegment], signals: &SectionSignals) -> (Range<us
 }
 
 /// Removes from each force and each motion its mean over `range`; returns those of the forces.
-pub fn remove_means(signals: &mut SectionSignals, range: &Range<usize>) -> [f64; 3] {
+pub(crate) fn remove_means(signals: &mut SectionSignals, range: &Range<usize>) -> [f64; 3] {
     for motion in &mut signals.motion {
         remove_mean(motion, range);
     }

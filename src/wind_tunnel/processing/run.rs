@@ -29,7 +29,7 @@ pub struct StageSignals {
 
 /// One run, processed.
 #[derive(Debug, Clone, PartialEq)]
-pub struct ProcessedRun {
+pub(crate) struct ProcessedRun {
     /// One record, or one a segment when ramps are cut.
     pub records: Vec<Record>,
     /// What was done.

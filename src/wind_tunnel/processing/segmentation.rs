@@ -35,14 +35,14 @@ pub struct HarmonicSegment {
 
 impl HarmonicSegment {
     /// Samples of the whole segment in a recording of `count` samples.
-    pub fn range(&self, sampling_hz: f64, count: usize) -> Range<usize> {
+    pub(crate) fn range(&self, sampling_hz: f64, count: usize) -> Range<usize> {
         let at = |t: f64| ((t * sampling_hz).round().max(0.0) as usize).min(count);
         at(self.segment.start_s)..at(self.segment.end_s)
     }
 }
 
 /// The degree of freedom that moves most: displacements over the width of the model, rotation in rad.
-pub fn moving_dof(motion: &[Vec<f64>; 3], width_m: f64) -> Option<Dof> {
+pub(crate) fn moving_dof(motion: &[Vec<f64>; 3], width_m: f64) -> Option<Dof> {
     let size = |d: Dof| {
         let x = &motion[super::index(d)];
         let mean = x.iter().sum::<f64>() / x.len().max(1) as f64;
@@ -55,7 +55,7 @@ pub fn moving_dof(motion: &[Vec<f64>; 3], width_m: f64) -> Option<Dof> {
 }
 
 /// The harmonic stretches of a motion, in order; empty when it is something else.
-pub fn find_segments(
+pub(crate) fn find_segments(
     motion: &[f64],
     sampling_hz: f64,
     options: &SegmentOptions,
@@ -112,7 +112,7 @@ pub fn find_segments(
 ///
 /// # Errors
 /// [`Error::Input`] at `place` with the periods there are.
-pub fn whole_periods(place: &str, recording: &RawRecording, dof: Dof) -> Result<()> {
+pub(crate) fn whole_periods(place: &str, recording: &RawRecording, dof: Dof) -> Result<()> {
     let motion = super::still_air::from_rest(&recording.motion[super::index(dof)]);
     let amplitude = motion.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     let periods = upward_passages(&motion, HYSTERESIS * amplitude)

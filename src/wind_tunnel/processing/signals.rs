@@ -24,18 +24,13 @@ pub struct SectionSignals {
 
 impl SectionSignals {
     /// Number of samples.
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.force[0].len()
-    }
-
-    /// Whether there is no sample.
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
     }
 }
 
 /// Greatest absolute value and root mean square.
-pub fn peak_and_rms(x: &[f64]) -> (f64, f64) {
+pub(crate) fn peak_and_rms(x: &[f64]) -> (f64, f64) {
     let peak = x.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
     let square: f64 = x.iter().map(|v| v * v).sum();
     (peak, (square / x.len().max(1) as f64).sqrt())

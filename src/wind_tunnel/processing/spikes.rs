@@ -38,7 +38,7 @@ pub struct Replaced {
 }
 
 /// What the search left.
-pub struct Cleaned {
+pub(crate) struct Cleaned {
     /// Parts of each force.
     pub parts: [Parts; 3],
     /// What was replaced.
@@ -46,7 +46,7 @@ pub struct Cleaned {
 }
 
 /// Finds wild samples and replaces them in `signals`; `clipped` are known to be wild.
-pub fn remove_spikes(
+pub(crate) fn remove_spikes(
     signals: &mut SectionSignals,
     regressors: &Regressors,
     filter: Option<&ButterworthLowPass>,

@@ -1,7 +1,7 @@
 //! The still-air recording: brought into step with the one in wind, and subtracted from it.
 //!
 //! The two motions are the same but for when recording began. Their delay is that of the largest cross-correlation, refined by
-//! the slope of the phase of the cross-spectrum ([`crate::signal::delay`]): whole samples would not do, since inertia is many
+//! the slope of the phase of the cross-spectrum (`crate::signal::delay`): whole samples would not do, since inertia is many
 //! times the self-excited force and half a sample turns it by 2° at 2.5 Hz and 200 Hz. Then every channel in still air is moved
 //! by Lagrange interpolation, which keeps the phase.
 //!
@@ -41,7 +41,7 @@ pub struct Alignment {
 }
 
 /// A still-air recording in step with the one in wind.
-pub struct Aligned {
+pub(crate) struct Aligned {
     /// The recording, as long as the one in wind.
     pub still_air: RawRecording,
     /// Samples of the recording in wind that both cover.
@@ -54,7 +54,7 @@ pub struct Aligned {
 ///
 /// # Errors
 /// [`Error::Input`] when the motions are not alike, naming `run`.
-pub fn align(
+pub(crate) fn align(
     run: &str,
     in_wind: &RawRecording,
     still_air: &RawRecording,
@@ -114,7 +114,7 @@ fn moved(x: &[f64], samples: f64, count: usize) -> Vec<f64> {
 }
 
 /// The motion counted from where the model rests: the middle of its motion is where it is most often.
-pub fn from_rest(x: &[f64]) -> Vec<f64> {
+pub(crate) fn from_rest(x: &[f64]) -> Vec<f64> {
     let rest = crate::signal::median(x);
     x.iter().map(|v| v - rest).collect()
 }
@@ -129,7 +129,7 @@ pub struct RemovedInertia {
 }
 
 /// `in_wind − still_air`.
-pub fn subtract(in_wind: &mut SectionSignals, still_air: &SectionSignals) -> RemovedInertia {
+pub(crate) fn subtract(in_wind: &mut SectionSignals, still_air: &SectionSignals) -> RemovedInertia {
     for (wind, still) in in_wind.force.iter_mut().zip(&still_air.force) {
         wind.iter_mut().zip(still).for_each(|(w, s)| *w -= s);
     }

@@ -19,14 +19,14 @@ pub(super) struct Wrench {
 
 impl Wrench {
     /// From drag, lift (N) and nose-up moment (N·m), which is one about −z.
-    pub fn section(drag: f64, lift: f64, moment: f64) -> Self {
+    pub(crate) fn section(drag: f64, lift: f64, moment: f64) -> Self {
         Self {
             force: Vector3::new(drag, lift, 0.0),
             moment: Vector3::new(0.0, 0.0, -moment),
         }
     }
 
-    pub fn add(&mut self, other: Self) {
+    pub(crate) fn add(&mut self, other: Self) {
         self.force += other.force;
         self.moment += other.moment;
     }
@@ -77,7 +77,7 @@ pub(super) struct Gusts {
 impl Gusts {
     /// A first-order process in each direction: variance `I²`, correlation `exp(−V τ/length)`, hence a spectrum that is
     /// flat below `V/(2π length)` Hz and falls as `f⁻²` above. None without turbulence.
-    pub fn new(
+    pub(crate) fn new(
         turbulence: Option<&Turbulence>,
         samples: usize,
         travelled_m_a_sample: f64,
@@ -124,7 +124,7 @@ pub(super) fn noise(deviation: [f64; 3], random: &mut ChaCha8Rng) -> Wrench {
 pub(super) struct Drift([[f64; 2]; 6]);
 
 impl Drift {
-    pub fn new(plan: &Disturbances, random: &mut ChaCha8Rng) -> Self {
+    pub(crate) fn new(plan: &Disturbances, random: &mut ChaCha8Rng) -> Self {
         let mut draw = |channel: usize| {
             let size = if channel < 3 {
                 plan.drift_n
@@ -140,7 +140,7 @@ impl Drift {
     }
 
     /// Drift of a channel after a `part` of the recording, 0 to 1.
-    pub fn at(&self, channel: usize, part: f64) -> f64 {
+    pub(crate) fn at(&self, channel: usize, part: f64) -> f64 {
         let [rise, wave] = self.0[channel];
         rise * part + wave * (PI * part).sin()
     }

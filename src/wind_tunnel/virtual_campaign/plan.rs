@@ -175,7 +175,7 @@ impl Default for StaticWind {
 impl Disturbances {
     /// Everything at a level that a careful laboratory meets: a lag of a third and an offset of two and a half
     /// samples at 200 Hz, a spike in the segment at 0.5 Hz.
-    pub fn realistic() -> Self {
+    pub(crate) fn realistic() -> Self {
         Self {
             drift_n: 0.3,
             drift_n_m: 0.03,
@@ -192,7 +192,7 @@ impl Disturbances {
 }
 
 impl VirtualCampaignPlan {
-    /// The default with 5 % noise and [`Disturbances::realistic`].
+    /// The default with 5 % noise and `Disturbances::realistic`.
     pub fn realistic() -> Self {
         let mut plan = Self {
             disturbances: Disturbances::realistic(),
@@ -219,7 +219,7 @@ impl VirtualCampaignPlan {
     ///
     /// # Errors
     /// [`Error::Input`] naming the key.
-    pub fn validate(&self) -> Result<()> {
+    pub(crate) fn validate(&self) -> Result<()> {
         self.tunnel.validate()?;
         self.support.validate()?;
         let body = &self.model;
@@ -270,7 +270,7 @@ impl VirtualCampaignPlan {
     ///
     /// # Errors
     /// [`Error::Io`] when it cannot be read; [`Error::Input`] with file and line for everything that is wrong in it.
-    pub fn read(path: impl AsRef<std::path::Path>) -> Result<Self> {
+    pub(crate) fn read(path: impl AsRef<std::path::Path>) -> Result<Self> {
         crate::files::toml_lines::read(path.as_ref(), |text, _| Self::from_toml(text))
     }
 
@@ -278,7 +278,7 @@ impl VirtualCampaignPlan {
     ///
     /// # Errors
     /// [`Error::Input`] with line and key for everything that is wrong in it.
-    pub fn from_toml(text: &str) -> Result<Self> {
+    pub(crate) fn from_toml(text: &str) -> Result<Self> {
         crate::files::toml_lines::parse("a plan of a virtual campaign", text, |plan: &mut Self| {
             plan.validate()
         })
@@ -288,7 +288,7 @@ impl VirtualCampaignPlan {
     ///
     /// # Errors
     /// [`Error::Numerical`] when it cannot be written as TOML.
-    pub fn to_toml(&self) -> Result<String> {
+    pub(crate) fn to_toml(&self) -> Result<String> {
         toml::to_string(self).map_err(|e| Error::Numerical(e.to_string()))
     }
 }

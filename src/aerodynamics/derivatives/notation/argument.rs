@@ -26,7 +26,7 @@ impl Argument {
     pub const ALL: [Self; 4] = [Self::VHat, Self::VStar, Self::KFull, Self::KSemi];
 
     /// The word for it in commands and studies, and the name of its column.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Self::VHat => "v_hat",
             Self::VStar => "v_star",
@@ -36,7 +36,7 @@ impl Argument {
     }
 
     /// Name with definition, as it stands in the header of files.
-    pub fn definition(self) -> &'static str {
+    pub(crate) fn definition(self) -> &'static str {
         match self {
             Self::VHat => "v_hat = V/(omega B)",
             Self::VStar => "v_star = V/(f B)",
@@ -46,7 +46,7 @@ impl Argument {
     }
 
     /// Its value where the reduced velocity is `V̂`; `V̂` itself is kept bit for bit.
-    pub fn from_v_hat(self, v_hat: f64) -> f64 {
+    pub(crate) fn at_v_hat(self, v_hat: f64) -> f64 {
         let k = ReducedFrequency::from_v_hat(v_hat);
         match self {
             Self::VHat => v_hat,
@@ -57,7 +57,7 @@ impl Argument {
     }
 
     /// The reduced velocity `V̂` at which it has this value.
-    pub fn to_v_hat(self, value: f64) -> f64 {
+    pub(crate) fn to_v_hat(self, value: f64) -> f64 {
         match self {
             Self::VHat => value,
             Self::VStar => ReducedFrequency::from(ReducedVelocity::new(value)).v_hat(),

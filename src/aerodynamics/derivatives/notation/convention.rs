@@ -25,7 +25,7 @@ impl Axes {
     pub const ALL: [Self; 2] = [Self::HeaveUp, Self::HeaveDown];
 
     /// The word for it in commands and studies.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Self::HeaveUp => "heave_up",
             Self::HeaveDown => "heave_down",
@@ -33,7 +33,7 @@ impl Axes {
     }
 
     /// The axes in words, as in the header of files.
-    pub fn words(self) -> &'static str {
+    pub(crate) fn words(self) -> &'static str {
         match self {
             Self::HeaveUp => {
                 "heave and lift up, rotation and moment nose-up, sway and drag downwind"
@@ -46,7 +46,7 @@ impl Axes {
 
     /// −1 for a derivative that changes its sign when heave and lift are turned round: those that couple heave or lift
     /// with something else.
-    pub fn sign(self, derivative: Derivative) -> f64 {
+    pub(crate) fn sign(self, derivative: Derivative) -> f64 {
         let couples =
             (derivative.force() == Dof::Vertical) != (derivative.motion() == Dof::Vertical);
         if self == Self::HeaveDown && couples {
@@ -90,7 +90,7 @@ pub struct Convention {
 
 impl Convention {
     /// The notation with the axes and the argument it is usually printed with.
-    pub fn usual(notation: Notation) -> Self {
+    pub(crate) fn usual(notation: Notation) -> Self {
         Self {
             notation,
             argument: notation.usual_argument(),
@@ -99,12 +99,12 @@ impl Convention {
     }
 
     /// Value in this convention over the value in the crate's.
-    pub fn factor(&self, derivative: Derivative, k: ReducedFrequency) -> f64 {
+    pub(crate) fn factor(&self, derivative: Derivative, k: ReducedFrequency) -> f64 {
         self.axes.sign(derivative) * self.notation.factor(derivative, k)
     }
 
     /// Symbol of a number for people: `H1*`, `h1*`, `c″_hh`.
-    pub fn symbol(&self, derivative: Derivative) -> String {
+    pub(crate) fn symbol(&self, derivative: Derivative) -> String {
         super::names::symbol(self.notation, derivative)
     }
 }
@@ -138,7 +138,8 @@ pub struct StatedConvention {
 
 impl StatedConvention {
     /// Only the notation.
-    pub fn notation(notation: Notation) -> Self {
+    #[cfg(test)]
+    pub(crate) fn notation(notation: Notation) -> Self {
         Self {
             notation: Some(notation),
             ..Self::default()
@@ -146,12 +147,12 @@ impl StatedConvention {
     }
 
     /// Whether nothing is stated.
-    pub fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         *self == Self::default()
     }
 
     /// For writing: what is not stated is as usual for the notation, the notation itself as in the crate.
-    pub fn or_usual(self) -> Convention {
+    pub(crate) fn or_usual(self) -> Convention {
         let usual = Convention::usual(self.notation.unwrap_or_default());
         Convention {
             argument: self.argument.unwrap_or(usual.argument),
@@ -165,7 +166,7 @@ impl StatedConvention {
     ///
     /// # Errors
     /// [`Error::Input`] for a contradiction, and for a notation or an argument that nobody states.
-    pub fn with_file(self, file: Self) -> Result<Convention> {
+    pub(crate) fn with_file(self, file: Self) -> Result<Convention> {
         let notation = agree("notation", self.notation, file.notation)?
             .ok_or_else(|| unstated("notation", &Notation::ALL.map(Notation::name).join(", ")))?;
         let argument = agree("argument", self.argument, file.argument)?

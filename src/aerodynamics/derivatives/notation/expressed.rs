@@ -2,13 +2,12 @@
 
 use super::Convention;
 use crate::aerodynamics::derivatives::{Derivative, DerivativePoint, DerivativeTable, TableHeader};
-use crate::error::Result;
 use crate::units::ReducedFrequency;
 use serde::Serialize;
 
 /// A derivative table as a file in some convention holds it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ExpressedTable {
+pub(crate) struct ExpressedTable {
     /// Name of the deck.
     pub name: String,
     /// Width `B` of the section model, m.
@@ -24,7 +23,7 @@ pub struct ExpressedTable {
 
 /// All test points of one number.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ExpressedDerivative {
+pub(crate) struct ExpressedDerivative {
     /// Its name in the notation.
     pub name: &'static str,
     /// Its place in the matrix, by Scanlan's name.
@@ -35,7 +34,7 @@ pub struct ExpressedDerivative {
 
 /// One test point.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct ExpressedPoint {
+pub(crate) struct ExpressedPoint {
     /// Mean wind speed of the run, m/s; `None` when the source does not say.
     pub mean_speed_m_s: Option<f64>,
     /// Reduced velocity or frequency, as the convention has it.
@@ -46,7 +45,7 @@ pub struct ExpressedPoint {
 
 impl Convention {
     /// The table in this convention.
-    pub fn express(&self, table: &DerivativeTable) -> ExpressedTable {
+    pub(crate) fn express(&self, table: &DerivativeTable) -> ExpressedTable {
         let derivatives = table
             .derivatives()
             .map(|derivative| ExpressedDerivative {
@@ -69,16 +68,24 @@ impl Convention {
     }
 
     /// One point of `derivative` in this convention.
-    pub fn express_point(&self, derivative: Derivative, point: &DerivativePoint) -> ExpressedPoint {
+    pub(crate) fn express_point(
+        &self,
+        derivative: Derivative,
+        point: &DerivativePoint,
+    ) -> ExpressedPoint {
         ExpressedPoint {
             mean_speed_m_s: point.mean_speed_m_s,
-            argument: self.argument.from_v_hat(point.v_hat),
+            argument: self.argument.at_v_hat(point.v_hat),
             value: point.value * self.factor(derivative, point.k()),
         }
     }
 
     /// One point in this convention as the crate has it.
-    pub fn read_point(&self, derivative: Derivative, point: &ExpressedPoint) -> DerivativePoint {
+    pub(crate) fn read_point(
+        &self,
+        derivative: Derivative,
+        point: &ExpressedPoint,
+    ) -> DerivativePoint {
         let v_hat = self.argument.to_v_hat(point.argument);
         let k = ReducedFrequency::from_v_hat(v_hat);
         DerivativePoint {
@@ -89,9 +96,10 @@ impl Convention {
     }
 }
 
+#[cfg(test)]
 impl ExpressedTable {
     /// The table in the crate's convention.
-    pub fn to_table(&self) -> Result<DerivativeTable> {
+    pub(crate) fn to_table(&self) -> crate::Result<DerivativeTable> {
         let points = self
             .derivatives
             .iter()

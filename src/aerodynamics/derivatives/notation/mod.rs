@@ -18,7 +18,7 @@ mod names;
 
 pub use argument::Argument;
 pub use convention::{Axes, Convention, StatedConvention};
-pub use expressed::{ExpressedDerivative, ExpressedPoint, ExpressedTable};
+pub(crate) use expressed::{ExpressedDerivative, ExpressedPoint, ExpressedTable};
 
 use super::{Derivative, Part};
 use crate::error::{Error, Result};
@@ -57,7 +57,7 @@ impl Notation {
     ];
 
     /// The word for it in files, studies and commands.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Scanlan => "scanlan",
             Self::Classical => "classical",
@@ -67,7 +67,7 @@ impl Notation {
     }
 
     /// The notation for people.
-    pub fn title(self) -> &'static str {
+    pub(crate) fn title(self) -> &'static str {
         match self {
             Self::Scanlan => "Scanlan with 1/2",
             Self::Classical => "classical (Scanlan without 1/2)",
@@ -77,7 +77,7 @@ impl Notation {
     }
 
     /// The axes this notation is usually printed with.
-    pub fn usual_axes(self) -> Axes {
+    pub(crate) fn usual_axes(self) -> Axes {
         match self {
             Self::Scanlan | Self::Polimi => Axes::HeaveUp,
             Self::Classical | Self::Starossek => Axes::HeaveDown,
@@ -85,7 +85,7 @@ impl Notation {
     }
 
     /// The argument this notation is usually tabulated over.
-    pub fn usual_argument(self) -> Argument {
+    pub(crate) fn usual_argument(self) -> Argument {
         match self {
             Self::Scanlan => Argument::VHat,
             Self::Classical | Self::Polimi => Argument::VStar,
@@ -95,7 +95,7 @@ impl Notation {
 
     /// The definition, as it stands in the header of files: force per unit length due to harmonic motion `e^{iωt}`, `z`
     /// heave, `x` sway, `theta` rotation, in the axes stated beside it.
-    pub fn definition(self) -> &'static str {
+    pub(crate) fn definition(self) -> &'static str {
         match self {
             Self::Scanlan => {
                 "with K = omega B/V: lift = (rho V^2 B/2) K^2 [(H4 + i H1) z/B + (H6 + i H5) x/B + (H3 + i H2) theta]; drag the same with (P6 + i P5) z/B + (P4 + i P1) x/B + (P3 + i P2) theta; moment = (rho V^2 B^2/2) K^2 [(A4 + i A1) z/B + (A6 + i A5) x/B + (A3 + i A2) theta]"
@@ -113,7 +113,7 @@ impl Notation {
     }
 
     /// What a value of Scanlan's with ½ is multiplied with to give the value in this notation, in the same axes.
-    pub fn factor(self, derivative: Derivative, k: ReducedFrequency) -> f64 {
+    pub(crate) fn factor(self, derivative: Derivative, k: ReducedFrequency) -> f64 {
         let k = k.full_width();
         let turning = |dof: Dof| i32::from(dof == Dof::Torsion);
         match self {

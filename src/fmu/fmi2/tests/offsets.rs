@@ -20,7 +20,7 @@ fn onset(model: &TrainedModel) -> f64 {
         ..OnsetSearch::default()
     };
     let found = find_onset("", &section, &search, Some(model.tested_range)).unwrap();
-    found.onset().unwrap().speed_m_s
+    found.onset().unwrap().at.speed_m_s
 }
 
 #[test]

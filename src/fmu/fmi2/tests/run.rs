@@ -250,9 +250,9 @@ fn calculated_parameters_are_those_of_the_searches() {
         "divergence_speed",
     ]);
     let searched = [
-        onset.speed_m_s,
-        onset.frequency_hz,
-        onset.reduced_velocity.v_star(),
+        onset.at.speed_m_s,
+        onset.at.frequency_hz,
+        onset.at.reduced_velocity.v_star(),
         divergence,
     ];
     for (found, searched) in found.into_iter().zip(searched) {

@@ -1,6 +1,7 @@
 //! What is odd in recordings that can be read.
 
 use super::*;
+use crate::wind_tunnel::campaign::findings::Finding;
 
 fn findings(a: &str, b: &str) -> Vec<String> {
     let reading = load(&small(), a, b).unwrap();

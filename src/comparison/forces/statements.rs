@@ -7,7 +7,7 @@ use serde::Serialize;
 
 /// A sentence of the thesis and its counterpart.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Statement {
+pub(crate) struct Statement {
     /// Section of the thesis.
     pub section: &'static str,
     /// What it says of its own records.

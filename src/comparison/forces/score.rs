@@ -13,7 +13,7 @@ use std::fmt::Write as _;
 /// How the metrics are taken.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub struct Scoring {
+pub(crate) struct Scoring {
     /// Phase lag that brings the phase metric to 1/e, degrees of the frequency of the motion.
     pub significant_phase_deg: f64,
     /// The metrics see at most this much of the steady motion of a frequency, s: as many whole periods as fit.
@@ -32,7 +32,7 @@ impl Default for Scoring {
 
 /// How alike two forces are: 1 for equal ones.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct ForceMetrics {
+pub(crate) struct ForceMetrics {
     /// `M_φ`.
     pub phase: f64,
     /// `M_p`.
@@ -53,10 +53,10 @@ pub struct ForceMetrics {
 
 impl ForceMetrics {
     /// Names of the metrics as the thesis and the toolbox write them, in the order of [`ForceMetrics::values`].
-    pub const NAMES: [&str; 7] = ["M_phi", "M_p", "M_rms", "M_muw", "M_mw", "M_w", "M_pdf"];
+    pub(crate) const NAMES: [&str; 7] = ["M_phi", "M_p", "M_rms", "M_muw", "M_mw", "M_w", "M_pdf"];
 
     /// The metrics without the lag.
-    pub fn values(&self) -> [f64; 7] {
+    pub(crate) fn values(&self) -> [f64; 7] {
         [
             self.phase,
             self.peak,
@@ -71,7 +71,7 @@ impl ForceMetrics {
 
 /// Metrics of one force at one frequency of one motion.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Score {
+pub(crate) struct Score {
     /// Deck.
     pub deck: String,
     /// Model that predicts.
@@ -95,7 +95,7 @@ impl Scoring {
     ///
     /// # Errors
     /// [`Error::Input`] for a window or a steady part that holds no period.
-    pub fn window(
+    pub(crate) fn window(
         &self,
         record: &Record,
         segment: &Segment,
@@ -118,7 +118,7 @@ impl Scoring {
     }
 
     /// Metrics of one force in a window of samples.
-    pub fn metrics(
+    pub(crate) fn metrics(
         &self,
         measured: &[f64],
         predicted: &[f64],
@@ -154,7 +154,7 @@ impl Scoring {
 
 /// Mean and lowest metrics over the frequencies of one motion.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ScoreSummary {
+pub(crate) struct ScoreSummary {
     /// Deck.
     pub deck: String,
     /// Model.
@@ -174,7 +174,7 @@ pub struct ScoreSummary {
 }
 
 /// One summary a deck, model, speed, motion and force, in the order of the scores.
-pub fn summaries(scores: &[Score]) -> Vec<ScoreSummary> {
+pub(crate) fn summaries(scores: &[Score]) -> Vec<ScoreSummary> {
     let same = |a: &Score, b: &Score| {
         (&a.deck, &a.model, a.motion, a.force) == (&b.deck, &b.model, b.motion, b.force)
             && a.speed_m_s == b.speed_m_s
@@ -204,7 +204,7 @@ pub fn summaries(scores: &[Score]) -> Vec<ScoreSummary> {
 }
 
 /// The scores as a CSV table.
-pub fn score_table(scores: &[Score]) -> String {
+pub(crate) fn score_table(scores: &[Score]) -> String {
     let mut text = format!(
         "deck,model,speed_m_s,held_out,motion,force,frequency_hz,{},lag_deg\n",
         ForceMetrics::NAMES.join(",")

@@ -10,15 +10,15 @@ use serde::Serialize;
 use std::f64::consts::TAU;
 
 /// Half width of the thesis's band around a measured magnitude, percent.
-pub const MAGNITUDE_BAND_PERCENT: f64 = 15.0;
+pub(crate) const MAGNITUDE_BAND_PERCENT: f64 = 15.0;
 /// Half width of its band around a measured phase, degrees.
-pub const PHASE_BAND_DEG: f64 = 5.0;
+pub(crate) const PHASE_BAND_DEG: f64 = 5.0;
 /// Points of the curves of a model.
 const CURVE_POINTS: usize = 80;
 
 /// One measured value of a transfer function.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct TestPoint {
+pub(crate) struct TestPoint {
     /// Frequency of the motion at the mean speed, Hz.
     pub frequency_hz: f64,
     /// Reduced frequency `K = ωB/V`.
@@ -31,7 +31,7 @@ pub struct TestPoint {
 
 /// A model at the test points: magnitude off by so many percent, phase by so many degrees.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ModelPoints {
+pub(crate) struct ModelPoints {
     /// Model.
     pub model: String,
     /// `(100 (|G_model|/|G| − 1), phase of G_model/G in degrees)` at each test point.
@@ -40,7 +40,7 @@ pub struct ModelPoints {
 
 /// A model between the test points.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ModelCurve {
+pub(crate) struct ModelCurve {
     /// Model.
     pub model: String,
     /// Frequency (Hz), magnitude, phase (degrees).
@@ -49,7 +49,7 @@ pub struct ModelCurve {
 
 /// One transfer function.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct EntryComparison {
+pub(crate) struct EntryComparison {
     /// Force (row of `G`).
     pub force: Dof,
     /// Motion (column of `G`).
@@ -64,7 +64,7 @@ pub struct EntryComparison {
 
 /// One derivative over `V̂`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct DerivativeComparison {
+pub(crate) struct DerivativeComparison {
     /// Name, e.g. `H1`.
     pub name: &'static str,
     /// `V̂` and measured value.
@@ -83,7 +83,7 @@ pub fn inside((percent, degrees): &(f64, f64)) -> (bool, bool) {
 
 impl EntryComparison {
     /// How many points a model has inside the bands, and its largest deviations, in words.
-    pub fn describe(&self, model: usize) -> String {
+    pub(crate) fn describe(&self, model: usize) -> String {
         let points = &self.models[model].points;
         let count = |f: fn(&(f64, f64)) -> bool| points.iter().filter(|p| f(p)).count();
         let worst = |f: fn(&(f64, f64)) -> f64| {

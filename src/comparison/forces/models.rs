@@ -1,18 +1,16 @@
 //! Several models on one girder, in the time and the frequency domain (sections 3.5.5 and 3.5.6 of the thesis).
 
-use super::decks::score_forces;
 use super::entries::{DerivativeComparison, EntryComparison, compare_derivatives, compare_entries};
 use super::score::{Score, ScoreSummary, summaries};
 use super::statements::{Statement, on_models};
+use super::trial::{Trial, run_all};
 use super::{CompareOptions, TestedDeck, thesis_rational_functions};
 use crate::aerodynamics::Transfer;
 use crate::error::{Error, Result};
 use crate::identification::{FitReport, TimeFit, fit_discrete, fit_records, fit_table};
 use crate::section::Dof;
-use crate::wind_tunnel::{Record, RecordSource, predicted_forces};
-use rayon::prelude::*;
+use crate::wind_tunnel::{Record, RecordSource};
 use serde::Serialize;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Frequencies whose histories the thesis shows (Figures 3.29 to 3.32), Hz.
 const SHOWN_HZ: [f64; 2] = [0.5, 2.0];
@@ -21,7 +19,7 @@ const SHOWN_PERIODS: f64 = 3.0;
 
 /// A model that takes part.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Rival {
+pub(crate) struct Rival {
     /// Name in tables and figures.
     pub name: String,
     /// The fit in words.
@@ -36,7 +34,7 @@ pub struct Rival {
 
 /// A few periods of the forces due to one motion.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct History {
+pub(crate) struct History {
     /// Motion.
     pub motion: Dof,
     /// Force.
@@ -53,7 +51,7 @@ pub struct History {
 
 /// Models of one deck side by side.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ModelsComparison {
+pub(crate) struct ModelsComparison {
     /// What was asked for.
     pub options: CompareOptions,
     /// Deck.
@@ -81,7 +79,7 @@ pub struct ModelsComparison {
 ///
 /// # Errors
 /// [`Error::Input`] for anything but one deck; those of fits and metrics.
-pub fn compare_models(
+pub(crate) fn compare_models(
     options: &CompareOptions,
     progress: &(dyn Fn(usize, usize) + Sync),
 ) -> Result<ModelsComparison> {
@@ -99,10 +97,7 @@ pub fn compare_models(
     let sources: Vec<&dyn RecordSource> = records.iter().map(|r| r as &dyn RecordSource).collect();
     let fits = [
         (
-            format!(
-                "Laguerre, L = {}, α = {}",
-                options.laguerre.filters, options.laguerre.alpha
-            ),
+            format!("Laguerre, {}", options.laguerre_name()),
             fit_discrete(&sources, &options.laguerre, &|_| ())?,
         ),
         (
@@ -122,22 +117,23 @@ pub fn compare_models(
         .iter()
         .map(|(name, (model, _))| (name.clone(), model as &dyn Transfer))
         .collect();
-    let pairs: Vec<_> = fits
+    let trials: Vec<Trial<'_>> = fits
         .iter()
-        .flat_map(|fit| records.iter().map(move |r| (fit, r)))
-        .collect();
-    let done = AtomicUsize::new(0);
-    let compared = pairs
-        .par_iter()
-        .map(|((model, (fitted, _)), record)| {
-            let predicted = predicted_forces(fitted, record)?;
-            let label = (deck.table.name.as_str(), model.as_str(), false);
-            let scores = score_forces(label, deck.plan.ramp_s, record, &predicted, options)?;
-            progress(1 + done.fetch_add(1, Ordering::Relaxed), pairs.len());
-            Ok((predicted, scores))
+        .flat_map(|(name, (model, _))| {
+            records.iter().map(|record| Trial {
+                deck: &deck,
+                record,
+                name,
+                model,
+                held_out: false,
+            })
         })
-        .collect::<Result<Vec<_>>>()?;
-    let (predicted, scores): (Vec<_>, Vec<_>) = compared.into_iter().unzip();
+        .collect();
+    let outcomes = run_all(&trials, options, progress)?;
+    let (predicted, scores): (Vec<_>, Vec<_>) = outcomes
+        .into_iter()
+        .map(|o| (o.predicted, o.scores))
+        .unzip();
     let scores = scores.concat();
     let entries = compare_entries(&group, speed, &options.dofs, &models)?;
     Ok(ModelsComparison {

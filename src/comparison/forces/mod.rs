@@ -10,14 +10,13 @@ mod entries;
 mod models;
 mod score;
 mod statements;
+mod trial;
 
-pub use decks::{DeckAccount, DecksComparison, compare_decks};
-pub use entries::{
-    DerivativeComparison, EntryComparison, ModelCurve, ModelPoints, TestPoint, inside,
-};
-pub use models::{History, ModelsComparison, Rival, compare_models};
-pub use score::{ForceMetrics, Score, ScoreSummary, Scoring, score_table, summaries};
-pub use statements::Statement;
+pub(crate) use decks::{DecksComparison, compare_decks};
+pub use entries::inside;
+pub(crate) use models::{History, ModelsComparison, compare_models};
+pub(crate) use score::{ForceMetrics, Score, ScoreSummary, Scoring, score_table};
+pub(crate) use statements::Statement;
 
 use crate::aerodynamics::derivatives::DerivativeTable;
 use crate::error::{Error, Result};
@@ -28,12 +27,12 @@ use crate::wind_tunnel::{Record, TunnelPlan};
 use serde::{Deserialize, Serialize};
 
 /// The four girders of Table 3.1 of the thesis.
-pub const THESIS_DECKS: [&str; 4] = ["LN21-5200", "LN21-5500", "LN21-5800", "LN21-6100"];
+pub(crate) const THESIS_DECKS: [&str; 4] = ["LN21-5200", "LN21-5500", "LN21-5800", "LN21-6100"];
 
 /// What is compared and how; the defaults are those of the thesis.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub struct CompareOptions {
+pub(crate) struct CompareOptions {
     /// Embedded decks.
     pub decks: Vec<String>,
     /// Deck whose model predicts the forces of all; left out, each deck has its own.
@@ -64,6 +63,14 @@ impl Default for CompareOptions {
             seed: 1,
             scoring: Scoring::default(),
         }
+    }
+}
+
+impl CompareOptions {
+    /// The discrete Laguerre model in a few letters.
+    pub(crate) fn laguerre_name(&self) -> String {
+        let DiscreteFit { filters, alpha, .. } = &self.laguerre;
+        format!("L = {filters}, α = {alpha}")
     }
 }
 

@@ -2,18 +2,17 @@
 
 use super::score::{Score, ScoreSummary, summaries};
 use super::statements::{Statement, on_decks};
+use super::trial::{Trial, run_all};
 use super::{CompareOptions, TestedDeck};
 use crate::error::{Error, Result};
 use crate::identification::fit_discrete;
 use crate::trained_model::Model;
-use crate::wind_tunnel::{Record, RecordSource, predicted_forces};
-use rayon::prelude::*;
+use crate::wind_tunnel::{Record, RecordSource};
 use serde::Serialize;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// What was done on one deck.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct DeckAccount {
+pub(crate) struct DeckAccount {
     /// Deck.
     pub deck: String,
     /// Width of the section model, m.
@@ -30,7 +29,7 @@ pub struct DeckAccount {
 
 /// Predicted against measured forces of several decks.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct DecksComparison {
+pub(crate) struct DecksComparison {
     /// What was asked for.
     pub options: CompareOptions,
     /// The decks.
@@ -48,7 +47,7 @@ pub struct DecksComparison {
 ///
 /// # Errors
 /// [`Error::Input`] for unknown decks and impossible options; those of fits and metrics.
-pub fn compare_decks(
+pub(crate) fn compare_decks(
     options: &CompareOptions,
     progress: &(dyn Fn(usize, usize) + Sync),
 ) -> Result<DecksComparison> {
@@ -68,20 +67,21 @@ pub fn compare_decks(
         };
         decks.push((deck, trained));
     }
-    let records: Vec<(&TestedDeck, &Trained, &Record)> = decks
+    let name = options.laguerre_name();
+    let trials: Vec<Trial<'_>> = decks
         .iter()
-        .flat_map(|(d, t)| d.records.iter().map(move |r| (d, t, r)))
-        .collect();
-    let done = AtomicUsize::new(0);
-    let scores = records
-        .par_iter()
-        .map(|(deck, trained, record)| {
-            let scores = score_record(deck, trained, record, options);
-            progress(1 + done.fetch_add(1, Ordering::Relaxed), records.len());
-            scores
+        .flat_map(|(deck, trained)| {
+            deck.records.iter().map(|record| Trial {
+                deck,
+                record,
+                name: &name,
+                model: &trained.model,
+                held_out: trained.held_out(deck, record),
+            })
         })
-        .collect::<Result<Vec<_>>>()?
-        .concat();
+        .collect();
+    let outcomes = run_all(&trials, options, progress)?;
+    let scores: Vec<Score> = outcomes.into_iter().flat_map(|o| o.scores).collect();
     Ok(DecksComparison {
         decks: decks.iter().map(|(d, t)| t.account(d)).collect(),
         summaries: summaries(&scores),
@@ -102,6 +102,10 @@ struct Trained {
 }
 
 impl Trained {
+    fn held_out(&self, deck: &TestedDeck, record: &Record) -> bool {
+        self.deck != deck.table.name || self.speed_m_s != record.header.mean_speed_m_s
+    }
+
     fn account(&self, deck: &TestedDeck) -> DeckAccount {
         DeckAccount {
             deck: deck.table.name.clone(),
@@ -125,62 +129,4 @@ fn train(deck: &TestedDeck, options: &CompareOptions) -> Result<Trained> {
         method: report.method,
         notes: report.notes,
     })
-}
-
-fn score_record(
-    deck: &TestedDeck,
-    trained: &Trained,
-    record: &Record,
-    options: &CompareOptions,
-) -> Result<Vec<Score>> {
-    let predicted = predicted_forces(&trained.model, record)?;
-    let speed = record.header.mean_speed_m_s;
-    let name = format!(
-        "L = {}, α = {}",
-        options.laguerre.filters, options.laguerre.alpha
-    );
-    let held_out = trained.deck != deck.table.name || speed != trained.speed_m_s;
-    score_forces(
-        (&deck.table.name, &name, held_out),
-        deck.plan.ramp_s,
-        record,
-        &predicted,
-        options,
-    )
-}
-
-/// Scores of every force at every frequency of one record.
-pub(super) fn score_forces(
-    (deck, model, held_out): (&str, &str, bool),
-    ramp_s: f64,
-    record: &Record,
-    predicted: &[Vec<f64>],
-    options: &CompareOptions,
-) -> Result<Vec<Score>> {
-    let h = &record.header;
-    let moves = |m: &Vec<f64>| m.iter().any(|x| *x != 0.0);
-    let moving = record.motion.iter().position(moves).unwrap_or(0);
-    let mut scores = Vec::new();
-    for (i, &force) in h.dofs.iter().enumerate() {
-        for segment in &h.segments {
-            let (from, to) = options.scoring.window(record, segment, ramp_s)?;
-            let metrics = options.scoring.metrics(
-                &record.force[i][from..to],
-                &predicted[i][from..to],
-                h.sampling_hz,
-                segment.frequency_hz,
-            )?;
-            scores.push(Score {
-                deck: deck.to_owned(),
-                model: model.to_owned(),
-                speed_m_s: h.mean_speed_m_s,
-                held_out,
-                motion: h.dofs[moving],
-                force,
-                frequency_hz: segment.frequency_hz,
-                metrics,
-            });
-        }
-    }
-    Ok(scores)
 }
