@@ -24,6 +24,10 @@ OUTPUTS = [
 ]  # fmt: skip
 
 
+# outputs that say whether the others can be trusted
+STATUS = ["flutter_margin", "damping_now", "wind_in_tested_range", "amplitude_in_linear_range"]
+
+
 class Message(NamedTuple):
     """What the FMU said through the logger."""
 

@@ -3,13 +3,13 @@
 import fmpy
 import numpy as np
 from growth import growth
-from section import MOTION, OUTPUTS
+from section import MOTION, OUTPUTS, STATUS
 
 
 def test_default_arguments_show_a_deck_just_below_onset(model):
     result = fmpy.simulate_fmu(str(model.fmu))
     experiment = model.description.defaultExperiment
-    assert list(result.dtype.names) == ["time", *OUTPUTS]
+    assert list(result.dtype.names) == ["time", *OUTPUTS, *STATUS]
     assert result["time"][0] == 0.0
     assert result["time"][-1] == float(experiment.stopTime)
     # FMPy doubles the default step until no more than a thousand are left: it must have had no reason to

@@ -24,7 +24,7 @@ def test_degrees_and_kilometres_per_hour(model):
 
 def test_every_dimensional_variable_has_a_unit(model):
     without = {
-        "heave_damping_ratio", "torsion_damping_ratio", "onset_reduced_velocity",
+        "heave_damping_ratio", "torsion_damping_ratio", "onset_reduced_velocity", "damping_now",
     }  # fmt: skip
     for variable in model.description.modelVariables:
         if variable.type == "Real":

@@ -280,11 +280,16 @@ impl Unit {
         value == 1
     }
 
-    /// All outputs, in the order of the table.
+    /// Motion and forces, in the order of the table.
     fn outputs(&self) -> Vec<f64> {
         let variables = self.archive.resources.table.variables();
         let vr: Vec<_> = (0..variables.len())
-            .filter(|i| variables[*i].causality == crate::fmu::variables::Causality::Output)
+            .filter(|i| {
+                matches!(
+                    variables[*i].role,
+                    crate::fmu::variables::Role::Response(..)
+                )
+            })
             .map(|i| i as fmi2ValueReference)
             .collect();
         let mut values = vec![f64::NAN; vr.len()];

@@ -79,7 +79,7 @@ impl Instance {
     fn response_of(&self, reference: u32) -> Answer<Role> {
         let (place, access) = self.typed(reference, DataType::Real)?;
         let variable = &self.table().variables()[place];
-        if access.source == Source::Response {
+        if matches!(access.source, Source::Response | Source::Status) {
             Ok(variable.role)
         } else {
             Err(Refusal::error(format!("`{}` is no output", variable.name)))
@@ -90,7 +90,7 @@ impl Instance {
         let (place, access) = self.typed(reference, DataType::Real)?;
         let variable = &self.table().variables()[place];
         match access.source {
-            Source::Response => Ok(variable.role),
+            Source::Response | Source::Status => Ok(variable.role),
             Source::Calculated if self.memory.state == State::Initialization => Ok(variable.role),
             _ => Err(self.refused(place, "unknown")),
         }

@@ -5,12 +5,13 @@
 use super::layout::Source;
 use super::saving::Memory;
 use super::section_unit::{SectionUnit, check_finite};
+use super::trust::smallest_damping;
 use crate::aerodynamics::Realization;
 use crate::aeroelastic::CoupledSection;
 use crate::error::Result;
 use crate::fmu::refusal::Answer;
 use crate::fmu::resources::Resources;
-use crate::fmu::variables::Role;
+use crate::fmu::variables::{Calculated, Role, Status};
 use crate::response::{Inputs, Outputs, SectionState, Stepper};
 use crate::section::Dof;
 use nalgebra::{DMatrix, DVector};
@@ -60,7 +61,13 @@ impl SectionUnit {
             Source::Release => self.by_release(memory, known)?,
             _ => return self.by_difference(resources, memory, known, unknowns),
         };
-        Ok(unknowns.iter().map(|u| pick(&outputs, *u)).collect())
+        let derivative = |unknown: &Role| match unknown {
+            Role::Status(_) if known == self.places.wind_speed => {
+                self.present_by_wind(memory, *unknown)
+            }
+            other => Ok(pick(&outputs, *other)),
+        };
+        Ok(unknowns.iter().map(derivative).collect::<Result<_>>()?)
     }
 
     fn by_input(&mut self, memory: &Memory, known: usize) -> Result<Outputs> {
@@ -143,13 +150,24 @@ impl SectionUnit {
             self.load_inputs(memory);
             stepper.outputs(&state, &self.inputs, &mut outputs)?;
         }
-        let card = if wants(|u| matches!(u, Role::Calculated(_))) {
+        let wind = values[self.places.wind_speed];
+        let margin = |u: &Role| *u == Role::Status(Status::FlutterMargin);
+        let card = if wants(|u| matches!(u, Role::Calculated(_))) || unknowns.iter().any(margin) {
             Some(self.onset_card(resources, &values))
         } else {
             None
         };
+        let damping = if unknowns.contains(&Role::Status(Status::DampingNow)) {
+            smallest_damping(self.new_stepper(resources, &values)?.section(), wind)?
+        } else {
+            0.0
+        };
         let value = |unknown: &Role| match (unknown, &card) {
             (Role::Calculated(which), Some(card)) => card.value(*which),
+            (Role::Status(Status::FlutterMargin), Some(card)) => {
+                card.value(Calculated::OnsetSpeed) - wind
+            }
+            (Role::Status(Status::DampingNow), _) => damping,
             (other, _) => pick(&outputs, *other),
         };
         Ok(unknowns.iter().map(value).collect())

@@ -314,7 +314,13 @@ impl Unit for SectionUnit {
         outputs: &[Role],
     ) -> Answer<Vec<f64>> {
         let all = self.time_derivative(memory)?;
-        Ok(outputs.iter().map(|role| pick(&all, *role)).collect())
+        let rate = |role: &Role| -> Answer<f64> {
+            match role {
+                Role::Status(_) => Ok(self.present_by_wind(memory, *role)? * memory.input_rates[0]),
+                response => Ok(pick(&all, *response)),
+            }
+        };
+        outputs.iter().map(rate).collect()
     }
 
     fn derivatives(

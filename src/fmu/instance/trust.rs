@@ -3,12 +3,24 @@
 use super::saving::Memory;
 use super::section_unit::SectionUnit;
 use super::unit::Unit;
+use crate::aeroelastic::CoupledSection;
 use crate::error::Result;
 use crate::fmu::resources::Resources;
 use crate::fmu::variables::{Role, Status};
 
 /// Rotation up to which forces are taken as linear: 10 degrees.
 const LINEAR_ROTATION_RAD: f64 = 10.0 * std::f64::consts::PI / 180.0;
+
+/// Relative step of a difference over the wind speed.
+const WIND_STEP: f64 = 1e-5;
+
+/// Smallest damping ratio of the modes at a wind speed; one where nothing oscillates.
+pub(super) fn smallest_damping(section: &CoupledSection, wind: f64) -> Result<f64> {
+    let modes = section.at(wind)?.eigenvalues()?;
+    let oscillating = modes.iter().filter(|z| z.im > 0.0);
+    let least = oscillating.map(|z| -z.re / z.norm()).reduce(f64::min);
+    Ok(least.unwrap_or(1.0))
+}
 
 /// What has been said since the initialisation: a gust may cross a limit at every step.
 #[derive(Debug, Default)]
@@ -53,15 +65,25 @@ impl SectionUnit {
         }
     }
 
-    /// Smallest damping ratio of the modes at a wind speed.
     fn damping(&self, wind: f64) -> Result<f64> {
-        let Some(stepper) = &self.stepper else {
-            return Ok(0.0);
-        };
-        let modes = stepper.section().at(wind)?.eigenvalues()?;
-        let oscillating = modes.iter().filter(|z| z.im > 0.0);
-        let least = oscillating.map(|z| -z.re / z.norm()).reduce(f64::min);
-        Ok(least.unwrap_or(1.0))
+        match &self.stepper {
+            Some(stepper) => smallest_damping(stepper.section(), wind),
+            None => Ok(0.0),
+        }
+    }
+
+    /// Derivative of such a number with respect to the wind speed, per m/s.
+    pub(super) fn present_by_wind(&self, memory: &Memory, role: Role) -> Result<f64> {
+        let wind = memory.values[self.places.wind_speed];
+        Ok(match role {
+            Role::Status(Status::FlutterMargin) => -1.0,
+            Role::Status(Status::DampingNow) => {
+                let step = WIND_STEP * wind.max(1.0);
+                let low = (wind - step).max(0.0);
+                (self.damping(wind + step)? - self.damping(low)?) / (wind + step - low)
+            }
+            _ => 0.0,
+        })
     }
 
     /// Wind speeds (m/s) at which every motion, at its frequency in still air, lies in the tested range; `None` where

@@ -226,10 +226,10 @@ fn calculated_parameters() -> Vec<Variable> {
 
 /// What can be read while running in any importer, also in those that take outputs only.
 fn status() -> Vec<Variable> {
-    let output = |name, what, text: &str| real(name, Role::Status(what), DISCRETE, text);
+    let output = |name, what, text: &str| real(name, Role::Status(what), OUTPUT, text);
     let flag = |name, what, text: &str| Variable {
         value: Value::Boolean(None),
-        ..output(name, what, text)
+        ..real(name, Role::Status(what), DISCRETE, text)
     };
     vec![
         output(
