@@ -7,6 +7,7 @@ import pytest
 def warnings(section):
     return [m.text for m in section.log if m.category == "logStatusWarning"]
 
+
 def test_margin_and_damping_change_sign_at_the_onset(continuous_model):
     with continuous_model.section() as section:
         section.initialize(wind_speed=10.0)

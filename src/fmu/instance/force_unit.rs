@@ -13,6 +13,7 @@ use crate::fmu::refusal::{Answer, Refusal};
 use crate::fmu::resources::Resources;
 use crate::fmu::variables::{ForceOutput, Response, Role, SectionParameter, StripParameter};
 use crate::response::{ForceAhead, Given, KnownMotion, PrescribedForces, SectionState, StripFlow};
+use std::borrow::Cow;
 
 /// Relative step of the differences with respect to wind and parameters.
 const RELATIVE_STEP: f64 = 1e-5;
@@ -30,6 +31,8 @@ pub(super) struct ForceUnit {
     forces: PrescribedForces,
     /// Wind, then the motion: strip by strip, displacement, rate and acceleration of each degree of freedom.
     inputs: Vec<usize>,
+    /// Index of the motion among the inputs, by place; zero for what is none.
+    input_at: Vec<usize>,
     /// Force and total force, in the order of the motion.
     outputs: Vec<[usize; 2]>,
     /// Width, length, wind factor of each strip.
@@ -70,7 +73,12 @@ impl ForceUnit {
                 of(StripParameter::WindFactor)?,
             ]);
         }
+        let mut input_at = vec![0; table.variables().len()];
+        for (index, place) in inputs.iter().enumerate() {
+            input_at[*place] = index;
+        }
         Ok(Self {
+            input_at,
             forces: PrescribedForces::new(resources.model.model.realize(), dofs),
             inputs,
             outputs,
@@ -127,7 +135,7 @@ impl ForceUnit {
     /// Forces of all strips in the order of the motion. `renewed` says that there is motion of the present time.
     fn ahead(&mut self, memory: &Memory, renewed: bool) -> Result<Vec<ForceAhead>> {
         let Conditions { flows, density } = self.conditions(&memory.values);
-        let mut state = memory.system.values[self.first()..].to_vec();
+        let mut state = Cow::Borrowed(&memory.system.values[self.first()..]);
         let mut ahead_s = memory.system.values[0];
         if renewed {
             let motion = self.motion(memory);
@@ -139,7 +147,7 @@ impl ForceUnit {
                 wind_speed_m_s: memory.values[self.inputs[0]],
                 motion: &motion,
             };
-            self.forces.take(&mut state, &given, &flows)?;
+            self.forces.take(state.to_mut(), &given, &flows)?;
         }
         let n = self.forces.dofs().len();
         let mut found = vec![ForceAhead::default(); self.outputs.len()];
@@ -211,13 +219,11 @@ impl Unit for ForceUnit {
     fn changed(&mut self, _: Source) {}
 
     fn input_set(&mut self, memory: &mut Memory, place: usize) -> bool {
-        match self.inputs[1..].iter().position(|input| *input == place) {
-            Some(motion) => {
-                memory.system.values[1 + motion] = SET;
-                true
-            }
-            None => false,
+        let index = self.input_at[place];
+        if index > 0 {
+            memory.system.values[index] = SET;
         }
+        index > 0
     }
 
     fn input_rate_set(&mut self, memory: &mut Memory, index: usize) {
@@ -234,7 +240,7 @@ impl Unit for ForceUnit {
         Ok(())
     }
 
-    fn advance(&mut self, _: &Resources, memory: &mut Memory, step: f64) -> Answer<()> {
+    fn advance(&mut self, _: &Resources, memory: &mut Memory, step: f64) -> Answer<bool> {
         let motion = self.motion(memory);
         let flows = self.conditions(&memory.values).flows;
         let given = Given {
@@ -252,7 +258,7 @@ impl Unit for ForceUnit {
         match self.ahead(memory, false) {
             Ok(forces) => {
                 self.put_out(memory, &forces);
-                Ok(())
+                Ok(true)
             }
             Err(why) => {
                 memory.system.values = before;
@@ -290,8 +296,9 @@ impl Unit for ForceUnit {
         known: usize,
         unknowns: &[Role],
     ) -> Answer<Vec<f64>> {
-        if let Some(index) = self.inputs[1..].iter().position(|input| *input == known) {
-            let forces = self.by_motion(memory, index + 1)?;
+        let index = self.input_at[known];
+        if index > 0 {
+            let forces = self.by_motion(memory, index)?;
             let entry = |role: &Role| self.entry(memory, &forces, *role).force;
             return Ok(unknowns.iter().map(entry).collect());
         }

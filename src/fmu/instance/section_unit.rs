@@ -256,12 +256,12 @@ impl Unit for SectionUnit {
         }
     }
 
-    fn advance(&mut self, _: &Resources, memory: &mut Memory, step: f64) -> Answer<()> {
+    fn advance(&mut self, _: &Resources, memory: &mut Memory, step: f64) -> Answer<bool> {
         self.load_inputs(memory);
         if let Some(stepper) = &mut self.stepper {
             stepper.advance(&mut memory.system, &self.inputs, step)?;
         }
-        Ok(())
+        Ok(false)
     }
 
     fn held_output(&self, memory: &Memory, place: usize) -> Option<f64> {

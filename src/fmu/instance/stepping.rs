@@ -24,13 +24,12 @@ impl Instance {
         }
         self.run_inputs_on(step);
         self.memory.time = point + step;
-        self.outputs_current = false;
         Ok(())
     }
 
     fn advance(&mut self, step: f64) -> Answer<()> {
         self.unit.prepare(&self.resources, &mut self.memory)?;
-        self.unit.advance(&self.resources, &mut self.memory, step)?;
+        self.outputs_current = self.unit.advance(&self.resources, &mut self.memory, step)?;
         // after the step: one that is refused is refused at once
         self.watch();
         Ok(())

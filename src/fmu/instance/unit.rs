@@ -44,11 +44,12 @@ pub(super) trait Unit: Debug + Send {
     /// Says what a user must know of the parameters and of the present state, each thing once.
     fn watch(&mut self, _resources: &Resources, _memory: &Memory, _notices: &mut Vec<String>) {}
 
-    /// One step of `step` seconds from the time of the memory. On an error everything is as it was.
+    /// One step of `step` seconds from the time of the memory; returns whether the outputs after it are in the memory.
+    /// On an error everything is as it was.
     ///
     /// # Errors
     /// When the step cannot be computed.
-    fn advance(&mut self, resources: &Resources, memory: &mut Memory, step: f64) -> Answer<()>;
+    fn advance(&mut self, resources: &Resources, memory: &mut Memory, step: f64) -> Answer<bool>;
 
     /// The output at `place` where it is part of the state.
     fn held_output(&self, _memory: &Memory, _place: usize) -> Option<f64> {

@@ -38,7 +38,6 @@ pub(super) fn wind_speed(model: &TrainedModel) -> Variable {
     real("wind_speed", Role::WindSpeed, INPUT, text)
         .start(model.experiment.wind_speed_m_s)
         .quantity("Velocity", SPEED)
-        .shown()
         .min(0.0)
         .nominal(10.0)
 }
@@ -162,7 +161,6 @@ fn search_limit(model: &TrainedModel) -> Variable {
     real("onset_search_limit", Role::OnsetSearchLimit, FIXED, text)
         .start(model.experiment.onset_search_limit_m_s)
         .quantity("Velocity", SPEED)
-        .shown()
         .min(SMALLEST)
 }
 
@@ -179,8 +177,7 @@ fn calculated_parameters() -> Vec<Variable> {
             C::OnsetSpeed,
             "Wind speed of flutter onset for the current parameters; onset_search_limit when none was found",
         )
-        .quantity("Velocity", SPEED)
-        .shown(),
+        .quantity("Velocity", SPEED),
         parameter(
             "onset_frequency",
             C::OnsetFrequency,
@@ -199,8 +196,7 @@ fn calculated_parameters() -> Vec<Variable> {
             C::DivergenceSpeed,
             "Wind speed of static divergence for the current parameters; onset_search_limit when none was found",
         )
-        .quantity("Velocity", SPEED)
-        .shown(),
+        .quantity("Velocity", SPEED),
         flag(
             "onset_found",
             C::OnsetFound,
