@@ -94,11 +94,13 @@ fn export() -> PathBuf {
     folder
 }
 
-/// Forces on a flat plate for the full-scale section, on one strip and on three.
+/// The full-scale section of a flat plate, and its forces alone on one strip and on three.
 fn export_forces(folder: &Path, runtimes: &[Runtime]) {
     let text = fs::read_to_string(models::model_file("rational")).unwrap();
     let mut model = TrainedModel::from_json(&text).unwrap();
     model.section = SectionModel::iabse_1_1a();
+    let fmu = folder.join("full_scale.fmu");
+    write_fmu(&fmu, &model, runtimes, Overwrite::Refuse, Growing::Refuse).unwrap();
     let single = ForceOptions::single(model.section.width_m);
     let strips = ForceOptions {
         strips: vec![single.strips[0].clone(); 3],
