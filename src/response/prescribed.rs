@@ -107,7 +107,8 @@ impl PrescribedForces {
 
     /// Points of time at which motion has been given so far, at most those that are kept.
     fn points(state: &[f64]) -> usize {
-        state[0] as usize
+        // a saved state comes from a file
+        (state[0] as usize).min(POINTS)
     }
 
     /// Time of the newest point, s.

@@ -181,6 +181,21 @@ def test_wrong_input_is_refused_and_nothing_is_lost(single):
         with pytest.raises(FMICallException):
             force.fmu.doStep(0.1, 0.1)
         assert "parts" in force.said(DISCARD)[-1]
+    for values, ramp, words in [
+        ({}, {"wind_speed": -400.0}, "backwards"),
+        ({"heave": 1e305, "wind_speed": 1e5}, {}, "range of numbers"),
+    ]:
+        with single.start(wind_speed=20.0) as force:
+            force.set(**values)
+            force.ramp(**ramp)
+            with pytest.raises(FMICallException):
+                force.fmu.doStep(0.0, 0.1)
+            assert words in force.said(DISCARD)[-1]
+    with single.start(wind_speed=20.0) as force:
+        force.set(rotation=0.3)
+        for n in range(3):
+            force.fmu.doStep(0.1 * n, 0.1)
+        assert len([m for m in force.log if "beyond linear theory" in m.text]) == 1
     with single.start(wind_speed=20.0) as force:
         with pytest.raises(FMICallException):
             force.set(heave=float("nan"))

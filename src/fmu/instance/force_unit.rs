@@ -5,14 +5,17 @@
 
 use super::layout::{Source, place};
 use super::saving::Memory;
+use super::trust::{LINEAR_ROTATION_RAD, beyond_linear};
 use super::unit::Unit;
 use crate::aerodynamics::Realizable;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::fmu::force_options::ForceOptions;
 use crate::fmu::refusal::{Answer, Refusal};
 use crate::fmu::resources::Resources;
 use crate::fmu::variables::{ForceOutput, Response, Role, SectionParameter, StripParameter};
-use crate::response::{ForceAhead, Given, KnownMotion, PrescribedForces, SectionState, StripFlow};
+use crate::response::{
+    ForceAhead, Given, KnownMotion, PrescribedForces, SectionState, StripFlow, wind_at_rest,
+};
 use std::borrow::Cow;
 
 /// Relative step of the differences with respect to wind and parameters.
@@ -40,6 +43,8 @@ pub(super) struct ForceUnit {
     density: usize,
     prediction: usize,
     derivatives: usize,
+    /// Whether it has been said that a rotation is beyond linear theory.
+    told: bool,
 }
 
 /// What acts on the strips.
@@ -86,6 +91,7 @@ impl ForceUnit {
             density: place(table, Role::Section(SectionParameter::AirDensity))?,
             prediction: place(table, Role::Prediction)?,
             derivatives: place(table, Role::MotionDerivatives)?,
+            told: false,
         })
     }
 
@@ -155,7 +161,12 @@ impl ForceUnit {
             self.forces
                 .ahead(&state, (s, flow), ahead_s, density, forces)?;
         }
-        Ok(found)
+        if found.iter().all(|f| f.force.is_finite()) {
+            return Ok(found);
+        }
+        Err(Error::Numerical(
+            "the forces have grown beyond the range of numbers".into(),
+        ))
     }
 
     /// Whether there is motion of the present time that no step has taken yet.
@@ -218,6 +229,21 @@ impl Unit for ForceUnit {
 
     fn changed(&mut self, _: Source) {}
 
+    fn begin_initialization(&mut self) {
+        self.told = false;
+    }
+
+    fn watch(&mut self, _: &Resources, memory: &Memory, notices: &mut Vec<String>) {
+        let n = self.forces.dofs().len();
+        let rotations = self.inputs[1..].chunks(3).skip(n - 1).step_by(n);
+        let largest = rotations.map(|places| memory.values[places[0]].abs());
+        let largest = largest.fold(0.0, f64::max);
+        if largest > LINEAR_ROTATION_RAD && !self.told {
+            self.told = true;
+            notices.push(beyond_linear(largest));
+        }
+    }
+
     fn input_set(&mut self, memory: &mut Memory, place: usize) -> bool {
         let index = self.input_at[place];
         if index > 0 {
@@ -241,11 +267,18 @@ impl Unit for ForceUnit {
     }
 
     fn advance(&mut self, _: &Resources, memory: &mut Memory, step: f64) -> Answer<bool> {
+        let wind = memory.values[self.inputs[0]];
+        let end = wind + memory.input_rates[0] * step;
+        if wind_at_rest(end, wind) < 0.0 {
+            return Err(Refusal::discard(format!(
+                "wind_speed: expected a wind that does not blow backwards, found {end} m/s at the end of the step"
+            )));
+        }
         let motion = self.motion(memory);
         let flows = self.conditions(&memory.values).flows;
         let given = Given {
             time_s: memory.time,
-            wind_speed_m_s: memory.values[self.inputs[0]],
+            wind_speed_m_s: wind,
             motion: &motion,
         };
         let first = self.first();
@@ -268,12 +301,9 @@ impl Unit for ForceUnit {
     }
 
     fn outputs(&mut self, _: &Resources, memory: &mut Memory) -> Answer<()> {
-        let forces = self.ahead(memory, self.renewed(memory))?;
-        if !forces.iter().all(|f| f.force.is_finite()) {
-            return Err(Refusal::discard(
-                "outputs: the forces have grown beyond the range of numbers",
-            ));
-        }
+        let renewed = self.renewed(memory);
+        let forces = self.ahead(memory, renewed);
+        let forces = forces.map_err(|why| Refusal::discard(format!("outputs: {why}")))?;
         self.put_out(memory, &forces);
         Ok(())
     }

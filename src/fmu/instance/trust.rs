@@ -9,7 +9,7 @@ use crate::fmu::resources::Resources;
 use crate::fmu::variables::{Role, Status};
 
 /// Rotation up to which forces are taken as linear: 10 degrees.
-const LINEAR_ROTATION_RAD: f64 = 10.0 * std::f64::consts::PI / 180.0;
+pub(super) const LINEAR_ROTATION_RAD: f64 = 10.0 * std::f64::consts::PI / 180.0;
 
 /// Relative step of a difference over the wind speed.
 const WIND_STEP: f64 = 1e-5;
@@ -20,6 +20,12 @@ pub(super) fn smallest_damping(section: &CoupledSection, wind: f64) -> Result<f6
     let oscillating = modes.iter().filter(|z| z.im > 0.0);
     let least = oscillating.map(|z| -z.re / z.norm()).reduce(f64::min);
     Ok(least.unwrap_or(1.0))
+}
+
+/// What is said of a rotation (rad) beyond it.
+pub(super) fn beyond_linear(rotation: f64) -> String {
+    let degrees = rotation.to_degrees();
+    format!("the rotation, {degrees:.1} degrees, is beyond linear theory (about 10 degrees)")
 }
 
 /// What has been said since the initialisation: a gust may cross a limit at every step.
@@ -125,10 +131,7 @@ impl SectionUnit {
         let rotation = self.rotation(memory);
         if rotation.abs() > LINEAR_ROTATION_RAD && !self.told.rotation_left {
             self.told.rotation_left = true;
-            notices.push(format!(
-                "the rotation, {:.1} degrees, is beyond linear theory (about 10 degrees)",
-                rotation.to_degrees()
-            ));
+            notices.push(beyond_linear(rotation));
         }
     }
 }

@@ -19,7 +19,7 @@ impl Course {
     /// known at the newest point. Displacements and rates of one interval together would see the structure under a
     /// force that was held over it, and take the jumps in between for smooth.
     pub fn through(times: &[f64], points: &[f64]) -> Self {
-        let known = |p: usize| points[p * NUMBERS + NUMBERS - 1] as usize;
+        let known = |p: usize| (points[p * NUMBERS + NUMBERS - 1] as usize).min(NUMBERS - 1);
         let highest = known(0).saturating_sub(1);
         let most = (COEFFICIENTS - highest).min(times.len());
         let count = (0..most).take_while(|p| known(*p) > highest).count();
