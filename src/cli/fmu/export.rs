@@ -10,8 +10,7 @@ use crate::fmu::package::{Export, Overwrite, Runtime, growth_of, write_fmu};
 use crate::trained_model::TrainedModel;
 use std::path::PathBuf;
 
-/// Pack a trained model (`model.json`, see `train`) as an FMI 2.0 co-simulation FMU: the section in its forces, or the
-/// forces alone beside a structure of your own
+/// Pack a trained model (`model.json`) as an FMI 2.0 co-simulation FMU: its section, or its forces alone
 ///
 /// Example: aerodeck fmu export model.json --out deck_section.fmu
 /// Example: aerodeck fmu export model.json --kind force --strips 40 --strip-length 25 --out force.fmu
