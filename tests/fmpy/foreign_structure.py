@@ -36,19 +36,30 @@ def motion(x, rates):
     return values
 
 
-def explicit(force, step, count, rates=False, start=START, spring=None, prefix=""):
+def explicit(force, step, count, rates=False, spring=None):
     """Jacobi: the structure holds the force that it has read at the beginning of its step."""
     exact, driven, _ = held(step)
-    names = [prefix + "lift", prefix + "moment"]
-    x, rows = start.copy(), [start]
+    x, rows = START.copy(), [START]
     for n in range(count):
-        acting = np.array(force.get(*names))
-        force.set(**{prefix + k: v for k, v in motion(x, rates).items()})
+        acting = np.array(force.get("lift", "moment"))
+        force.set(**motion(x, rates))
         force.fmu.doStep(n * step, step)
         if spring is None:
             x = exact @ x + driven @ acting
         else:
             x = nonlinear_step(x, acting, step, spring)
+        rows.append(x)
+    return np.array(rows)
+
+
+def staggered(force, step, count, rates=False):
+    """Gauss and Seidel: the structure steps first, the forces follow with the motion of the end of its step."""
+    exact, driven, _ = held(step)
+    x, rows = START.copy(), [START]
+    for n in range(count):
+        x = exact @ x + driven @ np.array(force.get("lift", "moment"))
+        force.set(**motion(x, rates))
+        force.fmu.doStep(n * step, step)
         rows.append(x)
     return np.array(rows)
 

@@ -10,7 +10,9 @@ from fmpy import extract
 from fmpy.fmi1 import FMICallException
 from fmpy.model_description import read_model_description
 from fmpy.validation import validate_fmu
-from foreign_structure import ONSET, PERIOD, explicit, extrapolating, growth, implicit, in_one_piece
+from foreign_structure import (
+    ONSET, PERIOD, explicit, extrapolating, growth, implicit, in_one_piece, staggered,
+)  # fmt: skip
 from section import DISCARD, ERROR, Section
 
 
@@ -72,6 +74,9 @@ def test_without_prediction_the_onset_is_too_high(single):
 
 
 def test_other_masters_find_it_with_their_prediction(single):
+    one_after_the_other = onset(single, staggered, 100, prediction=0.5) / ONSET - 1
+    print(f"staggered {100 * one_after_the_other:+.3f} %")
+    assert abs(one_after_the_other) < 0.001
     extrapolated = onset(single, extrapolating, 100, prediction=1.0) / ONSET - 1
     iterated = onset(single, implicit, 50, prediction=0.0, rates=True, periods=30) / ONSET - 1
     print(f"extrapolating {100 * extrapolated:+.3f} %, implicit {100 * iterated:+.3f} %")

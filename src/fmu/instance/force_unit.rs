@@ -3,6 +3,7 @@
 //! The forces put out are those at the instant at which they will act, `prediction` communication steps after the
 //! motion that was set for the last step. When the importer has set newer motion since, they follow from that as well.
 
+use super::derivatives::central_difference;
 use super::layout::{Source, place};
 use super::saving::Memory;
 use super::trust::{LINEAR_ROTATION_RAD, beyond_linear};
@@ -12,7 +13,7 @@ use crate::error::{Error, Result};
 use crate::fmu::force_options::ForceOptions;
 use crate::fmu::refusal::{Answer, Refusal};
 use crate::fmu::resources::Resources;
-use crate::fmu::variables::{ForceOutput, Response, Role, SectionParameter, StripParameter};
+use crate::fmu::variables::{ForceOutput, Role, SectionParameter};
 use crate::response::{
     ForceAhead, Given, KnownMotion, PrescribedForces, SectionState, StripFlow, wind_at_rest,
 };
@@ -61,22 +62,21 @@ impl ForceUnit {
     pub fn new(resources: &Resources, options: &ForceOptions) -> Result<Self> {
         let table = &resources.table;
         let dofs = resources.model.section.dofs();
-        let (mut inputs, mut outputs) = (vec![place(table, Role::WindSpeed)?], Vec::new());
-        let mut strips = Vec::with_capacity(options.strips.len());
-        for s in 0..options.strips.len() {
-            for &dof in &dofs {
-                for response in &Response::ALL[..3] {
-                    inputs.push(place(table, Role::Motion(s, *response, dof))?);
+        let n = dofs.len();
+        let coordinate = |s: usize, dof| s * n + dofs.iter().position(|d| *d == dof).unwrap_or(0);
+        let count = options.strips.len();
+        let mut inputs = vec![place(table, Role::WindSpeed)?; 1 + 3 * n * count];
+        let (mut outputs, mut strips) = (vec![[0; 2]; n * count], vec![[0; 3]; count]);
+        // in one pass: there may be ten thousand strips
+        for (place, variable) in table.variables().iter().enumerate() {
+            match variable.role {
+                Role::Motion(s, response, dof) => {
+                    inputs[1 + 3 * coordinate(s, dof) + response as usize] = place;
                 }
-                let force = |kind| place(table, Role::Force(s, kind, dof));
-                outputs.push([force(ForceOutput::PerLength)?, force(ForceOutput::Total)?]);
+                Role::Force(s, kind, dof) => outputs[coordinate(s, dof)][kind as usize] = place,
+                Role::Strip(s, which) => strips[s][which as usize] = place,
+                _ => {}
             }
-            let of = |which| place(table, Role::Strip(s, which));
-            strips.push([
-                of(StripParameter::Width)?,
-                of(StripParameter::Length)?,
-                of(StripParameter::WindFactor)?,
-            ]);
         }
         let mut input_at = vec![0; table.variables().len()];
         for (index, place) in inputs.iter().enumerate() {
@@ -332,22 +332,13 @@ impl Unit for ForceUnit {
             let entry = |role: &Role| self.entry(memory, &forces, *role).force;
             return Ok(unknowns.iter().map(entry).collect());
         }
-        let variable = &resources.table.variables()[known];
-        let value = memory.values[known];
-        let step = RELATIVE_STEP * value.abs().max(RELATIVE_STEP);
-        let low = (value - step).max(variable.min.unwrap_or(f64::NEG_INFINITY));
-        let high = (value + step).min(variable.max.unwrap_or(f64::INFINITY));
+        let step = RELATIVE_STEP * memory.values[known].abs().max(RELATIVE_STEP);
         let renewed = self.renewed(memory);
-        let mut at = |value: f64| -> Result<Vec<f64>> {
-            let mut other = memory.clone();
-            other.values[known] = value;
-            let forces = self.ahead(&other, renewed)?;
-            let entry = |role: &Role| self.entry(&other, &forces, *role).force;
+        central_difference(resources, memory, (known, step), |other| {
+            let forces = self.ahead(other, renewed)?;
+            let entry = |role: &Role| self.entry(other, &forces, *role).force;
             Ok(unknowns.iter().map(entry).collect())
-        };
-        let (below, above) = (at(low)?, at(high)?);
-        let difference = |(a, b): (&f64, &f64)| (b - a) / (high - low);
-        Ok(below.iter().zip(&above).map(difference).collect())
+        })
     }
 }
 

@@ -2,6 +2,7 @@
 //! products with the same matrices; the derivative with respect to the wind speed is closed too. Only section
 //! properties are differenced.
 
+use super::derivatives::central_difference;
 use super::layout::Source;
 use super::saving::Memory;
 use super::section_unit::{SectionUnit, check_finite};
@@ -59,7 +60,17 @@ impl SectionUnit {
         let outputs = match Source::of(resources.table.variables()[known].role) {
             Source::Input => self.by_input(memory, known)?,
             Source::Release => self.by_release(memory, known)?,
-            _ => return self.by_difference(resources, memory, known, unknowns),
+            _ => {
+                let value = memory.values[known];
+                let step = if value == 0.0 {
+                    STEP_FROM_ZERO
+                } else {
+                    RELATIVE_STEP * value.abs()
+                };
+                return central_difference(resources, memory, (known, step), |other| {
+                    self.unknowns(resources, other, unknowns)
+                });
+            }
         };
         let derivative = |unknown: &Role| match unknown {
             Role::Status(_) if known == self.places.wind_speed => {
@@ -109,56 +120,31 @@ impl SectionUnit {
         Ok(outputs)
     }
 
-    /// Central differences; one-sided where the parameter would leave its limits.
-    fn by_difference(
+    /// The unknowns for the values in `memory`.
+    fn unknowns(
         &mut self,
         resources: &Resources,
         memory: &Memory,
-        known: usize,
         unknowns: &[Role],
     ) -> Answer<Vec<f64>> {
-        let variable = &resources.table.variables()[known];
-        let value = memory.values[known];
-        let step = if value == 0.0 {
-            STEP_FROM_ZERO
-        } else {
-            RELATIVE_STEP * value.abs()
-        };
-        let low = (value - step).max(variable.min.unwrap_or(f64::NEG_INFINITY));
-        let high = (value + step).min(variable.max.unwrap_or(f64::INFINITY));
-        let below = self.with_value(resources, memory, (known, low), unknowns)?;
-        let above = self.with_value(resources, memory, (known, high), unknowns)?;
-        let difference = |(a, b): (&f64, &f64)| (b - a) / (high - low);
-        Ok(below.iter().zip(&above).map(difference).collect())
-    }
-
-    /// The unknowns with one other value.
-    fn with_value(
-        &mut self,
-        resources: &Resources,
-        memory: &Memory,
-        (place, value): (usize, f64),
-        unknowns: &[Role],
-    ) -> Answer<Vec<f64>> {
-        let mut values = memory.values.clone();
-        values[place] = value;
+        let values = &memory.values;
         let wants = |wanted: fn(&Role) -> bool| unknowns.iter().any(wanted);
         let mut outputs = Outputs::default();
         if wants(|u| matches!(u, Role::Response(..))) {
-            let mut stepper: Stepper = self.new_stepper(resources, &values)?;
-            let state = self.release(&stepper, &values)?;
+            let mut stepper: Stepper = self.new_stepper(resources, values)?;
+            let state = self.release(&stepper, values)?;
             self.load_inputs(memory);
             stepper.outputs(&state, &self.inputs, &mut outputs)?;
         }
         let wind = values[self.places.wind_speed];
         let margin = |u: &Role| *u == Role::Status(Status::FlutterMargin);
         let card = if wants(|u| matches!(u, Role::Calculated(_))) || unknowns.iter().any(margin) {
-            Some(self.onset_card(resources, &values))
+            Some(self.onset_card(resources, values))
         } else {
             None
         };
         let damping = if unknowns.contains(&Role::Status(Status::DampingNow)) {
-            smallest_damping(self.new_stepper(resources, &values)?.section(), wind)?
+            smallest_damping(self.new_stepper(resources, values)?.section(), wind)?
         } else {
             0.0
         };

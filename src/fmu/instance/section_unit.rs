@@ -5,7 +5,7 @@ use super::layout::{Source, place};
 use super::saving::Memory;
 use super::section::{self, OnsetCard};
 use super::section_derivatives::pick;
-use super::trust::Told;
+use super::trust::{Told, tested_winds};
 use super::unit::Unit;
 use crate::aerodynamics::{Realizable, Realization};
 use crate::error::Result;
@@ -83,6 +83,8 @@ pub(super) struct SectionUnit {
     aerodynamics: Realization,
     /// Stepper of the current parameters; `None` after they have changed.
     pub stepper: Option<Stepper>,
+    /// Wind speeds (m/s) at which it was tested, see [`tested_winds`].
+    pub tested_winds: Option<[f64; 2]>,
     /// While initialising: the state has to be made anew from the values at release.
     release_pending: bool,
     onset_current: bool,
@@ -109,6 +111,7 @@ impl SectionUnit {
             places,
             aerodynamics: resources.model.model.realize(),
             stepper: None,
+            tested_winds: None,
             release_pending: true,
             onset_current: false,
             growth_known: false,
@@ -221,7 +224,9 @@ impl Unit for SectionUnit {
 
     fn prepare(&mut self, resources: &Resources, memory: &mut Memory) -> Result<()> {
         if self.stepper.is_none() {
-            self.stepper = Some(self.new_stepper(resources, &memory.values)?);
+            let stepper = self.new_stepper(resources, &memory.values)?;
+            self.tested_winds = tested_winds(&stepper, resources);
+            self.stepper = Some(stepper);
         }
         if self.release_pending && memory.state == State::Initialization {
             if let Some(stepper) = &self.stepper {
@@ -234,7 +239,7 @@ impl Unit for SectionUnit {
 
     /// Says also, once for each set of parameters, where the section grows although nothing was tested there.
     fn watch(&mut self, resources: &Resources, memory: &Memory, notices: &mut Vec<String>) {
-        self.watch_trust(resources, memory, notices);
+        self.watch_trust(memory, notices);
         if self.growth_known || self.growth_searches_left == 0 {
             return;
         }

@@ -7,6 +7,7 @@ use crate::aeroelastic::CoupledSection;
 use crate::error::Result;
 use crate::fmu::resources::Resources;
 use crate::fmu::variables::{Role, Status};
+use crate::response::Stepper;
 
 /// Rotation up to which forces are taken as linear: 10 degrees.
 pub(super) const LINEAR_ROTATION_RAD: f64 = 10.0 * std::f64::consts::PI / 180.0;
@@ -20,6 +21,18 @@ pub(super) fn smallest_damping(section: &CoupledSection, wind: f64) -> Result<f6
     let oscillating = modes.iter().filter(|z| z.im > 0.0);
     let least = oscillating.map(|z| -z.re / z.norm()).reduce(f64::min);
     Ok(least.unwrap_or(1.0))
+}
+
+/// Wind speeds (m/s) at which every motion, at its frequency in still air, lies in the tested range; `None` where there
+/// are none.
+pub(super) fn tested_winds(stepper: &Stepper, resources: &Resources) -> Option<[f64; 2]> {
+    let s = stepper.section().structure();
+    let omega = (0..s.dofs.len()).map(|i| (s.stiffness[(i, i)] / s.mass[(i, i)]).sqrt());
+    let (slowest, fastest) = omega.fold((f64::INFINITY, 0.0_f64), |(a, b), w| (a.min(w), b.max(w)));
+    let range = resources.model.tested_range;
+    let low = fastest * s.width_m / range.max.full_width();
+    let high = slowest * s.width_m / range.min.full_width();
+    (low <= high).then_some([low, high])
 }
 
 /// What is said of a rotation (rad) beyond it.
@@ -61,7 +74,7 @@ impl SectionUnit {
                 }
             },
             Role::Status(Status::WindInTestedRange) => {
-                let range = self.tested_winds(resources);
+                let range = self.tested_winds;
                 flag(range.is_some_and(|[low, high]| (low..=high).contains(&wind)))
             }
             Role::Status(Status::AmplitudeInLinearRange) => {
@@ -92,32 +105,14 @@ impl SectionUnit {
         })
     }
 
-    /// Wind speeds (m/s) at which every motion, at its frequency in still air, lies in the tested range; `None` where
-    /// there are none.
-    fn tested_winds(&self, resources: &Resources) -> Option<[f64; 2]> {
-        let s = self.stepper.as_ref()?.section().structure();
-        let omega = (0..s.dofs.len()).map(|i| (s.stiffness[(i, i)] / s.mass[(i, i)]).sqrt());
-        let (slowest, fastest) =
-            omega.fold((f64::INFINITY, 0.0_f64), |(a, b), w| (a.min(w), b.max(w)));
-        let range = resources.model.tested_range;
-        let low = fastest * s.width_m / range.max.full_width();
-        let high = slowest * s.width_m / range.min.full_width();
-        (low <= high).then_some([low, high])
-    }
-
     fn rotation(&self, memory: &Memory) -> f64 {
         memory.system.values[self.places.force.len() - 1]
     }
 
     /// Says when the wind leaves the tested range, and when the rotation leaves linear theory; each once.
-    pub(super) fn watch_trust(
-        &mut self,
-        resources: &Resources,
-        memory: &Memory,
-        notices: &mut Vec<String>,
-    ) {
+    pub(super) fn watch_trust(&mut self, memory: &Memory, notices: &mut Vec<String>) {
         let wind = memory.values[self.places.wind_speed];
-        let tested = self.tested_winds(resources);
+        let tested = self.tested_winds;
         let inside = tested.is_some_and(|[low, high]| (low..=high).contains(&wind));
         let leaves = self.told.wind_was_tested && !inside && !self.told.wind_left;
         if let Some([low, high]) = tested.filter(|_| leaves) {

@@ -181,6 +181,8 @@ fn an_instance_says_where_it_grows_when_made_and_after_its_parameters_have_chang
     bad.exit_initialization().unwrap();
     // said already
     assert_eq!(growth(bad.take_notices()), 0);
+    let stable = bad.table().find_name("stable_below_onset").unwrap() as u32;
+    assert!(!bad.boolean(stable).unwrap());
     let damping = |instance: &Instance| {
         let variables = instance.table().variables();
         let is_damping = |name: &str| name.contains("heave") && name.contains("damping");

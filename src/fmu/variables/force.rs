@@ -45,7 +45,7 @@ pub(super) fn variables(model: &TrainedModel, options: &ForceOptions) -> Result<
     }
     table.extend(coupling(options));
     table.extend(constants(model)?);
-    fill_dependencies(&mut table);
+    fill_dependencies(&mut table, options.strips.len());
     Ok(table)
 }
 
@@ -177,33 +177,32 @@ fn coupling(options: &ForceOptions) -> [Variable; 2] {
 }
 
 /// Forces follow the wind and the motion of their strip, and everything that is stated of it.
-fn fill_dependencies(table: &mut [Variable]) {
+fn fill_dependencies(table: &mut [Variable], strips: usize) {
+    let (mut shared, mut of_strip) = (Vec::new(), vec![Vec::new(); strips]);
+    for (place, variable) in table.iter().enumerate() {
+        match variable.role {
+            Role::WindSpeed | Role::Section(_) | Role::MotionDerivatives => shared.push(place),
+            Role::Motion(s, ..) | Role::Strip(s, _) => of_strip[s].push(place),
+            _ => {}
+        }
+    }
     let roles: Vec<Role> = table.iter().map(|v| v.role).collect();
     for variable in table.iter_mut() {
         let Role::Force(strip, kind, _) = variable.role else {
             continue;
         };
-        let acts = |role: &Role| match *role {
-            Role::WindSpeed => true,
-            Role::Motion(of, ..) => of == strip,
-            _ => false,
-        };
-        let stated = |role: &Role| match *role {
-            Role::Section(_) | Role::MotionDerivatives => true,
-            Role::Strip(of, StripParameter::Length) => of == strip && kind == ForceOutput::Total,
-            Role::Strip(of, _) => of == strip,
-            _ => false,
-        };
-        let places = |wanted: &dyn Fn(&Role) -> bool| -> Vec<usize> {
-            (0..roles.len()).filter(|i| wanted(&roles[*i])).collect()
-        };
-        variable.direct_inputs = places(&acts);
-        variable.initial_dependencies = places(&|role| acts(role) || stated(role))
-            .into_iter()
-            .map(|on| InitialDependency {
-                on,
-                constant: false,
-            })
+        let known = shared.iter().chain(&of_strip[strip]).copied();
+        let length = Role::Strip(strip, StripParameter::Length);
+        let mut known: Vec<usize> = known
+            .filter(|place| kind == ForceOutput::Total || roles[*place] != length)
             .collect();
+        known.sort_unstable();
+        let input = |place: &usize| matches!(roles[*place], Role::WindSpeed | Role::Motion(..));
+        variable.direct_inputs = known.iter().copied().filter(input).collect();
+        let dependency = |on| InitialDependency {
+            on,
+            constant: false,
+        };
+        variable.initial_dependencies = known.into_iter().map(dependency).collect();
     }
 }
