@@ -21,7 +21,7 @@ use crate::aerodynamics::{ContinuousRealization, DiscreteRealization, Realizable
 use crate::error::{Error, Result, non_negative, positive};
 use crate::section::Structure;
 use crate::state_space::{Continuous, Discrete, StateSpace, c2d, first_order};
-use nalgebra::{Complex, DMatrix};
+use nalgebra::{Complex, DMatrix, DVector};
 
 /// An elastically suspended section with a realised aerodynamic model.
 #[derive(Debug, Clone)]
@@ -288,6 +288,19 @@ impl CoupledSection {
                 Ok(self.sampled_outputs(&a, &self.force_of_filters(&d.c, speed_m_s)))
             }
         }
+    }
+
+    /// `ẋ/V = (A x + b diag(1/B, 1/B, 1) q)/B` of the filters of a continuous model at the state `[q, q̇, x]`; none for a
+    /// sampled one.
+    pub(crate) fn filter_rates_per_wind(&self, state: &[f64]) -> DVector<f64> {
+        let Realization::Continuous(c) = &self.aerodynamics else {
+            return DVector::zeros(0);
+        };
+        let s = &self.structure;
+        let n = s.dofs.len();
+        let filters = DVector::from_column_slice(&state[2 * n..]);
+        let motion = DVector::from_fn(n, |i, _| state[i] * s.dofs[i].motion_scale(s.width_m));
+        (&c.a * filters + &c.b * motion) / s.width_m
     }
 
     /// `½ρV² diag(B, B, B²) C`, n×N.

@@ -312,12 +312,12 @@ impl Stepper {
     ///
     /// # Errors
     /// [`Error::Input`] for inputs that are not finite.
-    pub fn state_derivative(&self, state: &SectionState, inputs: &Inputs) -> Result<Vec<f64>> {
+    pub fn state_derivative(&mut self, state: &SectionState, inputs: &Inputs) -> Result<Vec<f64>> {
         let n = self.section.structure().dofs.len();
         inputs.check(n)?;
-        let z = DVector::from_column_slice(&state.values);
-        let w = DVector::from_column_slice(&inputs.force);
         if let Some(sampling) = &self.sampling {
+            let z = DVector::from_column_slice(&state.values);
+            let w = DVector::from_column_slice(&inputs.force);
             let force = sampling.force(&state.values, inputs.wind_speed_m_s.max(0.0));
             let force = DVector::from_column_slice(&force[..n]);
             let (a, b) = self.section.structure_alone();
@@ -326,8 +326,13 @@ impl Stepper {
             derivative[..2 * n].copy_from_slice(motion.as_slice());
             return Ok(derivative);
         }
-        let s = self.section.continuous_at(inputs.wind_speed_m_s.max(0.0))?;
-        Ok((&s.a * z + &s.b * w).as_slice().to_vec())
+        let mut now = Outputs::default();
+        self.outputs(state, inputs, &mut now)?;
+        let mut derivative = [now.rate, now.acceleration].concat();
+        let by_wind = self.section.filter_rates_per_wind(&state.values);
+        let wind = inputs.wind_speed_m_s.max(0.0);
+        derivative.extend(by_wind.iter().map(|x| wind * x));
+        Ok(derivative)
     }
 }
 

@@ -31,10 +31,6 @@ pub fn model_description(resources: &Resources) -> Result<String> {
         None => "Bridge deck section under self-excited wind forces",
         Some(_) => "Self-excited wind forces on a bridge deck, for a structure outside",
     };
-    let naming = match force {
-        Some(options) if options.named_strips => "structured",
-        _ => "flat",
-    };
     let variables = table.variables().iter().enumerate();
     let variables = variables
         .map(|(i, v)| scalar(i, v))
@@ -68,9 +64,9 @@ pub fn model_description(resources: &Resources) -> Result<String> {
             "generationTool",
             concat!("aerodeck ", env!("CARGO_PKG_VERSION")),
         )
-        .with("variableNamingConvention", naming)
+        .with("variableNamingConvention", "structured")
+        .containing(interfaces(table))
         .containing([
-            co_simulation(),
             Element::new("UnitDefinitions").containing(units(table)?),
             Element::new("LogCategories").containing(categories),
             experiment(&model.experiment)?,
@@ -81,20 +77,33 @@ pub fn model_description(resources: &Resources) -> Result<String> {
 }
 
 /// What the runtime can do.
-fn co_simulation() -> Element {
-    Element::new("CoSimulation")
-        .with("modelIdentifier", MODEL_IDENTIFIER)
-        .with("needsExecutionTool", false)
+fn interfaces(table: &VariableTable) -> Vec<Element> {
+    let both = |name| {
+        Element::new(name)
+            .with("modelIdentifier", MODEL_IDENTIFIER)
+            .with("needsExecutionTool", false)
+    };
+    let with_states = |element: Element| {
+        element
+            .with("canBeInstantiatedOnlyOncePerProcess", false)
+            .with("canNotUseMemoryManagementFunctions", true)
+            .with("canGetAndSetFMUstate", true)
+            .with("canSerializeFMUstate", true)
+            .with("providesDirectionalDerivative", true)
+    };
+    let co_simulation = both("CoSimulation")
         .with("canHandleVariableCommunicationStepSize", true)
         .with("canInterpolateInputs", true)
         .with("maxOutputDerivativeOrder", 1)
         // spelt so in the standard
-        .with("canRunAsynchronuously", false)
-        .with("canBeInstantiatedOnlyOncePerProcess", false)
-        .with("canNotUseMemoryManagementFunctions", true)
-        .with("canGetAndSetFMUstate", true)
-        .with("canSerializeFMUstate", true)
-        .with("providesDirectionalDerivative", true)
+        .with("canRunAsynchronuously", false);
+    let model_exchange = (!table.state_rates().is_empty()).then(|| {
+        with_states(both("ModelExchange").with("completedIntegratorStepNotNeeded", false))
+    });
+    model_exchange
+        .into_iter()
+        .chain([with_states(co_simulation)])
+        .collect()
 }
 
 /// Every unit that a variable uses, once, in the order of first use.
@@ -168,7 +177,8 @@ fn typed(v: &Variable) -> Result<Element> {
             .with_any("min", text(v.min)?)
             .with_any("max", text(v.max)?)
             .with_any("nominal", text(v.nominal)?)
-            .with_any("start", text(*start)?),
+            .with_any("start", text(*start)?)
+            .with_any("derivative", v.derivative_of.map(|state| state + 1)),
         Value::Integer(start) => element.with_any("start", *start),
         Value::Boolean(start) => element.with_any("start", *start),
         Value::String(start) => element.with("start", start),
@@ -182,7 +192,7 @@ fn experiment(e: &Experiment) -> Result<Element> {
         .with("stepSize", number(default_step_s(e))?))
 }
 
-/// Outputs and unknowns of the initialisation with their dependencies, by one-based index, in the order of the table.
+/// Outputs, rates of the states and unknowns of the initialisation with their dependencies, by one-based index, in the order of the table.
 fn structure(table: &VariableTable) -> Element {
     let variables = || table.variables().iter().enumerate();
     let outputs = variables()
@@ -199,10 +209,16 @@ fn structure(table: &VariableTable) -> Element {
                     .map(|d| (d.on, kind(d.constant))),
             )
         });
-    Element::new("ModelStructure").containing([
-        Element::new("Outputs").containing(outputs),
-        Element::new("InitialUnknowns").containing(initial),
-    ])
+    let rates = table.state_rates().into_iter().map(|i| {
+        let of = &table.variables()[i];
+        unknown(i, of.direct_inputs.iter().map(|&on| (on, "dependent")))
+    });
+    let rates: Vec<Element> = rates.collect();
+    let rates = (!rates.is_empty()).then(|| Element::new("Derivatives").containing(rates));
+    Element::new("ModelStructure")
+        .containing([Element::new("Outputs").containing(outputs)])
+        .containing(rates)
+        .containing([Element::new("InitialUnknowns").containing(initial)])
 }
 
 fn unknown(at: usize, on: impl Iterator<Item = (usize, &'static str)>) -> Element {

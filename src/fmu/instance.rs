@@ -1,4 +1,5 @@
-//! An exported unit in motion: what the shells of every FMI version drive.
+//! An exported unit in motion: what the shells of every FMI version drive, in steps of its own (co-simulation) or with the
+//! importer integrating (model exchange).
 //!
 //! Time is the importer's communication point plus its step, never a sum of steps. Inputs hold at the start of a step
 //! and run on with the rates that were set for them (zero unless set); at its end they stand where those rates have
@@ -6,6 +7,7 @@
 
 mod derivatives;
 mod force_unit;
+mod integration;
 mod layout;
 mod saving;
 mod section;
@@ -20,7 +22,7 @@ mod values;
 pub use layout::DataType;
 pub use saving::Snapshot;
 
-use super::lifecycle::{Call, State};
+use super::lifecycle::{Call, Interface, State};
 use super::refusal::{Answer, Refusal, Severity};
 use super::resources::Resources;
 use super::variables::VariableTable;
@@ -35,6 +37,7 @@ use unit::Unit;
 #[derive(Debug)]
 pub struct Instance {
     resources: Resources,
+    interface: Interface,
     layout: Layout,
     unit: Box<dyn Unit>,
     memory: Memory,
@@ -63,6 +66,7 @@ impl Instance {
             memory: fresh.clone(),
             fresh,
             unit,
+            interface: Interface::CoSimulation,
             outputs_current: false,
             notices: Vec::new(),
             layout,
@@ -102,8 +106,11 @@ impl Instance {
     /// # Errors
     /// A [`Refusal`] naming call and state.
     pub fn admit(&self, call: Call) -> Answer<()> {
-        if call.legal_in().contains(self.memory.state) {
+        let foreign = call.is_model_exchange() && self.interface != Interface::ModelExchange;
+        if call.legal_in().contains(self.memory.state) && !foreign {
             Ok(())
+        } else if foreign {
+            Err(not_here(call))
         } else {
             Err(not_now(call, self.memory.state))
         }
@@ -157,7 +164,10 @@ impl Instance {
     pub fn exit_initialization(&mut self) -> Answer<()> {
         self.unit.prepare(&self.resources, &mut self.memory)?;
         self.watch();
-        self.memory.state = State::StepComplete;
+        self.memory.state = match self.interface {
+            Interface::CoSimulation => State::StepComplete,
+            Interface::ModelExchange => State::EventMode,
+        };
         Ok(())
     }
 
@@ -176,6 +186,14 @@ impl Instance {
         self.unit
             .watch(&self.resources, &self.memory, &mut self.notices);
     }
+}
+
+#[cold]
+fn not_here(call: Call) -> Refusal {
+    Refusal::call(format!(
+        "{} belongs to model exchange, and this instance was made for co-simulation",
+        call.name()
+    ))
 }
 
 #[cold]

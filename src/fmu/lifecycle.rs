@@ -1,4 +1,5 @@
-//! Which call is legal when: the state machine of co-simulation as data (FMI 2.0.5, section 4.2.4).
+//! Which call is legal when: the state machines of co-simulation and of model exchange as data (FMI 2.0.5, sections 4.2.4
+//! and 3.2.3).
 //!
 //! Two tables decide everything: [`LEGAL_CALLS`] for whole functions, and [`settable_in`] / [`gettable_in`] for single
 //! variables. Beyond the letter of the standard, inputs and parameters may be read while instantiated and everything
@@ -22,15 +23,21 @@ pub enum State {
     Terminated = 16,
     /// A call returned an error; only a reset or a restored state leads out.
     Error = 32,
+    /// Model exchange: at an event, where everything but the states may change.
+    EventMode = 64,
+    /// Model exchange: between events, where the importer integrates.
+    ContinuousTimeMode = 128,
 }
 
 impl State {
     /// Every state, in the order of a life.
-    pub const ALL: [State; 6] = [
+    pub const ALL: [State; 8] = [
         Self::Instantiated,
         Self::Initialization,
         Self::StepComplete,
         Self::StepFailed,
+        Self::EventMode,
+        Self::ContinuousTimeMode,
         Self::Terminated,
         Self::Error,
     ];
@@ -44,12 +51,42 @@ impl State {
             Self::StepFailed => "step failed",
             Self::Terminated => "terminated",
             Self::Error => "error",
+            Self::EventMode => "event mode",
+            Self::ContinuousTimeMode => "continuous-time mode",
+        }
+    }
+
+    /// The interface to which the state belongs; none where it belongs to both.
+    pub fn interface(self) -> Option<Interface> {
+        match self {
+            Self::StepComplete | Self::StepFailed => Some(Interface::CoSimulation),
+            Self::EventMode | Self::ContinuousTimeMode => Some(Interface::ModelExchange),
+            _ => None,
         }
     }
 
     /// The state with this code, as it stands in a serialised state.
     pub fn from_code(code: u8) -> Option<Self> {
         Self::ALL.into_iter().find(|s| *s as u8 == code)
+    }
+}
+
+/// Who solves the equations of an instance.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Interface {
+    /// The instance itself, in communication steps.
+    CoSimulation,
+    /// The importer, from states and derivatives.
+    ModelExchange,
+}
+
+impl Interface {
+    /// In words.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::CoSimulation => "co-simulation",
+            Self::ModelExchange => "model exchange",
+        }
     }
 }
 
@@ -66,17 +103,22 @@ impl StateSet {
     const STARTED: Self = Self::of(&[
         State::StepComplete,
         State::StepFailed,
+        State::EventMode,
+        State::ContinuousTimeMode,
         State::Terminated,
         State::Error,
     ]);
     /// From the initialisation mode on.
     const INITIALIZED: Self = Self::STARTED.and(State::Initialization);
-    /// States in which values may be set.
+    /// States in which parameters may be set.
     const SETTING: Self = Self::of(&[
         State::Instantiated,
         State::Initialization,
         State::StepComplete,
+        State::EventMode,
     ]);
+    /// Where an importer that integrates stands.
+    const INTEGRATING: Self = Self::of(&[State::EventMode, State::ContinuousTimeMode]);
 
     /// The set of these states.
     pub const fn of(states: &[State]) -> Self {
@@ -142,6 +184,16 @@ pub enum Call {
     SetRealInputDerivatives,
     GetRealOutputDerivatives,
     DoStep,
+    EnterEventMode,
+    NewDiscreteStates,
+    EnterContinuousTimeMode,
+    CompletedIntegratorStep,
+    SetTime,
+    SetContinuousStates,
+    GetDerivatives,
+    GetEventIndicators,
+    GetContinuousStates,
+    GetNominalsOfContinuousStates,
     GetStatus,
     GetRealStatus,
     GetIntegerStatus,
@@ -151,11 +203,16 @@ pub enum Call {
 
 /// The calls of [`Call`] in its order, their names without the prefix of the standard's version, and where each is
 /// legal. Cancelling a step is missing: no step is ever left pending.
-pub const LEGAL_CALLS: [(Call, &str, StateSet); 30] = {
+pub const LEGAL_CALLS: [(Call, &str, StateSet); 40] = {
     use Call as C;
     use StateSet as S;
     let stepping = S::of(&[State::StepComplete, State::StepFailed]);
     let status = stepping.and(State::Terminated);
+    let setting = S::SETTING.and(State::ContinuousTimeMode);
+    let integrated = S::INTEGRATING
+        .and(State::Initialization)
+        .and(State::Terminated)
+        .and(State::Error);
     [
         (C::SetDebugLogging, "SetDebugLogging", S::ANY),
         (C::FreeInstance, "FreeInstance", S::ANY),
@@ -174,16 +231,22 @@ pub const LEGAL_CALLS: [(Call, &str, StateSet); 30] = {
             "ExitInitializationMode",
             S::of(&[State::Initialization]),
         ),
-        (C::Terminate, "Terminate", stepping),
+        (
+            C::Terminate,
+            "Terminate",
+            stepping
+                .and(State::EventMode)
+                .and(State::ContinuousTimeMode),
+        ),
         (C::Reset, "Reset", S::ANY),
         (C::GetReal, "GetReal", S::ANY),
         (C::GetInteger, "GetInteger", S::ANY),
         (C::GetBoolean, "GetBoolean", S::ANY),
         (C::GetString, "GetString", S::ANY),
-        (C::SetReal, "SetReal", S::SETTING),
-        (C::SetInteger, "SetInteger", S::SETTING),
-        (C::SetBoolean, "SetBoolean", S::SETTING),
-        (C::SetString, "SetString", S::SETTING),
+        (C::SetReal, "SetReal", setting),
+        (C::SetInteger, "SetInteger", setting),
+        (C::SetBoolean, "SetBoolean", setting),
+        (C::SetString, "SetString", setting),
         (C::GetFMUstate, "GetFMUstate", S::ANY),
         (C::SetFMUstate, "SetFMUstate", S::ANY),
         (C::FreeFMUstate, "FreeFMUstate", S::ANY),
@@ -198,14 +261,52 @@ pub const LEGAL_CALLS: [(Call, &str, StateSet); 30] = {
         (
             C::SetRealInputDerivatives,
             "SetRealInputDerivatives",
-            S::SETTING,
+            S::of(&[
+                State::Instantiated,
+                State::Initialization,
+                State::StepComplete,
+            ]),
         ),
         (
             C::GetRealOutputDerivatives,
             "GetRealOutputDerivatives",
-            S::STARTED,
+            status.and(State::Error),
         ),
         (C::DoStep, "DoStep", S::of(&[State::StepComplete])),
+        (
+            C::EnterEventMode,
+            "EnterEventMode",
+            S::of(&[State::ContinuousTimeMode]),
+        ),
+        (
+            C::NewDiscreteStates,
+            "NewDiscreteStates",
+            S::of(&[State::EventMode]),
+        ),
+        (
+            C::EnterContinuousTimeMode,
+            "EnterContinuousTimeMode",
+            S::of(&[State::EventMode]),
+        ),
+        (
+            C::CompletedIntegratorStep,
+            "CompletedIntegratorStep",
+            S::of(&[State::ContinuousTimeMode]),
+        ),
+        (C::SetTime, "SetTime", S::INTEGRATING),
+        (
+            C::SetContinuousStates,
+            "SetContinuousStates",
+            S::of(&[State::ContinuousTimeMode]),
+        ),
+        (C::GetDerivatives, "GetDerivatives", integrated),
+        (C::GetEventIndicators, "GetEventIndicators", integrated),
+        (C::GetContinuousStates, "GetContinuousStates", integrated),
+        (
+            C::GetNominalsOfContinuousStates,
+            "GetNominalsOfContinuousStates",
+            integrated.and(State::Instantiated),
+        ),
         (C::GetStatus, "GetStatus", status),
         (C::GetRealStatus, "GetRealStatus", status),
         (C::GetIntegerStatus, "GetIntegerStatus", status),
@@ -224,22 +325,41 @@ impl Call {
     pub const fn legal_in(self) -> StateSet {
         LEGAL_CALLS[self as usize].2
     }
+
+    /// Whether it belongs to model exchange alone.
+    pub const fn is_model_exchange(self) -> bool {
+        matches!(
+            self,
+            Self::EnterEventMode
+                | Self::NewDiscreteStates
+                | Self::EnterContinuousTimeMode
+                | Self::CompletedIntegratorStep
+                | Self::SetTime
+                | Self::SetContinuousStates
+                | Self::GetDerivatives
+                | Self::GetEventIndicators
+                | Self::GetContinuousStates
+                | Self::GetNominalsOfContinuousStates
+        )
+    }
 }
 
-/// States in which a variable may be set: inputs and tunable parameters until the run ends, fixed parameters until
-/// initialisation ends.
+/// States in which a variable may be set: inputs until the run ends, tunable parameters also, but not between events, fixed
+/// parameters until initialisation ends.
 pub fn settable_in(causality: Causality, variability: Variability) -> StateSet {
     match (causality, variability) {
-        (Causality::Input, _) | (Causality::Parameter, Variability::Tunable) => StateSet::SETTING,
+        (Causality::Input, _) => StateSet::SETTING.and(State::ContinuousTimeMode),
+        (Causality::Parameter, Variability::Tunable) => StateSet::SETTING,
         (Causality::Parameter, _) => StateSet::of(&[State::Instantiated, State::Initialization]),
         _ => StateSet::NONE,
     }
 }
 
 /// States in which a variable may be read: what is computed only from the initialisation mode on.
-pub fn gettable_in(causality: Causality) -> StateSet {
-    match causality {
-        Causality::Output | Causality::CalculatedParameter => StateSet::INITIALIZED,
+pub fn gettable_in(causality: Causality, variability: Variability) -> StateSet {
+    match (causality, variability) {
+        (Causality::Output | Causality::CalculatedParameter, _)
+        | (Causality::Local, Variability::Continuous) => StateSet::INITIALIZED,
         _ => StateSet::ANY,
     }
 }

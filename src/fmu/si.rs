@@ -61,6 +61,8 @@ pub static METRE_PER_SECOND: Unit = coherent(
         factor: 3.6,
     }],
 );
+/// Rate of a dimensionless number, 1/s.
+pub static PER_SECOND: Unit = coherent("1/s", (0, 0, -1, 0), &[]);
 /// Acceleration, m/s².
 pub static METRE_PER_SECOND2: Unit = coherent("m/s2", (0, 1, -2, 0), &[]);
 /// Angle, rad, shown in degrees on request.

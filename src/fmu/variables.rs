@@ -125,6 +125,10 @@ pub enum Role {
     Calculated(Calculated),
     /// Computed from parameters, wind and state.
     Status(Status),
+    /// A filter state of the aerodynamic model, counted from zero.
+    Filter(usize),
+    /// Its rate.
+    FilterRate(usize),
     /// Never changes.
     Constant,
     /// Motion of a degree of freedom of a strip, counted from zero.
@@ -197,7 +201,9 @@ pub struct Variable {
     pub max: Option<f64>,
     /// Usual size.
     pub nominal: Option<f64>,
-    /// Inputs that act on it without delay, by place in the table (outputs only).
+    /// The variable whose rate it is, by place in the table (rates of states only).
+    pub derivative_of: Option<usize>,
+    /// Inputs and states that act on it without delay, by place in the table (outputs and rates of states only).
     pub direct_inputs: Vec<usize>,
     /// What it depends on while initialising, by place in the table (unknowns only).
     pub initial_dependencies: Vec<InitialDependency>,
@@ -207,6 +213,14 @@ impl Variable {
     /// Whether it is one of the unknowns of the initialisation mode.
     pub fn is_initial_unknown(&self) -> bool {
         self.initial == Some(Initial::Calculated)
+    }
+
+    /// Whether it is found by integration.
+    pub fn is_state(&self) -> bool {
+        matches!(
+            self.role,
+            Role::Response(Response::Displacement | Response::Rate, _) | Role::Filter(_)
+        )
     }
 }
 
@@ -250,6 +264,11 @@ impl VariableTable {
         self.variables.iter().position(|v| v.name == name)
     }
 
+    /// Rates of the continuous states in the order of the states; none where an importer cannot integrate them.
+    pub fn state_rates(&self) -> Vec<usize> {
+        state_rates(&self.variables)
+    }
+
     /// Degrees of freedom in the order of every matrix.
     pub fn dofs(&self) -> Vec<Dof> {
         self.variables
@@ -260,6 +279,20 @@ impl VariableTable {
             })
             .collect()
     }
+}
+
+/// Displacements come first, then rates, then filters.
+fn state_rates(variables: &[Variable]) -> Vec<usize> {
+    let rank = |place: &usize| match variables[*place].role {
+        Role::Response(Response::Rate, _) => 0,
+        Role::Response(..) => 1,
+        _ => 2,
+    };
+    let mut rates: Vec<usize> = (0..variables.len())
+        .filter(|i| variables[*i].derivative_of.is_some())
+        .collect();
+    rates.sort_by_key(rank);
+    rates
 }
 
 fn find(variables: &[Variable], role: Role) -> Option<usize> {

@@ -5,8 +5,8 @@
 use super::guard::{Component, array, guarded, install_panic_hook, panic_text, shielded};
 use super::logger::{Category, Logger};
 use super::types::{
-    fmi2Boolean, fmi2CallbackFunctions, fmi2CoSimulation, fmi2Component, fmi2Real, fmi2Status,
-    fmi2String, fmi2Type,
+    fmi2Boolean, fmi2CallbackFunctions, fmi2CoSimulation, fmi2Component, fmi2ModelExchange,
+    fmi2Real, fmi2Status, fmi2String, fmi2Type,
 };
 use crate::fmu::instance::Instance;
 use crate::fmu::lifecycle::Call;
@@ -84,10 +84,10 @@ fn instantiate(
         let found = name.map_or("NULL", |_| "a blank one");
         return Err(wrong("instance name", "a name", found.into()));
     }
-    if kind != fmi2CoSimulation {
+    if ![fmi2CoSimulation, fmi2ModelExchange].contains(&kind) {
         return Err(wrong(
             "type of the unit",
-            "co-simulation (1)",
+            "model exchange (0) or co-simulation (1)",
             kind.to_string(),
         ));
     }
@@ -105,7 +105,11 @@ fn instantiate(
         let expected = format!("{own} (from variables and resources/model.json)");
         return Err(wrong("GUID", &expected, format!("`{guid}`")));
     }
-    Ok(Instance::new(resources)?)
+    let instance = Instance::new(resources)?;
+    if kind == fmi2ModelExchange {
+        return instance.for_model_exchange();
+    }
+    Ok(instance)
 }
 
 /// # Safety

@@ -3,6 +3,7 @@
 mod derivatives;
 mod leniency;
 mod logging;
+mod model_exchange;
 mod offsets;
 mod refusals;
 mod run;
@@ -300,9 +301,4 @@ impl Unit {
 
 fn null<T>() -> *mut T {
     std::ptr::null_mut()
-}
-
-/// Any pointer, for arguments that must not be looked at.
-fn nowhere() -> *mut c_void {
-    std::ptr::dangling_mut::<u64>().cast()
 }

@@ -28,9 +28,9 @@ pub type fmi2Type = c_int;
 /// What status is asked for.
 pub type fmi2StatusKind = c_int;
 
-/// The other kind of unit, not offered here.
+/// Model exchange.
 pub const fmi2ModelExchange: fmi2Type = 0;
-/// The kind of unit offered here.
+/// Co-simulation.
 pub const fmi2CoSimulation: fmi2Type = 1;
 
 /// Status of a pending step.
@@ -58,6 +58,24 @@ pub enum fmi2Status {
     fmi2Fatal,
     /// Not finished yet.
     fmi2Pending,
+}
+
+/// What an event has changed.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[repr(C)]
+pub struct fmi2EventInfo {
+    /// Another look is needed.
+    pub newDiscreteStatesNeeded: fmi2Boolean,
+    /// The run has to end.
+    pub terminateSimulation: fmi2Boolean,
+    /// Usual sizes of states have changed.
+    pub nominalsOfContinuousStatesChanged: fmi2Boolean,
+    /// States have changed.
+    pub valuesOfContinuousStatesChanged: fmi2Boolean,
+    /// There is a next event in time.
+    pub nextEventTimeDefined: fmi2Boolean,
+    /// Its time, s.
+    pub nextEventTime: fmi2Real,
 }
 
 /// Writes a message: a `printf` format, arguments variadic.

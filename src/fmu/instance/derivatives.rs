@@ -7,7 +7,7 @@ use super::values::check_order;
 use crate::fmu::lifecycle::State;
 use crate::fmu::refusal::{Answer, Refusal};
 use crate::fmu::resources::Resources;
-use crate::fmu::variables::Role;
+use crate::fmu::variables::{Causality, Role};
 
 impl Instance {
     /// First time derivatives of outputs, per second, with the current input rates.
@@ -39,8 +39,9 @@ impl Instance {
         Ok(())
     }
 
-    /// `Σ (∂unknown/∂known) seed`: outputs with respect to inputs; while initialising also outputs and calculated
-    /// parameters with respect to initial values (exact) and section properties (central differences).
+    /// `Σ (∂unknown/∂known) seed`: outputs and rates of states with respect to inputs and states; while initialising outputs,
+    /// states, their rates and calculated parameters with respect to inputs, initial values (exact) and section properties
+    /// (central differences).
     ///
     /// # Errors
     /// References that are no such unknowns or knowns in the current state; a derivative that does not exist.
@@ -81,7 +82,8 @@ impl Instance {
     fn response_of(&self, reference: u32) -> Answer<Role> {
         let (place, access) = self.typed(reference, DataType::Real)?;
         let variable = &self.table().variables()[place];
-        if matches!(access.source, Source::Response | Source::Status) {
+        let computed = matches!(access.source, Source::Response | Source::Status);
+        if computed && variable.causality == Causality::Output {
             Ok(variable.role)
         } else {
             Err(Refusal::error(format!("`{}` is no output", variable.name)))
@@ -92,7 +94,7 @@ impl Instance {
         let (place, access) = self.typed(reference, DataType::Real)?;
         let variable = &self.table().variables()[place];
         match access.source {
-            Source::Response | Source::Status => Ok(variable.role),
+            Source::Response | Source::Status | Source::State | Source::Rate => Ok(variable.role),
             Source::Calculated if self.memory.state == State::Initialization => Ok(variable.role),
             _ => Err(self.refused(place, "unknown")),
         }
@@ -105,8 +107,16 @@ impl Instance {
         match access.source {
             Source::Input => Ok(place),
             Source::Section | Source::Release | Source::Limit if initializing => Ok(place),
+            Source::Response | Source::State if !initializing && self.is_seen_state(place) => {
+                Ok(place)
+            }
             _ => Err(self.refused(place, "known")),
         }
+    }
+
+    /// Whether it is a state that the description lists.
+    fn is_seen_state(&self, place: usize) -> bool {
+        self.offers_model_exchange() && self.table().variables()[place].is_state()
     }
 
     fn refused(&self, place: usize, what: &str) -> Refusal {

@@ -4,7 +4,7 @@ use super::Instance;
 use crate::error::{Error, Result};
 use crate::fmu::lifecycle::{State, StateSet, gettable_in, settable_in};
 use crate::fmu::refusal::{Answer, Refusal};
-use crate::fmu::variables::{Causality, Role, Value, Variable, VariableTable};
+use crate::fmu::variables::{Causality, Role, Value, Variability, Variable, VariableTable};
 use crate::response::wind_at_rest;
 
 /// Type of a variable.
@@ -39,6 +39,10 @@ pub(super) enum Source {
     Calculated,
     /// Computed from parameters, wind and state, whenever it is asked for.
     Status,
+    /// A state that is nothing else.
+    State,
+    /// Rate of a state that is nothing else; computed whenever it is asked for.
+    Rate,
 }
 
 impl Source {
@@ -53,6 +57,8 @@ impl Source {
             Role::OnsetSearchLimit => Self::Limit,
             Role::Constant => Self::Constant,
             Role::Response(..) | Role::Force(..) => Self::Response,
+            Role::Filter(_) => Self::State,
+            Role::FilterRate(_) => Self::Rate,
             Role::Calculated(_) => Self::Calculated,
             Role::Status(_) => Self::Status,
         }
@@ -80,7 +86,7 @@ impl Access {
                 Value::String(_) => DataType::String,
             },
             source: Source::of(v.role),
-            gettable: gettable_in(v.causality),
+            gettable: gettable_in(v.causality, v.variability),
             settable: settable_in(v.causality, v.variability),
             min: v.min.unwrap_or(f64::NEG_INFINITY),
             max: v.max.unwrap_or(f64::INFINITY),
@@ -93,6 +99,8 @@ impl Access {
 pub(super) struct Layout {
     access: Vec<Access>,
     wind_speed: usize,
+    /// Rates of the continuous states, in their order.
+    pub state_rates: Vec<usize>,
 }
 
 /// Place of the variable with this role.
@@ -107,6 +115,7 @@ impl Layout {
         Ok(Self {
             access: table.variables().iter().map(Access::of).collect(),
             wind_speed: place(table, Role::WindSpeed)?,
+            state_rates: table.state_rates(),
         })
     }
 
@@ -195,7 +204,8 @@ fn not_in_state(v: &Variable, (verb, allowed): (&str, StateSet), state: State) -
         Causality::Output => "an output",
         Causality::Parameter => "a parameter",
         Causality::CalculatedParameter => "a calculated parameter",
-        Causality::Local => "a constant",
+        Causality::Local if v.variability == Variability::Constant => "a constant",
+        Causality::Local => "a state or its rate",
         Causality::Independent => "the time",
     };
     Refusal::error(format!(

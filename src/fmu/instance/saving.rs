@@ -86,13 +86,20 @@ impl Instance {
 
     pub(super) fn check_owner(&self, snapshot: &Snapshot) -> Answer<()> {
         let own = self.resources.guid;
-        if snapshot.guid == own {
-            Ok(())
-        } else {
-            Err(Refusal::error(format!(
+        if snapshot.guid != own {
+            return Err(Refusal::error(format!(
                 "saved state: expected one of the model {own}, found one of {}",
                 snapshot.guid
-            )))
+            )));
+        }
+        let of = snapshot.memory.state.interface();
+        match of.filter(|of| *of != self.interface) {
+            None => Ok(()),
+            Some(of) => Err(Refusal::error(format!(
+                "saved state: expected one of {}, found one of {}",
+                self.interface.name(),
+                of.name()
+            ))),
         }
     }
 

@@ -1,6 +1,6 @@
-//! Derivatives of a section. Outputs are linear in state and forces, `y = C(V) z + D w`, so their derivatives are
-//! products with the same matrices; the derivative with respect to the wind speed is closed too. Only section
-//! properties are differenced.
+//! Derivatives of a section. Outputs and rates of the state are linear in state and forces, `y = C(V) z + D w`,
+//! `ż = A(V) z + E w`, so their derivatives are products with the same matrices; those with respect to the wind speed are
+//! closed too. Only section properties are differenced.
 
 use super::derivatives::central_difference;
 use super::layout::Source;
@@ -21,6 +21,46 @@ use nalgebra::{DMatrix, DVector};
 const RELATIVE_STEP: f64 = 1e-4;
 /// Step of a parameter that is zero.
 const STEP_FROM_ZERO: f64 = 1e-6;
+
+/// All that a section has at an instant, or its derivative with respect to one known.
+#[derive(Debug, Default)]
+pub(super) struct Instant {
+    outputs: Outputs,
+    /// `[q, q̇, x]`.
+    state: Vec<f64>,
+    /// Its rate.
+    rate: Vec<f64>,
+}
+
+impl Instant {
+    fn of(stepper: &mut Stepper, state: &SectionState, inputs: &Inputs) -> Result<Self> {
+        let mut outputs = Outputs::default();
+        stepper.outputs(state, inputs, &mut outputs)?;
+        let continuous = matches!(stepper.section().aerodynamics(), Realization::Continuous(_));
+        Ok(Self {
+            outputs,
+            state: state.values.clone(),
+            rate: if continuous {
+                stepper.state_derivative(state, inputs)?
+            } else {
+                Vec::new()
+            },
+        })
+    }
+
+    /// The entry that a role stands for; zero for what inputs and release do not act on.
+    fn pick(&self, role: Role) -> f64 {
+        let filter = |of: &[f64], i: usize| {
+            let motion = 2 * self.outputs.displacement.len();
+            of.get(motion + i).copied().unwrap_or(0.0)
+        };
+        match role {
+            Role::Filter(i) => filter(&self.state, i),
+            Role::FilterRate(i) => filter(&self.rate, i),
+            other => pick(&self.outputs, other),
+        }
+    }
+}
 
 impl SectionUnit {
     /// `ẏ = C ż + D ẇ + (∂y/∂V) V̇` of all outputs.
@@ -57,9 +97,10 @@ impl SectionUnit {
         known: usize,
         unknowns: &[Role],
     ) -> Answer<Vec<f64>> {
-        let outputs = match Source::of(resources.table.variables()[known].role) {
+        let instant = match Source::of(resources.table.variables()[known].role) {
             Source::Input => self.by_input(memory, known)?,
             Source::Release => self.by_release(memory, known)?,
+            Source::Response | Source::State => self.by_state(memory, known)?,
             _ => {
                 let value = memory.values[known];
                 let step = if value == 0.0 {
@@ -76,20 +117,24 @@ impl SectionUnit {
             Role::Status(_) if known == self.places.wind_speed => {
                 self.present_by_wind(memory, *unknown)
             }
-            other => Ok(pick(&outputs, *other)),
+            other => Ok(instant.pick(*other)),
         };
         Ok(unknowns.iter().map(derivative).collect::<Result<_>>()?)
     }
 
-    fn by_input(&mut self, memory: &Memory, known: usize) -> Result<Outputs> {
+    fn by_input(&mut self, memory: &Memory, known: usize) -> Result<Instant> {
         self.load_inputs(memory);
         let speed = self.inputs.wind_speed_m_s;
         let Some(stepper) = &mut self.stepper else {
-            return Ok(Outputs::default());
+            return Ok(Instant::default());
         };
         if known == self.places.wind_speed {
             let section = stepper.section();
-            return Ok(speed_sensitivity(section, &memory.system, speed));
+            return Ok(Instant {
+                outputs: speed_sensitivity(section, &memory.system, speed),
+                state: Vec::new(),
+                rate: rate_by_speed(section, &memory.system),
+            });
         }
         let mut unit = Inputs::steady(speed, self.places.force.len());
         for (force, place) in unit.force.iter_mut().zip(&self.places.force) {
@@ -99,25 +144,41 @@ impl SectionUnit {
             values: vec![0.0; memory.system.values.len()],
             ..SectionState::default()
         };
-        let mut outputs = Outputs::default();
-        stepper.outputs(&at_rest, &unit, &mut outputs)?;
-        Ok(outputs)
+        Instant::of(stepper, &at_rest, &unit)
+    }
+
+    fn by_state(&mut self, memory: &Memory, known: usize) -> Result<Instant> {
+        let speed = memory.values[self.places.wind_speed];
+        let mut unit = SectionState {
+            values: vec![0.0; memory.system.values.len()],
+            ..SectionState::default()
+        };
+        if let Some(entry) = self.places.state_entry[known] {
+            unit.values[entry] = 1.0;
+        }
+        match &mut self.stepper {
+            Some(stepper) => {
+                let still = Inputs::steady(speed, self.places.force.len());
+                Instant::of(stepper, &unit, &still)
+            }
+            None => Ok(Instant::default()),
+        }
     }
 
     /// The release is linear in its displacements and rates.
-    fn by_release(&mut self, memory: &Memory, known: usize) -> Result<Outputs> {
+    fn by_release(&mut self, memory: &Memory, known: usize) -> Result<Instant> {
         let mut unit = vec![0.0; memory.values.len()];
         unit[known] = 1.0;
         let speed = memory.values[self.places.wind_speed];
         let still = Inputs::steady(speed, self.places.force.len());
-        let mut outputs = Outputs::default();
-        if let Some(stepper) = &self.stepper {
-            let state = self.release(stepper, &unit)?;
-            if let Some(stepper) = &mut self.stepper {
-                stepper.outputs(&state, &still, &mut outputs)?;
-            }
+        let Some(stepper) = &self.stepper else {
+            return Ok(Instant::default());
+        };
+        let state = self.release(stepper, &unit)?;
+        match &mut self.stepper {
+            Some(stepper) => Instant::of(stepper, &state, &still),
+            None => Ok(Instant::default()),
         }
-        Ok(outputs)
     }
 
     /// The unknowns for the values in `memory`.
@@ -129,12 +190,18 @@ impl SectionUnit {
     ) -> Answer<Vec<f64>> {
         let values = &memory.values;
         let wants = |wanted: fn(&Role) -> bool| unknowns.iter().any(wanted);
-        let mut outputs = Outputs::default();
-        if wants(|u| matches!(u, Role::Response(..))) {
+        let mut instant = Instant::default();
+        let moves = |u: &Role| {
+            matches!(
+                u,
+                Role::Response(..) | Role::Filter(_) | Role::FilterRate(_)
+            )
+        };
+        if wants(moves) {
             let mut stepper: Stepper = self.new_stepper(resources, values)?;
             let state = self.release(&stepper, values)?;
             self.load_inputs(memory);
-            stepper.outputs(&state, &self.inputs, &mut outputs)?;
+            instant = Instant::of(&mut stepper, &state, &self.inputs)?;
         }
         let wind = values[self.places.wind_speed];
         let margin = |u: &Role| *u == Role::Status(Status::FlutterMargin);
@@ -154,7 +221,7 @@ impl SectionUnit {
                 card.value(Calculated::OnsetSpeed) - wind
             }
             (Role::Status(Status::DampingNow), _) => damping,
-            (other, _) => pick(&outputs, *other),
+            (other, _) => instant.pick(*other),
         };
         Ok(unknowns.iter().map(value).collect())
     }
@@ -186,6 +253,13 @@ fn add(outputs: &mut Outputs, other: &Outputs, factor: f64) {
             *sum += factor * term;
         }
     }
+}
+
+/// `∂ż/∂V` of the filters; zero for the motion, which [`speed_sensitivity`] gives.
+fn rate_by_speed(section: &CoupledSection, state: &SectionState) -> Vec<f64> {
+    let motion = vec![0.0; 2 * section.structure().dofs.len()];
+    let filters = section.filter_rates_per_wind(&state.values);
+    [&motion, filters.as_slice()].concat()
 }
 
 /// `∂y/∂V` at a given state and external force. With `P(e)` the physical scaling, the aerodynamic part of the equation

@@ -29,8 +29,8 @@ pub(super) struct Places {
     pub force: Vec<usize>,
     /// Displacement, rate, acceleration and self-excited force of each degree of freedom.
     responses: Vec<[usize; 4]>,
-    /// Entry of the section's state that a variable is, for displacements and rates; by place.
-    state_entry: Vec<Option<usize>>,
+    /// Entry of the section's state that a variable is, for displacements, rates and filters; by place.
+    pub state_entry: Vec<Option<usize>>,
     /// Displacement at release of each degree of freedom.
     initial_displacement: Vec<usize>,
     /// Rate at release of each degree of freedom.
@@ -58,6 +58,11 @@ impl Places {
             // the state begins with all displacements, then all rates
             state_entry[places[0]] = Some(i);
             state_entry[places[1]] = Some(dofs.len() + i);
+        }
+        for (place, variable) in table.variables().iter().enumerate() {
+            if let Role::Filter(i) = variable.role {
+                state_entry[place] = Some(2 * dofs.len() + i);
+            }
         }
         Ok(Self {
             state_entry,
@@ -269,6 +274,18 @@ impl Unit for SectionUnit {
         Ok(false)
     }
 
+    fn state_rates(&mut self, _: &Resources, memory: &Memory) -> Answer<Vec<f64>> {
+        self.load_inputs(memory);
+        let Some(stepper) = &mut self.stepper else {
+            return Ok(Vec::new());
+        };
+        let rates = stepper.state_derivative(&memory.system, &self.inputs)?;
+        if rates.iter().all(|x| x.is_finite()) {
+            return Ok(rates);
+        }
+        Err(overgrown())
+    }
+
     fn held_output(&self, memory: &Memory, place: usize) -> Option<f64> {
         self.places.state_entry[place].map(|entry| memory.system.values[entry])
     }
@@ -344,7 +361,9 @@ pub(super) fn check_finite(outputs: &Outputs) -> Answer<()> {
     if outputs.lists().into_iter().flatten().all(|x| x.is_finite()) {
         return Ok(());
     }
-    Err(Refusal::discard(
-        "outputs: the motion has grown beyond the range of numbers",
-    ))
+    Err(overgrown())
+}
+
+fn overgrown() -> Refusal {
+    Refusal::discard("outputs: the motion has grown beyond the range of numbers")
 }

@@ -51,7 +51,15 @@ pub(super) trait Unit: Debug + Send {
     /// When the step cannot be computed.
     fn advance(&mut self, resources: &Resources, memory: &mut Memory, step: f64) -> Answer<bool>;
 
-    /// The output at `place` where it is part of the state.
+    /// Rates of the state, per second, where an importer may integrate it.
+    ///
+    /// # Errors
+    /// When they cannot be computed.
+    fn state_rates(&mut self, _resources: &Resources, _memory: &Memory) -> Answer<Vec<f64>> {
+        Ok(Vec::new())
+    }
+
+    /// The output or state at `place` where it is part of the state.
     fn held_output(&self, _memory: &Memory, _place: usize) -> Option<f64> {
         None
     }

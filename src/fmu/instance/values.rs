@@ -58,6 +58,11 @@ impl Instance {
                 let (resources, memory) = (&self.resources, &mut self.memory);
                 return Ok(self.unit.status(resources, memory, role, &mut self.notices));
             }
+            Source::State => {
+                self.unit.prepare(&self.resources, &mut self.memory)?;
+                return Ok(self.unit.held_output(&self.memory, place).unwrap_or(0.0));
+            }
+            Source::Rate => return self.rate_at(place),
             Source::Calculated => {
                 self.unit
                     .calculate(&self.resources, &mut self.memory, &mut self.notices);

@@ -7,14 +7,22 @@ use crate::aerodynamics::{Realizable, Realization};
 use crate::section::Dof;
 use crate::trained_model::TrainedModel;
 
-/// Fills in the dependencies of every output and calculated parameter.
+/// Fills in the dependencies of every output, state, rate of a state and calculated parameter. States count as known only
+/// where importers see them.
 pub(super) fn fill(variables: &mut [Variable], model: &TrainedModel) {
     let coupling = Coupling {
         added_mass: has_added_mass(model),
         unbalance: model.section.mass_offset_m.is_some(),
     };
+    let seen = variables.iter().any(|v| v.derivative_of.is_some());
     for i in 0..variables.len() {
-        let (direct, mut initial) = match variables[i].role {
+        let (mut direct, mut initial) = match variables[i].role {
+            Role::Filter(_) => (Vec::new(), settled_flow(variables)),
+            Role::FilterRate(_) => {
+                let wind = places(variables, |role| role == Role::WindSpeed);
+                let known = settled_flow(variables).into_iter();
+                (wind.clone(), known.chain(dependent(wind)).collect())
+            }
             Role::Response(response, dof) => (
                 direct_inputs(variables, response, dof, coupling),
                 initial_knowns(variables, response, dof, coupling),
@@ -37,10 +45,42 @@ pub(super) fn fill(variables: &mut [Variable], model: &TrainedModel) {
             }
             _ => continue,
         };
+        if seen {
+            direct.extend(states_behind(variables, i));
+            direct.sort_unstable();
+        }
         initial.sort_by_key(|d| d.on);
         variables[i].direct_inputs = direct;
         variables[i].initial_dependencies = initial;
     }
+}
+
+/// States on which a variable depends: a state on itself, forces and accelerations on all, a filter's rate on displacements and
+/// filters.
+fn states_behind(variables: &[Variable], of: usize) -> Vec<usize> {
+    let depends = |on: Role| match variables[of].role {
+        Role::Status(Status::AmplitudeInLinearRange) => {
+            on == Role::Response(Response::Displacement, Dof::Torsion)
+        }
+        Role::Response(Response::Acceleration | Response::SelfExcitedForce, _) => true,
+        Role::FilterRate(_) => !matches!(on, Role::Response(Response::Rate, _)),
+        own @ (Role::Response(..) | Role::Filter(_)) => on == own,
+        _ => false,
+    };
+    (0..variables.len())
+        .filter(|&i| variables[i].is_state() && depends(variables[i].role))
+        .collect()
+}
+
+/// What the filters of a section held still depend on.
+fn settled_flow(variables: &[Variable]) -> Vec<InitialDependency> {
+    dependent(places(variables, |role| {
+        matches!(
+            role,
+            Role::InitialDisplacement(_)
+                | Role::Section(SectionParameter::Width | SectionParameter::AxisOffset)
+        )
+    }))
 }
 
 /// What makes the accelerations depend on one another.

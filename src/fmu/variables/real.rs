@@ -38,6 +38,7 @@ pub(super) fn real(
         min: None,
         max: None,
         nominal: None,
+        derivative_of: None,
         direct_inputs: Vec::new(),
         initial_dependencies: Vec::new(),
     }
@@ -90,6 +91,8 @@ pub(super) const FIXED: (Causality, Variability) = (Causality::Parameter, Variab
 pub(super) const CALCULATED: (Causality, Variability) =
     (Causality::CalculatedParameter, Variability::Tunable);
 pub(super) const LOCAL: (Causality, Variability) = (Causality::Local, Variability::Constant);
+/// A state or its rate.
+pub(super) const INNER: (Causality, Variability) = (Causality::Local, Variability::Continuous);
 pub(super) const SPEED: Option<&Unit> = Some(&si::METRE_PER_SECOND);
 
 pub(super) fn constants(model: &TrainedModel) -> Result<Vec<Variable>> {

@@ -2,16 +2,19 @@
 
 use super::parameters::SectionParameter;
 use super::real::{
-    CALCULATED, DISCRETE, FIXED, INPUT, OUTPUT, SMALLEST, SPEED, TUNABLE, constants, force_scale,
-    nominal, real,
+    CALCULATED, DISCRETE, FIXED, INNER, INPUT, OUTPUT, SMALLEST, SPEED, TUNABLE, constants,
+    force_scale, nominal, real,
 };
 use super::words::{Words, motion, words};
-use super::{Calculated, Response, Role, Status, Value, Variable};
+use super::{Calculated, Response, Role, Status, Value, Variable, find};
+use crate::aerodynamics::{Realizable, Realization};
 use crate::error::Result;
 use crate::fmu::si::{self, Unit};
 use crate::section::{Dof, SectionModel};
 use crate::trained_model::{Model, TrainedModel};
 
+/// Usual size of filter states: dimensionless motion of some hundredths.
+const FILTER_SIZE: f64 = 0.01;
 /// Smallest inertia per length, kg·m²/m.
 const SMALLEST_INERTIA: f64 = 1e-9;
 
@@ -30,7 +33,56 @@ pub(super) fn variables(model: &TrainedModel) -> Result<Vec<Variable>> {
     table.extend(calculated_parameters());
     table.extend(constants(model)?);
     table.extend(status());
+    if let Realization::Continuous(c) = model.model.realize() {
+        table.extend(filters(c.a.nrows()));
+        name_rates(&mut table, &dofs);
+    }
     Ok(table)
+}
+
+/// States that are no motion, and their rates: for importers that integrate, and for linear state spaces.
+fn filters(count: usize) -> impl Iterator<Item = Variable> {
+    (0..count).flat_map(|i| {
+        let (number, text) = (i + 1, "Filter state of the aerodynamic model");
+        [
+            real(format!("filter[{number}]"), Role::Filter(i), INNER, text)
+                .quantity("FilterState", None)
+                .nominal(FILTER_SIZE),
+            real(
+                format!("der(filter[{number}])"),
+                Role::FilterRate(i),
+                INNER,
+                "Rate of that filter state",
+            )
+            .quantity("FilterRate", Some(&si::PER_SECOND)),
+        ]
+    })
+}
+
+/// Enters which variable is the rate of which state.
+fn name_rates(table: &mut [Variable], dofs: &[Dof]) {
+    let of_motion = dofs.iter().flat_map(|&dof| {
+        [
+            Response::Displacement,
+            Response::Rate,
+            Response::Acceleration,
+        ]
+        .map(|r| Role::Response(r, dof))
+    });
+    let motion: Vec<Role> = of_motion.collect();
+    let filters = table.iter().filter_map(|v| match v.role {
+        Role::Filter(i) => Some([Role::Filter(i), Role::FilterRate(i)]),
+        _ => None,
+    });
+    let filters: Vec<_> = filters.collect();
+    let triples = motion.chunks_exact(3);
+    let pairs = triples.flat_map(|m| [[m[0], m[1]], [m[1], m[2]]]);
+    for [state, rate] in pairs.chain(filters) {
+        let place = find(table, state);
+        if let Some(rate) = find(table, rate) {
+            table[rate].derivative_of = place;
+        }
+    }
 }
 
 pub(super) fn wind_speed(model: &TrainedModel) -> Variable {

@@ -1,0 +1,119 @@
+//! Model exchange: the importer integrates, `ż = f(t, z, inputs)`. Nothing happens at events but what the importer sets there.
+
+use super::Instance;
+use crate::fmu::lifecycle::{Interface, State};
+use crate::fmu::refusal::{Answer, Refusal};
+
+impl Instance {
+    /// Makes an instance whose importer integrates.
+    ///
+    /// # Errors
+    /// A unit without continuous states: forces alone, and sampled models.
+    pub fn for_model_exchange(mut self) -> Answer<Self> {
+        if !self.offers_model_exchange() {
+            return Err(Refusal::error(
+                "type of the unit: expected co-simulation (1), because forces alone and sampled models have no continuous \
+                 states, found model exchange (0)",
+            ));
+        }
+        self.interface = Interface::ModelExchange;
+        Ok(self)
+    }
+
+    /// Whether an importer may integrate it.
+    pub(super) fn offers_model_exchange(&self) -> bool {
+        !self.layout.state_rates.is_empty()
+    }
+
+    /// Moves between events and integration.
+    pub fn enter(&mut self, mode: State) {
+        self.memory.state = mode;
+    }
+
+    /// Sets the time, s.
+    ///
+    /// # Errors
+    /// A time that is not finite.
+    pub fn set_time(&mut self, time: f64) -> Answer<()> {
+        if !time.is_finite() {
+            return Err(Refusal::error(format!(
+                "time: expected a finite number, found {time}"
+            )));
+        }
+        self.memory.time = time;
+        Ok(())
+    }
+
+    /// Sets the continuous states.
+    ///
+    /// # Errors
+    /// Another number of them; a discard where one is not finite, with everything as it was.
+    pub fn set_continuous_states(&mut self, states: &[f64]) -> Answer<()> {
+        self.check_states("states", states.len())?;
+        if !states.iter().all(|x| x.is_finite()) {
+            return Err(Refusal::discard("states: expected finite numbers"));
+        }
+        self.memory.system.values.copy_from_slice(states);
+        self.outputs_current = false;
+        Ok(())
+    }
+
+    /// The continuous states.
+    ///
+    /// # Errors
+    /// Room for another number of them; those of the preparation.
+    pub fn continuous_states(&mut self, states: &mut [f64]) -> Answer<()> {
+        self.check_states("states", states.len())?;
+        self.unit.prepare(&self.resources, &mut self.memory)?;
+        states.copy_from_slice(&self.memory.system.values);
+        Ok(())
+    }
+
+    /// Their rates, per second.
+    ///
+    /// # Errors
+    /// Room for another number of them; rates that cannot be computed.
+    pub fn state_rates(&mut self, rates: &mut [f64]) -> Answer<()> {
+        self.check_states("derivatives", rates.len())?;
+        self.unit.prepare(&self.resources, &mut self.memory)?;
+        rates.copy_from_slice(&self.unit.state_rates(&self.resources, &self.memory)?);
+        Ok(())
+    }
+
+    /// Their usual sizes.
+    ///
+    /// # Errors
+    /// Room for another number of them.
+    pub fn state_nominals(&self, nominals: &mut [f64]) -> Answer<()> {
+        self.check_states("nominals", nominals.len())?;
+        let variables = self.table().variables();
+        for (nominal, rate) in nominals.iter_mut().zip(&self.layout.state_rates) {
+            let state = variables[*rate].derivative_of;
+            *nominal = state.and_then(|s| variables[s].nominal).unwrap_or(1.0);
+        }
+        Ok(())
+    }
+
+    /// The importer has taken a step: says what must be known of it.
+    pub fn step_taken(&mut self) {
+        self.watch();
+    }
+
+    /// Rate of the state to which the variable at `place` belongs.
+    pub(super) fn rate_at(&mut self, place: usize) -> Answer<f64> {
+        let mut rates = vec![0.0; self.layout.state_rates.len()];
+        self.state_rates(&mut rates)?;
+        let entry = self.layout.state_rates.iter().position(|p| *p == place);
+        Ok(entry.map_or(0.0, |entry| rates[entry]))
+    }
+
+    fn check_states(&self, what: &str, found: usize) -> Answer<()> {
+        let expected = self.layout.state_rates.len();
+        if found == expected {
+            return Ok(());
+        }
+        Err(Refusal::error(format!(
+            "{what}: expected {expected} numbers, found {found}"
+        )))
+    }
+}
