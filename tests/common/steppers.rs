@@ -53,7 +53,8 @@ pub fn runge_kutta(
     steps: usize,
 ) -> Vec<f64> {
     let tau = h / steps as f64;
-    let derivative = |z: &DVector<f64>, t: f64| {
+    let mut stepper = stepper.clone();
+    let mut derivative = |z: &DVector<f64>, t: f64| {
         let mut now = inputs.clone();
         now.wind_speed_m_s += inputs.wind_speed_rate_m_s2 * t;
         for (w, rate) in now.force.iter_mut().zip(&inputs.force_rate) {
