@@ -6,6 +6,7 @@
 Failure is a wind speed above the onset of the section with uncertain damping, frequencies and air density. The FMU is
 loaded once; each evaluation sets tunable parameters and reads the calculated parameter `onset_speed`."""
 
+import shutil
 import sys
 
 import fmpy
@@ -20,13 +21,15 @@ class Onset:
     def __init__(self, fmu):
         description = read_model_description(fmu)
         self.variables = {v.name: v for v in description.modelVariables}
+        self.folder = fmpy.extract(fmu)
         self.slave = FMU2Slave(
-            guid=description.guid, unzipDirectory=fmpy.extract(fmu), instanceName="limit_state",
+            guid=description.guid, unzipDirectory=self.folder, instanceName="limit_state",
             modelIdentifier=description.coSimulation.modelIdentifier,
         )  # fmt: skip
         self.slave.instantiate()
         self.slave.setupExperiment(startTime=0.0)
         self.slave.enterInitializationMode()
+        self.slave.exitInitializationMode()
 
     def __call__(self, **parameters):
         references = [self.variables[name].valueReference for name in parameters]
@@ -39,6 +42,7 @@ class Onset:
     def close(self):
         self.slave.terminate()
         self.slave.freeInstance()
+        shutil.rmtree(self.folder)
 
 
 def form(fmu):
@@ -55,7 +59,9 @@ def form(fmu):
     ])  # fmt: skip
     margin = ot.PythonFunction(4, 1, lambda x: [onset(**dict(zip(names, x))) - x[3]])
     event = ot.ThresholdEvent(ot.CompositeRandomVector(margin, ot.RandomVector(distribution)), ot.Less(), 0.0)
-    algorithm = ot.FORM(ot.Cobyla(), event, distribution.getMean())
+    solver = ot.Cobyla()
+    solver.setStartingPoint(distribution.getMean())
+    algorithm = ot.FORM(solver, event)
     algorithm.run()
     result = algorithm.getResult()
     onset.close()

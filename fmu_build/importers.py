@@ -30,8 +30,8 @@ IMPORTERS = [
     ("FMPy, `validate`", "fmpy_validate", "fmpy==0.3.32", []),
     ("FMPy, `simulate_fmu`", "fmpy", "fmpy==0.3.32", []),
     ("`aerodeck fmu check`", "aerodeck", "", []),
-    ("FMU manipulation toolbox, `-check`", "fmutool", "fmu-manipulation-toolbox==2.0", ["--no-deps"]),
-    ("libcosim (Open Simulation Platform)", "libcosim", "libcosimpy==0.0.6", []),
+    ("FMU manipulation toolbox, `-check`", "fmutool", "fmu-manipulation-toolbox==2.0", []),
+    ("libcosim, Open Simulation Platform", "libcosim", "libcosimpy==0.0.6", []),
     ("Ecos", "ecos", "ecospy==0.7.2", []),
     ("PathSim", "pathsim", "pathsim==0.27.1", []),
     # preCICE itself is not needed: its runner runs on a stand-in
@@ -48,6 +48,8 @@ UNITS = [
     ("three strips", "continuous_laguerre", ["--kind", "force", "--strips", "3"]),
     ("real variables alone", "continuous_laguerre", ["--reals-only"]),
 ]
+# runs of importers that read every output as a real number, and the units that hold others
+REALS_ONLY = {"pathsim": {"continuous Laguerre", "rational functions", "discrete Laguerre"}}
 
 
 def environment(folder):
@@ -114,9 +116,12 @@ def table(python, missing, files):
         if package in missing or importer == "fmi_sim" and not shutil.which("fmi-sim"):
             skipped.append(f"{words}: {missing.get(package, 'fmi-sim is not on the path')}")
             continue
-        version = f" {package.split('==')[1]}" if package else ""
-        cells = [words + version]
+        version = package.partition("==")[2]
+        cells = [f"{words} ({version})" if version else words]
         for fmu, (reference, _), (unit, _, _) in zip(files, expected, UNITS, strict=True):
+            if unit in REALS_ONLY.get(importer, ()):
+                cells.append("`--reals-only`")
+                continue
             found, why = run(python, importer, fmu)
             cell, failed = (f"**{why}**", True) if why else verdict(found, reference)
             cells.append(cell)
@@ -143,7 +148,7 @@ def main():
     arguments = parser.parse_args()
     if arguments.aerodeck is None:
         subprocess.run(["cargo", "build", "--release", "--locked"], cwd=ROOT, check=True)
-    program = arguments.aerodeck or str(ROOT / "target" / "release" / "aerodeck")
+    program = str(pathlib.Path(arguments.aerodeck or ROOT / "target" / "release" / "aerodeck").resolve())
     os.environ["AERODECK"] = program
     arguments.folder.mkdir(parents=True, exist_ok=True)
     python, missing = environment(ROOT / "target" / "importers-env")

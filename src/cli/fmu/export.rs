@@ -36,6 +36,10 @@ pub(crate) struct Args {
     /// List real variables only, for importers that take no texts, truth values and integers.
     #[arg(long)]
     reals_only: bool,
+    /// Platforms to pack for [default: all whose runtime is here]; arm-linux makes an archive for importers on 64-bit
+    /// ARM Linux, which look for it in linux64.
+    #[arg(long, value_delimiter = ',', value_name = "PLATFORM")]
+    platforms: Vec<String>,
     /// The FMU; by default `deck_section.fmu` or `deck_force.fmu` beside the model.
     #[arg(long)]
     out: Option<PathBuf>,
@@ -104,7 +108,11 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
         },
     };
     let strips = export.force.as_ref().map(|f| f.strips.len());
-    let runtimes = Runtime::available()?;
+    let runtimes = if args.platforms.is_empty() {
+        Runtime::available()?
+    } else {
+        Runtime::chosen(&args.platforms)?
+    };
     let overwrite = if args.force {
         Overwrite::Replace
     } else {
