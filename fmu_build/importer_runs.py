@@ -6,6 +6,7 @@ Every importer gets the same inputs and parameters and takes the same steps, so 
 import json
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -76,7 +77,7 @@ def fmutool(unit):
     tool = pathlib.Path(sys.executable).with_name("fmutool")
     done = subprocess.run([tool, "-input", unit.fmu, "-check"], capture_output=True, text=True)
     lines = (done.stdout + done.stderr).splitlines()
-    found = [line for line in lines if "error" in line.lower() or "[FAIL" in line]
+    found = [line for line in lines if re.match(r"(?:.*\|)?\s*(WARNING|ERROR|CRITICAL)", line)]
     return found + ([f"ended with {done.returncode}"] if done.returncode else [])
 
 
@@ -220,11 +221,11 @@ def precice(unit):
 
 def fmi_sim(unit):
     written = pathlib.Path("fmi_sim.csv").resolve()
-    initial = [part for name, value in unit.values.items() for part in ("-v", f"{name}={value!r}")]
-    subprocess.run(
-        ["fmi-sim", "--model", unit.fmu, "-o", written, "co-simulation", *initial, "-o", str(STEP), "-f", str(STEPS * STEP)],
-        check=True, capture_output=True,
-    )  # fmt: skip
+    initial = [part for name, value in unit.values.items() for part in ("--init-values", f"{name}={value!r}")]
+    steps = ["--step", str(STEP), "--output-interval", str(STEP), "-f", str(STEPS * STEP)]
+    command = ["fmi-sim", "--model", unit.fmu, "-o", written, "co-simulation", *initial, *steps]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr.splitlines()[0]
     head, *_, last = written.read_text(encoding="utf-8").splitlines()
     row = dict(zip(head.split(","), last.split(","), strict=True))
     return {name: float(row[name]) for name in unit.outputs if name in row}
