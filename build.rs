@@ -2,8 +2,9 @@
 //!
 //! With the feature `cli` this script calls cargo once more on the same package without any
 //! feature, in the profile `fmu` and a target directory of its own, and copies the library to `OUT_DIR`, from where
-//! it is embedded: an installed `aerodeck` exports FMUs without source tree or Rust toolchain. Without that feature,
-//! and so in the nested call itself, there is nothing to do.
+//! it is embedded: an installed `aerodeck` exports FMUs without source tree or Rust toolchain. Ready-made runtimes, also
+//! for other platforms, can be embedded instead. Without that feature, and so in the nested call itself, there is nothing
+//! to do.
 
 use std::env;
 use std::fs;
@@ -34,11 +35,11 @@ const NOT_IN_RUNTIME: [&str; 19] = [
 ];
 
 /// Environment variable that names a ready-made runtime to embed instead of building one, such as one for an older C
-/// library.
+/// library; or a folder of them, laid out as `binaries/` of an FMU, which are embedded all.
 const READY_MADE: &str = "AERODECK_RUNTIME";
 
-/// Name of the library in OUT_DIR.
-const EMBEDDED: &str = "aerodeck_section";
+/// Name of the libraries in their folders.
+const LIBRARY: &str = "aerodeck_section";
 
 fn main() -> ExitCode {
     println!("cargo::rerun-if-changed=build.rs");
@@ -46,7 +47,7 @@ fn main() -> ExitCode {
     if env::var_os("CARGO_FEATURE_CLI").is_none() {
         return ExitCode::SUCCESS;
     }
-    match embed_runtime() {
+    match embed_runtimes() {
         Ok(()) => ExitCode::SUCCESS,
         Err(message) => {
             for line in message.lines() {
@@ -57,24 +58,53 @@ fn main() -> ExitCode {
     }
 }
 
-fn embed_runtime() -> Result<(), String> {
+fn embed_runtimes() -> Result<(), String> {
     let source = PathBuf::from(variable("CARGO_MANIFEST_DIR")?);
     let out = PathBuf::from(variable("OUT_DIR")?);
-    let platform = platform()?;
-    println!("cargo::rustc-env=AERODECK_RUNTIME_PLATFORM={platform}");
-    let embedded = out.join(EMBEDDED);
-    let copied = if env::var_os("CARGO_CFG_MIRI").is_some() {
+    let here = platform()?;
+    println!("cargo::rustc-env=AERODECK_RUNTIME_PLATFORM={here}");
+    let mut runtimes = Vec::new();
+    if env::var_os("CARGO_CFG_MIRI").is_some() {
         // an interpreter of Rust code has no use for a shared library, and cannot build one
-        fs::write(&embedded, []).map(|()| 0)
-    } else if let Some(ready) = env::var_os(READY_MADE) {
-        println!("cargo::rerun-if-changed={}", Path::new(&ready).display());
-        fs::copy(ready, &embedded)
     } else {
-        watch(&source)?;
-        fs::copy(build_runtime(&source, &out)?, &embedded)
-    };
-    copied.map_err(|e| format!("{}: {e}", embedded.display()))?;
-    Ok(())
+        if let Some(ready) = env::var_os(READY_MADE) {
+            println!("cargo::rerun-if-changed={}", Path::new(&ready).display());
+            runtimes = ready_made(Path::new(&ready), here)?;
+        }
+        if runtimes.iter().all(|(platform, _)| platform != here) {
+            watch(&source)?;
+            runtimes.push((here.to_owned(), build_runtime(&source, &out)?));
+        }
+    }
+    let mut list = String::from("&[");
+    for (platform, library) in runtimes {
+        let copy = out.join(format!("{platform}.runtime"));
+        fs::copy(&library, copy).map_err(|e| format!("{}: {e}", library.display()))?;
+        list += &format!(
+            "(\"{platform}\", include_bytes!(concat!(env!(\"OUT_DIR\"), \"/{platform}.runtime\"))), "
+        );
+    }
+    let file = out.join("runtimes.rs");
+    fs::write(&file, list + "]").map_err(|e| format!("{}: {e}", file.display()))
+}
+
+/// Platform and library of the runtimes in a folder; of a single library, which is for this platform.
+fn ready_made(ready: &Path, here: &str) -> Result<Vec<(String, PathBuf)>, String> {
+    if !ready.is_dir() {
+        return Ok(vec![(here.to_owned(), ready.to_path_buf())]);
+    }
+    let entries = fs::read_dir(ready).map_err(|e| format!("{}: {e}", ready.display()))?;
+    let mut runtimes = Vec::new();
+    for folder in entries.flatten().map(|e| e.path()) {
+        let platform = folder.file_name().unwrap_or_default().to_string_lossy();
+        let libraries = ["so", "dll", "dylib"].map(|e| folder.join(LIBRARY).with_extension(e));
+        if let Some(library) = libraries.into_iter().find(|l| l.is_file()) {
+            println!("cargo::rerun-if-changed={}", library.display());
+            runtimes.push((platform.into_owned(), library));
+        }
+    }
+    runtimes.sort();
+    Ok(runtimes)
 }
 
 /// Asks cargo to call this script again when a source of the runtime changes. Files are named one by one: a new

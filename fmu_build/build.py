@@ -1,37 +1,43 @@
-"""Builds the FMU runtime for every platform that this machine can build for, checks each library, and packs a model
-with all of them.
+"""Builds the FMU runtime for every platform that this machine can build for, checks and runs each library, and packs a
+model with all of them.
 
     python3 fmu_build/build.py                          runtimes in target/runtimes, nothing packed
-    python3 fmu_build/build.py --pack model.json x.fmu  the same, then one FMU for all platforms, checked
+    python3 fmu_build/build.py --pack model.json x.fmu  the same, then x.fmu for all platforms and, for importers on ARM
+                                                        Linux, x_arm_linux.fmu
 
-Native builds need Rust only. With cargo-zigbuild the Linux library is built against glibc 2.17 and runs on systems ten
-years old. Other platforms are built when their Rust target and linker are installed (`rustup target add …`).
-Standard library only; uses nm, objdump and fmpy where they are there."""
+A program that carries all runtimes: AERODECK_RUNTIME=$PWD/target/runtimes cargo install --path .
+
+Rust alone builds for this machine. The Python packages ziglang and cargo-zigbuild, which this script installs into
+target/fmu-build-env if it can, link for the other systems without their compilers, and for Linux against glibc 2.17, so
+that libraries run on systems ten years old. Of Rust, each platform needs its standard library (`rustup target add …`);
+what is missing is said and skipped. Libraries for other processors and systems are run where qemu or wine is there."""
 
 import argparse
 import os
 import pathlib
 import re
 import shutil
+import struct
 import subprocess
 import sys
+import venv
+
+import run_library
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 NAME = "aerodeck_section"
-# folder below binaries/, Rust target, file that cargo makes, ending, linker beside rustc
-PLATFORMS = [
-    ("linux64", "x86_64-unknown-linux-gnu", "libaerodeck.so", "so", None),
-    ("aarch64-linux", "aarch64-unknown-linux-gnu", "libaerodeck.so", "so", "aarch64-linux-gnu-gcc"),
-    ("win64", "x86_64-pc-windows-gnu", "aerodeck.dll", "dll", "x86_64-w64-mingw32-gcc"),
-    ("darwin64", "x86_64-apple-darwin", "libaerodeck.dylib", "dylib", None),
-    ("aarch64-darwin", "aarch64-apple-darwin", "libaerodeck.dylib", "dylib", None),
-]
 OLD_GLIBC = "2.17"
-# what a library may ask of the system
-NEEDED = {
-    "so": re.compile(r"lib(c|m|gcc_s|dl|pthread|rt)\.so\.\d+|ld-linux.*"),
-    "dll": re.compile(r"(?i)(kernel32|ntdll|msvcrt|bcryptprimitives|userenv|ws2_32)\.dll|api-ms-win-.*\.dll"),
+TOOLS = ["ziglang==0.17.1", "cargo-zigbuild==0.24.0", "lief==1.0.0"]
+# Rust target: file that cargo makes, ending, folders below binaries/
+TARGETS = {
+    "x86_64-unknown-linux-gnu": ("libaerodeck.so", "so", ["linux64"]),
+    "aarch64-unknown-linux-gnu": ("libaerodeck.so", "so", ["aarch64-linux"]),
+    "x86_64-pc-windows-gnu": ("aerodeck.dll", "dll", ["win64"]),
+    "x86_64-apple-darwin": ("libaerodeck.dylib", "dylib", ["darwin64"]),
+    "aarch64-apple-darwin": ("libaerodeck.dylib", "dylib", ["aarch64-darwin"]),
 }
+MACHINES = {"x86_64-apple-darwin": (0x01000007, 3), "aarch64-apple-darwin": (0x0100000C, 0)}  # of Mach-O
+PAGE = 14  # bits of Apple's pages, to which the parts of a universal library are aligned
 
 
 def run(*command, **options):
@@ -52,23 +58,19 @@ def host():
     return re.search(r"^host: (\S+)", text_of("rustc", "-vV"), re.M).group(1)
 
 
-def zig_works():
-    """cargo-zigbuild takes `zig` or the Python package ziglang."""
-    if not shutil.which("cargo-zigbuild"):
-        return False
-    return bool(shutil.which("zig") or text_of("python3", "-m", "ziglang", "version").strip())
-
-
-def buildable():
-    """(platform, target, file, ending, zig?) of all that can be built here."""
-    targets, here = installed_targets(), host()
-    zig = zig_works()
-    for platform, target, file, ending, linker in PLATFORMS:
-        if target not in targets:
-            continue
-        with_zig = zig and ending != "dll"
-        if target == here or with_zig or (linker and shutil.which(linker)):
-            yield platform, target, file, ending, with_zig
+def tools():
+    """The interpreter of an environment with the tools, which come first on the path from then on; None without."""
+    folder = ROOT / "target" / "fmu-build-env"
+    python = folder / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
+    if not python.exists():
+        venv.create(folder, with_pip=True)
+    install = [python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-input", *TOOLS]
+    done = subprocess.run(install, capture_output=True, text=True)
+    if done.returncode:
+        print("tools that could not be installed:", (done.stderr.strip().splitlines() or ["pip failed"])[-1])
+        return None
+    os.environ["PATH"] = str(python.parent) + os.pathsep + os.environ["PATH"]
+    return python
 
 
 def flags():
@@ -80,56 +82,67 @@ def flags():
     return "\x1f".join(f"--remap-path-prefix={old}={new}" for old, new in pairs)
 
 
-def build(platform, target, file, ending, with_zig, out):
+def build(target, zig):
+    """The library of a target."""
+    file, ending, _ = TARGETS[target]
     target_dir = ROOT / "target" / "fmu-release"
-    wanted = f"{target}.{OLD_GLIBC}" if with_zig and ending == "so" else target
-    tool = ["cargo-zigbuild", "rustc"] if with_zig else ["cargo", "rustc"]
+    wanted = f"{target}.{OLD_GLIBC}" if zig and ending == "so" else target
+    tool = ["cargo-zigbuild", "rustc"] if zig else ["cargo", "rustc"]
     environment = dict(os.environ, CARGO_ENCODED_RUSTFLAGS=flags())
-    linker = next(p[4] for p in PLATFORMS if p[0] == platform)
-    if linker and not with_zig:
-        environment[f"CARGO_TARGET_{target.upper().replace('-', '_')}_LINKER"] = linker
     run(*tool, "--locked", "--lib", "--crate-type", "cdylib", "--no-default-features", "--profile", "fmu",
-        "--target", wanted, "--target-dir", target_dir, env=environment)
-    library = out / platform / f"{NAME}.{ending}"
-    library.parent.mkdir(parents=True, exist_ok=True)
-    shutil.copyfile(target_dir / target / "fmu" / file, library)
-    return library
+        "--target", wanted, "--target-dir", target_dir, env=environment)  # fmt: skip
+    return target_dir / target / "fmu" / file
 
 
-def exports(library, ending):
-    if ending == "dll":
-        table = text_of("objdump", "-p", library).split("[Ordinal/Name Pointer] Table", 1)[-1]
-        return set(re.findall(r"\[\s*\d+\](?: \+base\[\s*\d+\]\s+\w+)? (\w+)", table))
-    symbols = text_of("nm", "-D", "--defined-only", library).split("\n")
-    return {line.split()[-1] for line in symbols if line.strip()}
+def universal(libraries):
+    """Both libraries for macOS in one file: (target, bytes) to bytes."""
+    head = struct.pack(">II", 0xCAFEBABE, len(libraries))
+    at, parts = 1 << PAGE, []
+    for target, library in libraries:
+        machine, kind = MACHINES[target]
+        head += struct.pack(">IIIII", machine, kind, at, len(library), PAGE)
+        parts.append((at, library))
+        at += -(-len(library) >> PAGE) << PAGE
+    out = bytearray(head)
+    for at, library in parts:
+        out += bytes(at - len(out)) + library
+    return bytes(out)
 
 
-def check(library, ending):
-    """Exports the interface and nothing else, needs the system's own libraries only."""
-    if ending == "dylib" or not shutil.which("objdump"):
-        return
-    found = exports(library, ending)
-    foreign = sorted(s for s in found if not s.startswith("fmi2"))
-    if foreign or len(found) < 34:
-        sys.exit(f"{library}: {len(found)} exports, not of FMI: {foreign}")
-    headers = text_of("objdump", "-p", library)
-    needed = re.findall(r"(?:NEEDED|DLL Name:)\s+(\S+)", headers)
-    strange = [n for n in needed if not NEEDED[ending].fullmatch(n)]
-    if strange:
-        sys.exit(f"{library}: needs {strange}")
-    versions = sorted({tuple(map(int, v.split("."))) for v in re.findall(r"GLIBC_([\d.]+)", headers)})
-    glibc = f", GLIBC {'.'.join(map(str, versions[-1]))}" if versions else ""
-    print(f"  {library.relative_to(ROOT)}: {library.stat().st_size} bytes, {len(found)} exports, "
-          f"needs {', '.join(needed)}{glibc}")
+def place(built, out):
+    """Lays the libraries out as in an archive; returns their files."""
+    files = []
+
+    def write(folder, ending, library):
+        file = out / folder / f"{NAME}.{ending}"
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_bytes(library)
+        files.append(file)
+
+    shutil.rmtree(out, ignore_errors=True)
+    libraries = {target: file.read_bytes() for target, file in built.items()}
+    apple = [(target, library) for target, library in libraries.items() if target in MACHINES]
+    for target, library in libraries.items():
+        _, ending, folders = TARGETS[target]
+        for folder in folders:
+            # importers look into darwin64 on both processors
+            whole = universal(apple) if folder == "darwin64" and len(apple) == 2 else library
+            write(folder, ending, whole)
+    return files
 
 
 def pack(model, fmu, out):
+    """The archives."""
     environment = dict(os.environ, AERODECK_RUNTIME_DIR=str(out))
     aerodeck = ["cargo", "run", "--release", "--locked", "--quiet", "--", "fmu"]
-    run(*aerodeck, "export", model, "--out", fmu, "--force", env=environment)
+    archives = [(fmu, [])]
+    if (out / "aarch64-linux").is_dir():
+        archives.append((fmu.with_name(f"{fmu.stem}_arm_linux.fmu"), ["--platforms", "arm-linux"]))
+    for archive, options in archives:
+        run(*aerodeck, "export", model, "--out", archive, "--force", *options, env=environment)
+        if shutil.which("fmpy"):
+            run("fmpy", "validate", archive)
     run(*aerodeck, "check", fmu)
-    if shutil.which("fmpy"):
-        run("fmpy", "validate", fmu)
 
 
 def main():
@@ -137,9 +150,21 @@ def main():
     parser.add_argument("--out", type=pathlib.Path, default=ROOT / "target" / "runtimes", help="folder for the runtimes")
     parser.add_argument("--pack", nargs=2, metavar=("MODEL", "FMU"), type=pathlib.Path, help="pack this model")
     arguments = parser.parse_args()
-    out = arguments.out.resolve()
-    for platform, target, file, ending, with_zig in buildable():
-        check(build(platform, target, file, ending, with_zig, out), ending)
+    out, python = arguments.out.resolve(), tools()
+    built, here, there = {}, host(), installed_targets()
+    for target in TARGETS:
+        if target not in there:
+            print(f"skipped {target}: rustup target add {target}")
+        elif python is None and target != here:
+            print(f"skipped {target}: ziglang and cargo-zigbuild are not there")
+        else:
+            built[target] = build(target, python is not None)
+    files = place(built, out)
+    if python:
+        run(python, pathlib.Path(__file__).with_name("check_library.py"), *files)
+        run_library.compare(python, ROOT, {file.parent.name: file for file in files})
+    else:
+        print("not checked: lief is not there")
     if arguments.pack:
         pack(*(p.resolve() for p in arguments.pack), out)
 

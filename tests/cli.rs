@@ -116,6 +116,16 @@ fn every_stage_is_a_command() {
             serde_json::from_str(&succeeds(at, &["fmu", "check", &fmu, "--json"])).unwrap();
         assert_eq!(check["findings"], Value::Array(vec![]), "{kind}");
         assert!(check["trials"].as_array().unwrap().len() > 5);
+        // real variables alone
+        let reals = format!("{kind}_reals.fmu");
+        succeeds(
+            at,
+            &["fmu", "export", &model, "--reals-only", "--out", &reals],
+        );
+        let reals: Value =
+            serde_json::from_str(&succeeds(at, &["fmu", "check", &reals, "--json"])).unwrap();
+        assert_eq!(reals["findings"], Value::Array(vec![]), "{kind}");
+        assert!(reals["variables"].as_u64() < check["variables"].as_u64());
         // the forces alone, on strips
         let fmu = format!("{kind}_force.fmu");
         let force = ["--kind", "force", "--strips", "3", "--strip-length", "2.5"];

@@ -18,6 +18,7 @@ mod three_dof;
 use aerodeck::files::derivatives::embedded;
 use aerodeck::fmu::force_options::ForceOptions;
 use aerodeck::fmu::package::{Export, Growing, Overwrite, Runtime, write_fmu};
+use aerodeck::fmu::variables::Listing;
 use aerodeck::identification::{Form, FrequencyFit, fit_table};
 use aerodeck::section::{Dof, SectionModel};
 use aerodeck::trained_model::{Experiment, Provenance, SCHEMA_VERSION, TrainedModel};
@@ -86,6 +87,7 @@ fn export() -> PathBuf {
     let fmu = folder.join("three_dof.fmu");
     write_fmu(&fmu, &lateral, &runtimes, Overwrite::Refuse, Growing::Allow).unwrap();
     export_forces(&folder, &runtimes);
+    export_reals(&folder, &runtimes);
     let text = serde_json::to_string(&json!({
         "models": Value::Object(expected), "three_dof": in_process::three_dof(&lateral),
     }))
@@ -111,9 +113,28 @@ fn export_forces(folder: &Path, runtimes: &[Runtime]) {
         let export = Export {
             growing: Growing::Refuse,
             force: Some(options),
+            listing: Listing::All,
         };
         let fmu = folder.join(format!("{name}.fmu"));
         write_fmu(&fmu, &model, runtimes, Overwrite::Refuse, export).unwrap();
+    }
+}
+
+/// Every kind once more, with its real variables alone.
+fn export_reals(folder: &Path, runtimes: &[Runtime]) {
+    for kind in models::KINDS {
+        let text = fs::read_to_string(models::model_file(kind)).unwrap();
+        let model = TrainedModel::from_json(&text).unwrap();
+        let forces = ForceOptions::single(model.section.width_m);
+        for (unit, force) in [("section", None), ("force", Some(forces))] {
+            let export = Export {
+                growing: Growing::Allow,
+                force,
+                listing: Listing::Reals,
+            };
+            let fmu = folder.join(format!("reals_{unit}_{kind}.fmu"));
+            write_fmu(&fmu, &model, runtimes, Overwrite::Refuse, export).unwrap();
+        }
     }
 }
 

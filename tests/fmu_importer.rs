@@ -7,7 +7,8 @@ use aerodeck::flutter::{Onset, OnsetSearch, find_onset};
 use aerodeck::fmu::importer::{
     Fmu, Severity, Simulation, SteppingSearch, Value, onset_by_stepping, simulate,
 };
-use aerodeck::fmu::package::{Growing, Overwrite, Runtime, write_fmu};
+use aerodeck::fmu::package::{Export, Growing, Overwrite, Runtime, write_fmu};
+use aerodeck::fmu::variables::Listing;
 use aerodeck::trained_model::TrainedModel;
 use std::path::{Path, PathBuf};
 
@@ -40,6 +41,29 @@ fn by_eigenvalues(kind: &str) -> Onset {
     let search = OnsetSearch::default();
     let found = find_onset(kind, &section, &search, Some(model.tested_range)).unwrap();
     found.onset().unwrap().clone()
+}
+
+#[test]
+fn real_variables_alone_pass_every_check() {
+    let folder = tempfile::tempdir().unwrap();
+    for kind in KINDS {
+        let path = folder.path().join(format!("{kind}.fmu"));
+        let export = Export {
+            growing: Growing::Allow,
+            force: None,
+            listing: Listing::Reals,
+        };
+        let runtimes = [Runtime::embedded().unwrap()];
+        write_fmu(&path, &model(kind), &runtimes, Overwrite::Refuse, export).unwrap();
+        let fmu = Fmu::open(&path).unwrap();
+        let report = fmu.check();
+        assert!(report.passed(), "{kind}: {report:#?}");
+        assert_eq!(report.findings.len(), 0, "{:#?}", report.findings);
+        let description = fmu.model_description();
+        assert!(description.variable("onset_found").is_none());
+        // behind the truth values that are left out
+        assert!(description.variable("damping_now").is_some());
+    }
 }
 
 #[test]

@@ -9,6 +9,7 @@ mod models;
 use aerodeck::aerodynamics::Transfer;
 use aerodeck::fmu::description::model_description;
 use aerodeck::fmu::resources::Resources;
+use aerodeck::fmu::variables::Listing;
 use aerodeck::trained_model::TrainedModel;
 use aerodeck::units::ReducedFrequency;
 use std::path::{Path, PathBuf};
@@ -19,7 +20,7 @@ fn golden(kind: &str) -> PathBuf {
 
 fn describe(json: &[u8]) -> String {
     let resources = Resources::from_bytes(json, None).unwrap();
-    model_description(&resources).unwrap()
+    model_description(&resources, Listing::All).unwrap()
 }
 
 #[test]

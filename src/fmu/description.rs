@@ -8,7 +8,7 @@ use super::log_categories::LOG_CATEGORIES;
 use super::resources::Resources;
 use super::si::Unit;
 use super::standard::Word;
-use super::variables::{Causality, Value, Variable, VariableTable};
+use super::variables::{Causality, Listing, Value, Variable, VariableTable};
 use super::xml::Element;
 use crate::error::{Error, Result};
 use crate::trained_model::Experiment;
@@ -16,24 +16,25 @@ use crate::trained_model::Experiment;
 /// More communication points than this make FMPy double the step of the default experiment.
 const MAX_DEFAULT_STEPS: f64 = 1000.0;
 
-/// The description of an exported model.
+/// The description of an exported model with the variables that are to be listed.
 ///
 /// # Errors
 /// [`Error::Input`] when a number cannot stand in a description (not finite).
-pub fn model_description(resources: &Resources) -> Result<String> {
+pub fn model_description(resources: &Resources, listing: Listing) -> Result<String> {
     let Resources {
         model,
         force,
         table,
         guid,
     } = resources;
+    let (table, references) = &table.listed(listing);
     let what = match force {
         None => "Bridge deck section under self-excited wind forces",
         Some(_) => "Self-excited wind forces on a bridge deck, for a structure outside",
     };
-    let variables = table.variables().iter().enumerate();
+    let variables = references.iter().zip(table.variables());
     let variables = variables
-        .map(|(i, v)| scalar(i, v))
+        .map(|(reference, v)| scalar(*reference, v))
         .collect::<Result<Vec<_>>>()?;
     let categories = LOG_CATEGORIES.iter().map(|(name, description)| {
         Element::new("Category")

@@ -6,6 +6,8 @@
 
 mod dependencies;
 mod force;
+#[cfg(feature = "cli")]
+mod listing;
 mod parameters;
 mod real;
 mod section;
@@ -14,6 +16,8 @@ mod tests;
 mod words;
 
 pub use super::standard::{Causality, Initial, Variability};
+#[cfg(feature = "cli")]
+pub use listing::Listing;
 pub use parameters::SectionParameter;
 
 use super::force_options::ForceOptions;

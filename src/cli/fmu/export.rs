@@ -7,6 +7,7 @@ use crate::cli::stages;
 use crate::error::{Error, Result};
 use crate::fmu::force_options::{ForceOptions, MAX_STRIPS};
 use crate::fmu::package::{Export, Overwrite, Runtime, growth_of, write_fmu};
+use crate::fmu::variables::Listing;
 use crate::trained_model::TrainedModel;
 use std::path::PathBuf;
 
@@ -32,6 +33,13 @@ pub(crate) struct Args {
     /// holds them over its next step, 0 for none [default: 1.5].
     #[arg(long)]
     prediction: Option<f64>,
+    /// List real variables only, for importers that take no texts, truth values and integers.
+    #[arg(long)]
+    reals_only: bool,
+    /// Platforms to pack for [default: all whose runtime is here]; arm-linux makes an archive for importers on 64-bit
+    /// ARM Linux, which look for it in linux64.
+    #[arg(long, value_delimiter = ',', value_name = "PLATFORM")]
+    platforms: Vec<String>,
     /// The FMU; by default `deck_section.fmu` or `deck_force.fmu` beside the model.
     #[arg(long)]
     out: Option<PathBuf>,
@@ -93,9 +101,18 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     let export = Export {
         growing: stages::growing(args.allow_unstable),
         force: args.force(&model)?,
+        listing: if args.reals_only {
+            Listing::Reals
+        } else {
+            Listing::All
+        },
     };
     let strips = export.force.as_ref().map(|f| f.strips.len());
-    let runtimes = Runtime::available()?;
+    let runtimes = if args.platforms.is_empty() {
+        Runtime::available()?
+    } else {
+        Runtime::chosen(&args.platforms)?
+    };
     let overwrite = if args.force {
         Overwrite::Replace
     } else {

@@ -9,7 +9,9 @@ use crate::flutter::{
 };
 use crate::fmu::force_options::ForceOptions;
 use crate::fmu::resources::Resources;
-use crate::fmu::variables::{Causality, Role, SectionParameter, Value, Variability, Variable};
+use crate::fmu::variables::{
+    Causality, Listing, Role, SectionParameter, Value, Variability, Variable,
+};
 use crate::section::Dof;
 use crate::trained_model::{Model, TrainedModel};
 use crate::units::{ReducedFrequency, ReducedVelocity};
@@ -19,7 +21,11 @@ use askama::Template;
 ///
 /// # Errors
 /// [`Error::Input`] and [`Error::Numerical`] when the onset of the default section cannot be computed.
-pub fn documentation(resources: &Resources, runtimes: &[Runtime]) -> Result<String> {
+pub fn documentation(
+    resources: &Resources,
+    runtimes: &[Runtime],
+    listing: Listing,
+) -> Result<String> {
     let model = &resources.model;
     let page = Page {
         model,
@@ -33,7 +39,7 @@ pub fn documentation(resources: &Resources, runtimes: &[Runtime]) -> Result<Stri
             .iter()
             .map(|r| (r.path_in_archive(), r.platform_words()))
             .collect(),
-        groups: groups(resources.table.variables()),
+        groups: groups(resources.table.listed(listing).0.variables()),
         range: Range::of(model),
         speeds: speeds(model),
         stability: match &resources.force {

@@ -14,6 +14,7 @@ pub use runtime::{RUNTIME_DIR_VARIABLE, Runtime};
 use super::description::model_description;
 use super::force_options::{FORCE_FILE, ForceOptions};
 use super::resources::{MODEL_FILE, Resources};
+use super::variables::Listing;
 use crate::error::{Error, Result};
 use crate::trained_model::TrainedModel;
 use std::collections::BTreeMap;
@@ -50,6 +51,8 @@ pub struct Export {
     pub growing: Growing,
     /// Strips for a structure outside; `None` for the coupled section.
     pub force: Option<ForceOptions>,
+    /// Which variables its description lists.
+    pub listing: Listing,
 }
 
 impl From<Growing> for Export {
@@ -57,6 +60,7 @@ impl From<Growing> for Export {
         Self {
             growing,
             force: None,
+            listing: Listing::All,
         }
     }
 }
@@ -71,7 +75,11 @@ pub fn package(
     runtimes: &[Runtime],
     export: impl Into<Export>,
 ) -> Result<Vec<u8>> {
-    let Export { growing, force } = export.into();
+    let Export {
+        growing,
+        force,
+        listing,
+    } = export.into();
     growth::check(model, growing)?;
     let options = force.map(|force| force.to_json()).transpose()?;
     if runtimes.is_empty() {
@@ -80,8 +88,8 @@ pub fn package(
     }
     let json = model.to_json()?;
     let resources = Resources::from_bytes(json.as_bytes(), options.as_deref().map(str::as_bytes))?;
-    let xml = model_description(&resources)?;
-    let page = documentation(&resources, runtimes)?;
+    let xml = model_description(&resources, listing)?;
+    let page = documentation(&resources, runtimes, listing)?;
     let mut files: BTreeMap<String, Vec<u8>> = BTreeMap::new();
     files.insert("modelDescription.xml".into(), xml.into_bytes());
     files.insert("model.png".into(), ICON.to_vec());

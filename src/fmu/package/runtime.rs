@@ -10,21 +10,28 @@ use std::path::Path;
 /// `aarch64-linux/aerodeck_section.so`, …
 pub const RUNTIME_DIR_VARIABLE: &str = "AERODECK_RUNTIME_DIR";
 
-/// Platform folders below `binaries/`, ending of the library, how it begins, name in words.
-const PLATFORMS: [(&str, &str, &[u8], &str); 7] = [
-    ("aarch64-darwin", "dylib", MACH_O, "macOS, Apple silicon"),
+/// Platform folders below `binaries/`, ending of the library, how it may begin, name in words.
+const PLATFORMS: [(&str, &str, &[&[u8]], &str); 7] = [
+    ("aarch64-darwin", "dylib", DYLIB, "macOS, Apple silicon"),
     ("aarch64-linux", "so", ELF, "Linux, 64-bit ARM"),
-    ("darwin64", "dylib", MACH_O, "macOS, 64-bit Intel"),
+    ("darwin64", "dylib", DYLIB, "macOS, 64-bit Intel"),
     ("linux32", "so", ELF, "Linux, 32-bit Intel"),
     ("linux64", "so", ELF, "Linux, 64-bit Intel/AMD"),
     ("win32", "dll", PE, "Windows, 32-bit"),
     ("win64", "dll", PE, "Windows, 64-bit"),
 ];
-const ELF: &[u8] = b"\x7fELF";
-const PE: &[u8] = b"MZ";
-const MACH_O: &[u8] = b"\xcf\xfa\xed\xfe";
+const ELF: &[&[u8]] = &[b"\x7fELF"];
+const PE: &[&[u8]] = &[b"MZ"];
+const DYLIB: &[&[u8]] = &[b"\xcf\xfa\xed\xfe", UNIVERSAL];
+/// A dynamic library for Intel and Apple silicon at once.
+const UNIVERSAL: &[u8] = b"\xca\xfe\xba\xbe";
 
-static EMBEDDED: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/aerodeck_section"));
+/// Not a platform of FMI: importers on 64-bit ARM Linux look for `linux64` as well, so that they need an archive of
+/// their own.
+const ARM_LINUX: &str = "arm-linux";
+
+/// The runtimes that were given to the build of this program, or made by it: platform and library.
+static EMBEDDED: &[(&str, &[u8])] = include!(concat!(env!("OUT_DIR"), "/runtimes.rs"));
 
 /// A runtime binary for one platform.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -35,6 +42,8 @@ pub struct Runtime {
     pub bytes: Cow<'static, [u8]>,
     /// Ending of the library's name.
     extension: &'static str,
+    /// The platform in words.
+    words: &'static str,
 }
 
 impl Runtime {
@@ -43,22 +52,56 @@ impl Runtime {
     /// # Errors
     /// [`Error::Input`] when the program was built without (under an interpreter of Rust code).
     pub fn embedded() -> Result<Self> {
-        Self::new(env!("AERODECK_RUNTIME_PLATFORM"), Cow::Borrowed(EMBEDDED))
+        let here = env!("AERODECK_RUNTIME_PLATFORM");
+        let own = EMBEDDED.iter().find(|(platform, _)| *platform == here);
+        Self::new(here, Cow::Borrowed(own.map_or(&[], |(_, bytes)| bytes)))
     }
 
-    /// The embedded runtime and those in the folder that [`RUNTIME_DIR_VARIABLE`] names, if it is set. A runtime of
-    /// the folder takes the place of the embedded one for the same platform.
+    /// The runtimes in the folder that [`RUNTIME_DIR_VARIABLE`] names, if it is set, and for other platforms those
+    /// that this program carries.
+    ///
+    /// # Errors
+    /// As [`Runtime::in_folder`]; [`Error::Input`] for a runtime that is no library of its platform.
     pub fn available() -> Result<Vec<Self>> {
         let mut all = match std::env::var_os(RUNTIME_DIR_VARIABLE) {
             Some(folder) => Self::in_folder(Path::new(&folder))?,
             None => Vec::new(),
         };
-        let embedded = Self::embedded()?;
-        if all.iter().all(|r| r.platform != embedded.platform) {
-            all.push(embedded);
-            all.sort_by_key(|r| r.platform);
+        for (platform, bytes) in EMBEDDED {
+            if all.iter().all(|r| r.platform != *platform) {
+                all.push(Self::new(platform, Cow::Borrowed(bytes))?);
+            }
         }
+        all.sort_by_key(|r| r.platform);
         Ok(all)
+    }
+
+    /// The runtimes for these platforms out of [`Runtime::available`]; `arm-linux` is the one for 64-bit ARM, in the
+    /// folder `linux64` where importers on such a machine look, and in its own.
+    ///
+    /// # Errors
+    /// As [`Runtime::available`]; [`Error::Input`] for a platform without a runtime.
+    pub fn chosen(platforms: &[String]) -> Result<Vec<Self>> {
+        let available = Self::available()?;
+        let find = |wanted: &str| {
+            let found = available.iter().find(|r| r.platform == wanted).cloned();
+            found.ok_or_else(|| {
+                let known: Vec<_> = available.iter().map(|r| r.platform).collect();
+                let expected = format!("one whose runtime is here: {}", known.join(", "));
+                Error::input("platform", expected, wanted)
+            })
+        };
+        let mut chosen = Vec::new();
+        for platform in platforms {
+            if platform == ARM_LINUX {
+                let own = find("aarch64-linux")?;
+                chosen.push(Self::new("linux64", own.bytes.clone())?);
+                chosen.push(own);
+            } else {
+                chosen.push(find(platform)?);
+            }
+        }
+        Ok(chosen)
     }
 
     /// The runtimes in a folder laid out as `binaries/` of an FMU, in alphabetical order of the platforms.
@@ -91,10 +134,10 @@ impl Runtime {
 
     fn new(platform: &str, bytes: Cow<'static, [u8]>) -> Result<Self> {
         let known = PLATFORMS.into_iter().find(|(name, ..)| *name == platform);
-        let Some((platform, extension, magic, words)) = known else {
+        let Some((platform, extension, beginnings, words)) = known else {
             return Err(Error::input("runtime", "a platform of FMI", platform));
         };
-        if !bytes.starts_with(magic) {
+        if !beginnings.iter().any(|b| bytes.starts_with(b)) {
             return Err(Error::input(
                 format!("runtime for {platform}"),
                 format!("a shared library ({words})"),
@@ -102,6 +145,13 @@ impl Runtime {
             ));
         }
         Ok(Self {
+            words: match platform {
+                "linux64" if is_arm(&bytes) => "Linux, 64-bit ARM",
+                "darwin64" if bytes.starts_with(UNIVERSAL) => {
+                    "macOS, 64-bit Intel and Apple silicon"
+                }
+                _ => words,
+            },
             platform,
             bytes,
             extension,
@@ -110,10 +160,7 @@ impl Runtime {
 
     /// The platform in words.
     pub fn platform_words(&self) -> &'static str {
-        PLATFORMS
-            .iter()
-            .find(|(name, ..)| *name == self.platform)
-            .map_or(self.platform, |(.., words)| words)
+        self.words
     }
 
     /// Path of the library in the archive.
@@ -123,6 +170,11 @@ impl Runtime {
             self.platform, self.extension
         )
     }
+}
+
+/// Whether an ELF file is for 64-bit ARM: its machine, at byte 18, is 183.
+fn is_arm(elf: &[u8]) -> bool {
+    elf.get(18..20) == Some(&[183, 0])
 }
 
 #[cfg(test)]
@@ -135,6 +187,49 @@ mod tests {
         let path = runtime.path_in_archive();
         assert!(path.starts_with("binaries/"), "{path}");
         assert!(runtime.bytes.len() > 100_000);
+    }
+
+    /// What panics name as their place must not tell where the library was built.
+    #[test]
+    fn the_embedded_runtime_holds_no_path_of_the_machine_that_built_it() {
+        if option_env!("AERODECK_RUNTIME").is_some() {
+            return; // ready-made: whoever made it has checked it (fmu_build/build.py)
+        }
+        let bytes = Runtime::embedded().unwrap().bytes;
+        let text = String::from_utf8_lossy(&bytes);
+        assert!(text.contains("nalgebra"), "no place of a panic at all");
+        let home = std::env::var("HOME").unwrap_or_default();
+        let cargo = std::env::var("CARGO_HOME").unwrap_or_default();
+        for path in [env!("CARGO_MANIFEST_DIR"), home.as_str(), cargo.as_str()] {
+            assert!(path.len() < 3 || !text.contains(path), "{path}");
+        }
+        assert!(!text.contains(".cargo"), "the registry of crates");
+    }
+
+    #[test]
+    fn platforms_are_chosen_or_refused() {
+        let own = Runtime::embedded().unwrap();
+        let chosen = Runtime::chosen(&[own.platform.to_owned()]).unwrap();
+        assert_eq!(chosen, [own]);
+        let refused = Runtime::chosen(&["solaris".to_owned()]).unwrap_err();
+        let message = refused.to_string();
+        assert!(
+            message.contains("solaris") && message.contains("is here:"),
+            "{message}"
+        );
+    }
+
+    #[test]
+    fn libraries_say_what_machine_they_are_for() {
+        let mut arm = b"\x7fELF".to_vec();
+        arm.resize(64, 0);
+        arm[18] = 183;
+        let words = |platform, bytes: &[u8]| {
+            let runtime = Runtime::new(platform, Cow::Owned(bytes.to_vec())).unwrap();
+            runtime.platform_words()
+        };
+        assert_eq!(words("linux64", &arm), "Linux, 64-bit ARM");
+        assert!(words("darwin64", UNIVERSAL).contains("Apple silicon"));
     }
 
     #[test]

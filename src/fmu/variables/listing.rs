@@ -1,0 +1,39 @@
+//! The table as a description lists it: all of it, or its real variables for importers that take no others.
+
+use super::{InitialDependency, Value, Variable, VariableTable};
+
+/// Which variables a description lists.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Listing {
+    /// All.
+    #[default]
+    All,
+    /// Real ones. The others stay in the runtime, unnamed.
+    Reals,
+}
+
+impl VariableTable {
+    /// The listed variables as a table of their own, whose dependencies are places in it, and their value references:
+    /// the places in the full table, so that one runtime serves both.
+    pub fn listed(&self, listing: Listing) -> (VariableTable, Vec<usize>) {
+        let real = |v: &Variable| matches!(v.value, Value::Real(_));
+        let references: Vec<usize> = (0..self.variables.len())
+            .filter(|&i| listing == Listing::All || real(&self.variables[i]))
+            .collect();
+        // ascending, since the references are
+        let place = |reference: usize| references.binary_search(&reference).ok();
+        let variables = references.iter().map(|&reference| {
+            let mut variable = self.variables[reference].clone();
+            variable.derivative_of = variable.derivative_of.and_then(place);
+            let direct = &variable.direct_inputs;
+            variable.direct_inputs = direct.iter().filter_map(|&on| place(on)).collect();
+            let initial = variable.initial_dependencies.iter();
+            variable.initial_dependencies = initial
+                .filter_map(|d| place(d.on).map(|on| InitialDependency { on, ..*d }))
+                .collect();
+            variable
+        });
+        let variables = variables.collect();
+        (VariableTable { variables }, references)
+    }
+}
