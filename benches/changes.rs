@@ -7,7 +7,7 @@ use aerodeck::aerodynamics::Realizable;
 use aerodeck::aeroelastic::{CoupledSection, CoupledSystem};
 use aerodeck::flutter::{OnsetSearch, find_onset};
 use aerodeck::fmu::instance::Instance;
-use aerodeck::fmu::resources::Resources;
+use aerodeck::fmu::resources::{OptionFiles, Resources};
 use aerodeck::response::{Inputs, Stepper};
 use aerodeck::state_space::c2d;
 use aerodeck::trained_model::TrainedModel;
@@ -125,7 +125,8 @@ fn stepped(
 
 fn parameters(model: &TrainedModel) {
     let json = model.to_json().expect("a model");
-    let resources = || Resources::from_bytes(json.as_bytes(), None).expect("resources");
+    let resources =
+        || Resources::from_bytes(json.as_bytes(), OptionFiles::default()).expect("resources");
     let mut instance = Instance::new(resources()).expect("an instance");
     let place = |name| {
         let variables = instance.table().variables();

@@ -5,7 +5,7 @@
 
 use aerodeck::fmu::force_options::ForceOptions;
 use aerodeck::fmu::instance::Instance;
-use aerodeck::fmu::resources::Resources;
+use aerodeck::fmu::resources::{OptionFiles, Resources};
 use std::time::Instant;
 
 const STRIPS: usize = 1000;
@@ -73,7 +73,13 @@ fn main() {
 }
 
 fn instance(json: &str, force: Option<&str>) -> Instance {
-    let resources = Resources::from_bytes(json.as_bytes(), force.map(str::as_bytes));
+    let resources = {
+        let options = OptionFiles {
+            force: force.map(str::as_bytes),
+            ..OptionFiles::default()
+        };
+        Resources::from_bytes(json.as_bytes(), options)
+    };
     let mut instance = Instance::new(resources.expect("resources")).expect("an instance");
     instance.enter_initialization();
     instance.exit_initialization().expect("initial values");

@@ -6,24 +6,28 @@
 //! dimensionless force is sampled every `Δt = Δs B/V`; between samples the section moves exactly under that force and
 //! the present dynamic pressure.
 
+mod gusts;
 mod packed;
 mod prescribed;
 mod quasi_steady;
 mod sampled;
 mod series;
 mod step_cache;
+mod strip_gusts;
 
 pub use prescribed::{ForceAhead, Given, KnownMotion, PrescribedForces, StripFlow};
 pub use quasi_steady::{NonlinearRun, NonlinearSection};
+pub use strip_gusts::StripGusts;
 
-use crate::aerodynamics::Realization;
+use crate::aerodynamics::{GustForce, Realization};
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, finite_numbers, non_negative, positive};
 use crate::section::Dof;
+use gusts::{GustCourse, Gusts};
 use nalgebra::{DMatrix, DVector};
 use packed::apply;
 use sampled::Sampling;
-use series::{Drive, Series};
+use series::{Drive, Moving, Series};
 use step_cache::StepCache;
 
 /// Degrees of freedom at most: heave, sway, rotation.
@@ -61,6 +65,34 @@ pub struct Inputs {
     pub force: Vec<f64>,
     /// Rates of the external forces over the step (n): per second.
     pub force_rate: Vec<f64>,
+    /// Gusts `u` along the mean wind and `w` upwards, m/s; they act on a stepper that knows their forces.
+    pub gust_m_s: [f64; 2],
+    /// Their rates over the step, m/s².
+    pub gust_rate_m_s2: [f64; 2],
+}
+
+impl SectionState {
+    /// All numbers in one list: those of the section, then the lagging gusts.
+    pub fn all(&self) -> Vec<f64> {
+        [self.values.as_slice(), &self.gusts].concat()
+    }
+
+    /// Number `i` of [`SectionState::all`].
+    pub fn number(&self, i: usize) -> f64 {
+        let behind = i.checked_sub(self.values.len());
+        behind.map_or_else(|| self.values[i], |behind| self.gusts[behind])
+    }
+
+    /// The same state with the numbers of [`SectionState::all`] replaced.
+    #[must_use]
+    pub fn with_all(&self, numbers: &[f64]) -> Self {
+        let (values, gusts) = numbers.split_at(self.values.len());
+        Self {
+            values: values.to_vec(),
+            gusts: gusts.to_vec(),
+            ..self.clone()
+        }
+    }
 }
 
 impl Inputs {
@@ -71,13 +103,25 @@ impl Inputs {
             wind_speed_rate_m_s2: 0.0,
             force: vec![0.0; dofs],
             force_rate: vec![0.0; dofs],
+            gust_m_s: [0.0; 2],
+            gust_rate_m_s2: [0.0; 2],
         }
+    }
+
+    /// Gusts `time_s` after the start of the step, and their rates.
+    fn gusts_after(&self, time_s: f64) -> GustCourse {
+        let now = [0, 1].map(|j| self.gust_m_s[j] + time_s * self.gust_rate_m_s2[j]);
+        [now, self.gust_rate_m_s2]
     }
 
     fn check(&self, dofs: usize) -> Result<()> {
         non_negative("wind speed", wind_at_rest(self.wind_speed_m_s, 0.0))?;
         let finite = |values: &[f64]| values.len() == dofs && values.iter().all(|x| x.is_finite());
-        if finite(&self.force) && finite(&self.force_rate) && self.wind_speed_rate_m_s2.is_finite()
+        let gusts = self.gust_m_s.iter().chain(&self.gust_rate_m_s2);
+        let steady = gusts.chain([&self.wind_speed_rate_m_s2]);
+        if finite(&self.force)
+            && finite(&self.force_rate)
+            && steady.into_iter().all(|x| x.is_finite())
         {
             Ok(())
         } else {
@@ -95,6 +139,8 @@ impl Inputs {
 pub struct SectionState {
     /// `[q, q̇, x]`: displacements (m, rad), rates, filter states (dimensionless).
     pub values: Vec<f64>,
+    /// Gusts behind the lags of their admittance: those of `u`, then those of `w`, m/s.
+    pub gusts: Vec<f64>,
     /// Part of `Δs` that has passed since the last sample of the discrete model, in `[0, 1)`; 0 for continuous models.
     pub phase: f64,
     /// Wind speed at the start of the last step of a continuous model, m/s; none since the release. A wind that stays is
@@ -142,9 +188,15 @@ pub struct Stepper {
 impl Stepper {
     /// A stepper with an empty cache.
     pub fn new(section: CoupledSection) -> Self {
+        Self::in_gusts(section, None)
+    }
+
+    /// A stepper on whose section gusts act with these forces.
+    pub fn in_gusts(section: CoupledSection, force: Option<&GustForce>) -> Self {
+        let gusts = force.map(|force| Gusts::new(force, section.structure()));
         let operand = vec![0.0; section.states() + 2 * section.structure().dofs.len()];
         Self {
-            series: Series::new(&section),
+            series: Series::new(&section, gusts),
             sampling: Sampling::of(&section),
             section,
             cache: StepCache::default(),
@@ -183,6 +235,7 @@ impl Stepper {
         }
         Ok(SectionState {
             values,
+            gusts: vec![0.0; self.series.gusts().map_or(0, Gusts::states)],
             ..SectionState::default()
         })
     }
@@ -219,13 +272,43 @@ impl Stepper {
         let same_wind = state
             .last_wind_m_s
             .is_none_or(|last| last == inputs.wind_speed_m_s);
-        if inputs.wind_speed_rate_m_s2 == 0.0 && same_wind {
+        if inputs.wind_speed_rate_m_s2 == 0.0 && same_wind && !self.gusts_act(state, inputs) {
             self.advance_by_matrix(state, inputs, step_s)?;
         } else {
             self.advance_by_series(state, inputs, step_s)?;
         }
         state.last_wind_m_s = Some(inputs.wind_speed_m_s);
         Ok(())
+    }
+
+    /// Whether a gust blows or has not yet passed.
+    fn gusts_act(&self, state: &SectionState, inputs: &Inputs) -> bool {
+        let blowing = inputs.gust_m_s.iter().chain(&inputs.gust_rate_m_s2);
+        self.series.gusts().is_some() && blowing.chain(&state.gusts).any(|x| *x != 0.0)
+    }
+
+    /// Force of the gusts per unit length and 1 m/s of wind, and the rates of their lags per 1 m/s.
+    pub(crate) fn gusts_per_wind(
+        &self,
+        state: &SectionState,
+        inputs: &Inputs,
+    ) -> (Vec<f64>, Vec<f64>) {
+        let n = self.section.structure().dofs.len();
+        match self.series.gusts() {
+            Some(gusts) => (
+                gusts.force_per_wind(inputs.gust_m_s, &state.gusts)[..n].to_vec(),
+                gusts.rates_per_wind(inputs.gust_m_s, &state.gusts),
+            ),
+            None => (vec![0.0; n], Vec::new()),
+        }
+    }
+
+    /// Force of the gusts per unit length.
+    fn gust_force(&self, state: &SectionState, inputs: &Inputs) -> [f64; MAX_DOFS] {
+        let wind = inputs.wind_speed_m_s.max(0.0);
+        let gusts = self.series.gusts();
+        let force = gusts.map(|g| g.force_per_wind(inputs.gust_m_s, &state.gusts));
+        force.unwrap_or_default().map(|f| wind * f)
     }
 
     fn advance_by_matrix(
@@ -255,8 +338,11 @@ impl Stepper {
         step: f64,
     ) -> Result<()> {
         let (wind, wind_rate) = (inputs.wind_speed_m_s, inputs.wind_speed_rate_m_s2);
-        let parts = self.series.parts(wind + wind_rate.abs() * step, step);
-        if wind_rate == 0.0 && (parts.is_nan() || parts > PARTS_OF_A_MATRIX) {
+        let gusts = self.gusts_act(state, inputs);
+        let parts = self
+            .series
+            .parts(wind + wind_rate.abs() * step, step, gusts);
+        if wind_rate == 0.0 && !gusts && (parts.is_nan() || parts > PARTS_OF_A_MATRIX) {
             return self.advance_by_matrix(state, inputs, step);
         }
         check_substeps(parts, step)?;
@@ -264,12 +350,18 @@ impl Stepper {
             wind,
             wind_rate,
             force: Default::default(),
+            gust: [inputs.gust_m_s, inputs.gust_rate_m_s2],
         };
         let n = inputs.force.len();
         drive.force[0][..n].copy_from_slice(&inputs.force);
         drive.force[1][..n].copy_from_slice(&inputs.force_rate);
-        if self.series.advance(&mut state.values, &drive, step, parts) {
+        let moving = Moving {
+            values: &mut state.values,
+            gusts: gusts.then_some(&mut state.gusts),
+        };
+        if self.series.advance(moving, &drive, step, parts) {
             settled(&mut state.values);
+            settled(&mut state.gusts);
             Ok(())
         } else {
             Err(overgrown())
@@ -294,11 +386,15 @@ impl Stepper {
         outputs.rate.extend_from_slice(&state.values[n..2 * n]);
         outputs.acceleration.resize(n, 0.0);
         outputs.self_excited_force.resize(n, 0.0);
+        let gust_force = self.gust_force(state, inputs);
         let rows = self
             .cache
             .output_rows(&self.section, inputs.wind_speed_m_s.max(0.0))?;
         self.operand[..state.values.len()].copy_from_slice(&state.values);
-        self.operand[state.values.len()..][..n].copy_from_slice(&inputs.force);
+        let external = &mut self.operand[state.values.len()..][..n];
+        for ((w, force), gust) in external.iter_mut().zip(&inputs.force).zip(gust_force) {
+            *w = force + gust;
+        }
         let columns = state.values.len() + n;
         let mut both = [0.0; 2 * MAX_DOFS];
         let both = &mut both[..2 * n];
@@ -308,7 +404,7 @@ impl Stepper {
         Ok(())
     }
 
-    /// `d/dt` of the state values; filters of the discrete model stand still between samples.
+    /// `d/dt` of the state values and, behind them, of the lagging gusts; filters of the discrete model stand still between samples.
     ///
     /// # Errors
     /// [`Error::Input`] for inputs that are not finite.
@@ -317,7 +413,8 @@ impl Stepper {
         inputs.check(n)?;
         if let Some(sampling) = &self.sampling {
             let z = DVector::from_column_slice(&state.values);
-            let w = DVector::from_column_slice(&inputs.force);
+            let gusts = self.gust_force(state, inputs);
+            let w = DVector::from_fn(n, |i, _| inputs.force[i] + gusts[i]);
             let force = sampling.force(&state.values, inputs.wind_speed_m_s.max(0.0));
             let force = DVector::from_column_slice(&force[..n]);
             let (a, b) = self.section.structure_alone();
@@ -332,6 +429,10 @@ impl Stepper {
         let by_wind = self.section.filter_rates_per_wind(&state.values);
         let wind = inputs.wind_speed_m_s.max(0.0);
         derivative.extend(by_wind.iter().map(|x| wind * x));
+        if let Some(gusts) = self.series.gusts() {
+            let lagging = gusts.rates_per_wind(inputs.gust_m_s, &state.gusts);
+            derivative.extend(lagging.iter().map(|x| wind * x));
+        }
         Ok(derivative)
     }
 }

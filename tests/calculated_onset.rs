@@ -6,7 +6,7 @@ use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::files::derivatives::embedded;
 use aerodeck::flutter::{OnsetSearch, find_onset, unwanted_growth};
 use aerodeck::fmu::instance::Instance;
-use aerodeck::fmu::resources::Resources;
+use aerodeck::fmu::resources::{OptionFiles, Resources};
 use aerodeck::identification::{FeedThrough, Form, FrequencyFit, PoleSearch, fit_table};
 use aerodeck::section::{Dof, SectionModel};
 use aerodeck::trained_model::{Experiment, Provenance, SCHEMA_VERSION, TrainedModel};
@@ -80,8 +80,10 @@ fn calculated_onsets_are_those_of_the_search() {
             let model = trained(deck, form.clone(), poles);
             let tested = Some(model.tested_range);
             let json = model.to_json().unwrap();
-            let mut instance =
-                Instance::new(Resources::from_bytes(json.as_bytes(), None).unwrap()).unwrap();
+            let mut instance = Instance::new(
+                Resources::from_bytes(json.as_bytes(), OptionFiles::default()).unwrap(),
+            )
+            .unwrap();
             let grows = instance.take_notices().iter().any(|n| n.contains("grows"));
             instance.enter_initialization();
             for (mass, twist_hz) in [(15.0, 5.0), (8.0, 5.0), (40.0, 4.0), (15.0, 2.5)] {

@@ -15,6 +15,7 @@ mod python;
 #[allow(dead_code)] // one model of several
 mod three_dof;
 
+use aerodeck::aerodynamics::{GustForce, RationalAdmittance};
 use aerodeck::files::derivatives::embedded;
 use aerodeck::fmu::force_options::ForceOptions;
 use aerodeck::fmu::package::{Export, Growing, Overwrite, Runtime, write_fmu};
@@ -87,6 +88,7 @@ fn export() -> PathBuf {
     let fmu = folder.join("three_dof.fmu");
     write_fmu(&fmu, &lateral, &runtimes, Overwrite::Refuse, Growing::Allow).unwrap();
     export_forces(&folder, &runtimes);
+    export_gusts(&folder, &runtimes);
     export_reals(&folder, &runtimes);
     let text = serde_json::to_string(&json!({
         "models": Value::Object(expected), "three_dof": in_process::three_dof(&lateral),
@@ -113,6 +115,32 @@ fn export_forces(folder: &Path, runtimes: &[Runtime]) {
         let export = Export {
             growing: Growing::Refuse,
             force: Some(options),
+            gusts: None,
+            listing: Listing::All,
+        };
+        let fmu = folder.join(format!("{name}.fmu"));
+        write_fmu(&fmu, &model, runtimes, Overwrite::Refuse, export).unwrap();
+    }
+}
+
+/// The section and its forces again, with gusts that act as on a plate through Sears's function.
+fn export_gusts(folder: &Path, runtimes: &[Runtime]) {
+    let text = fs::read_to_string(models::model_file("rational")).unwrap();
+    let mut model = TrainedModel::from_json(&text).unwrap();
+    model.section = SectionModel::iabse_1_1a();
+    let tau = std::f64::consts::TAU;
+    let gusts = GustForce {
+        dofs: Dof::TWO.to_vec(),
+        coefficients: vec![[0.0, tau], [0.0, 0.25 * tau]],
+        admittance: RationalAdmittance::Sears,
+        source: "thin plate".into(),
+    };
+    let forces = ForceOptions::single(model.section.width_m);
+    for (name, force) in [("gusts_section", None), ("gusts_force", Some(forces))] {
+        let export = Export {
+            growing: Growing::Refuse,
+            force,
+            gusts: Some(gusts.clone()),
             listing: Listing::All,
         };
         let fmu = folder.join(format!("{name}.fmu"));
@@ -130,6 +158,7 @@ fn export_reals(folder: &Path, runtimes: &[Runtime]) {
             let export = Export {
                 growing: Growing::Allow,
                 force,
+                gusts: None,
                 listing: Listing::Reals,
             };
             let fmu = folder.join(format!("reals_{unit}_{kind}.fmu"));

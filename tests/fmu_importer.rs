@@ -51,6 +51,7 @@ fn real_variables_alone_pass_every_check() {
         let export = Export {
             growing: Growing::Allow,
             force: None,
+            gusts: None,
             listing: Listing::Reals,
         };
         let runtimes = [Runtime::embedded().unwrap()];

@@ -8,7 +8,7 @@ mod models;
 
 use aerodeck::aerodynamics::Transfer;
 use aerodeck::fmu::description::model_description;
-use aerodeck::fmu::resources::Resources;
+use aerodeck::fmu::resources::{OptionFiles, Resources};
 use aerodeck::fmu::variables::Listing;
 use aerodeck::trained_model::TrainedModel;
 use aerodeck::units::ReducedFrequency;
@@ -19,7 +19,7 @@ fn golden(kind: &str) -> PathBuf {
 }
 
 fn describe(json: &[u8]) -> String {
-    let resources = Resources::from_bytes(json, None).unwrap();
+    let resources = Resources::from_bytes(json, OptionFiles::default()).unwrap();
     model_description(&resources, Listing::All).unwrap()
 }
 

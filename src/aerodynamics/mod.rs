@@ -7,6 +7,7 @@
 pub mod derivatives;
 pub mod flat_plate;
 mod gust;
+mod gust_force;
 pub mod laguerre;
 pub mod quasi_steady;
 pub mod rational;
@@ -15,6 +16,7 @@ mod spline;
 
 pub use flat_plate::FlatPlate;
 pub use gust::GustSeries;
+pub use gust_force::{GustForce, RationalAdmittance};
 pub use laguerre::{DiscreteLaguerre, FilterBank, FilterTerm, LaguerreModel};
 pub use rational::{Lags, MinimumStateModel, RationalModel};
 pub(crate) use realization::DiscreteRealization;

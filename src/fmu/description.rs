@@ -26,6 +26,7 @@ pub fn model_description(resources: &Resources, listing: Listing) -> Result<Stri
         force,
         table,
         guid,
+        ..
     } = resources;
     let (table, references) = &table.listed(listing);
     let what = match force {

@@ -3,6 +3,7 @@
 use super::force_options::{FORCE_FILE, ForceOptions};
 use super::identity;
 use super::variables::VariableTable;
+use crate::aerodynamics::{GustForce, Transfer};
 use crate::error::{Error, Result};
 use crate::trained_model::TrainedModel;
 use std::path::{Path, PathBuf};
@@ -10,6 +11,17 @@ use uuid::Uuid;
 
 /// The model's file in `resources/`.
 pub const MODEL_FILE: &str = "model.json";
+/// The file of the gust forces in `resources/`; an archive without it takes no gusts.
+pub const GUST_FILE: &str = "gusts.json";
+
+/// Files beside the model that say what is exported of it, as bytes.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct OptionFiles<'a> {
+    /// What makes it a unit of forces alone, see [`ForceOptions`].
+    pub force: Option<&'a [u8]>,
+    /// Forces of gusts, see [`GustForce`].
+    pub gusts: Option<&'a [u8]>,
+}
 
 /// What is read once, at instantiation.
 #[derive(Debug)]
@@ -18,6 +30,8 @@ pub struct Resources {
     pub model: TrainedModel,
     /// What makes it a unit of forces alone; `None` for the coupled section.
     pub force: Option<ForceOptions>,
+    /// Forces of gusts; `None` where it takes no gusts.
+    pub gusts: Option<GustForce>,
     /// Its variables.
     pub table: VariableTable,
     /// Identity of table and model file.
@@ -47,34 +61,53 @@ impl Resources {
             _ => coded,
         };
         let read = |file: &Path| std::fs::read(file).map_err(|e| Error::io(file, e));
-        let force = file.with_file_name(FORCE_FILE);
-        let options = if force.exists() {
-            Some(read(&force)?)
-        } else {
-            None
+        let optional = |name: &str| -> Result<Option<Vec<u8>>> {
+            let option = file.with_file_name(name);
+            option.exists().then(|| read(&option)).transpose()
         };
-        Self::from_bytes(&read(&file)?, options.as_deref()).map_err(|e| e.in_file(&file))
+        let (force, gusts) = (optional(FORCE_FILE)?, optional(GUST_FILE)?);
+        let options = OptionFiles {
+            force: force.as_deref(),
+            gusts: gusts.as_deref(),
+        };
+        Self::from_bytes(&read(&file)?, options).map_err(|e| e.in_file(&file))
     }
 
-    /// The same from the bytes of the model's file and, for forces alone, of the file of their options.
+    /// The same from the bytes of the model's file and of those beside it.
     ///
     /// # Errors
     /// [`Error::Input`] for bytes that are no trained model, or no options that fit it.
-    pub fn from_bytes(bytes: &[u8], options: Option<&[u8]>) -> Result<Self> {
+    pub fn from_bytes(bytes: &[u8], options: OptionFiles<'_>) -> Result<Self> {
         let model = TrainedModel::from_json(text(bytes)?)?;
         let force = options
+            .force
             .map(|options| ForceOptions::from_json(text(options)?).map_err(|e| e.at(FORCE_FILE)))
             .transpose()?;
-        let table = VariableTable::new(&model, force.as_ref())?;
-        let files: Vec<&[u8]> = std::iter::once(bytes).chain(options).collect();
+        let gusts = options
+            .gusts
+            .map(|gusts| gust_force(text(gusts)?, &model).map_err(|e| e.at(GUST_FILE)))
+            .transpose()?;
+        let table = VariableTable::new(&model, force.as_ref(), gusts.as_ref())?;
+        let files = std::iter::once(bytes);
+        let files: Vec<&[u8]> = files.chain(options.force).chain(options.gusts).collect();
         let guid = identity::guid(&table, &files);
         Ok(Self {
             model,
             force,
+            gusts,
             table,
             guid,
         })
     }
+}
+
+fn gust_force(text: &str, model: &TrainedModel) -> Result<GustForce> {
+    let force: GustForce = serde_json::from_str(text).map_err(|e| {
+        let place = format!("line {}, column {}", e.line(), e.column());
+        Error::input(place, "forces of gusts", e.to_string())
+    })?;
+    force.validate(model.model.dofs())?;
+    Ok(force)
 }
 
 fn text(bytes: &[u8]) -> Result<&str> {

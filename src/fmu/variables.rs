@@ -22,6 +22,7 @@ pub use parameters::SectionParameter;
 
 use super::force_options::ForceOptions;
 use super::si::Unit;
+use crate::aerodynamics::GustForce;
 use crate::error::{Error, Result};
 use crate::section::Dof;
 use crate::trained_model::TrainedModel;
@@ -115,6 +116,8 @@ pub enum Role {
     WindSpeed,
     /// External force on a degree of freedom.
     ExternalForce(Dof),
+    /// Gust at a strip, counted from zero.
+    Gust(usize, Gust),
     /// Motion or self-excited force of a degree of freedom.
     Response(Response, Dof),
     /// A property of the section.
@@ -129,7 +132,8 @@ pub enum Role {
     Calculated(Calculated),
     /// Computed from parameters, wind and state.
     Status(Status),
-    /// A filter state of the aerodynamic model, counted from zero.
+    /// A state that is no motion, counted from zero: filters of the aerodynamic model, then gusts behind the lags of their
+    /// admittance.
     Filter(usize),
     /// Its rate.
     FilterRate(usize),
@@ -154,6 +158,20 @@ pub enum ForceOutput {
     PerLength,
     /// On the whole strip.
     Total,
+}
+
+/// A component of the gusts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Gust {
+    /// Along the mean wind.
+    Along,
+    /// Upwards.
+    Vertical,
+}
+
+impl Gust {
+    /// Both, in the order of the columns of coefficients.
+    pub const BOTH: [Gust; 2] = [Self::Along, Self::Vertical];
 }
 
 /// A property of a strip.
@@ -235,18 +253,23 @@ pub struct VariableTable {
 }
 
 impl VariableTable {
-    /// The table of a trained model: of its coupled section or, with options, of its forces alone.
+    /// The table of a trained model: of its coupled section or, with options, of its forces alone; with gusts where their
+    /// forces are known.
     ///
     /// # Errors
     /// [`Error::Input`] when a start value is not finite or outside the limits of its variable.
-    pub fn new(model: &TrainedModel, force: Option<&ForceOptions>) -> Result<Self> {
+    pub fn new(
+        model: &TrainedModel,
+        force: Option<&ForceOptions>,
+        gusts: Option<&GustForce>,
+    ) -> Result<Self> {
         let variables = match force {
             None => {
-                let mut variables = section::variables(model)?;
-                dependencies::fill(&mut variables, model);
+                let mut variables = section::variables(model, gusts)?;
+                dependencies::fill(&mut variables, model, gusts);
                 variables
             }
-            Some(options) => force::variables(model, options)?,
+            Some(options) => force::variables(model, options, gusts)?,
         };
         let table = Self { variables };
         table.variables.iter().try_for_each(check_start)?;

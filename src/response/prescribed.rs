@@ -116,6 +116,11 @@ impl PrescribedForces {
         (Self::points(state) > 0).then_some(state[2])
     }
 
+    /// Mean wind speed at the newest point, m/s.
+    pub fn newest_wind_m_s(state: &[f64]) -> f64 {
+        state[1]
+    }
+
     /// As if the deck had not moved so far and no force acted: the points stay, their motion becomes zero.
     pub fn forget(&self, state: &mut [f64]) {
         for strip in state[SHARED..].chunks_mut(self.per_strip()) {

@@ -2,7 +2,7 @@
 //! pressure is that of the wind at every instant, so that nothing depends on where communication points fall.
 
 use super::packed::{Packed, apply};
-use super::series::Drive;
+use super::series::{Drive, Moving};
 use super::{
     Inputs, MAX_DOFS, PARTS_OF_A_MATRIX, SectionState, Stepper, check_substeps, overgrown, settled,
 };
@@ -82,6 +82,7 @@ impl Sampling {
             wind,
             wind_rate: rate,
             force,
+            gust: inputs.gusts_after(time),
         }
     }
 }
@@ -99,7 +100,7 @@ impl Stepper {
         let samples = (mean * step / way).ceil();
         let parts = match inputs.wind_speed_rate_m_s2 {
             0.0 => 0.0,
-            _ => self.series.parts(0.0, step),
+            _ => self.series.parts(0.0, step, false),
         };
         check_substeps(samples + parts, step)?;
         let mut next = state.clone();
@@ -145,14 +146,22 @@ impl Stepper {
             return Ok(());
         }
         let drive = self.sampling()?.drive(&state.values, inputs, time);
+        let gusts = self.gusts_act(state, inputs);
+        let fastest = drive.wind.max(wind_after(inputs, time + piece));
+        let parts = self.series.parts(fastest, piece, gusts);
         let motion = &mut state.values[..2 * inputs.force.len()];
-        let parts = self.series.parts(0.0, piece);
-        if drive.wind_rate == 0.0 && parts > PARTS_OF_A_MATRIX {
+        if drive.wind_rate == 0.0 && parts > PARTS_OF_A_MATRIX && !gusts {
             let n = inputs.force.len();
             let operand = [motion, &drive.force[0][..n], &drive.force[1][..n]].concat();
             let step = self.cache.structure(&self.section, piece)?;
             apply(step, &operand, motion);
-        } else if !self.series.advance(motion, &drive, piece, parts) {
+            return Ok(());
+        }
+        let moving = Moving {
+            values: motion,
+            gusts: gusts.then_some(&mut state.gusts),
+        };
+        if !self.series.advance(moving, &drive, piece, parts) {
             return Err(overgrown());
         }
         Ok(())

@@ -10,9 +10,11 @@
 //! ```
 //!
 //! It converges for every step; parts of bounded norm keep its terms from cancelling. It ends when what is left out is
-//! below rounding, so that nothing is lost against the exponential: the wind's change costs no accuracy.
+//! below rounding, so that nothing is lost against the exponential: the wind's change costs no accuracy. Gusts add their lags
+//! to the system and their force to `w`.
 
 use super::MAX_DOFS;
+use super::gusts::{GustCourse, Gusts};
 use super::packed::{Packed, apply};
 use crate::aerodynamics::Realization;
 use crate::aeroelastic::CoupledSection;
@@ -34,6 +36,15 @@ pub(super) struct Drive {
     pub wind_rate: f64,
     /// Forces and their coefficients of first and second degree, per unit length.
     pub force: [[f64; MAX_DOFS]; 3],
+    /// Gusts and their rates.
+    pub gust: GustCourse,
+}
+
+/// What moves in a step: `[q, q̇, x]` (of a sampled model `[q, q̇]`), and gusts on their way through the admittance. No gusts
+/// where none act.
+pub(super) struct Moving<'a> {
+    pub values: &'a mut [f64],
+    pub gusts: Option<&'a mut [f64]>,
 }
 
 /// Largest row sums of the scaled system, by the power of the wind speed that they go with.
@@ -44,6 +55,7 @@ struct Norms {
     damping: f64,
     pressure: f64,
     filters: f64,
+    lags: f64,
 }
 
 /// A section ready for series. Motion is scaled by powers of two to numbers of one size, exactly: displacements by their
@@ -62,6 +74,7 @@ pub(super) struct Series {
     /// `M⁻¹`, scaled.
     force: DMatrix<f64>,
     norms: Norms,
+    gusts: Option<Gusts>,
     work: Work,
 }
 
@@ -75,11 +88,13 @@ struct Work {
     structure: [Vec<f64>; 2],
     /// `[f; g]` of this term and the two before.
     aerodynamic: [Vec<f64>; 3],
+    /// Gusts behind the lags of their admittance.
+    gusts: Vec<f64>,
 }
 
 impl Series {
-    /// The section; of a sampled model the structure alone.
-    pub fn new(section: &CoupledSection) -> Self {
+    /// The section; of a sampled model the structure alone. Gusts act where their forces are known.
+    pub fn new(section: &CoupledSection, gusts: Option<Gusts>) -> Self {
         let s = section.structure();
         let n = s.dofs.len();
         let mut scale = [1.0; MAX_DOFS];
@@ -96,6 +111,7 @@ impl Series {
             damping: row_sum(&structure, n..2 * n),
             pressure: row_sum(&aerodynamic, 0..n),
             filters: row_sum(&aerodynamic, n..n + filters),
+            lags: gusts.as_ref().map_or(0.0, Gusts::fastest),
         };
         let force = DMatrix::from_fn(n, n, |i, j| {
             section.inverse_mass()[(i, j)] * scale[i] / rate
@@ -108,13 +124,20 @@ impl Series {
             aerodynamic: Packed::of(&aerodynamic),
             force,
             norms,
+            gusts,
             work: Work {
                 sum: vec![0.0; 2 * n + filters],
                 term: vec![0.0; 2 * n + filters],
                 structure: [vec![0.0; 2 * n], vec![0.0; 2 * n]],
                 aerodynamic: std::array::from_fn(|_| vec![0.0; n + filters]),
+                gusts: Vec::new(),
             },
         }
+    }
+
+    /// The gusts of the section.
+    pub fn gusts(&self) -> Option<&Gusts> {
+        self.gusts.as_ref()
     }
 
     /// Norm of a step in winds up to `wind`.
@@ -124,28 +147,42 @@ impl Series {
         step * n.rate.max(motion).max(wind * n.filters)
     }
 
-    /// Parts into which a step is cut in winds up to `wind`; not a number where the norm is none.
-    pub fn parts(&self, wind: f64, step: f64) -> f64 {
-        let parts = self.norm(wind, step) / NORM_OF_PART;
+    /// Parts into which a step is cut in winds up to `wind`, with or without gusts; not a number where the norm is none.
+    pub fn parts(&self, wind: f64, step: f64, gusts: bool) -> f64 {
+        let lags = if gusts {
+            step * wind * self.norms.lags
+        } else {
+            0.0
+        };
+        let parts = self.norm(wind, step).max(lags) / NORM_OF_PART;
         if parts > 1.0 { parts.ceil() } else { 1.0 }
     }
 
-    /// Advances `[q, q̇, x]` (of a sampled model `[q, q̇]`) by a step of so many parts. Says whether the result is finite;
-    /// the values are changed only then.
-    pub fn advance(&mut self, values: &mut [f64], drive: &Drive, step: f64, parts: f64) -> bool {
+    /// Advances what moves by a step of so many parts. Says whether the result is finite; the values are changed only then.
+    pub fn advance(&mut self, moving: Moving<'_>, drive: &Drive, step: f64, parts: f64) -> bool {
+        let Moving { values, gusts } = moving;
         let (n, rate) = (self.dofs, self.rate);
         for i in 0..n {
             self.work.sum[i] = values[n + i] * (self.scale[i] / rate);
             self.work.sum[n + i] = values[i] * self.scale[i];
         }
         self.work.sum[2 * n..].copy_from_slice(&values[2 * n..]);
+        self.work.gusts.clear();
+        let acting = gusts.as_deref();
+        self.work
+            .gusts
+            .extend_from_slice(acting.unwrap_or_default());
+        let acting = acting.is_some();
         let tau = step / parts;
         for i in 0..parts as usize {
-            self.part(drive, i as f64 * tau, tau);
+            self.part(drive, (i as f64 * tau, tau), acting);
         }
         let sum = &self.work.sum;
-        if !sum.iter().all(|x| x.is_finite()) {
+        if !sum.iter().chain(&self.work.gusts).all(|x| x.is_finite()) {
             return false;
+        }
+        if let Some(gusts) = gusts {
+            gusts.copy_from_slice(&self.work.gusts);
         }
         for i in 0..n {
             values[n + i] = sum[i] * (rate / self.scale[i]);
@@ -156,13 +193,20 @@ impl Series {
     }
 
     /// One part from the time `start` on.
-    fn part(&mut self, drive: &Drive, start: f64, tau: f64) {
+    fn part(&mut self, drive: &Drive, (start, tau): (f64, f64), gusts: bool) {
         // rounding must not turn a wind that comes to rest into a negative one
         let wind = (drive.wind + drive.wind_rate * start).max(0.0);
         let change = drive.wind_rate * tau;
         let push = self.accelerations(drive, start, tau);
         let norm = self.norm(wind + change.abs(), tau);
         let work = &mut self.work;
+        let mut gusts = self.gusts.as_mut().filter(|_| gusts);
+        if let Some(gusts) = &mut gusts {
+            gusts.begin(&work.gusts);
+        }
+        let [gust, gust_rate] = drive.gust;
+        let gust_now = [0, 1].map(|j| gust[j] + start * gust_rate[j]);
+        let gust_slope = gust_rate.map(|rate| tau * rate);
         let mut largest = work.begin();
         let mut last = [0.0; 3];
         for k in 0..MAX_TERMS {
@@ -178,16 +222,28 @@ impl Series {
                 &work.term[self.dofs..],
                 &mut work.aerodynamic[0],
             );
-            let push = push.get(k).copied().unwrap_or_default();
+            let mut push = push.get(k).copied().unwrap_or_default();
+            let mut pushed = 0.0;
+            if let Some(gusts) = &mut gusts {
+                let course = [gust_now, gust_slope].get(k).copied().unwrap_or_default();
+                let force = gusts.next((k, tau), (wind, change), course, &mut work.gusts);
+                for (i, push) in push[..self.dofs].iter_mut().enumerate() {
+                    let by_gust = (0..self.dofs).map(|j| self.force[(i, j)] * force[j]);
+                    let by_gust: f64 = by_gust.sum();
+                    pushed = f64::max(pushed, tau * by_gust.abs());
+                    *push += by_gust;
+                }
+            }
             let factor = tau / (k + 1) as f64;
             work.next_term(self.dofs, factor, self.rate, (wind, change), &push);
-            let size = largest_of(&work.term);
+            let size = f64::max(largest_of(&work.term), pushed);
             largest = if size > largest { size } else { largest };
             last = [size, last[0], last[1]];
             // each term to come is below norm/(k+2) times the largest of those it is made from
             let made_from = if change == 0.0 { 1 } else { 3 };
             let rest = norm * largest_of(&last[..made_from]);
-            let settled = rest <= LEFT_OUT * (k + 2) as f64 * largest;
+            let blown = gusts.as_ref().is_none_or(|g| g.settled(LEFT_OUT));
+            let settled = blown && rest <= LEFT_OUT * (k + 2) as f64 * largest;
             if k >= 2 && (settled || rest.is_nan()) {
                 break;
             }

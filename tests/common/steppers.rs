@@ -37,10 +37,9 @@ pub fn distance(a: &[f64], b: &[f64]) -> f64 {
 
 pub fn blown(speed: f64) -> Inputs {
     Inputs {
-        wind_speed_m_s: speed,
-        wind_speed_rate_m_s2: 0.0,
         force: vec![3.0, -0.2],
         force_rate: vec![-5.0, 0.7],
+        ..Inputs::steady(speed, 2)
     }
 }
 

@@ -1,15 +1,17 @@
 //! `aerodeck fmu export`: a trained model as an FMU.
 
+use crate::aerodynamics::{GustForce, RationalAdmittance};
 use crate::cli::account;
 use crate::cli::answer::Answer;
 use crate::cli::progress::Progress;
 use crate::cli::stages;
 use crate::error::{Error, Result};
+use crate::files::coefficients::named_coefficients;
 use crate::fmu::force_options::{ForceOptions, MAX_STRIPS};
 use crate::fmu::package::{Export, Overwrite, Runtime, growth_of, write_fmu};
 use crate::fmu::variables::Listing;
 use crate::trained_model::TrainedModel;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Pack a trained model (`model.json`) as an FMI 2.0 co-simulation FMU: its section, or its forces alone
 ///
@@ -40,6 +42,13 @@ pub(crate) struct Args {
     /// ARM Linux, which look for it in linux64.
     #[arg(long, value_delimiter = ',', value_name = "PLATFORM")]
     platforms: Vec<String>,
+    /// Take gusts as inputs, whose forces follow from these static coefficients: a table (CSV), an embedded one, or
+    /// `flat plate`.
+    #[arg(long, value_name = "TABLE")]
+    gusts: Option<String>,
+    /// Admittance of the gusts [default: none].
+    #[arg(long, value_enum)]
+    admittance: Option<Admittance>,
     /// The FMU; by default `deck_section.fmu` or `deck_force.fmu` beside the model.
     #[arg(long)]
     out: Option<PathBuf>,
@@ -58,7 +67,42 @@ enum Kind {
     Force,
 }
 
+/// Part of the quasi-steady gust force that a gust of finite length exerts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Admittance {
+    None,
+    Sears,
+    Liepmann,
+}
+
+impl From<Admittance> for RationalAdmittance {
+    fn from(admittance: Admittance) -> Self {
+        match admittance {
+            Admittance::None => Self::None,
+            Admittance::Sears => Self::Sears,
+            Admittance::Liepmann => Self::Liepmann,
+        }
+    }
+}
+
 impl Args {
+    /// The forces of gusts.
+    fn gusts(&self, model: &TrainedModel) -> Result<Option<GustForce>> {
+        match (&self.gusts, self.admittance) {
+            (None, None) => Ok(None),
+            (None, Some(_)) => Err(Error::input(
+                "--admittance",
+                "--gusts TABLE with it: gusts act through static coefficients",
+                "none",
+            )),
+            (Some(source), admittance) => {
+                let admittance = admittance.map_or_else(Default::default, Into::into);
+                let table = named_coefficients(source, Path::new("."))?;
+                GustForce::quasi_steady(table, &model.section.dofs(), admittance).map(Some)
+            }
+        }
+    }
+
     /// The options of a force FMU.
     fn force(&self, model: &TrainedModel) -> Result<Option<ForceOptions>> {
         let mut options = ForceOptions::single(model.section.width_m);
@@ -101,6 +145,7 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     let export = Export {
         growing: stages::growing(args.allow_unstable),
         force: args.force(&model)?,
+        gusts: args.gusts(&model)?,
         listing: if args.reals_only {
             Listing::Reals
         } else {

@@ -1,6 +1,7 @@
 //! The C functions, driven as an importer drives them.
 
 mod derivatives;
+mod gusts;
 mod leniency;
 mod logging;
 mod model_exchange;
@@ -11,7 +12,7 @@ mod state;
 
 use super::types::*;
 use super::*;
-use crate::fmu::resources::{Resources, location_of};
+use crate::fmu::resources::{OptionFiles, Resources, location_of};
 use crate::trained_model::{Model, TrainedModel};
 use std::ffi::{CStr, CString, c_void};
 use std::path::Path;
@@ -67,7 +68,7 @@ impl Archive {
         std::fs::write(folder.path().join("model.json"), json).unwrap();
         Self {
             folder,
-            resources: Resources::from_bytes(json.as_bytes(), None).unwrap(),
+            resources: Resources::from_bytes(json.as_bytes(), OptionFiles::default()).unwrap(),
         }
     }
 

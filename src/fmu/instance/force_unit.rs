@@ -15,7 +15,8 @@ use crate::fmu::refusal::{Answer, Refusal};
 use crate::fmu::resources::Resources;
 use crate::fmu::variables::{ForceOutput, Role, SectionParameter};
 use crate::response::{
-    ForceAhead, Given, KnownMotion, PrescribedForces, SectionState, StripFlow, wind_at_rest,
+    ForceAhead, Given, KnownMotion, PrescribedForces, SectionState, StripFlow, StripGusts,
+    wind_at_rest,
 };
 use std::borrow::Cow;
 
@@ -41,6 +42,8 @@ pub(super) struct ForceUnit {
     outputs: Vec<[usize; 2]>,
     /// Width, length, wind factor of each strip.
     strips: Vec<[usize; 3]>,
+    /// Forces of gusts, and the gusts of each strip; none where the unit takes none.
+    gusts: Option<(StripGusts, Vec<[usize; 2]>)>,
     density: usize,
     prediction: usize,
     derivatives: usize,
@@ -67,6 +70,7 @@ impl ForceUnit {
         let count = options.strips.len();
         let mut inputs = vec![place(table, Role::WindSpeed)?; 1 + 3 * n * count];
         let (mut outputs, mut strips) = (vec![[0; 2]; n * count], vec![[0; 3]; count]);
+        let mut gusts = vec![[0; 2]; count];
         // in one pass: there may be ten thousand strips
         for (place, variable) in table.variables().iter().enumerate() {
             match variable.role {
@@ -75,6 +79,7 @@ impl ForceUnit {
                 }
                 Role::Force(s, kind, dof) => outputs[coordinate(s, dof)][kind as usize] = place,
                 Role::Strip(s, which) => strips[s][which as usize] = place,
+                Role::Gust(s, which) => gusts[s][which as usize] = place,
                 _ => {}
             }
         }
@@ -82,8 +87,14 @@ impl ForceUnit {
         for (index, place) in inputs.iter().enumerate() {
             input_at[*place] = index;
         }
+        let gust_force = resources.gusts.as_ref();
+        if gust_force.is_some() {
+            // behind the motion, which is what has an index
+            inputs.extend(gusts.iter().flatten());
+        }
         Ok(Self {
             input_at,
+            gusts: gust_force.map(|force| (StripGusts::new(force), gusts)),
             forces: PrescribedForces::new(resources.model.model.realize(), dofs),
             inputs,
             outputs,
@@ -97,7 +108,7 @@ impl ForceUnit {
 
     /// Numbers of the motion.
     fn motions(&self) -> usize {
-        self.inputs.len() - 1
+        3 * self.outputs.len()
     }
 
     /// Where the state of the forces begins.
@@ -156,10 +167,23 @@ impl ForceUnit {
             self.forces.take(state.to_mut(), &given, &flows)?;
         }
         let n = self.forces.dofs().len();
+        let mut gusts = Cow::Borrowed(memory.system.gusts.as_slice());
+        if renewed {
+            let before = &memory.system.values[self.first()..];
+            self.take_gusts(gusts.to_mut(), before, memory, &flows);
+        }
+        let wind = PrescribedForces::newest_wind_m_s(&state);
         let mut found = vec![ForceAhead::default(); self.outputs.len()];
         for (s, (flow, forces)) in flows.iter().zip(found.chunks_mut(n)).enumerate() {
             self.forces
                 .ahead(&state, (s, flow), ahead_s, density, forces)?;
+            if let Some((strips, _)) = &self.gusts {
+                let of = strips.per_strip();
+                let strip = &gusts[s * of..(s + 1) * of];
+                let rates = &memory.input_rates[1 + self.motions() + 2 * s..];
+                let air = (wind * flow.wind_factor, flow.width_m, density);
+                strips.add_ahead(strip, [rates[0], rates[1]], ahead_s, air, forces);
+            }
         }
         if found.iter().all(|f| f.force.is_finite()) {
             return Ok(found);
@@ -167,6 +191,22 @@ impl ForceUnit {
         Err(Error::Numerical(
             "the forces have grown beyond the range of numbers".into(),
         ))
+    }
+
+    /// The gusts go to the present time, from the state of the forces before.
+    fn take_gusts(&self, gusts: &mut [f64], before: &[f64], memory: &Memory, flows: &[StripFlow]) {
+        let Some((strips, places)) = &self.gusts else {
+            return;
+        };
+        let seconds = PrescribedForces::newest_s(before).map(|t| memory.time - t);
+        let now = memory.values[self.inputs[0]];
+        // to second order in the change of the wind, as the filters of the motion
+        let wind = 0.5 * (PrescribedForces::newest_wind_m_s(before) + now);
+        let each = gusts.chunks_mut(strips.per_strip()).zip(flows).zip(places);
+        for ((strip, flow), places) in each {
+            let widths = seconds.map(|s| s * wind * flow.wind_factor / flow.width_m);
+            strips.take(strip, places.map(|place| memory.values[place]), widths);
+        }
     }
 
     /// Whether there is motion of the present time that no step has taken yet.
@@ -202,6 +242,7 @@ impl ForceUnit {
         for place in &self.inputs[1..] {
             unit.values[*place] = 0.0;
         }
+        unit.system.gusts.fill(0.0);
         unit.input_rates.fill(0.0);
         unit.values[self.inputs[index]] = 1.0;
         if (index - 1) % 3 == 1 {
@@ -221,8 +262,10 @@ impl Unit for ForceUnit {
     fn at_rest(&self) -> SectionState {
         let mut values = vec![NOT_SET; self.first()];
         values.extend(self.forces.rest(self.strips.len()));
+        let of_strip = self.gusts.as_ref().map_or(0, |(g, _)| g.per_strip());
         SectionState {
             values,
+            gusts: vec![0.0; self.strips.len() * of_strip],
             ..SectionState::default()
         }
     }
@@ -235,7 +278,10 @@ impl Unit for ForceUnit {
 
     fn watch(&mut self, _: &Resources, memory: &Memory, notices: &mut Vec<String>) {
         let n = self.forces.dofs().len();
-        let rotations = self.inputs[1..].chunks(3).skip(n - 1).step_by(n);
+        let rotations = self.inputs[1..self.first()]
+            .chunks(3)
+            .skip(n - 1)
+            .step_by(n);
         let largest = rotations.map(|places| memory.values[places[0]].abs());
         let largest = largest.fold(0.0, f64::max);
         if largest > LINEAR_ROTATION_RAD && !self.told {
@@ -254,7 +300,8 @@ impl Unit for ForceUnit {
 
     fn input_rate_set(&mut self, memory: &mut Memory, index: usize) {
         // of a displacement
-        if index > 0 && (index - 1).is_multiple_of(3) && memory.system.values[index + 1] == NOT_SET
+        let of_motion = (1..self.first()).contains(&index);
+        if of_motion && (index - 1).is_multiple_of(3) && memory.system.values[index + 1] == NOT_SET
         {
             memory.system.values[index + 1] = SET_AS_DERIVATIVE;
         }
@@ -282,9 +329,12 @@ impl Unit for ForceUnit {
             motion: &motion,
         };
         let first = self.first();
-        let before = memory.system.values.clone();
+        let before = memory.system.clone();
         self.forces
             .take(&mut memory.system.values[first..], &given, &flows)?;
+        let mut gusts = std::mem::take(&mut memory.system.gusts);
+        self.take_gusts(&mut gusts, &before.values[first..], memory, &flows);
+        memory.system.gusts = gusts;
         memory.system.values[0] = memory.values[self.prediction] * step;
         memory.system.values[1..first].fill(NOT_SET);
         // a force that cannot be put out is refused with its step
@@ -294,7 +344,7 @@ impl Unit for ForceUnit {
                 Ok(true)
             }
             Err(why) => {
-                memory.system.values = before;
+                memory.system = before;
                 Err(why.into())
             }
         }

@@ -53,7 +53,7 @@ impl Instance {
         if !states.iter().all(|x| x.is_finite()) {
             return Err(Refusal::discard("states: expected finite numbers"));
         }
-        self.memory.system.values.copy_from_slice(states);
+        self.memory.system = self.memory.system.with_all(states);
         self.outputs_current = false;
         Ok(())
     }
@@ -65,7 +65,7 @@ impl Instance {
     pub fn continuous_states(&mut self, states: &mut [f64]) -> Answer<()> {
         self.check_states("states", states.len())?;
         self.unit.prepare(&self.resources, &mut self.memory)?;
-        states.copy_from_slice(&self.memory.system.values);
+        states.copy_from_slice(&self.memory.system.all());
         Ok(())
     }
 

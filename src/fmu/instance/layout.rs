@@ -49,7 +49,9 @@ impl Source {
     /// Where the value of a variable with this role comes from.
     pub fn of(role: Role) -> Self {
         match role {
-            Role::WindSpeed | Role::ExternalForce(_) | Role::Motion(..) => Self::Input,
+            Role::WindSpeed | Role::ExternalForce(_) | Role::Gust(..) | Role::Motion(..) => {
+                Self::Input
+            }
             Role::Section(_) | Role::Strip(..) | Role::Prediction | Role::MotionDerivatives => {
                 Self::Section
             }

@@ -8,7 +8,6 @@ use super::saving::Memory;
 use super::section_unit::{SectionUnit, check_finite};
 use super::trust::smallest_damping;
 use crate::aerodynamics::Realization;
-use crate::aeroelastic::CoupledSection;
 use crate::error::Result;
 use crate::fmu::refusal::Answer;
 use crate::fmu::resources::Resources;
@@ -39,7 +38,7 @@ impl Instant {
         let continuous = matches!(stepper.section().aerodynamics(), Realization::Continuous(_));
         Ok(Self {
             outputs,
-            state: state.values.clone(),
+            state: state.all(),
             rate: if continuous {
                 stepper.state_derivative(state, inputs)?
             } else {
@@ -69,21 +68,16 @@ impl SectionUnit {
         let Some(stepper) = &mut self.stepper else {
             return Ok(Outputs::default());
         };
-        let velocity = SectionState {
-            values: stepper.state_derivative(&memory.system, &self.inputs)?,
-            ..SectionState::default()
-        };
+        let velocity = stepper.state_derivative(&memory.system, &self.inputs)?;
+        let velocity = memory.system.with_all(&velocity);
         let driven = Inputs {
             force: self.inputs.force_rate.clone(),
+            gust_m_s: self.inputs.gust_rate_m_s2,
             ..Inputs::steady(self.inputs.wind_speed_m_s, self.inputs.force.len())
         };
         let mut rates = Outputs::default();
         stepper.outputs(&velocity, &driven, &mut rates)?;
-        let by_speed = speed_sensitivity(
-            stepper.section(),
-            &memory.system,
-            self.inputs.wind_speed_m_s,
-        );
+        let by_speed = speed_sensitivity(stepper, &memory.system, &self.inputs);
         add(&mut rates, &by_speed, self.inputs.wind_speed_rate_m_s2);
         check_finite(&rates)?;
         Ok(rates)
@@ -129,33 +123,32 @@ impl SectionUnit {
             return Ok(Instant::default());
         };
         if known == self.places.wind_speed {
-            let section = stepper.section();
             return Ok(Instant {
-                outputs: speed_sensitivity(section, &memory.system, speed),
+                outputs: speed_sensitivity(stepper, &memory.system, &self.inputs),
                 state: Vec::new(),
-                rate: rate_by_speed(section, &memory.system),
+                rate: rate_by_speed(stepper, &memory.system, &self.inputs),
             });
         }
         let mut unit = Inputs::steady(speed, self.places.force.len());
         for (force, place) in unit.force.iter_mut().zip(&self.places.force) {
             *force = f64::from(u8::from(*place == known));
         }
-        let at_rest = SectionState {
-            values: vec![0.0; memory.system.values.len()],
-            ..SectionState::default()
-        };
+        for (gust, place) in unit.gust_m_s.iter_mut().zip(&self.places.gusts) {
+            *gust = f64::from(u8::from(*place == known));
+        }
+        let at_rest = memory
+            .system
+            .with_all(&vec![0.0; memory.system.all().len()]);
         Instant::of(stepper, &at_rest, &unit)
     }
 
     fn by_state(&mut self, memory: &Memory, known: usize) -> Result<Instant> {
         let speed = memory.values[self.places.wind_speed];
-        let mut unit = SectionState {
-            values: vec![0.0; memory.system.values.len()],
-            ..SectionState::default()
-        };
+        let mut unit = vec![0.0; memory.system.all().len()];
         if let Some(entry) = self.places.state_entry[known] {
-            unit.values[entry] = 1.0;
+            unit[entry] = 1.0;
         }
+        let unit = memory.system.with_all(&unit);
         match &mut self.stepper {
             Some(stepper) => {
                 let still = Inputs::steady(speed, self.places.force.len());
@@ -255,17 +248,20 @@ fn add(outputs: &mut Outputs, other: &Outputs, factor: f64) {
     }
 }
 
-/// `∂ż/∂V` of the filters; zero for the motion, which [`speed_sensitivity`] gives.
-fn rate_by_speed(section: &CoupledSection, state: &SectionState) -> Vec<f64> {
+/// `∂ż/∂V` of the filters and of the lagging gusts; zero for the motion, which [`speed_sensitivity`] gives.
+fn rate_by_speed(stepper: &Stepper, state: &SectionState, inputs: &Inputs) -> Vec<f64> {
+    let section = stepper.section();
     let motion = vec![0.0; 2 * section.structure().dofs.len()];
     let filters = section.filter_rates_per_wind(&state.values);
-    [&motion, filters.as_slice()].concat()
+    let (_, lagging) = stepper.gusts_per_wind(state, inputs);
+    [&motion, filters.as_slice(), &lagging].concat()
 }
 
 /// `∂y/∂V` at a given state and external force. With `P(e)` the physical scaling, the aerodynamic part of the equation
 /// of motion is `½ρV² P(e₀) q + ½ρVB P(e₁) q̇ + ½ρV² diag(B, B, B²) C x`; the acceleration follows through
-/// `(M − ½ρB² P(e₂))⁻¹`, the force as `M` times the acceleration.
-fn speed_sensitivity(section: &CoupledSection, state: &SectionState, speed: f64) -> Outputs {
+/// `(M − ½ρB² P(e₂))⁻¹`, the force as `M` times the acceleration. Forces of gusts, `V Q g`, accelerate as external ones.
+fn speed_sensitivity(stepper: &Stepper, state: &SectionState, inputs: &Inputs) -> Outputs {
+    let (section, speed) = (stepper.section(), inputs.wind_speed_m_s);
     let s = section.structure();
     let n = s.dofs.len();
     let part =
@@ -281,8 +277,10 @@ fn speed_sensitivity(section: &CoupledSection, state: &SectionState, speed: f64)
         }
         Realization::Discrete(d) => scale * (&d.c * filters) * (rho * speed),
     };
-    let acceleration = section.inverse_mass() * direct;
-    let force = &s.mass * &acceleration;
+    let gusts = DVector::from_vec(stepper.gusts_per_wind(state, inputs).0);
+    let acceleration = section.inverse_mass() * (direct + &gusts);
+    // gusts are no self-excited force
+    let force = &s.mass * &acceleration - gusts;
     Outputs {
         displacement: vec![0.0; n],
         rate: vec![0.0; n],

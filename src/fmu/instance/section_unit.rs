@@ -7,13 +7,13 @@ use super::section::{self, OnsetCard};
 use super::section_derivatives::pick;
 use super::trust::{Told, tested_winds};
 use super::unit::Unit;
-use crate::aerodynamics::{Realizable, Realization};
+use crate::aerodynamics::{GustForce, Realizable, Realization};
 use crate::error::Result;
 use crate::flutter::UnwantedGrowth;
 use crate::fmu::lifecycle::State;
 use crate::fmu::refusal::{Answer, Refusal};
 use crate::fmu::resources::Resources;
-use crate::fmu::variables::{Calculated, Response, Role, VariableTable};
+use crate::fmu::variables::{Calculated, Gust, Response, Role, VariableTable};
 use crate::response::{Inputs, Outputs, SectionState, Stepper};
 use crate::section::Dof;
 
@@ -27,6 +27,8 @@ pub(super) struct Places {
     pub wind_speed: usize,
     /// External force of each degree of freedom.
     pub force: Vec<usize>,
+    /// Gusts along the mean wind and upwards; none where the unit takes none.
+    pub gusts: Vec<usize>,
     /// Displacement, rate, acceleration and self-excited force of each degree of freedom.
     responses: Vec<[usize; 4]>,
     /// Entry of the section's state that a variable is, for displacements, rates and filters; by place.
@@ -68,6 +70,10 @@ impl Places {
             state_entry,
             wind_speed: place(table, Role::WindSpeed)?,
             force: each(Role::ExternalForce)?,
+            gusts: Gust::BOTH
+                .into_iter()
+                .filter_map(|gust| table.find(Role::Gust(0, gust)))
+                .collect(),
             responses,
             initial_displacement: each(Role::InitialDisplacement)?,
             initial_rate: each(Role::InitialRate)?,
@@ -86,6 +92,8 @@ pub(super) struct SectionUnit {
     pub places: Places,
     inputs_at: Vec<usize>,
     aerodynamics: Realization,
+    /// Numbers of the state of the gusts.
+    lags: usize,
     /// Stepper of the current parameters; `None` after they have changed.
     pub stepper: Option<Stepper>,
     /// Wind speeds (m/s) at which it was tested, see [`tested_winds`].
@@ -109,9 +117,11 @@ impl SectionUnit {
     /// [`crate::Error::Input`] for a model without a realisation.
     pub fn new(resources: &Resources) -> Result<Self> {
         let places = Places::new(&resources.table)?;
-        let inputs = std::iter::once(places.wind_speed).chain(places.force.iter().copied());
+        let forces = places.force.iter().chain(&places.gusts).copied();
+        let inputs = std::iter::once(places.wind_speed).chain(forces);
         Ok(Self {
             inputs_at: inputs.collect(),
+            lags: resources.gusts.as_ref().map_or(0, GustForce::states),
             inputs: Inputs::steady(0.0, places.force.len()),
             places,
             aerodynamics: resources.model.model.realize(),
@@ -128,16 +138,23 @@ impl SectionUnit {
 
     pub fn new_stepper(&self, resources: &Resources, values: &[f64]) -> Result<Stepper> {
         let Resources { model, table, .. } = resources;
-        section::coupled_section(model, table, &self.aerodynamics, values).map(Stepper::new)
+        let section = section::coupled_section(model, table, &self.aerodynamics, values)?;
+        Ok(Stepper::in_gusts(section, resources.gusts.as_ref()))
     }
 
     /// State at release with the initial values in `values`.
     pub fn release(&self, stepper: &Stepper, values: &[f64]) -> Result<SectionState> {
         let pick = |places: &[usize]| places.iter().map(|i| values[*i]).collect::<Vec<_>>();
-        stepper.released(
+        let mut state = stepper.released(
             &pick(&self.places.initial_displacement),
             &pick(&self.places.initial_rate),
-        )
+        )?;
+        // gusts have blown as they do now until the release
+        let each = state.gusts.len() / 2;
+        for (lagging, place) in state.gusts.chunks_mut(each.max(1)).zip(&self.places.gusts) {
+            lagging.fill(values[*place]);
+        }
+        Ok(state)
     }
 
     pub fn load_inputs(&mut self, memory: &Memory) {
@@ -147,6 +164,11 @@ impl SectionUnit {
         for (i, place) in self.places.force.iter().enumerate() {
             self.inputs.force[i] = values[*place];
             self.inputs.force_rate[i] = rates[i + 1];
+        }
+        let behind = 1 + self.places.force.len();
+        for (i, place) in self.places.gusts.iter().enumerate() {
+            self.inputs.gust_m_s[i] = values[*place];
+            self.inputs.gust_rate_m_s2[i] = rates[behind + i];
         }
     }
 
@@ -185,6 +207,7 @@ impl Unit for SectionUnit {
     fn at_rest(&self) -> SectionState {
         SectionState {
             values: vec![0.0; 2 * self.places.force.len() + self.aerodynamics.states()],
+            gusts: vec![0.0; self.lags],
             ..SectionState::default()
         }
     }
@@ -204,6 +227,13 @@ impl Unit for SectionUnit {
             }
             _ => {}
         }
+    }
+
+    fn input_set(&mut self, memory: &mut Memory, place: usize) -> bool {
+        if memory.state == State::Initialization && self.places.gusts.contains(&place) {
+            self.release_pending = true;
+        }
+        false
     }
 
     fn begin_initialization(&mut self) {
@@ -287,7 +317,7 @@ impl Unit for SectionUnit {
     }
 
     fn held_output(&self, memory: &Memory, place: usize) -> Option<f64> {
-        self.places.state_entry[place].map(|entry| memory.system.values[entry])
+        self.places.state_entry[place].map(|entry| memory.system.number(entry))
     }
 
     fn outputs(&mut self, _: &Resources, memory: &mut Memory) -> Answer<()> {

@@ -1,9 +1,9 @@
 //! A saved state as bytes: little-endian, versioned, tied to one export by its identity.
 //!
 //! ```text
-//! magic "AERODECK" · version u32 · identity 16 bytes · number of values, inputs, states u32 each
+//! magic "AERODECK" · version u32 · identity 16 bytes · number of values, inputs, states, lagging gusts u32 each
 //! state code u8 · experiment u8 (bit 0: set up, bit 1: with a stop time) · start, stop, time f64
-//! values f64… · input rates f64… · section state f64… · phase f64 · last wind f64 (-1 for none)
+//! values f64… · input rates f64… · section state f64… · lagging gusts f64… · phase f64 · last wind f64 (-1 for none)
 //! digest of all bytes before, 16 bytes
 //! ```
 
@@ -13,10 +13,10 @@ use crate::fmu::lifecycle::State;
 use uuid::Uuid;
 
 const MAGIC: &[u8; 8] = b"AERODECK";
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 /// Stands for no last wind.
 const NO_WIND: f64 = -1.0;
-const HEADER: usize = 8 + 4 + 16 + 3 * 4 + 2;
+const HEADER: usize = 8 + 4 + 16 + 4 * 4 + 2;
 const DIGEST: usize = 16;
 
 /// Length in bytes of every saved state of an instance with this memory.
@@ -30,11 +30,12 @@ fn digest(bytes: &[u8], guid: &Uuid) -> [u8; DIGEST] {
     Uuid::new_v5(guid, bytes).into_bytes()
 }
 
-fn counts(memory: &Memory) -> [usize; 3] {
+fn counts(memory: &Memory) -> [usize; 4] {
     [
         memory.values.len(),
         memory.input_rates.len(),
         memory.system.values.len(),
+        memory.system.gusts.len(),
     ]
 }
 
@@ -58,7 +59,7 @@ pub(super) fn write(memory: &Memory, guid: &Uuid) -> Vec<u8> {
         .into_iter()
         .chain(memory.values.iter().copied())
         .chain(memory.input_rates.iter().copied())
-        .chain(memory.system.values.iter().copied())
+        .chain(memory.system.all())
         .chain([
             memory.system.phase,
             memory.system.last_wind_m_s.unwrap_or(NO_WIND),
@@ -87,7 +88,10 @@ pub(super) fn read(bytes: &[u8], guid: &Uuid, like: &Memory) -> Result<Memory> {
     if found != *guid {
         return Err(refused("identity", guid.to_string(), found.to_string()));
     }
-    for (place, count) in ["values", "inputs", "states"].into_iter().zip(counts(like)) {
+    for (place, count) in ["values", "inputs", "states", "lagging gusts"]
+        .into_iter()
+        .zip(counts(like))
+    {
         let found = u32::from_le_bytes(reader.take(place)?);
         if found as usize != count {
             return Err(refused(place, count.to_string(), found.to_string()));
@@ -106,6 +110,7 @@ pub(super) fn read(bytes: &[u8], guid: &Uuid, like: &Memory) -> Result<Memory> {
         input_rates: reader.numbers(like.input_rates.len())?,
         system: crate::response::SectionState {
             values: reader.numbers(like.system.values.len())?,
+            gusts: reader.numbers(like.system.gusts.len())?,
             phase: reader.number()?,
             last_wind_m_s: Some(reader.number()?).filter(|wind| *wind >= 0.0),
         },

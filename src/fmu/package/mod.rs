@@ -13,8 +13,9 @@ pub use runtime::{RUNTIME_DIR_VARIABLE, Runtime};
 
 use super::description::model_description;
 use super::force_options::{FORCE_FILE, ForceOptions};
-use super::resources::{MODEL_FILE, Resources};
+use super::resources::{GUST_FILE, MODEL_FILE, OptionFiles, Resources};
 use super::variables::Listing;
+use crate::aerodynamics::GustForce;
 use crate::error::{Error, Result};
 use crate::trained_model::TrainedModel;
 use std::collections::BTreeMap;
@@ -51,6 +52,8 @@ pub struct Export {
     pub growing: Growing,
     /// Strips for a structure outside; `None` for the coupled section.
     pub force: Option<ForceOptions>,
+    /// Forces of gusts, so that gusts are inputs.
+    pub gusts: Option<GustForce>,
     /// Which variables its description lists.
     pub listing: Listing,
 }
@@ -60,6 +63,7 @@ impl From<Growing> for Export {
         Self {
             growing,
             force: None,
+            gusts: None,
             listing: Listing::All,
         }
     }
@@ -78,24 +82,35 @@ pub fn package(
     let Export {
         growing,
         force,
+        gusts,
         listing,
     } = export.into();
     growth::check(model, growing)?;
-    let options = force.map(|force| force.to_json()).transpose()?;
+    let force = force.map(|force| force.to_json()).transpose()?;
+    let gusts = gusts.map(|gusts| serde_json::to_string_pretty(&gusts));
+    let gusts = gusts
+        .transpose()
+        .map_err(|e| Error::Numerical(e.to_string()))?;
     if runtimes.is_empty() {
         let expected = "a runtime for at least one platform";
         return Err(Error::input("FMU", expected, "none"));
     }
     let json = model.to_json()?;
-    let resources = Resources::from_bytes(json.as_bytes(), options.as_deref().map(str::as_bytes))?;
+    let options = OptionFiles {
+        force: force.as_deref().map(str::as_bytes),
+        gusts: gusts.as_deref().map(str::as_bytes),
+    };
+    let resources = Resources::from_bytes(json.as_bytes(), options)?;
     let xml = model_description(&resources, listing)?;
     let page = documentation(&resources, runtimes, listing)?;
     let mut files: BTreeMap<String, Vec<u8>> = BTreeMap::new();
     files.insert("modelDescription.xml".into(), xml.into_bytes());
     files.insert("model.png".into(), ICON.to_vec());
     files.insert(format!("resources/{MODEL_FILE}"), json.into_bytes());
-    if let Some(options) = options {
-        files.insert(format!("resources/{FORCE_FILE}"), options.into_bytes());
+    for (name, options) in [(FORCE_FILE, force), (GUST_FILE, gusts)] {
+        if let Some(options) = options {
+            files.insert(format!("resources/{name}"), options.into_bytes());
+        }
     }
     files.insert("documentation/index.html".into(), page.into_bytes());
     let licences = "documentation/licenses";

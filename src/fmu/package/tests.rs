@@ -51,7 +51,7 @@ fn archives_are_reproducible_and_complete() {
 fn the_page_names_everything_and_loads_nothing() {
     for kind in ["rational", "continuous_laguerre", "discrete_laguerre"] {
         let json = model(kind).to_json().unwrap();
-        let resources = Resources::from_bytes(json.as_bytes(), None).unwrap();
+        let resources = Resources::from_bytes(json.as_bytes(), OptionFiles::default()).unwrap();
         let page = documentation(&resources, &embedded(), Listing::All).unwrap();
         for v in resources.table.variables() {
             assert!(
@@ -168,7 +168,7 @@ fn a_model_that_grows_where_nothing_was_tested_is_exported_only_on_request() {
 fn an_instance_says_where_it_grows_when_made_and_after_its_parameters_have_changed() {
     use crate::fmu::instance::Instance;
     let resources = |model: &TrainedModel| {
-        Resources::from_bytes(model.to_json().unwrap().as_bytes(), None).unwrap()
+        Resources::from_bytes(model.to_json().unwrap().as_bytes(), OptionFiles::default()).unwrap()
     };
     let growth = |notices: Vec<String>| {
         let about = |n: &String| n.contains("grows where it should not");

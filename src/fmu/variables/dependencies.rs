@@ -3,20 +3,35 @@
 use super::{
     Causality, InitialDependency, Response, Role, SectionParameter, Status, Variable, find,
 };
-use crate::aerodynamics::{Realizable, Realization};
+use crate::aerodynamics::{GustForce, Realizable, Realization};
 use crate::section::Dof;
 use crate::trained_model::TrainedModel;
 
 /// Fills in the dependencies of every output, state, rate of a state and calculated parameter. States count as known only
 /// where importers see them.
-pub(super) fn fill(variables: &mut [Variable], model: &TrainedModel) {
+pub(super) fn fill(variables: &mut [Variable], model: &TrainedModel, gusts: Option<&GustForce>) {
     let coupling = Coupling {
         added_mass: has_added_mass(model),
         unbalance: model.section.mass_offset_m.is_some(),
+        gusts_at_once: gusts.is_some_and(|g| g.states() == 0),
     };
+    let filters = model.model.realize().states();
     let seen = variables.iter().any(|v| v.derivative_of.is_some());
     for i in 0..variables.len() {
         let (mut direct, mut initial) = match variables[i].role {
+            Role::Filter(i) if i >= filters => (Vec::new(), dependent(gust(variables))),
+            Role::FilterRate(i) if i >= filters => {
+                let known = places(variables, |role| {
+                    matches!(
+                        role,
+                        Role::WindSpeed | Role::Gust(..) | Role::Section(SectionParameter::Width)
+                    )
+                });
+                let inputs = places(variables, |role| {
+                    matches!(role, Role::WindSpeed | Role::Gust(..))
+                });
+                (inputs, dependent(known))
+            }
             Role::Filter(_) => (Vec::new(), settled_flow(variables)),
             Role::FilterRate(_) => {
                 let wind = places(variables, |role| role == Role::WindSpeed);
@@ -46,7 +61,7 @@ pub(super) fn fill(variables: &mut [Variable], model: &TrainedModel) {
             _ => continue,
         };
         if seen {
-            direct.extend(states_behind(variables, i));
+            direct.extend(states_behind(variables, i, filters));
             direct.sort_unstable();
         }
         initial.sort_by_key(|d| d.on);
@@ -57,13 +72,16 @@ pub(super) fn fill(variables: &mut [Variable], model: &TrainedModel) {
 
 /// States on which a variable depends: a state on itself, forces and accelerations on all, a filter's rate on displacements and
 /// filters.
-fn states_behind(variables: &[Variable], of: usize) -> Vec<usize> {
+fn states_behind(variables: &[Variable], of: usize, filters: usize) -> Vec<usize> {
     let depends = |on: Role| match variables[of].role {
         Role::Status(Status::AmplitudeInLinearRange) => {
             on == Role::Response(Response::Displacement, Dof::Torsion)
         }
         Role::Response(Response::Acceleration | Response::SelfExcitedForce, _) => true,
-        Role::FilterRate(_) => !matches!(on, Role::Response(Response::Rate, _)),
+        Role::FilterRate(i) => match on {
+            Role::Filter(j) => (i < filters && j < filters) || i == j,
+            on => i < filters && !matches!(on, Role::Response(Response::Rate, _)),
+        },
         own @ (Role::Response(..) | Role::Filter(_)) => on == own,
         _ => false,
     };
@@ -83,6 +101,10 @@ fn settled_flow(variables: &[Variable]) -> Vec<InitialDependency> {
     }))
 }
 
+fn gust(variables: &[Variable]) -> Vec<usize> {
+    places(variables, |role| matches!(role, Role::Gust(..)))
+}
+
 /// What makes the accelerations depend on one another.
 #[derive(Clone, Copy)]
 struct Coupling {
@@ -90,6 +112,8 @@ struct Coupling {
     added_mass: bool,
     /// Of the section itself.
     unbalance: bool,
+    /// Gusts act without a lag.
+    gusts_at_once: bool,
 }
 
 impl Coupling {
@@ -118,6 +142,8 @@ fn direct_inputs(
         (Response::Acceleration | Response::SelfExcitedForce, Role::WindSpeed) => true,
         (Response::Acceleration, Role::ExternalForce(on)) => coupled || on == dof,
         (Response::SelfExcitedForce, Role::ExternalForce(_)) => coupled,
+        (Response::Acceleration, Role::Gust(..)) => coupling.gusts_at_once,
+        (Response::SelfExcitedForce, Role::Gust(..)) => coupling.gusts_at_once && coupled,
         _ => false,
     };
     places(variables, acts)
@@ -143,6 +169,8 @@ fn initial_knowns(
     let (coupled, accelerates) = (coupling.of(response), response == Response::Acceleration);
     let acts = |role: Role| match role {
         Role::InitialDisplacement(_) | Role::InitialRate(_) => true,
+        // lags begin where the gusts are
+        Role::Gust(..) => !coupling.gusts_at_once && (coupled || accelerates),
         Role::Section(
             SectionParameter::Width | SectionParameter::AirDensity | SectionParameter::AxisOffset,
         ) => true,

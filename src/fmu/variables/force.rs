@@ -1,11 +1,12 @@
 //! The variables of a unit of forces, in the order of the table.
 
 use super::real::{FIXED, INPUT, OUTPUT, SMALLEST, TUNABLE, constants, force_scale, nominal, real};
-use super::section::{capitalized, wind_speed};
+use super::section::{capitalized, gust_inputs, wind_speed};
 use super::words::words;
 use super::{
     ForceOutput, InitialDependency, Response, Role, SectionParameter, StripParameter, Variable,
 };
+use crate::aerodynamics::GustForce;
 use crate::error::Result;
 use crate::fmu::force_options::{ForceOptions, MAX_PREDICTION};
 use crate::fmu::si::{self, Unit};
@@ -20,11 +21,20 @@ const MOTION: [Response; 3] = [
 ];
 
 /// All variables with their dependencies.
-pub(super) fn variables(model: &TrainedModel, options: &ForceOptions) -> Result<Vec<Variable>> {
+pub(super) fn variables(
+    model: &TrainedModel,
+    options: &ForceOptions,
+    gusts: Option<&GustForce>,
+) -> Result<Vec<Variable>> {
     let dofs = model.section.dofs();
     let mut table = vec![wind_speed(model)];
     for (s, _) in options.strips.iter().enumerate() {
         table.extend(motion(model, &dofs, s, options));
+        table.extend(
+            gusts
+                .iter()
+                .flat_map(|_| gust_inputs(s, |of| name(options, s, of))),
+        );
     }
     for (s, _) in options.strips.iter().enumerate() {
         table.extend(forces(model, &dofs, s, options));
@@ -182,7 +192,7 @@ fn fill_dependencies(table: &mut [Variable], strips: usize) {
     for (place, variable) in table.iter().enumerate() {
         match variable.role {
             Role::WindSpeed | Role::Section(_) | Role::MotionDerivatives => shared.push(place),
-            Role::Motion(s, ..) | Role::Strip(s, _) => of_strip[s].push(place),
+            Role::Motion(s, ..) | Role::Gust(s, _) | Role::Strip(s, _) => of_strip[s].push(place),
             _ => {}
         }
     }
@@ -197,7 +207,12 @@ fn fill_dependencies(table: &mut [Variable], strips: usize) {
             .filter(|place| kind == ForceOutput::Total || roles[*place] != length)
             .collect();
         known.sort_unstable();
-        let input = |place: &usize| matches!(roles[*place], Role::WindSpeed | Role::Motion(..));
+        let input = |place: &usize| {
+            matches!(
+                roles[*place],
+                Role::WindSpeed | Role::Motion(..) | Role::Gust(..)
+            )
+        };
         variable.direct_inputs = known.iter().copied().filter(input).collect();
         let dependency = |on| InitialDependency {
             on,

@@ -6,8 +6,8 @@ use super::real::{
     force_scale, nominal, real,
 };
 use super::words::{Words, motion, words};
-use super::{Calculated, Response, Role, Status, Value, Variable, find};
-use crate::aerodynamics::{Realizable, Realization};
+use super::{Calculated, Gust, Response, Role, Status, Value, Variable, find};
+use crate::aerodynamics::{GustForce, Realizable, Realization};
 use crate::error::Result;
 use crate::fmu::si::{self, Unit};
 use crate::section::{Dof, SectionModel};
@@ -19,9 +19,14 @@ const FILTER_SIZE: f64 = 0.01;
 const SMALLEST_INERTIA: f64 = 1e-9;
 
 /// All variables without their dependencies.
-pub(super) fn variables(model: &TrainedModel) -> Result<Vec<Variable>> {
+pub(super) fn variables(model: &TrainedModel, gusts: Option<&GustForce>) -> Result<Vec<Variable>> {
     let dofs = model.section.dofs();
     let mut table = inputs(model, &dofs);
+    table.extend(
+        gusts
+            .iter()
+            .flat_map(|_| gust_inputs(0, |name| name.to_owned())),
+    );
     table.extend(outputs(model, &dofs));
     table.extend(
         SectionParameter::all(&model.section)
@@ -34,29 +39,61 @@ pub(super) fn variables(model: &TrainedModel) -> Result<Vec<Variable>> {
     table.extend(constants(model)?);
     table.extend(status());
     if let Realization::Continuous(c) = model.model.realize() {
-        table.extend(filters(c.a.nrows()));
+        let (filters, lags) = (c.a.nrows(), gusts.map_or(0, GustForce::states));
+        let text = "Filter state of the aerodynamic model";
+        table.extend((0..filters).flat_map(|i| inner_state(i, "filter", i + 1, text)));
+        let lag = |i| {
+            let text = "Gust behind a lag of its admittance, in m/s";
+            inner_state(filters + i, "gust_filter", i + 1, text)
+        };
+        table.extend((0..lags).flat_map(lag));
         name_rates(&mut table, &dofs);
     }
     Ok(table)
 }
 
-/// States that are no motion, and their rates: for importers that integrate, and for linear state spaces.
-fn filters(count: usize) -> impl Iterator<Item = Variable> {
-    (0..count).flat_map(|i| {
-        let (number, text) = (i + 1, "Filter state of the aerodynamic model");
-        [
-            real(format!("filter[{number}]"), Role::Filter(i), INNER, text)
-                .quantity("FilterState", None)
-                .nominal(FILTER_SIZE),
-            real(
-                format!("der(filter[{number}])"),
-                Role::FilterRate(i),
-                INNER,
-                "Rate of that filter state",
-            )
-            .quantity("FilterRate", Some(&si::PER_SECOND)),
-        ]
-    })
+/// The gusts at a strip.
+pub(super) fn gust_inputs(strip: usize, name: impl Fn(&str) -> String) -> [Variable; 2] {
+    let gust = |of, text| {
+        let (plain, text) = text;
+        real(name(plain), Role::Gust(strip, of), INPUT, text)
+            .start(0.0)
+            .quantity("Velocity", SPEED)
+            .nominal(1.0)
+    };
+    [
+        gust(
+            Gust::Along,
+            ("gust_u", "Turbulence along the mean wind, on top of it"),
+        ),
+        gust(Gust::Vertical, ("gust_w", "Turbulence upwards")),
+    ]
+}
+
+/// A state that is no motion, and its rate: for importers that integrate, and for linear state spaces.
+fn inner_state(i: usize, name: &str, number: usize, text: &str) -> [Variable; 2] {
+    let gust = name == "gust_filter";
+    let (state, rate) = if gust {
+        (
+            ("Velocity", SPEED),
+            ("Acceleration", Some(&si::METRE_PER_SECOND2)),
+        )
+    } else {
+        (("FilterState", None), ("FilterRate", Some(&si::PER_SECOND)))
+    };
+    let named = format!("{name}[{number}]");
+    [
+        real(named.clone(), Role::Filter(i), INNER, text)
+            .quantity(state.0, state.1)
+            .nominal(if gust { 1.0 } else { FILTER_SIZE }),
+        real(
+            format!("der({named})"),
+            Role::FilterRate(i),
+            INNER,
+            "Rate of that state",
+        )
+        .quantity(rate.0, rate.1),
+    ]
 }
 
 /// Enters which variable is the rate of which state.

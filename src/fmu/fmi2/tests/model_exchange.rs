@@ -20,7 +20,7 @@ pub(super) fn exchanged(archive: Archive) -> Unit {
 }
 
 impl Unit {
-    fn integrate_from_event(&self) {
+    pub(super) fn integrate_from_event(&self) {
         let mut info = fmi2EventInfo {
             newDiscreteStatesNeeded: 1,
             ..Default::default()
@@ -49,7 +49,7 @@ impl Unit {
     }
 
     /// One step of the classical Runge–Kutta method in a wind that grows by `ramp` from 20 m/s at time zero.
-    fn runge_kutta(&self, time: f64, step: f64, ramp: f64) {
+    pub(super) fn runge_kutta(&self, time: f64, step: f64, ramp: f64) {
         let x = self.states();
         let rates = |time: f64, x: &[f64]| {
             self.set("wind_speed", 20.0 + ramp * time);
@@ -72,7 +72,7 @@ impl Unit {
         assert_eq!((event, end), (0, 0));
     }
 
-    fn directional(&self, unknown: &str, known: &str) -> f64 {
+    pub(super) fn directional(&self, unknown: &str, known: &str) -> f64 {
         let (u, k) = (self.references(&[unknown]), self.references(&[known]));
         let mut value = f64::NAN;
         self.ok(unsafe {

@@ -149,7 +149,7 @@ fn damaged_bytes_are_refused() {
         bytes
     };
     let header = 8 + 4 + 16;
-    let numbers = header + 12 + 2;
+    let numbers = header + 16 + 2;
     let nan = f64::NAN.to_le_bytes().map(byte);
     let negative = (-1.0_f64).to_le_bytes().map(byte);
     for (bytes, word) in [
@@ -157,8 +157,8 @@ fn damaged_bytes_are_refused() {
         (damaged(&|b| b[8] = byte(9)), "version"),
         (damaged(&|b| b[12] ^= byte(1)), "identity"),
         (damaged(&|b| b[header] = byte(200)), "values"),
-        (damaged(&|b| b[header + 12] = byte(3)), "state"),
-        (damaged(&|b| b[header + 13] = byte(2)), "experiment"),
+        (damaged(&|b| b[header + 16] = byte(3)), "state"),
+        (damaged(&|b| b[header + 17] = byte(2)), "experiment"),
         (
             damaged(&|b| b[numbers + 24..numbers + 32].copy_from_slice(&nan)),
             "finite",
