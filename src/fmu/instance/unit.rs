@@ -51,8 +51,8 @@ pub(super) trait Unit: Debug + Send {
     /// When the step cannot be computed.
     fn advance(&mut self, resources: &Resources, memory: &mut Memory, step: f64) -> Answer<bool>;
 
-    /// The output at `place` where it is part of the state.
-    fn held_output(&self, _memory: &Memory, _place: usize) -> Option<f64> {
+    /// Entry of the state of what is simulated that the output at `place` is, if it is one.
+    fn held_output(&self, _place: usize) -> Option<usize> {
         None
     }
 
