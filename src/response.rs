@@ -25,7 +25,7 @@ use crate::error::{Error, Result, finite_numbers, non_negative, positive};
 use crate::section::Dof;
 use gusts::{GustCourse, Gusts};
 use nalgebra::{DMatrix, DVector};
-use packed::apply;
+use packed::{advanced, apply, settled};
 use sampled::Sampling;
 use series::{Drive, Moving, Series};
 use step_cache::StepCache;
@@ -40,10 +40,6 @@ const PARTS_OF_A_MATRIX: f64 = 32.0;
 /// A wind below zero by this part of the wind before it (of 1 m/s at least) is at rest: what rounding leaves of a ramp
 /// of some ten thousand steps.
 const REST: f64 = 1e-9;
-/// States smaller than this have died out. Numbers below 1e-308 are computed thirty times slower; products with the
-/// coefficients of a step stay above.
-const DIED_OUT: f64 = 1e-250;
-
 /// `speed_m_s`, or zero where rounding alone has taken a wind that comes to rest below zero; `before_m_s` is the wind
 /// it came from.
 pub fn wind_at_rest(speed_m_s: f64, before_m_s: f64) -> f64 {
@@ -183,6 +179,8 @@ pub struct Stepper {
     sampling: Option<Sampling>,
     /// `[z, w, ẇ]` of the step at hand.
     operand: Vec<f64>,
+    /// State after it.
+    next: Vec<f64>,
 }
 
 impl Stepper {
@@ -194,8 +192,10 @@ impl Stepper {
     /// A stepper on whose section gusts act with these forces.
     pub fn in_gusts(section: CoupledSection, force: Option<&GustForce>) -> Self {
         let gusts = force.map(|force| Gusts::new(force, section.structure()));
-        let operand = vec![0.0; section.states() + 2 * section.structure().dofs.len()];
+        let states = section.states();
+        let operand = vec![0.0; states + 2 * section.structure().dofs.len()];
         Self {
+            next: vec![0.0; states],
             series: Series::new(&section, gusts),
             sampling: Sampling::of(&section),
             section,
@@ -245,7 +245,23 @@ impl Stepper {
     /// # Errors
     /// [`Error::Input`] for a step that is not positive or inputs that are not finite, a wind speed that becomes
     /// negative by more than rounding, a step of more than a hundred thousand sub-steps; [`Error::Numerical`] when the motion has grown beyond what a number can hold.
+    #[inline]
     pub fn advance(
+        &mut self,
+        state: &mut SectionState,
+        inputs: &Inputs,
+        step_s: f64,
+    ) -> Result<()> {
+        // most steps
+        if self.repeats(state, inputs, step_s) && self.advance_as_before(state, inputs) {
+            return Ok(());
+        }
+        self.advance_anew(state, inputs, step_s)
+    }
+
+    /// A step of which nothing is known yet.
+    #[inline(never)]
+    fn advance_anew(
         &mut self,
         state: &mut SectionState,
         inputs: &Inputs,
@@ -256,7 +272,7 @@ impl Stepper {
         if inputs.wind_speed_m_s < 0.0 {
             let mut at_rest = inputs.clone();
             at_rest.wind_speed_m_s = 0.0;
-            return self.advance(state, &at_rest, step_s);
+            return self.advance_anew(state, &at_rest, step_s);
         }
         if inputs.wind_speed_rate_m_s2 != 0.0 {
             let before = inputs.wind_speed_m_s;
@@ -311,23 +327,53 @@ impl Stepper {
         force.unwrap_or_default().map(|f| wind * f)
     }
 
+    /// Whether wind and step are those of the last step by a matrix, and so are known to be right.
+    #[inline]
+    fn repeats(&self, state: &SectionState, inputs: &Inputs, step: f64) -> bool {
+        let wind = inputs.wind_speed_m_s;
+        let forces = [inputs.force.len(), inputs.force_rate.len()];
+        inputs.wind_speed_rate_m_s2 == 0.0
+            && self.sampling.is_none()
+            && state.values.len() == self.next.len()
+            && forces == [(self.operand.len() - self.next.len()) / 2; 2]
+            && state.last_wind_m_s.is_none_or(|last| last == wind)
+            && self.cache.is_newest(wind, step)
+            && !self.gusts_act(state, inputs)
+    }
+
+    /// The step of [`Stepper::repeats`]. Whatever is wrong with the forces leaves the state as it was.
+    #[inline]
+    fn advance_as_before(&mut self, state: &mut SectionState, inputs: &Inputs) -> bool {
+        let Some(step) = self.cache.newest() else {
+            return false;
+        };
+        let states = state.values.len();
+        let columns = active_columns(inputs, states);
+        let operand = if columns == states {
+            &state.values
+        } else {
+            load(&mut self.operand, &state.values, inputs);
+            &self.operand[..columns]
+        };
+        let right = advanced(step, operand, &mut self.next);
+        if right {
+            std::mem::swap(&mut state.values, &mut self.next);
+            state.last_wind_m_s = Some(inputs.wind_speed_m_s);
+        }
+        right
+    }
+
     fn advance_by_matrix(
         &mut self,
         state: &mut SectionState,
         inputs: &Inputs,
         step: f64,
     ) -> Result<()> {
-        let step = self
-            .cache
+        self.cache
             .full_system(&self.section, inputs.wind_speed_m_s, step)?;
-        load(&mut self.operand, &state.values, inputs);
-        let columns = active_columns(inputs, state.values.len());
-        apply(step, &self.operand[..columns], &mut state.values);
-        if settled(&mut state.values) {
+        if self.advance_as_before(state, inputs) {
             return Ok(());
         }
-        let before = &self.operand[..state.values.len()];
-        state.values.copy_from_slice(before);
         Err(overgrown())
     }
 
@@ -448,29 +494,14 @@ fn load(operand: &mut [f64], values: &[f64], inputs: &Inputs) {
 
 /// Columns of `[Φ, Γ₀, Γ₁]` that meet something other than zero.
 fn active_columns(inputs: &Inputs, states: usize) -> usize {
-    let zero = |v: &[f64]| v.iter().all(|x| *x == 0.0);
+    // without a branch for each
+    let zero = |v: &[f64]| v.iter().fold(0, |bits, x| bits | (x.to_bits() << 1)) == 0;
     let n = inputs.force.len();
     match (zero(&inputs.force), zero(&inputs.force_rate)) {
         (_, false) => states + 2 * n,
         (false, true) => states + n,
         (true, true) => states,
     }
-}
-
-/// Whether all values are finite; those that have died out become zero. Looks at all of them without a branch: this is
-/// part of every step.
-fn settled(values: &mut [f64]) -> bool {
-    let (mut finite, mut small) = (true, false);
-    for x in values.iter() {
-        finite &= x.is_finite();
-        small |= x.abs() < DIED_OUT;
-    }
-    if small {
-        for x in values.iter_mut().filter(|x| x.abs() < DIED_OUT) {
-            *x = 0.0;
-        }
-    }
-    finite
 }
 
 /// Whether a step may take so many sub-steps.

@@ -53,11 +53,11 @@ impl Instance {
     /// # Errors
     /// [`crate::Error::Input`] for a model without a realisation, or whose section cannot be coupled with it.
     pub fn new(resources: Resources) -> Result<Self> {
-        let layout = Layout::new(&resources.table)?;
         let mut unit: Box<dyn Unit> = match &resources.force {
             Some(options) => Box::new(ForceUnit::new(&resources, options)?),
             None => Box::new(SectionUnit::new(&resources)?),
         };
+        let layout = Layout::new(&resources.table, |place| unit.held_output(place))?;
         let fresh = Memory::new(&resources.table, unit.as_ref());
         let mut memory = fresh.clone();
         // a section that cannot be coupled is no model to run: say so now

@@ -1,10 +1,10 @@
 //! Steps of the discrete Laguerre model: the dimensionless force is sampled and held every `Δt = Δs B/V`. The dynamic
 //! pressure is that of the wind at every instant, so that nothing depends on where communication points fall.
 
-use super::packed::{Packed, apply};
+use super::packed::{Packed, apply, settled};
 use super::series::{Drive, Moving};
 use super::{
-    Inputs, MAX_DOFS, PARTS_OF_A_MATRIX, SectionState, Stepper, check_substeps, overgrown, settled,
+    Inputs, MAX_DOFS, PARTS_OF_A_MATRIX, SectionState, Stepper, check_substeps, overgrown,
 };
 use crate::aerodynamics::Realization;
 use crate::aeroelastic::CoupledSection;

@@ -45,16 +45,30 @@ pub(super) struct StepCache {
 }
 
 impl StepCache {
-    /// Step of the whole continuous system.
+    /// Makes the step of the whole continuous system the newest one.
     pub(super) fn full_system(
         &mut self,
         section: &CoupledSection,
         speed: f64,
         step: f64,
-    ) -> Result<&Packed> {
+    ) -> Result<()> {
         self.steps.get((speed.to_bits(), step.to_bits()), || {
             Ok(pack(&section.continuous_at(speed)?.c2d(step)?))
-        })
+        })?;
+        Ok(())
+    }
+
+    /// Whether the newest step is that of this wind and this size.
+    #[inline]
+    pub(super) fn is_newest(&self, speed: f64, step: f64) -> bool {
+        let newest = self.steps.entries.first();
+        newest.is_some_and(|(key, _)| *key == (speed.to_bits(), step.to_bits()))
+    }
+
+    /// The step used last.
+    #[inline]
+    pub(super) fn newest(&self) -> Option<&Packed> {
+        self.steps.entries.first().map(|(_, step)| step)
     }
 
     /// Step of the structure alone under a given force, for the sampled model.

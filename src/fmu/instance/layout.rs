@@ -1,6 +1,7 @@
 //! The variable table in the form that the calls of every step use: by value reference, without text.
 
 use super::Instance;
+use super::saving::Memory;
 use crate::error::{Error, Result};
 use crate::fmu::lifecycle::{State, StateSet, gettable_in, settable_in};
 use crate::fmu::refusal::{Answer, Refusal};
@@ -96,10 +97,56 @@ impl Access {
     }
 }
 
+/// Where a real variable is read at once, without any work.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum AtHand {
+    /// Among the stored values.
+    Always,
+    /// Among them as long as the outputs are those of the present.
+    WithOutputs,
+    /// In the state of the system, once it moves.
+    InState,
+    /// Nowhere.
+    Never,
+}
+
+/// What reading a variable at every step needs, and no more.
+#[derive(Debug, Clone, Copy)]
+struct Glance {
+    at_hand: AtHand,
+    gettable: StateSet,
+    /// Its place there.
+    entry: u32,
+}
+
+impl Glance {
+    fn of(access: &Access, place: usize, held: Option<usize>) -> Self {
+        let (at_hand, entry) = match (access.data_type, access.source, held) {
+            (DataType::Real, Source::Response | Source::State, Some(entry)) => {
+                (AtHand::InState, entry)
+            }
+            (DataType::Real, Source::Response, None) => (AtHand::WithOutputs, place),
+            (
+                DataType::Real,
+                Source::Calculated | Source::Status | Source::State | Source::Rate,
+                _,
+            ) => (AtHand::Never, place),
+            (DataType::Real, ..) => (AtHand::Always, place),
+            _ => (AtHand::Never, place),
+        };
+        Self {
+            at_hand,
+            gettable: access.gettable,
+            entry: u32::try_from(entry).unwrap_or(u32::MAX),
+        }
+    }
+}
+
 /// The variables by place, which is the index into the table and into the stored values.
 #[derive(Debug, Clone)]
 pub(super) struct Layout {
     access: Vec<Access>,
+    glances: Vec<Glance>,
     wind_speed: usize,
     /// Rates of the continuous states, in their order.
     pub state_rates: Vec<usize>,
@@ -113,12 +160,38 @@ pub(super) fn place(table: &VariableTable, role: Role) -> Result<usize> {
 }
 
 impl Layout {
-    pub fn new(table: &VariableTable) -> Result<Self> {
+    /// The layout of a table; `held` says which outputs are entries of the system's state.
+    pub fn new(table: &VariableTable, held: impl Fn(usize) -> Option<usize>) -> Result<Self> {
+        let access: Vec<_> = table.variables().iter().map(Access::of).collect();
+        let each = access.iter().enumerate();
         Ok(Self {
-            access: table.variables().iter().map(Access::of).collect(),
+            glances: each.map(|(i, a)| Glance::of(a, i, held(i))).collect(),
+            access,
             wind_speed: place(table, Role::WindSpeed)?,
             state_rates: table.state_rates(),
         })
+    }
+
+    /// Entry of the system's state that the output at `place` is, if it is one.
+    pub fn held(&self, place: usize) -> Option<usize> {
+        let glance = self.glances[place];
+        (glance.at_hand == AtHand::InState).then_some(glance.entry as usize)
+    }
+
+    /// The value of a real variable that may be read now and needs no work: most of what is read at every step.
+    #[inline]
+    pub fn at_hand(&self, reference: u32, memory: &Memory, outputs_current: bool) -> Option<f64> {
+        let glance = self.glances.get(reference as usize)?;
+        let state = memory.state;
+        let list = match glance.at_hand {
+            // ahead of its release a section is not yet where its initial values put it
+            AtHand::InState if state == State::StepComplete => &memory.system.values,
+            AtHand::WithOutputs if outputs_current => &memory.values,
+            AtHand::Always => &memory.values,
+            _ => return None,
+        };
+        let value = list.get(glance.entry as usize).copied();
+        value.filter(|_| glance.gettable.contains(state))
     }
 
     /// Where the value at `place` comes from.

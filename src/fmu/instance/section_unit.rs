@@ -107,6 +107,8 @@ pub(super) struct SectionUnit {
     growth_searches_left: usize,
     pub told: Told,
     pub inputs: Inputs,
+    /// Whether they are those of the memory.
+    inputs_current: bool,
     outputs: Outputs,
 }
 
@@ -132,6 +134,7 @@ impl SectionUnit {
             growth_known: false,
             growth_searches_left: GROWTH_SEARCHES,
             told: Told::default(),
+            inputs_current: false,
             outputs: Outputs::default(),
         })
     }
@@ -157,7 +160,18 @@ impl SectionUnit {
         Ok(state)
     }
 
+    /// The inputs of the memory of this unit, which are loaded once until one is set.
+    fn load_own_inputs(&mut self, memory: &Memory) {
+        if !self.inputs_current {
+            self.load_inputs(memory);
+            // with a rate, a step carries them on
+            self.inputs_current = memory.input_rates.iter().all(|rate| *rate == 0.0);
+        }
+    }
+
+    /// The inputs of any memory.
     pub fn load_inputs(&mut self, memory: &Memory) {
+        self.inputs_current = false;
         let (values, rates) = (&memory.values, &memory.input_rates);
         self.inputs.wind_speed_m_s = values[self.places.wind_speed];
         self.inputs.wind_speed_rate_m_s2 = rates[0];
@@ -184,6 +198,26 @@ impl SectionUnit {
             });
         }
         section::growth_of(model, &section, speed_max_m_s)
+    }
+
+    #[cold]
+    fn watch_growth(&mut self, resources: &Resources, memory: &Memory, notices: &mut Vec<String>) {
+        self.growth_known = true;
+        self.growth_searches_left -= 1;
+        match self.growth(resources, &memory.values) {
+            Ok(growth) if growth.is_none() => {}
+            Ok(growth) => notices.push(format!(
+                "with these parameters the section {}",
+                growth.explain()
+            )),
+            // no reason to end a run
+            Err(e) => notices.push(format!("growth below the onset could not be judged: {e}")),
+        }
+        if self.growth_searches_left == 0 {
+            notices.push(format!(
+                "growth below the onset is no longer looked for after {GROWTH_SEARCHES} changes of parameters"
+            ));
+        }
     }
 
     pub fn onset_card(&self, resources: &Resources, values: &[f64]) -> OnsetCard {
@@ -214,6 +248,7 @@ impl Unit for SectionUnit {
 
     fn changed(&mut self, source: Source) {
         match source {
+            Source::Input => self.inputs_current = false,
             Source::Section => {
                 self.stepper = None;
                 self.onset_current = false;
@@ -241,7 +276,12 @@ impl Unit for SectionUnit {
         self.release_pending = true;
     }
 
+    fn input_rate_set(&mut self, _: &mut Memory, _: usize) {
+        self.inputs_current = false;
+    }
+
     fn replace(&mut self, new: &mut Memory, old: &Memory, same: &dyn Fn(Source) -> bool) {
+        self.inputs_current = false;
         let same_section = same(Source::Section);
         if !same_section {
             self.stepper = None;
@@ -274,30 +314,16 @@ impl Unit for SectionUnit {
 
     /// Says also, once for each set of parameters, where the section grows although nothing was tested there.
     fn watch(&mut self, resources: &Resources, memory: &Memory, notices: &mut Vec<String>) {
-        self.watch_trust(memory, notices);
-        if self.growth_known || self.growth_searches_left == 0 {
-            return;
+        if self.trust_changes(memory) {
+            self.watch_trust(memory, notices);
         }
-        self.growth_known = true;
-        self.growth_searches_left -= 1;
-        match self.growth(resources, &memory.values) {
-            Ok(growth) if growth.is_none() => {}
-            Ok(growth) => notices.push(format!(
-                "with these parameters the section {}",
-                growth.explain()
-            )),
-            // no reason to end a run
-            Err(e) => notices.push(format!("growth below the onset could not be judged: {e}")),
-        }
-        if self.growth_searches_left == 0 {
-            notices.push(format!(
-                "growth below the onset is no longer looked for after {GROWTH_SEARCHES} changes of parameters"
-            ));
+        if !self.growth_known && self.growth_searches_left > 0 {
+            self.watch_growth(resources, memory, notices);
         }
     }
 
     fn advance(&mut self, _: &Resources, memory: &mut Memory, step: f64) -> Answer<bool> {
-        self.load_inputs(memory);
+        self.load_own_inputs(memory);
         if let Some(stepper) = &mut self.stepper {
             stepper.advance(&mut memory.system, &self.inputs, step)?;
         }
@@ -316,12 +342,12 @@ impl Unit for SectionUnit {
         Err(overgrown())
     }
 
-    fn held_output(&self, memory: &Memory, place: usize) -> Option<f64> {
-        self.places.state_entry[place].map(|entry| memory.system.number(entry))
+    fn held_output(&self, place: usize) -> Option<usize> {
+        self.places.state_entry[place]
     }
 
     fn outputs(&mut self, _: &Resources, memory: &mut Memory) -> Answer<()> {
-        self.load_inputs(memory);
+        self.load_own_inputs(memory);
         if let Some(stepper) = &mut self.stepper {
             stepper.outputs(&memory.system, &self.inputs, &mut self.outputs)?;
         }

@@ -1,6 +1,7 @@
 //! Communication steps.
 
 use super::Instance;
+use super::saving::Experiment;
 use crate::fmu::lifecycle::State;
 use crate::fmu::refusal::{Answer, Refusal};
 use crate::response::wind_at_rest;
@@ -38,30 +39,28 @@ impl Instance {
     fn check_step(&self, point: f64, step: f64) -> Answer<()> {
         let time = self.memory.time;
         if !(step.is_finite() && step > 0.0) {
-            return Err(Refusal::error(format!(
-                "communication step: expected a positive number, found {step}"
-            )));
+            return Err(no_step(step));
         }
         let tolerance =
             CLOCK_TOLERANCE * time.abs().max(point.abs()) + CLOCK_TOLERANCE_OF_STEP * step;
         let drift = (point - time).abs();
         if drift.is_nan() || drift > tolerance {
-            return Err(Refusal::error(format!(
-                "communication point: expected {time} s, where the last step ended, found {point}"
-            )));
+            return Err(elsewhere(point, time));
         }
-        match self.memory.experiment.and_then(|e| e.stop) {
-            Some(stop) if point + step > stop + tolerance + CLOCK_TOLERANCE * stop.abs() => {
-                Err(Refusal::error(format!(
-                    "communication step: expected an end not after the stop time {stop} s, found {}",
-                    point + step
-                )))
+        match self.memory.experiment {
+            Some(Experiment {
+                stop: Some(stop), ..
+            }) if point + step > stop + tolerance + CLOCK_TOLERANCE * stop.abs() => {
+                Err(too_late(point + step, stop))
             }
             _ => Ok(()),
         }
     }
 
     fn run_inputs_on(&mut self, step: f64) {
+        if self.memory.input_rates.iter().all(|rate| *rate == 0.0) {
+            return;
+        }
         let values = &mut self.memory.values;
         let inputs = self.unit.inputs();
         let before = values[inputs[0]];
@@ -72,4 +71,25 @@ impl Instance {
         }
         values[inputs[0]] = wind_at_rest(values[inputs[0]], before);
     }
+}
+
+#[cold]
+fn no_step(step: f64) -> Refusal {
+    Refusal::error(format!(
+        "communication step: expected a positive number, found {step}"
+    ))
+}
+
+#[cold]
+fn elsewhere(point: f64, time: f64) -> Refusal {
+    Refusal::error(format!(
+        "communication point: expected {time} s, where the last step ended, found {point}"
+    ))
+}
+
+#[cold]
+fn too_late(end: f64, stop: f64) -> Refusal {
+    Refusal::error(format!(
+        "communication step: expected an end not after the stop time {stop} s, found {end}"
+    ))
 }

@@ -109,7 +109,18 @@ impl SectionUnit {
         memory.system.values[self.places.force.len() - 1]
     }
 
+    /// Whether there may be something to say; part of every step.
+    #[inline]
+    pub(super) fn trust_changes(&self, memory: &Memory) -> bool {
+        let wind = memory.values[self.places.wind_speed];
+        let tested = self.tested_winds;
+        let inside = tested.is_some_and(|[low, high]| (low..=high).contains(&wind));
+        let beyond = self.rotation(memory).abs() > LINEAR_ROTATION_RAD;
+        inside != self.told.wind_was_tested || (beyond && !self.told.rotation_left)
+    }
+
     /// Says when the wind leaves the tested range, and when the rotation leaves linear theory; each once.
+    #[cold]
     pub(super) fn watch_trust(&mut self, memory: &Memory, notices: &mut Vec<String>) {
         let wind = memory.values[self.places.wind_speed];
         let tested = self.tested_winds;

@@ -59,8 +59,8 @@ pub(super) trait Unit: Debug + Send {
         Ok(Vec::new())
     }
 
-    /// The output or state at `place` where it is part of the state.
-    fn held_output(&self, _memory: &Memory, _place: usize) -> Option<f64> {
+    /// Entry of the state of what is simulated that the output at `place` is, if it is one.
+    fn held_output(&self, _place: usize) -> Option<usize> {
         None
     }
 

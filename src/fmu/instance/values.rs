@@ -11,7 +11,13 @@ impl Instance {
     /// A reference that is none, of another type, or not readable now; a value that cannot be computed.
     pub fn reals(&mut self, references: &[u32], values: &mut [f64]) -> Answer<()> {
         for (reference, value) in references.iter().zip(values) {
-            *value = self.number(*reference, DataType::Real)?;
+            let at_hand = self
+                .layout
+                .at_hand(*reference, &self.memory, self.outputs_current);
+            *value = match at_hand {
+                Some(value) => value,
+                None => self.number(*reference, DataType::Real)?,
+            };
         }
         Ok(())
     }
@@ -46,8 +52,8 @@ impl Instance {
             Source::Response if !self.outputs_current => {
                 self.unit.prepare(&self.resources, &mut self.memory)?;
                 // what is part of the state needs no output equation
-                if let Some(value) = self.unit.held_output(&self.memory, place) {
-                    return Ok(value);
+                if let Some(entry) = self.layout.held(place) {
+                    return Ok(self.memory.system.number(entry));
                 }
                 self.unit.outputs(&self.resources, &mut self.memory)?;
                 self.outputs_current = true;
@@ -60,7 +66,8 @@ impl Instance {
             }
             Source::State => {
                 self.unit.prepare(&self.resources, &mut self.memory)?;
-                return Ok(self.unit.held_output(&self.memory, place).unwrap_or(0.0));
+                let entry = self.layout.held(place);
+                return Ok(entry.map_or(0.0, |entry| self.memory.system.number(entry)));
             }
             Source::Rate => return self.rate_at(place),
             Source::Calculated => {
