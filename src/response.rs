@@ -26,7 +26,7 @@ use sampled::Sampling;
 use series::{Drive, Series};
 use step_cache::StepCache;
 
-/// Degrees of freedom at most: heave, sway, rotation.
+/// Degrees of freedom of a sampled model at most: heave, sway, rotation.
 const MAX_DOFS: usize = Dof::THREE.len();
 /// Samples of the force, or parts of a changing wind, that one step may take: beyond, it is refused at once. Each costs
 /// about a microsecond.
@@ -137,13 +137,17 @@ pub struct Stepper {
     sampling: Option<Sampling>,
     /// `[z, w, ẇ]` of the step at hand.
     operand: Vec<f64>,
+    /// Accelerations and forces of the outputs at hand.
+    both: Vec<f64>,
 }
 
 impl Stepper {
     /// A stepper with an empty cache.
     pub fn new(section: CoupledSection) -> Self {
-        let operand = vec![0.0; section.states() + 2 * section.structure().dofs.len()];
+        let n = section.structure().dofs.len();
+        let operand = vec![0.0; section.states() + 2 * n];
         Self {
+            both: vec![0.0; 2 * n],
             series: Series::new(&section),
             sampling: Sampling::of(&section),
             section,
@@ -260,14 +264,11 @@ impl Stepper {
             return self.advance_by_matrix(state, inputs, step);
         }
         check_substeps(parts, step)?;
-        let mut drive = Drive {
+        let drive = Drive {
             wind,
             wind_rate,
-            force: Default::default(),
+            force: [&inputs.force, &inputs.force_rate, &[]],
         };
-        let n = inputs.force.len();
-        drive.force[0][..n].copy_from_slice(&inputs.force);
-        drive.force[1][..n].copy_from_slice(&inputs.force_rate);
         if self.series.advance(&mut state.values, &drive, step, parts) {
             settled(&mut state.values);
             Ok(())
@@ -300,8 +301,7 @@ impl Stepper {
         self.operand[..state.values.len()].copy_from_slice(&state.values);
         self.operand[state.values.len()..][..n].copy_from_slice(&inputs.force);
         let columns = state.values.len() + n;
-        let mut both = [0.0; 2 * MAX_DOFS];
-        let both = &mut both[..2 * n];
+        let both = &mut self.both[..];
         apply(rows, &self.operand[..columns], both);
         outputs.acceleration.copy_from_slice(&both[..n]);
         outputs.self_excited_force.copy_from_slice(&both[n..]);

@@ -12,7 +12,6 @@
 //! It converges for every step; parts of bounded norm keep its terms from cancelling. It ends when what is left out is
 //! below rounding, so that nothing is lost against the exponential: the wind's change costs no accuracy.
 
-use super::MAX_DOFS;
 use super::packed::{Packed, apply};
 use crate::aerodynamics::Realization;
 use crate::aeroelastic::CoupledSection;
@@ -27,13 +26,13 @@ const MAX_TERMS: usize = 60;
 
 /// Wind and external forces over a step, polynomials of the time since its start.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Drive {
+pub(super) struct Drive<'a> {
     /// Wind speed, m/s.
     pub wind: f64,
     /// Its rate, m/s².
     pub wind_rate: f64,
-    /// Forces and their coefficients of first and second degree, per unit length.
-    pub force: [[f64; MAX_DOFS]; 3],
+    /// Forces and their coefficients of first and second degree, per unit length; an empty list is zero.
+    pub force: [&'a [f64]; 3],
 }
 
 /// Largest row sums of the scaled system, by the power of the wind speed that they go with.
@@ -52,7 +51,7 @@ struct Norms {
 pub(super) struct Series {
     dofs: usize,
     /// Factor from a displacement to its scaled value.
-    scale: [f64; MAX_DOFS],
+    scale: Vec<f64>,
     /// Unit of the rates, rad/s.
     rate: f64,
     /// `[A₀; A₁]` on `[q̇, q]`.
@@ -75,6 +74,8 @@ struct Work {
     structure: [Vec<f64>; 2],
     /// `[f; g]` of this term and the two before.
     aerodynamic: [Vec<f64>; 3],
+    /// Accelerations by the external forces, by the power of time.
+    push: [Vec<f64>; 3],
 }
 
 impl Series {
@@ -82,13 +83,13 @@ impl Series {
     pub fn new(section: &CoupledSection) -> Self {
         let s = section.structure();
         let n = s.dofs.len();
-        let mut scale = [1.0; MAX_DOFS];
-        for (scale, dof) in scale.iter_mut().zip(&s.dofs) {
-            *scale = power_of_two(dof.motion_scale(s.width_m));
-        }
+        let scale = s.dofs.iter();
+        let scale: Vec<f64> = scale
+            .map(|d| power_of_two(d.motion_scale(s.width_m)))
+            .collect();
         let stiffest = (section.inverse_mass() * &s.stiffness).diagonal().amax();
         let rate = power_of_two(if stiffest > 0.0 { stiffest.sqrt() } else { 1.0 });
-        let (structure, aerodynamic) = matrices(section, &scale[..n], rate);
+        let (structure, aerodynamic) = matrices(section, &scale, rate);
         let filters = aerodynamic.nrows() - n;
         let norms = Norms {
             rate,
@@ -113,6 +114,7 @@ impl Series {
                 term: vec![0.0; 2 * n + filters],
                 structure: [vec![0.0; 2 * n], vec![0.0; 2 * n]],
                 aerodynamic: std::array::from_fn(|_| vec![0.0; n + filters]),
+                push: std::array::from_fn(|_| vec![0.0; n]),
             },
         }
     }
@@ -132,7 +134,13 @@ impl Series {
 
     /// Advances `[q, q̇, x]` (of a sampled model `[q, q̇]`) by a step of so many parts. Says whether the result is finite;
     /// the values are changed only then.
-    pub fn advance(&mut self, values: &mut [f64], drive: &Drive, step: f64, parts: f64) -> bool {
+    pub fn advance(
+        &mut self,
+        values: &mut [f64],
+        drive: &Drive<'_>,
+        step: f64,
+        parts: f64,
+    ) -> bool {
         let (n, rate) = (self.dofs, self.rate);
         for i in 0..n {
             self.work.sum[i] = values[n + i] * (self.scale[i] / rate);
@@ -156,11 +164,11 @@ impl Series {
     }
 
     /// One part from the time `start` on.
-    fn part(&mut self, drive: &Drive, start: f64, tau: f64) {
+    fn part(&mut self, drive: &Drive<'_>, start: f64, tau: f64) {
         // rounding must not turn a wind that comes to rest into a negative one
         let wind = (drive.wind + drive.wind_rate * start).max(0.0);
         let change = drive.wind_rate * tau;
-        let push = self.accelerations(drive, start, tau);
+        self.accelerations(drive, start, tau);
         let norm = self.norm(wind + change.abs(), tau);
         let work = &mut self.work;
         let mut largest = work.begin();
@@ -178,9 +186,8 @@ impl Series {
                 &work.term[self.dofs..],
                 &mut work.aerodynamic[0],
             );
-            let push = push.get(k).copied().unwrap_or_default();
             let factor = tau / (k + 1) as f64;
-            work.next_term(self.dofs, factor, self.rate, (wind, change), &push);
+            work.next_term(self.dofs, factor, self.rate, (wind, change), k);
             let size = largest_of(&work.term);
             largest = if size > largest { size } else { largest };
             last = [size, last[0], last[1]];
@@ -195,23 +202,22 @@ impl Series {
     }
 
     /// Scaled accelerations by the external forces from `start` on, for a time in units of `tau`.
-    fn accelerations(&self, drive: &Drive, start: f64, tau: f64) -> [[f64; MAX_DOFS]; 3] {
-        let [w0, w1, w2] = &drive.force;
-        let mut push = [[0.0; MAX_DOFS]; 3];
+    fn accelerations(&mut self, drive: &Drive<'_>, start: f64, tau: f64) {
+        self.work.push.iter_mut().for_each(|p| p.fill(0.0));
         for j in 0..self.dofs {
-            let now = w0[j] + start * (w1[j] + start * w2[j]);
-            let slope = tau * (w1[j] + 2.0 * start * w2[j]);
-            let bend = tau * tau * w2[j];
+            let [w0, w1, w2] = drive.force.map(|w| w.get(j).copied().unwrap_or(0.0));
+            let now = w0 + start * (w1 + start * w2);
+            let slope = tau * (w1 + 2.0 * start * w2);
+            let bend = tau * tau * w2;
             if now == 0.0 && slope == 0.0 && bend == 0.0 {
                 continue;
             }
-            for (push, by_time) in push.iter_mut().zip([now, slope, bend]) {
+            for (push, by_time) in self.work.push.iter_mut().zip([now, slope, bend]) {
                 for (push, by_force) in push.iter_mut().zip(self.force.column(j).iter()) {
                     *push += by_force * by_time;
                 }
             }
         }
-        push
     }
 }
 
@@ -231,13 +237,15 @@ impl Work {
         factor: f64,
         rate: f64,
         (wind, change): (f64, f64),
-        push: &[f64; MAX_DOFS],
+        k: usize,
     ) {
+        let push = self.push.get(k);
         let [s, s_before] = &self.structure;
         let [g, g_before, g_first] = &self.aerodynamic;
         for i in 0..n {
             let velocity = self.term[i];
-            let mut sum = s[i] + push[i] + wind * (s[n + i] + wind * g[i]);
+            let push = push.map_or(0.0, |p| p[i]);
+            let mut sum = s[i] + push + wind * (s[n + i] + wind * g[i]);
             if change != 0.0 {
                 sum += change * (s_before[n + i] + 2.0 * wind * g_before[i] + change * g_first[i]);
             }
