@@ -22,12 +22,15 @@ pub use similarity::{Similarity, similarities};
 
 use crate::aerodynamics::Transfer;
 use crate::error::{Error, Result, finite, non_negative, positive};
-use crate::section::{Dof, SectionModel};
+use crate::section::{Dof, SectionModel, Translation};
+use nalgebra::DMatrix;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
 /// A point of the girder.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Node {
     /// Name in the model it comes from, usually a number.
     pub name: String,
@@ -38,7 +41,8 @@ pub struct Node {
 }
 
 /// A natural mode of the structure without wind.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct BridgeMode {
     /// Number in the model it comes from.
     pub number: usize,
@@ -200,6 +204,47 @@ impl Bridge {
             .iter()
             .map(|m| format!("mode {}", m.number))
             .collect()
+    }
+
+    /// Displacements and rotations of the mass-normalised modes at some nodes: three rows a node, one column a mode.
+    pub fn shapes_at(&self, nodes: &[usize]) -> DMatrix<f64> {
+        DMatrix::from_fn(3 * nodes.len(), self.modes.len(), |row, m| {
+            let mode = &self.modes[m];
+            mode.shape[nodes[row / 3]][row % 3] / mode.generalised_mass.sqrt()
+        })
+    }
+
+    /// The section that a study of two modes would take: the first mode that moves mainly up and down, the first that mainly
+    /// turns and, where `dofs` has it, the first that moves mainly sideways, each with its mass per length `M/∫φ²`.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when there is no such mode.
+    pub fn equivalent_section(&self, dofs: &[Dof]) -> Result<SectionModel> {
+        let support = |dof: Dof| {
+            let i = motion_index(dof);
+            let mode = (0..self.modes.len()).find(|m| self.main_motion(*m) == i);
+            let mode = mode.map(|m| &self.modes[m]).ok_or_else(|| {
+                let expected = format!("a mode that moves mainly in {} motion", dof.name());
+                Error::input("modes", expected, "none")
+            })?;
+            let nodes = self.nodes.iter().zip(&mode.shape);
+            let square: f64 = nodes.map(|(n, s)| n.length_m * s[i] * s[i]).sum();
+            let inertia = mode.generalised_mass / square;
+            Ok::<_, Error>((inertia, mode.frequency_hz, mode.damping_ratio))
+        };
+        let (vertical, torsion) = (support(Dof::Vertical)?, support(Dof::Torsion)?);
+        let mut section =
+            SectionModel::two_dof(self.width_m(), self.air_density_kg_m3, vertical, torsion);
+        if dofs.contains(&Dof::Lateral) {
+            let (mass_kg_m, frequency_hz, damping_ratio) = support(Dof::Lateral)?;
+            section.lateral = Some(Translation {
+                mass_kg_m,
+                frequency_hz: Some(frequency_hz),
+                stiffness_n_m2: None,
+                damping_ratio,
+            });
+        }
+        Ok(section)
     }
 
     fn check_groups(&self) -> Result<()> {

@@ -17,8 +17,8 @@ type Shape = DVector<Complex64>;
 const MAX_ROUNDS: usize = 12;
 /// Relative size of the last step; the next would be its square.
 const TOLERANCE: f64 = 1e-10;
-/// Part of an eigenvalue by which it is moved where the problem is exactly singular.
-const NUDGE: f64 = 1e-9;
+/// Part of an eigenvalue by which it is moved where the problem is exactly singular; below the tolerance, so that it settles.
+const NUDGE: f64 = 1e-11;
 
 /// Filters that are driven by one coordinate each, alike for all coordinates of the chain.
 #[derive(Debug, Clone)]

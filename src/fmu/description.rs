@@ -24,15 +24,18 @@ pub fn model_description(resources: &Resources) -> Result<String> {
     let Resources {
         model,
         force,
+        bridge,
         table,
         guid,
     } = resources;
-    let what = match force {
-        None => "Bridge deck section under self-excited wind forces",
-        Some(_) => "Self-excited wind forces on a bridge deck, for a structure outside",
+    let what = match (bridge, force) {
+        (Some(_), _) => "Whole bridge under self-excited wind forces",
+        (None, None) => "Bridge deck section under self-excited wind forces",
+        (None, Some(_)) => "Self-excited wind forces on a bridge deck, for a structure outside",
     };
     let naming = match force {
         Some(options) if options.named_strips => "structured",
+        None if bridge.is_some() => "structured",
         _ => "flat",
     };
     let variables = table.variables().iter().enumerate();
@@ -51,8 +54,13 @@ pub fn model_description(resources: &Resources) -> Result<String> {
         .with(
             "description",
             line(&format!(
-                "{what} ({}), forces per unit length; data: {}",
+                "{what} ({}), {}; data: {}",
                 model.model.kind(),
+                if bridge.is_some() {
+                    "forces at nodes"
+                } else {
+                    "forces per unit length"
+                },
                 model.provenance.source
             )),
         )

@@ -4,6 +4,7 @@
 //! and run on with the rates that were set for them (zero unless set); at its end they stand where those rates have
 //! taken them. Outputs are computed once per step when first asked for.
 
+mod bridge_unit;
 mod derivatives;
 mod force_unit;
 mod layout;
@@ -25,6 +26,7 @@ use super::refusal::{Answer, Refusal, Severity};
 use super::resources::Resources;
 use super::variables::VariableTable;
 use crate::error::Result;
+use bridge_unit::BridgeUnit;
 use force_unit::ForceUnit;
 use layout::Layout;
 use saving::{Experiment, Memory};
@@ -51,9 +53,10 @@ impl Instance {
     /// [`crate::Error::Input`] for a model without a realisation, or whose section cannot be coupled with it.
     pub fn new(resources: Resources) -> Result<Self> {
         let layout = Layout::new(&resources.table)?;
-        let mut unit: Box<dyn Unit> = match &resources.force {
-            Some(options) => Box::new(ForceUnit::new(&resources, options)?),
-            None => Box::new(SectionUnit::new(&resources)?),
+        let mut unit: Box<dyn Unit> = match (&resources.bridge, &resources.force) {
+            (Some(options), _) => Box::new(BridgeUnit::new(&resources.table, options)?),
+            (None, Some(options)) => Box::new(ForceUnit::new(&resources, options)?),
+            (None, None) => Box::new(SectionUnit::new(&resources)?),
         };
         let fresh = Memory::new(&resources.table, unit.as_ref());
         let mut memory = fresh.clone();

@@ -1,5 +1,6 @@
 //! The folder `resources/` of an unpacked archive: its location as importers write it, and the model in it.
 
+use super::bridge_options::{BRIDGE_FILE, BridgeOptions};
 use super::force_options::{FORCE_FILE, ForceOptions};
 use super::identity;
 use super::variables::VariableTable;
@@ -18,6 +19,8 @@ pub struct Resources {
     pub model: TrainedModel,
     /// What makes it a unit of forces alone; `None` for the coupled section.
     pub force: Option<ForceOptions>,
+    /// What makes it a whole bridge; `None` for a section.
+    pub bridge: Option<BridgeOptions>,
     /// Its variables.
     pub table: VariableTable,
     /// Identity of table and model file.
@@ -53,6 +56,11 @@ impl Resources {
         } else {
             None
         };
+        let bridge = file.with_file_name(BRIDGE_FILE);
+        if bridge.exists() {
+            let model = read(&file)?;
+            return Self::of_bridge(&model, &read(&bridge)?).map_err(|e| e.in_file(&bridge));
+        }
         Self::from_bytes(&read(&file)?, options.as_deref()).map_err(|e| e.in_file(&file))
     }
 
@@ -71,6 +79,25 @@ impl Resources {
         Ok(Self {
             model,
             force,
+            bridge: None,
+            table,
+            guid,
+        })
+    }
+
+    /// A whole bridge from the bytes of the file of the model of its girder and of the bridge's own.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for bytes that are no trained model, or no bridge.
+    pub fn of_bridge(bytes: &[u8], bridge: &[u8]) -> Result<Self> {
+        let model = TrainedModel::from_json(text(bytes)?)?;
+        let options = BridgeOptions::from_json(text(bridge)?)?;
+        let table = VariableTable::of_bridge(&model, &options)?;
+        let guid = identity::guid(&table, &[bytes, bridge]);
+        Ok(Self {
+            model,
+            force: None,
+            bridge: Some(options),
             table,
             guid,
         })

@@ -4,10 +4,11 @@ use super::super::answer::Answer;
 use super::super::output::{OutputDir, list};
 use super::super::progress::Progress;
 use super::super::stages;
-use super::{card, computed, staged};
+use super::{BRIDGE_FMU, card, computed, staged};
 use crate::error::{Error, Result};
 use crate::files::bridge::BridgeFile;
 use crate::flutter::Onset;
+use crate::fmu::package::{Runtime, package_bridge};
 use crate::study::bridge::{BridgeFlutter, BridgeStudy, demo_bridge_text};
 use crate::study::{Deck, RecordSet, Study, demo_study_text};
 use crate::trained_model::TrainedModel;
@@ -51,6 +52,11 @@ pub(crate) fn run(directory: &Path, force: bool, progress: &Progress) -> Result<
     if let Err(e) = staged(&study, &results, &mut out) {
         failed.push(format!("figures: {e}"));
     }
+    let stage = progress.stage("packing the FMU");
+    if let Err(e) = packed(&study, &mut out) {
+        failed.push(format!("FMU: {e}"));
+    }
+    drop(stage);
     let mut text = card(&study, &results);
     for failure in &failed {
         let _ = writeln!(text, "failed: {failure}");
@@ -80,6 +86,13 @@ pub(crate) fn run(directory: &Path, force: bool, progress: &Progress) -> Result<
     let written = out.commit()?;
     text.push_str(&list(&written));
     Ok(Answer::new(text, &answer_json)?.with_verdict(passed))
+}
+
+/// The FMU of the bridge.
+fn packed(study: &BridgeStudy, out: &mut OutputDir) -> Result<()> {
+    let export = study.export(&[], false)?;
+    let bytes = package_bridge(&export.model, &export.bridge, &Runtime::available()?)?;
+    out.write(BRIDGE_FMU, bytes)
 }
 
 /// The records of the virtual tunnel and the model trained on them.

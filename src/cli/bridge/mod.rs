@@ -19,6 +19,9 @@ use std::path::{Path, PathBuf};
 use account::card;
 use flutter::{computed, staged};
 
+/// The FMU of a bridge.
+pub(crate) const BRIDGE_FMU: &str = "bridge.fmu";
+
 /// Flutter of whole bridges, their modes, and modes of finite-element programs
 #[derive(clap::Subcommand)]
 pub enum Bridge {

@@ -45,14 +45,20 @@ impl Source {
     /// Where the value of a variable with this role comes from.
     pub fn of(role: Role) -> Self {
         match role {
-            Role::WindSpeed | Role::ExternalForce(_) | Role::Motion(..) => Self::Input,
+            Role::WindSpeed | Role::ExternalForce(_) | Role::Motion(..) | Role::NodeForce(..) => {
+                Self::Input
+            }
             Role::Section(_) | Role::Strip(..) | Role::Prediction | Role::MotionDerivatives => {
                 Self::Section
             }
-            Role::InitialDisplacement(_) | Role::InitialRate(_) => Self::Release,
+            Role::InitialDisplacement(_) | Role::InitialRate(_) | Role::InitialMode(_) => {
+                Self::Release
+            }
             Role::OnsetSearchLimit => Self::Limit,
             Role::Constant => Self::Constant,
-            Role::Response(..) | Role::Force(..) => Self::Response,
+            Role::Response(..) | Role::Force(..) | Role::NodeMotion(..) | Role::Mode(..) => {
+                Self::Response
+            }
             Role::Calculated(_) => Self::Calculated,
             Role::Status(_) => Self::Status,
         }

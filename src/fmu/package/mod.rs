@@ -3,6 +3,7 @@
 //! The archive holds the description, one runtime binary per platform, the model, a page that documents it, licences and
 //! an icon. The runtime for the platform of this program is embedded in it; further ones come from a folder.
 
+mod bridge_page;
 mod documentation;
 mod growth;
 mod runtime;
@@ -11,6 +12,7 @@ pub use documentation::documentation;
 pub use growth::{Growing, growth_of};
 pub use runtime::{RUNTIME_DIR_VARIABLE, Runtime};
 
+use super::bridge_options::{BRIDGE_FILE, BridgeOptions};
 use super::description::model_description;
 use super::force_options::{FORCE_FILE, ForceOptions};
 use super::resources::{MODEL_FILE, Resources};
@@ -80,20 +82,53 @@ pub fn package(
     }
     let json = model.to_json()?;
     let resources = Resources::from_bytes(json.as_bytes(), options.as_deref().map(str::as_bytes))?;
-    let xml = model_description(&resources)?;
     let page = documentation(&resources, runtimes)?;
+    let options = options.map(|text| (FORCE_FILE, text));
+    assembled(&resources, json, options, page, runtimes)
+}
+
+/// The FMU of a whole bridge as the bytes of its archive, with these runtimes in it. `model` is the model of the girder with
+/// the section that its first modes make.
+///
+/// # Errors
+/// As [`package`]; what a bridge does below its onset is for the caller to judge.
+pub fn package_bridge(
+    model: &TrainedModel,
+    bridge: &BridgeOptions,
+    runtimes: &[Runtime],
+) -> Result<Vec<u8>> {
+    if runtimes.is_empty() {
+        let expected = "a runtime for at least one platform";
+        return Err(Error::input("FMU", expected, "none"));
+    }
+    let (json, options) = (model.to_json()?, bridge.to_json()?);
+    let resources = Resources::of_bridge(json.as_bytes(), options.as_bytes())?;
+    let page = bridge_page::documentation(&resources, bridge);
+    let options = Some((BRIDGE_FILE, options));
+    assembled(&resources, json, options, page, runtimes)
+}
+
+/// The archive of what has been made.
+fn assembled(
+    resources: &Resources,
+    json: String,
+    options: Option<(&str, String)>,
+    page: String,
+    runtimes: &[Runtime],
+) -> Result<Vec<u8>> {
+    let xml = model_description(resources)?;
     let mut files: BTreeMap<String, Vec<u8>> = BTreeMap::new();
     files.insert("modelDescription.xml".into(), xml.into_bytes());
     files.insert("model.png".into(), ICON.to_vec());
     files.insert(format!("resources/{MODEL_FILE}"), json.into_bytes());
-    if let Some(options) = options {
-        files.insert(format!("resources/{FORCE_FILE}"), options.into_bytes());
+    if let Some((name, options)) = options {
+        files.insert(format!("resources/{name}"), options.into_bytes());
     }
     files.insert("documentation/index.html".into(), page.into_bytes());
     let licences = "documentation/licenses";
     files.insert(
         format!("{licences}/license.txt"),
-        licence(model).into_bytes(),
+        licence(&resources.model).into_bytes(),
     );
     for (name, text) in LICENCES {
         files.insert(format!("{licences}/{name}"), text.into());
@@ -125,7 +160,14 @@ pub fn write_fmu(
     overwrite: Overwrite,
     export: impl Into<Export>,
 ) -> Result<()> {
-    let bytes = package(model, runtimes, export)?;
+    write_archive(path, &package(model, runtimes, export)?, overwrite)
+}
+
+/// Writes the bytes of an archive as [`write_fmu`] does.
+///
+/// # Errors
+/// [`Error::Input`] when the file is there and is not to be replaced; [`Error::Io`].
+pub fn write_archive(path: &Path, bytes: &[u8], overwrite: Overwrite) -> Result<()> {
     let folder = match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
         _ => Path::new("."),
@@ -136,7 +178,7 @@ pub fn write_fmu(
         .suffix(".fmu")
         .tempfile_in(folder)
         .map_err(failed)?;
-    file.write_all(&bytes).map_err(failed)?;
+    file.write_all(bytes).map_err(failed)?;
     readable_by_all(file.as_file()).map_err(failed)?;
     match overwrite {
         Overwrite::Replace => file.persist(path).map_err(|e| failed(e.error))?,

@@ -1,14 +1,15 @@
 //! The self-excited forces of one section of a bridge file.
 
-use crate::aerodynamics::Transfer;
 use crate::aerodynamics::derivatives::{Extrapolation, InterpolatedTable};
 use crate::aerodynamics::quasi_steady::LinearQuasiSteady;
+use crate::aerodynamics::{Lags, RationalModel, Transfer};
 use crate::error::{Error, Result};
 use crate::files::bridge::SectionBlock;
 use crate::files::derivatives::named_table;
 use crate::identification::{FeedThrough, Form, FrequencyFit, fit_table};
 use crate::trained_model::{Model, TrainedModel};
 use crate::units::ReducedFrequencyRange;
+use nalgebra::DMatrix;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -19,8 +20,12 @@ pub struct SectionForces {
     pub table: Option<Arc<dyn Transfer>>,
     /// With a realisation.
     pub model: Arc<dyn Transfer>,
-    /// What it is saved as; `None` for quasi-steady forces.
+    /// What it is saved as.
     pub saved: Option<Model>,
+    /// Where the data come from.
+    pub source: String,
+    /// Licence of the data.
+    pub licence: String,
     /// Reduced frequencies of the tests, of the section.
     pub tested: Option<ReducedFrequencyRange>,
     /// What a user should know of the fit.
@@ -58,6 +63,8 @@ impl SectionForces {
                 table,
                 model,
                 saved: Some(trained.model),
+                source: trained.provenance.source,
+                licence: trained.provenance.licence,
                 tested: Some(trained.tested_range),
                 notes: Vec::new(),
             });
@@ -74,10 +81,22 @@ impl SectionForces {
         };
         let theory =
             LinearQuasiSteady::new(&block.motions, statics.arms, 0.0, statics.coefficients());
+        // rational functions without lags say the same in a form that is saved
+        let (e0, e1) = theory.feed_through();
+        let saved = RationalModel {
+            dofs: block.motions.clone(),
+            a1: e0.clone(),
+            a2: e1.clone(),
+            a3: DMatrix::zeros(e0.nrows(), e0.ncols()),
+            lags: Lags::Shared(Vec::new()),
+            lag_terms: Vec::new(),
+        };
         Ok(Self {
             table: None,
             model: Arc::new(theory),
-            saved: None,
+            saved: Some(Model::Rational(saved)),
+            source: format!("static coefficients of {}", block.name),
+            licence: "that of the bridge file".to_owned(),
             tested: None,
             notes: Vec::new(),
         })
@@ -122,6 +141,8 @@ fn by_table(
         table: None,
         model: Arc::new(model.clone()),
         saved: Some(model),
+        source: table.header.source.clone(),
+        licence: table.header.licence.clone(),
         tested: Some(between.tested_range()),
         notes: report
             .notes

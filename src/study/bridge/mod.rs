@@ -1,9 +1,12 @@
 //! A bridge file resolved: sections with their forces, groups of strips, and what is to be known before a search.
 
 mod answers;
+mod export;
 mod forces;
 
+use answers::coupled;
 pub use answers::{BridgeAnswer, BridgeFlutter, LeftOut, bridge_flutter};
+pub use export::BridgeExport;
 pub use forces::SectionForces;
 
 use crate::bridge::{Bridge, Similarity, StripGroup, similarities};
