@@ -76,7 +76,10 @@ pub fn bridge_flutter(study: &BridgeStudy) -> Result<BridgeFlutter> {
     let section = coupled(&study.by_model)?;
     let speeds = search_speeds(&search);
     let curves = trace_modes("model", &section, &speeds)?;
-    let curves = curves.marked(study.by_model.width_m(), tested);
+    let mut curves = curves.marked(study.by_model.width_m(), tested);
+    // modal shapes of all modes at all speeds are megabytes that nobody reads
+    let points = curves.branches.iter_mut().flat_map(|b| &mut b.points);
+    points.for_each(|p| p.shape = Vec::new());
     let left_out = fewer_modes(study, &by_model, &search).unwrap_or_else(|e| {
         failed.push(format!("fewer modes: {e}"));
         Vec::new()
