@@ -20,7 +20,7 @@
 //!
 //! # Map
 //!
-//! [`aerodynamics`] holds the force models, [`section`] the structure, [`aeroelastic`] their coupling, [`flutter`] modes and
+//! [`aerodynamics`] holds the force models, [`section`] the structure, [`bridge`] the modes of a whole one, [`aeroelastic`] their coupling, [`flutter`] modes and
 //! onsets, [`response`] the exact steps, [`trained_model`] what is saved, [`fmu`] the co-simulation slave with its
 //! packing and importer. `wind_tunnel` leads from load cells to records, `identification` from records and tables to
 //! derivatives and models, `uncertainty` from their scatter to intervals, `selection` to one model among many;
@@ -32,6 +32,7 @@
 
 pub mod aerodynamics;
 pub mod aeroelastic;
+pub mod bridge;
 #[cfg(feature = "cli")]
 pub mod buffeting;
 #[cfg(feature = "cli")]

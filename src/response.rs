@@ -30,7 +30,7 @@ use sampled::Sampling;
 use series::{Drive, Moving, Series};
 use step_cache::StepCache;
 
-/// Degrees of freedom at most: heave, sway, rotation.
+/// Degrees of freedom of a sampled model at most: heave, sway, rotation.
 const MAX_DOFS: usize = Dof::THREE.len();
 /// Samples of the force, or parts of a changing wind, that one step may take: beyond, it is refused at once. Each costs
 /// about a microsecond.
@@ -181,6 +181,8 @@ pub struct Stepper {
     operand: Vec<f64>,
     /// State after it.
     next: Vec<f64>,
+    /// Accelerations and forces of the outputs at hand.
+    both: Vec<f64>,
 }
 
 impl Stepper {
@@ -192,10 +194,11 @@ impl Stepper {
     /// A stepper on whose section gusts act with these forces.
     pub fn in_gusts(section: CoupledSection, force: Option<&GustForce>) -> Self {
         let gusts = force.map(|force| Gusts::new(force, section.structure()));
-        let states = section.states();
-        let operand = vec![0.0; states + 2 * section.structure().dofs.len()];
+        let (states, n) = (section.states(), section.structure().dofs.len());
+        let operand = vec![0.0; states + 2 * n];
         Self {
             next: vec![0.0; states],
+            both: vec![0.0; 2 * n],
             series: Series::new(&section, gusts),
             sampling: Sampling::of(&section),
             section,
@@ -392,15 +395,12 @@ impl Stepper {
             return self.advance_by_matrix(state, inputs, step);
         }
         check_substeps(parts, step)?;
-        let mut drive = Drive {
+        let drive = Drive {
             wind,
             wind_rate,
-            force: Default::default(),
+            force: [&inputs.force, &inputs.force_rate, &[]],
             gust: [inputs.gust_m_s, inputs.gust_rate_m_s2],
         };
-        let n = inputs.force.len();
-        drive.force[0][..n].copy_from_slice(&inputs.force);
-        drive.force[1][..n].copy_from_slice(&inputs.force_rate);
         let moving = Moving {
             values: &mut state.values,
             gusts: gusts.then_some(&mut state.gusts),
@@ -438,12 +438,12 @@ impl Stepper {
             .output_rows(&self.section, inputs.wind_speed_m_s.max(0.0))?;
         self.operand[..state.values.len()].copy_from_slice(&state.values);
         let external = &mut self.operand[state.values.len()..][..n];
-        for ((w, force), gust) in external.iter_mut().zip(&inputs.force).zip(gust_force) {
-            *w = force + gust;
+        external.copy_from_slice(&inputs.force);
+        for (w, gust) in external.iter_mut().zip(gust_force) {
+            *w += gust;
         }
         let columns = state.values.len() + n;
-        let mut both = [0.0; 2 * MAX_DOFS];
-        let both = &mut both[..2 * n];
+        let both = &mut self.both[..];
         apply(rows, &self.operand[..columns], both);
         outputs.acceleration.copy_from_slice(&both[..n]);
         outputs.self_excited_force.copy_from_slice(&both[n..]);

@@ -202,6 +202,7 @@ impl SectionModel {
             mass,
             damping: diagonal(|s| s.damping),
             stiffness: diagonal(|s| s.stiffness),
+            mode_names: Vec::new(),
         })
     }
 

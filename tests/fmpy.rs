@@ -4,6 +4,11 @@
 //! directory, then runs `tests/fmpy` with pytest in an environment of its own; see `common/python.rs`.
 #![cfg(feature = "cli")]
 
+#[path = "common/bridge_fmu.rs"]
+mod bridge_fmu;
+#[allow(dead_code)] // the FMUs need one bridge
+#[path = "common/bridges.rs"]
+mod bridges;
 #[path = "common/in_process.rs"]
 mod in_process;
 #[path = "common/models.rs"]
@@ -90,6 +95,7 @@ fn export() -> PathBuf {
     export_forces(&folder, &runtimes);
     export_gusts(&folder, &runtimes);
     export_reals(&folder, &runtimes);
+    bridge_fmu::export(&folder, &runtimes);
     let text = serde_json::to_string(&json!({
         "models": Value::Object(expected), "three_dof": in_process::three_dof(&lateral),
     }))

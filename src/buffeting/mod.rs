@@ -2,12 +2,14 @@
 //!
 //! Spectra are one-sided over frequency in Hz, `σ² = ∫₀^∞ S df`. The components `u` (along) and `w` (vertical) of the
 //! turbulence are independent. Admittances multiply the amplitude of the gust force; spectra are multiplied by their
-//! square modulus. Forces and motion are those of one section: full correlation along its length.
+//! square modulus. Forces and motion of a section are fully correlated along its length; those of a whole bridge (`span`) as the
+//! coherence of the turbulence says.
 
 mod admittance;
 mod frequency;
 mod problem;
 mod quadrature;
+mod span;
 mod spectrum;
 mod stability;
 mod synthesis;
@@ -18,6 +20,10 @@ pub use frequency::BuffetingResponse;
 pub(crate) use frequency::{buffeting_response, response_spectrum};
 pub(crate) use problem::{BuffetingProblem, GustForces};
 pub use problem::{Gust, Turbulence};
+pub use span::{
+    Coherence, SpanEnsemble, SpanPlan, SpanProblem, SpanResponse, TurbulenceField, span_ensemble,
+    span_response, turbulence_field,
+};
 pub use spectrum::{GustComponent, GustSpectrum, SpectrumFormula, SpectrumShape};
 pub(crate) use stability::unstable_roots;
 pub(crate) use synthesis::synthesise;

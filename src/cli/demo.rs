@@ -14,12 +14,16 @@ const STUDY_FILE: &str = "study.toml";
 /// Run the whole chain on a measured bridge deck (NTNU Langenuen LN21-5200), which is built in
 ///
 /// Example: aerodeck demo --out first-look
+/// Example: aerodeck demo --bridge --out first-bridge
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
 pub(crate) struct Args {
     /// Where the results go.
     #[arg(long, default_value = "aerodeck-out")]
     out: PathBuf,
+    /// The whole Langenuen bridge with this girder instead of a section of it: 39 modes, their flutter and the motion at it.
+    #[arg(long)]
+    bridge: bool,
     /// Replace a study file that differs from the demo's.
     #[arg(long)]
     force: bool,
@@ -27,6 +31,9 @@ pub(crate) struct Args {
 
 /// Runs the command.
 pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+    if args.bridge {
+        return super::bridge::demo::run(&args.out, args.force, progress);
+    }
     let study = Study::from_toml(demo_study_text(), args.out.clone())?;
     let mut out = OutputDir::new(&args.out)?;
     out.write(STUDY_FILE, demo_study_text())?;

@@ -3,6 +3,7 @@
 mod account;
 mod answer;
 mod apology;
+mod bridge;
 mod buffeting;
 mod campaign;
 mod common;
@@ -70,6 +71,8 @@ enum Command {
     Simulate(simulate::Args),
     QuasiSteady(quasi_steady::Args),
     Buffeting(buffeting::Args),
+    #[command(subcommand)]
+    Bridge(bridge::Bridge),
     #[command(subcommand)]
     Fmu(fmu::Fmu),
     #[command(subcommand)]
@@ -143,6 +146,7 @@ fn run(command: &Command, progress: &progress::Progress) -> Result<Answer> {
         Command::Simulate(args) => simulate::run(args),
         Command::QuasiSteady(args) => quasi_steady::run(args, progress),
         Command::Buffeting(args) => buffeting::run(args, progress),
+        Command::Bridge(command) => bridge::run(command, progress),
         Command::Fmu(command) => fmu::run(command, progress),
         Command::Derivatives(command) => derivatives::run(command),
         Command::Validate(args) => validate::run(args, progress),

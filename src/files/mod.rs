@@ -1,7 +1,8 @@
-//! File formats: derivatives, static coefficients, gusts, the files of laboratories, and TOML whose complaints name their line.
+//! File formats: bridges, derivatives, static coefficients, gusts, the files of laboratories, and TOML whose complaints name their line.
 //!
 //! Each format reads and writes value types of the rooms below, which know nothing of files.
 
+pub mod bridge;
 pub mod coefficients;
 pub mod derivatives;
 pub mod gusts;

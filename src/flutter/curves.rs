@@ -1,10 +1,10 @@
 //! Frequencies, damping ratios and shapes of the tracked modes over wind speed (V-f and V-g curves).
 
-use super::following::{Follower, Mode, branch_name};
+use super::following::{Follower, Mode};
 use super::tracking::Tracker;
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, non_negative};
-use crate::section::Dof;
+use crate::section::Structure;
 use crate::state_space::damping_ratio;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use nalgebra::Complex;
@@ -90,12 +90,12 @@ impl FlutterCurves {
 }
 
 /// A branch for every degree of freedom, with room for its points.
-pub(super) fn empty_branches(dofs: &[Dof], points: usize) -> Vec<ModeBranch> {
-    let branch = |dof: &Dof| ModeBranch {
-        name: branch_name(*dof),
+pub(super) fn empty_branches(structure: &Structure, points: usize) -> Vec<ModeBranch> {
+    let branch = |row| ModeBranch {
+        name: structure.branch_name(row),
         points: Vec::with_capacity(points),
     };
-    dofs.iter().map(branch).collect()
+    (0..structure.dofs.len()).map(branch).collect()
 }
 
 /// Follows the structural modes of `section` from still air over the increasing `speeds_m_s`.
@@ -109,7 +109,7 @@ pub fn trace_modes(
 ) -> Result<FlutterCurves> {
     let tracker = Tracker::new(section);
     let mut modes = tracker.start()?;
-    let mut branches = empty_branches(&section.structure().dofs, speeds_m_s.len());
+    let mut branches = empty_branches(section.structure(), speeds_m_s.len());
     let (mut last, mut ended) = (0.0, None);
     for &speed in speeds_m_s {
         if non_negative("wind speeds", speed)? < last {

@@ -7,7 +7,6 @@
 use super::answer::{
     Findings, FlutterSearch, Reach, StableRange, UnstableStart, choose, entry_reason,
 };
-use super::following::branch_name;
 use super::onset::{Onset, OnsetMethod};
 use crate::aerodynamics::{Transfer, TransferMatrix};
 use crate::error::{Error, Result, positive};
@@ -81,8 +80,8 @@ pub fn determinant_onset(
     let mut roots = problem.named_roots(k_max)?;
     let mut reach = Reach::default();
     let mut findings = Findings::judged(StableRange::up_to(speed_max_m_s));
-    for (omega, dof) in &roots {
-        let (speed, branch) = (omega.re * width / k_max, branch_name(*dof));
+    for (omega, row) in &roots {
+        let (speed, branch) = (omega.re * width / k_max, structure.branch_name(*row));
         reach.entries.push((speed, branch.clone()));
         if omega.im < -ROUNDING * omega.norm() {
             let at = (speed, omega * Complex::i());
@@ -96,23 +95,25 @@ pub fn determinant_onset(
         let current = problem.frequencies(at(i))?;
         let before: Vec<_> = roots.iter().map(|r| r.0).collect();
         let mut next = Vec::with_capacity(roots.len());
-        for ((root, dof), after) in roots.into_iter().zip(paired(&before, &current)) {
+        for ((root, row), after) in roots.into_iter().zip(paired(&before, &current)) {
             let Some(after) = after else {
                 continue;
             };
             if root.im > 0.0 && after.im <= 0.0 {
                 let (from, to) = ((at(i - 1), root), (at(i), after));
-                let onset = problem.refine(name, from, to, branch_name(dof))?;
+                let onset = problem.refine(name, from, to, structure.branch_name(row))?;
                 if onset.at.speed_m_s <= speed_max_m_s {
                     findings.crossings.push(onset);
                 }
             }
-            next.push((after, dof));
+            next.push((after, row));
         }
         roots = next;
     }
     // at the lowest K each root has come to a speed of its own; beyond the slowest nothing was looked at
-    let exit = |(root, dof): &(Complex<f64>, Dof)| (root.re * width / k_min, branch_name(*dof));
+    let exit = |(root, row): &(Complex<f64>, usize)| {
+        (root.re * width / k_min, structure.branch_name(*row))
+    };
     reach.exits = roots.iter().map(exit).collect();
     findings.judged = reach.judged(speed_max_m_s);
     Ok(choose(findings, Some(range)))
@@ -153,13 +154,13 @@ struct Problem<'a> {
 }
 
 impl Problem<'_> {
-    /// Roots at the reduced frequency `k` with the degrees of freedom whose modes they are: those of the structure without
-    /// air, followed while the air comes to its density.
-    fn named_roots(&self, k: f64) -> Result<Vec<(Complex<f64>, Dof)>> {
+    /// Roots at the reduced frequency `k` with the rows whose modes they are: those of the structure without air, followed
+    /// while the air comes to its density.
+    fn named_roots(&self, k: f64) -> Result<Vec<(Complex<f64>, usize)>> {
         let mut still = self.frequencies_in(k, 0.0)?;
         still.sort_by(|a, b| a.re.total_cmp(&b.re));
-        let dofs = self.structure.dofs_by_frequency();
-        let mut named: Vec<_> = still.into_iter().zip(dofs).collect();
+        let rows = self.structure.rows_by_frequency();
+        let mut named: Vec<_> = still.into_iter().zip(rows).collect();
         for i in 1..=AIR_STEPS {
             let current = self.frequencies_in(k, i as f64 / AIR_STEPS as f64)?;
             let before: Vec<_> = named.iter().map(|r| r.0).collect();

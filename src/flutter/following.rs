@@ -4,7 +4,7 @@ use super::answer::{Findings, UnstableStart, entry_reason};
 use super::onset::{Onset, OnsetMethod};
 use super::scan::growing;
 use crate::error::{Error, Result};
-use crate::section::{Dof, Structure};
+use crate::section::Structure;
 use crate::state_space::root;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use nalgebra::{Complex, DVector};
@@ -71,7 +71,7 @@ pub(super) trait Follower {
 
     /// Name of the branch.
     fn name(&self, branch: usize) -> String {
-        branch_name(self.structure().dofs[branch])
+        self.structure().branch_name(branch)
     }
 }
 
@@ -162,9 +162,4 @@ pub(super) fn dimensionless(s: &Structure, shape: &DVector<Complex<f64>>) -> DVe
 /// Modal assurance criterion of two shapes: 1 for the same shape.
 pub(super) fn assurance(u: &DVector<Complex<f64>>, v: &DVector<Complex<f64>>) -> f64 {
     u.dotc(v).norm_sqr() / (u.norm_squared() * v.norm_squared())
-}
-
-/// Name of the branch that starts as the mode of `dof`.
-pub(super) fn branch_name(dof: Dof) -> String {
-    dof.name().to_owned()
 }

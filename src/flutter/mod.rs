@@ -4,6 +4,7 @@
 //! determinant in `(V, ω)` and the p-k iteration (for any `G(K)`, tables and the flat plate included).
 
 mod answer;
+mod bridge_motion;
 mod characteristic;
 mod critical_point;
 mod curves;
@@ -13,6 +14,7 @@ mod dynamic_stiffness;
 mod following;
 mod instability;
 mod missed;
+mod modal_characteristic;
 mod onset;
 mod pk;
 mod pk_following;
@@ -26,6 +28,7 @@ mod tracking;
 mod unwanted;
 
 pub use answer::{FlutterSearch, StableRange, UnstableStart};
+pub use bridge_motion::{BridgeMotion, ModeShare, NodeMotion, motion_at_onset, static_deflection};
 pub use critical_point::CriticalPoint;
 pub use curves::{FlutterCurves, ModeBranch, ModePoint, trace_modes};
 pub use determinant::{determinant_onset, impedance};

@@ -44,7 +44,7 @@ pub fn pk_curves(
         last = speed;
     }
     let iteration = Iteration { structure, model };
-    let mut branches = empty_branches(&structure.dofs, speeds_m_s.len());
+    let mut branches = empty_branches(structure, speeds_m_s.len());
     iteration.march(speeds_m_s, &mut |_, at| {
         let asked = speeds_m_s.binary_search_by(|v| v.total_cmp(&at.speed));
         for mode in at.all.iter().filter(|_| asked.is_ok()) {

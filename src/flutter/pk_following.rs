@@ -9,7 +9,7 @@ use super::onset::{Onset, OnsetMethod};
 use super::quasi_pk::{pk_mode, pk_mode_at};
 use crate::aerodynamics::Transfer;
 use crate::error::{Error, Result};
-use crate::section::{Dof, Structure};
+use crate::section::Structure;
 use crate::state_space::{eigenvalues, eigenvector, first_order, root};
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use nalgebra::{Complex, DVector};
@@ -203,11 +203,10 @@ impl Iteration<'_> {
         let mut natural = eigenvalues(&a).ok()?;
         natural.retain(|z| z.im > 0.0);
         natural.sort_by(|a, b| a.im.total_cmp(&b.im));
-        let index = |dof: &Dof| s.dofs.iter().position(|d| d == dof);
-        let modes = s.dofs_by_frequency();
-        let modes = modes.iter().zip(natural).map(|(dof, lambda)| {
+        let rows = s.rows_by_frequency();
+        let modes = rows.into_iter().zip(natural).map(|(row, lambda)| {
             let shape = eigenvector(&a, lambda).ok()?.rows(0, n).into_owned();
-            Some(still_mode(index(dof)?, lambda, shape))
+            Some(still_mode(row, lambda, shape))
         });
         let mut modes: Vec<_> = modes.collect::<Option<_>>()?;
         modes.sort_by_key(|m| m.branch);

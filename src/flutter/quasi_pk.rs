@@ -7,13 +7,14 @@
 
 use super::determinant::self_excited;
 use super::following::Mode;
+use super::modal_characteristic::inverse_step;
 use super::tracking::oscillates;
 use crate::aerodynamics::Transfer;
 use crate::error::{Error, Result};
 use crate::section::Structure;
 use crate::state_space::{eigenvalues, eigenvector, first_order};
 use crate::units::ReducedFrequency;
-use nalgebra::DMatrix;
+use nalgebra::{Complex, DMatrix};
 
 /// The iteration contracts by about ten a round; one that needs more than this has no solution.
 const MAX_ROUNDS: usize = 200;
@@ -49,6 +50,9 @@ fn settle(
     speed: impl Fn(f64) -> f64,
     start: &Mode,
 ) -> Result<Option<Mode>> {
+    if structure.is_modal() {
+        return settle_by_shape(structure, model, speed, start);
+    }
     let mut lambda = start.lambda;
     for _ in 0..MAX_ROUNDS {
         let matrix = frozen(structure, model, speed(lambda.im), lambda.im)?;
@@ -71,8 +75,53 @@ fn settle(
     Ok(None)
 }
 
-/// State matrix of `[q, q̇]` with the forces frozen at one frequency.
-fn frozen(s: &Structure, model: &dyn Transfer, speed: f64, omega: f64) -> Result<DMatrix<f64>> {
+/// The same for many modes: each round is a step of inverse iteration from the shape before with the forces at the last
+/// frequency, so that no eigenvalue is computed that is not asked for.
+fn settle_by_shape(
+    s: &Structure,
+    model: &dyn Transfer,
+    speed: impl Fn(f64) -> f64,
+    start: &Mode,
+) -> Result<Option<Mode>> {
+    let mut lambda = start.lambda;
+    let mut shape = start.shape.normalize();
+    for _ in 0..MAX_ROUNDS {
+        let force = frozen_forces(s, model, speed(lambda.im), lambda.im)?;
+        let on_rate = DMatrix::from_fn(shape.len(), shape.len(), |i, j| {
+            s.damping[(i, j)] - force[(i, j)].im / lambda.im
+        });
+        let stiffness = DMatrix::from_fn(shape.len(), shape.len(), |i, j| {
+            (lambda * s.mass[(i, j)] + on_rate[(i, j)]) * lambda + s.stiffness[(i, j)]
+                - force[(i, j)].re
+        });
+        let slope = DMatrix::from_fn(shape.len(), shape.len(), |i, j| {
+            lambda * (2.0 * s.mass[(i, j)]) + on_rate[(i, j)]
+        });
+        let Some(step) = inverse_step(stiffness, slope * &shape, &mut shape) else {
+            return Ok(None);
+        };
+        lambda -= step;
+        if !oscillates(&lambda) {
+            return Ok(None);
+        }
+        if step.norm() <= TOLERANCE * lambda.norm() {
+            return Ok(Some(Mode {
+                lambda,
+                shape,
+                ..*start
+            }));
+        }
+    }
+    Ok(None)
+}
+
+/// Forces of unit motions, frozen at the frequency `omega`.
+fn frozen_forces(
+    s: &Structure,
+    model: &dyn Transfer,
+    speed: f64,
+    omega: f64,
+) -> Result<DMatrix<Complex<f64>>> {
     let k = ReducedFrequency::from_circular(omega, s.width_m, speed);
     // on the way to a mode a table is asked beyond its ends; no mode is taken from there
     let k = model.known_range().map_or(k, |range| {
@@ -81,7 +130,12 @@ fn frozen(s: &Structure, model: &dyn Transfer, speed: f64, omega: f64) -> Result
                 .clamp(range.min.full_width(), range.max.full_width()),
         )
     });
-    let force = self_excited(s, model, k, speed)?;
+    self_excited(s, model, k, speed)
+}
+
+/// State matrix of `[q, q̇]` with the forces frozen at one frequency.
+fn frozen(s: &Structure, model: &dyn Transfer, speed: f64, omega: f64) -> Result<DMatrix<f64>> {
+    let force = frozen_forces(s, model, speed, omega)?;
     let inverse = s
         .mass
         .clone()

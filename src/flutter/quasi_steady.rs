@@ -3,7 +3,7 @@
 
 use super::answer::{FlutterSearch, StableRange, UnstableStart};
 use super::curves::{FlutterCurves, empty_branches, trace_modes};
-use super::following::{Mode, branch_name};
+use super::following::Mode;
 use super::instability::{ModeAtOnset, classify};
 use super::onset::{Onset, OnsetMethod};
 use super::search::OnsetSearch;
@@ -98,7 +98,7 @@ pub fn quasi_steady_modes(
     theory: &QuasiSteady,
     path: &EquilibriumPath,
 ) -> Result<FlutterCurves> {
-    let mut branches = empty_branches(&structure.dofs, path.points.len());
+    let mut branches = empty_branches(structure, path.points.len());
     for point in &path.points {
         let linear = theory.linearised(point.rotation_rad)?;
         let at = trace_modes(
@@ -145,10 +145,7 @@ fn fastest_growth(section: &CoupledSection, speed_m_s: f64) -> Result<f64> {
 fn grows_in_still_air(name: &str, section: &CoupledSection, speed: f64) -> Result<UnstableStart> {
     let mode = least_damped(section, speed)?;
     let structure = section.structure();
-    let (at, branch) = (
-        (speed, mode.lambda),
-        branch_name(structure.dofs[mode.branch]),
-    );
+    let (at, branch) = ((speed, mode.lambda), structure.branch_name(mode.branch));
     let (method, why) = (OnsetMethod::Eigenvalues, "nearly still air".to_owned());
     Ok(UnstableStart::new(name, method, structure, at, branch, why))
 }
@@ -180,7 +177,7 @@ fn described(name: &str, structure: &Structure, theory: &QuasiSteady, speed: f64
         structure,
         (speed, mode.lambda.im),
         &mode.shape,
-        branch_name(structure.dofs[mode.branch]),
+        structure.branch_name(mode.branch),
     );
     let slope = damping_ratio(mode.lambda) - damping_ratio(nearby.lambda);
     onset.damping_slope_s_m = Some(slope / (speed * SLOPE_STEP));

@@ -1,7 +1,7 @@
 //! All eigenvalues over wind speed: the speeds at which any oscillation grows, found without following modes.
 
 use super::answer::StableRange;
-use super::following::{branch_name, dimensionless};
+use super::following::dimensionless;
 use super::tracking::{Tracker, lowest_speed, mode_shape, oscillates};
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, non_negative, positive};
@@ -310,20 +310,20 @@ impl<'a> Scan<'a> {
     /// The structural mode that `lambda` belongs to, followed from still air; where modes cannot be followed, the degree
     /// of freedom that moves most.
     pub(super) fn branch(&self, speed: f64, lambda: Complex<f64>) -> String {
-        let dofs = &self.section.structure().dofs;
+        let structure = self.section.structure();
         match Tracker::new(self.section).at(speed) {
             Ok(tracked) => tracked
                 .all
                 .iter()
                 .find(|m| (m.lambda - lambda).norm() < 1e-6 * lambda.norm())
-                .map_or(AERODYNAMIC.to_owned(), |m| branch_name(dofs[m.branch])),
+                .map_or(AERODYNAMIC.to_owned(), |m| structure.branch_name(m.branch)),
             Err(_) => self
                 .section
                 .at(speed)
                 .and_then(|system| mode_shape(self.section, &system, lambda))
                 .map_or(AERODYNAMIC.to_owned(), |shape| {
-                    let sizes = dimensionless(self.section.structure(), &shape).map(|z| z.norm());
-                    branch_name(dofs[sizes.imax()])
+                    let sizes = dimensionless(structure, &shape).map(|z| z.norm());
+                    structure.branch_name(sizes.imax())
                 }),
         }
     }

@@ -7,6 +7,7 @@ use super::characteristic::Characteristic;
 use super::following::{
     Follower, MIN_ASSURANCE, Mode, Modes, SEPARATION, assurance, dimensionless,
 };
+use super::modal_characteristic::ModalCharacteristic;
 use super::onset::{Onset, OnsetMethod};
 use crate::aeroelastic::{CoupledSection, CoupledSystem};
 use crate::error::{Error, Result};
@@ -33,14 +34,34 @@ const NEARLY_CRITICAL: f64 = 0.8;
 #[derive(Debug)]
 pub(super) struct Tracker<'a> {
     section: &'a CoupledSection,
-    characteristic: Option<Characteristic>,
+    correction: Correction,
+}
+
+/// How a predicted mode is corrected.
+#[derive(Debug)]
+enum Correction {
+    /// Newton's method on the determinant, up to three degrees of freedom.
+    Determinant(Box<Characteristic>),
+    /// Inverse iteration from the shape before, for modes of a whole bridge.
+    Shapes(Box<ModalCharacteristic>),
+    /// The nearest eigenvalue of the state matrix.
+    Nearest,
+}
+
+impl Correction {
+    fn of(section: &CoupledSection) -> Self {
+        let small = Characteristic::new(section).map(|c| Self::Determinant(Box::new(c)));
+        small
+            .or_else(|| ModalCharacteristic::new(section).map(|c| Self::Shapes(Box::new(c))))
+            .unwrap_or(Self::Nearest)
+    }
 }
 
 impl<'a> Tracker<'a> {
     pub(super) fn new(section: &'a CoupledSection) -> Self {
         Self {
             section,
-            characteristic: Characteristic::new(section),
+            correction: Correction::of(section),
         }
     }
 
@@ -68,9 +89,21 @@ impl<'a> Tracker<'a> {
             .iter()
             .map(|mode| mode.lambda + mode.slope * (speed - before.speed))
             .collect();
-        let corrected = match &self.characteristic {
-            Some(problem) => newton(self.section, problem, &predicted, speed),
-            None => nearest(self.section, &predicted, speed)?,
+        let corrected = match &self.correction {
+            Correction::Determinant(problem) => {
+                let mut work = Vec::new();
+                let roots = predicted
+                    .iter()
+                    .map(|l| problem.solve(*l, speed, &mut work));
+                distinct(self.section, roots)
+            }
+            Correction::Shapes(problem) => {
+                let problem = problem.at(speed);
+                let pairs = predicted.iter().zip(&before.all);
+                let roots = pairs.map(|(l, mode)| problem.solve(*l, &mode.shape));
+                distinct(self.section, roots)
+            }
+            Correction::Nearest => nearest(self.section, &predicted, speed)?,
         };
         let Some(roots) = corrected else {
             return Ok(None);
@@ -139,8 +172,9 @@ impl Follower for Tracker<'_> {
         let nearby = self.mode_at(low, speed * (1.0 - SLOPE_STEP), mode.branch)?;
         let slope = damping_ratio(mode.lambda) - damping_ratio(nearby.lambda);
         onset.damping_slope_s_m = Some(slope / (speed * SLOPE_STEP));
-        let dof = self.structure().dofs[mode.branch];
-        if single_dof(dof, onset.mode_ratio) {
+        let s = self.structure();
+        let dof = s.dofs[mode.branch];
+        if !s.is_modal() && single_dof(dof, onset.mode_ratio) {
             onset.warnings.push(format!(
                 "the mode is almost purely {}: a one-degree-of-freedom instability",
                 dof.name()
@@ -178,17 +212,14 @@ pub(super) fn oscillates(lambda: &Complex<f64>) -> bool {
     lambda.im > 1e-6 * lambda.norm()
 }
 
-/// Corrects every prediction by Newton's method; `None` when one fails, turns real, or two meet.
-fn newton(
+/// The corrected modes; `None` when a correction failed, turned real, or two meet.
+fn distinct(
     section: &CoupledSection,
-    problem: &Characteristic,
-    predicted: &[Complex<f64>],
-    speed: f64,
+    corrected: impl Iterator<Item = Option<Root>>,
 ) -> Option<Vec<Root>> {
-    let mut work = Vec::new();
-    let mut roots: Vec<Root> = Vec::with_capacity(predicted.len());
-    for start in predicted {
-        let (lambda, shape) = problem.solve(*start, speed, &mut work)?;
+    let mut roots: Vec<Root> = Vec::new();
+    for root in corrected {
+        let (lambda, shape) = root?;
         let distinct = |(other, _): &Root| (other - lambda).norm() > SEPARATION * lambda.norm();
         if !oscillates(&lambda) || !roots.iter().all(distinct) {
             return None;

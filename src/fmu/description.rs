@@ -24,14 +24,16 @@ pub fn model_description(resources: &Resources, listing: Listing) -> Result<Stri
     let Resources {
         model,
         force,
+        bridge,
         table,
         guid,
         ..
     } = resources;
     let (table, references) = &table.listed(listing);
-    let what = match force {
-        None => "Bridge deck section under self-excited wind forces",
-        Some(_) => "Self-excited wind forces on a bridge deck, for a structure outside",
+    let what = match (bridge, force) {
+        (Some(_), _) => "Whole bridge under self-excited wind forces",
+        (None, None) => "Bridge deck section under self-excited wind forces",
+        (None, Some(_)) => "Self-excited wind forces on a bridge deck, for a structure outside",
     };
     let variables = references.iter().zip(table.variables());
     let variables = variables
@@ -49,8 +51,13 @@ pub fn model_description(resources: &Resources, listing: Listing) -> Result<Stri
         .with(
             "description",
             line(&format!(
-                "{what} ({}), forces per unit length; data: {}",
+                "{what} ({}), {}; data: {}",
                 model.model.kind(),
+                if bridge.is_some() {
+                    "forces at nodes"
+                } else {
+                    "forces per unit length"
+                },
                 model.provenance.source
             )),
         )

@@ -5,6 +5,7 @@
 //! and run on with the rates that were set for them (zero unless set); at its end they stand where those rates have
 //! taken them. Outputs are computed once per step when first asked for.
 
+mod bridge_unit;
 mod derivatives;
 mod force_unit;
 mod integration;
@@ -27,6 +28,7 @@ use super::refusal::{Answer, Refusal, Severity};
 use super::resources::Resources;
 use super::variables::VariableTable;
 use crate::error::Result;
+use bridge_unit::BridgeUnit;
 use force_unit::ForceUnit;
 use layout::Layout;
 use saving::{Experiment, Memory};
@@ -53,9 +55,10 @@ impl Instance {
     /// # Errors
     /// [`crate::Error::Input`] for a model without a realisation, or whose section cannot be coupled with it.
     pub fn new(resources: Resources) -> Result<Self> {
-        let mut unit: Box<dyn Unit> = match &resources.force {
-            Some(options) => Box::new(ForceUnit::new(&resources, options)?),
-            None => Box::new(SectionUnit::new(&resources)?),
+        let mut unit: Box<dyn Unit> = match (&resources.bridge, &resources.force) {
+            (Some(options), _) => Box::new(BridgeUnit::new(&resources.table, options)?),
+            (None, Some(options)) => Box::new(ForceUnit::new(&resources, options)?),
+            (None, None) => Box::new(SectionUnit::new(&resources)?),
         };
         let layout = Layout::new(&resources.table, |place| unit.held_output(place))?;
         let fresh = Memory::new(&resources.table, unit.as_ref());

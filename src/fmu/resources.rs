@@ -1,5 +1,6 @@
 //! The folder `resources/` of an unpacked archive: its location as importers write it, and the model in it.
 
+use super::bridge_options::{BRIDGE_FILE, BridgeOptions};
 use super::force_options::{FORCE_FILE, ForceOptions};
 use super::identity;
 use super::variables::VariableTable;
@@ -32,6 +33,8 @@ pub struct Resources {
     pub force: Option<ForceOptions>,
     /// Forces of gusts; `None` where it takes no gusts.
     pub gusts: Option<GustForce>,
+    /// What makes it a whole bridge; `None` for a section.
+    pub bridge: Option<BridgeOptions>,
     /// Its variables.
     pub table: VariableTable,
     /// Identity of table and model file.
@@ -66,6 +69,10 @@ impl Resources {
             option.exists().then(|| read(&option)).transpose()
         };
         let (force, gusts) = (optional(FORCE_FILE)?, optional(GUST_FILE)?);
+        if let Some(bridge) = optional(BRIDGE_FILE)? {
+            let place = file.with_file_name(BRIDGE_FILE);
+            return Self::of_bridge(&read(&file)?, &bridge).map_err(|e| e.in_file(&place));
+        }
         let options = OptionFiles {
             force: force.as_deref(),
             gusts: gusts.as_deref(),
@@ -95,6 +102,26 @@ impl Resources {
             model,
             force,
             gusts,
+            bridge: None,
+            table,
+            guid,
+        })
+    }
+
+    /// A whole bridge from the bytes of the file of the model of its girder and of the bridge's own.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for bytes that are no trained model, or no bridge.
+    pub fn of_bridge(bytes: &[u8], bridge: &[u8]) -> Result<Self> {
+        let model = TrainedModel::from_json(text(bytes)?)?;
+        let options = BridgeOptions::from_json(text(bridge)?)?;
+        let table = VariableTable::of_bridge(&model, &options)?;
+        let guid = identity::guid(&table, &[bytes, bridge]);
+        Ok(Self {
+            model,
+            force: None,
+            gusts: None,
+            bridge: Some(options),
             table,
             guid,
         })

@@ -4,6 +4,7 @@
 //! the documentation page are all made from it. The value reference of a variable is its place in the table, over all
 //! types.
 
+mod bridge;
 mod dependencies;
 mod force;
 #[cfg(feature = "cli")]
@@ -20,6 +21,7 @@ pub use super::standard::{Causality, Initial, Variability};
 pub use listing::Listing;
 pub use parameters::SectionParameter;
 
+use super::bridge_options::BridgeOptions;
 use super::force_options::ForceOptions;
 use super::si::Unit;
 use crate::aerodynamics::GustForce;
@@ -149,6 +151,25 @@ pub enum Role {
     Prediction,
     /// Which derivatives of the motion the importer sets.
     MotionDerivatives,
+    /// External force on a node of a bridge, by its place among those named.
+    NodeForce(usize, Dof),
+    /// Motion of a node of a bridge.
+    NodeMotion(usize, Response, Dof),
+    /// A number of a mode of a bridge.
+    Mode(usize, ModeOutput),
+    /// Modal coordinate at release.
+    InitialMode(usize),
+}
+
+/// A number of a mode.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ModeOutput {
+    /// Its coordinate.
+    Coordinate,
+    /// The rate of it.
+    Rate,
+    /// The self-excited force on it.
+    Force,
 }
 
 /// A force on a strip.
@@ -271,6 +292,17 @@ impl VariableTable {
             }
             Some(options) => force::variables(model, options, gusts)?,
         };
+        let table = Self { variables };
+        table.variables.iter().try_for_each(check_start)?;
+        Ok(table)
+    }
+
+    /// The table of a whole bridge.
+    ///
+    /// # Errors
+    /// As [`VariableTable::new`].
+    pub fn of_bridge(model: &TrainedModel, options: &BridgeOptions) -> Result<Self> {
+        let variables = bridge::variables(model, options)?;
         let table = Self { variables };
         table.variables.iter().try_for_each(check_start)?;
         Ok(table)

@@ -67,8 +67,8 @@ impl Sampling {
         apply(&self.next, &self.operand, &mut values[2 * self.dofs..]);
     }
 
-    /// Wind and forces from `time` after the start of the step on.
-    fn drive(&self, values: &[f64], inputs: &Inputs, time: f64) -> Drive {
+    /// Wind, and the coefficients of the forces, from `time` after the start of the step on.
+    fn drive(&self, values: &[f64], inputs: &Inputs, time: f64) -> (f64, [[f64; MAX_DOFS]; 3]) {
         let rate = inputs.wind_speed_rate_m_s2;
         let wind = wind_after(inputs, time);
         let mut force = [[0.0; MAX_DOFS]; 3];
@@ -78,12 +78,7 @@ impl Sampling {
             force[1][i] = w_rate + 2.0 * held[i] * wind * rate;
             force[2][i] = held[i] * rate * rate;
         }
-        Drive {
-            wind,
-            wind_rate: rate,
-            force,
-            gust: inputs.gusts_after(time),
-        }
+        (wind, force)
     }
 }
 
@@ -145,7 +140,13 @@ impl Stepper {
         if piece <= 0.0 {
             return Ok(());
         }
-        let drive = self.sampling()?.drive(&state.values, inputs, time);
+        let (wind, force) = self.sampling()?.drive(&state.values, inputs, time);
+        let drive = Drive {
+            wind,
+            wind_rate: inputs.wind_speed_rate_m_s2,
+            force: [&force[0], &force[1], &force[2]],
+            gust: inputs.gusts_after(time),
+        };
         let gusts = self.gusts_act(state, inputs);
         let fastest = drive.wind.max(wind_after(inputs, time + piece));
         let parts = self.series.parts(fastest, piece, gusts);

@@ -13,7 +13,6 @@
 //! below rounding, so that nothing is lost against the exponential: the wind's change costs no accuracy. Gusts add their lags
 //! to the system and their force to `w`.
 
-use super::MAX_DOFS;
 use super::gusts::{GustCourse, Gusts};
 use super::packed::{Packed, apply};
 use crate::aerodynamics::Realization;
@@ -29,13 +28,13 @@ const MAX_TERMS: usize = 60;
 
 /// Wind and external forces over a step, polynomials of the time since its start.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Drive {
+pub(super) struct Drive<'a> {
     /// Wind speed, m/s.
     pub wind: f64,
     /// Its rate, m/s².
     pub wind_rate: f64,
-    /// Forces and their coefficients of first and second degree, per unit length.
-    pub force: [[f64; MAX_DOFS]; 3],
+    /// Forces and their coefficients of first and second degree, per unit length; an empty list is zero.
+    pub force: [&'a [f64]; 3],
     /// Gusts and their rates.
     pub gust: GustCourse,
 }
@@ -64,7 +63,7 @@ struct Norms {
 pub(super) struct Series {
     dofs: usize,
     /// Factor from a displacement to its scaled value.
-    scale: [f64; MAX_DOFS],
+    scale: Vec<f64>,
     /// Unit of the rates, rad/s.
     rate: f64,
     /// `[A₀; A₁]` on `[q̇, q]`.
@@ -90,6 +89,10 @@ struct Work {
     aerodynamic: [Vec<f64>; 3],
     /// Gusts behind the lags of their admittance.
     gusts: Vec<f64>,
+    /// Accelerations by the external forces, by the power of time.
+    push: [Vec<f64>; 3],
+    /// Accelerations by the gusts, of the order at hand.
+    by_gusts: Vec<f64>,
 }
 
 impl Series {
@@ -97,13 +100,13 @@ impl Series {
     pub fn new(section: &CoupledSection, gusts: Option<Gusts>) -> Self {
         let s = section.structure();
         let n = s.dofs.len();
-        let mut scale = [1.0; MAX_DOFS];
-        for (scale, dof) in scale.iter_mut().zip(&s.dofs) {
-            *scale = power_of_two(dof.motion_scale(s.width_m));
-        }
+        let scale = s.dofs.iter();
+        let scale: Vec<f64> = scale
+            .map(|d| power_of_two(d.motion_scale(s.width_m)))
+            .collect();
         let stiffest = (section.inverse_mass() * &s.stiffness).diagonal().amax();
         let rate = power_of_two(if stiffest > 0.0 { stiffest.sqrt() } else { 1.0 });
-        let (structure, aerodynamic) = matrices(section, &scale[..n], rate);
+        let (structure, aerodynamic) = matrices(section, &scale, rate);
         let filters = aerodynamic.nrows() - n;
         let norms = Norms {
             rate,
@@ -131,6 +134,8 @@ impl Series {
                 structure: [vec![0.0; 2 * n], vec![0.0; 2 * n]],
                 aerodynamic: std::array::from_fn(|_| vec![0.0; n + filters]),
                 gusts: Vec::new(),
+                push: std::array::from_fn(|_| vec![0.0; n]),
+                by_gusts: vec![0.0; n],
             },
         }
     }
@@ -159,7 +164,13 @@ impl Series {
     }
 
     /// Advances what moves by a step of so many parts. Says whether the result is finite; the values are changed only then.
-    pub fn advance(&mut self, moving: Moving<'_>, drive: &Drive, step: f64, parts: f64) -> bool {
+    pub fn advance(
+        &mut self,
+        moving: Moving<'_>,
+        drive: &Drive<'_>,
+        step: f64,
+        parts: f64,
+    ) -> bool {
         let Moving { values, gusts } = moving;
         let (n, rate) = (self.dofs, self.rate);
         for i in 0..n {
@@ -193,11 +204,11 @@ impl Series {
     }
 
     /// One part from the time `start` on.
-    fn part(&mut self, drive: &Drive, (start, tau): (f64, f64), gusts: bool) {
+    fn part(&mut self, drive: &Drive<'_>, (start, tau): (f64, f64), gusts: bool) {
         // rounding must not turn a wind that comes to rest into a negative one
         let wind = (drive.wind + drive.wind_rate * start).max(0.0);
         let change = drive.wind_rate * tau;
-        let push = self.accelerations(drive, start, tau);
+        self.accelerations(drive, start, tau);
         let norm = self.norm(wind + change.abs(), tau);
         let work = &mut self.work;
         let mut gusts = self.gusts.as_mut().filter(|_| gusts);
@@ -222,20 +233,17 @@ impl Series {
                 &work.term[self.dofs..],
                 &mut work.aerodynamic[0],
             );
-            let mut push = push.get(k).copied().unwrap_or_default();
             let mut pushed = 0.0;
             if let Some(gusts) = &mut gusts {
                 let course = [gust_now, gust_slope].get(k).copied().unwrap_or_default();
                 let force = gusts.next((k, tau), (wind, change), course, &mut work.gusts);
-                for (i, push) in push[..self.dofs].iter_mut().enumerate() {
-                    let by_gust = (0..self.dofs).map(|j| self.force[(i, j)] * force[j]);
-                    let by_gust: f64 = by_gust.sum();
-                    pushed = f64::max(pushed, tau * by_gust.abs());
-                    *push += by_gust;
+                for (i, push) in work.by_gusts.iter_mut().enumerate() {
+                    *push = (0..self.dofs).map(|j| self.force[(i, j)] * force[j]).sum();
+                    pushed = f64::max(pushed, tau * push.abs());
                 }
             }
             let factor = tau / (k + 1) as f64;
-            work.next_term(self.dofs, factor, self.rate, (wind, change), &push);
+            work.next_term(self.dofs, factor, self.rate, (wind, change), k);
             let size = f64::max(largest_of(&work.term), pushed);
             largest = if size > largest { size } else { largest };
             last = [size, last[0], last[1]];
@@ -251,23 +259,22 @@ impl Series {
     }
 
     /// Scaled accelerations by the external forces from `start` on, for a time in units of `tau`.
-    fn accelerations(&self, drive: &Drive, start: f64, tau: f64) -> [[f64; MAX_DOFS]; 3] {
-        let [w0, w1, w2] = &drive.force;
-        let mut push = [[0.0; MAX_DOFS]; 3];
+    fn accelerations(&mut self, drive: &Drive<'_>, start: f64, tau: f64) {
+        self.work.push.iter_mut().for_each(|p| p.fill(0.0));
         for j in 0..self.dofs {
-            let now = w0[j] + start * (w1[j] + start * w2[j]);
-            let slope = tau * (w1[j] + 2.0 * start * w2[j]);
-            let bend = tau * tau * w2[j];
+            let [w0, w1, w2] = drive.force.map(|w| w.get(j).copied().unwrap_or(0.0));
+            let now = w0 + start * (w1 + start * w2);
+            let slope = tau * (w1 + 2.0 * start * w2);
+            let bend = tau * tau * w2;
             if now == 0.0 && slope == 0.0 && bend == 0.0 {
                 continue;
             }
-            for (push, by_time) in push.iter_mut().zip([now, slope, bend]) {
+            for (push, by_time) in self.work.push.iter_mut().zip([now, slope, bend]) {
                 for (push, by_force) in push.iter_mut().zip(self.force.column(j).iter()) {
                     *push += by_force * by_time;
                 }
             }
         }
-        push
     }
 }
 
@@ -287,13 +294,15 @@ impl Work {
         factor: f64,
         rate: f64,
         (wind, change): (f64, f64),
-        push: &[f64; MAX_DOFS],
+        k: usize,
     ) {
+        let push = self.push.get(k);
         let [s, s_before] = &self.structure;
         let [g, g_before, g_first] = &self.aerodynamic;
         for i in 0..n {
             let velocity = self.term[i];
-            let mut sum = s[i] + push[i] + wind * (s[n + i] + wind * g[i]);
+            let push = push.map_or(0.0, |p| p[i]);
+            let mut sum = s[i] + push + wind * (s[n + i] + wind * g[i]);
             if change != 0.0 {
                 sum += change * (s_before[n + i] + 2.0 * wind * g_before[i] + change * g_first[i]);
             }

@@ -20,15 +20,55 @@ pub struct Structure {
     pub damping: DMatrix<f64>,
     /// `K`, n×n: N/m² and N·m/(rad·m).
     pub stiffness: DMatrix<f64>,
+    /// Names of generalised coordinates, one a row; empty for a section, whose coordinates are its degrees of freedom.
+    pub mode_names: Vec<String>,
 }
 
 impl Structure {
-    /// Degrees of freedom from the lowest to the highest still-air frequency.
-    pub(crate) fn dofs_by_frequency(&self) -> Vec<Dof> {
+    /// A structure in generalised coordinates `η`: `M`, `R`, `K` for the whole structure instead of a metre.
+    ///
+    /// A generalised coordinate counts as a rotation does: it has no unit, and its force is made dimensionless with
+    /// `½ρV²B²`, a work per unit coordinate.
+    pub fn modal(
+        (width_m, air_density_kg_m3): (f64, f64),
+        [mass, damping, stiffness]: [DMatrix<f64>; 3],
+        mode_names: Vec<String>,
+    ) -> Self {
+        Self {
+            dofs: vec![Dof::Torsion; mode_names.len()],
+            width_m,
+            air_density_kg_m3,
+            axis_offset_m: 0.0,
+            mass,
+            damping,
+            stiffness,
+            mode_names,
+        }
+    }
+
+    /// Whether the coordinates are generalised ones.
+    pub(crate) fn is_modal(&self) -> bool {
+        !self.mode_names.is_empty()
+    }
+
+    /// Name of the branch that starts as the mode of row `i`.
+    pub(crate) fn branch_name(&self, i: usize) -> String {
+        let name = self.mode_names.get(i).cloned();
+        name.unwrap_or_else(|| self.dofs[i].name().to_owned())
+    }
+
+    /// Rows from the lowest to the highest still-air frequency.
+    pub(crate) fn rows_by_frequency(&self) -> Vec<usize> {
         let mut order: Vec<usize> = (0..self.dofs.len()).collect();
         let square = |i: &usize| self.stiffness[(*i, *i)] / self.mass[(*i, *i)];
         order.sort_by(|i, j| square(i).total_cmp(&square(j)));
-        order.into_iter().map(|i| self.dofs[i]).collect()
+        order
+    }
+
+    /// Degrees of freedom from the lowest to the highest still-air frequency.
+    pub(crate) fn dofs_by_frequency(&self) -> Vec<Dof> {
+        let rows = self.rows_by_frequency();
+        rows.into_iter().map(|i| self.dofs[i]).collect()
     }
 
     /// The same structure with only those of its degrees of freedom that are among `dofs`; the others are locked.
@@ -46,6 +86,10 @@ impl Structure {
             mass: part(&self.mass),
             damping: part(&self.damping),
             stiffness: part(&self.stiffness),
+            mode_names: kept
+                .iter()
+                .filter_map(|i| self.mode_names.get(*i).cloned())
+                .collect(),
         }
     }
 

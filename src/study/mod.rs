@@ -3,6 +3,7 @@
 //! Every stage of the chain is a function from values to values, so that each command of the program, the demo and a
 //! script of somebody else run the same code.
 
+pub mod bridge;
 mod deck;
 mod defaults;
 mod failures;

@@ -29,7 +29,8 @@ pub const ARROWS: &[Row] = &[
     row("signal", &[]),
     row("section", &["units"]),
     row("aerodynamics", &["units", "section", "state_space"]),
-    row("files", &["aerodynamics+"]),
+    row("bridge", &["aerodynamics+"]),
+    row("files", &["aerodynamics+", "bridge"]),
     row("plausibility", &[]),
     row(
         "wind_tunnel",
@@ -62,7 +63,7 @@ pub const ARROWS: &[Row] = &[
         &["signal", "identification+", "wind_tunnel+", "files"],
     ),
     row("aeroelastic", &["aerodynamics+"]),
-    row("flutter", &["aeroelastic+"]),
+    row("flutter", &["aeroelastic+", "bridge"]),
     row("response", &["aeroelastic+"]),
     row("buffeting", &["flutter+", "response+"]),
     row("fmu", &["flutter+", "response+", "trained_model+"]),
@@ -83,7 +84,7 @@ pub const ARROWS: &[Row] = &[
     row("study", BELOW_STUDY),
     Row {
         module: "report",
-        may_use: &["study+", "reference+", "reliability"],
+        may_use: &["study+", "reference+", "reliability", "bridge"],
         types_only: true,
     },
     row("cli", &["report", "study+", "reference+", "reliability"]),

@@ -71,6 +71,11 @@ impl LinearQuasiSteady {
         }
     }
 
+    /// `e₀` and `e₁`.
+    pub(crate) fn feed_through(&self) -> (&DMatrix<f64>, &DMatrix<f64>) {
+        (&self.e0, &self.e1)
+    }
+
     /// The arms `B₁ᵢ/B`.
     pub(crate) fn arms(&self) -> Arms {
         self.arms

@@ -3,25 +3,38 @@
 use crate::aerodynamics::{GustForce, RationalAdmittance};
 use crate::cli::account;
 use crate::cli::answer::Answer;
+use crate::cli::bridge::BRIDGE_FMU;
+use crate::cli::common::warn;
 use crate::cli::progress::Progress;
 use crate::cli::stages;
 use crate::error::{Error, Result};
+use crate::files::bridge::BridgeFile;
 use crate::files::coefficients::named_coefficients;
 use crate::fmu::force_options::{ForceOptions, MAX_STRIPS};
-use crate::fmu::package::{Export, Overwrite, Runtime, growth_of, write_fmu};
+use crate::fmu::package::{
+    Export, Overwrite, Runtime, growth_of, package_bridge, write_archive, write_fmu,
+};
 use crate::fmu::variables::Listing;
+use crate::study::bridge::BridgeStudy;
 use crate::trained_model::TrainedModel;
 use std::path::{Path, PathBuf};
 
 /// Pack a trained model (`model.json`) as an FMI 2.0 co-simulation FMU: its section, or its forces alone
 ///
 /// Example: aerodeck fmu export model.json --out deck_section.fmu
+/// Example: aerodeck fmu export bridge.toml --bridge --nodes 1001,1156
 /// Example: aerodeck fmu export model.json --kind force --strips 40 --strip-length 25 --out force.fmu
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
 pub(crate) struct Args {
-    /// The trained model.
+    /// The trained model, or the bridge file with --bridge.
     model: PathBuf,
+    /// Pack a whole bridge: the file is a bridge file (see docs/bridge.md).
+    #[arg(long, conflicts_with_all = ["kind", "strips", "strip_length", "prediction"])]
+    bridge: bool,
+    /// Nodes of a bridge with inputs and outputs; left out, mid-span and both quarter points.
+    #[arg(long, value_delimiter = ',', requires = "bridge")]
+    nodes: Vec<String>,
     /// What is packed: the section of the model with its forces, or its forces alone.
     #[arg(long, value_enum, default_value_t = Kind::Section)]
     kind: Kind,
@@ -49,7 +62,7 @@ pub(crate) struct Args {
     /// Admittance of the gusts [default: none].
     #[arg(long, value_enum)]
     admittance: Option<Admittance>,
-    /// The FMU; by default `deck_section.fmu` or `deck_force.fmu` beside the model.
+    /// The FMU; by default `deck_section.fmu`, `deck_force.fmu` or `bridge.fmu` beside the model.
     #[arg(long)]
     out: Option<PathBuf>,
     /// Replace a file that is there.
@@ -133,8 +146,49 @@ impl Args {
     }
 }
 
+impl Args {
+    /// Packs a whole bridge.
+    fn whole_bridge(&self, progress: &Progress) -> Result<Answer> {
+        let stage = progress.stage("reading the bridge");
+        let study = BridgeStudy::new(BridgeFile::read(&self.model)?)?;
+        drop(stage);
+        warn(&self.model, &study.notes);
+        let path = self
+            .out
+            .clone()
+            .unwrap_or_else(|| self.model.with_file_name(BRIDGE_FMU));
+        let stage = progress.stage("packing the FMU");
+        let export = study.export(&self.nodes, self.allow_unstable)?;
+        let runtimes = Runtime::available()?;
+        let bytes = package_bridge(&export.model, &export.bridge, &runtimes)?;
+        let overwrite = if self.force {
+            Overwrite::Replace
+        } else {
+            Overwrite::Refuse
+        };
+        write_archive(&path, &bytes, overwrite)?;
+        drop(stage);
+        let named: Vec<String> = (0..export.bridge.named.len())
+            .map(|n| export.bridge.node_name(n))
+            .collect();
+        let text = format!(
+            "wrote {}: {} with {} modes; inputs and outputs at the nodes {}\n",
+            path.display(),
+            export.bridge.name,
+            export.bridge.modes.len(),
+            named.join(", ")
+        );
+        let json =
+            serde_json::json!({ "fmu": path, "nodes": named, "modes": export.bridge.modes.len() });
+        Answer::new(text, &json)
+    }
+}
+
 /// Runs the command.
 pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+    if args.bridge {
+        return args.whole_bridge(progress);
+    }
     let model = stages::read_model(&args.model)?;
     let path = args.out.clone().unwrap_or_else(|| {
         args.model.with_file_name(match args.kind {

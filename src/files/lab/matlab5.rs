@@ -36,6 +36,36 @@ pub(super) fn parse(mut bytes: Vec<u8>, group: Option<&str>) -> Result<ChannelSe
         .ok_or_else(|| corrupt("a part that cannot be read".to_owned()))?
 }
 
+/// Size and numbers (first index fastest) of one real array in the bytes of a file.
+///
+/// # Errors
+/// [`Error::Input`] for a file that is no MATLAB file, truncated or corrupt, or lacks the array.
+pub(crate) fn matlab_array(mut bytes: Vec<u8>, name: &str) -> Result<(Vec<usize>, Vec<f64>)> {
+    check_elements(&bytes)?;
+    bytes[..HEADER.len()].copy_from_slice(HEADER);
+    let missing = || {
+        Error::input(
+            name,
+            "a real array of this name in a MATLAB file of version 5 to 7",
+            "none",
+        )
+    };
+    let file = guarded(|| matrw::load_matfile_from_u8(&bytes)).and_then(std::result::Result::ok);
+    let file = file.ok_or_else(missing)?;
+    let variable = file
+        .iter()
+        .find(|(n, _)| *n == name)
+        .map(|(_, v)| uncompressed(v));
+    let Some(MatVariable::NumericArray(array)) = variable else {
+        return Err(missing());
+    };
+    check_count(name, count(&MatVariable::NumericArray(array.clone())))?;
+    match numbers(array.numeric_type()) {
+        Numbers::Values(values) if !array.is_complex() => Ok((array.dim.clone(), values)),
+        _ => Err(missing()),
+    }
+}
+
 /// Refuses compressed elements that become more than a recording can be, without keeping what they become.
 fn check_inflated(place: &str, packed: &[u8], before: u64) -> Result<u64> {
     let at_most = NUMBERS_AT_MOST * size_of::<f64>() as u64;

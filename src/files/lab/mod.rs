@@ -20,6 +20,8 @@ mod matlab5;
 mod tdms;
 mod tdms_bytes;
 
+pub(crate) use matlab5::matlab_array;
+
 use crate::error::{Error, Result};
 use std::collections::BTreeMap;
 use std::path::Path;

@@ -50,16 +50,22 @@ impl Source {
     /// Where the value of a variable with this role comes from.
     pub fn of(role: Role) -> Self {
         match role {
-            Role::WindSpeed | Role::ExternalForce(_) | Role::Gust(..) | Role::Motion(..) => {
-                Self::Input
-            }
+            Role::WindSpeed
+            | Role::ExternalForce(_)
+            | Role::Gust(..)
+            | Role::Motion(..)
+            | Role::NodeForce(..) => Self::Input,
             Role::Section(_) | Role::Strip(..) | Role::Prediction | Role::MotionDerivatives => {
                 Self::Section
             }
-            Role::InitialDisplacement(_) | Role::InitialRate(_) => Self::Release,
+            Role::InitialDisplacement(_) | Role::InitialRate(_) | Role::InitialMode(_) => {
+                Self::Release
+            }
             Role::OnsetSearchLimit => Self::Limit,
             Role::Constant => Self::Constant,
-            Role::Response(..) | Role::Force(..) => Self::Response,
+            Role::Response(..) | Role::Force(..) | Role::NodeMotion(..) | Role::Mode(..) => {
+                Self::Response
+            }
             Role::Filter(_) => Self::State,
             Role::FilterRate(_) => Self::Rate,
             Role::Calculated(_) => Self::Calculated,

@@ -234,7 +234,7 @@ pub(super) fn pick(outputs: &Outputs, role: Role) -> f64 {
     list.get(index).copied().unwrap_or(0.0)
 }
 
-fn add(outputs: &mut Outputs, other: &Outputs, factor: f64) {
+pub(super) fn add(outputs: &mut Outputs, other: &Outputs, factor: f64) {
     let lists = [
         (&mut outputs.displacement, &other.displacement),
         (&mut outputs.rate, &other.rate),
@@ -260,7 +260,11 @@ fn rate_by_speed(stepper: &Stepper, state: &SectionState, inputs: &Inputs) -> Ve
 /// `∂y/∂V` at a given state and external force. With `P(e)` the physical scaling, the aerodynamic part of the equation
 /// of motion is `½ρV² P(e₀) q + ½ρVB P(e₁) q̇ + ½ρV² diag(B, B, B²) C x`; the acceleration follows through
 /// `(M − ½ρB² P(e₂))⁻¹`, the force as `M` times the acceleration. Forces of gusts, `V Q g`, accelerate as external ones.
-fn speed_sensitivity(stepper: &Stepper, state: &SectionState, inputs: &Inputs) -> Outputs {
+pub(super) fn speed_sensitivity(
+    stepper: &Stepper,
+    state: &SectionState,
+    inputs: &Inputs,
+) -> Outputs {
     let (section, speed) = (stepper.section(), inputs.wind_speed_m_s);
     let s = section.structure();
     let n = s.dofs.len();

@@ -3,6 +3,7 @@
 //! The archive holds the description, one runtime binary per platform, the model, a page that documents it, licences and
 //! an icon. The runtime for the platform of this program is embedded in it; further ones come from a folder.
 
+mod bridge_page;
 mod documentation;
 mod growth;
 mod runtime;
@@ -11,6 +12,7 @@ pub use documentation::documentation;
 pub use growth::{Growing, growth_of};
 pub use runtime::{RUNTIME_DIR_VARIABLE, Runtime};
 
+use super::bridge_options::{BRIDGE_FILE, BridgeOptions};
 use super::description::model_description;
 use super::force_options::{FORCE_FILE, ForceOptions};
 use super::resources::{GUST_FILE, MODEL_FILE, OptionFiles, Resources};
@@ -96,27 +98,66 @@ pub fn package(
         return Err(Error::input("FMU", expected, "none"));
     }
     let json = model.to_json()?;
-    let options = OptionFiles {
+    let files = OptionFiles {
         force: force.as_deref().map(str::as_bytes),
         gusts: gusts.as_deref().map(str::as_bytes),
     };
-    let resources = Resources::from_bytes(json.as_bytes(), options)?;
-    let xml = model_description(&resources, listing)?;
+    let resources = Resources::from_bytes(json.as_bytes(), files)?;
     let page = documentation(&resources, runtimes, listing)?;
+    let options = [(FORCE_FILE, force), (GUST_FILE, gusts)];
+    let options = options
+        .into_iter()
+        .filter_map(|(name, text)| Some((name, text?)));
+    assembled(
+        &resources,
+        listing,
+        [(MODEL_FILE, json)].into_iter().chain(options),
+        page,
+        runtimes,
+    )
+}
+
+/// The FMU of a whole bridge as the bytes of its archive, with these runtimes in it. `model` is the model of the girder with
+/// the section that its first modes make.
+///
+/// # Errors
+/// As [`package`]; what a bridge does below its onset is for the caller to judge.
+pub fn package_bridge(
+    model: &TrainedModel,
+    bridge: &BridgeOptions,
+    runtimes: &[Runtime],
+) -> Result<Vec<u8>> {
+    if runtimes.is_empty() {
+        let expected = "a runtime for at least one platform";
+        return Err(Error::input("FMU", expected, "none"));
+    }
+    let (json, options) = (model.to_json()?, bridge.to_json()?);
+    let resources = Resources::of_bridge(json.as_bytes(), options.as_bytes())?;
+    let page = bridge_page::documentation(&resources, bridge);
+    let files = [(MODEL_FILE, json), (BRIDGE_FILE, options)];
+    assembled(&resources, Listing::All, files, page, runtimes)
+}
+
+/// The archive of what has been made.
+fn assembled(
+    resources: &Resources,
+    listing: Listing,
+    options: impl IntoIterator<Item = (&'static str, String)>,
+    page: String,
+    runtimes: &[Runtime],
+) -> Result<Vec<u8>> {
+    let xml = model_description(resources, listing)?;
     let mut files: BTreeMap<String, Vec<u8>> = BTreeMap::new();
     files.insert("modelDescription.xml".into(), xml.into_bytes());
     files.insert("model.png".into(), ICON.to_vec());
-    files.insert(format!("resources/{MODEL_FILE}"), json.into_bytes());
-    for (name, options) in [(FORCE_FILE, force), (GUST_FILE, gusts)] {
-        if let Some(options) = options {
-            files.insert(format!("resources/{name}"), options.into_bytes());
-        }
+    for (name, text) in options {
+        files.insert(format!("resources/{name}"), text.into_bytes());
     }
     files.insert("documentation/index.html".into(), page.into_bytes());
     let licences = "documentation/licenses";
     files.insert(
         format!("{licences}/license.txt"),
-        licence(model).into_bytes(),
+        licence(&resources.model).into_bytes(),
     );
     for (name, text) in LICENCES {
         files.insert(format!("{licences}/{name}"), text.into());
@@ -148,7 +189,14 @@ pub fn write_fmu(
     overwrite: Overwrite,
     export: impl Into<Export>,
 ) -> Result<()> {
-    let bytes = package(model, runtimes, export)?;
+    write_archive(path, &package(model, runtimes, export)?, overwrite)
+}
+
+/// Writes the bytes of an archive as [`write_fmu`] does.
+///
+/// # Errors
+/// [`Error::Input`] when the file is there and is not to be replaced; [`Error::Io`].
+pub fn write_archive(path: &Path, bytes: &[u8], overwrite: Overwrite) -> Result<()> {
     let folder = match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
         _ => Path::new("."),
@@ -159,7 +207,7 @@ pub fn write_fmu(
         .suffix(".fmu")
         .tempfile_in(folder)
         .map_err(failed)?;
-    file.write_all(&bytes).map_err(failed)?;
+    file.write_all(bytes).map_err(failed)?;
     readable_by_all(file.as_file()).map_err(failed)?;
     match overwrite {
         Overwrite::Replace => file.persist(path).map_err(|e| failed(e.error))?,

@@ -245,7 +245,7 @@ fn initial_values(dof: Dof, model: &TrainedModel) -> [Variable; 2] {
     ]
 }
 
-fn search_limit(model: &TrainedModel) -> Variable {
+pub(super) fn search_limit(model: &TrainedModel) -> Variable {
     let text = "Flutter onset and divergence are searched up to this wind speed";
     real("onset_search_limit", Role::OnsetSearchLimit, FIXED, text)
         .start(model.experiment.onset_search_limit_m_s)
@@ -253,7 +253,7 @@ fn search_limit(model: &TrainedModel) -> Variable {
         .min(SMALLEST)
 }
 
-fn calculated_parameters() -> Vec<Variable> {
+pub(super) fn calculated_parameters() -> Vec<Variable> {
     use Calculated as C;
     let parameter = |name, what, text: &str| real(name, Role::Calculated(what), CALCULATED, text);
     let flag = |name, what, text: &str| Variable {

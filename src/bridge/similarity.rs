@@ -1,0 +1,62 @@
+//! How alike two mode shapes are: what decides whether two modes may be treated as one section.
+
+use super::Bridge;
+use serde::Serialize;
+
+/// Similarity of a vertical and a torsional mode.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Similarity {
+    /// Number of the mode whose vertical displacement counts.
+    pub vertical_mode: usize,
+    /// Number of the mode whose rotation counts.
+    pub torsional_mode: usize,
+    /// `(∫φ_y φ_θ)²/(∫φ_y² ∫φ_θ²)`: 1 for like shapes, 0 for shapes that do not feel each other.
+    pub similarity: f64,
+}
+
+/// Similarities of every mode that moves mainly up and down with every mode that mainly turns, the most alike first.
+///
+/// A mode counts as what carries the largest part of its sum of squares, rotations times half the width.
+pub fn similarities(bridge: &Bridge) -> Vec<Similarity> {
+    let kinds: Vec<usize> = (0..bridge.modes.len())
+        .map(|m| bridge.main_motion(m))
+        .collect();
+    let mut all = Vec::new();
+    for (y, _) in kinds.iter().enumerate().filter(|(_, k)| **k == 0) {
+        for (theta, _) in kinds.iter().enumerate().filter(|(_, k)| **k == 2) {
+            let product = |a: (usize, usize), b: (usize, usize)| -> f64 {
+                let shape = |m: usize, i: usize, n: usize| bridge.modes[m].shape[n][i];
+                let nodes = bridge.nodes.iter().enumerate();
+                nodes
+                    .map(|(n, node)| node.length_m * shape(a.0, a.1, n) * shape(b.0, b.1, n))
+                    .sum()
+            };
+            let (v, t) = ((y, 0), (theta, 2));
+            all.push(Similarity {
+                vertical_mode: bridge.modes[y].number,
+                torsional_mode: bridge.modes[theta].number,
+                similarity: product(v, t).powi(2) / (product(v, v) * product(t, t)),
+            });
+        }
+    }
+    all.sort_by(|a, b| b.similarity.total_cmp(&a.similarity));
+    all
+}
+
+impl Bridge {
+    /// The motion that carries the largest part of a mode's sum of squares: 0 vertical, 1 lateral, 2 rotation, which
+    /// counts with half the width.
+    pub fn main_motion(&self, mode: usize) -> usize {
+        let scale = [1.0, 1.0, 0.5 * self.width_m()];
+        let part = |i: usize| -> f64 {
+            let nodes = self.nodes.iter().zip(&self.modes[mode].shape);
+            nodes
+                .map(|(node, s)| node.length_m * (scale[i] * s[i]).powi(2))
+                .sum()
+        };
+        let parts = [part(0), part(1), part(2)];
+        (0..3)
+            .max_by(|a, b| parts[*a].total_cmp(&parts[*b]))
+            .unwrap_or(0)
+    }
+}

@@ -1,0 +1,63 @@
+//! Sums over the nodes of a group: `I_ab^ij = Σ_n w_n φ_a,i(n) φ_b,j(n)`.
+
+use super::{Bridge, StripGroup, motion_index};
+use crate::section::Dof;
+use nalgebra::DMatrix;
+
+/// The sums of one group in mass-normalised modes, one matrix for each force and motion.
+#[derive(Debug, Clone)]
+pub(super) struct GroupSums {
+    dofs: Vec<Dof>,
+    /// Row by row in the order of `dofs`, each modes×modes.
+    sums: Vec<DMatrix<f64>>,
+}
+
+impl GroupSums {
+    /// Of the group's nodes, with each shape divided by the root of its generalised mass.
+    pub(super) fn new(bridge: &Bridge, group: &StripGroup) -> Self {
+        let dofs = group.forces.dofs().to_vec();
+        let weighted = |dof: &Dof, power: f64| {
+            DMatrix::from_fn(group.nodes.len(), bridge.modes.len(), |n, m| {
+                let (node, mode) = (group.nodes[n], &bridge.modes[m]);
+                let value = mode.shape[node][motion_index(*dof)];
+                value * bridge.nodes[node].length_m.powf(power) / mode.generalised_mass.sqrt()
+            })
+        };
+        let forces: Vec<_> = dofs.iter().map(|d| weighted(d, 1.0).transpose()).collect();
+        let motions: Vec<_> = dofs.iter().map(|d| weighted(d, 0.0)).collect();
+        let pairs = forces
+            .iter()
+            .flat_map(|f| motions.iter().map(move |m| f * m));
+        Self {
+            sums: pairs.collect(),
+            dofs,
+        }
+    }
+
+    /// `Σ_ij s_ij g_ij I^ij` with the physical scale `s_ij = diag(B, B, B²)_i diag(1/B, 1/B, 1)_j`, modes×modes.
+    pub(super) fn modal<T>(&self, width_m: f64, g: &DMatrix<T>) -> DMatrix<T>
+    where
+        T: nalgebra::ComplexField<RealField = f64>,
+    {
+        let n = self.dofs.len();
+        let modes = self.sums[0].nrows();
+        let mut total = DMatrix::<T>::zeros(modes, modes);
+        for (i, force) in self.dofs.iter().enumerate() {
+            for (j, motion) in self.dofs.iter().enumerate() {
+                let scale = force.force_scale(width_m) * motion.motion_scale(width_m);
+                let factor = g[(i, j)].clone().scale(scale);
+                for (t, s) in total.iter_mut().zip(&self.sums[i * n + j]) {
+                    *t += factor.clone().scale(*s);
+                }
+            }
+        }
+        total
+    }
+
+    /// The same for one motion only: `Σ_i s_ij c_i I^ij`.
+    pub(super) fn modal_column(&self, width_m: f64, c: &[f64], motion: usize) -> DMatrix<f64> {
+        let n = self.dofs.len();
+        let only = DMatrix::from_fn(n, n, |i, j| if j == motion { c[i] } else { 0.0 });
+        self.modal(width_m, &only)
+    }
+}

@@ -1,0 +1,228 @@
+//! Response of a bridge in the time domain: a turbulence field stepped through the coupled modes, many records.
+
+use super::{SpanProblem, TurbulenceField, turbulence_field};
+use crate::buffeting::spectrum::GustComponent;
+use crate::error::{Error, Result, positive};
+use crate::response::{Inputs, Stepper};
+use nalgebra::{Complex, DMatrix};
+use rustfft::FftPlanner;
+use serde::{Deserialize, Serialize};
+
+/// Decay times of the least damped mode before a record counts: a record is one period, with which it warms up.
+const DECAY_TIMES: f64 = 5.0;
+/// Periods of warming up at most.
+const MOST_WARM_UP: usize = 40;
+
+/// How many records, how long, how fine.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct SpanPlan {
+    /// Number of records, at least 2: their scatter gives the standard error.
+    pub records: usize,
+    /// Seed of the first record; the others follow.
+    pub seed: u64,
+    /// Length of each record, s.
+    pub duration_s: f64,
+    /// Time step, s.
+    pub step_s: f64,
+}
+
+impl Default for SpanPlan {
+    fn default() -> Self {
+        Self {
+            records: 8,
+            seed: 1,
+            duration_s: 600.0,
+            step_s: 0.05,
+        }
+    }
+}
+
+/// Root mean squares and peaks over many records at named nodes: vertical, lateral (m), rotation (rad).
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SpanEnsemble {
+    /// Mean wind speed, m/s.
+    pub speed_m_s: f64,
+    /// What was asked for.
+    pub plan: SpanPlan,
+    /// Places of the nodes in the bridge.
+    pub nodes: Vec<usize>,
+    /// Root of the mean of the variances about the mean.
+    pub rms: Vec<[f64; 3]>,
+    /// Standard error of `rms` from the scatter of the records.
+    pub standard_error: Vec<[f64; 3]>,
+    /// Mean over the records of the greatest departure from the mean, over `rms`.
+    pub peak_factor: Vec<[f64; 3]>,
+}
+
+/// Steps `plan.records` fields through the coupled bridge. `progress` is told how many are done.
+///
+/// # Errors
+/// [`Error::Input`] for a plan that cannot be and parts that do not fit together; [`Error::Unstable`] when the bridge is unstable
+/// at this speed.
+pub fn span_ensemble(
+    problem: &SpanProblem<'_>,
+    nodes: &[usize],
+    speed_m_s: f64,
+    plan: &SpanPlan,
+    progress: &dyn Fn(usize, usize),
+) -> Result<SpanEnsemble> {
+    problem.validate(speed_m_s)?;
+    positive("duration_s", plan.duration_s)?;
+    positive("step_s", plan.step_s)?;
+    if plan.records < 2 {
+        return Err(Error::input(
+            "records",
+            "at least 2",
+            plan.records.to_string(),
+        ));
+    }
+    let (coupled, roots) = problem.coupled(speed_m_s)?;
+    let slowest = roots.iter().map(|z| -z.re).fold(f64::INFINITY, f64::min);
+    let samples = 2 * (0.5 * plan.duration_s / plan.step_s).round() as usize;
+    let warm_up = ((DECAY_TIMES / slowest / plan.step_s) as usize).min(MOST_WARM_UP * samples);
+    let mut stepper = Stepper::new(coupled);
+    let shapes = problem.bridge.shapes_at(nodes);
+    let mut runs = Vec::with_capacity(plan.records);
+    for i in 0..plan.records {
+        let seed = plan.seed.wrapping_add(i as u64);
+        let field = turbulence_field(problem, speed_m_s, (plan.step_s, samples), seed)?;
+        let forces = modal_forces(problem, &field, speed_m_s)?;
+        runs.push(run(
+            &mut stepper,
+            &forces,
+            &shapes,
+            (speed_m_s, plan.step_s, warm_up),
+        )?);
+        progress(i + 1, plan.records);
+    }
+    Ok(gathered(speed_m_s, plan, nodes, &runs))
+}
+
+/// Forces on the mass-normalised modes by a field, one row a mode; the admittance is exact at every frequency of the record.
+///
+/// # Errors
+/// [`Error::Input`] for a field of other nodes.
+pub fn modal_forces(
+    problem: &SpanProblem<'_>,
+    field: &TurbulenceField,
+    speed_m_s: f64,
+) -> Result<Vec<Vec<f64>>> {
+    let (nodes, samples) = (problem.bridge.nodes.len(), field.samples());
+    let fits =
+        |rows: &Vec<Vec<f64>>| rows.len() == nodes && rows.iter().all(|r| r.len() == samples);
+    if samples < 2 || !field.gusts.iter().all(fits) {
+        let expected = format!("gusts at {nodes} nodes, as many samples at each");
+        return Err(Error::input(
+            "turbulence field",
+            expected,
+            format!("{} nodes", field.gusts[0].len()),
+        ));
+    }
+    let mut planner = FftPlanner::new();
+    let (forward, inverse) = (
+        planner.plan_fft_forward(samples),
+        planner.plan_fft_inverse(samples),
+    );
+    let modes = problem.bridge.modes.len();
+    let mut spectrum = DMatrix::<Complex<f64>>::zeros(modes, samples);
+    for (component, rows) in GustComponent::BOTH.into_iter().zip(&field.gusts) {
+        if problem.turbulence.component(component).is_none() {
+            continue;
+        }
+        let transformed: Vec<Vec<Complex<f64>>> = rows
+            .iter()
+            .map(|row| {
+                let mut x: Vec<Complex<f64>> = row.iter().map(|v| Complex::from(*v)).collect();
+                forward.process(&mut x);
+                x
+            })
+            .collect();
+        for k in 0..=samples / 2 {
+            let frequency = k as f64 / (samples as f64 * field.step_s);
+            let forces = problem.force_of_gusts(component, frequency, speed_m_s);
+            let mut column = spectrum.column_mut(k);
+            for (n, x) in transformed.iter().enumerate() {
+                for (sum, force) in column.iter_mut().zip(forces.row(n).iter()) {
+                    *sum += force * x[k];
+                }
+            }
+        }
+    }
+    let scale = 1.0 / samples as f64;
+    let to_time = |m: usize| {
+        let mut x: Vec<Complex<f64>> = spectrum.row(m).iter().copied().collect();
+        // the negative frequencies are the conjugates: twice the real part of the positive ones
+        x[1..samples.div_ceil(2)].iter_mut().for_each(|z| *z *= 2.0);
+        inverse.process(&mut x);
+        x.iter().map(|z| z.re * scale).collect()
+    };
+    Ok((0..modes).map(to_time).collect())
+}
+
+/// Variance and greatest departure of each row over one record.
+type Run = Vec<(f64, f64)>;
+
+fn run(
+    stepper: &mut Stepper,
+    forces: &[Vec<f64>],
+    shapes: &DMatrix<f64>,
+    (speed, step, warm_up): (f64, f64, usize),
+) -> Result<Run> {
+    let (modes, samples) = (forces.len(), forces[0].len());
+    let mut state = stepper.released(&vec![0.0; modes], &vec![0.0; modes])?;
+    let mut inputs = Inputs::steady(speed, modes);
+    let mut rows = vec![Vec::with_capacity(samples); shapes.nrows()];
+    for i in 0..warm_up + samples {
+        let now = (i + (MOST_WARM_UP * samples) - warm_up) % samples;
+        let next = (now + 1) % samples;
+        for (m, force) in forces.iter().enumerate() {
+            inputs.force[m] = force[now];
+            inputs.force_rate[m] = (force[next] - force[now]) / step;
+        }
+        stepper.advance(&mut state, &inputs, step)?;
+        if i >= warm_up {
+            for (row, values) in rows.iter_mut().enumerate() {
+                let shape = shapes.row(row);
+                values.push(
+                    shape
+                        .iter()
+                        .zip(&state.values)
+                        .map(|(phi, x)| phi * x)
+                        .sum::<f64>(),
+                );
+            }
+        }
+    }
+    let statistics = |values: &Vec<f64>| {
+        let mean = values.iter().sum::<f64>() / samples as f64;
+        let square = values.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / samples as f64;
+        let peak = values.iter().map(|x| (x - mean).abs()).fold(0.0, f64::max);
+        (square, peak)
+    };
+    Ok(rows.iter().map(statistics).collect())
+}
+
+fn gathered(speed_m_s: f64, plan: &SpanPlan, nodes: &[usize], runs: &[Run]) -> SpanEnsemble {
+    let count = runs.len() as f64;
+    let of = |row: usize| {
+        let mean = runs.iter().map(|r| r[row].0).sum::<f64>() / count;
+        let scatter = runs.iter().map(|r| (r[row].0 - mean).powi(2)).sum::<f64>() / (count - 1.0);
+        let rms = mean.sqrt();
+        let peak = runs.iter().map(|r| r[row].1).sum::<f64>() / count;
+        [rms, (scatter / count).sqrt() / (2.0 * rms), peak / rms]
+    };
+    let list = |which: usize| -> Vec<[f64; 3]> {
+        (0..nodes.len())
+            .map(|n| std::array::from_fn(|i| of(3 * n + i)[which]))
+            .collect()
+    };
+    SpanEnsemble {
+        speed_m_s,
+        plan: *plan,
+        nodes: nodes.to_vec(),
+        rms: list(0),
+        standard_error: list(1),
+        peak_factor: list(2),
+    }
+}

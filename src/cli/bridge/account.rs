@@ -1,0 +1,107 @@
+//! The onset card of a bridge, in words.
+
+use crate::flutter::FlutterSearch;
+use crate::study::bridge::{BridgeAnswer, BridgeFlutter, BridgeStudy};
+use std::fmt::Write as _;
+
+/// Modes with less of the kinetic energy are not named on the card.
+const NAMED_SHARE: f64 = 1e-3;
+
+/// The card.
+pub(crate) fn card(study: &BridgeStudy, results: &BridgeFlutter) -> String {
+    let bridge = &study.by_model;
+    let mut text = format!(
+        "{}: {} nodes, {} modes, {} groups of strips; K refers to B = {} m\n",
+        study.file.name,
+        bridge.nodes.len(),
+        bridge.modes.len(),
+        bridge.groups.len(),
+        bridge.width_m()
+    );
+    for answer in &results.answers {
+        text.push_str(&one(answer));
+    }
+    if !results.left_out.is_empty() {
+        text.push_str("Onset with fewer modes (by share of the kinetic energy at the onset)\n");
+    }
+    let full = results
+        .answers
+        .last()
+        .and_then(|a| a.search.critical_speed_m_s());
+    for left in &results.left_out {
+        let onset = left
+            .onset_m_s
+            .map_or("no flutter".to_owned(), |v| format!("{v:.3} m/s"));
+        let change = left.onset_m_s.zip(full).map_or(String::new(), |(v, full)| {
+            format!(" ({:+.2} %)", 100.0 * (v / full - 1.0))
+        });
+        let _ = writeln!(
+            text,
+            "  {:>3} modes from {:>7.3} % on: {onset}{change}",
+            left.modes.len(),
+            100.0 * left.below_share
+        );
+    }
+    let divergence = results
+        .divergence_m_s
+        .map_or("none".to_owned(), |v| format!("{v:.3} m/s"));
+    let _ = writeln!(text, "Divergence of the model: {divergence}");
+    if let Some(rotation) = results.mean_rotation_deg {
+        let _ = writeln!(
+            text,
+            "Greatest mean rotation at the onset: {rotation:.3}° (nose-up positive)"
+        );
+    }
+    if let Some(why) = &results.curves.ended {
+        let _ = writeln!(text, "curves end early: {why}");
+    }
+    text
+}
+
+fn one(answer: &BridgeAnswer) -> String {
+    let mut text = format!("Onset card: {}\n", answer.forces);
+    match &answer.search {
+        FlutterSearch::Onset(o) => {
+            let tested = match o.in_tested_range {
+                Some(true) => "inside the tested range",
+                Some(false) => "OUTSIDE the tested range",
+                None => "no tested range",
+            };
+            let _ = writeln!(
+                text,
+                "  V_F {:.3} m/s at {:.4} Hz ({}); V* = V/(fB) {:.3}, K {:.4}, {tested}; {} branch",
+                o.at.speed_m_s,
+                o.at.frequency_hz,
+                o.at.method.name(),
+                o.at.reduced_velocity.v_star(),
+                o.at.reduced_frequency.full_width(),
+                o.branch
+            );
+            if let Some(slope) = o.damping_slope_s_m {
+                let _ = writeln!(text, "  damping slope dζ/dV {slope:.5} s/m");
+            }
+            for warning in &o.warnings {
+                let _ = writeln!(text, "  warning: {warning}");
+            }
+        }
+        other => {
+            let _ = writeln!(text, "  {}", other.explain());
+        }
+    }
+    for m in answer
+        .motion
+        .iter()
+        .flat_map(|m| &m.modes)
+        .filter(|m| m.energy_share >= NAMED_SHARE)
+    {
+        let _ = writeln!(
+            text,
+            "    mode {:>3} ({:.4} Hz) {:>5.1} % of the kinetic energy, phase {:>6.1}°",
+            m.mode,
+            m.frequency_hz,
+            100.0 * m.energy_share,
+            m.phase_deg
+        );
+    }
+    text
+}

@@ -1,0 +1,53 @@
+//! `aerodeck bridge convert`: modes of any readable format as one compact file.
+
+use super::super::answer::Answer;
+use super::super::common::warn;
+use crate::error::{Error, Result};
+use crate::files::bridge::{BridgeFile, write_modes};
+use std::path::PathBuf;
+
+/// Write the modes that a bridge file names as one compact CSV file, in the signs of this program
+///
+/// Example: aerodeck bridge convert bridge.toml modes.csv --every 4
+#[derive(clap::Args)]
+#[command(verbatim_doc_comment)]
+pub(crate) struct Args {
+    /// The bridge file, whose modes are read.
+    bridge: PathBuf,
+    /// The file to be written.
+    output: PathBuf,
+    /// Keep every n-th node only, and both ends.
+    #[arg(long, default_value_t = 1)]
+    every: usize,
+    /// Where the figures come from, for the header; left out, the path of the files.
+    #[arg(long)]
+    source: Option<String>,
+    /// Licence of the figures, for the header.
+    #[arg(long, default_value = "not stated")]
+    licence: String,
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> Result<Answer> {
+    if args.every == 0 {
+        return Err(Error::input("--every", "a number from 1 on", "0"));
+    }
+    let file = BridgeFile::read(&args.bridge)?;
+    let mut modes = file.read_modes()?.thinned(args.every);
+    warn(&args.bridge, &modes.hints());
+    if let Some(source) = &args.source {
+        modes.source.clone_from(source);
+    }
+    let mut bytes = Vec::new();
+    let generator = format!("aerodeck bridge convert --every {}", args.every);
+    let wrote = write_modes(&modes, &args.licence, &generator, &mut bytes);
+    wrote
+        .and_then(|()| std::fs::write(&args.output, &bytes))
+        .map_err(|e| Error::io(&args.output, e))?;
+    let (nodes, count) = (modes.nodes.len(), modes.modes.len());
+    let text = format!("{}: {nodes} nodes, {count} modes\n", args.output.display());
+    Answer::new(
+        text,
+        &serde_json::json!({ "file": args.output, "nodes": nodes, "modes": count }),
+    )
+}

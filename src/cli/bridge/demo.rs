@@ -1,0 +1,117 @@
+//! `aerodeck demo --bridge`: from wind-tunnel records to the flutter of a whole bridge.
+
+use super::super::answer::Answer;
+use super::super::output::{OutputDir, list};
+use super::super::progress::Progress;
+use super::super::stages;
+use super::{BRIDGE_FMU, card, computed, staged};
+use crate::error::{Error, Result};
+use crate::files::bridge::BridgeFile;
+use crate::flutter::Onset;
+use crate::fmu::package::{Runtime, package_bridge};
+use crate::study::bridge::{BridgeFlutter, BridgeStudy, demo_bridge_text};
+use crate::study::{Deck, RecordSet, Study, demo_study_text};
+use crate::trained_model::TrainedModel;
+use serde::Serialize;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+const BRIDGE_FILE: &str = "bridge.toml";
+
+/// What `summary.json` holds.
+#[derive(Serialize)]
+struct Summary<'a> {
+    generator: String,
+    bridge: &'a str,
+    deck: String,
+    licence: String,
+    warnings: &'a [String],
+    /// All onsets found, one entry a route.
+    onsets: Vec<Onset>,
+    /// The full answer.
+    flutter: &'a BridgeFlutter,
+    failed: &'a [String],
+    files: Vec<PathBuf>,
+}
+
+/// Runs the chain into the folder `directory`.
+pub(crate) fn run(directory: &Path, force: bool, progress: &Progress) -> Result<Answer> {
+    let mut out = OutputDir::new(directory)?;
+    out.write(BRIDGE_FILE, demo_bridge_text())?;
+    let instead = "run yours with `aerodeck bridge flutter`, choose another --out";
+    out.refuse_edited(BRIDGE_FILE, force, instead)?;
+    let mut section = Study::from_toml(demo_study_text(), directory.to_path_buf())?;
+    // the model of the records; the others compare forms of models, which the demo of the section does
+    section.models.truncate(1);
+    let deck = Deck::load(&section)?;
+    let model = trained(&section, &deck, &mut out, progress)?;
+    let file = BridgeFile::from_toml(demo_bridge_text(), directory.to_path_buf())?;
+    let study = BridgeStudy::with_trained(file, |_| Some(model.clone()))?;
+    let results = computed(&study, progress)?;
+    let mut failed = results.failed.clone();
+    if let Err(e) = staged(&study, &results, &mut out) {
+        failed.push(format!("figures: {e}"));
+    }
+    let stage = progress.stage("packing the FMU");
+    if let Err(e) = packed(&study, &mut out) {
+        failed.push(format!("FMU: {e}"));
+    }
+    drop(stage);
+    let mut text = card(&study, &results);
+    for failure in &failed {
+        let _ = writeln!(text, "failed: {failure}");
+    }
+    out.stage("summary.json")?;
+    let onsets = results
+        .answers
+        .iter()
+        .filter_map(|a| a.search.onset().cloned());
+    let summary = Summary {
+        generator: format!("aerodeck {}", env!("CARGO_PKG_VERSION")),
+        bridge: &study.file.name,
+        deck: deck.description(),
+        licence: deck.licence(),
+        warnings: &study.notes,
+        onsets: onsets.collect(),
+        flutter: &results,
+        failed: &failed,
+        files: out.targets(),
+    };
+    let json =
+        serde_json::to_string_pretty(&summary).map_err(|e| Error::Numerical(e.to_string()))?;
+    out.write("summary.json", json + "\n")?;
+    let answer_json =
+        serde_json::to_value(&summary).map_err(|e| Error::Numerical(e.to_string()))?;
+    let passed = failed.is_empty();
+    let written = out.commit()?;
+    text.push_str(&list(&written));
+    Ok(Answer::new(text, &answer_json)?.with_verdict(passed))
+}
+
+/// The FMU of the bridge.
+fn packed(study: &BridgeStudy, out: &mut OutputDir) -> Result<()> {
+    let export = study.export(&[], false)?;
+    let bytes = package_bridge(&export.model, &export.bridge, &Runtime::available()?)?;
+    out.write(BRIDGE_FMU, bytes)
+}
+
+/// The records of the virtual tunnel and the model trained on them.
+fn trained(
+    study: &Study,
+    deck: &Deck,
+    out: &mut OutputDir,
+    progress: &Progress,
+) -> Result<TrainedModel> {
+    let records = RecordSet::staged(stages::tunnel(study, deck, out, progress)?)?;
+    let mut failed = Vec::new();
+    let models = stages::train(study, deck, Some(&records), (out, &mut failed), progress)?;
+    // the model of the section alone is not what is exported here
+    out.discard(stages::MODEL_FILE);
+    let first = models.into_iter().next().map(|t| t.model);
+    first.ok_or_else(|| {
+        let why = failed
+            .first()
+            .map_or("no model in the study".to_owned(), |f| format!("{f:?}"));
+        Error::Numerical(format!("no model can be trained: {why}"))
+    })
+}

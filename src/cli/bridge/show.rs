@@ -1,0 +1,83 @@
+//! `aerodeck bridge show`: modes, similarities, what is stated.
+
+use super::super::answer::Answer;
+use super::super::output::list;
+use super::super::progress::Progress;
+use super::{BridgeArgs, stage_figure};
+use crate::error::Result;
+use crate::report::modes_figure;
+use std::fmt::Write as _;
+
+/// Pairs of modes whose similarity is stated.
+const PAIRS: usize = 10;
+
+/// Draw the modes of a bridge and state how alike vertical and torsional modes are
+///
+/// Example: aerodeck bridge show bridge.toml --out modes
+#[derive(clap::Args)]
+#[command(verbatim_doc_comment)]
+pub(crate) struct Args {
+    #[command(flatten)]
+    bridge: BridgeArgs,
+}
+
+/// Runs the command.
+pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+    let study = args.bridge.study(progress)?;
+    let mut out = args.bridge.out()?;
+    let bridge = &study.by_model;
+    let title = format!(
+        "{}: modes without wind, the largest displacement of each is 1",
+        study.file.name
+    );
+    stage_figure(&modes_figure(bridge, &title)?, "modes", &mut out)?;
+    let written = out.commit()?;
+    let length: f64 = bridge.nodes.iter().map(|n| n.length_m).sum();
+    let mut text = format!(
+        "{}: {} nodes over {length:.1} m, {} modes, {} groups of strips\n\n{:>5} {:>10} {:>14} {:>8}  main motion\n",
+        study.file.name,
+        bridge.nodes.len(),
+        bridge.modes.len(),
+        bridge.groups.len(),
+        "mode",
+        "f Hz",
+        "mass kg",
+        "ζ %"
+    );
+    for (i, m) in bridge.modes.iter().enumerate() {
+        let motion = ["vertical", "lateral", "torsion"][bridge.main_motion(i)];
+        let _ = writeln!(
+            text,
+            "{:>5} {:>10.4} {:>14.6e} {:>8.3}  {motion}",
+            m.number,
+            m.frequency_hz,
+            m.generalised_mass,
+            100.0 * m.damping_ratio
+        );
+    }
+    let similarities = study.similarities();
+    text.push_str("\nSimilarity of vertical and torsional modes, (∫φ_y φ_θ)²/(∫φ_y² ∫φ_θ²); a section study assumes 1:\n");
+    for s in similarities.iter().take(PAIRS) {
+        let _ = writeln!(
+            text,
+            "  modes {:>3} and {:>3}: {:.4}",
+            s.vertical_mode, s.torsional_mode, s.similarity
+        );
+    }
+    text.push_str(&list(&written));
+    let modes: Vec<_> = bridge
+        .modes
+        .iter()
+        .map(|m| {
+            serde_json::json!({
+                "mode": m.number, "frequency_hz": m.frequency_hz, "generalised_mass": m.generalised_mass,
+                "damping_ratio": m.damping_ratio
+            })
+        })
+        .collect();
+    let json = serde_json::json!({
+        "name": study.file.name, "nodes": bridge.nodes.len(), "modes": modes, "similarities": similarities,
+        "notes": study.notes, "files": written
+    });
+    Answer::new(text, &json)
+}

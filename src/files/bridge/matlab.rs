@@ -1,0 +1,92 @@
+//! MATLAB files of `wn` (3×m, rad/s) and `phi` (3×m×n): lateral, vertical, torsional modes of a single span, each in one
+//! motion, at `n` points from one end to the other (the layout of E. Cheynet's programs).
+//!
+//! Such a file knows neither the span nor the masses; both are stated beside it and the generalised masses are `m ∫φ²`.
+
+use super::modal_data::Modes;
+use super::toml_file::SpanBlock;
+use crate::bridge::{BridgeMode, Node, tributary_lengths};
+use crate::error::{Error, Result};
+use crate::files::lab::matlab_array;
+use std::f64::consts::TAU;
+use std::path::Path;
+
+/// Motions in the order of the rows, as places in a shape.
+const ROWS: [usize; 3] = [1, 0, 2];
+
+/// Reads the file.
+pub(super) fn read(path: &Path, span: &SpanBlock) -> Result<Modes> {
+    let bytes = std::fs::read(path).map_err(|e| Error::io(path, e))?;
+    parse(bytes, span).map_err(|e| e.in_file(path))
+}
+
+fn parse(bytes: Vec<u8>, span: &SpanBlock) -> Result<Modes> {
+    let (wn_size, wn) = matlab_array(bytes.clone(), "wn")?;
+    let (phi_size, phi) = matlab_array(bytes, "phi")?;
+    let (&[3, modes], &[3, of_phi, points]) = (&wn_size[..], &phi_size[..]) else {
+        let found = format!("wn {wn_size:?}, phi {phi_size:?}");
+        return Err(Error::input("", "wn (3×m) and phi (3×m×n)", found));
+    };
+    if of_phi != modes || points < 2 {
+        let expected = format!("phi of {modes} modes at two points or more");
+        return Err(Error::input(
+            "phi",
+            expected,
+            format!("{of_phi} modes at {points} points"),
+        ));
+    }
+    let along: Vec<f64> = (0..points)
+        .map(|i| span.span_m * i as f64 / (points as f64 - 1.0))
+        .collect();
+    let lengths = tributary_lengths(&along);
+    let mut all = Vec::with_capacity(3 * modes);
+    for mode in 0..modes {
+        for (row, motion) in ROWS.into_iter().enumerate() {
+            let omega = wn[row + 3 * mode];
+            let place = format!("wn({}, {})", row + 1, mode + 1);
+            if omega <= 0.0 || !omega.is_finite() {
+                return Err(Error::input(
+                    place,
+                    "a positive frequency, rad/s",
+                    omega.to_string(),
+                ));
+            }
+            let values: Vec<f64> = (0..points)
+                .map(|i| phi[row + 3 * mode + 3 * modes * i])
+                .collect();
+            let per_length = if motion == 2 {
+                span.inertia_kg_m2_m
+            } else {
+                span.mass_kg_m
+            };
+            let square: f64 = values.iter().zip(&lengths).map(|(x, w)| w * x * x).sum();
+            let shape = values.iter().map(|x| {
+                let mut s = [0.0; 3];
+                s[motion] = *x;
+                s
+            });
+            all.push(BridgeMode {
+                number: 0,
+                frequency_hz: omega / TAU,
+                generalised_mass: per_length * square,
+                damping_ratio: 0.0,
+                shape: shape.collect(),
+            });
+        }
+    }
+    all.sort_by(|a, b| a.frequency_hz.total_cmp(&b.frequency_hz));
+    all.iter_mut()
+        .enumerate()
+        .for_each(|(i, m)| m.number = i + 1);
+    let nodes = along.iter().zip(lengths).enumerate();
+    let nodes = nodes.map(|(i, (along_m, length_m))| Node {
+        name: (i + 1).to_string(),
+        along_m: *along_m,
+        length_m,
+    });
+    Ok(Modes {
+        source: "MATLAB wn and phi".to_owned(),
+        nodes: nodes.collect(),
+        modes: all,
+    })
+}

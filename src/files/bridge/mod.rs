@@ -1,0 +1,48 @@
+//! How bridges are written down: `bridge.toml` ([`BridgeFile`]) and the modes of finite-element programs.
+//!
+//! Every reader of modes ends in [`ModalData`]: nodes, and for every mode three displacements and three rotations a node along
+//! the axes of the program. [`Axes`] says which way is up and downwind, and nothing is assumed about either. Files that know
+//! vertical, lateral and rotation themselves (our own single file, MATLAB `phi`) are in those axes already.
+
+mod abaqus;
+mod axes;
+mod matlab;
+mod modal_data;
+mod opensees;
+mod single_file;
+mod table;
+mod tables;
+mod toml_file;
+mod wawi;
+
+pub use axes::{Axes, Direction};
+pub use modal_data::{Modes, RawMode};
+pub use single_file::write_modes;
+pub use toml_file::{
+    BridgeFile, DampingRatios, ModesBlock, ModesFormat, ProfilePoint, SearchBlock, SectionBlock,
+    StaticBlock, WindBlock,
+};
+
+/// Modes of bridges that come with the program.
+pub mod embedded {
+    use super::{Modes, single_file};
+    use crate::error::{Error, Result};
+
+    /// The Langenuen suspension bridge, MIT © 2022 juelpb.
+    const LANGENUEN: &str = include_str!("../../../data/bridges/langenuen.csv");
+
+    /// Modes of an embedded bridge by name.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a name that is none.
+    pub fn modes(name: &str) -> Result<Modes> {
+        if name.eq_ignore_ascii_case("langenuen") {
+            return single_file::parse(LANGENUEN);
+        }
+        Err(Error::input(
+            "modes",
+            "the embedded bridge langenuen",
+            format!("`{name}`"),
+        ))
+    }
+}

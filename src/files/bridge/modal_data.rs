@@ -1,0 +1,145 @@
+//! Nodes and modes as finite-element programs write them, and as the bridge takes them.
+
+use super::axes::Frame;
+use crate::bridge::{BridgeMode, Node, tributary_lengths};
+use crate::error::{Error, Result};
+use std::f64::consts::PI;
+
+/// Unit-norm shapes of one bridge and a generalised mass of 1: the greatest displacement of a mass-normalised shape of
+/// anything as heavy as a bridge is far below this.
+const MASS_NORMALISED_AT_MOST: f64 = 0.1;
+
+/// A mode with displacements and rotations along the axes of its program.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RawMode {
+    /// Its number.
+    pub number: usize,
+    /// Natural frequency, Hz.
+    pub frequency_hz: f64,
+    /// Generalised mass that belongs to the shape.
+    pub generalised_mass: f64,
+    /// `ux, uy, uz, rx, ry, rz` at each node.
+    pub shape: Vec<[f64; 6]>,
+}
+
+/// Nodes and modes in the axes of a program.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct ModalData {
+    /// Name, and place in x, y, z, m.
+    pub(super) nodes: Vec<(String, [f64; 3])>,
+    pub(super) modes: Vec<RawMode>,
+}
+
+/// Nodes and modes of a bridge, in vertical, lateral and rotation, before its sections and its damping are known.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Modes {
+    /// Where they come from, in words.
+    pub source: String,
+    /// Nodes, rising along the girder.
+    pub nodes: Vec<Node>,
+    /// Modes; the damping ratio is zero where the file does not state it.
+    pub modes: Vec<BridgeMode>,
+}
+
+impl ModalData {
+    /// The modes in vertical, lateral and rotation, with tributary lengths by the trapezoidal rule.
+    pub(super) fn in_frame(self, frame: &Frame, source: String) -> Result<Modes> {
+        let along: Vec<f64> = self.nodes.iter().map(|(_, p)| frame.along(p)).collect();
+        let lengths = tributary_lengths(&along);
+        let nodes = self.nodes.iter().zip(along.iter().zip(lengths));
+        let nodes: Vec<Node> = nodes
+            .map(|((name, _), (along_m, length_m))| Node {
+                name: name.clone(),
+                along_m: *along_m,
+                length_m,
+            })
+            .collect();
+        check_order(&nodes)?;
+        let modes = self.modes.into_iter().map(|m| BridgeMode {
+            number: m.number,
+            frequency_hz: m.frequency_hz,
+            generalised_mass: m.generalised_mass,
+            damping_ratio: 0.0,
+            shape: m.shape.iter().map(|u| frame.motion(u)).collect(),
+        });
+        Ok(Modes {
+            source,
+            modes: modes.collect(),
+            nodes,
+        })
+    }
+}
+
+/// Refuses nodes that do not rise along the girder, before the tributary lengths complain of it.
+pub(super) fn check_order(nodes: &[Node]) -> Result<()> {
+    for pair in nodes.windows(2) {
+        if pair[1].along_m <= pair[0].along_m {
+            return Err(Error::input(
+                format!("node {}", pair[1].name),
+                format!(
+                    "a place along the girder beyond {} m, that of node {} before it (nodes in the order of the girder, \
+                     along up × downwind)",
+                    pair[0].along_m, pair[0].name
+                ),
+                format!("{} m", pair[1].along_m),
+            ));
+        }
+    }
+    Ok(())
+}
+
+impl Modes {
+    /// Takes only every `n`-th node, both ends kept; tributary lengths follow by the trapezoidal rule.
+    #[must_use]
+    pub fn thinned(&self, n: usize) -> Self {
+        let last = self.nodes.len() - 1;
+        let kept: Vec<usize> = (0..=last).filter(|i| i % n == 0 || *i == last).collect();
+        let along: Vec<f64> = kept.iter().map(|i| self.nodes[*i].along_m).collect();
+        let lengths = tributary_lengths(&along);
+        let nodes = kept.iter().zip(lengths).map(|(i, length_m)| Node {
+            length_m,
+            ..self.nodes[*i].clone()
+        });
+        let modes = self.modes.iter().map(|m| BridgeMode {
+            shape: kept.iter().map(|i| m.shape[*i]).collect(),
+            ..m.clone()
+        });
+        Self {
+            source: self.source.clone(),
+            nodes: nodes.collect(),
+            modes: modes.collect(),
+        }
+    }
+
+    /// What is probably not meant: rotations in degrees, masses of one with shapes that are not mass-normalised.
+    pub fn hints(&self) -> Vec<String> {
+        let greatest =
+            |m: &BridgeMode, i: usize| m.shape.iter().map(|s| s[i].abs()).fold(0.0, f64::max);
+        let mut hints = Vec::new();
+        let in_degrees = |m: &&BridgeMode| {
+            let moved = greatest(m, 0).max(greatest(m, 1));
+            greatest(m, 2) > PI && moved <= 2.0
+        };
+        if let Some(m) = self.modes.iter().find(in_degrees) {
+            hints.push(format!(
+                "mode {} turns by {:.3} where it moves by {:.3} m at most: rotations are in radians; are these degrees?",
+                m.number,
+                greatest(m, 2),
+                greatest(m, 0).max(greatest(m, 1))
+            ));
+        }
+        let unit = |m: &&BridgeMode| {
+            (m.generalised_mass - 1.0).abs() < 1e-9
+                && greatest(m, 0).max(greatest(m, 1)).max(greatest(m, 2)) > MASS_NORMALISED_AT_MOST
+        };
+        if let Some(m) = self.modes.iter().find(unit) {
+            hints.push(format!(
+                "mode {} has a generalised mass of 1 and moves by up to {:.3}: is the shape mass-normalised (then it would move \
+                 by about 1e-3), or is the mass that of a shape of another norm?",
+                m.number,
+                greatest(m, 0).max(greatest(m, 1)).max(greatest(m, 2))
+            ));
+        }
+        hints
+    }
+}

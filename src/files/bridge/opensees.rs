@@ -1,0 +1,103 @@
+//! Text of OpenSees recorders: a folder with eigenvalues and one recording a mode.
+//!
+//! - `nodes.out`: `tag x y z` a line, in the order in which the nodes are recorded;
+//! - `eigenvalues.out`: what `eigen` returns, `ω²` in (rad/s)², on one line or many;
+//! - `mode_1.out`, …: `recorder Node -file mode_1.out -node … -dof 1 2 3 4 5 6 "eigen 1"`: six numbers a node in one line, of
+//!   which the last counts; a leading time is allowed;
+//! - `masses.out`, optional: generalised masses; without it the vectors are mass-normalised, as `eigen` makes them.
+//!
+//! `examples/export_modes_opensees.py` writes them.
+
+use super::modal_data::{ModalData, RawMode};
+use super::table::Table;
+use crate::error::{Error, Result};
+use std::f64::consts::TAU;
+use std::path::Path;
+
+/// Reads the folder.
+pub(super) fn read(folder: &Path) -> Result<ModalData> {
+    let path = folder.join("nodes.out");
+    let nodes = nodes(&Table::read(&path)?).map_err(|e| e.in_file(&path))?;
+    let path = folder.join("eigenvalues.out");
+    let eigenvalues = Table::read(&path)?
+        .all_numbers()
+        .map_err(|e| e.in_file(&path))?;
+    let masses = masses(&folder.join("masses.out"), eigenvalues.len())?;
+    let mut modes = Vec::with_capacity(masses.len());
+    for (i, (square, generalised_mass)) in eigenvalues.into_iter().zip(masses).enumerate() {
+        if square <= 0.0 {
+            let place = format!("eigenvalue {}", i + 1);
+            return Err(Error::input(
+                place,
+                "a positive square of a frequency, rad²/s²",
+                square.to_string(),
+            )
+            .in_file(&path));
+        }
+        let path = folder.join(format!("mode_{}.out", i + 1));
+        modes.push(RawMode {
+            number: i + 1,
+            frequency_hz: square.sqrt() / TAU,
+            generalised_mass,
+            shape: shape(&Table::read(&path)?, nodes.len()).map_err(|e| e.in_file(&path))?,
+        });
+    }
+    Ok(ModalData { nodes, modes })
+}
+
+fn nodes(table: &Table) -> Result<Vec<(String, [f64; 3])>> {
+    let one = |row: &(usize, Vec<String>)| {
+        let at = [
+            Table::number(row, 1)?,
+            Table::number(row, 2)?,
+            Table::number(row, 3)?,
+        ];
+        Ok((Table::name(row, 0), at))
+    };
+    table.rows.iter().map(one).collect()
+}
+
+fn masses(path: &Path, modes: usize) -> Result<Vec<f64>> {
+    if !path.exists() {
+        return Ok(vec![1.0; modes]);
+    }
+    let masses = Table::read(path)?
+        .all_numbers()
+        .map_err(|e| e.in_file(path))?;
+    if masses.len() == modes && masses.iter().all(|m| *m > 0.0) {
+        return Ok(masses);
+    }
+    let found = format!(
+        "{} numbers, the least {:?}",
+        masses.len(),
+        masses.iter().copied().reduce(f64::min)
+    );
+    Err(Error::input(
+        "",
+        format!("{modes} positive masses, one an eigenvalue"),
+        found,
+    )
+    .in_file(path))
+}
+
+fn shape(table: &Table, nodes: usize) -> Result<Vec<[f64; 6]>> {
+    let wanted = 6 * nodes;
+    let (line, cells) = &table.rows[table.rows.len() - 1];
+    let leading = cells.len().checked_sub(wanted).filter(|time| *time <= 1);
+    let Some(leading) = leading else {
+        return Err(Error::input(
+            format!("line {line}"),
+            format!("{wanted} numbers, six for each of the {nodes} nodes of nodes.out"),
+            cells.len().to_string(),
+        ));
+    };
+    let row = (*line, cells.clone());
+    let part = |n: usize| {
+        let mut u = [0.0; 6];
+        for (d, value) in u.iter_mut().enumerate() {
+            *value = Table::number(&row, leading + 6 * n + d)?;
+        }
+        Ok(u)
+    };
+    (0..nodes).map(part).collect()
+}

@@ -1,0 +1,141 @@
+//! Our single file of modes: compact, in the signs of this program.
+//!
+//! ```text
+//! # aerodeck bridge modes 1
+//! # source: where the figures come from
+//! # licence: …
+//! # axes: vertical up, lateral downwind, rotation nose-up
+//! # units: along_m and length_m in m; vertical, lateral in m and rotation in rad per unit of the modal coordinate
+//! # generator: …
+//! # mode: 1, 0.0551 Hz, 10203440 kg
+//! node,along_m,length_m,vertical_1,lateral_1,rotation_1
+//! 1001,-617.5,2.0,…
+//! ```
+
+use super::modal_data::{Modes, check_order};
+use super::table::Table;
+use crate::bridge::{BridgeMode, Node};
+use crate::error::{Error, Result, positive};
+use crate::files::header_csv::CommentHeader;
+use std::io::Write;
+use std::path::Path;
+
+const FORMAT: &str = "aerodeck bridge modes 1";
+const AXES: &str = "vertical up, lateral downwind, rotation nose-up";
+const UNITS: &str = "along_m and length_m in m; vertical, lateral in m and rotation in rad per unit of the modal coordinate";
+const MODE: &str = "mode";
+const KEYS: &[&str] = &["source", "licence", "axes", "units", "generator", MODE];
+
+pub(super) fn read(path: &Path) -> Result<Modes> {
+    let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, e))?;
+    parse(&text).map_err(|e| e.in_file(path))
+}
+
+pub(super) fn parse(text: &str) -> Result<Modes> {
+    let mut header = CommentHeader::new(&[FORMAT], KEYS, &[MODE]);
+    if text.lines().next().map(str::trim) != Some(&format!("# {FORMAT}")) {
+        let found = text.lines().next().unwrap_or("").to_owned();
+        return Err(Error::input(
+            "line 1",
+            format!("`# {FORMAT}`"),
+            format!("`{found}`"),
+        ));
+    }
+    for line in text.lines() {
+        if !header.take(line)? {
+            break;
+        }
+    }
+    header.must_say("axes", AXES)?;
+    header.must_say("units", UNITS)?;
+    let table = Table::parse(text)?;
+    let [name, along, length] = ["node", "along_m", "length_m"].map(|n| table.required(&[n]));
+    let (name, along, length) = (name?, along?, length?);
+    let mut nodes = Vec::with_capacity(table.rows.len());
+    for row in &table.rows {
+        nodes.push(Node {
+            name: Table::name(row, name),
+            along_m: Table::number(row, along)?,
+            length_m: Table::number(row, length)?,
+        });
+    }
+    check_order(&nodes)?;
+    let modes = header.all(MODE).map(|entry| {
+        let (number, frequency_hz, generalised_mass) = mode_line(&entry.value)
+            .ok_or_else(|| entry.wrong("`number, frequency Hz, generalised mass kg`"))?;
+        let place = entry.place();
+        positive(&format!("{place}, frequency"), frequency_hz)?;
+        positive(&format!("{place}, generalised mass"), generalised_mass)?;
+        let columns = ["vertical", "lateral", "rotation"]
+            .map(|part| table.required(&[&format!("{part}_{number}")]));
+        let [v, l, r] = columns;
+        let (v, l, r) = (v?, l?, r?);
+        let at = |row| {
+            Ok([
+                Table::number(row, v)?,
+                Table::number(row, l)?,
+                Table::number(row, r)?,
+            ])
+        };
+        Ok(BridgeMode {
+            number,
+            frequency_hz,
+            generalised_mass,
+            damping_ratio: 0.0,
+            shape: table.rows.iter().map(at).collect::<Result<_>>()?,
+        })
+    });
+    Ok(Modes {
+        source: header.text("source"),
+        modes: modes.collect::<Result<_>>()?,
+        nodes,
+    })
+}
+
+fn mode_line(value: &str) -> Option<(usize, f64, f64)> {
+    let mut parts = value.split(',').map(str::trim);
+    let number = parts.next()?.parse().ok()?;
+    let frequency = parts.next()?.strip_suffix("Hz")?.trim().parse().ok()?;
+    let mass = parts.next()?.strip_suffix("kg")?.trim().parse().ok()?;
+    parts.next().is_none().then_some((number, frequency, mass))
+}
+
+/// Writes modes as a single file.
+///
+/// # Errors
+/// Those of `out`.
+pub fn write_modes(
+    modes: &Modes,
+    licence: &str,
+    generator: &str,
+    out: &mut dyn Write,
+) -> std::io::Result<()> {
+    CommentHeader::write_format(out, FORMAT)?;
+    CommentHeader::write_line(out, "source", &modes.source)?;
+    CommentHeader::write_line(out, "licence", licence)?;
+    CommentHeader::write_line(out, "axes", AXES)?;
+    CommentHeader::write_line(out, "units", UNITS)?;
+    CommentHeader::write_line(out, "generator", generator)?;
+    for m in &modes.modes {
+        let line = format!(
+            "{}, {} Hz, {} kg",
+            m.number, m.frequency_hz, m.generalised_mass
+        );
+        CommentHeader::write_line(out, MODE, line)?;
+    }
+    write!(out, "node,along_m,length_m")?;
+    for m in &modes.modes {
+        write!(out, ",vertical_{0},lateral_{0},rotation_{0}", m.number)?;
+    }
+    writeln!(out)?;
+    for (i, node) in modes.nodes.iter().enumerate() {
+        write!(out, "{},{},{}", node.name, node.along_m, node.length_m)?;
+        for x in modes.modes.iter().flat_map(|m| m.shape[i]) {
+            // what is below the figures of the program that made it is zero
+            let x = if x.abs() < 1e-9 { 0.0 } else { x };
+            write!(out, ",{x}")?;
+        }
+        writeln!(out)?;
+    }
+    Ok(())
+}

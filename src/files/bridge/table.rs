@@ -1,0 +1,125 @@
+//! Tables of numbers as programs write them: commas, semicolons, tabs or blanks between, comments and headings in front.
+
+use crate::error::{Error, Result};
+use std::path::Path;
+
+/// Rows of a file at most: a thousand nodes by thousands of modes.
+const ROWS_AT_MOST: usize = 5_000_000;
+
+/// A table with the heading of its columns, if it has one.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct Table {
+    pub(super) heading: Vec<String>,
+    /// Line in the file and cells.
+    pub(super) rows: Vec<(usize, Vec<String>)>,
+}
+
+/// Cells of a line: between commas, semicolons or tabs, else between blanks.
+fn cells(line: &str) -> Vec<String> {
+    let marked = line.contains([',', ';', '\t']);
+    let parts: Vec<&str> = if marked {
+        line.split([',', ';', '\t']).collect()
+    } else {
+        line.split_whitespace().collect()
+    };
+    parts
+        .iter()
+        .map(|c| c.trim().trim_matches('"').to_owned())
+        .collect()
+}
+
+impl Table {
+    /// The table in a file.
+    pub(super) fn read(path: &Path) -> Result<Self> {
+        let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, e))?;
+        Self::parse(&text).map_err(|e| e.in_file(path))
+    }
+
+    pub(super) fn parse(text: &str) -> Result<Self> {
+        let mut table = Self::default();
+        for (i, line) in text.lines().enumerate() {
+            let line = line.trim();
+            if line.is_empty() || line.starts_with(['#', '*', '%']) {
+                continue;
+            }
+            let cells = cells(line);
+            let is_heading = cells.iter().all(|c| c.parse::<f64>().is_err());
+            if table.rows.is_empty() && is_heading {
+                table.heading = cells;
+                continue;
+            }
+            if table.rows.len() == ROWS_AT_MOST {
+                return Err(Error::input(
+                    format!("line {}", i + 1),
+                    format!("at most {ROWS_AT_MOST} rows"),
+                    "more",
+                ));
+            }
+            table.rows.push((i + 1, cells));
+        }
+        if table.rows.is_empty() {
+            return Err(Error::input("", "rows of numbers", "none"));
+        }
+        Ok(table)
+    }
+
+    /// Place of the column with one of these names, in any case.
+    pub(super) fn column(&self, names: &[&str]) -> Option<usize> {
+        self.heading
+            .iter()
+            .position(|h| names.iter().any(|n| h.eq_ignore_ascii_case(n)))
+    }
+
+    /// The same, which must be there.
+    pub(super) fn required(&self, names: &[&str]) -> Result<usize> {
+        self.column(names).ok_or_else(|| {
+            Error::input(
+                "heading",
+                format!("a column `{}`", names[0]),
+                format!("`{}`", self.heading.join(",")),
+            )
+        })
+    }
+
+    /// The number in a cell.
+    pub(super) fn number(row: &(usize, Vec<String>), column: usize) -> Result<f64> {
+        let place = format!("line {}, column {}", row.0, column + 1);
+        let cell = row.1.get(column).map_or("", String::as_str);
+        let number: Option<f64> = cell.parse().ok();
+        number
+            .filter(|x| x.is_finite())
+            .ok_or_else(|| Error::input(place, "a finite number", format!("`{cell}`")))
+    }
+
+    /// The whole number in a cell.
+    pub(super) fn count(row: &(usize, Vec<String>), column: usize) -> Result<usize> {
+        let x = Self::number(row, column)?;
+        if x >= 0.0 && x.fract() == 0.0 {
+            return Ok(x as usize);
+        }
+        let place = format!("line {}, column {}", row.0, column + 1);
+        Err(Error::input(
+            place,
+            "a whole number",
+            format!("`{}`", row.1[column]),
+        ))
+    }
+
+    /// The name in a cell; numbers lose what a spreadsheet added to them (`12.0`).
+    pub(super) fn name(row: &(usize, Vec<String>), column: usize) -> String {
+        let cell = row.1.get(column).map_or("", String::as_str);
+        match cell.parse::<f64>() {
+            Ok(x) if x.fract() == 0.0 && x.abs() < 1e15 => format!("{x:.0}"),
+            _ => cell.to_owned(),
+        }
+    }
+
+    /// All numbers of all rows, in order.
+    pub(super) fn all_numbers(&self) -> Result<Vec<f64>> {
+        let cells = self
+            .rows
+            .iter()
+            .flat_map(|row| (0..row.1.len()).map(move |c| Self::number(row, c)));
+        cells.collect()
+    }
+}

@@ -1,0 +1,408 @@
+//! `bridge.toml`: where the modes are, sections along the span, wind profile, damping.
+
+use super::modal_data::Modes;
+use super::{Axes, abaqus, embedded, matlab, opensees, single_file, tables, wawi};
+use crate::aerodynamics::derivatives::Interpolation;
+use crate::aerodynamics::quasi_steady::{Arms, CoefficientsAt};
+use crate::error::{Error, Result, finite, non_negative, positive};
+use crate::files::toml_lines;
+use crate::section::Dof;
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+
+/// Version of the layout.
+const SCHEMA: u32 = 1;
+
+/// A bridge as a file states it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BridgeFile {
+    /// Version of the layout, 1.
+    pub schema: u32,
+    /// Name in tables and figures.
+    pub name: String,
+    /// Air density `ρ`, kg/m³.
+    pub air_density_kg_m3: f64,
+    /// Natural modes.
+    pub modes: ModesBlock,
+    /// Sections along the span.
+    #[serde(rename = "section")]
+    pub sections: Vec<SectionBlock>,
+    /// Wind along the span.
+    #[serde(default)]
+    pub wind: WindBlock,
+    /// Speeds that are looked at.
+    #[serde(default)]
+    pub flutter: SearchBlock,
+    /// Directory of the file, against which paths in it are read.
+    #[serde(skip)]
+    pub directory: PathBuf,
+}
+
+/// Where the modes are.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ModesBlock {
+    /// Format of the files.
+    pub format: ModesFormat,
+    /// File or folder, or the name of an embedded bridge (`langenuen`).
+    pub path: PathBuf,
+    /// Up and downwind in the axes of the files.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub axes: Option<Axes>,
+    /// Damping ratio of all modes, or a list of one a mode.
+    pub damping_ratio: DampingRatios,
+    /// Numbers of the modes that take part; left out, all.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub select: Option<Vec<usize>>,
+    /// Span and masses, for files that do not know them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub span: Option<SpanBlock>,
+}
+
+/// Formats of modes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ModesFormat {
+    /// One of ours: a single file, or a folder of three tables.
+    Csv,
+    /// Model folder of wawi.
+    Wawi,
+    /// CSV exports of Abaqus.
+    Abaqus,
+    /// `wn` and `phi`.
+    Matlab,
+    /// Recorder text of OpenSees.
+    Opensees,
+    /// One that comes with the program.
+    Embedded,
+}
+
+/// Damping ratios of the modes.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(untagged, expecting = "a number, or a list of one number a mode")]
+pub enum DampingRatios {
+    /// The same for all.
+    Same(f64),
+    /// One a mode, in the order of the file of modes.
+    Each(Vec<f64>),
+}
+
+/// A single span with uniform masses.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SpanBlock {
+    /// Length, m.
+    pub span_m: f64,
+    /// Mass per length that moves with the girder, kg/m.
+    pub mass_kg_m: f64,
+    /// Mass moment of inertia per length, kg·m²/m.
+    pub inertia_kg_m2_m: f64,
+}
+
+/// One section along the span: `derivatives` for the table, `model` for a model trained already (without one it is fitted to the
+/// table), or `static` alone for quasi-steady forces.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SectionBlock {
+    /// Name.
+    pub name: String,
+    /// Width `B`, m.
+    pub width_m: f64,
+    /// Name of the first node; left out, the first of the bridge.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub from: Option<String>,
+    /// Name of the last node; left out, the last of the bridge.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub to: Option<String>,
+    /// Embedded deck or file of a derivative table.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub derivatives: Option<String>,
+    /// How the table is read between its points.
+    #[serde(default)]
+    pub interpolation: Interpolation,
+    /// Filters of the model that is fitted to the table.
+    #[serde(default = "three")]
+    pub filters: usize,
+    /// Motions with self-excited forces.
+    #[serde(default = "two")]
+    pub motions: Vec<Dof>,
+    /// File of a trained model.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub model: Option<PathBuf>,
+    /// Static coefficients; without `derivatives` and `model` the forces are quasi-steady.
+    #[serde(default, rename = "static", skip_serializing_if = "Option::is_none")]
+    pub statics: Option<StaticBlock>,
+}
+
+fn three() -> usize {
+    3
+}
+
+fn two() -> Vec<Dof> {
+    Dof::TWO.to_vec()
+}
+
+/// Static coefficients at the mean angle of attack, all over the width: lift up, moment nose-up, drag downwind.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct StaticBlock {
+    /// `C_D`.
+    pub drag: f64,
+    /// `C_L`.
+    pub lift: f64,
+    /// `C_M`.
+    pub moment: f64,
+    /// `dC_D/dα`, per rad.
+    pub drag_slope: f64,
+    /// `dC_L/dα`, per rad.
+    pub lift_slope: f64,
+    /// `dC_M/dα`, per rad.
+    pub moment_slope: f64,
+    /// Arms of the corrected quasi-steady theory over the width.
+    pub arms: Arms,
+}
+
+impl StaticBlock {
+    /// As the theory takes them.
+    pub fn coefficients(&self) -> CoefficientsAt {
+        CoefficientsAt {
+            drag: self.drag,
+            lift: self.lift,
+            moment: self.moment,
+            drag_slope: self.drag_slope,
+            lift_slope: self.lift_slope,
+            moment_slope: self.moment_slope,
+        }
+    }
+}
+
+/// Wind along the span.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct WindBlock {
+    /// Wind speed at places along the girder over the wind speed of the bridge, linear between; left out, 1 everywhere.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub profile: Vec<ProfilePoint>,
+}
+
+/// A point of the wind profile.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ProfilePoint {
+    /// Place along the girder, m.
+    pub along_m: f64,
+    /// Wind speed there over that of the bridge.
+    pub factor: f64,
+}
+
+/// Speeds that are looked at.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct SearchBlock {
+    /// Highest wind speed, m/s.
+    pub speed_max_m_s: f64,
+    /// Speeds between still air and the highest.
+    pub speeds: usize,
+}
+
+impl Default for SearchBlock {
+    fn default() -> Self {
+        Self {
+            speed_max_m_s: 120.0,
+            speeds: 60,
+        }
+    }
+}
+
+impl WindBlock {
+    /// The factor at a place along the girder.
+    pub fn factor(&self, along_m: f64) -> f64 {
+        let points = &self.profile;
+        let after = points.partition_point(|p| p.along_m <= along_m);
+        match (after.checked_sub(1).map(|i| points[i]), points.get(after)) {
+            (Some(a), Some(b)) => {
+                a.factor + (b.factor - a.factor) * (along_m - a.along_m) / (b.along_m - a.along_m)
+            }
+            (Some(end), None) => end.factor,
+            (None, Some(end)) => end.factor,
+            (None, None) => 1.0,
+        }
+    }
+}
+
+impl BridgeFile {
+    /// Reads and checks a file.
+    ///
+    /// # Errors
+    /// [`Error::Io`] when it cannot be read; [`Error::Input`] with file and line for everything that is wrong in it.
+    pub fn read(path: &Path) -> Result<Self> {
+        toml_lines::read(path, Self::from_toml)
+    }
+
+    /// Reads and checks the text of a file; paths in it are read against `directory`.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with line and key for everything that is wrong in it.
+    pub fn from_toml(text: &str, directory: PathBuf) -> Result<Self> {
+        toml_lines::parse("a bridge file", text, |file: &mut Self| {
+            file.directory = directory;
+            file.validate()
+        })
+    }
+
+    fn validate(&self) -> Result<()> {
+        if self.schema != SCHEMA {
+            return Err(Error::input(
+                "schema",
+                SCHEMA.to_string(),
+                self.schema.to_string(),
+            ));
+        }
+        positive("air_density_kg_m3", self.air_density_kg_m3)?;
+        positive("flutter.speed_max_m_s", self.flutter.speed_max_m_s)?;
+        if self.sections.is_empty() {
+            return Err(Error::input("section", "at least one [[section]]", "none"));
+        }
+        for (i, section) in self.sections.iter().enumerate() {
+            section.validate(&format!("section[{i}]"))?;
+        }
+        self.validate_profile()?;
+        match (self.modes.format, &self.modes.axes, &self.modes.span) {
+            (ModesFormat::Matlab, _, None) => {
+                return Err(Error::input(
+                    "modes.span",
+                    "span_m, mass_kg_m and inertia_kg_m2_m for MATLAB files",
+                    "none",
+                ));
+            }
+            (ModesFormat::Wawi | ModesFormat::Abaqus | ModesFormat::Opensees, None, _) => {
+                let expected = "up and downwind in the axes of the files, e.g. { up = \"z\", downwind = \"-y\" }";
+                return Err(Error::input("modes.axes", expected, "none"));
+            }
+            _ => {}
+        }
+        if let Some(span) = &self.modes.span {
+            positive("modes.span.span_m", span.span_m)?;
+            positive("modes.span.mass_kg_m", span.mass_kg_m)?;
+            positive("modes.span.inertia_kg_m2_m", span.inertia_kg_m2_m)?;
+        }
+        match &self.modes.damping_ratio {
+            DampingRatios::Same(ratio) => non_negative("modes.damping_ratio", *ratio).map(|_| ()),
+            DampingRatios::Each(all) => all
+                .iter()
+                .try_for_each(|r| non_negative("modes.damping_ratio", *r).map(|_| ())),
+        }
+    }
+
+    fn validate_profile(&self) -> Result<()> {
+        let points = &self.wind.profile;
+        for (i, point) in points.iter().enumerate() {
+            let place = format!("wind.profile[{i}]");
+            finite(&format!("{place}.along_m"), point.along_m)?;
+            non_negative(&format!("{place}.factor"), point.factor)?;
+            if i > 0 && points[i - 1].along_m >= point.along_m {
+                let expected = format!("a place beyond {} m", points[i - 1].along_m);
+                return Err(Error::input(place, expected, point.along_m.to_string()));
+            }
+        }
+        if !points.is_empty() && points.iter().all(|p| p.factor == 0.0) {
+            return Err(Error::input(
+                "wind.profile",
+                "wind somewhere along the bridge",
+                "zero everywhere",
+            ));
+        }
+        Ok(())
+    }
+
+    /// The modes that take part, with their damping.
+    ///
+    /// # Errors
+    /// [`Error::Io`] and [`Error::Input`] with file and place for what the files of the modes lack.
+    pub fn read_modes(&self) -> Result<Modes> {
+        let block = &self.modes;
+        let path = self.directory.join(&block.path);
+        let mut modes = match block.format {
+            ModesFormat::Embedded => embedded::modes(&block.path.to_string_lossy())?,
+            ModesFormat::Csv if !path.is_dir() => single_file::read(&path)?,
+            ModesFormat::Matlab => {
+                let span = block.span.as_ref();
+                let span = span.ok_or_else(|| Error::input("modes.span", "the span", "none"))?;
+                matlab::read(&path, span)?
+            }
+            program => {
+                let axes = block.axes.as_ref().ok_or_else(|| {
+                    let expected = "up and downwind in the axes of the tables, e.g. { up = \"z\", downwind = \"-y\" }";
+                    Error::input("modes.axes", expected, "none")
+                })?;
+                let frame = axes.frame()?;
+                let data = match program {
+                    ModesFormat::Wawi => wawi::read(&path)?,
+                    ModesFormat::Abaqus => abaqus::read(&path)?,
+                    ModesFormat::Opensees => opensees::read(&path)?,
+                    _ => tables::read(&path)?,
+                };
+                data.in_frame(&frame, path.display().to_string())
+                    .map_err(|e| e.in_file(&path))?
+            }
+        };
+        match &block.damping_ratio {
+            DampingRatios::Same(ratio) => modes
+                .modes
+                .iter_mut()
+                .for_each(|m| m.damping_ratio = *ratio),
+            DampingRatios::Each(all) if all.len() == modes.modes.len() => {
+                modes
+                    .modes
+                    .iter_mut()
+                    .zip(all)
+                    .for_each(|(m, r)| m.damping_ratio = *r);
+            }
+            DampingRatios::Each(all) => {
+                let expected = format!("one number, or {}, one a mode", modes.modes.len());
+                return Err(Error::input(
+                    "modes.damping_ratio",
+                    expected,
+                    format!("{} numbers", all.len()),
+                ));
+            }
+        }
+        if let Some(select) = &block.select {
+            let known = |n: &&usize| modes.modes.iter().any(|m| m.number == **n);
+            if let Some(unknown) = select.iter().find(|n| !known(n)) {
+                let all: Vec<String> = modes.modes.iter().map(|m| m.number.to_string()).collect();
+                return Err(Error::input(
+                    "modes.select",
+                    format!("modes among {}", all.join(", ")),
+                    unknown.to_string(),
+                ));
+            }
+            modes.modes.retain(|m| select.contains(&m.number));
+        }
+        Ok(modes)
+    }
+}
+
+impl SectionBlock {
+    fn validate(&self, place: &str) -> Result<()> {
+        positive(&format!("{place}.width_m"), self.width_m)?;
+        if self.derivatives.is_none() && self.model.is_none() && self.statics.is_none() {
+            return Err(Error::input(
+                place,
+                "one of `derivatives`, `model`, `static`",
+                "none",
+            ));
+        }
+        if self.motions != Dof::TWO && self.motions != Dof::THREE {
+            let expected =
+                "[\"vertical\", \"torsion\"] or [\"vertical\", \"lateral\", \"torsion\"]";
+            return Err(Error::input(
+                format!("{place}.motions"),
+                expected,
+                format!("{:?}", self.motions),
+            ));
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,129 @@
+//! The model folder of wawi: `modal.json` (generalised masses, stiffnesses, shapes) and `element.json` (nodes).
+//!
+//! `phi.full` has six rows a node, in the order of `node_matrix`, and one column a mode; axes are those of the nodes.
+
+use super::modal_data::{ModalData, RawMode};
+use crate::error::{Error, Result};
+use serde::Deserialize;
+use serde::de::DeserializeOwned;
+use std::f64::consts::TAU;
+use std::path::Path;
+
+#[derive(Deserialize)]
+struct Modal {
+    m: Vec<f64>,
+    k: Option<Vec<f64>>,
+    omega_n: Option<Vec<f64>>,
+    #[serde(default)]
+    local: bool,
+    phi: Phi,
+}
+
+#[derive(Deserialize)]
+struct Phi {
+    full: Vec<Vec<f64>>,
+}
+
+#[derive(Deserialize)]
+struct Element {
+    node_matrix: Vec<Vec<f64>>,
+}
+
+/// Reads the folder.
+pub(super) fn read(folder: &Path) -> Result<ModalData> {
+    let element: Element = json(&folder.join("element.json"))?;
+    let path = folder.join("modal.json");
+    let modal: Modal = json(&path)?;
+    data(element, modal).map_err(|e| e.in_file(path))
+}
+
+fn json<T: DeserializeOwned>(path: &Path) -> Result<T> {
+    let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, e))?;
+    serde_json::from_str(&text).map_err(|e| {
+        let place = format!("line {}, column {}", e.line(), e.column());
+        Error::input(place, "a file of wawi's model folder", e.to_string()).in_file(path)
+    })
+}
+
+fn data(element: Element, modal: Modal) -> Result<ModalData> {
+    if modal.local {
+        return Err(Error::input(
+            "local",
+            "shapes along global axes (`false`)",
+            "`true`",
+        ));
+    }
+    let mut nodes = Vec::new();
+    for (i, row) in element.node_matrix.iter().enumerate() {
+        let [name, x, y, z] = row[..] else {
+            let place = format!("element.json: node_matrix[{i}]");
+            return Err(Error::input(
+                place,
+                "node, x, y, z",
+                format!("{} numbers", row.len()),
+            ));
+        };
+        nodes.push((format!("{name:.0}"), [x, y, z]));
+    }
+    let omega = frequencies(&modal)?;
+    let rows = modal.phi.full;
+    if rows.len() != 6 * nodes.len() {
+        return Err(Error::input(
+            "phi.full",
+            format!(
+                "{} rows, six for each of the {} nodes",
+                6 * nodes.len(),
+                nodes.len()
+            ),
+            format!("{} rows", rows.len()),
+        ));
+    }
+    if let Some(i) = rows.iter().position(|r| r.len() != modal.m.len()) {
+        return Err(Error::input(
+            format!("phi.full[{i}]"),
+            format!("{} columns, one a mode of `m`", modal.m.len()),
+            format!("{} columns", rows[i].len()),
+        ));
+    }
+    let mode = |(m, omega): (usize, f64)| RawMode {
+        number: m + 1,
+        frequency_hz: omega / TAU,
+        generalised_mass: modal.m[m],
+        shape: (0..nodes.len())
+            .map(|n| std::array::from_fn(|d| rows[6 * n + d][m]))
+            .collect(),
+    };
+    let modes = omega.into_iter().enumerate().map(mode).collect();
+    Ok(ModalData { nodes, modes })
+}
+
+fn frequencies(modal: &Modal) -> Result<Vec<f64>> {
+    let count = modal.m.len();
+    let of = |name: &str, values: &[f64], square: bool| {
+        if values.len() != count {
+            return Err(Error::input(
+                name,
+                format!("{count} values, one a mode of `m`"),
+                values.len().to_string(),
+            ));
+        }
+        let one = |(i, x): (usize, &f64)| {
+            let omega = if square { (x / modal.m[i]).sqrt() } else { *x };
+            if omega > 0.0 && omega.is_finite() && modal.m[i] > 0.0 {
+                return Ok(omega);
+            }
+            let found = format!("mass {}, {name} {x}", modal.m[i]);
+            Err(Error::input(
+                format!("mode {}", i + 1),
+                "a positive mass and frequency",
+                found,
+            ))
+        };
+        values.iter().enumerate().map(one).collect()
+    };
+    match (&modal.omega_n, &modal.k) {
+        (Some(omega), _) => of("omega_n", omega, false),
+        (None, Some(k)) => of("k", k, true),
+        (None, None) => Err(Error::input("", "`k` or `omega_n`", "neither")),
+    }
+}

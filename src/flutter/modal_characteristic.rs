@@ -1,0 +1,230 @@
+//! The nonlinear eigenvalue problem `D(λ) v = 0` of a continuous model with many modes.
+//!
+//! The same `D(λ)` as that of a section, as many rows as there are modes. The filters of a bridge come in chains that are
+//! alike for every mode, so one response of a chain, `x = (λB I − V A)⁻¹ b`, serves all of them and
+//! `D(λ) = λ²M + λR + K − Σ_l x_l(λ) C_l` costs modes² for each filter of a chain. A mode is corrected by nonlinear
+//! inverse iteration (Neumaier 1985, without the residual form): `D(λ) u = D'(λ) v`, `λ ← λ − (vᴴv)/(vᴴu)`, `v ← u/|u|`, which
+//! converges quadratically and knows by its shape which mode it follows.
+
+use crate::aerodynamics::{ContinuousRealization, Realization};
+use crate::aeroelastic::CoupledSection;
+use nalgebra::{Complex, DMatrix, DVector};
+
+type Complex64 = Complex<f64>;
+type Shape = DVector<Complex64>;
+
+/// Rounds before a start is given up as too far away.
+const MAX_ROUNDS: usize = 12;
+/// Relative size of the last step; the next would be its square.
+const TOLERANCE: f64 = 1e-10;
+/// Part of an eigenvalue by which it is moved where the problem is exactly singular; below the tolerance, so that it settles.
+const NUDGE: f64 = 1e-11;
+
+/// Filters that are driven by one coordinate each, alike for all coordinates of the chain.
+#[derive(Debug, Clone)]
+struct Chain {
+    /// L×L.
+    a: DMatrix<f64>,
+    /// L.
+    b: DVector<f64>,
+    /// What each filter does, n×n: column `j` for the chain that coordinate `j` drives, times `½ρB²`.
+    outputs: Vec<DMatrix<f64>>,
+}
+
+/// Matrices of the problem, scaled to physical motion and force once.
+#[derive(Debug)]
+pub(super) struct ModalCharacteristic {
+    width: f64,
+    mass: DMatrix<f64>,
+    damping: DMatrix<f64>,
+    stiffness: DMatrix<f64>,
+    /// `½ρ P(e₀)`, `½ρB P(e₁)`; the added mass is in `mass`.
+    on_motion: DMatrix<f64>,
+    on_rate: DMatrix<f64>,
+    chains: Vec<Chain>,
+}
+
+impl ModalCharacteristic {
+    /// The problem of `section`; `None` for sampled models.
+    pub(super) fn new(section: &CoupledSection) -> Option<Self> {
+        let Realization::Continuous(aero) = section.aerodynamics() else {
+            return None;
+        };
+        let s = section.structure();
+        let half_rho = 0.5 * s.air_density_kg_m3;
+        let width = s.width_m;
+        let mut chains = chains(aero);
+        for output in chains.iter_mut().flat_map(|c| &mut c.outputs) {
+            *output = s.scaled(output) * half_rho;
+        }
+        Some(Self {
+            width,
+            mass: &s.mass - s.scaled(&aero.e2) * (half_rho * width * width),
+            damping: s.damping.clone(),
+            stiffness: s.stiffness.clone(),
+            on_motion: s.scaled(&aero.e0) * half_rho,
+            on_rate: s.scaled(&aero.e1) * (half_rho * width),
+            chains,
+        })
+    }
+
+    /// The problem at a wind speed.
+    pub(super) fn at(&self, speed: f64) -> AtSpeed<'_> {
+        AtSpeed {
+            problem: self,
+            speed,
+            damping: &self.damping - &self.on_rate * speed,
+            stiffness: &self.stiffness - &self.on_motion * (speed * speed),
+        }
+    }
+}
+
+/// The problem at one wind speed.
+pub(super) struct AtSpeed<'a> {
+    problem: &'a ModalCharacteristic,
+    speed: f64,
+    damping: DMatrix<f64>,
+    stiffness: DMatrix<f64>,
+}
+
+impl AtSpeed<'_> {
+    /// The eigenvalue that is reached from `start` and the shape of a mode nearby, with its own shape of unit norm; `None`
+    /// when the iteration does not settle.
+    pub(super) fn solve(&self, start: Complex64, near: &Shape) -> Option<(Complex64, Shape)> {
+        let mut lambda = start;
+        let mut shape = near.normalize();
+        for _ in 0..MAX_ROUNDS {
+            let (value, slope) = self.evaluate(lambda, &shape)?;
+            let Some(step) = inverse_step(value, slope, &mut shape) else {
+                // an eigenvalue that is met exactly, as those of still air, cannot be solved with
+                lambda *= 1.0 + NUDGE;
+                continue;
+            };
+            lambda -= step;
+            if step.norm() <= TOLERANCE * lambda.norm() {
+                return Some((lambda, shape));
+            }
+        }
+        None
+    }
+
+    /// `D(λ)` and `D'(λ) v`.
+    fn evaluate(&self, lambda: Complex64, v: &Shape) -> Option<(DMatrix<Complex64>, Shape)> {
+        let p = self.problem;
+        let mut value = DMatrix::zeros(v.len(), v.len());
+        let entries = p.mass.iter().zip(&self.damping).zip(&self.stiffness);
+        for (d, ((m, r), k)) in value.iter_mut().zip(entries) {
+            *d = (lambda * *m + *r) * lambda + *k;
+        }
+        let mut slope = product(&p.mass, v) * (lambda * 2.0) + product(&self.damping, v);
+        let cube = Complex64::from(self.speed.powi(3));
+        for chain in &p.chains {
+            let (x, dx) = chain.response(lambda, p.width, self.speed)?;
+            for ((x, dx), output) in x.iter().zip(&dx).zip(&chain.outputs) {
+                let x = x * cube;
+                for (d, c) in value.iter_mut().zip(output) {
+                    *d -= x * *c;
+                }
+                slope -= product(output, v) * (dx * cube);
+            }
+        }
+        Some((value, slope))
+    }
+}
+
+/// One step of inverse iteration with `D`, `D' v` and the shape `v`, which it improves: what is to be taken from the
+/// eigenvalue. `None` when the step is not finite.
+pub(super) fn inverse_step(
+    value: DMatrix<Complex64>,
+    slope: Shape,
+    shape: &mut Shape,
+) -> Option<Complex64> {
+    let better = value.lu().solve(&slope)?;
+    let step = shape.dotc(&better).inv();
+    let size = better.norm();
+    if !(step.re.is_finite() && step.im.is_finite() && size > 0.0) {
+        return None;
+    }
+    *shape = better.unscale(size);
+    Some(step)
+}
+
+fn product(matrix: &DMatrix<f64>, v: &Shape) -> Shape {
+    let mut result = Shape::zeros(v.len());
+    for (column, z) in matrix.column_iter().zip(v) {
+        for (r, m) in result.iter_mut().zip(column.iter()) {
+            *r += z * *m;
+        }
+    }
+    result
+}
+
+impl Chain {
+    /// `x = (λB I − V A)⁻¹ b` and `dx/dλ`.
+    fn response(&self, lambda: Complex64, width: f64, speed: f64) -> Option<(Shape, Shape)> {
+        let n = self.b.len();
+        let matrix = DMatrix::from_fn(n, n, |i, j| {
+            let diagonal = if i == j {
+                lambda * width
+            } else {
+                Complex64::default()
+            };
+            diagonal - self.a[(i, j)] * speed
+        });
+        let lu = matrix.lu();
+        let x = lu.solve(&self.b.map(Complex64::from))?;
+        let dx = lu.solve(&(&x * Complex64::from(-width)))?;
+        Some((x, dx))
+    }
+}
+
+/// The chains of a realisation: for every coordinate the filters it drives, those that are alike together.
+fn chains(aero: &ContinuousRealization) -> Vec<Chain> {
+    let n = aero.b.ncols();
+    let mut chains: Vec<Chain> = Vec::new();
+    for input in 0..n {
+        for states in driven(aero, input) {
+            let a = aero.a.select_rows(&states).select_columns(&states);
+            let b =
+                DVector::from_iterator(states.len(), states.iter().map(|s| aero.b[(*s, input)]));
+            let alike = chains.iter().position(|c| c.a == a && c.b == b);
+            let at = alike.unwrap_or_else(|| {
+                let outputs = vec![DMatrix::zeros(n, n); states.len()];
+                chains.push(Chain { a, b, outputs });
+                chains.len() - 1
+            });
+            for (output, state) in chains[at].outputs.iter_mut().zip(&states) {
+                let mut column = output.column_mut(input);
+                column += aero.c.column(*state);
+            }
+        }
+    }
+    chains
+}
+
+/// The filters that one coordinate drives, those that feed one another together.
+fn driven(aero: &ContinuousRealization, input: usize) -> Vec<Vec<usize>> {
+    let n = aero.a.nrows();
+    let mut seen = vec![false; n];
+    let mut groups = Vec::new();
+    for first in (0..n).filter(|i| aero.b[(*i, input)] != 0.0) {
+        if std::mem::replace(&mut seen[first], true) {
+            continue;
+        }
+        let mut group = vec![first];
+        let mut next = 0;
+        while next < group.len() {
+            let at = group[next];
+            next += 1;
+            for (other, seen) in seen.iter_mut().enumerate() {
+                let linked = aero.a[(at, other)] != 0.0 || aero.a[(other, at)] != 0.0;
+                if linked && !std::mem::replace(seen, true) {
+                    group.push(other);
+                }
+            }
+        }
+        group.sort_unstable();
+        groups.push(group);
+    }
+    groups
+}

@@ -1,0 +1,47 @@
+//! The page that documents the FMU of a bridge, in its archive.
+
+use crate::fmu::bridge_options::BridgeOptions;
+use crate::fmu::resources::Resources;
+use crate::fmu::variables::{Role, Variable};
+use std::fmt::Write as _;
+
+/// The page.
+pub(super) fn documentation(resources: &Resources, bridge: &BridgeOptions) -> String {
+    let model = &resources.model;
+    let mut page = format!(
+        "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{name}</title></head><body>\n\
+         <h1>{name}</h1>\n<p>A whole bridge under self-excited wind forces: {modes} modes, {nodes} nodes, {groups} groups of \
+         strips. Vertical displacement and force are positive up, lateral positive downwind, rotation and moment positive \
+         nose-up (windward edge up). The wind is normal to the span; the speed at a strip is its wind factor times \
+         <code>wind_speed</code>.</p>\n<p>Forces: {kind}. Data: {source}. Licence: {licence}.</p>\n\
+         <p>At constant wind a communication step of any size is exact for forces that are held or run on straight lines; where \
+         the wind changes the motion follows its Taylor series. The mode coordinates are those of the shapes as they were \
+         given.</p>\n<h2>Variables</h2>\n<table>\n<tr><th>name</th><th>unit</th><th>meaning</th></tr>\n",
+        name = escaped(&bridge.name),
+        modes = bridge.modes.len(),
+        nodes = bridge.nodes.len(),
+        groups = bridge.groups.len(),
+        kind = model.model.kind(),
+        source = escaped(&model.provenance.source),
+        licence = escaped(&model.provenance.licence),
+    );
+    // those of further modes differ by their number
+    let first = |v: &&Variable| !matches!(v.role, Role::Mode(1.., _) | Role::InitialMode(1..));
+    for v in resources.table.variables().iter().filter(first) {
+        let unit = v.unit.map_or("", |u| u.name);
+        let _ = writeln!(
+            page,
+            "<tr><td><code>{}</code></td><td>{unit}</td><td>{}</td></tr>",
+            escaped(&v.name),
+            escaped(&v.description)
+        );
+    }
+    page.push_str("</table>\n</body></html>\n");
+    page
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('>', "&gt;")
+}

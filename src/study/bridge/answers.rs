@@ -1,0 +1,198 @@
+//! Flutter and divergence of a bridge, with the modes behind them.
+
+use super::BridgeStudy;
+use crate::aerodynamics::Transfer;
+use crate::aeroelastic::CoupledSection;
+use crate::bridge::Bridge;
+use crate::error::Result;
+use crate::flutter::{
+    BridgeMotion, FlutterCurves, FlutterSearch, OnsetSearch, divergence_speed, find_onset,
+    motion_at_onset, pk_onset, static_deflection, trace_modes,
+};
+use crate::units::{ReducedFrequency, ReducedFrequencyRange};
+use serde::Serialize;
+
+/// Modes below this share of the energy are left out together, in turn for each number.
+const SHARES: [f64; 4] = [0.1, 0.01, 1e-3, 1e-4];
+
+/// One route to the onset.
+#[derive(Debug, Clone, Serialize)]
+pub struct BridgeAnswer {
+    /// The forces.
+    pub forces: String,
+    /// What the search found.
+    pub search: FlutterSearch,
+    /// The motion at the onset.
+    pub motion: Option<BridgeMotion>,
+}
+
+/// The onset with fewer modes.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct LeftOut {
+    /// Numbers of the modes that are left.
+    pub modes: Vec<usize>,
+    /// Share of the energy at the onset below which modes were left out.
+    pub below_share: f64,
+    /// Onset with those alone, m/s; `None` when they do not flutter.
+    pub onset_m_s: Option<f64>,
+}
+
+/// Everything about the flutter of a bridge.
+#[derive(Debug, Clone, Serialize)]
+pub struct BridgeFlutter {
+    /// By table (p-k) where there is one, then by model (eigenvalues).
+    pub answers: Vec<BridgeAnswer>,
+    /// Frequencies and damping over the wind speed, by model.
+    pub curves: FlutterCurves,
+    /// Onset with fewer modes, by model.
+    pub left_out: Vec<LeftOut>,
+    /// Speed of divergence by model, m/s.
+    pub divergence_m_s: Option<f64>,
+    /// Greatest mean rotation along the girder at the onset, deg, where static coefficients are stated.
+    pub mean_rotation_deg: Option<f64>,
+    /// What could not be computed, and why.
+    pub failed: Vec<String>,
+}
+
+/// Searches the onset by every route and says what takes part.
+///
+/// # Errors
+/// Those of the coupling and of the search by eigenvalues; what fails beside that is stated in the result.
+pub fn bridge_flutter(study: &BridgeStudy) -> Result<BridgeFlutter> {
+    let mut failed = Vec::new();
+    let mut answers = Vec::new();
+    let search = OnsetSearch {
+        speed_max_m_s: study.file.flutter.speed_max_m_s,
+        speeds: study.file.flutter.speeds,
+    };
+    if let Some(bridge) = &study.by_table {
+        match by_table(bridge, &search) {
+            Ok(answer) => answers.push(answer),
+            Err(e) => failed.push(format!("p-k iteration of the tables: {e}")),
+        }
+    }
+    let tested = study.tested_range();
+    let by_model = by_model(&study.by_model, &search, tested)?;
+    let section = coupled(&study.by_model)?;
+    let speeds = search_speeds(&search);
+    let curves = trace_modes("model", &section, &speeds)?;
+    let mut curves = curves.marked(study.by_model.width_m(), tested);
+    // modal shapes of all modes at all speeds are megabytes that nobody reads
+    let points = curves.branches.iter_mut().flat_map(|b| &mut b.points);
+    points.for_each(|p| p.shape = Vec::new());
+    let left_out = fewer_modes(study, &by_model, &search).unwrap_or_else(|e| {
+        failed.push(format!("fewer modes: {e}"));
+        Vec::new()
+    });
+    let forces = study.by_model.forces();
+    let at_rest = forces.transfer(ReducedFrequency::from_full_width(0.0))?;
+    let divergence_m_s = divergence_speed(&study.by_model.structure(), &at_rest)?;
+    let statics = study
+        .static_coefficients()
+        .zip(by_model.search.critical_speed_m_s());
+    let mean_rotation_deg = statics.and_then(|(c, speed)| {
+        let mean = static_deflection(&study.by_model, &c, &at_rest, speed);
+        let mean = mean.map_err(|e| failed.push(e.to_string())).ok()?;
+        let largest = mean
+            .iter()
+            .map(|m| m[2])
+            .fold(0.0, |a: f64, b| if b.abs() > a.abs() { b } else { a });
+        Some(largest.to_degrees())
+    });
+    answers.push(by_model);
+    Ok(BridgeFlutter {
+        answers,
+        curves,
+        left_out,
+        divergence_m_s,
+        mean_rotation_deg,
+        failed,
+    })
+}
+
+fn search_speeds(search: &OnsetSearch) -> Vec<f64> {
+    let step = search.speed_max_m_s / search.speeds as f64;
+    (1..=search.speeds).map(|i| step * i as f64).collect()
+}
+
+/// The coupled bridge with forces that have a realisation.
+pub(super) fn coupled(bridge: &Bridge) -> Result<CoupledSection> {
+    CoupledSection::new(bridge.structure(), bridge.forces().realize()?)
+}
+
+fn by_table(bridge: &Bridge, search: &OnsetSearch) -> Result<BridgeAnswer> {
+    let forces = bridge.forces();
+    let range = forces.known_range();
+    let found = pk_onset("table", &bridge.structure(), &forces, search, range)?;
+    answer("tables between their points", bridge, &forces, found)
+}
+
+fn by_model(
+    bridge: &Bridge,
+    search: &OnsetSearch,
+    tested: Option<ReducedFrequencyRange>,
+) -> Result<BridgeAnswer> {
+    let found = find_onset("model", &coupled(bridge)?, search, tested)?;
+    answer("model", bridge, &bridge.forces(), found)
+}
+
+fn answer(
+    name: &str,
+    bridge: &Bridge,
+    forces: &dyn Transfer,
+    mut search: FlutterSearch,
+) -> Result<BridgeAnswer> {
+    let motion = search
+        .critical()
+        .map(|at| motion_at_onset(bridge, forces, at));
+    let motion = motion.transpose()?;
+    if let (FlutterSearch::Onset(onset), Some(motion)) = (&mut search, &motion) {
+        // of the node that turns most, as a section there would see it
+        (onset.mode_ratio, onset.phase_deg) = motion.mode_ratio(bridge.width_m());
+    }
+    Ok(BridgeAnswer {
+        forces: name.to_owned(),
+        motion,
+        search,
+    })
+}
+
+/// The onset with the modes of at least each share of the energy.
+fn fewer_modes(
+    study: &BridgeStudy,
+    full: &BridgeAnswer,
+    search: &OnsetSearch,
+) -> Result<Vec<LeftOut>> {
+    let mut all: Vec<LeftOut> = Vec::new();
+    let Some(motion) = &full.motion else {
+        return Ok(all);
+    };
+    for below_share in SHARES {
+        let mut modes: Vec<usize> = motion
+            .modes
+            .iter()
+            .filter(|m| m.energy_share >= below_share)
+            .map(|m| m.mode)
+            .collect();
+        modes.sort_unstable();
+        if modes.len() == study.by_model.modes.len() || all.last().is_some_and(|l| l.modes == modes)
+        {
+            continue;
+        }
+        let part = study
+            .by_model
+            .with_modes(|i| modes.contains(&study.by_model.modes[i].number))?;
+        let found = find_onset(
+            "fewer modes",
+            &coupled(&part)?,
+            search,
+            study.tested_range(),
+        )?;
+        all.push(LeftOut {
+            modes,
+            below_share,
+            onset_m_s: found.critical_speed_m_s(),
+        });
+    }
+    Ok(all)
+}

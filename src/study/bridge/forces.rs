@@ -1,0 +1,154 @@
+//! The self-excited forces of one section of a bridge file.
+
+use crate::aerodynamics::derivatives::{Extrapolation, InterpolatedTable};
+use crate::aerodynamics::quasi_steady::LinearQuasiSteady;
+use crate::aerodynamics::{Lags, RationalModel, Transfer};
+use crate::error::{Error, Result};
+use crate::files::bridge::SectionBlock;
+use crate::files::derivatives::named_table;
+use crate::identification::{FeedThrough, Form, FrequencyFit, fit_table};
+use crate::trained_model::{Model, TrainedModel};
+use crate::units::ReducedFrequencyRange;
+use nalgebra::DMatrix;
+use std::path::Path;
+use std::sync::Arc;
+
+/// Forces of a section, by table and by model.
+#[derive(Clone)]
+pub struct SectionForces {
+    /// Between the points of the table.
+    pub table: Option<Arc<dyn Transfer>>,
+    /// With a realisation.
+    pub model: Arc<dyn Transfer>,
+    /// What it is saved as.
+    pub saved: Option<Model>,
+    /// Where the data come from.
+    pub source: String,
+    /// Licence of the data.
+    pub licence: String,
+    /// Reduced frequencies of the tests, of the section.
+    pub tested: Option<ReducedFrequencyRange>,
+    /// What a user should know of the fit.
+    pub notes: Vec<String>,
+}
+
+impl std::fmt::Debug for SectionForces {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("SectionForces")
+            .field("tested", &self.tested)
+            .finish_non_exhaustive()
+    }
+}
+
+impl SectionForces {
+    pub(super) fn of(
+        block: &SectionBlock,
+        trained: Option<TrainedModel>,
+        directory: &Path,
+    ) -> Result<Self> {
+        let trained = match (&block.model, trained) {
+            (_, Some(trained)) => Some(trained),
+            (Some(path), None) => Some(TrainedModel::read(&directory.join(path))?),
+            (None, None) => None,
+        };
+        let of_table = block
+            .derivatives
+            .as_ref()
+            .map(|name| by_table(block, name, directory, trained.is_none()));
+        let (table, fitted) = of_table.transpose()?.unzip();
+        let table = table.map(|t: InterpolatedTable| Arc::new(t) as Arc<dyn Transfer>);
+        if let Some(trained) = trained {
+            let model = Arc::new(trained.model.clone());
+            return Ok(Self {
+                table,
+                model,
+                saved: Some(trained.model),
+                source: trained.provenance.source,
+                licence: trained.provenance.licence,
+                tested: Some(trained.tested_range),
+                notes: Vec::new(),
+            });
+        }
+        if let Some(Some(fitted)) = fitted {
+            return Ok(Self { table, ..fitted });
+        }
+        let Some(statics) = &block.statics else {
+            return Err(Error::input(
+                format!("section {}", block.name),
+                "one of `derivatives`, `model`, `static`",
+                "none",
+            ));
+        };
+        let theory =
+            LinearQuasiSteady::new(&block.motions, statics.arms, 0.0, statics.coefficients());
+        // rational functions without lags say the same in a form that is saved
+        let (e0, e1) = theory.feed_through();
+        let saved = RationalModel {
+            dofs: block.motions.clone(),
+            a1: e0.clone(),
+            a2: e1.clone(),
+            a3: DMatrix::zeros(e0.nrows(), e0.ncols()),
+            lags: Lags::Shared(Vec::new()),
+            lag_terms: Vec::new(),
+        };
+        Ok(Self {
+            table: None,
+            model: Arc::new(theory),
+            saved: Some(Model::Rational(saved)),
+            source: format!("static coefficients of {}", block.name),
+            licence: "that of the bridge file".to_owned(),
+            tested: None,
+            notes: Vec::new(),
+        })
+    }
+
+    /// By the table where there is one and it is wanted, else by the model.
+    pub(super) fn forces(&self, table: bool) -> Arc<dyn Transfer> {
+        match &self.table {
+            Some(found) if table => found.clone(),
+            _ => self.model.clone(),
+        }
+    }
+}
+
+/// The table between its points, and the model fitted to it.
+fn by_table(
+    block: &SectionBlock,
+    name: &str,
+    directory: &Path,
+    fit: bool,
+) -> Result<(InterpolatedTable, Option<SectionForces>)> {
+    let table = named_table(name, directory)?;
+    let between = InterpolatedTable::by(
+        block.interpolation,
+        &table,
+        &block.motions,
+        Extrapolation::Hold,
+    )?;
+    if !fit {
+        return Ok((between, None));
+    }
+    let options = FrequencyFit {
+        form: Form::Laguerre {
+            filters: block.filters,
+            feed_through: FeedThrough::default(),
+            pole_per_transfer_function: false,
+        },
+        ..FrequencyFit::default()
+    };
+    let (model, report) = fit_table(&table.samples(&block.motions), &block.motions, &options)?;
+    let forces = SectionForces {
+        table: None,
+        model: Arc::new(model.clone()),
+        saved: Some(model),
+        source: table.header.source.clone(),
+        licence: table.header.licence.clone(),
+        tested: Some(between.tested_range()),
+        notes: report
+            .notes
+            .iter()
+            .map(|n| format!("section {}: {n}", block.name))
+            .collect(),
+    };
+    Ok((between, Some(forces)))
+}

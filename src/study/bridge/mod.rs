@@ -1,0 +1,201 @@
+//! A bridge file resolved: sections with their forces, groups of strips, and what is to be known before a search.
+
+mod answers;
+mod export;
+mod forces;
+
+use answers::coupled;
+pub use answers::{BridgeAnswer, BridgeFlutter, LeftOut, bridge_flutter};
+pub use export::BridgeExport;
+pub use forces::SectionForces;
+
+use crate::bridge::{Bridge, Similarity, StripGroup, similarities};
+use crate::error::{Error, Result};
+use crate::files::bridge::{BridgeFile, Modes, SectionBlock};
+use crate::trained_model::TrainedModel;
+use crate::units::ReducedFrequencyRange;
+use std::collections::BTreeMap;
+
+/// Text of the bridge file of the demo.
+pub fn demo_bridge_text() -> &'static str {
+    include_str!("demo.toml")
+}
+
+/// Winds of one section at most; with more, the profile is taken in steps.
+const WINDS_AT_MOST: usize = 8;
+/// Those steps, as a part of the wind speed of the bridge.
+const WIND_STEP: f64 = 0.02;
+
+/// A bridge ready to be computed.
+#[derive(Debug, Clone)]
+pub struct BridgeStudy {
+    /// What the file states.
+    pub file: BridgeFile,
+    /// With forces that have a realisation: trained, fitted to a table, or quasi-steady.
+    pub by_model: Bridge,
+    /// With tables where there are some; `None` without any.
+    pub by_table: Option<Bridge>,
+    /// Forces of each section, in the order of the file.
+    pub sections: Vec<SectionForces>,
+    /// Section of each group.
+    section_of_group: Vec<usize>,
+    /// What a reader should know: hints about units, simplifications.
+    pub notes: Vec<String>,
+}
+
+impl BridgeStudy {
+    /// Reads modes and sections and fits models to tables.
+    ///
+    /// # Errors
+    /// [`Error::Io`] and [`Error::Input`] with file and place; those of the fits.
+    pub fn new(file: BridgeFile) -> Result<Self> {
+        Self::with_trained(file, |_| None)
+    }
+
+    /// The same, with models at hand for some sections.
+    ///
+    /// # Errors
+    /// As [`BridgeStudy::new`].
+    pub fn with_trained(
+        file: BridgeFile,
+        trained: impl Fn(&SectionBlock) -> Option<TrainedModel>,
+    ) -> Result<Self> {
+        let modes = file.read_modes()?;
+        let mut notes = modes.hints();
+        let section =
+            |block: &SectionBlock| SectionForces::of(block, trained(block), &file.directory);
+        let sections: Vec<SectionForces> =
+            file.sections.iter().map(section).collect::<Result<_>>()?;
+        notes.extend(sections.iter().flat_map(|s| s.notes.iter().cloned()));
+        let parts = groups(&file, &modes, &mut notes)?;
+        let bridge = |table: bool| {
+            let group = |part: &Part| StripGroup {
+                name: file.sections[part.section].name.clone(),
+                width_m: file.sections[part.section].width_m,
+                wind_factor: part.factor,
+                nodes: part.nodes.clone(),
+                forces: sections[part.section].forces(table),
+            };
+            let (nodes, shapes) = (modes.nodes.clone(), modes.modes.clone());
+            let all = parts.iter().map(group).collect();
+            Bridge::new(
+                file.name.clone(),
+                file.air_density_kg_m3,
+                nodes,
+                shapes,
+                all,
+            )
+        };
+        let has_table = sections.iter().any(|s| s.table.is_some());
+        Ok(Self {
+            by_model: bridge(false)?,
+            by_table: has_table.then(|| bridge(true)).transpose()?,
+            section_of_group: parts.iter().map(|p| p.section).collect(),
+            sections,
+            notes,
+            file,
+        })
+    }
+
+    /// Reduced frequencies, of the bridge, in which the forces of every section were tested.
+    pub fn tested_range(&self) -> Option<ReducedFrequencyRange> {
+        let of = |group: &StripGroup| {
+            let sections = self.file.sections.iter().zip(&self.sections);
+            sections
+                .filter(|(block, _)| block.name == group.name)
+                .find_map(|(_, s)| s.tested)
+        };
+        self.by_model.forces().common_range(of)
+    }
+
+    /// Static coefficients `(C_L, C_D, C_M)` of each group, `None` where a section does not state them.
+    pub fn static_coefficients(&self) -> Option<Vec<[f64; 3]>> {
+        let of = |section: &usize| {
+            let statics = self.file.sections[*section].statics?;
+            Some([statics.lift, statics.drag, statics.moment])
+        };
+        self.section_of_group.iter().map(of).collect()
+    }
+
+    /// Similarities of vertical and torsional modes.
+    pub fn similarities(&self) -> Vec<Similarity> {
+        similarities(&self.by_model)
+    }
+}
+
+/// Nodes of one section in one wind.
+struct Part {
+    section: usize,
+    factor: f64,
+    nodes: Vec<usize>,
+}
+
+fn groups(file: &BridgeFile, modes: &Modes, notes: &mut Vec<String>) -> Result<Vec<Part>> {
+    let mut parts = Vec::new();
+    for (section, block) in file.sections.iter().enumerate() {
+        let (first, last) = ends(block, modes, section)?;
+        let factors: Vec<f64> = modes.nodes[first..=last]
+            .iter()
+            .map(|n| file.wind.factor(n.along_m))
+            .collect();
+        let mut winds: Vec<u64> = factors.iter().map(|f| f.to_bits()).collect();
+        winds.sort_unstable();
+        winds.dedup();
+        let stepped = winds.len() > WINDS_AT_MOST;
+        if stepped {
+            notes.push(format!(
+                "section {}: the wind profile is taken in steps of {WIND_STEP} of the wind speed",
+                block.name
+            ));
+        }
+        let mut by_wind: BTreeMap<u64, Vec<usize>> = BTreeMap::new();
+        for (node, factor) in (first..=last).zip(factors) {
+            let wind = if stepped {
+                (factor / WIND_STEP).round() * WIND_STEP
+            } else {
+                factor
+            };
+            by_wind.entry(wind.to_bits()).or_default().push(node);
+        }
+        parts.extend(by_wind.into_iter().map(|(bits, nodes)| Part {
+            section,
+            factor: f64::from_bits(bits),
+            nodes,
+        }));
+    }
+    Ok(parts)
+}
+
+/// Places of the first and the last node of a section.
+fn ends(block: &SectionBlock, modes: &Modes, section: usize) -> Result<(usize, usize)> {
+    let last = modes.nodes.len().saturating_sub(1);
+    let place = |key: &str, name: &Option<String>, otherwise: usize| match name {
+        None => Ok(otherwise),
+        Some(name) => modes
+            .nodes
+            .iter()
+            .position(|n| n.name == *name)
+            .ok_or_else(|| {
+                let (a, b) = (&modes.nodes[0].name, &modes.nodes[last].name);
+                let expected = format!("a node of the bridge, {a} to {b}");
+                Error::input(
+                    format!("section[{section}].{key}"),
+                    expected,
+                    format!("`{name}`"),
+                )
+            }),
+    };
+    let ends = (
+        place("from", &block.from, 0)?,
+        place("to", &block.to, last)?,
+    );
+    if ends.0 > ends.1 {
+        let expected = "a node not before `from`";
+        return Err(Error::input(
+            format!("section[{section}].to"),
+            expected,
+            format!("{:?}", block.to),
+        ));
+    }
+    Ok(ends)
+}

@@ -1,0 +1,56 @@
+//! The FMUs of the Langenuen bridge: the whole of it, and its forces alone.
+
+use crate::bridges::{TWO, langenuen};
+use aerodeck::aeroelastic::CoupledSection;
+use aerodeck::flutter::{OnsetSearch, find_onset};
+use aerodeck::fmu::force_options::{ForceOptions, StripOptions};
+use aerodeck::fmu::package::{
+    Export, Growing, Overwrite, Runtime, package_bridge, write_archive, write_fmu,
+};
+use aerodeck::fmu::variables::Listing;
+use serde_json::json;
+use std::fs;
+use std::path::Path;
+
+/// Writes `bridge.fmu`, `bridge_force.fmu` and, in `bridge.json`, the structure and the onset by eigenvalues.
+pub fn export(folder: &Path, runtimes: &[Runtime]) {
+    let study = langenuen("LN21-5200", TWO);
+    let named: Vec<String> = ["1156", "1081"].map(String::from).to_vec();
+    let export = study.export(&named, false).unwrap();
+    let bytes = package_bridge(&export.model, &export.bridge, runtimes).unwrap();
+    write_archive(&folder.join("bridge.fmu"), &bytes, Overwrite::Refuse).unwrap();
+    let bridge = &study.by_model;
+    let strip = |node: &aerodeck::bridge::Node| StripOptions {
+        width_m: bridge.width_m(),
+        length_m: node.length_m,
+        wind_factor: 1.0,
+    };
+    let options = ForceOptions {
+        strips: bridge.nodes.iter().map(strip).collect(),
+        named_strips: true,
+        ..ForceOptions::single(bridge.width_m())
+    };
+    let force = Export {
+        growing: Growing::Refuse,
+        force: Some(options),
+        gusts: None,
+        listing: Listing::All,
+    };
+    let fmu = folder.join("bridge_force.fmu");
+    write_fmu(&fmu, &export.model, runtimes, Overwrite::Refuse, force).unwrap();
+    let realised = bridge.forces().realize().unwrap();
+    let section = CoupledSection::new(bridge.structure(), realised).unwrap();
+    let search = OnsetSearch {
+        speed_max_m_s: 100.0,
+        speeds: 50,
+    };
+    let found = find_onset("bridge", &section, &search, None).unwrap();
+    let onset = &found.onset().unwrap().at;
+    let text = json!({
+        "onset_m_s": onset.speed_m_s,
+        "frequency_hz": onset.frequency_hz,
+        "nodes": bridge.nodes,
+        "modes": bridge.modes,
+    });
+    fs::write(folder.join("bridge.json"), text.to_string()).unwrap();
+}

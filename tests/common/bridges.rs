@@ -1,0 +1,37 @@
+//! Bridges of the tests.
+
+use aerodeck::files::bridge::BridgeFile;
+use aerodeck::study::bridge::BridgeStudy;
+use std::path::PathBuf;
+
+/// Names of the measured girders of the Langenuen bridge.
+pub const DECKS: [&str; 5] = [
+    "LN20-5500",
+    "LN21-5200",
+    "LN21-5500",
+    "LN21-5800",
+    "LN21-6100",
+];
+
+pub const TWO: &str = "[\"vertical\", \"torsion\"]";
+pub const THREE: &str = "[\"vertical\", \"lateral\", \"torsion\"]";
+
+/// Text of the bridge file of Langenuen with a measured girder.
+pub fn langenuen_text(deck: &str, motions: &str, interpolation: &str) -> String {
+    format!(
+        "schema = 1\nname = \"Langenuen {deck}\"\nair_density_kg_m3 = 1.25\n\
+         [modes]\nformat = \"embedded\"\npath = \"langenuen\"\ndamping_ratio = 0.002\n\
+         [[section]]\nname = \"girder\"\nwidth_m = 31.0\nderivatives = \"{deck}\"\n\
+         interpolation = \"{interpolation}\"\nmotions = {motions}\n\
+         [flutter]\nspeed_max_m_s = 100.0\nspeeds = 50\n"
+    )
+}
+
+pub fn read(text: &str) -> BridgeStudy {
+    let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/data/bridges");
+    BridgeStudy::new(BridgeFile::from_toml(text, folder).unwrap()).unwrap()
+}
+
+pub fn langenuen(deck: &str, motions: &str) -> BridgeStudy {
+    read(&langenuen_text(deck, motions, "linear_v_hat"))
+}
