@@ -23,7 +23,7 @@ mod three_dof;
 use aerodeck::aerodynamics::{GustForce, RationalAdmittance};
 use aerodeck::files::derivatives::embedded;
 use aerodeck::fmu::force_options::ForceOptions;
-use aerodeck::fmu::package::{Export, Growing, Overwrite, Runtime, write_fmu};
+use aerodeck::fmu::package::{Export, Growing, Label, Overwrite, Runtime, write_fmu};
 use aerodeck::fmu::variables::Listing;
 use aerodeck::identification::{Form, FrequencyFit, fit_table};
 use aerodeck::section::{Dof, SectionModel};
@@ -123,6 +123,7 @@ fn export_forces(folder: &Path, runtimes: &[Runtime]) {
             force: Some(options),
             gusts: None,
             listing: Listing::All,
+            label: Label::default(),
         };
         let fmu = folder.join(format!("{name}.fmu"));
         write_fmu(&fmu, &model, runtimes, Overwrite::Refuse, export).unwrap();
@@ -148,6 +149,7 @@ fn export_gusts(folder: &Path, runtimes: &[Runtime]) {
             force,
             gusts: Some(gusts.clone()),
             listing: Listing::All,
+            label: Label::default(),
         };
         let fmu = folder.join(format!("{name}.fmu"));
         write_fmu(&fmu, &model, runtimes, Overwrite::Refuse, export).unwrap();
@@ -166,6 +168,7 @@ fn export_reals(folder: &Path, runtimes: &[Runtime]) {
                 force,
                 gusts: None,
                 listing: Listing::Reals,
+                label: Label::default(),
             };
             let fmu = folder.join(format!("reals_{unit}_{kind}.fmu"));
             write_fmu(&fmu, &model, runtimes, Overwrite::Refuse, export).unwrap();

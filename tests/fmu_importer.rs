@@ -7,7 +7,7 @@ use aerodeck::flutter::{Onset, OnsetSearch, find_onset};
 use aerodeck::fmu::importer::{
     Fmu, Severity, Simulation, SteppingSearch, Value, onset_by_stepping, simulate,
 };
-use aerodeck::fmu::package::{Export, Growing, Overwrite, Runtime, write_fmu};
+use aerodeck::fmu::package::{Export, Growing, Label, Overwrite, Runtime, write_fmu};
 use aerodeck::fmu::variables::Listing;
 use aerodeck::trained_model::TrainedModel;
 use std::path::{Path, PathBuf};
@@ -53,6 +53,7 @@ fn real_variables_alone_pass_every_check() {
             force: None,
             gusts: None,
             listing: Listing::Reals,
+            label: Label::default(),
         };
         let runtimes = [Runtime::embedded().unwrap()];
         write_fmu(&path, &model(kind), &runtimes, Overwrite::Refuse, export).unwrap();

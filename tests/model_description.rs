@@ -8,6 +8,7 @@ mod models;
 
 use aerodeck::aerodynamics::Transfer;
 use aerodeck::fmu::description::model_description;
+use aerodeck::fmu::package::Label;
 use aerodeck::fmu::resources::{OptionFiles, Resources};
 use aerodeck::fmu::variables::Listing;
 use aerodeck::trained_model::TrainedModel;
@@ -20,7 +21,7 @@ fn golden(kind: &str) -> PathBuf {
 
 fn describe(json: &[u8]) -> String {
     let resources = Resources::from_bytes(json, OptionFiles::default()).unwrap();
-    model_description(&resources, Listing::All).unwrap()
+    model_description(&resources, Listing::All, &Label::default()).unwrap()
 }
 
 #[test]

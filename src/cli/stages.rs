@@ -4,7 +4,7 @@ use super::output::OutputDir;
 use super::progress::Progress;
 use crate::error::{Error, Result};
 use crate::flutter::{FlutterCurves, Onset};
-use crate::fmu::package::{Growing, Runtime, package};
+use crate::fmu::package::{Export, Growing, Label, Runtime, package};
 use crate::identification::{self, FitReport};
 use crate::report::{PNG_SCALE, VfVgOptions, vf_vg_figure};
 use crate::study::{
@@ -254,10 +254,25 @@ pub(crate) fn routes_figure(
     out.write("routes.png", figure.png(PNG_SCALE)?)
 }
 
-/// Packs a model with all runtimes that are there.
-pub fn export(model: &TrainedModel, growing: Growing, progress: &Progress) -> Result<Vec<u8>> {
+/// Packs a model of a study with all runtimes that are there.
+pub fn export(
+    model: &TrainedModel,
+    study: &Study,
+    growing: Growing,
+    progress: &Progress,
+) -> Result<Vec<u8>> {
     let stage = progress.stage("packing the FMU");
-    let bytes = package(model, &Runtime::available()?, growing).map_err(or_allow_unstable)?;
+    let label = Label {
+        name: Some(study.name.clone()),
+        author: study.export.author.clone(),
+        copyright: study.export.copyright.clone(),
+        generated: None,
+    };
+    let export = Export {
+        label: label.dated()?,
+        ..growing.into()
+    };
+    let bytes = package(model, &Runtime::available()?, export).map_err(or_allow_unstable)?;
     drop(stage);
     Ok(bytes)
 }

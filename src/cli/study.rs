@@ -205,7 +205,7 @@ fn export<'a>(
         failed.push(StageFailure::new("export", reason));
         return Ok(None);
     };
-    let bytes = stages::export(model, growing, progress);
+    let bytes = stages::export(model, study, growing, progress);
     let Some(bytes) = attempt(failed, "export", bytes)? else {
         return Ok(None);
     };

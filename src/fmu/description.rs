@@ -1,10 +1,11 @@
 //! `modelDescription.xml`, made from the variable table.
 //!
-//! Order of elements and attributes follow the XML schema of FMI 2.0; an empty list is left out. The text holds no date
-//! and no path, so that an export is reproducible byte for byte.
+//! Order of elements and attributes follow the XML schema of FMI 2.0; an empty list is left out. The text holds no path, and a
+//! date only where its label states one, so that an export is reproducible byte for byte.
 
 use super::identity::MODEL_IDENTIFIER;
 use super::log_categories::LOG_CATEGORIES;
+use super::package::Label;
 use super::resources::Resources;
 use super::si::Unit;
 use super::standard::Word;
@@ -20,7 +21,7 @@ const MAX_DEFAULT_STEPS: f64 = 1000.0;
 ///
 /// # Errors
 /// [`Error::Input`] when a number cannot stand in a description (not finite).
-pub fn model_description(resources: &Resources, listing: Listing) -> Result<String> {
+pub fn model_description(resources: &Resources, listing: Listing, label: &Label) -> Result<String> {
     let Resources {
         model,
         force,
@@ -46,12 +47,16 @@ pub fn model_description(resources: &Resources, listing: Listing) -> Result<Stri
     });
     let root = Element::new("fmiModelDescription")
         .with("fmiVersion", "2.0")
-        .with("modelName", line(&model.name))
+        .with(
+            "modelName",
+            line(label.name.as_deref().unwrap_or(&model.name)),
+        )
         .with("guid", guid)
         .with(
             "description",
             line(&format!(
-                "{what} ({}), {}; data: {}",
+                "{what} ({}, {}), {}; data: {}",
+                model.name,
                 model.model.kind(),
                 if bridge.is_some() {
                     "forces at nodes"
@@ -62,17 +67,15 @@ pub fn model_description(resources: &Resources, listing: Listing) -> Result<Stri
             )),
         )
         .with("version", env!("CARGO_PKG_VERSION"))
-        .with(
-            "license",
-            line(&format!(
-                "MIT OR Apache-2.0; data of the model: {}",
-                model.provenance.licence
-            )),
-        )
+        .with_any("author", label.author.as_deref().map(line))
+        .with_any("copyright", label.copyright.as_deref().map(line))
+        // the texts, and what holds for the data, are inside
+        .with("license", "MIT OR Apache-2.0")
         .with(
             "generationTool",
             concat!("aerodeck ", env!("CARGO_PKG_VERSION")),
         )
+        .with_any("generationDateAndTime", label.generated.as_deref())
         .with("variableNamingConvention", "structured")
         .containing(interfaces(table))
         .containing([

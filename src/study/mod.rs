@@ -156,6 +156,12 @@ pub struct ExportBlock {
     pub stop_time_s: f64,
     /// Communication step, s.
     pub step_size_s: f64,
+    /// Who is responsible for the FMU.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub author: Option<String>,
+    /// Whose it is.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub copyright: Option<String>,
 }
 
 impl Default for ExportBlock {
@@ -167,6 +173,8 @@ impl Default for ExportBlock {
             initial_rotation_deg: 1.0,
             stop_time_s: 10.0,
             step_size_s: 0.01,
+            author: None,
+            copyright: None,
         }
     }
 }

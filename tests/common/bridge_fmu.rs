@@ -5,7 +5,7 @@ use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::flutter::{OnsetSearch, find_onset};
 use aerodeck::fmu::force_options::{ForceOptions, StripOptions};
 use aerodeck::fmu::package::{
-    Export, Growing, Overwrite, Runtime, package_bridge, write_archive, write_fmu,
+    Export, Growing, Label, Overwrite, Runtime, package_bridge, write_archive, write_fmu,
 };
 use aerodeck::fmu::variables::Listing;
 use serde_json::json;
@@ -17,7 +17,7 @@ pub fn export(folder: &Path, runtimes: &[Runtime]) {
     let study = langenuen("LN21-5200", TWO);
     let named: Vec<String> = ["1156", "1081"].map(String::from).to_vec();
     let export = study.export(&named, false).unwrap();
-    let bytes = package_bridge(&export.model, &export.bridge, runtimes).unwrap();
+    let bytes = package_bridge(&export.model, &export.bridge, runtimes, &Label::default()).unwrap();
     write_archive(&folder.join("bridge.fmu"), &bytes, Overwrite::Refuse).unwrap();
     let bridge = &study.by_model;
     let strip = |node: &aerodeck::bridge::Node| StripOptions {
@@ -35,6 +35,7 @@ pub fn export(folder: &Path, runtimes: &[Runtime]) {
         force: Some(options),
         gusts: None,
         listing: Listing::All,
+        label: Label::default(),
     };
     let fmu = folder.join("bridge_force.fmu");
     write_fmu(&fmu, &export.model, runtimes, Overwrite::Refuse, force).unwrap();

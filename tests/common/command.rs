@@ -9,6 +9,8 @@ pub fn aerodeck(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
     let output = Command::new(env!("CARGO_BIN_EXE_aerodeck"))
         .current_dir(folder)
         .args(arguments)
+        // equal exports are equal byte for byte
+        .env("SOURCE_DATE_EPOCH", "1700000000")
         .output()
         .unwrap();
     (

@@ -8,7 +8,7 @@ use super::{BRIDGE_FMU, card, computed, staged};
 use crate::error::{Error, Result};
 use crate::files::bridge::BridgeFile;
 use crate::flutter::Onset;
-use crate::fmu::package::{Runtime, package_bridge};
+use crate::fmu::package::{Label, Runtime, package_bridge};
 use crate::study::bridge::{BridgeFlutter, BridgeStudy, demo_bridge_text};
 use crate::study::{Deck, RecordSet, Study, demo_study_text};
 use crate::trained_model::TrainedModel;
@@ -91,7 +91,12 @@ pub(crate) fn run(directory: &Path, force: bool, progress: &Progress) -> Result<
 /// The FMU of the bridge.
 fn packed(study: &BridgeStudy, out: &mut OutputDir) -> Result<()> {
     let export = study.export(&[], false)?;
-    let bytes = package_bridge(&export.model, &export.bridge, &Runtime::available()?)?;
+    let bytes = package_bridge(
+        &export.model,
+        &export.bridge,
+        &Runtime::available()?,
+        &Label::default().dated()?,
+    )?;
     out.write(BRIDGE_FMU, bytes)
 }
 

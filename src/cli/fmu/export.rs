@@ -12,7 +12,7 @@ use crate::files::bridge::BridgeFile;
 use crate::files::coefficients::named_coefficients;
 use crate::fmu::force_options::{ForceOptions, MAX_STRIPS};
 use crate::fmu::package::{
-    Export, Overwrite, Runtime, growth_of, package_bridge, write_archive, write_fmu,
+    Export, Label, Overwrite, Runtime, growth_of, package_bridge, write_archive, write_fmu,
 };
 use crate::fmu::variables::Listing;
 use crate::study::bridge::BridgeStudy;
@@ -62,6 +62,15 @@ pub(crate) struct Args {
     /// Admittance of the gusts [default: none].
     #[arg(long, value_enum)]
     admittance: Option<Admittance>,
+    /// Name of the model to the importer [default: that of the trained model].
+    #[arg(long)]
+    name: Option<String>,
+    /// Who is responsible for the FMU.
+    #[arg(long)]
+    author: Option<String>,
+    /// Whose it is.
+    #[arg(long)]
+    copyright: Option<String>,
     /// The FMU; by default `deck_section.fmu`, `deck_force.fmu` or `bridge.fmu` beside the model.
     #[arg(long)]
     out: Option<PathBuf>,
@@ -99,6 +108,16 @@ impl From<Admittance> for RationalAdmittance {
 }
 
 impl Args {
+    fn label(&self) -> Result<Label> {
+        let label = Label {
+            name: self.name.clone(),
+            author: self.author.clone(),
+            copyright: self.copyright.clone(),
+            generated: None,
+        };
+        label.dated()
+    }
+
     /// The forces of gusts.
     fn gusts(&self, model: &TrainedModel) -> Result<Option<GustForce>> {
         match (&self.gusts, self.admittance) {
@@ -160,7 +179,7 @@ impl Args {
         let stage = progress.stage("packing the FMU");
         let export = study.export(&self.nodes, self.allow_unstable)?;
         let runtimes = Runtime::available()?;
-        let bytes = package_bridge(&export.model, &export.bridge, &runtimes)?;
+        let bytes = package_bridge(&export.model, &export.bridge, &runtimes, &self.label()?)?;
         let overwrite = if self.force {
             Overwrite::Replace
         } else {
@@ -200,6 +219,7 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
         growing: stages::growing(args.allow_unstable),
         force: args.force(&model)?,
         gusts: args.gusts(&model)?,
+        label: args.label()?,
         listing: if args.reals_only {
             Listing::Reals
         } else {

@@ -10,7 +10,7 @@ use crate::error::Result;
 /// Export and check FMUs
 #[derive(clap::Subcommand)]
 pub enum Fmu {
-    Export(export::Args),
+    Export(Box<export::Args>),
     Check(check::Args),
 }
 

@@ -6,10 +6,12 @@
 mod bridge_page;
 mod documentation;
 mod growth;
+mod label;
 mod runtime;
 
 pub use documentation::documentation;
 pub use growth::{Growing, growth_of};
+pub use label::Label;
 pub use runtime::{RUNTIME_DIR_VARIABLE, Runtime};
 
 use super::bridge_options::{BRIDGE_FILE, BridgeOptions};
@@ -58,6 +60,8 @@ pub struct Export {
     pub gusts: Option<GustForce>,
     /// Which variables its description lists.
     pub listing: Listing,
+    /// What it says of its origin.
+    pub label: Label,
 }
 
 impl From<Growing> for Export {
@@ -67,6 +71,7 @@ impl From<Growing> for Export {
             force: None,
             gusts: None,
             listing: Listing::All,
+            label: Label::default(),
         }
     }
 }
@@ -86,6 +91,7 @@ pub fn package(
         force,
         gusts,
         listing,
+        label,
     } = export.into();
     growth::check(model, growing)?;
     let force = force.map(|force| force.to_json()).transpose()?;
@@ -110,7 +116,7 @@ pub fn package(
         .filter_map(|(name, text)| Some((name, text?)));
     assembled(
         &resources,
-        listing,
+        (listing, &label),
         [(MODEL_FILE, json)].into_iter().chain(options),
         page,
         runtimes,
@@ -126,6 +132,7 @@ pub fn package_bridge(
     model: &TrainedModel,
     bridge: &BridgeOptions,
     runtimes: &[Runtime],
+    label: &Label,
 ) -> Result<Vec<u8>> {
     if runtimes.is_empty() {
         let expected = "a runtime for at least one platform";
@@ -135,18 +142,18 @@ pub fn package_bridge(
     let resources = Resources::of_bridge(json.as_bytes(), options.as_bytes())?;
     let page = bridge_page::documentation(&resources, bridge);
     let files = [(MODEL_FILE, json), (BRIDGE_FILE, options)];
-    assembled(&resources, Listing::All, files, page, runtimes)
+    assembled(&resources, (Listing::All, label), files, page, runtimes)
 }
 
 /// The archive of what has been made.
 fn assembled(
     resources: &Resources,
-    listing: Listing,
+    (listing, label): (Listing, &Label),
     options: impl IntoIterator<Item = (&'static str, String)>,
     page: String,
     runtimes: &[Runtime],
 ) -> Result<Vec<u8>> {
-    let xml = model_description(resources, listing)?;
+    let xml = model_description(resources, listing, label)?;
     let mut files: BTreeMap<String, Vec<u8>> = BTreeMap::new();
     files.insert("modelDescription.xml".into(), xml.into_bytes());
     files.insert("model.png".into(), ICON.to_vec());
