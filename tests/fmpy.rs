@@ -23,7 +23,7 @@ mod three_dof;
 use aerodeck::aerodynamics::{GustForce, RationalAdmittance};
 use aerodeck::files::derivatives::embedded;
 use aerodeck::fmu::force_options::ForceOptions;
-use aerodeck::fmu::package::{Export, Growing, Label, Overwrite, Runtime, write_fmu};
+use aerodeck::fmu::package::{Export, FmiVersion, Growing, Label, Overwrite, Runtime, write_fmu};
 use aerodeck::fmu::variables::Listing;
 use aerodeck::identification::{Form, FrequencyFit, fit_table};
 use aerodeck::section::{Dof, SectionModel};
@@ -95,6 +95,7 @@ fn export() -> PathBuf {
     export_forces(&folder, &runtimes);
     export_gusts(&folder, &runtimes);
     export_reals(&folder, &runtimes);
+    export_fmi3(&folder, &runtimes);
     bridge_fmu::export(&folder, &runtimes);
     let text = serde_json::to_string(&json!({
         "models": Value::Object(expected), "three_dof": in_process::three_dof(&lateral),
@@ -124,6 +125,7 @@ fn export_forces(folder: &Path, runtimes: &[Runtime]) {
             gusts: None,
             listing: Listing::All,
             label: Label::default(),
+            version: FmiVersion::Two,
         };
         let fmu = folder.join(format!("{name}.fmu"));
         write_fmu(&fmu, &model, runtimes, Overwrite::Refuse, export).unwrap();
@@ -150,9 +152,33 @@ fn export_gusts(folder: &Path, runtimes: &[Runtime]) {
             gusts: Some(gusts.clone()),
             listing: Listing::All,
             label: Label::default(),
+            version: FmiVersion::Two,
         };
         let fmu = folder.join(format!("{name}.fmu"));
         write_fmu(&fmu, &model, runtimes, Overwrite::Refuse, export).unwrap();
+    }
+}
+
+/// Every kind in FMI 3.0, and the forces on three strips.
+fn export_fmi3(folder: &Path, runtimes: &[Runtime]) {
+    for kind in models::KINDS {
+        let text = fs::read_to_string(models::model_file(kind)).unwrap();
+        let model = TrainedModel::from_json(&text).unwrap();
+        let single = ForceOptions::single(model.section.width_m);
+        let strips = ForceOptions {
+            strips: vec![single.strips[0].clone(); 3],
+            named_strips: true,
+            ..single
+        };
+        for (unit, force) in [("section", None), ("force", Some(strips))] {
+            let export = Export {
+                force,
+                version: FmiVersion::Three,
+                ..Growing::Allow.into()
+            };
+            let fmu = folder.join(format!("fmi3_{unit}_{kind}.fmu"));
+            write_fmu(&fmu, &model, runtimes, Overwrite::Refuse, export).unwrap();
+        }
     }
 }
 
@@ -169,6 +195,7 @@ fn export_reals(folder: &Path, runtimes: &[Runtime]) {
                 gusts: None,
                 listing: Listing::Reals,
                 label: Label::default(),
+                version: FmiVersion::Two,
             };
             let fmu = folder.join(format!("reals_{unit}_{kind}.fmu"));
             write_fmu(&fmu, &model, runtimes, Overwrite::Refuse, export).unwrap();

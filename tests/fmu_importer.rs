@@ -7,7 +7,7 @@ use aerodeck::flutter::{Onset, OnsetSearch, find_onset};
 use aerodeck::fmu::importer::{
     Fmu, Severity, Simulation, SteppingSearch, Value, onset_by_stepping, simulate,
 };
-use aerodeck::fmu::package::{Export, Growing, Label, Overwrite, Runtime, write_fmu};
+use aerodeck::fmu::package::{Export, FmiVersion, Growing, Label, Overwrite, Runtime, write_fmu};
 use aerodeck::fmu::variables::Listing;
 use aerodeck::trained_model::TrainedModel;
 use std::path::{Path, PathBuf};
@@ -54,6 +54,7 @@ fn real_variables_alone_pass_every_check() {
             gusts: None,
             listing: Listing::Reals,
             label: Label::default(),
+            version: FmiVersion::Two,
         };
         let runtimes = [Runtime::embedded().unwrap()];
         write_fmu(&path, &model(kind), &runtimes, Overwrite::Refuse, export).unwrap();

@@ -22,48 +22,66 @@ const MAX_DEFAULT_STEPS: f64 = 1000.0;
 /// # Errors
 /// [`Error::Input`] when a number cannot stand in a description (not finite).
 pub fn model_description(resources: &Resources, listing: Listing, label: &Label) -> Result<String> {
-    let Resources {
-        model,
-        force,
-        bridge,
-        table,
-        guid,
-        ..
-    } = resources;
+    let Resources { model, table, .. } = resources;
     let (table, references) = &table.listed(listing);
-    let what = match (bridge, force) {
-        (Some(_), _) => "Whole bridge under self-excited wind forces",
-        (None, None) => "Bridge deck section under self-excited wind forces",
-        (None, Some(_)) => "Self-excited wind forces on a bridge deck, for a structure outside",
-    };
     let variables = references.iter().zip(table.variables());
     let variables = variables
         .map(|(reference, v)| scalar(*reference, v))
         .collect::<Result<Vec<_>>>()?;
+    let root = described(resources, label, "2.0", "guid")
+        .containing(interfaces(table))
+        .containing([
+            Element::new("UnitDefinitions").containing(units(table)?),
+            log_categories(),
+            experiment(&model.experiment)?,
+            Element::new("ModelVariables").containing(variables),
+            structure(table),
+        ]);
+    Ok(root.document())
+}
+
+pub(super) fn log_categories() -> Element {
     let categories = LOG_CATEGORIES.iter().map(|(name, description)| {
         Element::new("Category")
             .with("name", name)
             .with("description", description)
     });
-    let root = Element::new("fmiModelDescription")
-        .with("fmiVersion", "2.0")
-        .with(
-            "modelName",
-            line(label.name.as_deref().unwrap_or(&model.name)),
-        )
-        .with("guid", guid)
+    Element::new("LogCategories").containing(categories)
+}
+
+/// The root of a description with its attributes; `identity` is what the standard calls the GUID.
+pub(super) fn described(
+    resources: &Resources,
+    label: &Label,
+    version: &str,
+    identity: &'static str,
+) -> Element {
+    let Resources {
+        model,
+        force,
+        bridge,
+        guid,
+        ..
+    } = resources;
+    let what = match (bridge, force) {
+        (Some(_), _) => "Whole bridge under self-excited wind forces",
+        (None, None) => "Bridge deck section under self-excited wind forces",
+        (None, Some(_)) => "Self-excited wind forces on a bridge deck, for a structure outside",
+    };
+    let forces = match bridge {
+        Some(_) => "forces at nodes",
+        None => "forces per unit length",
+    };
+    let (name, kind) = (&model.name, model.model.kind());
+    let source = &model.provenance.source;
+    Element::new("fmiModelDescription")
+        .with("fmiVersion", version)
+        .with("modelName", line(label.name.as_deref().unwrap_or(name)))
+        .with(identity, guid)
         .with(
             "description",
             line(&format!(
-                "{what} ({}, {}), {}; data: {}",
-                model.name,
-                model.model.kind(),
-                if bridge.is_some() {
-                    "forces at nodes"
-                } else {
-                    "forces per unit length"
-                },
-                model.provenance.source
+                "{what} ({name}, {kind}), {forces}; data: {source}"
             )),
         )
         .with("version", env!("CARGO_PKG_VERSION"))
@@ -77,15 +95,6 @@ pub fn model_description(resources: &Resources, listing: Listing, label: &Label)
         )
         .with_any("generationDateAndTime", label.generated.as_deref())
         .with("variableNamingConvention", "structured")
-        .containing(interfaces(table))
-        .containing([
-            Element::new("UnitDefinitions").containing(units(table)?),
-            Element::new("LogCategories").containing(categories),
-            experiment(&model.experiment)?,
-            Element::new("ModelVariables").containing(variables),
-            structure(table),
-        ]);
-    Ok(root.document())
 }
 
 /// What the runtime can do.
@@ -119,7 +128,7 @@ fn interfaces(table: &VariableTable) -> Vec<Element> {
 }
 
 /// Every unit that a variable uses, once, in the order of first use.
-fn units(table: &VariableTable) -> Result<Vec<Element>> {
+pub(super) fn units(table: &VariableTable) -> Result<Vec<Element>> {
     let mut used: Vec<&'static Unit> = Vec::new();
     for unit in table.variables().iter().filter_map(|v| v.unit) {
         if used.iter().all(|u| u.name != unit.name) {
@@ -150,12 +159,12 @@ fn unit_definition(unit: &Unit) -> Result<Element> {
 }
 
 /// Attributes hold one line.
-fn line(text: &str) -> String {
+pub(super) fn line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 /// Shortest decimal that gives the same number back.
-fn number(x: f64) -> Result<String> {
+pub(super) fn number(x: f64) -> Result<String> {
     if x.is_finite() {
         Ok(format!("{x:?}"))
     } else {
@@ -197,7 +206,7 @@ fn typed(v: &Variable) -> Result<Element> {
     })
 }
 
-fn experiment(e: &Experiment) -> Result<Element> {
+pub(super) fn experiment(e: &Experiment) -> Result<Element> {
     Ok(Element::new("DefaultExperiment")
         .with("startTime", number(0.0)?)
         .with("stopTime", number(e.stop_time_s)?)

@@ -3,9 +3,14 @@
 pub mod bridge_options;
 #[cfg(feature = "cli")]
 pub mod description;
+#[cfg(feature = "cli")]
+pub mod description_fmi3;
 #[allow(unsafe_code)]
 pub mod fmi2;
+#[allow(unsafe_code)]
+pub mod fmi3;
 pub mod force_options;
+pub mod groups;
 pub mod identity;
 #[cfg(feature = "cli")]
 #[allow(unsafe_code)]

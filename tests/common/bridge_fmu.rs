@@ -5,7 +5,8 @@ use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::flutter::{OnsetSearch, find_onset};
 use aerodeck::fmu::force_options::{ForceOptions, StripOptions};
 use aerodeck::fmu::package::{
-    Export, Growing, Label, Overwrite, Runtime, package_bridge, write_archive, write_fmu,
+    Export, FmiVersion, Growing, Label, Overwrite, Runtime, package_bridge, write_archive,
+    write_fmu,
 };
 use aerodeck::fmu::variables::Listing;
 use serde_json::json;
@@ -36,6 +37,7 @@ pub fn export(folder: &Path, runtimes: &[Runtime]) {
         gusts: None,
         listing: Listing::All,
         label: Label::default(),
+        version: FmiVersion::Two,
     };
     let fmu = folder.join("bridge_force.fmu");
     write_fmu(&fmu, &export.model, runtimes, Overwrite::Refuse, force).unwrap();

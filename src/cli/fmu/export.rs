@@ -12,7 +12,8 @@ use crate::files::bridge::BridgeFile;
 use crate::files::coefficients::named_coefficients;
 use crate::fmu::force_options::{ForceOptions, MAX_STRIPS};
 use crate::fmu::package::{
-    Export, Label, Overwrite, Runtime, growth_of, package_bridge, write_archive, write_fmu,
+    Export, FmiVersion, Label, Overwrite, Runtime, growth_of, package_bridge, write_archive,
+    write_fmu,
 };
 use crate::fmu::variables::Listing;
 use crate::study::bridge::BridgeStudy;
@@ -62,6 +63,9 @@ pub(crate) struct Args {
     /// Admittance of the gusts [default: none].
     #[arg(long, value_enum)]
     admittance: Option<Admittance>,
+    /// Version of FMI.
+    #[arg(long, value_enum, default_value_t = Version::Two)]
+    fmi: Version,
     /// Name of the model to the importer [default: that of the trained model].
     #[arg(long)]
     name: Option<String>,
@@ -87,6 +91,24 @@ pub(crate) struct Args {
 enum Kind {
     Section,
     Force,
+}
+
+/// Version of the standard.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Version {
+    #[value(name = "2")]
+    Two,
+    #[value(name = "3")]
+    Three,
+}
+
+impl From<Version> for FmiVersion {
+    fn from(version: Version) -> Self {
+        match version {
+            Version::Two => Self::Two,
+            Version::Three => Self::Three,
+        }
+    }
 }
 
 /// Part of the quasi-steady gust force that a gust of finite length exerts.
@@ -220,6 +242,7 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
         force: args.force(&model)?,
         gusts: args.gusts(&model)?,
         label: args.label()?,
+        version: args.fmi.into(),
         listing: if args.reals_only {
             Listing::Reals
         } else {

@@ -71,7 +71,7 @@ pub unsafe extern "C" fn fmi2Instantiate(
     }
 }
 
-fn instantiate(
+pub(in crate::fmu) fn instantiate(
     name: Option<&CStr>,
     kind: fmi2Type,
     guid: Option<&CStr>,
@@ -114,7 +114,7 @@ fn instantiate(
 
 /// # Safety
 /// NULL, or a text ended by a zero byte that lives for the call.
-unsafe fn text<'a>(pointer: fmi2String) -> Option<&'a CStr> {
+pub(in crate::fmu) unsafe fn text<'a>(pointer: fmi2String) -> Option<&'a CStr> {
     // SAFETY: by the contract of this function
     (!pointer.is_null()).then(|| unsafe { CStr::from_ptr(pointer) })
 }

@@ -5,6 +5,7 @@
 
 use super::logger::{Category, Logger, c_text};
 use super::types::{fmi2Component, fmi2Status};
+use crate::fmu::groups::Groups;
 use crate::fmu::instance::Instance;
 use crate::fmu::lifecycle::Call;
 use crate::fmu::refusal::{Answer, Refusal, Severity};
@@ -15,9 +16,11 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// What a component handle points to.
 #[derive(Debug)]
-pub(super) struct Component {
+pub(in crate::fmu) struct Component {
     pub instance: Instance,
     pub logger: Logger,
+    /// Variables by the value references of FMI 3.0.
+    pub groups: Groups,
     /// Texts of the variables, by value reference; those of other types are empty.
     pub texts: Vec<CString>,
     poisoned: bool,
@@ -32,6 +35,7 @@ impl Component {
         });
         Self {
             texts: texts.collect(),
+            groups: Groups::default(),
             instance,
             logger,
             poisoned: false,
@@ -46,7 +50,7 @@ impl Component {
             Severity::Discard => (fmi2Status::fmi2Discard, Category::Discard),
             Severity::Call | Severity::Error => (fmi2Status::fmi2Error, Category::Error),
         };
-        let message = format!("fmi2{function}: {refusal}");
+        let message = format!("{}{function}: {refusal}", self.logger.prefix());
         self.logger.log(status, category, &message);
         status
     }
@@ -55,7 +59,8 @@ impl Component {
     fn poison(&mut self, function: &str, panic: &(dyn Any + Send)) -> fmi2Status {
         self.poisoned = true;
         let message = format!(
-            "fmi2{function}: internal error ({}); this instance cannot be used any more",
+            "{}{function}: internal error ({}); this instance cannot be used any more",
+            self.logger.prefix(),
             panic_text(panic)
         );
         let status = fmi2Status::fmi2Error;
@@ -73,7 +78,7 @@ impl Component {
 }
 
 /// What a panic says.
-pub(super) fn panic_text(panic: &(dyn Any + Send)) -> &str {
+pub(in crate::fmu) fn panic_text(panic: &(dyn Any + Send)) -> &str {
     let text = panic.downcast_ref::<&str>().copied();
     text.or_else(|| panic.downcast_ref::<String>().map(String::as_str))
         .unwrap_or("without a message")
@@ -83,9 +88,24 @@ pub(super) fn panic_text(panic: &(dyn Any + Send)) -> &str {
 ///
 /// # Safety
 /// `handle` is NULL or was returned by `fmi2Instantiate`, has not been freed, and is not in use by another thread.
-pub(super) unsafe fn guarded(
+pub(in crate::fmu) unsafe fn guarded(
     handle: fmi2Component,
     call: Call,
+    body: impl FnOnce(&mut Component) -> Answer<()>,
+) -> fmi2Status {
+    // SAFETY: by the contract of this function
+    unsafe { guarded_as(handle, call, call.name(), body) }
+}
+
+/// The same for a function whose name in the interface is another than that of the call.
+///
+/// # Safety
+/// As [`guarded`].
+#[inline]
+pub(in crate::fmu) unsafe fn guarded_as(
+    handle: fmi2Component,
+    call: Call,
+    function: &str,
     body: impl FnOnce(&mut Component) -> Answer<()>,
 ) -> fmi2Status {
     // SAFETY: by the contract of this function
@@ -93,7 +113,7 @@ pub(super) unsafe fn guarded(
         return fmi2Status::fmi2Error;
     };
     if component.poisoned {
-        return poisoned(component, call.name());
+        return poisoned(component, function);
     }
     let outcome = shielded(|| {
         component.instance.admit(call)?;
@@ -106,15 +126,16 @@ pub(super) unsafe fn guarded(
             }
             fmi2Status::fmi2OK
         }
-        Ok(Err(refusal)) => component.refuse(call.name(), &refusal),
-        Err(panic) => component.poison(call.name(), &*panic),
+        Ok(Err(refusal)) => component.refuse(function, &refusal),
+        Err(panic) => component.poison(function, &*panic),
     }
 }
 
 #[cold]
 fn poisoned(component: &Component, function: &str) -> fmi2Status {
     let message = format!(
-        "fmi2{function}: an earlier internal error has made this instance unusable; free it"
+        "{}{function}: an earlier internal error has made this instance unusable; free it",
+        component.logger.prefix()
     );
     let status = fmi2Status::fmi2Error;
     component.logger.log(status, Category::Fatal, &message);
@@ -125,10 +146,14 @@ fn poisoned(component: &Component, function: &str) -> fmi2Status {
 ///
 /// # Safety
 /// As [`guarded`].
-pub(super) unsafe fn not_offered(handle: fmi2Component, function: &str, why: &str) -> fmi2Status {
+pub(in crate::fmu) unsafe fn not_offered(
+    handle: fmi2Component,
+    function: &str,
+    why: &str,
+) -> fmi2Status {
     // SAFETY: by the contract of this function
     if let Some(component) = unsafe { handle.cast::<Component>().as_ref() } {
-        let message = format!("fmi2{function}: {why}");
+        let message = format!("{}{function}: {why}", component.logger.prefix());
         component
             .logger
             .log(fmi2Status::fmi2Error, Category::Error, &message);
@@ -187,13 +212,13 @@ mod silence {
 
 /// Keeps panics inside [`shielded`] silent: they are reported through the importer's logger, and collecting a backtrace
 /// would cost tens of megabytes. The hook owns nothing, so that nothing leaks when the library is unloaded.
-pub(super) fn install_panic_hook() {
+pub(in crate::fmu) fn install_panic_hook() {
     static INSTALLED: std::sync::Once = std::sync::Once::new();
     INSTALLED.call_once(silence::install);
 }
 
 /// Runs `body`; a panic in it is returned, not passed on.
-pub(super) fn shielded<T>(body: impl FnOnce() -> T) -> Result<T, Box<dyn Any + Send>> {
+pub(in crate::fmu) fn shielded<T>(body: impl FnOnce() -> T) -> Result<T, Box<dyn Any + Send>> {
     let outer = silence::enter();
     let outcome = catch_unwind(AssertUnwindSafe(body));
     silence::leave(outer);
@@ -204,7 +229,11 @@ pub(super) fn shielded<T>(body: impl FnOnce() -> T) -> Result<T, Box<dyn Any + S
 ///
 /// # Safety
 /// `pointer` is NULL or points to `count` values that nobody changes while the result is in use.
-pub(super) unsafe fn array<'a, T>(pointer: *const T, count: usize, name: &str) -> Answer<&'a [T]> {
+pub(in crate::fmu) unsafe fn array<'a, T>(
+    pointer: *const T,
+    count: usize,
+    name: &str,
+) -> Answer<&'a [T]> {
     if count == 0 {
         return Ok(&[]);
     }
@@ -217,7 +246,7 @@ pub(super) unsafe fn array<'a, T>(pointer: *const T, count: usize, name: &str) -
 ///
 /// # Safety
 /// `pointer` is NULL or points to room for `count` values that nobody else uses while the result is in use.
-pub(super) unsafe fn array_mut<'a, T>(
+pub(in crate::fmu) unsafe fn array_mut<'a, T>(
     pointer: *mut T,
     count: usize,
     name: &str,
@@ -248,7 +277,7 @@ fn check_array<T>(pointer: *const T, count: usize, name: &str) -> Answer<()> {
 ///
 /// # Safety
 /// `pointer` is NULL or points to a value that nobody else uses while the result is in use.
-pub(super) unsafe fn place<'a, T>(pointer: *mut T, name: &str) -> Answer<&'a mut T> {
+pub(in crate::fmu) unsafe fn place<'a, T>(pointer: *mut T, name: &str) -> Answer<&'a mut T> {
     // SAFETY: by the contract of this function
     unsafe { pointer.as_mut() }
         .ok_or_else(|| Refusal::error(format!("{name}: expected a pointer, found NULL")))

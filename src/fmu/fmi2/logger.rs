@@ -1,16 +1,14 @@
 //! Messages to the importer.
 //!
-//! The message is a `printf` format, and `#r3#` in it stands for a variable: both signs are doubled, and no arguments
+//! In FMI 2.0 the message is a `printf` format, and `#r3#` in it stands for a variable: both signs are doubled, and no arguments
 //! are ever passed. Refusals are written even where logging is switched off: their reason must not be lost.
 
-use super::types::{
-    fmi2CallbackFunctions, fmi2CallbackLogger, fmi2ComponentEnvironment, fmi2Status,
-};
-use std::ffi::{CStr, CString};
+use super::types::{fmi2CallbackFunctions, fmi2CallbackLogger, fmi2Status};
+use std::ffi::{CStr, CString, c_char, c_void};
 
 /// Category of a message: place in [`crate::fmu::log_categories::LOG_CATEGORIES`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Category {
+pub(in crate::fmu) enum Category {
     Events,
     Warning,
     Discard,
@@ -51,11 +49,22 @@ impl Category {
     }
 }
 
+/// Writes a message in FMI 3.0: environment, status, category, message.
+pub(in crate::fmu) type PlainLogger =
+    unsafe extern "C" fn(*mut c_void, fmi2Status, *const c_char, *const c_char);
+
+/// The importer's function.
+#[derive(Debug, Clone, Copy)]
+enum Callback {
+    Printf(fmi2CallbackLogger),
+    Plain(PlainLogger),
+}
+
 /// The importer's logger with our own copies of everything it is called with.
 #[derive(Debug)]
-pub(super) struct Logger {
-    callback: fmi2CallbackLogger,
-    environment: fmi2ComponentEnvironment,
+pub(in crate::fmu) struct Logger {
+    callback: Callback,
+    environment: *mut c_void,
     instance_name: CString,
     wanted: Vec<Category>,
 }
@@ -68,13 +77,33 @@ impl Logger {
         logging_on: bool,
     ) -> Option<Self> {
         let mut logger = Self {
-            callback: functions.logger?,
+            callback: Callback::Printf(functions.logger?),
             environment: functions.componentEnvironment,
             instance_name: instance_name.to_owned(),
             wanted: Vec::new(),
         };
         logger.select(logging_on, &[]);
         Some(logger)
+    }
+
+    /// The logger of an importer of FMI 3.0.
+    pub fn plain(callback: PlainLogger, environment: *mut c_void, logging_on: bool) -> Self {
+        let mut logger = Self {
+            callback: Callback::Plain(callback),
+            environment,
+            instance_name: CString::default(),
+            wanted: Vec::new(),
+        };
+        logger.select(logging_on, &[]);
+        logger
+    }
+
+    /// What the functions of the interface begin with.
+    pub fn prefix(&self) -> &'static str {
+        match self.callback {
+            Callback::Printf(_) => "fmi2",
+            Callback::Plain(_) => "fmi3",
+        }
     }
 
     /// Switches categories on; none named means all.
@@ -92,22 +121,26 @@ impl Logger {
         if !category.is_refusal() && !self.wanted.iter().any(wanted) {
             return;
         }
-        let message = c_text(&message.replace('%', "%%").replace('#', "##"));
+        let category = category.name().as_ptr();
         // SAFETY: the importer guarantees callback and environment for the life of the instance; the texts are ours and
         // end with a zero byte. The format holds no conversion, so no argument is read.
         unsafe {
-            (self.callback)(
-                self.environment,
-                self.instance_name.as_ptr(),
-                status,
-                category.name().as_ptr(),
-                message.as_ptr(),
-            );
+            match self.callback {
+                Callback::Printf(logger) => {
+                    let message = c_text(&message.replace('%', "%%").replace('#', "##"));
+                    let name = self.instance_name.as_ptr();
+                    logger(self.environment, name, status, category, message.as_ptr());
+                }
+                Callback::Plain(logger) => {
+                    let message = c_text(message);
+                    logger(self.environment, status, category, message.as_ptr());
+                }
+            }
         }
     }
 }
 
 /// A text for C; a zero byte inside becomes a space.
-pub(super) fn c_text(text: &str) -> CString {
+pub(in crate::fmu) fn c_text(text: &str) -> CString {
     CString::new(text.replace('\0', " ")).unwrap_or_default()
 }

@@ -15,8 +15,8 @@ mod exports_model_exchange;
 mod exports_state;
 mod exports_stepping;
 mod exports_variables;
-mod guard;
-mod logger;
+pub(in crate::fmu) mod guard;
+pub(in crate::fmu) mod logger;
 #[cfg(test)]
 mod tests;
 pub mod types;

@@ -25,6 +25,11 @@ impl Instance {
         !self.layout.state_rates.is_empty()
     }
 
+    /// Number of continuous states.
+    pub fn state_count(&self) -> usize {
+        self.layout.state_rates.len()
+    }
+
     /// Moves between events and integration.
     pub fn enter(&mut self, mode: State) {
         self.memory.state = mode;

@@ -1,5 +1,6 @@
 //! `documentation/index.html` of an exported section, made from the variable table and the trained model.
 
+use super::FmiVersion;
 use super::runtime::Runtime;
 use crate::aerodynamics::{Realizable, Transfer};
 use crate::aeroelastic::CoupledSection;
@@ -37,7 +38,7 @@ pub fn documentation(
         lateral: model.section.lateral.is_some(),
         platforms: runtimes
             .iter()
-            .map(|r| (r.path_in_archive(), r.platform_words()))
+            .map(|r| (r.path_in_archive(FmiVersion::Two), r.platform_words()))
             .collect(),
         groups: groups(resources.table.listed(listing).0.variables()),
         range: Range::of(model),

@@ -16,6 +16,7 @@ pub use runtime::{RUNTIME_DIR_VARIABLE, Runtime};
 
 use super::bridge_options::{BRIDGE_FILE, BridgeOptions};
 use super::description::model_description;
+use super::description_fmi3;
 use super::force_options::{FORCE_FILE, ForceOptions};
 use super::resources::{GUST_FILE, MODEL_FILE, OptionFiles, Resources};
 use super::variables::Listing;
@@ -62,6 +63,18 @@ pub struct Export {
     pub listing: Listing,
     /// What it says of its origin.
     pub label: Label,
+    /// Of the standard.
+    pub version: FmiVersion,
+}
+
+/// Version of the standard; the runtime speaks all of them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum FmiVersion {
+    /// FMI 2.0.
+    #[default]
+    Two,
+    /// FMI 3.0.
+    Three,
 }
 
 impl From<Growing> for Export {
@@ -72,6 +85,7 @@ impl From<Growing> for Export {
             gusts: None,
             listing: Listing::All,
             label: Label::default(),
+            version: FmiVersion::default(),
         }
     }
 }
@@ -92,7 +106,11 @@ pub fn package(
         gusts,
         listing,
         label,
+        version,
     } = export.into();
+    if (listing, version) == (Listing::Reals, FmiVersion::Three) {
+        return Err(Error::input("real variables only", "FMI 2.0", "FMI 3.0"));
+    }
     growth::check(model, growing)?;
     let force = force.map(|force| force.to_json()).transpose()?;
     let gusts = gusts.map(|gusts| serde_json::to_string_pretty(&gusts));
@@ -116,7 +134,7 @@ pub fn package(
         .filter_map(|(name, text)| Some((name, text?)));
     assembled(
         &resources,
-        (listing, &label),
+        (listing, &label, version),
         [(MODEL_FILE, json)].into_iter().chain(options),
         page,
         runtimes,
@@ -142,21 +160,34 @@ pub fn package_bridge(
     let resources = Resources::of_bridge(json.as_bytes(), options.as_bytes())?;
     let page = bridge_page::documentation(&resources, bridge);
     let files = [(MODEL_FILE, json), (BRIDGE_FILE, options)];
-    assembled(&resources, (Listing::All, label), files, page, runtimes)
+    assembled(
+        &resources,
+        (Listing::All, label, FmiVersion::Two),
+        files,
+        page,
+        runtimes,
+    )
 }
 
 /// The archive of what has been made.
 fn assembled(
     resources: &Resources,
-    (listing, label): (Listing, &Label),
+    (listing, label, version): (Listing, &Label, FmiVersion),
     options: impl IntoIterator<Item = (&'static str, String)>,
     page: String,
     runtimes: &[Runtime],
 ) -> Result<Vec<u8>> {
-    let xml = model_description(resources, listing, label)?;
+    let xml = match version {
+        FmiVersion::Two => model_description(resources, listing, label)?,
+        FmiVersion::Three => description_fmi3::model_description(resources, label)?,
+    };
     let mut files: BTreeMap<String, Vec<u8>> = BTreeMap::new();
     files.insert("modelDescription.xml".into(), xml.into_bytes());
-    files.insert("model.png".into(), ICON.to_vec());
+    let icon = match version {
+        FmiVersion::Two => "model.png",
+        FmiVersion::Three => "terminalsAndIcons/icon.png",
+    };
+    files.insert(icon.into(), ICON.to_vec());
     for (name, text) in options {
         files.insert(format!("resources/{name}"), text.into_bytes());
     }
@@ -171,7 +202,7 @@ fn assembled(
     }
     for runtime in runtimes {
         if files
-            .insert(runtime.path_in_archive(), runtime.bytes.to_vec())
+            .insert(runtime.path_in_archive(version), runtime.bytes.to_vec())
             .is_some()
         {
             return Err(Error::input(

@@ -1,5 +1,6 @@
 //! Runtime binaries: the one embedded in this program, and others from a folder.
 
+use super::FmiVersion;
 use crate::error::{Error, Result};
 use crate::fmu::identity::MODEL_IDENTIFIER;
 use std::borrow::Cow;
@@ -164,11 +165,18 @@ impl Runtime {
     }
 
     /// Path of the library in the archive.
-    pub fn path_in_archive(&self) -> String {
-        format!(
-            "binaries/{}/{MODEL_IDENTIFIER}.{}",
-            self.platform, self.extension
-        )
+    pub fn path_in_archive(&self, version: FmiVersion) -> String {
+        let platform = match (version, self.platform) {
+            (FmiVersion::Two, platform) => platform,
+            (FmiVersion::Three, "linux64") if is_arm(&self.bytes) => "aarch64-linux",
+            (FmiVersion::Three, "linux64") => "x86_64-linux",
+            (FmiVersion::Three, "win64") => "x86_64-windows",
+            (FmiVersion::Three, "darwin64") => "x86_64-darwin",
+            (FmiVersion::Three, "linux32") => "x86-linux",
+            (FmiVersion::Three, "win32") => "x86-windows",
+            (FmiVersion::Three, tuple) => tuple,
+        };
+        format!("binaries/{platform}/{MODEL_IDENTIFIER}.{}", self.extension)
     }
 }
 
@@ -184,7 +192,7 @@ mod tests {
     #[test]
     fn the_embedded_runtime_is_for_this_platform() {
         let runtime = Runtime::embedded().unwrap();
-        let path = runtime.path_in_archive();
+        let path = runtime.path_in_archive(FmiVersion::Two);
         assert!(path.starts_with("binaries/"), "{path}");
         assert!(runtime.bytes.len() > 100_000);
     }
@@ -252,7 +260,7 @@ mod tests {
         let found = Runtime::in_folder(folder.path()).unwrap();
         assert_eq!(found.len(), 1);
         assert_eq!(
-            found[0].path_in_archive(),
+            found[0].path_in_archive(FmiVersion::Two),
             "binaries/win64/aerodeck_section.dll"
         );
         assert!(Runtime::in_folder(&folder.path().join("missing")).is_err());

@@ -21,7 +21,9 @@ fn archives_are_reproducible_and_complete() {
     let names: Vec<_> = (0..zip.len())
         .map(|i| zip.by_index(i).unwrap().name().unwrap().into_owned())
         .collect();
-    let binary = Runtime::embedded().unwrap().path_in_archive();
+    let binary = Runtime::embedded()
+        .unwrap()
+        .path_in_archive(FmiVersion::Two);
     assert_eq!(
         names,
         [

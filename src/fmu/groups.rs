@@ -1,0 +1,86 @@
+//! Variables as FMI 3.0 lists them: what all strips have is one array.
+
+use super::refusal::{Answer, Refusal};
+use super::variables::{Role, VariableTable};
+use std::borrow::Cow;
+use std::collections::HashMap;
+
+/// Places in the table of each listed variable; the value reference is the place in this list, and the one behind the last is
+/// the time.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Groups {
+    groups: Vec<Vec<u32>>,
+    arrays: bool,
+}
+
+impl Groups {
+    /// The listed variables of a table.
+    pub fn new(table: &VariableTable) -> Self {
+        let mut groups: Vec<Vec<u32>> = Vec::new();
+        let mut arrays: HashMap<&str, usize> = HashMap::new();
+        for (place, variable) in table.variables().iter().enumerate() {
+            let place = u32::try_from(place).unwrap_or(u32::MAX);
+            match of_strips(variable.role, &variable.name) {
+                Some(name) => match arrays.get(name) {
+                    Some(group) => groups[*group].push(place),
+                    None => {
+                        arrays.insert(name, groups.len());
+                        groups.push(vec![place]);
+                    }
+                },
+                None => groups.push(vec![place]),
+            }
+        }
+        Self {
+            arrays: !arrays.is_empty(),
+            groups,
+        }
+    }
+
+    /// Places in the table, by value reference.
+    pub fn all(&self) -> &[Vec<u32>] {
+        &self.groups
+    }
+
+    /// Value reference of the time, s.
+    pub fn time(&self) -> u32 {
+        u32::try_from(self.groups.len()).unwrap_or(u32::MAX)
+    }
+
+    /// Value reference of the variable to which a place in the table belongs.
+    pub fn reference_of(&self, place: usize) -> Option<usize> {
+        if !self.arrays {
+            return Some(place);
+        }
+        let belongs = |group: &Vec<u32>| group.iter().any(|p| *p as usize == place);
+        self.groups.iter().position(belongs)
+    }
+
+    /// The places of these references, one number each.
+    ///
+    /// # Errors
+    /// A reference that is none, or that of the time, where only variables are allowed.
+    pub fn places<'a>(&self, references: &'a [u32]) -> Answer<Cow<'a, [u32]>> {
+        if let Some(wrong) = references.iter().find(|r| **r >= self.time()) {
+            return Err(Refusal::error(format!(
+                "value reference {wrong}: there is no such variable to be set or differentiated, the last one is {}",
+                self.time().saturating_sub(1)
+            )));
+        }
+        if !self.arrays {
+            return Ok(Cow::Borrowed(references));
+        }
+        let places = references.iter().flat_map(|r| &self.groups[*r as usize]);
+        Ok(Cow::Owned(places.copied().collect()))
+    }
+}
+
+/// The name of the array to which a variable of named strips belongs.
+pub fn of_strips(role: Role, name: &str) -> Option<&str> {
+    let strip = matches!(
+        role,
+        Role::Motion(..) | Role::Gust(..) | Role::Force(..) | Role::Strip(..)
+    );
+    let (of, rest) = name.split_once("].")?;
+    (strip && of.starts_with("strip[")).then_some(rest)
+}

@@ -1,0 +1,64 @@
+"""FMI 3.0: the same units through the other shell."""
+
+import fmpy
+import numpy as np
+import pytest
+from exported import FOLDER, MODELS
+from fmpy.validation import validate_fmu
+from section import OUTPUTS
+
+KINDS = ["continuous_laguerre", "rational", "discrete_laguerre"]
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("unit", ["section", "force"])
+def test_fmpy_finds_no_problem(unit, kind):
+    fmu = str(FOLDER / f"fmi3_{unit}_{kind}.fmu")
+    assert validate_fmu(fmu) == []
+    description = fmpy.read_model_description(fmu)
+    assert description.fmiVersion == "3.0"
+    continuous = unit == "section" and "discrete" not in kind
+    assert (description.modelExchange is not None) == continuous
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_trajectory_is_the_same_bit_for_bit(kind):
+    options = {
+        "fmi_type": "CoSimulation",
+        "stop_time": 2.0,
+        "output_interval": 0.01,
+        "output": OUTPUTS,
+        "start_values": {"wind_speed": 25.0, "external_lift": 1.0},
+    }
+    two = fmpy.simulate_fmu(str(FOLDER / f"{kind}.fmu"), **options)
+    three = fmpy.simulate_fmu(str(FOLDER / f"fmi3_section_{kind}.fmu"), **options)
+    assert kind in MODELS
+    for name in ["time", *OUTPUTS]:
+        assert np.array_equal(two[name], three[name]), name
+
+
+@pytest.mark.parametrize("kind", KINDS[:2])
+def test_cvode_moves_as_the_steps_do(kind):
+    options = {"stop_time": 2.0, "output_interval": 0.01, "output": OUTPUTS}
+    fmu = str(FOLDER / f"fmi3_section_{kind}.fmu")
+    own = fmpy.simulate_fmu(fmu, fmi_type="CoSimulation", **options)
+    foreign = fmpy.simulate_fmu(
+        fmu, fmi_type="ModelExchange", solver="CVode", relative_tolerance=1e-9, **options
+    )
+    for name in OUTPUTS:
+        # as in FMI 2.0, see test_model_exchange.py
+        assert np.abs(own[name] - foreign[name]).max() <= 1e-5 * np.abs(own[name]).max(), name
+
+
+def test_strips_are_arrays():
+    result = fmpy.simulate_fmu(
+        str(FOLDER / "fmi3_force_rational.fmu"),
+        stop_time=0.1,
+        output_interval=0.01,
+        start_values={"wind_speed": 20.0, "heave": [0.01, 0.0, -0.02]},
+        output=["lift", "moment"],
+    )
+    lift = result["lift"][-1]
+    assert lift.shape == (3,) and lift[0] != 0.0
+    # forces are linear in the motion
+    assert lift[1] == 0.0 and lift[2] == pytest.approx(-2 * lift[0], rel=1e-12)
