@@ -7,6 +7,7 @@ mod offsets;
 mod refusals;
 mod run;
 mod state;
+mod torture;
 
 use super::types::*;
 use super::*;
