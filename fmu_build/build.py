@@ -36,6 +36,8 @@ TARGETS = {
     "x86_64-apple-darwin": ("libaerodeck.dylib", "dylib", ["darwin64"]),
     "aarch64-apple-darwin": ("libaerodeck.dylib", "dylib", ["aarch64-darwin"]),
 }
+# linkers that export less than zig's, where they are there
+LINKERS = {"x86_64-pc-windows-gnu": "x86_64-w64-mingw32-gcc"}
 MACHINES = {"x86_64-apple-darwin": (0x01000007, 3), "aarch64-apple-darwin": (0x0100000C, 0)}  # of Mach-O
 PAGE = 14  # bits of Apple's pages, to which the parts of a universal library are aligned
 
@@ -73,22 +75,28 @@ def tools():
     return python
 
 
-def flags():
-    """As build.rs: no trace of this machine in panic messages."""
+def flags(target):
+    """As build.rs: no trace of this machine in panic messages; nor in the name that a dylib calls itself."""
     home = pathlib.Path(os.environ.get("CARGO_HOME", pathlib.Path.home() / ".cargo"))
     pairs = [(ROOT, "aerodeck"), (home, "cargo")]
     sources = home / "registry" / "src"
     pairs += [(p, "crates") for p in sorted(sources.iterdir())] if sources.is_dir() else []
-    return "\x1f".join(f"--remap-path-prefix={old}={new}" for old, new in pairs)
+    remap = [f"--remap-path-prefix={old}={new}" for old, new in pairs]
+    name = [f"-Clink-arg=-Wl,-install_name,@rpath/{NAME}.dylib"] * (target in MACHINES)
+    return "\x1f".join(remap + name)
 
 
 def build(target, zig):
     """The library of a target."""
     file, ending, _ = TARGETS[target]
+    linker = LINKERS.get(target, "")
+    zig = zig and not shutil.which(linker)
     target_dir = ROOT / "target" / "fmu-release"
     wanted = f"{target}.{OLD_GLIBC}" if zig and ending == "so" else target
     tool = ["cargo-zigbuild", "rustc"] if zig else ["cargo", "rustc"]
-    environment = dict(os.environ, CARGO_ENCODED_RUSTFLAGS=flags())
+    environment = dict(os.environ, CARGO_ENCODED_RUSTFLAGS=flags(target))
+    if shutil.which(linker):
+        environment[f"CARGO_TARGET_{target.upper().replace('-', '_')}_LINKER"] = linker
     run(*tool, "--locked", "--lib", "--crate-type", "cdylib", "--no-default-features", "--profile", "fmu",
         "--target", wanted, "--target-dir", target_dir, env=environment)  # fmt: skip
     return target_dir / target / "fmu" / file
@@ -155,7 +163,7 @@ def main():
     for target in TARGETS:
         if target not in there:
             print(f"skipped {target}: rustup target add {target}")
-        elif python is None and target != here:
+        elif python is None and target != here and not shutil.which(LINKERS.get(target, "")):
             print(f"skipped {target}: ziglang and cargo-zigbuild are not there")
         else:
             built[target] = build(target, python is not None)

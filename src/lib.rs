@@ -71,6 +71,9 @@ pub mod units;
 #[cfg(feature = "cli")]
 pub mod wind_tunnel;
 
+#[cfg(all(test, feature = "cli"))]
+mod tests;
+
 pub use error::{Error, Result};
 
 /// The program in the README is compiled and run with the tests.

@@ -34,7 +34,9 @@ use step_cache::StepCache;
 const MAX_DOFS: usize = Dof::THREE.len();
 /// Samples of the force, or parts of a changing wind, that one step may take: beyond, it is refused at once. Each costs
 /// about a microsecond.
-const MAX_SUBSTEPS: f64 = 1e5;
+const MAX_SUBSTEPS: f64 = 1e4;
+/// What a sample costs, in sub-steps, where its way is one product with a matrix.
+const SAMPLE_BY_MATRIX: f64 = 0.125;
 /// Parts of a series that cost as much as a matrix exponential.
 const PARTS_OF_A_MATRIX: f64 = 32.0;
 /// A wind below zero by this part of the wind before it (of 1 m/s at least) is at rest: what rounding leaves of a ramp
@@ -139,7 +141,7 @@ pub struct SectionState {
     pub gusts: Vec<f64>,
     /// Part of `Δs` that has passed since the last sample of the discrete model, in `[0, 1)`; 0 for continuous models.
     pub phase: f64,
-    /// Wind speed at the start of the last step of a continuous model, m/s; none since the release. A wind that stays is
+    /// Wind speed at the start of the last step, m/s; none since the release. A wind that stays is
     /// worth a matrix. It is part of the state, so that a step from here always gives the same bits.
     pub last_wind_m_s: Option<f64>,
 }
@@ -247,7 +249,8 @@ impl Stepper {
     ///
     /// # Errors
     /// [`Error::Input`] for a step that is not positive or inputs that are not finite, a wind speed that becomes
-    /// negative by more than rounding, a step of more than a hundred thousand sub-steps; [`Error::Numerical`] when the motion has grown beyond what a number can hold.
+    /// negative by more than rounding, a step of more than ten thousand sub-steps; [`Error::Numerical`] when the motion has
+    /// grown beyond what a number can hold.
     #[inline]
     pub fn advance(
         &mut self,

@@ -153,7 +153,7 @@ fn steps_of_too_many_parts_are_refused_at_once() {
         let mut state = stepper.released(&[0.01, 0.0], &[0.0, 0.0]).unwrap();
         let message = stepper.advance(&mut state, inputs, step).unwrap_err();
         assert!(
-            message.to_string().contains("at most 100000 sub-steps"),
+            message.to_string().contains("at most 10000 sub-steps"),
             "{message}"
         );
     };

@@ -42,5 +42,5 @@ pub(crate) use quasi_steady::{QuasiSteadyOnset, quasi_steady_onset};
 pub(crate) use sanity::{SanityLines, sanity_lines};
 pub use scan::{GrowthBand, growth_scan};
 pub use search::{OnsetSearch, find_onset};
-pub use sweep::{LinearForces, OnsetSweep, SweepOutcome, SweptOnset};
+pub use sweep::{LinearForces, OnsetSweep, SweepOutcome, SweptOnset, at_samples};
 pub use unwanted::{UnwantedGrowth, unwanted_growth};

@@ -136,7 +136,8 @@ impl PrescribedForces {
     /// point the flow has settled around the section held there. On an error the state is as it was.
     ///
     /// # Errors
-    /// [`Error::Input`] for a point that is not later than the newest and for a step of more than ten thousand parts;
+    /// [`Error::Input`] for a point that is not later than the newest and for a step of more than ten thousand parts over
+    /// all strips (a hundred of each at least);
     /// [`Error::Numerical`] for a filter that does not settle, and beyond the range of numbers.
     pub fn take(&mut self, state: &mut [f64], given: &Given, strips: &[StripFlow]) -> Result<()> {
         if Self::points(state) > 0 && given.time_s <= state[2] {
@@ -165,6 +166,7 @@ impl PrescribedForces {
                 courses: &self.courses,
                 duration_s: now - before,
                 rate_per_s: wind * flow.wind_factor / flow.width_m,
+                strips: strips.len(),
             };
             advance(
                 &self.realization,
@@ -206,6 +208,7 @@ impl PrescribedForces {
             courses: &self.courses,
             duration_s: ahead_s,
             rate_per_s: wind / flow.width_m,
+            strips: (state.len() - SHARED) / self.per_strip(),
         };
         if ahead_s > 0.0 {
             let (realization, size) = (&self.realization, self.size);

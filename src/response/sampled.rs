@@ -4,7 +4,8 @@
 use super::packed::{Packed, apply, settled};
 use super::series::{Drive, Moving};
 use super::{
-    Inputs, MAX_DOFS, PARTS_OF_A_MATRIX, SectionState, Stepper, check_substeps, overgrown,
+    Inputs, MAX_DOFS, PARTS_OF_A_MATRIX, SAMPLE_BY_MATRIX, SectionState, Stepper, check_substeps,
+    overgrown,
 };
 use crate::aerodynamics::Realization;
 use crate::aeroelastic::CoupledSection;
@@ -97,15 +98,21 @@ impl Stepper {
             0.0 => 0.0,
             _ => self.series.parts(0.0, step, false),
         };
-        check_substeps(samples + parts, step)?;
         let mut next = state.clone();
+        // a wind that stays is worth a matrix for the way from sample to sample
+        let known = state.last_wind_m_s == Some(inputs.wind_speed_m_s);
+        let stays = inputs.wind_speed_rate_m_s2 == 0.0 && (known || samples > PARTS_OF_A_MATRIX);
+        let of_sample = if stays { SAMPLE_BY_MATRIX } else { 1.0 };
+        check_substeps(of_sample * samples + parts, step)?;
+        next.last_wind_m_s = Some(inputs.wind_speed_m_s);
         let (mut time, mut remaining) = (0.0, step);
         while remaining > 0.0 {
             let (wind, rate) = (wind_after(inputs, time), inputs.wind_speed_rate_m_s2);
             let wait = time_to_cover((1.0 - next.phase) * way, wind, rate);
             let sampled = remaining >= wait * (1.0 - SAMPLE_TOLERANCE);
             let piece = if sampled { wait } else { remaining };
-            self.move_structure(&mut next, inputs, time, piece)?;
+            let again = stays && sampled && next.phase == 0.0;
+            self.move_structure(&mut next, inputs, (time, piece), again)?;
             if sampled {
                 self.sampling()?.sample(&mut next.values);
                 next.phase = 0.0;
@@ -129,13 +136,14 @@ impl Stepper {
         self.sampling.as_mut().ok_or_else(none)
     }
 
-    /// Structure alone under the force of the filters and the external one, from `time` on.
+    /// Structure alone under the force of the filters and the external one, from `time` on; `again` where pieces of this
+    /// length will follow.
     fn move_structure(
         &mut self,
         state: &mut SectionState,
         inputs: &Inputs,
-        time: f64,
-        piece: f64,
+        (time, piece): (f64, f64),
+        again: bool,
     ) -> Result<()> {
         if piece <= 0.0 {
             return Ok(());
@@ -151,11 +159,14 @@ impl Stepper {
         let fastest = drive.wind.max(wind_after(inputs, time + piece));
         let parts = self.series.parts(fastest, piece, gusts);
         let motion = &mut state.values[..2 * inputs.force.len()];
-        if drive.wind_rate == 0.0 && parts > PARTS_OF_A_MATRIX && !gusts {
+        if drive.wind_rate == 0.0 && (again || parts > PARTS_OF_A_MATRIX) && !gusts {
             let n = inputs.force.len();
-            let operand = [motion, &drive.force[0][..n], &drive.force[1][..n]].concat();
+            let operand = &mut self.operand[..4 * n];
+            operand[..2 * n].copy_from_slice(motion);
+            operand[2 * n..3 * n].copy_from_slice(&drive.force[0][..n]);
+            operand[3 * n..].copy_from_slice(&drive.force[1][..n]);
             let step = self.cache.structure(&self.section, piece)?;
-            apply(step, &operand, motion);
+            apply(step, operand, motion);
             return Ok(());
         }
         let moving = Moving {

@@ -1,6 +1,6 @@
 //! A force model as a linear combination of fixed functions of `p = iK`: `G_ij(p) = Σ_b θ_ijb φ_jb(p)`.
 
-use crate::aerodynamics::{LaguerreModel, RationalModel};
+use crate::aerodynamics::{DiscreteLaguerre, LaguerreModel, RationalModel};
 use crate::section::Dof;
 use crate::units::ReducedFrequencyRange;
 use nalgebra::{Complex, DMatrix};
@@ -16,6 +16,17 @@ enum Function {
     Lag(f64),
     /// Takenaka–Malmquist filter with the poles up to its own.
     Filter(Vec<f64>),
+    /// Discrete Laguerre filter whose output is held from sample to sample.
+    Held(HeldFilter),
+}
+
+/// A filter of the discrete Laguerre model and the hold behind it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct HeldFilter {
+    alpha: f64,
+    order: i32,
+    /// Step in dimensionless time.
+    delta_s: f64,
 }
 
 /// Functions and coefficients of a force model. Coefficients stand by motion, then function, then force.
@@ -54,6 +65,38 @@ impl LinearForces {
                             format!("chain{t}.c{l}")
                         }
                     });
+                }
+            }
+            forces.starts.push(forces.functions.len());
+        }
+        forces
+    }
+
+    /// The discrete Laguerre model as a continuous force: its transfer function times that of the hold,
+    /// `(1 − e^{−pΔs})/(pΔs)`. What is left out are the images of the motion at multiples of the sampling rate, which a
+    /// structure does not follow; see [`at_samples`](super::at_samples).
+    pub fn of_discrete_laguerre(
+        model: &DiscreteLaguerre,
+        tested: Option<ReducedFrequencyRange>,
+    ) -> Self {
+        let mut forces = Self::empty(&model.dofs, tested);
+        for input in 0..model.dofs.len() {
+            for (t, term) in model.terms.iter().enumerate() {
+                if term.input != input {
+                    continue;
+                }
+                for (order, column) in term.coefficients.column_iter().enumerate() {
+                    let function = Function::Held(HeldFilter {
+                        alpha: term.alpha,
+                        order: order as i32,
+                        delta_s: model.delta_s,
+                    });
+                    forces.add(
+                        input,
+                        function,
+                        |i| column[i],
+                        |_| format!("chain{t}.c{order}"),
+                    );
                 }
             }
             forces.starts.push(forces.functions.len());
@@ -192,6 +235,29 @@ impl Function {
                 }
                 (value, value * logarithmic)
             }
+            Self::Held(filter) => filter.at(p),
         }
+    }
+}
+
+impl HeldFilter {
+    /// `√(1−α)/D (N/D)^l (1 − b)/(pΔs)` with `b = e^{−pΔs}`, `D = 1 − √α b`, `N = √α − b`, and its derivative.
+    fn at(&self, p: Complex64) -> (Complex64, Complex64) {
+        let (root, step) = (self.alpha.sqrt(), self.delta_s);
+        let back = (-p * step).exp();
+        let one = Complex64::new(1.0, 0.0);
+        let (below, above) = (one - back * root, back * -1.0 + root);
+        let hold = (one - back) / (p * step);
+        let filter = below.inv() * (1.0 - self.alpha).sqrt() * (above / below).powi(self.order);
+        let (order, slope) = (f64::from(self.order), back * step);
+        // zero of the filter itself: the derivative below does not need its logarithm
+        let of_filter = filter * (slope * (-root * (order + 1.0)) / below)
+            + below.inv()
+                * (1.0 - self.alpha).sqrt()
+                * (above / below).powi((self.order - 1).max(0))
+                * (slope / below)
+                * order;
+        let of_hold = slope / (p * step) - hold / p;
+        (filter * hold, of_filter * hold + filter * of_hold)
     }
 }

@@ -10,9 +10,11 @@
 mod basis;
 mod crossing;
 mod pencil;
+mod samples;
 mod setup;
 
 pub use basis::LinearForces;
+pub use samples::at_samples;
 
 use crate::error::{Error, Result, positive};
 use crate::section::{SectionModel, Structure};

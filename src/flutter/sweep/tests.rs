@@ -5,6 +5,7 @@ use crate::aerodynamics::{FilterBank, FilterTerm, LaguerreModel, RationalModel, 
 use crate::aeroelastic::CoupledSection;
 use crate::flutter::{OnsetSearch, find_onset};
 use crate::section::{Dof, Translation};
+use crate::trained_model::{Model, TrainedModel};
 use nalgebra::DMatrix;
 
 /// Numbers in [−1, 1] from a multiplicative congruence: no crate needed, the same everywhere.
@@ -266,4 +267,82 @@ fn impossible_samples_are_refused_by_name() {
             .onset(&SectionModel::table_4_1(), &coefficients[1..])
             .is_err()
     );
+}
+
+/// The discrete Laguerre model: the onset of the held forces, moved to that of the sampled section, is the one that the
+/// search of all eigenvalues finds, for many sections.
+#[test]
+fn sampled_sections_flutter_where_their_eigenvalues_say() {
+    let file = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/tests/data/models/discrete_laguerre.json"
+    );
+    let trained = TrainedModel::from_json(&std::fs::read_to_string(file).unwrap()).unwrap();
+    let Model::DiscreteLaguerre(model) = &trained.model else {
+        panic!("{}", trained.model.kind());
+    };
+    for (frequency, damping) in [(1.0, 1.0), (1.3, 0.5), (0.8, 3.0)] {
+        let mut section = trained.section.clone();
+        let torsion = &mut section.torsion;
+        torsion.frequency_hz = torsion.frequency_hz.map(|f| f * frequency);
+        torsion.damping_ratio *= damping;
+        let structure = section.structure().unwrap();
+        let coupled = CoupledSection::new(structure.clone(), model.realize()).unwrap();
+        let search = OnsetSearch {
+            speed_max_m_s: 80.0,
+            ..OnsetSearch::default()
+        };
+        let found = find_onset("", &coupled, &search, None).unwrap();
+        let expected = found.onset().unwrap().at.clone();
+        let forces = LinearForces::of_discrete_laguerre(model, None);
+        let sweep = OnsetSweep::new(forces, &structure, 80.0).unwrap();
+        let coefficients = sweep.forces().coefficients().to_vec();
+        let SweepOutcome::Onset(held) = sweep.onset(&section, &coefficients).unwrap() else {
+            panic!("no onset");
+        };
+        let sampled = at_samples(&coupled, held).unwrap().unwrap();
+        let off = |speed: f64| (speed / expected.speed_m_s - 1.0).abs();
+        // what sampling adds, and what is left
+        assert!(off(held.speed_m_s) < 1e-3, "{held:?}, {expected:?}");
+        assert!(off(sampled.speed_m_s) < 1e-8, "{sampled:?}, {expected:?}");
+        let frequency = sampled.frequency_hz / expected.frequency_hz;
+        assert!((frequency - 1.0).abs() < 1e-8, "{sampled:?}, {expected:?}");
+    }
+}
+
+/// Derivatives of all functions against differences.
+#[test]
+fn functions_know_their_derivatives() {
+    let file = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/tests/data/models/discrete_laguerre.json"
+    );
+    let trained = TrainedModel::from_json(&std::fs::read_to_string(file).unwrap()).unwrap();
+    let Model::DiscreteLaguerre(model) = &trained.model else {
+        panic!("{}", trained.model.kind());
+    };
+    let forces = LinearForces::of_discrete_laguerre(model, None);
+    let coefficients = forces.coefficients().to_vec();
+    for p in [
+        Complex64::new(0.0, 0.4),
+        Complex64::new(-0.01, 1.5),
+        Complex64::new(0.02, 30.0),
+    ] {
+        let step = 1e-5;
+        let (value, slope) = forces.transfer::<2>(p, &coefficients);
+        let (above, _) = forces.transfer::<2>(p + step, &coefficients);
+        let (below, _) = forces.transfer::<2>(p - step, &coefficients);
+        for i in 0..2 {
+            for j in 0..2 {
+                let difference = (above[i][j] - below[i][j]) / (2.0 * step);
+                let off = (difference - slope[i][j]).norm();
+                let size = slope[i][j].norm() + value[i][j].norm();
+                assert!(
+                    off < 1e-6 * size,
+                    "{p}: {difference} against {}",
+                    slope[i][j]
+                );
+            }
+        }
+    }
 }

@@ -9,6 +9,7 @@ mod offsets;
 mod refusals;
 mod run;
 mod state;
+mod torture;
 
 use super::types::*;
 use super::*;

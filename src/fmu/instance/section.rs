@@ -5,7 +5,7 @@ use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
 use crate::flutter::{
     FlutterSearch, LinearForces, OnsetSearch, OnsetSweep, SweepOutcome, SweptOnset, UnwantedGrowth,
-    divergence_speed, find_onset, unwanted_growth,
+    at_samples, divergence_speed, find_onset, unwanted_growth,
 };
 use crate::fmu::variables::{Calculated, Role, SectionParameter, VariableTable};
 use crate::section::{Dof, SectionModel};
@@ -85,20 +85,30 @@ pub(super) fn coupled_section(
 pub(super) fn plain_onset(
     model: &TrainedModel,
     table: &VariableTable,
-    values: &[f64],
-    limit: f64,
+    aerodynamics: &Realization,
+    (values, limit): (&[f64], f64),
 ) -> Option<SweptOnset> {
     let tested = Some(model.tested_range);
     let forces = match &model.model {
         Model::Laguerre(m) => LinearForces::of_laguerre(m, tested),
         Model::Rational(m) => LinearForces::of_rational(m, tested),
         Model::MinimumState(m) => LinearForces::of_rational(&m.to_roger(), tested),
-        Model::DiscreteLaguerre(_) => return None,
+        Model::DiscreteLaguerre(m) => LinearForces::of_discrete_laguerre(m, tested),
     };
     let section = section_model(model, table, values);
-    let sweep = OnsetSweep::new(forces, &section.structure().ok()?, limit).ok()?;
+    let structure = section.structure().ok()?;
+    let sweep = OnsetSweep::new(forces, &structure, limit).ok()?;
     match sweep.onset(&section, sweep.forces().coefficients()) {
-        Ok(SweepOutcome::Onset(o)) if o.in_tested_range && o.spurious == 0 => Some(o),
+        Ok(SweepOutcome::Onset(o)) if o.in_tested_range && o.spurious == 0 => {
+            if let Model::DiscreteLaguerre(_) = &model.model {
+                let sampled = CoupledSection::new(structure, aerodynamics.clone()).ok()?;
+                at_samples(&sampled, o)
+                    .ok()?
+                    .filter(|o| o.speed_m_s <= limit)
+            } else {
+                Some(o)
+            }
+        }
         _ => None,
     }
 }

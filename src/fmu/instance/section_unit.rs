@@ -191,7 +191,9 @@ impl SectionUnit {
         let Resources { model, table, .. } = resources;
         let speed_max_m_s = values[self.places.search_limit];
         let section = section::coupled_section(model, table, &self.aerodynamics, values)?;
-        if let Some(onset) = section::plain_onset(model, table, values, speed_max_m_s) {
+        if let Some(onset) =
+            section::plain_onset(model, table, &self.aerodynamics, (values, speed_max_m_s))
+        {
             return Ok(UnwantedGrowth {
                 scanned_to_m_s: onset.speed_m_s,
                 bands: Vec::new(),
@@ -225,7 +227,7 @@ impl SectionUnit {
         let limit = values[self.places.search_limit];
         match section::coupled_section(model, table, &self.aerodynamics, values) {
             Ok(section) => {
-                let plain = section::plain_onset(model, table, values, limit);
+                let plain = section::plain_onset(model, table, &self.aerodynamics, (values, limit));
                 OnsetCard::search(model, &section, limit, plain)
             }
             Err(why) => OnsetCard::unknown(limit, &why),

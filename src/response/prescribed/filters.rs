@@ -9,8 +9,10 @@ use nalgebra::DMatrix;
 const REACH: f64 = 1.0;
 /// Terms at most; the last is below rounding.
 const TERMS: usize = 24;
-/// Parts of one step, or samples in it, at most: some ten milliseconds.
+/// Parts of one step, or samples in it, at most, over all strips: some ten milliseconds.
 const MAX_PARTS: f64 = 1e4;
+/// What each of many strips may take of them nevertheless.
+const PARTS_OF_A_STRIP: f64 = 100.0;
 
 /// Where the filters go: along `courses` (one a degree of freedom, dimensionless), whose time begins where they are now.
 pub(super) struct Way<'a> {
@@ -18,6 +20,8 @@ pub(super) struct Way<'a> {
     pub duration_s: f64,
     /// `V/B`, 1/s.
     pub rate_per_s: f64,
+    /// Strips that go such ways in one step.
+    pub strips: usize,
 }
 
 /// Buffers of one Taylor series.
@@ -36,7 +40,7 @@ pub(super) fn advance_continuous(
     way: &Way,
     buffers: &mut Buffers,
 ) -> Result<()> {
-    let parts = parts(way.duration_s * way.rate_per_s * size / REACH)?;
+    let parts = parts(way, way.duration_s * way.rate_per_s * size / REACH)?;
     let part_s = way.duration_s / parts;
     for part in 0..parts as usize {
         let start = part as f64 * part_s;
@@ -45,13 +49,14 @@ pub(super) fn advance_continuous(
     grown(state)
 }
 
-fn parts(count: f64) -> Result<f64> {
-    if count <= MAX_PARTS {
+fn parts(way: &Way, count: f64) -> Result<f64> {
+    let at_most = (MAX_PARTS / way.strips.max(1) as f64).max(PARTS_OF_A_STRIP);
+    if count <= at_most {
         return Ok(count.ceil().max(1.0));
     }
     Err(Error::input(
         "communication step",
-        format!("a step in which the flow passes the filters in at most {MAX_PARTS} parts"),
+        format!("a step in which the flow passes the filters in at most {at_most:.0} parts"),
         format!("{count:.0}: a shorter step, or a slower wind, is needed"),
     ))
 }
@@ -129,7 +134,7 @@ pub(super) fn advance_discrete(
     buffers: &mut Buffers,
 ) -> Result<()> {
     let passed = way.duration_s * way.rate_per_s / d.delta_s;
-    parts(passed)?;
+    parts(way, passed)?;
     let total = *phase + passed;
     let samples = total.floor();
     for sample in 1..=samples as usize {
