@@ -187,8 +187,7 @@ fn refused(change: impl FnOnce(&Path) -> String, expected: &[&str]) {
     tables(folder.path());
     let text = change(folder.path());
     let message = study(folder.path(), &text)
-        .err()
-        .expect("an error")
+        .unwrap_err()
         .to_string();
     for part in expected {
         assert!(message.contains(part), "{message} lacks {part}");

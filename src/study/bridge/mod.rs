@@ -4,12 +4,14 @@ mod answers;
 mod buffeting;
 mod export;
 mod forces;
+mod scatter;
 
 use answers::coupled;
 pub use answers::{BridgeAnswer, BridgeFlutter, LeftOut, bridge_flutter};
 pub use buffeting::{BridgeBuffeting, BuffetingBlock};
 pub use export::BridgeExport;
 pub use forces::SectionForces;
+pub use scatter::{Scatter, ScatteredOnset};
 
 use crate::bridge::{Bridge, Similarity, StripGroup, similarities};
 use crate::error::{Error, Result};
