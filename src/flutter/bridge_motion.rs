@@ -2,11 +2,20 @@
 
 use super::critical_point::CriticalPoint;
 use super::determinant::{impedance, null_vector};
+use super::modal_characteristic::ModalCharacteristic;
 use crate::aerodynamics::Transfer;
+use crate::aeroelastic::CoupledSection;
 use crate::bridge::Bridge;
 use crate::error::{Error, Result};
 use nalgebra::{Complex, DVector};
 use serde::Serialize;
+use std::f64::consts::TAU;
+
+/// First step of the secant, its longest, and the last, over the speed.
+const FIRST_STEP: f64 = 1e-3;
+const LONGEST_STEP: f64 = 0.1;
+const SETTLED: f64 = 1e-9;
+const MOST_STEPS: usize = 30;
 
 /// A mode in the motion at an onset.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -67,16 +76,79 @@ pub fn motion_at_onset(
     forces: &dyn Transfer,
     at: &CriticalPoint,
 ) -> Result<BridgeMotion> {
+    let shape = modal_shape(bridge, forces, at)?;
+    Ok(BridgeMotion {
+        modes: shares(bridge, &shape),
+        nodes: nodes(bridge, &shape),
+    })
+}
+
+/// The same in mass-normalised modal coordinates.
+fn modal_shape(
+    bridge: &Bridge,
+    forces: &dyn Transfer,
+    at: &CriticalPoint,
+) -> Result<DVector<Complex<f64>>> {
     let structure = bridge.structure();
     let omega = at
         .reduced_frequency
         .circular(structure.width_m, at.speed_m_s);
     let resistance = impedance(&structure, forces, at.speed_m_s, omega)?;
-    let shape = null_vector(&structure, &resistance, omega)?;
-    Ok(BridgeMotion {
-        modes: shares(bridge, &shape),
-        nodes: nodes(bridge, &shape),
-    })
+    null_vector(&structure, &resistance, omega)
+}
+
+/// An onset from which those of bridges nearby are found without a search: by the mode that flutters, followed by its shape.
+#[derive(Debug, Clone)]
+pub struct NearbyOnset {
+    speed_m_s: f64,
+    lambda: Complex<f64>,
+    shape: DVector<Complex<f64>>,
+}
+
+impl NearbyOnset {
+    /// Starts from the onset `at` of `bridge`.
+    ///
+    /// # Errors
+    /// As [`motion_at_onset`].
+    pub fn of(bridge: &Bridge, at: &CriticalPoint) -> Result<Self> {
+        let omega = at
+            .reduced_frequency
+            .circular(bridge.width_m(), at.speed_m_s);
+        Ok(Self {
+            speed_m_s: at.speed_m_s,
+            lambda: Complex::new(0.0, omega),
+            shape: modal_shape(bridge, &bridge.forces(), at)?,
+        })
+    }
+
+    /// Speed (m/s) and frequency (Hz) at which the same mode of another bridge loses its damping, by the secant; `None`
+    /// where the mode cannot be followed that far.
+    pub fn find(&self, other: &CoupledSection) -> Option<(f64, f64)> {
+        let problem = ModalCharacteristic::new(other)?;
+        let mut known = (self.lambda, self.shape.clone());
+        let mut at = |speed: f64| {
+            known = problem.at(speed).solve(known.0, &known.1)?;
+            Some(known.0)
+        };
+        let (mut before, mut speed) = (self.speed_m_s, self.speed_m_s * (1.0 + FIRST_STEP));
+        let mut value = at(before)?;
+        for _ in 0..MOST_STEPS {
+            let next = at(speed)?;
+            let slope = (next.re - value.re) / (speed - before);
+            // no further than a tenth at once: beyond, it may be another mode
+            let most = LONGEST_STEP * speed;
+            let step = (-next.re / slope).clamp(-most, most);
+            if !step.is_finite() {
+                return None;
+            }
+            if step.abs() <= SETTLED * speed {
+                return Some((speed + step, next.im / TAU));
+            }
+            (before, value) = (speed, next);
+            speed += step;
+        }
+        None
+    }
 }
 
 fn shares(bridge: &Bridge, shape: &DVector<Complex<f64>>) -> Vec<ModeShare> {

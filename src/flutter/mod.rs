@@ -28,7 +28,9 @@ mod tracking;
 mod unwanted;
 
 pub use answer::{FlutterSearch, StableRange, UnstableStart};
-pub use bridge_motion::{BridgeMotion, ModeShare, NodeMotion, motion_at_onset, static_deflection};
+pub use bridge_motion::{
+    BridgeMotion, ModeShare, NearbyOnset, NodeMotion, motion_at_onset, static_deflection,
+};
 pub use critical_point::CriticalPoint;
 pub use curves::{FlutterCurves, ModeBranch, ModePoint, trace_modes};
 pub use determinant::{determinant_onset, impedance};

@@ -2,7 +2,7 @@
 
 use crate::bridges::{TWO, langenuen};
 use aerodeck::aeroelastic::CoupledSection;
-use aerodeck::flutter::{OnsetSearch, find_onset};
+use aerodeck::flutter::{OnsetSearch, find_onset, motion_at_onset};
 use aerodeck::fmu::force_options::{ForceOptions, StripOptions};
 use aerodeck::fmu::package::{
     Export, FmiVersion, Growing, Label, Overwrite, Runtime, package_bridge, write_archive,
@@ -49,7 +49,20 @@ pub fn export(folder: &Path, runtimes: &[Runtime]) {
     };
     let found = find_onset("bridge", &section, &search, None).unwrap();
     let onset = &found.onset().unwrap().at;
+    let motion = motion_at_onset(bridge, &bridge.forces(), onset).unwrap();
+    // coordinates of the modes in the order of the bridge
+    let flutter: Vec<[f64; 2]> = bridge
+        .modes
+        .iter()
+        .map(|m| {
+            let share = motion.modes.iter().find(|s| s.mode == m.number).unwrap();
+            let size = (share.energy_share / m.generalised_mass).sqrt();
+            let (sin, cos) = share.phase_deg.to_radians().sin_cos();
+            [size * cos, size * sin]
+        })
+        .collect();
     let text = json!({
+        "flutter": flutter,
         "onset_m_s": onset.speed_m_s,
         "frequency_hz": onset.frequency_hz,
         "nodes": bridge.nodes,

@@ -7,7 +7,7 @@ use super::{BridgeArgs, account, stage_figure};
 use crate::error::Result;
 use crate::flutter::BridgeMotion;
 use crate::report::{bridge_curves_figure, flutter_motion_figure};
-use crate::study::bridge::{BridgeFlutter, BridgeStudy, bridge_flutter};
+use crate::study::bridge::{BridgeFlutter, BridgeStudy, Scatter, ScatteredOnset, bridge_flutter};
 use std::fmt::Write as _;
 
 /// Phases of an animation over one period.
@@ -16,11 +16,27 @@ const PHASES: usize = 24;
 /// Flutter of a whole bridge: onset by tables and by model, modes that take part, V-f and V-ζ, motion at flutter, divergence
 ///
 /// Example: aerodeck bridge flutter bridge.toml --out results
+/// Example: aerodeck bridge flutter bridge.toml --samples 1000 --scatter-frequency 0.02
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
 pub(crate) struct Args {
     #[command(flatten)]
     bridge: BridgeArgs,
+    /// Samples of a bridge whose frequencies, damping and derivatives scatter; without, none.
+    #[arg(long)]
+    samples: Option<usize>,
+    /// Standard deviation of each natural frequency over its mean.
+    #[arg(long, default_value_t = 0.02)]
+    scatter_frequency: f64,
+    /// Standard deviation of each damping ratio over its mean.
+    #[arg(long, default_value_t = 0.3)]
+    scatter_damping: f64,
+    /// Standard deviation of the derivatives of each force by each motion over their mean.
+    #[arg(long, default_value_t = 0.05)]
+    scatter_derivatives: f64,
+    /// Seed of the samples.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
 }
 
 /// Runs the command.
@@ -32,16 +48,59 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     if let Err(e) = staged(&study, &results, &mut out) {
         failed.push(format!("figures: {e}"));
     }
+    let scattered = args
+        .scattered(&study, &results, progress)
+        .unwrap_or_else(|e| {
+            failed.push(format!("scatter: {e}"));
+            None
+        });
     let written = out.commit()?;
     let mut text = account::card(&study, &results);
+    if let Some(s) = &scattered {
+        let _ = writeln!(
+            text,
+            "Scatter of {} samples: {:.3} m/s, standard deviation {:.3} m/s, 95 % between {:.3} and {:.3} m/s; {} without onset",
+            s.scatter.samples,
+            s.mean_m_s,
+            s.standard_deviation_m_s,
+            s.interval_m_s[0],
+            s.interval_m_s[1],
+            s.without_onset
+        );
+    }
     for failure in &failed {
         let _ = writeln!(text, "failed: {failure}");
     }
     text.push_str(&list(&written));
     let json = serde_json::json!({
-        "bridge": study.file.name, "flutter": results, "notes": study.notes, "failed": failed, "files": written
+        "bridge": study.file.name, "flutter": results, "scatter": scattered, "notes": study.notes, "failed": failed, "files": written
     });
     Ok(Answer::new(text, &json)?.with_verdict(failed.is_empty()))
+}
+
+impl Args {
+    fn scattered(
+        &self,
+        study: &BridgeStudy,
+        results: &BridgeFlutter,
+        progress: &Progress,
+    ) -> Result<Option<ScatteredOnset>> {
+        let onset = results.answers.last().and_then(|a| a.search.onset());
+        let (Some(samples), Some(onset)) = (self.samples, onset) else {
+            return Ok(None);
+        };
+        let scatter = Scatter {
+            frequency: self.scatter_frequency,
+            damping: self.scatter_damping,
+            derivatives: self.scatter_derivatives,
+            samples,
+            seed: self.seed,
+        };
+        let stage = progress.stage("scatter of the onset");
+        let found = study.scattered_onset(onset, &scatter);
+        drop(stage);
+        found.map(Some)
+    }
 }
 
 /// The results, with progress.

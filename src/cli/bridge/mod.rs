@@ -1,6 +1,7 @@
 //! `aerodeck bridge`: whole bridges.
 
 mod account;
+mod buffeting;
 mod convert;
 pub(super) mod demo;
 mod flutter;
@@ -27,6 +28,7 @@ pub(crate) const BRIDGE_FMU: &str = "bridge.fmu";
 pub enum Bridge {
     Flutter(flutter::Args),
     Show(show::Args),
+    Buffeting(buffeting::Args),
     Convert(convert::Args),
 }
 
@@ -35,6 +37,7 @@ pub fn run(command: &Bridge, progress: &Progress) -> Result<Answer> {
     match command {
         Bridge::Flutter(args) => flutter::run(args, progress),
         Bridge::Show(args) => show::run(args, progress),
+        Bridge::Buffeting(args) => buffeting::run(args, progress),
         Bridge::Convert(args) => convert::run(args),
     }
 }

@@ -34,6 +34,9 @@ pub struct BridgeFile {
     /// Speeds that are looked at.
     #[serde(default)]
     pub flutter: SearchBlock,
+    /// Turbulence, as the room of buffeting reads it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub buffeting: Option<toml::Table>,
     /// Directory of the file, against which paths in it are read.
     #[serde(skip)]
     pub directory: PathBuf,
@@ -124,6 +127,9 @@ pub struct SectionBlock {
     /// Filters of the model that is fitted to the table.
     #[serde(default = "three")]
     pub filters: usize,
+    /// How the model is fitted to the table, as in a study; before `filters`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fit: Option<toml::Table>,
     /// Motions with self-excited forces.
     #[serde(default = "two")]
     pub motions: Vec<Dof>,

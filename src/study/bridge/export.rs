@@ -98,7 +98,8 @@ impl BridgeStudy {
         })
     }
 
-    fn named(&self, named: &[String]) -> Result<Vec<usize>> {
+    /// Places of named nodes; of mid-span and both quarter points where none are named.
+    pub(super) fn named(&self, named: &[String]) -> Result<Vec<usize>> {
         let nodes = &self.by_model.nodes;
         if named.is_empty() {
             let mut places: Vec<usize> = [1, 2, 3].map(|q| q * (nodes.len() - 1) / 4).to_vec();
@@ -109,7 +110,7 @@ impl BridgeStudy {
             nodes.iter().position(|n| n.name == *name).ok_or_else(|| {
                 let (a, b) = (&nodes[0].name, &nodes[nodes.len() - 1].name);
                 Error::input(
-                    "--nodes",
+                    "nodes",
                     format!("nodes of the bridge, {a} to {b}"),
                     format!("`{name}`"),
                 )

@@ -128,13 +128,19 @@ fn by_table(
     if !fit {
         return Ok((between, None));
     }
-    let options = FrequencyFit {
-        form: Form::Laguerre {
-            filters: block.filters,
-            feed_through: FeedThrough::default(),
-            pole_per_transfer_function: false,
+    let options = match &block.fit {
+        Some(stated) => stated.clone().try_into().map_err(|e: toml::de::Error| {
+            let place = format!("section {}: fit", block.name);
+            Error::input(place, "a fit to a table", e.message().replace('\n', " "))
+        })?,
+        None => FrequencyFit {
+            form: Form::Laguerre {
+                filters: block.filters,
+                feed_through: FeedThrough::default(),
+                pole_per_transfer_function: false,
+            },
+            ..FrequencyFit::default()
         },
-        ..FrequencyFit::default()
     };
     let (model, report) = fit_table(&table.samples(&block.motions), &block.motions, &options)?;
     let forces = SectionForces {

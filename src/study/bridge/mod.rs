@@ -1,13 +1,17 @@
 //! A bridge file resolved: sections with their forces, groups of strips, and what is to be known before a search.
 
 mod answers;
+mod buffeting;
 mod export;
 mod forces;
+mod scatter;
 
 use answers::coupled;
 pub use answers::{BridgeAnswer, BridgeFlutter, LeftOut, bridge_flutter};
+pub use buffeting::{BridgeBuffeting, BuffetingBlock};
 pub use export::BridgeExport;
 pub use forces::SectionForces;
+pub use scatter::{Scatter, ScatteredOnset};
 
 use crate::bridge::{Bridge, Similarity, StripGroup, similarities};
 use crate::error::{Error, Result};

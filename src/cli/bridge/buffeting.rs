@@ -1,0 +1,113 @@
+//! `aerodeck bridge buffeting`: RMS and peak factors at named nodes.
+
+use super::super::answer::Answer;
+use super::super::output::list;
+use super::super::progress::Progress;
+use super::BridgeArgs;
+use crate::buffeting::TurbulenceField;
+use crate::error::Result;
+use crate::study::bridge::BridgeBuffeting;
+use std::fmt::Write as _;
+
+/// Response of a whole bridge to turbulence at a wind speed, in the frequency and the time domain
+///
+/// Example: aerodeck bridge buffeting bridge.toml --speed 35 --out results
+#[derive(clap::Args)]
+#[command(verbatim_doc_comment)]
+pub(crate) struct Args {
+    #[command(flatten)]
+    bridge: BridgeArgs,
+    /// Mean wind speed of the bridge, m/s.
+    #[arg(long)]
+    speed: f64,
+    /// Write the turbulence of the first record as turbulence.csv: time, then u and w of every node.
+    #[arg(long)]
+    field: bool,
+}
+
+/// Runs the command.
+pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+    let study = args.bridge.study(progress)?;
+    let block = study
+        .buffeting_block()
+        .map_err(|e| e.in_file(&args.bridge.bridge))?;
+    let mut out = args.bridge.out()?;
+    let stage = progress.steps("records of turbulence");
+    let results = study.buffeting(&block, args.speed, &|done, all| {
+        stage.at(done as u64, all as u64)
+    });
+    drop(stage);
+    let results = results?;
+    let json = serde_json::to_string_pretty(&results)
+        .map_err(|e| crate::Error::Numerical(e.to_string()))?;
+    out.write("bridge_buffeting.json", json + "\n")?;
+    if args.field {
+        out.write(
+            "turbulence.csv",
+            field_csv(&study.first_field(&block, args.speed)?),
+        )?;
+    }
+    let written = out.commit()?;
+    let mut text = format!("{} at {} m/s\n", study.file.name, args.speed);
+    text.push_str(&table(&results));
+    text.push_str(&list(&written));
+    Answer::new(
+        text,
+        &serde_json::json!({ "buffeting": results, "notes": study.notes, "files": written }),
+    )
+}
+
+fn table(results: &BridgeBuffeting) -> String {
+    let time = &results.time;
+    let mut text = format!(
+        "{} records of {} s, every {} s, seed {}\n{:<8} {:<14} {:>12} {:>12} {:>11} {:>11} {:>8} {:>8}\n",
+        time.plan.records,
+        time.plan.duration_s,
+        time.plan.step_s,
+        time.plan.seed,
+        "node",
+        "motion",
+        "RMS, freq.",
+        "RMS, time",
+        "std. error",
+        "crossing Hz",
+        "peak f.",
+        "expected"
+    );
+    for (n, name) in results.nodes.iter().enumerate() {
+        for (i, motion) in ["vertical m", "lateral m", "rotation rad"]
+            .into_iter()
+            .enumerate()
+        {
+            let _ = writeln!(
+                text,
+                "{name:<8} {motion:<14} {:>12.5e} {:>12.5e} {:>11.2e} {:>11.4} {:>8.3} {:>8.3}",
+                results.frequency.rms[n][i],
+                time.rms[n][i],
+                time.standard_error[n][i],
+                results.frequency.crossing_frequency_hz[n][i],
+                time.peak_factor[n][i],
+                results.expected_peak_factor[n][i]
+            );
+        }
+    }
+    text
+}
+
+fn field_csv(field: &TurbulenceField) -> String {
+    let mut text = "# turbulence along the span, m/s; u along the wind, w up; columns by the place along the girder, m\ntime_s".to_owned();
+    for (name, rows) in ["u", "w"].into_iter().zip(&field.gusts) {
+        for along in field.along_m.iter().take(rows.len()) {
+            let _ = write!(text, ",{name}[{along}]");
+        }
+    }
+    text.push('\n');
+    for i in 0..field.samples() {
+        let _ = write!(text, "{}", i as f64 * field.step_s);
+        for row in field.gusts.iter().flatten() {
+            let _ = write!(text, ",{:.6}", row[i]);
+        }
+        text.push('\n');
+    }
+    text
+}
