@@ -46,7 +46,7 @@ impl Model {
     }
 
     /// Lowest version of the file layout that can hold the model.
-    pub(crate) fn schema_version(&self) -> u32 {
+    pub fn schema_version(&self) -> u32 {
         match self {
             Self::Rational(m) if matches!(m.lags, Lags::PerForce(_)) => NEWEST_SCHEMA_VERSION,
             Self::MinimumState(_) => NEWEST_SCHEMA_VERSION,
@@ -176,7 +176,7 @@ impl TrainedModel {
     ///
     /// # Errors
     /// [`Error::Io`] when it cannot be read; those of [`TrainedModel::from_json`], naming the file.
-    pub(crate) fn read(path: &Path) -> Result<Self> {
+    pub fn read(path: &Path) -> Result<Self> {
         let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, e))?;
         Self::from_json(&text).map_err(|e| e.in_file(path))
     }

@@ -61,7 +61,7 @@ pub struct SpeedRange {
 
 impl FlutterBlock {
     /// The range for a section.
-    pub(crate) fn range(&self, section: &SectionModel) -> SpeedRange {
+    pub fn range(&self, section: &SectionModel) -> SpeedRange {
         let speed_max_m_s = self.speed_max_m_s.unwrap_or_else(|| {
             let usual = usual_highest_m_s(section).max(self.speed_min_m_s.unwrap_or(0.0) * 2.0);
             rounded_up(usual).min(HIGHEST_SPEED_M_S)
@@ -109,7 +109,7 @@ impl FlutterBlock {
 
 impl SpeedRange {
     /// The same as a search range.
-    pub(crate) fn search(&self) -> OnsetSearch {
+    pub fn search(&self) -> OnsetSearch {
         OnsetSearch {
             speed_max_m_s: self.speed_max_m_s,
             speeds: self.speeds,
@@ -130,7 +130,7 @@ impl SpeedRange {
     }
 
     /// Wind speeds of the curves, m/s.
-    pub(crate) fn curve_speeds_m_s(&self) -> Vec<f64> {
+    pub fn curve_speeds_m_s(&self) -> Vec<f64> {
         let last = (self.speeds - 1) as f64;
         let span = self.speed_max_m_s - self.speed_min_m_s;
         (0..self.speeds)

@@ -152,7 +152,7 @@ impl DerivativeTable {
     }
 
     /// The degrees of freedom that the table covers completely.
-    pub(crate) fn dofs(&self) -> &'static [Dof] {
+    pub fn dofs(&self) -> &'static [Dof] {
         if self.points.len() == Derivative::ALL.len() {
             &Dof::THREE
         } else {
@@ -164,7 +164,7 @@ impl DerivativeTable {
     ///
     /// # Errors
     /// [`Error::Input`] listing those that are missing.
-    pub(crate) fn require(&self, dofs: &[Dof]) -> Result<()> {
+    pub fn require(&self, dofs: &[Dof]) -> Result<()> {
         let missing: Vec<&str> = coupling(dofs)
             .filter(|d| !self.points.contains_key(d))
             .map(Derivative::name)
@@ -189,7 +189,7 @@ impl DerivativeTable {
     }
 
     /// The range of `K` in which every derivative among `dofs` was tested.
-    pub(crate) fn tested_range(&self, dofs: &[Dof]) -> ReducedFrequencyRange {
+    pub fn tested_range(&self, dofs: &[Dof]) -> ReducedFrequencyRange {
         let ranges = |d: Derivative| {
             ReducedFrequencyRange::spanning(self.points(d).iter().map(DerivativePoint::k))
         };
