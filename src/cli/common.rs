@@ -1,6 +1,6 @@
 //! Arguments that several commands share.
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::study::{Study, study_warnings};
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -29,6 +29,18 @@ impl StudyArgs {
         let study = Study::read(&self.study)?;
         warn(&self.study, &study_warnings(&study));
         Ok(study)
+    }
+
+    /// Reads the study and keeps its text.
+    pub(crate) fn read_with_text(&self) -> Result<(Study, String)> {
+        let study = self.read()?;
+        let text = std::fs::read_to_string(&self.study).map_err(|e| Error::io(&self.study, e))?;
+        Ok((study, text))
+    }
+
+    /// The file of the study.
+    pub(crate) fn file(&self) -> Option<&Path> {
+        Some(&self.study)
     }
 
     /// Folder of the results.

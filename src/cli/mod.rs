@@ -10,8 +10,11 @@ mod compare;
 mod coverage;
 mod demo;
 mod derivatives;
+mod evidence;
+mod figures;
 mod flutter;
 mod fmu;
+mod headline;
 mod interrupt;
 mod lock;
 mod monte_carlo;
@@ -19,6 +22,8 @@ mod output;
 mod process;
 mod progress;
 mod quasi_steady;
+mod ran;
+mod report;
 mod routes;
 mod select;
 mod simulate;
@@ -52,6 +57,9 @@ struct Cli {
     /// No progress bars.
     #[arg(long, short, global = true)]
     quiet: bool,
+    /// Neither draw nor write figures.
+    #[arg(long, global = true)]
+    no_figures: bool,
     #[command(subcommand)]
     command: Command,
 }
@@ -60,6 +68,7 @@ struct Cli {
 enum Command {
     Demo(demo::Args),
     Study(study::Args),
+    Report(report::Args),
     Tunnel(tunnel::Args),
     #[command(subcommand)]
     Campaign(campaign::Campaign),
@@ -88,6 +97,9 @@ pub fn main() -> ExitCode {
     interrupt::install();
     let code = apology::guarded(|| {
         let cli = Cli::parse();
+        if cli.no_figures {
+            figures::leave_out();
+        }
         let progress = progress::Progress::new(!cli.quiet && !cli.json);
         let result = run(&cli.command, &progress);
         // a signal that is being obeyed ends the program with a code of its own
@@ -134,6 +146,7 @@ fn run(command: &Command, progress: &progress::Progress) -> Result<Answer> {
     match command {
         Command::Demo(args) => demo::run(args, progress),
         Command::Study(args) => study::run(args, progress),
+        Command::Report(args) => report::run(args),
         Command::Tunnel(args) => tunnel::run(args, progress),
         Command::Campaign(command) => campaign::run(command, progress),
         Command::Process(args) => process::run(args, progress),

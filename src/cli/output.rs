@@ -99,6 +99,11 @@ impl OutputDir {
         fs::write(&path, bytes).map_err(|e| Error::io(path, e))
     }
 
+    /// The folder in which the files stand until they are put in place.
+    pub(crate) fn staging(&self) -> &Path {
+        self.staging.path()
+    }
+
     /// Takes back a staged file.
     pub(crate) fn discard(&mut self, name: impl AsRef<Path>) {
         let name = name.as_ref();

@@ -1,6 +1,7 @@
 //! `aerodeck process`: from the raw runs of a campaign to records, derivatives and a study.
 
 use super::answer::Answer;
+use super::figures;
 use super::output::{OutputDir, list};
 use super::progress::Progress;
 use super::stages::RECORDS;
@@ -20,8 +21,7 @@ use crate::identification::derivatives::{
     DerivativeOptions, IdentifiedDerivatives, identify_derivatives,
 };
 use crate::report::{
-    DerivativePlot, DerivativesPlot, Figure, PNG_SCALE, PlottedSeries, derivatives_figure,
-    processing_figure,
+    DerivativePlot, DerivativesPlot, PlottedSeries, derivatives_figure, processing_figure,
 };
 use crate::section::Dof;
 use crate::study::{Study, derivative_lines, processed_study_text, read_section};
@@ -107,12 +107,8 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
         .zip(&processed.stages)
         .enumerate()
     {
-        let figure = processing_figure(run, stages, run.dof)?;
-        write_figure(
-            &figure,
-            &format!("processing/{}", file_name(&run.run)),
-            &mut out,
-        )?;
+        let stem = format!("processing/{}", file_name(&run.run));
+        figures::write(&stem, &mut out, || processing_figure(run, stages, run.dof))?;
         stage.at(i as u64 + 1, count);
     }
     drop(stage);
@@ -130,12 +126,8 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     };
     if let Some(found) = &derivatives {
         out.write("derivatives.json", json(found)?)?;
-        let figure = derivatives_figure(&plot(
-            &raw,
-            found,
-            args.quasi_steady(&found.dofs)?.as_ref(),
-        )?)?;
-        write_figure(&figure, "derivatives", &mut out)?;
+        let plot = plot(&raw, found, args.quasi_steady(&found.dofs)?.as_ref())?;
+        figures::write("derivatives", &mut out, || derivatives_figure(&plot))?;
         match write_table(&raw, found, &mut out) {
             Ok(()) => {
                 let known = (base.as_ref(), section.as_ref());
@@ -262,11 +254,6 @@ fn write_table(
     )
 }
 
-fn write_figure(figure: &Figure, stem: &str, out: &mut OutputDir) -> Result<()> {
-    out.write(format!("{stem}.svg"), figure.svg())?;
-    out.write(format!("{stem}.png"), figure.png(PNG_SCALE)?)
-}
-
 fn json(value: &impl serde::Serialize) -> Result<String> {
     let mut text =
         serde_json::to_string_pretty(value).map_err(|e| Error::Numerical(e.to_string()))?;
@@ -313,6 +300,10 @@ fn plot(
         derivatives.push(DerivativePlot {
             name: d.name().to_owned(),
             measured,
+            bars: found
+                .of(d)
+                .map(|e| bar(e.v_hat, e.value, e.standard_error))
+                .collect(),
             fitted: Vec::new(),
             reference: theories.iter().filter_map(line).collect(),
         });
@@ -320,8 +311,16 @@ fn plot(
     Ok(DerivativesPlot {
         title: format!("{}: aerodynamic derivatives", raw.section),
         velocity_label: "V̂ = V/(ωB)".to_owned(),
+        bars_label: "95 % interval".to_owned(),
         derivatives,
     })
+}
+
+/// A 95 % interval from many samples.
+fn bar(v_hat: f64, value: f64, standard_error: f64) -> (f64, f64, f64) {
+    const NORMAL_QUANTILE: f64 = 1.96;
+    let half = NORMAL_QUANTILE * standard_error;
+    (v_hat, value - half, value + half)
 }
 
 /// Speeds of one group of test points in words.

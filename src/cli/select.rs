@@ -99,8 +99,7 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     drop(stage);
     let mut out = OutputDir::new(&args.study.directory())?;
     for (stem, figure) in figures(&study, &selection, &metrics)? {
-        out.write(format!("{stem}.svg"), figure.svg())?;
-        out.write(format!("{stem}.png"), figure.png(PNG_SCALE)?)?;
+        super::figures::write(&stem, &mut out, || Ok(figure))?;
     }
     let mut written = out.commit()?;
     let mut text = format!("{}\n{}\n\n", study.name, deck.description());

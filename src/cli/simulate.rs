@@ -1,12 +1,13 @@
 //! `aerodeck simulate`: a released section in steady wind, in this process.
 
 use super::answer::Answer;
+use super::figures;
 use super::output::{OutputDir, list};
 use super::stages;
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, positive};
 
-use crate::report::{PNG_SCALE, PlottedSeries, TimePanel, time_history_figure};
+use crate::report::{PlottedSeries, TimePanel, time_history_figure};
 use crate::response::{Inputs, Outputs, Stepper};
 use crate::section::Dof;
 use crate::trained_model::TrainedModel;
@@ -73,9 +74,9 @@ pub fn run(args: &Args) -> Result<Answer> {
     let mut out = OutputDir::new(directory)?;
     out.write("simulation.csv", csv(&model, speed, &trajectory))?;
     let title = format!("{} at {speed} m/s", model.name);
-    let figure = time_history_figure(&title, &panels(&model, &trajectory), "Time t (s)")?;
-    out.write("simulation.svg", figure.svg())?;
-    out.write("simulation.png", figure.png(PNG_SCALE)?)?;
+    figures::write("simulation", &mut out, || {
+        time_history_figure(&title, &panels(&model, &trajectory), "Time t (s)")
+    })?;
     let written = out.commit()?;
     let text = format!(
         "{title}: {} steps of {step} s\n{}",
@@ -127,6 +128,15 @@ fn simulate(model: &TrainedModel, speed: f64, stop: f64, step: f64) -> Result<Tr
         }));
     }
     Ok(Trajectory { columns, rows })
+}
+
+/// Rows of time (s) and motion of the released section, as `simulation.csv` has them; `run` is length and step, s.
+pub(super) fn simulated(
+    model: &TrainedModel,
+    speed: f64,
+    run: (f64, f64),
+) -> Result<Vec<Vec<f64>>> {
+    simulate(model, speed, run.0, run.1).map(|t| t.rows)
 }
 
 fn csv(model: &TrainedModel, speed: f64, trajectory: &Trajectory) -> String {

@@ -1,12 +1,13 @@
 //! The stages of a study with their files: what `study` runs through and each command does alone.
 
+use super::figures;
 use super::output::OutputDir;
 use super::progress::Progress;
 use crate::error::{Error, Result};
 use crate::flutter::{FlutterCurves, Onset};
 use crate::fmu::package::{Growing, Runtime, package};
 use crate::identification::{self, FitReport};
-use crate::report::{PNG_SCALE, VfVgOptions, vf_vg_figure};
+use crate::report::{VfVgOptions, vf_vg_figure};
 use crate::study::{
     Deck, FlutterStudy, KnownUncertainty, ModelBlock, RecordSet, StageFailure, Study,
     TrainedWithReport, flutter_study, is_of_a_file, slug, state_intervals, train_one,
@@ -229,10 +230,9 @@ pub(crate) fn flutter_figure(
         title: Some(study.name.clone()),
         ..VfVgOptions::default()
     };
-    let figure = vf_vg_figure(&results.curves, &onsets, &options)?;
-    let png = figure.png(PNG_SCALE)?;
-    out.write(format!("{FIGURE}.svg"), figure.svg())?;
-    out.write(format!("{FIGURE}.png"), png)
+    figures::write(FIGURE, out, || {
+        vf_vg_figure(&results.curves, &onsets, &options)
+    })
 }
 
 /// The same figure for all routes, as far as there are colours.
@@ -249,9 +249,7 @@ pub(crate) fn routes_figure(
         title: Some(format!("{}: all routes", study.name)),
         ..VfVgOptions::default()
     };
-    let figure = vf_vg_figure(curves, &onsets, &options)?;
-    out.write("routes.svg", figure.svg())?;
-    out.write("routes.png", figure.png(PNG_SCALE)?)
+    figures::write("routes", out, || vf_vg_figure(curves, &onsets, &options))
 }
 
 /// Packs a model with all runtimes that are there.

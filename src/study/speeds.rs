@@ -34,6 +34,9 @@ pub struct FlutterBlock {
     pub speed_min_m_s: Option<f64>,
     /// Number of wind speeds.
     pub speeds: usize,
+    /// The onset has to lie above this wind speed, m/s: the criterion of a code. It changes no number, the report judges by it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub required_speed_m_s: Option<f64>,
 }
 
 impl Default for FlutterBlock {
@@ -42,12 +45,13 @@ impl Default for FlutterBlock {
             speed_max_m_s: None,
             speed_min_m_s: None,
             speeds: 120,
+            required_speed_m_s: None,
         }
     }
 }
 
 /// Wind speeds of curves and search.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct SpeedRange {
     /// Lowest wind speed of the curves, m/s.
     pub speed_min_m_s: f64,
@@ -79,6 +83,7 @@ impl FlutterBlock {
         for (key, speed) in [
             ("speed_max_m_s", self.speed_max_m_s),
             ("speed_min_m_s", self.speed_min_m_s),
+            ("required_speed_m_s", self.required_speed_m_s),
         ] {
             let Some(speed) = speed else { continue };
             let key = format!("{place}.{key}");

@@ -11,7 +11,7 @@ use super::progress::Progress;
 use crate::comparison::forces::{CompareOptions, ForceMetrics, ScoreSummary, Scoring, Statement};
 use crate::error::Result;
 use crate::identification::DiscreteFit;
-use crate::report::{Figure, PNG_SCALE};
+use crate::report::Figure;
 use crate::section::Dof;
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -141,6 +141,5 @@ fn beside_the_thesis(statements: &[Statement]) -> String {
 
 /// A figure as SVG and PNG.
 fn draw(out: &mut OutputDir, stem: &str, figure: &Figure) -> Result<()> {
-    out.write(format!("{stem}.svg"), figure.svg())?;
-    out.write(format!("{stem}.png"), figure.png(PNG_SCALE)?)
+    crate::cli::figures::write(stem, out, || Ok(figure.clone()))
 }
