@@ -99,6 +99,16 @@ pub struct Rotation {
 }
 
 /// An elastically suspended deck section in smooth flow.
+///
+/// ```
+/// use aerodeck::prelude::*;
+///
+/// let section = SectionModel { width_m: 0.6, ..SectionModel::table_4_1() };
+/// let structure = section.structure()?;
+/// assert_eq!(structure.mass[(0, 0)], 15.0); // kg/m
+/// assert!(SectionModel { width_m: -1.0, ..section }.structure().is_err());
+/// # Ok::<(), Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SectionModel {

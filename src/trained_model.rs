@@ -151,7 +151,14 @@ pub struct Experiment {
     pub onset_search_limit_m_s: f64,
 }
 
-/// A trained model with the section it is coupled with.
+/// A trained model with the section it is coupled with, as `model.json` holds it.
+///
+/// ```
+/// use aerodeck::prelude::*;
+///
+/// let refused = TrainedModel::from_json("{ \"schema_version\": 99 }").unwrap_err();
+/// assert_eq!(refused.to_string(), "schema_version: expected 1 to 2, found 99");
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TrainedModel {

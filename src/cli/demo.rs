@@ -33,6 +33,8 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     out.write(STUDY_FILE, demo_study_text())?;
     let instead = "run yours with `aerodeck study`, choose another --out";
     out.refuse_edited(STUDY_FILE, args.force, instead)?;
+    // what differs is to be replaced from here on
+    out.replace(STUDY_FILE);
     let ran = Ran {
         study: &study,
         text: demo_study_text(),

@@ -177,7 +177,12 @@ pub(super) fn write_response(
     let mut panels: Vec<TimePanel> = Vec::new();
     for factor in AROUND_ONSET {
         let speed = factor * speed_m_s;
-        let label = format!("{speed:.1} m/s ({:+.0} %)", 100.0 * (factor - 1.0));
+        let percent = (100.0 * (factor - 1.0_f64)).round();
+        let label = if percent == 0.0 {
+            format!("{speed:.1} m/s, the onset")
+        } else {
+            format!("{speed:.1} m/s ({percent:+} %)")
+        };
         let rows = simulated(model, speed, (PERIODS.0 / frequency_hz, step))?;
         for (i, dof) in model.model.dofs().iter().enumerate() {
             let (unit, scale) = match dof {

@@ -7,6 +7,7 @@ mod buffeting;
 mod campaign;
 mod common;
 mod compare;
+mod completions;
 mod coverage;
 mod demo;
 mod derivatives;
@@ -18,6 +19,7 @@ mod headline;
 mod interrupt;
 mod lock;
 mod monte_carlo;
+mod new;
 mod output;
 mod process;
 mod progress;
@@ -67,6 +69,7 @@ struct Cli {
 #[derive(Subcommand)]
 enum Command {
     Demo(demo::Args),
+    New(new::Args),
     Study(study::Args),
     Report(report::Args),
     Tunnel(tunnel::Args),
@@ -89,14 +92,19 @@ enum Command {
     Coverage(coverage::Args),
     #[command(subcommand)]
     Compare(compare::Compare),
+    Completions(completions::Args),
 }
 
 /// Runs the command line of this process.
 pub fn main() -> ExitCode {
     apology::install();
     interrupt::install();
+    let _temporary = interrupt::own_temporary_folder();
     let code = apology::guarded(|| {
-        let cli = Cli::parse();
+        let cli = match Cli::try_parse() {
+            Ok(cli) => cli,
+            Err(error) => return usage(&error),
+        };
         if cli.no_figures {
             figures::leave_out();
         }
@@ -110,6 +118,18 @@ pub fn main() -> ExitCode {
         }
     });
     ExitCode::from(code)
+}
+
+/// Help, the version, or a wrong command line, which is said as JSON where JSON was asked for.
+fn usage(error: &clap::Error) -> u8 {
+    if error.use_stderr() && std::env::args_os().any(|a| a == "--json") {
+        let text = error.render().to_string();
+        let value = serde_json::json!({ "error": text.trim().trim_start_matches("error: ") });
+        let _ = say(&format!("{value}\n"));
+    }
+    // standard output may be closed
+    let _ = error.print();
+    u8::try_from(error.exit_code()).unwrap_or(WRONG_INPUT)
 }
 
 fn print(answer: &Answer, json: bool) -> u8 {
@@ -145,6 +165,7 @@ fn complain(error: &Error) {
 fn run(command: &Command, progress: &progress::Progress) -> Result<Answer> {
     match command {
         Command::Demo(args) => demo::run(args, progress),
+        Command::New(args) => new::run(args),
         Command::Study(args) => study::run(args, progress),
         Command::Report(args) => report::run(args),
         Command::Tunnel(args) => tunnel::run(args, progress),
@@ -163,6 +184,7 @@ fn run(command: &Command, progress: &progress::Progress) -> Result<Answer> {
         Command::Select(args) => select::run(args, progress),
         Command::Coverage(args) => coverage::run(args, progress),
         Command::Compare(command) => compare::run(command, progress),
+        Command::Completions(args) => completions::run(args),
     }
 }
 

@@ -19,21 +19,19 @@ pub(crate) struct Ran<'a> {
     pub(crate) study: &'a Study,
     /// Text of the file.
     pub(crate) text: &'a str,
-    /// The file, unless it is one of the results.
+    /// The file that it stands in; none when it was read otherwise or changed.
     pub(crate) file: Option<&'a Path>,
 }
 
 /// Leaves the study in the folder of results, with the files that it names; the name under which it stands there.
 pub(crate) fn leave(ran: &Ran<'_>, out: &mut OutputDir) -> Result<String> {
-    let Some(file) = ran.file else {
-        return Ok(STUDY.to_owned());
-    };
-    let name = file.file_name().unwrap_or_default();
     let same = |a: &Path, b: &Path| match (a.canonicalize(), b.canonicalize()) {
         (Ok(a), Ok(b)) => a == b,
         _ => false,
     };
-    if same(file, &out.target(name)) {
+    if let Some(name) = ran.file.and_then(Path::file_name)
+        && ran.file.is_some_and(|file| same(file, &out.target(name)))
+    {
         return Ok(name.to_string_lossy().into_owned());
     }
     let text = self_contained(ran, out)?;

@@ -120,6 +120,14 @@ pub fn vf_vg_figure(
             },
         ));
     }
+    if close.series.iter().any(|s| s.name == BAR) {
+        let ink = Ink::Line {
+            colour: GREY,
+            dash: None,
+            width: 3.5,
+        };
+        kinds.push(Entry::new("interval of the onset", ink));
+    }
     if untested {
         kinds.push(Entry::new(
             "pale: K = ωB/V outside the tested range",
@@ -149,6 +157,11 @@ const PLACE: &str = "V-f and V-g diagram";
 const DAMPING_WINDOW_PERCENT: (f64, f64) = (-10.0, 20.0);
 /// A growth of half a per cent below the onset is a finding, and a hair's breadth in the panel above.
 const NEAR_ZERO_PERCENT: (f64, f64) = (-1.0, 1.0);
+
+/// Name of the bars of intervals, and where they are drawn: below the zero line, one under the other.
+const BAR: &str = "interval of the onset";
+const FIRST_BAR_PERCENT: f64 = 0.25;
+const BAR_STEP_PERCENT: f64 = 0.15;
 
 /// The stretches of a line in the window around zero, with the points on either side that lead out of it.
 fn near_zero(points: &[(f64, f64)]) -> Vec<Vec<(f64, f64)>> {
@@ -239,16 +252,21 @@ fn mark_onset(
         }
         | OnsetInterval::Spread {
             low_m_s, high_m_s, ..
-        } => vec![(low_m_s, 0.0), (high_m_s, 0.0)],
+        } => {
+            let bars = close.series.iter().filter(|s| s.name == BAR).count();
+            let level =
+                -(FIRST_BAR_PERCENT + BAR_STEP_PERCENT * bars as f64).min(-NEAR_ZERO_PERCENT.0);
+            vec![(low_m_s, level), (high_m_s, level)]
+        }
         OnsetInterval::Undetermined { .. } | OnsetInterval::None { .. } => vec![],
     };
     if !bar.is_empty() {
         let ink = Ink::Line {
             colour,
             dash: None,
-            width: 4.0,
+            width: 3.5,
         };
-        close.add(format!("interval of {}", onset.at.model), bar, ink);
+        close.add(BAR, bar, ink);
     }
     let marker = onset_ink(onset, colour);
     close.add("onset", vec![(onset.at.speed_m_s, 0.0)], marker);
@@ -258,16 +276,17 @@ fn mark_onset(
     frequency.add(&name, vec![at_frequency], onset_ink(onset, colour));
     damping.add(&name, vec![at_zero], onset_ink(onset, colour));
     let note = |panel: &mut Panel, at, text| panel.notes.push(Note { at, text, colour });
-    note(
-        frequency,
-        at_frequency,
-        format!("{} Hz", significant(onset.at.frequency_hz)),
-    );
-    note(
-        damping,
-        at_zero,
-        format!("{} m/s", significant(onset.at.speed_m_s)),
-    );
+    let hertz = format!("{} Hz", significant(onset.at.frequency_hz));
+    let speed = format!("{} m/s", significant(onset.at.speed_m_s));
+    // the same number of the same model by another route says nothing new
+    if !damping
+        .notes
+        .iter()
+        .any(|n| n.text == speed && n.colour == colour)
+    {
+        note(frequency, at_frequency, hertz);
+        note(damping, at_zero, speed);
+    }
     if !onset.spurious_speeds_m_s.is_empty() {
         let crosses = onset.spurious_speeds_m_s.iter().map(|v| (*v, 0.0));
         damping.add(

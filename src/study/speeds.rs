@@ -129,8 +129,10 @@ impl SpeedRange {
             ""
         };
         format!(
-            "{:.3} to {} m/s in {} steps{why}",
-            self.speed_min_m_s, self.speed_max_m_s, self.speeds
+            "{} to {} m/s in {} steps{why}",
+            (1e3 * self.speed_min_m_s).round() / 1e3,
+            self.speed_max_m_s,
+            self.speeds
         )
     }
 

@@ -68,7 +68,19 @@ pub(crate) struct PointProblem {
     pub found: String,
 }
 
-/// Measured derivatives of one deck: 18 (or the eight of heave and rotation), each at its own points in test order.
+/// Measured derivatives of one deck.
+///
+/// ```
+/// use aerodeck::aerodynamics::derivatives::Derivative;
+/// use aerodeck::prelude::*;
+///
+/// let table = named_table("LN21-5200", "".as_ref())?;
+/// let first = table.points(Derivative::H1)[0];
+/// assert!(first.v_hat > 0.0 && first.value < 0.0); // heave is damped
+/// # Ok::<(), Error>(())
+/// ```
+///
+/// There are 18 (or the eight of heave and rotation), each at its own points in test order.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DerivativeTable {
     /// Name of the deck.

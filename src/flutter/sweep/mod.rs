@@ -66,6 +66,20 @@ pub struct SweptOnset {
 }
 
 /// Finds onsets of many sections with one kind of force model.
+///
+/// ```
+/// use aerodeck::flutter::{LinearForces, OnsetSweep, SweepOutcome};
+/// use aerodeck::prelude::*;
+///
+/// let nominal = SectionModel::iabse_1_1a();
+/// let forces = LinearForces::of_rational(&RationalModel::jones_flat_plate(), None);
+/// let sweep = OnsetSweep::new(forces, &nominal.structure()?, 160.0)?;
+/// let SweepOutcome::Onset(onset) = sweep.onset(&nominal, sweep.forces().coefficients())? else {
+///     panic!("the plate flutters")
+/// };
+/// assert!((onset.speed_m_s - 76.679).abs() < 0.001);
+/// # Ok::<(), Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct OnsetSweep {
     forces: LinearForces,
