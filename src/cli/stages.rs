@@ -52,6 +52,11 @@ pub fn tunnel(
         write_record(&record, &mut BufWriter::new(file)).map_err(|e| e.in_file(&path))?;
         paths.push((path, record));
     }
+    // the header of a record names it; a line alone is the whole notice
+    let licence = deck.licence();
+    if licence.contains('\n') {
+        out.write(Path::new(RECORDS).join("LICENSE"), licence)?;
+    }
     drop(stage);
     Ok(paths)
 }
