@@ -253,7 +253,11 @@ fn derivatives_of_two_and_three_degrees_of_freedom() {
             .map(|d| DerivativePlot {
                 name: d.name().to_owned(),
                 measured: vec![measured(d)],
-                bars: vec![(10.0, -1.0, 1.0)],
+                bars: if lines {
+                    vec![(10.0, -1.0, 1.0)]
+                } else {
+                    Vec::new()
+                },
                 fitted: if lines {
                     vec![line("Jones, rational function", &jones, d, 25.0)]
                 } else {

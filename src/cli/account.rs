@@ -9,7 +9,12 @@ use crate::study::{
 use std::fmt::Write as _;
 
 /// The whole chain.
-pub fn chain(study: &Study, deck: &Deck, summary: &Summary, files: &str) -> String {
+pub fn chain(
+    study: &Study,
+    deck: &Deck,
+    summary: &Summary,
+    (files, verbose): (&str, bool),
+) -> String {
     let mut text = format!("{}: {}\n\n", study.name, summary.answer.headline);
     let _ = writeln!(
         text,
@@ -34,11 +39,12 @@ pub fn chain(study: &Study, deck: &Deck, summary: &Summary, files: &str) -> Stri
     let _ = writeln!(text, "Speeds    {}", study.speeds().explain());
     text.push('\n');
     for fit_summary in &summary.fits {
-        text.push_str(&fit(
+        let all = fit(
             &fit_summary.model,
             &fit_summary.report,
             &fit_summary.uncertainty,
-        ));
+        );
+        text.push_str(&if verbose { all } else { without_remarks(&all) });
     }
     text.push('\n');
     text.push_str(&onsets(
@@ -57,6 +63,24 @@ pub fn chain(study: &Study, deck: &Deck, summary: &Summary, files: &str) -> Stri
     let _ = writeln!(text, "\nFiles");
     text.push_str(files);
     text
+}
+
+/// The account of a fit with the number of its remarks in their place.
+fn without_remarks(fit: &str) -> String {
+    let remark = |line: &&str| {
+        let text = line.trim_start();
+        text.starts_with("held: ") || text.starts_with("note: ")
+    };
+    let count = fit.lines().filter(remark).count();
+    let mut short: String = fit
+        .lines()
+        .filter(|line| !remark(line))
+        .flat_map(|line| [line, "\n"])
+        .collect();
+    if count > 0 {
+        let _ = writeln!(short, "          {count} remark(s) more with --verbose");
+    }
+    short
 }
 
 /// Columns of a terminal that nobody has widened.

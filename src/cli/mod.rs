@@ -17,6 +17,7 @@ mod flutter;
 mod fmu;
 mod headline;
 mod interrupt;
+mod laboratory;
 mod lock;
 mod monte_carlo;
 mod new;
@@ -32,6 +33,7 @@ mod simulate;
 mod stages;
 mod study;
 mod thesis;
+mod thesis_page;
 mod train;
 mod tunnel;
 mod validate;
@@ -59,6 +61,9 @@ struct Cli {
     /// No progress bars.
     #[arg(long, short, global = true)]
     quiet: bool,
+    /// All remarks on fits in the account of `study` and `demo`; the report has them in any case.
+    #[arg(long, short, global = true)]
+    verbose: bool,
     /// Neither draw nor write figures.
     #[arg(long, global = true)]
     no_figures: bool,
@@ -108,7 +113,7 @@ pub fn main() -> ExitCode {
         if cli.no_figures {
             figures::leave_out();
         }
-        let progress = progress::Progress::new(!cli.quiet && !cli.json);
+        let progress = progress::Progress::new(!cli.quiet && !cli.json, cli.verbose);
         let result = run(&cli.command, &progress);
         // a signal that is being obeyed ends the program with a code of its own
         let _busy = interrupt::uninterrupted();

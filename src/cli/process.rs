@@ -2,6 +2,7 @@
 
 use super::answer::Answer;
 use super::figures;
+use super::laboratory::laboratory_page;
 use super::output::{OutputDir, list};
 use super::progress::Progress;
 use super::stages::RECORDS;
@@ -22,6 +23,7 @@ use crate::identification::derivatives::{
 };
 use crate::report::{
     DerivativePlot, DerivativesPlot, PlottedSeries, derivatives_figure, processing_figure,
+    sections_page,
 };
 use crate::section::Dof;
 use crate::study::{Study, derivative_lines, processed_study_text, read_section};
@@ -145,6 +147,9 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
             Err(e) => return Err(e),
         }
     }
+    let known = (&notes[..], &out);
+    let page = laboratory_page(&raw, &processed.report, derivatives.as_ref(), known);
+    out.write(super::report::REPORT, sections_page(&page)?)?;
     let mut text = account(&raw, &processed, derivatives.as_ref());
     for note in &notes {
         let _ = writeln!(text, "  note: {note}");
@@ -192,7 +197,7 @@ impl Args {
 }
 
 /// A name that can be part of a path everywhere.
-fn file_name(name: &str) -> String {
+pub(super) fn file_name(name: &str) -> String {
     let plain = |c: char| c.is_alphanumeric() || matches!(c, '-' | '_' | '.');
     let text: String = name
         .chars()
@@ -374,7 +379,7 @@ fn account(
     text
 }
 
-fn line(run: &RunReport) -> String {
+pub(super) fn line(run: &RunReport) -> String {
     let at = crate::wind_tunnel::processing::index(run.dof);
     let replaced: usize = run.replaced.iter().map(|r| r.samples).sum();
     let unit = if run.dof == Dof::Torsion {

@@ -209,7 +209,12 @@ pub(crate) fn run_chain(
     out.write(REPORT, page)?;
     let written = out.commit()?;
     let answer = Answer::new(
-        account::chain(study, &deck, &summary, &shown(&written)),
+        account::chain(
+            study,
+            &deck,
+            &summary,
+            (&shown(&written), progress.verbose()),
+        ),
         &summary,
     )?;
     Ok(answer.with_verdict(summary.failed.is_empty()))

@@ -19,6 +19,7 @@ mod panel;
 mod processing_figures;
 mod reliability_figure;
 mod response_figures;
+mod sections_page;
 mod series;
 mod sheet;
 
@@ -38,6 +39,7 @@ pub(crate) use metrics_figure::{MetricPanel, metrics_figure};
 pub(crate) use processing_figures::processing_figure;
 pub(crate) use reliability_figure::onset_distribution_figure;
 pub use response_figures::{TimePanel, time_history_figure};
+pub(crate) use sections_page::{PageSection, SectionsPage, sections_page};
 pub use series::PlottedSeries;
 pub(crate) use study_page::{PageCurve, PageFigure, PageFit, StudyPage, study_page};
 pub(crate) use transfer_figure::{TransferCurve, TransferPlot, transfer_figure};

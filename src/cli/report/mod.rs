@@ -1,5 +1,10 @@
 //! `aerodeck report`: one self-contained page from a folder of results; `study` and `demo` end with it.
 
+mod curves;
+mod view;
+
+pub(crate) use view::AnswerView;
+
 use super::answer::Answer;
 use super::evidence::{CURVES, DERIVATIVES, RESPONSE, ROOTS};
 use super::output::{OutputDir, list};
@@ -8,11 +13,11 @@ use crate::error::{Error, Result};
 use crate::flutter::OnsetInterval;
 use crate::fmu::resources::Resources;
 use crate::fmu::standard::Causality;
-use crate::report::{PageCurve, PageFigure, PageFit, StudyPage, study_page};
+use crate::report::{PageFigure, PageFit, StudyPage, study_page};
 use crate::study::Study;
-use serde::Deserialize;
-use std::collections::BTreeMap;
+use curves::curves_of;
 use std::path::{Path, PathBuf};
+use view::{EntryView, FitView, OnsetView, SummaryView};
 
 /// The page.
 pub(super) const REPORT: &str = "report.html";
@@ -36,76 +41,6 @@ pub fn run(args: &Args) -> Result<Answer> {
     out.write(REPORT, page)?;
     let written = out.commit()?;
     Answer::new(list(&written), &serde_json::json!({ "files": written }))
-}
-
-/// What is read of `summary.json`.
-#[derive(Deserialize)]
-struct SummaryView {
-    generator: String,
-    study: String,
-    study_file: String,
-    deck: String,
-    licence: String,
-    answer: AnswerView,
-    limits: Vec<String>,
-    comparisons: Vec<String>,
-    onsets: Vec<OnsetView>,
-    undetermined: Vec<OnsetView>,
-    fits: Vec<FitView>,
-    speeds: crate::study::SpeedRange,
-}
-
-/// The answer of a study in words, as `summary.json` holds it.
-#[derive(Debug, Clone, PartialEq, serde::Serialize, Deserialize)]
-pub(crate) struct AnswerView {
-    /// The model the answer is of.
-    pub(crate) model: String,
-    /// Speed, interval, tested range, in one line.
-    pub(crate) headline: String,
-    /// Onset, where the data determine one, m/s.
-    pub(crate) speed_m_s: Option<f64>,
-    /// What the study requires, m/s.
-    pub(crate) required_speed_m_s: Option<f64>,
-    /// Whether the lower end of the interval (the onset itself where there is none) lies above it.
-    pub(crate) required_speed_met: Option<bool>,
-}
-
-#[derive(Deserialize)]
-struct OnsetView {
-    model: String,
-    method: crate::flutter::OnsetMethod,
-    speed_m_s: f64,
-    frequency_hz: f64,
-    reduced_velocity: f64,
-    mode_ratio: f64,
-    phase_deg: f64,
-    branch: String,
-    in_tested_range: Option<bool>,
-    interval: OnsetInterval,
-}
-
-#[derive(Deserialize)]
-struct FitView {
-    model: String,
-    method: String,
-    condition: f64,
-    tested_range: crate::units::ReducedFrequencyRange,
-    entries: Vec<EntryView>,
-    constraints: Option<ConstraintView>,
-    notes: Vec<String>,
-}
-
-#[derive(Deserialize)]
-struct EntryView {
-    force: crate::section::Dof,
-    motion: crate::section::Dof,
-    relative_rms: Option<f64>,
-    poles: Vec<f64>,
-}
-
-#[derive(Deserialize)]
-struct ConstraintView {
-    sentences: Vec<String>,
 }
 
 /// The page of the results in `folder`; the study stands there or else in `study_folder`.
@@ -399,50 +334,4 @@ fn variables(model: &[u8]) -> Result<Vec<[String; 4]>> {
         ]
     };
     Ok(resources.table.variables().iter().map(row).collect())
-}
-
-/// Wind speeds and curves of `curves.csv`.
-fn curves_of(text: &str) -> Result<(Vec<f64>, Vec<PageCurve>)> {
-    let mut reader = csv::ReaderBuilder::new()
-        .comment(Some(b'#'))
-        .from_reader(text.as_bytes());
-    let broken =
-        |found: String| Error::input(CURVES, "curves as `aerodeck study` writes them", found);
-    let mut points: Vec<(String, String, f64, f64, f64)> = Vec::new();
-    for row in reader.records() {
-        let row = row.map_err(|e| broken(e.to_string()))?;
-        let number = |i: usize| {
-            let field = row.get(i).unwrap_or("");
-            field
-                .parse::<f64>()
-                .map_err(|_| broken(format!("`{field}`")))
-        };
-        let name = |i: usize| row.get(i).unwrap_or("").to_owned();
-        points.push((name(0), name(1), number(2)?, number(3)?, number(4)?));
-    }
-    let mut speeds: Vec<f64> = points.iter().map(|p| p.2).collect();
-    speeds.sort_by(f64::total_cmp);
-    speeds.dedup();
-    let (mut models, mut branches) = (Vec::<String>::new(), Vec::<String>::new());
-    let place = |names: &mut Vec<String>, name: &String| {
-        names.iter().position(|n| n == name).unwrap_or_else(|| {
-            names.push(name.clone());
-            names.len() - 1
-        })
-    };
-    let mut curves: BTreeMap<(usize, usize), PageCurve> = BTreeMap::new();
-    for (model, branch, speed, frequency, damping) in &points {
-        let at = (place(&mut models, model), place(&mut branches, branch));
-        let curve = curves.entry(at).or_insert_with(|| PageCurve {
-            model: at.0,
-            branch: at.1,
-            label: format!("{model}, {branch}"),
-            frequency: vec![None; speeds.len()],
-            damping: vec![None; speeds.len()],
-        });
-        let i = speeds.partition_point(|v| v < speed);
-        curve.frequency[i] = Some(*frequency);
-        curve.damping[i] = Some(100.0 * damping);
-    }
-    Ok((speeds, curves.into_values().collect()))
 }
