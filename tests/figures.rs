@@ -293,6 +293,7 @@ fn derivatives_of_two_and_three_degrees_of_freedom() {
     broken.derivatives[3].measured.clear();
     broken.derivatives[3].fitted.clear();
     broken.derivatives[3].reference.clear();
+    broken.derivatives[3].bars.clear();
     assert!(derivatives_figure(&broken).is_err());
     broken.derivatives.clear();
     assert!(derivatives_figure(&broken).is_err());

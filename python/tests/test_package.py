@@ -269,8 +269,8 @@ def test_stubs_are_those_of_the_module():
 
 def test_readme_runs(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    text = (ROOT / "python/README.md").read_text(encoding="utf-8")
+    text = "".join((ROOT / page).read_text(encoding="utf-8") for page in ("python/README.md", "docs/python.md"))
     blocks = re.findall(r"```python\n(.*?)```", text, re.S)
-    assert len(blocks) >= 4
+    assert len(blocks) >= 5
     for block in blocks:
         exec(compile(block, "README.md", "exec"), {})
