@@ -56,6 +56,10 @@ impl Dof {
             Dof::Torsion => "θ",
         }
     }
+    /// Names of several in words: `vertical, torsion`.
+    pub(crate) fn names(dofs: &[Dof]) -> String {
+        dofs.iter().map(|d| d.name()).collect::<Vec<_>>().join(", ")
+    }
     /// Name of the motion in words.
     pub(crate) fn name(self) -> &'static str {
         match self {

@@ -235,8 +235,11 @@ impl TrainedModel {
         if self.model.dofs() != self.section.dofs() {
             return Err(Error::input(
                 "model.dofs",
-                format!("the section's degrees of freedom {:?}", self.section.dofs()),
-                format!("{:?}", self.model.dofs()),
+                format!(
+                    "the section's degrees of freedom {}",
+                    Dof::names(&self.section.dofs())
+                ),
+                Dof::names(self.model.dofs()),
             ));
         }
         positive("tested_range.min", self.tested_range.min.full_width())?;

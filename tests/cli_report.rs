@@ -29,6 +29,9 @@ fn the_report_of_the_demo_stands_alone() {
     for line in said.lines().filter(|l| !l.starts_with("  wrote")) {
         assert!(line.chars().count() <= COLUMNS, "{line}");
     }
+    // the header of every record names it
+    let licence = fs::read_to_string(at.join("d/records/LICENSE")).unwrap();
+    assert!(licence.contains("Permission is hereby granted"));
     let page = fs::read_to_string(at.join("d/report.html")).unwrap();
     for outside in ["src=\"", "href=\"", "@import"] {
         assert!(!page.contains(outside), "{outside} in the report");

@@ -40,7 +40,7 @@ def section_html(section):
 def derivatives_html(table):
     low, high = table.tested_range
     rows = [
-        ("width B", f"{table.width_m} m"),
+        ("width B", f"{table.width_m:.4f} m"),
         ("derivatives", ", ".join(table.to_numpy())),
         ("tested K = ωB/V", f"{low:.3f} to {high:.3f}"),
         ("source", table.source),

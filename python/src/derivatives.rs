@@ -202,7 +202,7 @@ impl Derivatives {
 
     fn __repr__(&self) -> String {
         format!(
-            "Derivatives({}, B {} m, {} derivatives)",
+            "Derivatives({}, B {:.4} m, {} derivatives)",
             self.0.name,
             self.0.width_m,
             self.0.derivatives().count()

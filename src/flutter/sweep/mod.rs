@@ -15,7 +15,7 @@ mod setup;
 pub use basis::LinearForces;
 
 use crate::error::{Error, Result, positive};
-use crate::section::{SectionModel, Structure};
+use crate::section::{Dof, SectionModel, Structure};
 use crate::units::ReducedFrequency;
 use crossing::{Crossing, refine};
 use nalgebra::Complex;
@@ -100,8 +100,11 @@ impl OnsetSweep {
         if !matches!(forces.dofs.len(), 2 | 3) || forces.dofs != nominal.dofs {
             return Err(Error::input(
                 "onset sweep",
-                format!("two or three degrees of freedom, {:?}", nominal.dofs),
-                format!("{:?}", forces.dofs),
+                format!(
+                    "two or three degrees of freedom, {}",
+                    Dof::names(&nominal.dofs)
+                ),
+                Dof::names(&forces.dofs),
             ));
         }
         let slowest = (0..nominal.dofs.len())
