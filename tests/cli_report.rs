@@ -230,6 +230,28 @@ fn shells_complete_commands() {
 }
 
 #[test]
+fn any_table_of_results_can_be_drawn() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    fs::write(
+        at.join("a.csv"),
+        "# from a test\ntime_s,heave_m,of\n0,1,x\n1,2,x\n0,3,y\n1,4,y\n",
+    )
+    .unwrap();
+    succeeds(at, &["plot", "a.csv"]);
+    let svg = fs::read_to_string(at.join("a.svg")).unwrap();
+    for word in ["heave (m)", "time (s)", ">x<", ">y<"] {
+        assert!(svg.contains(word), "{word}");
+    }
+    assert!(at.join("a.png").is_file());
+    refused(
+        at,
+        &["plot", "a.csv", "--y", "sway_m"],
+        &["sway_m", "heave_m"],
+    );
+}
+
+#[test]
 fn a_simulation_says_whether_the_motion_grows() {
     let folder = TempDir::new().unwrap();
     let at = folder.path();

@@ -22,6 +22,7 @@ mod lock;
 mod monte_carlo;
 mod new;
 mod output;
+mod plot;
 mod process;
 mod progress;
 mod quasi_steady;
@@ -77,6 +78,7 @@ enum Command {
     New(new::Args),
     Study(study::Args),
     Report(report::Args),
+    Plot(plot::Args),
     Tunnel(tunnel::Args),
     #[command(subcommand)]
     Campaign(campaign::Campaign),
@@ -173,6 +175,7 @@ fn run(command: &Command, progress: &progress::Progress) -> Result<Answer> {
         Command::New(args) => new::run(args),
         Command::Study(args) => study::run(args, progress),
         Command::Report(args) => report::run(args),
+        Command::Plot(args) => plot::run(args),
         Command::Tunnel(args) => tunnel::run(args, progress),
         Command::Campaign(command) => campaign::run(command, progress),
         Command::Process(args) => process::run(args, progress),
