@@ -128,7 +128,7 @@ impl Unit {
         std::fs::write(folder.join("model.json"), &json).expect("a file");
         let file = folder.join("runtime");
         std::fs::write(&file, Runtime::embedded().expect("a runtime").bytes).expect("a file");
-        let resources = Resources::from_bytes(&json, None).expect("resources");
+        let resources = Resources::from_bytes(&json, OptionFiles::default()).expect("resources");
         let names = if forces {
             ["heave", "lift", "rotation", "moment"]
         } else {

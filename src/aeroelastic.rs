@@ -24,6 +24,17 @@ use crate::state_space::{Continuous, Discrete, StateSpace, c2d, first_order};
 use nalgebra::{Complex, DMatrix, DVector};
 
 /// An elastically suspended section with a realised aerodynamic model.
+///
+/// ```
+/// use aerodeck::prelude::*;
+///
+/// let structure = SectionModel::iabse_1_1a().structure()?;
+/// let plate = RationalModel::jones_flat_plate();
+/// let section = CoupledSection::with_model(&structure, &plate)?;
+/// // four states of the motion, two filters of each of the two motions
+/// assert_eq!(section.at(45.0)?.eigenvalues()?.len(), 8);
+/// # Ok::<(), Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct CoupledSection {
     structure: Structure,

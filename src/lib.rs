@@ -4,6 +4,27 @@
 //! structure is `(M, R, K)`. Their coupling at a wind speed is one linear system; flutter, response and the FMU only
 //! ever see that system. So: data → identification → model → coupling → {flutter, response, FMU}.
 //!
+//! # From a deck to its onset
+//!
+//! ```
+//! use aerodeck::prelude::*;
+//!
+//! # fn main() -> Result<()> {
+//! let table = named_table("LN21-5200", "".as_ref())?; // or read_table("workbook.xlsx")
+//! let (model, report) = fit_table(&table.samples(&Dof::TWO), &Dof::TWO, &FrequencyFit::default())?;
+//!
+//! let structure = SectionModel::table_4_1().structure()?;
+//! let section = CoupledSection::with_model(&structure, &model)?;
+//! let search = OnsetSearch { speed_max_m_s: 60.0, ..OnsetSearch::default() };
+//! let found = find_onset("LN21-5200", &section, &search, Some(report.tested_range))?;
+//!
+//! let onset = found.onset().expect("this deck flutters");
+//! assert!((onset.at.speed_m_s - 36.87).abs() < 0.01);
+//! assert!(onset.headline().ends_with("inside the tested range"));
+//! # Ok(())
+//! # }
+//! ```
+//!
 //! # Conventions
 //!
 //! | quantity | symbol | convention | unit |

@@ -126,7 +126,7 @@ impl Inputs {
             Err(Error::input(
                 "inputs",
                 format!("{dofs} finite forces and rates"),
-                format!("{self:?}"),
+                format!("forces {:?}, rates {:?}", self.force, self.force_rate),
             ))
         }
     }
@@ -171,7 +171,24 @@ impl Outputs {
     }
 }
 
-/// Steps a coupled section. A step is a pure function of state, inputs and step size: the cache only saves time.
+/// Steps a coupled section.
+///
+/// ```
+/// use aerodeck::prelude::*;
+/// use aerodeck::response::{Inputs, Stepper};
+///
+/// let structure = SectionModel::table_4_1().structure()?;
+/// let section = CoupledSection::with_model(&structure, &RationalModel::jones_flat_plate())?;
+/// let mut stepper = Stepper::new(section);
+/// let mut state = stepper.released(&[0.01, 0.0], &[0.0, 0.0])?; // m, rad
+/// for _ in 0..1000 {
+///     stepper.advance(&mut state, &Inputs::steady(20.0, 2), 0.01)?;
+/// }
+/// assert!(state.values[0].abs() < 0.001); // far below the onset the motion dies down
+/// # Ok::<(), Error>(())
+/// ```
+///
+/// A step is a pure function of state, inputs and step size: the cache only saves time.
 #[derive(Debug, Clone)]
 pub struct Stepper {
     section: CoupledSection,

@@ -56,6 +56,10 @@ impl Dof {
             Dof::Torsion => "θ",
         }
     }
+    /// Names of several in words: `vertical, torsion`.
+    pub(crate) fn names(dofs: &[Dof]) -> String {
+        dofs.iter().map(|d| d.name()).collect::<Vec<_>>().join(", ")
+    }
     /// Name of the motion in words.
     pub(crate) fn name(self) -> &'static str {
         match self {
@@ -99,6 +103,16 @@ pub struct Rotation {
 }
 
 /// An elastically suspended deck section in smooth flow.
+///
+/// ```
+/// use aerodeck::prelude::*;
+///
+/// let section = SectionModel { width_m: 0.6, ..SectionModel::table_4_1() };
+/// let structure = section.structure()?;
+/// assert_eq!(structure.mass[(0, 0)], 15.0); // kg/m
+/// assert!(SectionModel { width_m: -1.0, ..section }.structure().is_err());
+/// # Ok::<(), Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SectionModel {

@@ -7,8 +7,8 @@ use crate::files::lab::ChannelSet;
 use crate::fmu::force_options::ForceOptions;
 use crate::fmu::importer::Fmu;
 use crate::fmu::instance::Instance;
-use crate::fmu::package::{Export, Growing, Runtime, package};
-use crate::fmu::resources::Resources;
+use crate::fmu::package::{Export, FmiVersion, Growing, Runtime, package};
+use crate::fmu::resources::{OptionFiles, Resources};
 use crate::fmu::variables::{Causality, Listing, Value};
 use crate::study::{Study, demo_study_text};
 use crate::trained_model::TrainedModel;
@@ -123,7 +123,8 @@ fn run(resources: Resources) -> bool {
 #[test]
 fn mutated_models() {
     for kind in ["continuous_laguerre", "rational", "discrete_laguerre"] {
-        let mut read = |bytes: &[u8]| Resources::from_bytes(bytes, None).is_ok_and(run);
+        let mut read =
+            |bytes: &[u8]| Resources::from_bytes(bytes, OptionFiles::default()).is_ok_and(run);
         all_survive(kind, &model(kind), 60, &mut read);
     }
 }
@@ -133,7 +134,23 @@ fn mutated_options_of_forces() {
     let rational = model("rational");
     let options = ForceOptions::single(0.45).to_json().unwrap();
     all_survive("force.json", options.as_bytes(), 100, |bytes| {
-        Resources::from_bytes(&rational, Some(bytes)).is_ok_and(run)
+        Resources::from_bytes(&rational, OptionFiles::of_force(Some(bytes))).is_ok_and(run)
+    });
+}
+
+#[test]
+fn mutated_gust_forces() {
+    let rational = model("rational");
+    let gusts = r#"{"dofs": ["vertical", "torsion"], "coefficients": [[0.3, -5.0], [0.05, 1.2]], "admittance": "sears", "source": "test"}"#;
+    fn with(gusts: &[u8]) -> OptionFiles<'_> {
+        OptionFiles {
+            force: None,
+            gusts: Some(gusts),
+        }
+    }
+    assert!(Resources::from_bytes(&rational, with(gusts.as_bytes())).is_ok_and(run));
+    all_survive("gusts.json", gusts.as_bytes(), 100, |bytes| {
+        Resources::from_bytes(&rational, with(bytes)).is_ok_and(run)
     });
 }
 
@@ -145,7 +162,7 @@ fn mutated_states() {
         let options = force.map(|f| f.to_json().unwrap());
         let resources = || {
             let options = options.as_deref().map(str::as_bytes);
-            Resources::from_bytes(&rational, options).unwrap()
+            Resources::from_bytes(&rational, OptionFiles::of_force(options)).unwrap()
         };
         let mut instance = Instance::new(resources()).unwrap();
         instance.enter_initialization();
@@ -174,9 +191,8 @@ fn mutated_states() {
 fn packed() -> Vec<u8> {
     let model = TrainedModel::from_json(&String::from_utf8(model("rational")).unwrap()).unwrap();
     let export = Export {
-        growing: Growing::Allow,
-        force: None,
         listing: Listing::All,
+        ..Growing::Allow.into()
     };
     package(&model, &[Runtime::embedded().unwrap()], export).unwrap()
 }
@@ -199,7 +215,9 @@ fn mutated_archives() {
     let archive = |description: &[u8]| {
         let mut zip = zip::ZipWriter::new(Cursor::new(Vec::new()));
         let options = zip::write::SimpleFileOptions::default();
-        let library = Runtime::embedded().unwrap().path_in_archive();
+        let library = Runtime::embedded()
+            .unwrap()
+            .path_in_archive(FmiVersion::Two);
         for (name, contents) in [("modelDescription.xml", description), (&library, b"none")] {
             zip.start_file(name, options).unwrap();
             zip.write_all(contents).unwrap();

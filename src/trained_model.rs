@@ -46,7 +46,7 @@ impl Model {
     }
 
     /// Lowest version of the file layout that can hold the model.
-    pub(crate) fn schema_version(&self) -> u32 {
+    pub fn schema_version(&self) -> u32 {
         match self {
             Self::Rational(m) if matches!(m.lags, Lags::PerForce(_)) => NEWEST_SCHEMA_VERSION,
             Self::MinimumState(_) => NEWEST_SCHEMA_VERSION,
@@ -151,7 +151,14 @@ pub struct Experiment {
     pub onset_search_limit_m_s: f64,
 }
 
-/// A trained model with the section it is coupled with.
+/// A trained model with the section it is coupled with, as `model.json` holds it.
+///
+/// ```
+/// use aerodeck::prelude::*;
+///
+/// let refused = TrainedModel::from_json("{ \"schema_version\": 99 }").unwrap_err();
+/// assert_eq!(refused.to_string(), "schema_version: expected 1 to 2, found 99");
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TrainedModel {
@@ -176,7 +183,7 @@ impl TrainedModel {
     ///
     /// # Errors
     /// [`Error::Io`] when it cannot be read; those of [`TrainedModel::from_json`], naming the file.
-    pub(crate) fn read(path: &Path) -> Result<Self> {
+    pub fn read(path: &Path) -> Result<Self> {
         let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, e))?;
         Self::from_json(&text).map_err(|e| e.in_file(path))
     }
@@ -228,8 +235,11 @@ impl TrainedModel {
         if self.model.dofs() != self.section.dofs() {
             return Err(Error::input(
                 "model.dofs",
-                format!("the section's degrees of freedom {:?}", self.section.dofs()),
-                format!("{:?}", self.model.dofs()),
+                format!(
+                    "the section's degrees of freedom {}",
+                    Dof::names(&self.section.dofs())
+                ),
+                Dof::names(self.model.dofs()),
             ));
         }
         positive("tested_range.min", self.tested_range.min.full_width())?;

@@ -186,9 +186,7 @@ fn refused(change: impl FnOnce(&Path) -> String, expected: &[&str]) {
     let folder = TempDir::new().unwrap();
     tables(folder.path());
     let text = change(folder.path());
-    let message = study(folder.path(), &text)
-        .unwrap_err()
-        .to_string();
+    let message = study(folder.path(), &text).unwrap_err().to_string();
     for part in expected {
         assert!(message.contains(part), "{message} lacks {part}");
     }

@@ -247,11 +247,17 @@ fn derivatives_of_two_and_three_degrees_of_freedom() {
     let plot = |derivatives: Vec<Derivative>, lines: bool| DerivativesPlot {
         title: "Aerodynamic derivatives of the Langenuen deck & flat plate".into(),
         velocity_label: "V* = V/(fB)".into(),
+        bars_label: "95 % interval".into(),
         derivatives: derivatives
             .into_iter()
             .map(|d| DerivativePlot {
                 name: d.name().to_owned(),
                 measured: vec![measured(d)],
+                bars: if lines {
+                    vec![(10.0, -1.0, 1.0)]
+                } else {
+                    Vec::new()
+                },
                 fitted: if lines {
                     vec![line("Jones, rational function", &jones, d, 25.0)]
                 } else {
@@ -287,6 +293,7 @@ fn derivatives_of_two_and_three_degrees_of_freedom() {
     broken.derivatives[3].measured.clear();
     broken.derivatives[3].fitted.clear();
     broken.derivatives[3].reference.clear();
+    broken.derivatives[3].bars.clear();
     assert!(derivatives_figure(&broken).is_err());
     broken.derivatives.clear();
     assert!(derivatives_figure(&broken).is_err());

@@ -150,8 +150,8 @@ impl<'a> Branch<'a> {
         if theory.dofs() != structure.dofs {
             return Err(Error::input(
                 "static equilibrium",
-                format!("quasi-steady forces of {:?}", structure.dofs),
-                format!("{:?}", theory.dofs()),
+                format!("quasi-steady forces of {}", Dof::names(&structure.dofs)),
+                Dof::names(theory.dofs()),
             ));
         }
         let mut flexibility = structure.stiffness.clone().try_inverse().ok_or_else(|| {

@@ -126,8 +126,8 @@ impl BuffetingProblem<'_> {
             if found != dofs.as_slice() {
                 return Err(Error::input(
                     place,
-                    format!("the section's degrees of freedom {dofs:?}"),
-                    format!("{found:?}"),
+                    format!("the section's degrees of freedom {}", Dof::names(dofs)),
+                    Dof::names(found),
                 ));
             }
         }

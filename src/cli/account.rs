@@ -9,14 +9,28 @@ use crate::study::{
 use std::fmt::Write as _;
 
 /// The whole chain.
-pub fn chain(study: &Study, deck: &Deck, summary: &Summary, files: &str) -> String {
-    let mut text = format!("{}\n\n", study.name);
+pub fn chain(
+    study: &Study,
+    deck: &Deck,
+    summary: &Summary,
+    (files, verbose): (&str, bool),
+) -> String {
+    let mut text = format!("{}: {}\n\n", study.name, summary.answer.headline);
+    let _ = writeln!(
+        text,
+        "Answer    of the model {}, which the FMU holds; everything on one page: {}",
+        summary.answer.model,
+        super::report::REPORT
+    );
+    for limit in &summary.limits {
+        let _ = writeln!(text, "          but: {limit}");
+    }
     let s = &study.section;
     let _ = writeln!(text, "Deck      {}", deck.description());
     text.push_str(&deck_warnings(deck));
     let _ = writeln!(
         text,
-        "Section   B {} m, m {} kg/m, J {} kg·m²/m, ρ {} kg/m³; y and lift up, θ and moment nose-up, per metre of span",
+        "Section   B {} m, m {} kg/m, J {} kg·m²/m, ρ {} kg/m³; y and lift up, θ and moment nose-up, per metre",
         to_tenths_of_mm(s.width_m),
         s.vertical.mass_kg_m,
         s.torsion.inertia_kg_m2_m,
@@ -25,11 +39,12 @@ pub fn chain(study: &Study, deck: &Deck, summary: &Summary, files: &str) -> Stri
     let _ = writeln!(text, "Speeds    {}", study.speeds().explain());
     text.push('\n');
     for fit_summary in &summary.fits {
-        text.push_str(&fit(
+        let all = fit(
             &fit_summary.model,
             &fit_summary.report,
             &fit_summary.uncertainty,
-        ));
+        );
+        text.push_str(&if verbose { all } else { without_remarks(&all) });
     }
     text.push('\n');
     text.push_str(&onsets(
@@ -44,9 +59,79 @@ pub fn chain(study: &Study, deck: &Deck, summary: &Summary, files: &str) -> Stri
         let _ = writeln!(text, "{}", stepped.explain());
     }
     text.push_str(&failures(&summary.failed));
+    text = wrapped(&text);
     let _ = writeln!(text, "\nFiles");
     text.push_str(files);
     text
+}
+
+/// The account of a fit with the number of its remarks in their place.
+fn without_remarks(fit: &str) -> String {
+    let remark = |line: &&str| {
+        let text = line.trim_start();
+        text.starts_with("held: ") || text.starts_with("note: ")
+    };
+    let count = fit.lines().filter(remark).count();
+    let mut short: String = fit
+        .lines()
+        .filter(|line| !remark(line))
+        .flat_map(|line| [line, "\n"])
+        .collect();
+    if count > 0 {
+        let _ = writeln!(short, "          {count} remark(s) more with --verbose");
+    }
+    short
+}
+
+/// Columns of a terminal that nobody has widened.
+const COLUMNS: usize = 80;
+/// Width of the words that begin an entry.
+const HANGING: usize = 10;
+
+/// Long lines cut at spaces; what follows stands under the text of its entry.
+fn wrapped(text: &str) -> String {
+    let mut all = String::with_capacity(text.len());
+    for line in text.lines() {
+        if line.chars().count() <= COLUMNS {
+            all.push_str(line);
+            all.push('\n');
+            continue;
+        }
+        let entry = line.chars().take(HANGING).count() == HANGING
+            && line.chars().nth(HANGING - 1) == Some(' ')
+            && line.chars().nth(HANGING).is_some_and(|c| c != ' ');
+        let indent = if entry { HANGING } else { 2 };
+        let start: String = line.chars().take_while(|c| *c == ' ').collect();
+        let (mut row, mut length) = (start.clone(), start.len());
+        // the words that begin an entry keep their distance
+        let head: String = line.chars().take(HANGING).collect();
+        let body = if entry && start.is_empty() {
+            (row, length) = (head.clone(), HANGING);
+            &line[head.len()..]
+        } else {
+            line
+        };
+        let mut first = true;
+        for word in body.split_whitespace() {
+            let width = word.chars().count();
+            if !first && length + 1 + width > COLUMNS {
+                all.push_str(&row);
+                all.push('\n');
+                (row, length) = (" ".repeat(indent), indent);
+                first = true;
+            }
+            if !first {
+                row.push(' ');
+                length += 1;
+            }
+            row.push_str(word);
+            length += width;
+            first = false;
+        }
+        all.push_str(&row);
+        all.push('\n');
+    }
+    all
 }
 
 /// One fit.
@@ -157,31 +242,19 @@ pub fn onsets(
     stable: &[OnsetSummary],
 ) -> String {
     let mut text = format!(
-        "{:<22} {:<12} {:>9} {:>19} {:>8} {:>8} {:>8} {:>8}  {:<9} {}\n",
-        "Flutter onset",
-        "method",
-        "V m/s",
-        "95 % interval",
-        "f Hz",
-        "V*",
-        "|y|/B|θ|",
-        "phase °",
-        "branch",
-        "in tested range"
+        "{:<18} {:<13} {:>8} {:>15} {:>7} {:>6}  {}\n",
+        "Flutter onset", "method", "V m/s", "95 % interval", "f Hz", "V*", "tested"
     );
     for o in onsets {
         let _ = writeln!(
             text,
-            "{:<22} {:<12} {:>9.3} {:>19} {:>8.4} {:>8.3} {:>8.4} {:>8.1}  {:<9} {}",
+            "{:<18} {:<13} {:>8.3} {:>15} {:>7.4} {:>6.2}  {}",
             o.at.model,
             o.at.method.name(),
             o.at.speed_m_s,
-            interval(&o.interval),
+            interval(&o.interval).replace(" – ", "–"),
             o.at.frequency_hz,
             o.at.reduced_velocity.v_star(),
-            o.mode_ratio,
-            o.phase_deg,
-            o.branch,
             match o.in_tested_range {
                 Some(true) => "yes",
                 Some(false) => "NO",
@@ -193,18 +266,18 @@ pub fn onsets(
         let reason = o.headline_m_s().err().unwrap_or_default();
         let _ = writeln!(
             text,
-            "{:<22} {:<12} {reason}",
+            "{:<18} {:<13} {reason}",
             o.at.model,
             o.at.method.name()
         );
     }
     for s in unstable {
         let method = s.at.method.name();
-        let _ = writeln!(text, "{:<22} {method:<12} {}", s.at.model, s.explain());
+        let _ = writeln!(text, "{:<18} {method:<13} {}", s.at.model, s.explain());
     }
     for s in stable {
         let method = s.method.name();
-        let _ = writeln!(text, "{:<22} {method:<12} {}", s.model, s.explain());
+        let _ = writeln!(text, "{:<18} {method:<13} {}", s.model, s.explain());
     }
     for o in onsets {
         let place = format!("{} ({})", o.at.model, o.at.method.name());
@@ -293,4 +366,22 @@ pub fn deviations(all: &[Deviation]) -> String {
 /// A length without the digits that its computation left behind, m.
 pub(crate) fn to_tenths_of_mm(length_m: f64) -> f64 {
     (length_m * 1e4).round() / 1e4
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{COLUMNS, wrapped};
+
+    #[test]
+    fn long_lines_hang_under_their_entry_and_lose_no_word() {
+        let long = "word ".repeat(40);
+        let text =
+            format!("Deck      {long}\n          note: {long}\nwarning: {long}\nshort  as it is\n");
+        let cut = wrapped(&text);
+        assert!(cut.lines().all(|l| l.chars().count() <= COLUMNS), "{cut}");
+        let words = |t: &str| t.split_whitespace().map(str::to_owned).collect::<Vec<_>>();
+        assert_eq!(words(&cut), words(&text));
+        assert!(cut.starts_with("Deck      word") && cut.contains("\n          word"));
+        assert!(cut.ends_with("short  as it is\n"));
+    }
 }

@@ -1,6 +1,6 @@
 //! Arguments that several commands share.
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::study::{Study, study_warnings};
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -16,8 +16,11 @@ pub(crate) fn warn(file: &Path, warnings: &[String]) {
 /// A study file and the folder of its results.
 #[derive(clap::Args)]
 pub(crate) struct StudyArgs {
-    /// The study file.
+    /// The study file; `-` reads standard input.
     pub study: PathBuf,
+    /// Another value for a key of the study, such as `section.torsion.frequency_hz=4.5`; may be said several times.
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
     /// Folder of the results; by default the folder of the study file.
     #[arg(long)]
     pub out: Option<PathBuf>,
@@ -26,9 +29,32 @@ pub(crate) struct StudyArgs {
 impl StudyArgs {
     /// Reads the study.
     pub(crate) fn read(&self) -> Result<Study> {
-        let study = Study::read(&self.study)?;
+        self.read_with_text().map(|(study, _)| study)
+    }
+
+    /// Reads the study and keeps its text.
+    pub(crate) fn read_with_text(&self) -> Result<(Study, String)> {
+        let text = if self.is_stdin() {
+            std::io::read_to_string(std::io::stdin())
+        } else {
+            std::fs::read_to_string(&self.study)
+        };
+        let text = text.map_err(|e| Error::io(&self.study, e))?;
+        let text = with_values(text, &self.set)?;
+        let directory = self.study.parent().unwrap_or(Path::new(""));
+        let study = Study::from_toml(&text, directory.to_path_buf());
+        let study = study.map_err(|e| e.in_file(&self.study))?;
         warn(&self.study, &study_warnings(&study));
-        Ok(study)
+        Ok((study, text))
+    }
+
+    fn is_stdin(&self) -> bool {
+        self.study == Path::new("-")
+    }
+
+    /// The file of the study; none when it came otherwise, or was changed.
+    pub(crate) fn file(&self) -> Option<&Path> {
+        (!self.is_stdin() && self.set.is_empty()).then_some(&self.study)
     }
 
     /// Folder of the results.
@@ -40,5 +66,75 @@ impl StudyArgs {
     pub(crate) fn beside(&self) -> PathBuf {
         let parent = self.study.parent().filter(|p| !p.as_os_str().is_empty());
         parent.unwrap_or(Path::new(".")).to_path_buf()
+    }
+}
+
+/// The text with other values, each `key=value` with a value as TOML has it; a bare word counts as text.
+///
+/// # Errors
+/// [`Error::Input`] naming what cannot be set.
+fn with_values(text: String, set: &[String]) -> Result<String> {
+    if set.is_empty() {
+        return Ok(text);
+    }
+    let broken =
+        |expected: &str, found: &str| Error::input("--set", expected, format!("`{found}`"));
+    let mut root: toml::Table =
+        toml::from_str(&text).map_err(|e| Error::input("", "a study file", e.to_string()))?;
+    for one in set {
+        let (key, value) = one
+            .split_once('=')
+            .ok_or_else(|| broken("KEY=VALUE", one))?;
+        let value = value.trim();
+        let parsed = toml::from_str::<toml::Table>(&format!("x = {value}"));
+        let value = match parsed.ok().and_then(|mut t| t.remove("x")) {
+            Some(value) => value,
+            None => toml::Value::String(value.to_owned()),
+        };
+        let mut parts: Vec<&str> = key.trim().split('.').collect();
+        let last = parts.pop().unwrap_or_default();
+        let mut at = &mut root;
+        for part in parts {
+            let next = at
+                .entry(part)
+                .or_insert_with(|| toml::Value::Table(toml::Table::new()));
+            at = match next {
+                toml::Value::Table(table) => table,
+                // of a list, such as the models, its first entry
+                toml::Value::Array(list) => match list.first_mut() {
+                    Some(toml::Value::Table(table)) => table,
+                    _ => return Err(broken("a key of a table", key)),
+                },
+                _ => return Err(broken("a key of a table", key)),
+            };
+        }
+        at.insert(last.to_owned(), value);
+    }
+    toml::to_string(&root).map_err(|e| Error::Numerical(e.to_string()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::with_values;
+
+    #[test]
+    fn values_are_set_by_their_keys() {
+        let text = "name = \"a\"\n[section]\nwidth_m = 1.0\n[[model]]\nname = \"m\"\n".to_owned();
+        let set = [
+            "section.width_m=2.5",
+            "name=other deck",
+            "flutter.speeds=7",
+            "model.name=n",
+        ];
+        let changed = with_values(text.clone(), &set.map(str::to_owned)).unwrap();
+        let table: toml::Table = toml::from_str(&changed).unwrap();
+        assert_eq!(table["section"]["width_m"].as_float(), Some(2.5));
+        assert_eq!(table["name"].as_str(), Some("other deck"));
+        assert_eq!(table["flutter"]["speeds"].as_integer(), Some(7));
+        assert_eq!(table["model"][0]["name"].as_str(), Some("n"));
+        for wrong in ["nonsense", "name.x=1"] {
+            assert!(with_values(text.clone(), &[wrong.to_owned()]).is_err());
+        }
+        assert_eq!(with_values(text.clone(), &[]).unwrap(), text);
     }
 }

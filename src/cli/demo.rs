@@ -3,6 +3,7 @@
 use super::answer::Answer;
 use super::output::OutputDir;
 use super::progress::Progress;
+use super::ran::Ran;
 use super::study::run_chain;
 use crate::error::Result;
 use crate::fmu::package::Growing;
@@ -39,5 +40,12 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     out.write(STUDY_FILE, demo_study_text())?;
     let instead = "run yours with `aerodeck study`, choose another --out";
     out.refuse_edited(STUDY_FILE, args.force, instead)?;
-    run_chain(&study, out, Growing::Refuse, progress)
+    // what differs is to be replaced from here on
+    out.replace(STUDY_FILE);
+    let ran = Ran {
+        study: &study,
+        text: demo_study_text(),
+        file: None,
+    };
+    run_chain(&ran, out, Growing::Refuse, progress)
 }

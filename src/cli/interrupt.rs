@@ -52,6 +52,16 @@ impl Drop for Temporary {
     }
 }
 
+/// A folder for the temporary files of this process alone, which goes with it however it ends; none where it cannot be made.
+pub(crate) fn own_temporary_folder() -> Option<Temporary> {
+    let path = std::env::temp_dir().join(format!("aerodeck-{}", std::process::id()));
+    let _busy = uninterrupted();
+    std::fs::create_dir(&path).ok()?;
+    let folder = Temporary::new(path);
+    tempfile::env::override_temp_dir(folder.path()).ok()?;
+    Some(folder)
+}
+
 /// Whether nothing stands there any more.
 fn remove(path: &Path) -> bool {
     if path.is_dir() {

@@ -8,24 +8,34 @@ mod buffeting;
 mod campaign;
 mod common;
 mod compare;
+mod completions;
 mod coverage;
 mod demo;
 mod derivatives;
+mod evidence;
+mod figures;
 mod flutter;
 mod fmu;
+mod headline;
 mod interrupt;
+mod laboratory;
 mod lock;
 mod monte_carlo;
+mod new;
 mod output;
+mod plot;
 mod process;
 mod progress;
 mod quasi_steady;
+mod ran;
+mod report;
 mod routes;
 mod select;
 mod simulate;
 mod stages;
 mod study;
 mod thesis;
+mod thesis_page;
 mod train;
 mod tunnel;
 mod validate;
@@ -53,6 +63,12 @@ struct Cli {
     /// No progress bars.
     #[arg(long, short, global = true)]
     quiet: bool,
+    /// All remarks on fits in the account of `study` and `demo`; the report has them in any case.
+    #[arg(long, short, global = true)]
+    verbose: bool,
+    /// Neither draw nor write figures.
+    #[arg(long, global = true)]
+    no_figures: bool,
     #[command(subcommand)]
     command: Command,
 }
@@ -60,7 +76,10 @@ struct Cli {
 #[derive(Subcommand)]
 enum Command {
     Demo(demo::Args),
+    New(new::Args),
     Study(study::Args),
+    Report(report::Args),
+    Plot(plot::Args),
     Tunnel(tunnel::Args),
     #[command(subcommand)]
     Campaign(campaign::Campaign),
@@ -83,15 +102,23 @@ enum Command {
     Coverage(coverage::Args),
     #[command(subcommand)]
     Compare(compare::Compare),
+    Completions(completions::Args),
 }
 
 /// Runs the command line of this process.
 pub fn main() -> ExitCode {
     apology::install();
     interrupt::install();
+    let _temporary = interrupt::own_temporary_folder();
     let code = apology::guarded(|| {
-        let cli = Cli::parse();
-        let progress = progress::Progress::new(!cli.quiet && !cli.json);
+        let cli = match Cli::try_parse() {
+            Ok(cli) => cli,
+            Err(error) => return usage(&error),
+        };
+        if cli.no_figures {
+            figures::leave_out();
+        }
+        let progress = progress::Progress::new(!cli.quiet && !cli.json, cli.verbose);
         let result = run(&cli.command, &progress);
         // a signal that is being obeyed ends the program with a code of its own
         let _busy = interrupt::uninterrupted();
@@ -101,6 +128,18 @@ pub fn main() -> ExitCode {
         }
     });
     ExitCode::from(code)
+}
+
+/// Help, the version, or a wrong command line, which is said as JSON where JSON was asked for.
+fn usage(error: &clap::Error) -> u8 {
+    if error.use_stderr() && std::env::args_os().any(|a| a == "--json") {
+        let text = error.render().to_string();
+        let value = serde_json::json!({ "error": text.trim().trim_start_matches("error: ") });
+        let _ = say(&format!("{value}\n"));
+    }
+    // standard output may be closed
+    let _ = error.print();
+    u8::try_from(error.exit_code()).unwrap_or(WRONG_INPUT)
 }
 
 fn print(answer: &Answer, json: bool) -> u8 {
@@ -136,7 +175,10 @@ fn complain(error: &Error) {
 fn run(command: &Command, progress: &progress::Progress) -> Result<Answer> {
     match command {
         Command::Demo(args) => demo::run(args, progress),
+        Command::New(args) => new::run(args),
         Command::Study(args) => study::run(args, progress),
+        Command::Report(args) => report::run(args),
+        Command::Plot(args) => plot::run(args),
         Command::Tunnel(args) => tunnel::run(args, progress),
         Command::Campaign(command) => campaign::run(command, progress),
         Command::Process(args) => process::run(args, progress),
@@ -154,6 +196,7 @@ fn run(command: &Command, progress: &progress::Progress) -> Result<Answer> {
         Command::Select(args) => select::run(args, progress),
         Command::Coverage(args) => coverage::run(args, progress),
         Command::Compare(command) => compare::run(command, progress),
+        Command::Completions(args) => completions::run(args),
     }
 }
 

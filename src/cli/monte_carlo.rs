@@ -1,12 +1,13 @@
 //! `aerodeck monte-carlo`: the distribution of the onset when section and forces are random.
 
 use super::answer::Answer;
+use super::figures;
 use super::output::{OutputDir, list};
 use super::progress::Progress;
 use super::stages;
 use crate::error::Result;
 use crate::reliability::{MonteCarloPlan, MonteCarloResult, monte_carlo};
-use crate::report::{PNG_SCALE, onset_distribution_figure};
+use crate::report::onset_distribution_figure;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -51,9 +52,9 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     };
     let mut out = OutputDir::new(args.out.as_deref().unwrap_or(beside))?;
     if result.onsets > 1 {
-        let figure = onset_distribution_figure(&result)?;
-        out.write("monte_carlo.svg", figure.svg())?;
-        out.write("monte_carlo.png", figure.png(PNG_SCALE)?)?;
+        figures::write("monte_carlo", &mut out, || {
+            onset_distribution_figure(&result)
+        })?;
     }
     let mut json = serde_json::to_string_pretty(&result)
         .map_err(|e| crate::Error::Numerical(e.to_string()))?;

@@ -23,6 +23,7 @@ pub(crate) struct OutputDir {
     staging: Temporary,
     files: Vec<PathBuf>,
     kept: Vec<PathBuf>,
+    replaced: Vec<PathBuf>,
     _lock: FolderLock,
 }
 
@@ -48,16 +49,21 @@ impl OutputDir {
         fs::create_dir_all(directory).map_err(|e| Error::io(directory, e))?;
         let lock = FolderLock::take(directory)?;
         clear(directory)?;
+        // not while a signal removes what is known to be temporary
+        let busy = uninterrupted();
         let staging = tempfile::Builder::new()
             .prefix(PREFIX)
             .tempdir_in(directory)
             .map_err(|e| Error::io(directory, e))?;
+        let staging = Temporary::new(staging.keep());
+        drop(busy);
         Ok(Self {
             directory: directory.to_path_buf(),
             created,
-            staging: Temporary::new(staging.keep()),
+            staging,
             files: Vec::new(),
             kept: Vec::new(),
+            replaced: Vec::new(),
             _lock: lock,
         })
     }
@@ -99,6 +105,11 @@ impl OutputDir {
         fs::write(&path, bytes).map_err(|e| Error::io(path, e))
     }
 
+    /// The folder in which the files stand until they are put in place.
+    pub(crate) fn staging(&self) -> &Path {
+        self.staging.path()
+    }
+
     /// Takes back a staged file.
     pub(crate) fn discard(&mut self, name: impl AsRef<Path>) {
         let name = name.as_ref();
@@ -138,9 +149,14 @@ impl OutputDir {
         .in_file(self.target(name)))
     }
 
+    /// Lets a file that differs be replaced.
+    pub(crate) fn replace(&mut self, name: impl AsRef<Path>) {
+        self.replaced.push(name.as_ref().to_path_buf());
+    }
+
     fn differs(&self, name: &Path) -> Result<bool> {
         let target = self.target(name);
-        if !target.exists() {
+        if !target.exists() || self.replaced.iter().any(|r| r == name) {
             return Ok(false);
         }
         let read = |path: &Path| fs::read(path).map_err(|e| Error::io(path, e));

@@ -1,6 +1,8 @@
 //! `aerodeck process`: from the raw runs of a campaign to records, derivatives and a study.
 
 use super::answer::Answer;
+use super::figures;
+use super::laboratory::laboratory_page;
 use super::output::{OutputDir, list};
 use super::progress::Progress;
 use super::stages::RECORDS;
@@ -20,8 +22,8 @@ use crate::identification::derivatives::{
     DerivativeOptions, IdentifiedDerivatives, identify_derivatives,
 };
 use crate::report::{
-    DerivativePlot, DerivativesPlot, Figure, PNG_SCALE, PlottedSeries, derivatives_figure,
-    processing_figure,
+    DerivativePlot, DerivativesPlot, PlottedSeries, derivatives_figure, processing_figure,
+    sections_page,
 };
 use crate::section::Dof;
 use crate::study::{Study, derivative_lines, processed_study_text, read_section};
@@ -107,12 +109,8 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
         .zip(&processed.stages)
         .enumerate()
     {
-        let figure = processing_figure(run, stages, run.dof)?;
-        write_figure(
-            &figure,
-            &format!("processing/{}", file_name(&run.run)),
-            &mut out,
-        )?;
+        let stem = format!("processing/{}", file_name(&run.run));
+        figures::write(&stem, &mut out, || processing_figure(run, stages, run.dof))?;
         stage.at(i as u64 + 1, count);
     }
     drop(stage);
@@ -130,12 +128,8 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     };
     if let Some(found) = &derivatives {
         out.write("derivatives.json", json(found)?)?;
-        let figure = derivatives_figure(&plot(
-            &raw,
-            found,
-            args.quasi_steady(&found.dofs)?.as_ref(),
-        )?)?;
-        write_figure(&figure, "derivatives", &mut out)?;
+        let plot = plot(&raw, found, args.quasi_steady(&found.dofs)?.as_ref())?;
+        figures::write("derivatives", &mut out, || derivatives_figure(&plot))?;
         match write_table(&raw, found, &mut out) {
             Ok(()) => {
                 let known = (base.as_ref(), section.as_ref());
@@ -153,6 +147,9 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
             Err(e) => return Err(e),
         }
     }
+    let known = (&notes[..], &out);
+    let page = laboratory_page(&raw, &processed.report, derivatives.as_ref(), known);
+    out.write(super::report::REPORT, sections_page(&page)?)?;
     let mut text = account(&raw, &processed, derivatives.as_ref());
     for note in &notes {
         let _ = writeln!(text, "  note: {note}");
@@ -200,7 +197,7 @@ impl Args {
 }
 
 /// A name that can be part of a path everywhere.
-fn file_name(name: &str) -> String {
+pub(super) fn file_name(name: &str) -> String {
     let plain = |c: char| c.is_alphanumeric() || matches!(c, '-' | '_' | '.');
     let text: String = name
         .chars()
@@ -262,11 +259,6 @@ fn write_table(
     )
 }
 
-fn write_figure(figure: &Figure, stem: &str, out: &mut OutputDir) -> Result<()> {
-    out.write(format!("{stem}.svg"), figure.svg())?;
-    out.write(format!("{stem}.png"), figure.png(PNG_SCALE)?)
-}
-
 fn json(value: &impl serde::Serialize) -> Result<String> {
     let mut text =
         serde_json::to_string_pretty(value).map_err(|e| Error::Numerical(e.to_string()))?;
@@ -313,6 +305,10 @@ fn plot(
         derivatives.push(DerivativePlot {
             name: d.name().to_owned(),
             measured,
+            bars: found
+                .of(d)
+                .map(|e| bar(e.v_hat, e.value, e.standard_error))
+                .collect(),
             fitted: Vec::new(),
             reference: theories.iter().filter_map(line).collect(),
         });
@@ -320,8 +316,16 @@ fn plot(
     Ok(DerivativesPlot {
         title: format!("{}: aerodynamic derivatives", raw.section),
         velocity_label: "V̂ = V/(ωB)".to_owned(),
+        bars_label: "95 % interval".to_owned(),
         derivatives,
     })
+}
+
+/// A 95 % interval from many samples.
+fn bar(v_hat: f64, value: f64, standard_error: f64) -> (f64, f64, f64) {
+    const NORMAL_QUANTILE: f64 = 1.96;
+    let half = NORMAL_QUANTILE * standard_error;
+    (v_hat, value - half, value + half)
 }
 
 /// Speeds of one group of test points in words.
@@ -375,7 +379,7 @@ fn account(
     text
 }
 
-fn line(run: &RunReport) -> String {
+pub(super) fn line(run: &RunReport) -> String {
     let at = crate::wind_tunnel::processing::index(run.dof);
     let replaced: usize = run.replaced.iter().map(|r| r.samples).sum();
     let unit = if run.dof == Dof::Torsion {

@@ -83,6 +83,7 @@ fn coefficients(results: &QuasiSteadyStudy) -> DerivativesPlot {
     let plot = |name: &str, measured: Vec<(f64, f64)>, fitted: Vec<(f64, f64)>| DerivativePlot {
         name: name.to_owned(),
         measured: vec![PlottedSeries::new("table", measured)],
+        bars: Vec::new(),
         fitted: vec![PlottedSeries::new("spline", fitted)],
         reference: Vec::new(),
     };
@@ -91,6 +92,7 @@ fn coefficients(results: &QuasiSteadyStudy) -> DerivativesPlot {
     DerivativesPlot {
         title: format!("Static coefficients: {}", results.coefficients),
         velocity_label: "Angle of attack α (deg)".to_owned(),
+        bars_label: String::new(),
         derivatives: vec![
             plot(
                 "Drag C_D",

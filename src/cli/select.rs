@@ -8,7 +8,6 @@ use super::output::{OutputDir, Written, list};
 use super::progress::Progress;
 use crate::error::{Error, Result};
 use crate::identification::{DiscreteFit, Form, Grid, GridAxis, PoleSearch, TimeFit, TimeWeights};
-use crate::report::PNG_SCALE;
 use crate::selection::{Selection, SelectionPlan, metric_grid, select};
 use crate::study::{Deck, ModelBlock, RecordSet, Study};
 use crate::wind_tunnel::{Record, RecordSource};
@@ -99,8 +98,7 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     drop(stage);
     let mut out = OutputDir::new(&args.study.directory())?;
     for (stem, figure) in figures(&study, &selection, &metrics)? {
-        out.write(format!("{stem}.svg"), figure.svg())?;
-        out.write(format!("{stem}.png"), figure.png(PNG_SCALE)?)?;
+        super::figures::write(stem, &mut out, || Ok(figure))?;
     }
     let mut written = out.commit()?;
     let mut text = format!("{}\n{}\n\n", study.name, deck.description());

@@ -1,12 +1,13 @@
 //! `aerodeck simulate`: a released section in steady wind, in this process.
 
 use super::answer::Answer;
+use super::figures;
 use super::output::{OutputDir, list};
 use super::stages;
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, positive};
 
-use crate::report::{PNG_SCALE, PlottedSeries, TimePanel, time_history_figure};
+use crate::report::{PlottedSeries, TimePanel, time_history_figure};
 use crate::response::{Inputs, Outputs, Stepper};
 use crate::section::Dof;
 use crate::trained_model::TrainedModel;
@@ -46,6 +47,55 @@ struct Trajectory {
     columns: Vec<String>,
     /// One row a step.
     rows: Vec<Vec<f64>>,
+    /// The modes at this wind speed, the least damped first.
+    modes: Vec<ModeSaid>,
+}
+
+/// A mode at the wind speed of the run.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+struct ModeSaid {
+    /// Hz.
+    frequency_hz: f64,
+    /// 1/s; positive when the motion grows.
+    growth_rate_per_s: f64,
+    /// Of critical damping.
+    damping_ratio: f64,
+}
+
+/// The modes that vibrate, the least damped first.
+fn modes(section: &CoupledSection, speed: f64) -> Result<Vec<ModeSaid>> {
+    let mut modes: Vec<ModeSaid> = section
+        .at(speed)?
+        .eigenvalues()?
+        .into_iter()
+        .filter(|z| z.im > 0.0)
+        .map(|z| ModeSaid {
+            frequency_hz: z.im / std::f64::consts::TAU,
+            growth_rate_per_s: z.re,
+            damping_ratio: crate::state_space::damping_ratio(z),
+        })
+        .collect();
+    modes.sort_by(|a, b| a.damping_ratio.total_cmp(&b.damping_ratio));
+    modes.truncate(section.structure().dofs.len());
+    Ok(modes)
+}
+
+/// What the motion comes to.
+fn verdict(modes: &[ModeSaid]) -> String {
+    let Some(m) = modes.first() else {
+        return "  no mode vibrates at this wind speed\n".to_owned();
+    };
+    let says = if m.growth_rate_per_s > 0.0 {
+        "the motion GROWS"
+    } else {
+        "the motion dies down"
+    };
+    format!(
+        "  {says}: least damped mode {:.4} Hz, growth {:+.4} 1/s, damping ratio {:+.3} %\n",
+        m.frequency_hz,
+        m.growth_rate_per_s,
+        100.0 * m.damping_ratio
+    )
 }
 
 /// Runs the command.
@@ -73,13 +123,14 @@ pub fn run(args: &Args) -> Result<Answer> {
     let mut out = OutputDir::new(directory)?;
     out.write("simulation.csv", csv(&model, speed, &trajectory))?;
     let title = format!("{} at {speed} m/s", model.name);
-    let figure = time_history_figure(&title, &panels(&model, &trajectory), "Time t (s)")?;
-    out.write("simulation.svg", figure.svg())?;
-    out.write("simulation.png", figure.png(PNG_SCALE)?)?;
+    figures::write("simulation", &mut out, || {
+        time_history_figure(&title, &panels(&model, &trajectory), "Time t (s)")
+    })?;
     let written = out.commit()?;
     let text = format!(
-        "{title}: {} steps of {step} s\n{}",
+        "{title}: {} steps of {step} s\n{}{}",
         trajectory.rows.len() - 1,
+        verdict(&trajectory.modes),
         list(&written)
     );
     Answer::new(text, &trajectory)
@@ -89,6 +140,7 @@ fn simulate(model: &TrainedModel, speed: f64, stop: f64, step: f64) -> Result<Tr
     let section = CoupledSection::with_model(&model.section.structure()?, &model.model)?;
     let dofs = section.structure().dofs.clone();
     let n = dofs.len();
+    let modes = modes(&section, speed)?;
     let mut stepper = Stepper::new(section);
     let mut released = vec![0.0; n];
     released[0] = model.experiment.initial_vertical_m;
@@ -126,7 +178,20 @@ fn simulate(model: &TrainedModel, speed: f64, stop: f64, step: f64) -> Result<Tr
             format!("{}{name}_{unit}", d.name())
         }));
     }
-    Ok(Trajectory { columns, rows })
+    Ok(Trajectory {
+        columns,
+        rows,
+        modes,
+    })
+}
+
+/// Rows of time (s) and motion of the released section, as `simulation.csv` has them; `run` is length and step, s.
+pub(super) fn simulated(
+    model: &TrainedModel,
+    speed: f64,
+    run: (f64, f64),
+) -> Result<Vec<Vec<f64>>> {
+    simulate(model, speed, run.0, run.1).map(|t| t.rows)
 }
 
 fn csv(model: &TrainedModel, speed: f64, trajectory: &Trajectory) -> String {

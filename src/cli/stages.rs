@@ -1,12 +1,13 @@
 //! The stages of a study with their files: what `study` runs through and each command does alone.
 
+use super::figures;
 use super::output::OutputDir;
 use super::progress::Progress;
 use crate::error::{Error, Result};
 use crate::flutter::{FlutterCurves, Onset};
 use crate::fmu::package::{Export, Growing, Label, Runtime, package};
 use crate::identification::{self, FitReport};
-use crate::report::{PNG_SCALE, VfVgOptions, vf_vg_figure};
+use crate::report::{VfVgOptions, vf_vg_figure};
 use crate::study::{
     Deck, FlutterStudy, KnownUncertainty, ModelBlock, RecordSet, StageFailure, Study,
     TrainedWithReport, flutter_study, is_of_a_file, slug, state_intervals, train_one,
@@ -50,6 +51,11 @@ pub fn tunnel(
         let file = fs::File::create(&path).map_err(|e| Error::io(&path, e))?;
         write_record(&record, &mut BufWriter::new(file)).map_err(|e| e.in_file(&path))?;
         paths.push((path, record));
+    }
+    // the header of a record names it; a line alone is the whole notice
+    let licence = deck.licence();
+    if licence.contains('\n') {
+        out.write(Path::new(RECORDS).join("LICENSE"), licence)?;
     }
     drop(stage);
     Ok(paths)
@@ -229,10 +235,9 @@ pub(crate) fn flutter_figure(
         title: Some(study.name.clone()),
         ..VfVgOptions::default()
     };
-    let figure = vf_vg_figure(&results.curves, &onsets, &options)?;
-    let png = figure.png(PNG_SCALE)?;
-    out.write(format!("{FIGURE}.svg"), figure.svg())?;
-    out.write(format!("{FIGURE}.png"), png)
+    figures::write(FIGURE, out, || {
+        vf_vg_figure(&results.curves, &onsets, &options)
+    })
 }
 
 /// The same figure for all routes, as far as there are colours.
@@ -249,9 +254,7 @@ pub(crate) fn routes_figure(
         title: Some(format!("{}: all routes", study.name)),
         ..VfVgOptions::default()
     };
-    let figure = vf_vg_figure(curves, &onsets, &options)?;
-    out.write("routes.svg", figure.svg())?;
-    out.write("routes.png", figure.png(PNG_SCALE)?)
+    figures::write("routes", out, || vf_vg_figure(curves, &onsets, &options))
 }
 
 /// Packs a model of a study with all runtimes that are there.

@@ -4,7 +4,9 @@ use super::answer::Answer;
 use super::common::StudyArgs;
 use super::output::{OutputDir, Written, list};
 use super::progress::Progress;
-use super::{account, select, stages};
+use super::ran::{self, Ran};
+use super::report::{self, AnswerView, REPORT, SUMMARY};
+use super::{account, evidence, headline, select, stages};
 use crate::error::{Error, Result};
 use crate::flutter::{Onset, UnstableStart};
 use crate::fmu::package::Growing;
@@ -38,6 +40,14 @@ pub(crate) struct Summary {
     pub generator: String,
     /// Name of the study.
     pub study: String,
+    /// File of the study in this folder.
+    pub study_file: String,
+    /// The answer in words.
+    pub answer: AnswerView,
+    /// What limits trust in it.
+    pub limits: Vec<String>,
+    /// How models and routes compare.
+    pub comparisons: Vec<String>,
     /// What the aerodynamics come from.
     pub deck: String,
     /// Licence of the data.
@@ -84,20 +94,27 @@ pub(crate) struct FitSummary {
 
 /// Runs the command.
 pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
-    let study = args.study.read()?;
+    let (study, text) = args.study.read_with_text()?;
     let out = OutputDir::new(&args.study.directory())?;
-    run_chain(&study, out, stages::growing(args.allow_unstable), progress)
+    let ran = Ran {
+        study: &study,
+        text: &text,
+        file: args.study.file(),
+    };
+    run_chain(&ran, out, stages::growing(args.allow_unstable), progress)
 }
 
 /// The whole chain into `out`. A stage that fails is reported in its place and leaves the others as they are; then the
 /// answer did not pass.
 pub(crate) fn run_chain(
-    study: &Study,
+    ran: &Ran<'_>,
     mut out: OutputDir,
     growing: Growing,
     progress: &Progress,
 ) -> Result<Answer> {
+    let study = ran.study;
     let deck = Deck::load(study)?;
+    let study_file = ran::leave(ran, &mut out)?;
     let mut failed = Vec::new();
     let records = records(study, &deck, &mut out, progress);
     let records_error = records.as_ref().err().map(ToString::to_string);
@@ -121,6 +138,7 @@ pub(crate) fn run_chain(
     let known: Vec<_> = trained.iter().map(|t| t.uncertainty.clone()).collect();
     let mut results = stages::flutter(study, &deck, &models, &known, progress)?;
     failed.append(&mut results.failed);
+    let name = study.exported()?.name.clone();
     let exported = export(study, &models, (&mut out, &mut failed), growing, progress)?;
     let mut stepped = None;
     if let Some((model, path)) = exported {
@@ -143,10 +161,28 @@ pub(crate) fn run_chain(
     results.undetermined.extend(open);
     let figure = stages::flutter_figure(study, &results, &further, &mut out);
     attempt(&mut failed, "figure", figure)?;
+    let derivatives = evidence::write_derivatives(study, &deck, &trained, &mut out);
+    attempt(&mut failed, "figure of derivatives", derivatives)?;
+    let curves = evidence::write_curves(study, &results.curves, &mut out);
+    attempt(&mut failed, "curves", curves)?;
     results.onsets.extend(further);
-    let summary_file = out.target("summary.json");
-    let staged_summary = out.stage("summary.json")?;
+    let exported = models.iter().find(|m| m.name == name);
+    if let (Some(model), Some(at)) = (exported, headline::own_onset(&results, &name)) {
+        let at = (at.at.speed_m_s, at.at.frequency_hz);
+        let response = evidence::write_response(model, at, &mut out);
+        attempt(&mut failed, "figure of the motion", response)?;
+    }
+    let answer = headline::answer(study, &results, &name);
+    let limits = headline::limits(&deck, &results, &name, &failed);
+    let comparisons = headline::comparisons(&results, stepped.as_ref(), &name);
+    out.stage(REPORT)?;
+    let summary_file = out.target(SUMMARY);
+    let staged_summary = out.stage(SUMMARY)?;
     let mut summary = Summary {
+        answer,
+        limits,
+        comparisons,
+        study_file,
         generator: format!("aerodeck {}", env!("CARGO_PKG_VERSION")),
         study: study.name.clone(),
         deck: deck.description(),
@@ -169,9 +205,16 @@ pub(crate) fn run_chain(
     let json = serde_json::to_string_pretty(&summary)
         .map_err(|e| crate::Error::Numerical(e.to_string()))?;
     std::fs::write(&staged_summary, json + "\n").map_err(|e| crate::Error::io(&summary_file, e))?;
+    let page = report::page(out.staging(), &out.target(""))?;
+    out.write(REPORT, page)?;
     let written = out.commit()?;
     let answer = Answer::new(
-        account::chain(study, &deck, &summary, &shown(&written)),
+        account::chain(
+            study,
+            &deck,
+            &summary,
+            (&shown(&written), progress.verbose()),
+        ),
         &summary,
     )?;
     Ok(answer.with_verdict(summary.failed.is_empty()))

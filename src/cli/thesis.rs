@@ -2,10 +2,12 @@
 
 use super::answer::Answer;
 use super::interrupt::Temporary;
-use super::output::OutputDir;
+use super::output::{OutputDir, list};
 use super::progress::Progress;
+use super::thesis_page::thesis_page;
 use super::{account, stages};
 use crate::error::{Error, Result};
+use crate::report::sections_page;
 use crate::study::{Deck, RecordSet, Study, thesis_study_text};
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -15,13 +17,17 @@ const PRINTED_M_S: f64 = 37.6;
 
 /// Repeat the thesis's headline: discrete Laguerre and rational functions on its own deck, 37.6 m/s
 ///
-/// Example: aerodeck thesis
+/// Example: aerodeck thesis --out thesis
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
-pub(crate) struct Args {}
+pub(crate) struct Args {
+    /// Write thesis.html into this folder: every figure and table that can be computed, its numbers beside ours.
+    #[arg(long)]
+    out: Option<PathBuf>,
+}
 
 /// Runs the command.
-pub fn run(_: &Args, progress: &Progress) -> Result<Answer> {
+pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     let aside = tempfile::tempdir().map_err(|e| Error::io(std::env::temp_dir(), e))?;
     let aside = Temporary::new(aside.keep());
     let study = Study::from_toml(thesis_study_text(), PathBuf::new())?;
@@ -52,6 +58,13 @@ pub fn run(_: &Args, progress: &Progress) -> Result<Answer> {
     text.push_str(&account::deviations(&results.deviations));
     text.push_str(&account::failures(&failed));
     let _ = writeln!(text, "thesis: {PRINTED_M_S} m/s for both models");
+    if let Some(folder) = &args.out {
+        stages::flutter_figure(&study, &results, &[], &mut out)?;
+        let page = thesis_page(&results, PRINTED_M_S, &out, progress)?;
+        let mut left = OutputDir::new(folder)?;
+        left.write("thesis.html", sections_page(&page)?)?;
+        text.push_str(&list(&left.commit()?));
+    }
     let answer = Answer::new(
         text,
         &serde_json::json!({ "printed_m_s": PRINTED_M_S, "flutter": results, "failed": failed }),

@@ -3,7 +3,7 @@
 use super::common::warn;
 use super::output::OutputDir;
 use crate::error::{Error, Result};
-use crate::report::{Figure, PNG_SCALE};
+use crate::report::Figure;
 use crate::study::{WindStudy, example_wind_study_text, section_warnings};
 use std::path::{Path, PathBuf};
 
@@ -47,8 +47,7 @@ impl WindArgs {
 
 /// Writes a figure as SVG and PNG.
 pub(crate) fn write_figure(out: &mut OutputDir, stem: &str, figure: &Figure) -> Result<()> {
-    out.write(format!("{stem}.svg"), figure.svg())?;
-    out.write(format!("{stem}.png"), figure.png(PNG_SCALE)?)
+    super::figures::write(stem, out, || Ok(figure.clone()))
 }
 
 /// A result as indented JSON.

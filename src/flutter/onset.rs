@@ -149,7 +149,7 @@ impl Onset {
     ///
     /// # Errors
     /// Why it may not.
-    pub(crate) fn headline_m_s(&self) -> std::result::Result<f64, &str> {
+    pub fn headline_m_s(&self) -> std::result::Result<f64, &str> {
         match &self.interval {
             OnsetInterval::Undetermined { reason, .. } => Err(reason),
             OnsetInterval::Known { .. }
@@ -159,6 +159,32 @@ impl Onset {
     }
 
     /// The onset at speed and frequency with a mode shape; nothing about ranges yet.
+    /// The answer in one line: speed, interval, and whether the data reach it, such as
+    /// `flutter onset 36.9 m/s, 36.6–37.3, inside the tested range`.
+    pub fn headline(&self) -> String {
+        let speed = match self.headline_m_s() {
+            Ok(speed) => speed,
+            Err(reason) => return format!("flutter onset {reason}"),
+        };
+        let interval = match &self.interval {
+            OnsetInterval::Known {
+                low_m_s, high_m_s, ..
+            } => format!(", {}–{}", short(*low_m_s), short(*high_m_s)),
+            OnsetInterval::Spread {
+                low_m_s, high_m_s, ..
+            } => format!(" [{}–{}]", short(*low_m_s), short(*high_m_s)),
+            OnsetInterval::None { .. } | OnsetInterval::Undetermined { .. } => {
+                ", interval not known".to_owned()
+            }
+        };
+        let tested = match self.in_tested_range {
+            Some(true) => ", inside the tested range",
+            Some(false) => ", OUTSIDE the tested range",
+            None => "",
+        };
+        format!("flutter onset {} m/s{interval}{tested}", short(speed))
+    }
+
     pub(super) fn new(
         model: &str,
         method: OnsetMethod,
@@ -183,6 +209,12 @@ impl Onset {
             interval: OnsetInterval::none("the data behind the model are not known here"),
         }
     }
+}
+
+/// A wind speed for people, m/s: a tenth, below 10 m/s a hundredth, which no measurement surpasses.
+fn short(speed_m_s: f64) -> String {
+    let digits = if speed_m_s.abs() < 10.0 { 2 } else { 1 };
+    format!("{speed_m_s:.digits$}")
 }
 
 #[cfg(test)]

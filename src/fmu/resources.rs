@@ -24,6 +24,13 @@ pub struct OptionFiles<'a> {
     pub gusts: Option<&'a [u8]>,
 }
 
+impl<'a> OptionFiles<'a> {
+    /// Of forces alone where there are options of them, without gusts.
+    pub fn of_force(force: Option<&'a [u8]>) -> Self {
+        Self { force, gusts: None }
+    }
+}
+
 /// What is read once, at instantiation.
 #[derive(Debug)]
 pub struct Resources {

@@ -8,6 +8,7 @@
 mod coefficients;
 mod distribution;
 mod drawn;
+mod many;
 mod parameter;
 mod plan;
 mod probability;
@@ -17,6 +18,7 @@ mod sampler;
 mod scatter;
 
 pub use distribution::Distribution;
+pub use many::{ManyOnsets, OnsetKind, many_onsets};
 pub use parameter::Parameter;
 pub use plan::{AerodynamicScatter, Correlation, MonteCarloPlan, RandomParameter};
 pub use results::{DesignCheck, Failure, Histogram, MonteCarloResult, Quantile};

@@ -60,7 +60,7 @@ pub enum Parameter {
 impl Parameter {
     /// Where the number stands; `None` when the section states it otherwise (a stiffness instead of a frequency) or has
     /// no such support.
-    pub(super) fn place(self, section: &mut SectionModel) -> Option<&mut f64> {
+    pub fn place(self, section: &mut SectionModel) -> Option<&mut f64> {
         fn frequency(t: &mut Translation) -> Option<&mut f64> {
             t.frequency_hz.as_mut()
         }
@@ -99,6 +99,17 @@ impl Parameter {
                 "a number that the section of the model states (a support has either a frequency or a stiffness)",
                 format!("`{}`", self.name()),
             )
+        })
+    }
+
+    /// The number of this name in files.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a name that none has.
+    pub fn named(name: &str) -> Result<Self> {
+        serde_json::from_value(name.into()).map_err(|_| {
+            let expected = "a number of the section, such as vertical.mass_kg_m";
+            Error::input("parameter", expected, format!("`{name}`"))
         })
     }
 

@@ -23,7 +23,7 @@ const SPEEDS: usize = 200;
 pub(crate) type OnSamples<'a> = &'a (dyn Fn(usize, usize) + Sync);
 
 /// Finds the onset of one sample.
-struct Finder<'a> {
+pub(super) struct Finder<'a> {
     model: &'a TrainedModel,
     /// For continuous models.
     sweep: Option<OnsetSweep>,
@@ -77,7 +77,7 @@ pub fn monte_carlo(
 }
 
 impl<'a> Finder<'a> {
-    fn new(model: &'a TrainedModel, speed_max_m_s: f64) -> Result<Self> {
+    pub(super) fn new(model: &'a TrainedModel, speed_max_m_s: f64) -> Result<Self> {
         let sweep = coefficients::linear(&model.model, model.tested_range)
             .map(|forces| OnsetSweep::new(forces, &model.section.structure()?, speed_max_m_s))
             .transpose()?;
@@ -115,7 +115,11 @@ impl<'a> Finder<'a> {
     }
 
     /// The answer, and whether it took the search by eigenvalues.
-    fn onset(&self, section: &SectionModel, values: &[f64]) -> Result<(SweepOutcome, bool)> {
+    pub(super) fn onset(
+        &self,
+        section: &SectionModel,
+        values: &[f64],
+    ) -> Result<(SweepOutcome, bool)> {
         if let Some(sweep) = &self.sweep {
             let outcome = sweep.onset(section, values)?;
             if outcome != SweepOutcome::Unresolved {

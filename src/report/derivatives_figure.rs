@@ -6,7 +6,7 @@ use super::legend::Entry;
 use super::panel::Panel;
 use super::series::{PlottedSeries, index_of, labels_of};
 use super::sheet::Sheet;
-use super::style::{BLACK, Ink, Shape, colour, dash};
+use super::style::{BLACK, GREY, Ink, Shape, colour, dash};
 use crate::error::{Error, Result};
 
 /// One derivative (or any other quantity that is measured and fitted).
@@ -16,6 +16,8 @@ pub struct DerivativePlot {
     pub name: String,
     /// Test points, drawn as dots; several series e.g. for several wind speeds or tests.
     pub measured: Vec<PlottedSeries>,
+    /// Intervals: abscissa, lower and upper end, drawn as thin bars.
+    pub bars: Vec<(f64, f64, f64)>,
     /// Fitted or computed lines, one a model.
     pub fitted: Vec<PlottedSeries>,
     /// Theory to compare with (flat plate, quasi-steady), drawn thin and black.
@@ -29,6 +31,8 @@ pub struct DerivativesPlot {
     pub title: String,
     /// Name of the abscissa with its definition, e.g. `V* = V/(fB)` or `V̂ = V/(ωB)`.
     pub velocity_label: String,
+    /// What the bars are; not shown where there are none.
+    pub bars_label: String,
     /// Row by row.
     pub derivatives: Vec<DerivativePlot>,
 }
@@ -65,6 +69,9 @@ pub fn derivatives_figure(plot: &DerivativesPlot) -> Result<Figure> {
             let ink = fitted_ink(index_of(&fitted, &series.label))?;
             panel.add(&series.label, series.points.clone(), ink);
         }
+        for (at, low, high) in &derivative.bars {
+            panel.add("interval", vec![(*at, *low), (*at, *high)], BAR);
+        }
         for series in &derivative.measured {
             let ink = measured_ink(index_of(&measured, &series.label), measured.len())?;
             panel.add(&series.label, series.points.clone(), ink);
@@ -81,13 +88,19 @@ pub fn derivatives_figure(plot: &DerivativesPlot) -> Result<Figure> {
         } else {
             (190.0, 160.0)
         },
-        legend: vec![legend(&measured, &fitted, &reference)?],
+        legend: vec![legend(plot, (&measured, &fitted, &reference))?],
     }
     .draw()
 }
 
-fn legend(measured: &[String], fitted: &[String], reference: &[String]) -> Result<Vec<Entry>> {
+fn legend(
+    plot: &DerivativesPlot,
+    (measured, fitted, reference): (&[String], &[String], &[String]),
+) -> Result<Vec<Entry>> {
     let mut entries = Vec::new();
+    if plot.derivatives.iter().any(|d| !d.bars.is_empty()) {
+        entries.push(Entry::new(&plot.bars_label, BAR));
+    }
     for (i, label) in measured.iter().enumerate() {
         entries.push(Entry::new(label, measured_ink(i, measured.len())?));
     }
@@ -101,6 +114,11 @@ fn legend(measured: &[String], fitted: &[String], reference: &[String]) -> Resul
 }
 
 const PLACE: &str = "aerodynamic derivatives";
+const BAR: Ink = Ink::Line {
+    colour: GREY,
+    dash: None,
+    width: 1.6,
+};
 
 fn fitted_ink(i: usize) -> Result<Ink> {
     Ok(Ink::line(colour(PLACE, i)?, dash(i)))

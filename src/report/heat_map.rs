@@ -114,6 +114,13 @@ impl HeatMap {
             .filter(usable)
             .copied()
             .collect();
+        // refused models may be anywhere: the scale is for those to choose from
+        let kept = |at: usize| self.refused.get(at) != Some(&true);
+        let chosen = self.values.iter().enumerate().filter(|(at, _)| kept(*at));
+        let chosen: Vec<f64> = chosen
+            .filter_map(|(_, v)| v.filter(|x| x.is_finite()))
+            .collect();
+        let values = if chosen.is_empty() { values } else { chosen };
         let low = values.iter().copied().fold(f64::INFINITY, f64::min);
         let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         if low > high {

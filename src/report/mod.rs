@@ -20,8 +20,11 @@ mod panel;
 mod processing_figures;
 mod reliability_figure;
 mod response_figures;
+mod sections_page;
 mod series;
 mod sheet;
+
+mod study_page;
 mod style;
 mod transfer_figure;
 mod wind_figures;
@@ -31,12 +34,15 @@ pub use bridge_figures::{bridge_curves_figure, flutter_motion_figure, modes_figu
 pub use derivatives_figure::{DerivativePlot, DerivativesPlot, derivatives_figure};
 pub use figure::{Figure, PNG_SCALE};
 pub use first_order_figures::first_order_figures;
+pub(crate) use flutter_figures::root_locus_figure;
 pub use flutter_figures::{VfVgOptions, vf_vg_figure};
 pub(crate) use heat_map::{HeatMap, heat_map_figure};
 pub(crate) use metrics_figure::{MetricPanel, metrics_figure};
 pub(crate) use processing_figures::processing_figure;
 pub(crate) use reliability_figure::onset_distribution_figure;
 pub use response_figures::{TimePanel, time_history_figure};
+pub(crate) use sections_page::{PageSection, SectionsPage, sections_page};
 pub use series::PlottedSeries;
+pub(crate) use study_page::{PageCurve, PageFigure, PageFit, StudyPage, study_page};
 pub(crate) use transfer_figure::{TransferCurve, TransferPlot, transfer_figure};
 pub(crate) use wind_figures::{buffeting_rms_figure, buffeting_spectra_figure, equilibrium_figure};

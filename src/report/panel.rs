@@ -22,8 +22,9 @@ const NOTE_SIZE: u32 = 11;
 const POINTS_PER_PX: usize = 4;
 /// Distance of a label from its point from which on a line leads to it, px.
 const LEADERLESS: f64 = 12.0;
-const RIM: &str =
-    r##"stroke="#ffffff" stroke-width="3" stroke-linejoin="round" paint-order="stroke""##;
+/// An outline of its own below the text: not every renderer knows `paint-order`, and those would hide the text.
+const RIM: &str = r##"stroke="#ffffff" stroke-width="3" stroke-linejoin="round""##;
+const RIM_COLOUR: &str = "#ffffff";
 
 /// Points drawn with one ink.
 #[derive(Debug, Clone, PartialEq)]
@@ -360,13 +361,10 @@ fn draw_note(scene: &mut Scene, labels: &mut Labels, at: (f64, f64), note: &Note
         title: None,
         extra_attrs: Some(RIM.to_owned()),
     });
-    scene.add(text(
-        (area.left + 3.0, baseline),
-        &note.text,
-        NOTE_SIZE,
-        note.colour,
-    ));
+    let at = (area.left + 3.0, baseline);
+    scene.add(text(at, &note.text, NOTE_SIZE, RIM_COLOUR));
     scene.add(Primitive::GroupEnd);
+    scene.add(text(at, &note.text, NOTE_SIZE, note.colour));
 }
 
 #[cfg(test)]

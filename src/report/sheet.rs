@@ -40,6 +40,7 @@ impl Sheet {
         for panel in &self.panels {
             panel.check(self.name)?;
         }
+        let stacked = self.with_one_abscissa();
         let (frames, legend) = self.frames();
         let Some(Frame { width, margins, .. }) = frames.first() else {
             return Err(Error::input(self.name, "data", "none"));
@@ -60,7 +61,7 @@ impl Sheet {
             scene.add(text((left, EDGE + 16.0), title, TITLE_SIZE, BLACK));
         }
         let mut top = head;
-        for (row, frame) in self.panels.chunks(self.columns).zip(&frames) {
+        for (row, frame) in stacked.chunks(self.columns).zip(&frames) {
             for (column, panel) in row.iter().enumerate() {
                 let corner = (column as f64 * frame.width, top);
                 insert(&mut scene, panel.draw(*frame), corner);
@@ -69,6 +70,25 @@ impl Sheet {
         }
         legend.draw(&mut scene, (left, top + EDGE));
         Ok(Figure::from_svg(finished(&scene)))
+    }
+
+    /// The panels; those in one column with abscissae of their data alone get one for all.
+    fn with_one_abscissa(&self) -> Vec<Panel> {
+        let mut panels = self.panels.clone();
+        let own = |p: &Panel| p.x.tight && p.x.range.is_none() && p.x.within.is_none();
+        if self.columns == 1 && panels.iter().all(own) {
+            let points = self.panels.iter().flat_map(|p| &p.series);
+            let ends = points.flat_map(|s| &s.points).map(|p| p.0);
+            let (low, high) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
+                (low.min(x), high.max(x))
+            });
+            if low < high {
+                panels
+                    .iter_mut()
+                    .for_each(|p| p.x.range = Some((low, high)));
+            }
+        }
+        panels
     }
 
     /// A frame for each row, of one width and with axes in line, and the legend. When the legend or the title is wider
@@ -149,7 +169,53 @@ pub(super) fn finished(scene: &Scene) -> String {
         scene.width, scene.height
     );
     let mark = format!("fig-{own}-");
-    svg.replacen("<svg ", &head, 1).replace(CLIP, &mark)
+    with_subscripts(&svg.replacen("<svg ", &head, 1).replace(CLIP, &mark))
+}
+
+/// Every text with its subscripts.
+fn with_subscripts(svg: &str) -> String {
+    let parts = svg
+        .split_inclusive('>')
+        .map(|part| match part.split_once('<') {
+            Some((content, tag)) if content.contains('_') => {
+                format!("{}<{tag}", subscripted(content))
+            }
+            _ => part.to_owned(),
+        });
+    parts.collect()
+}
+
+/// `F_y` as a symbol with a subscript: a single letter, an underscore and one or two letters that end the word.
+fn subscripted(content: &str) -> String {
+    let mut text = String::new();
+    let mut rest = content;
+    while let Some((before, after)) = rest.split_once('_') {
+        let length = after
+            .find(|c: char| !(c.is_alphanumeric() || c == '_'))
+            .unwrap_or(after.len());
+        let (word, remaining) = after.split_at(length);
+        let mut backwards = before.chars().rev();
+        let symbol = backwards.next().is_some_and(char::is_alphabetic)
+            && backwards.next().is_none_or(|c| !c.is_alphanumeric());
+        text.push_str(before);
+        if symbol
+            && (1..=2).contains(&word.chars().count())
+            && word.chars().all(char::is_alphabetic)
+        {
+            text.push_str(&format!("<tspan dy=\"3\" font-size=\"9\">{word}</tspan>"));
+            let end = remaining.find('_').unwrap_or(remaining.len());
+            // what follows goes back to the line
+            if end > 0 {
+                text.push_str(&format!("<tspan dy=\"-3\">{}</tspan>", &remaining[..end]));
+            }
+            rest = &remaining[end..];
+        } else {
+            text.push('_');
+            text.push_str(word);
+            rest = remaining;
+        }
+    }
+    text + rest
 }
 
 /// A text that starts at a point.
@@ -173,4 +239,22 @@ fn literal(content: &str) -> String {
         .map(|c| if c.is_control() { ' ' } else { c })
         .collect::<String>()
         .replace('$', "\\$")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{subscripted, with_subscripts};
+
+    #[test]
+    fn symbols_get_subscripts_and_names_keep_their_underscores() {
+        let low = "<tspan dy=\"3\" font-size=\"9\">y</tspan>";
+        assert_eq!(subscripted("F_y"), format!("F{low}"));
+        let back = "<tspan dy=\"-3\"> (N/m)</tspan>";
+        assert_eq!(subscripted("f S_y (N/m)"), format!("f S{low}{back}"));
+        for name in ["wind_speed", "k_full", "run_1", "_x", "F_y2"] {
+            assert_eq!(subscripted(name), name);
+        }
+        let tag = "<a id=\"F_y\">plain</a>";
+        assert_eq!(with_subscripts(tag), tag);
+    }
 }

@@ -22,12 +22,14 @@ const PALE_COLOURS: [&str; 7] = [
 ];
 /// The grey of the legend, as pale.
 pub(super) const PALE_GREY: &str = "#c9c9c9";
-const DASHES: [Option<&str>; 5] = [
+const DASHES: [Option<&str>; 7] = [
     None,
     Some("7 3"),
     Some("2 3"),
     Some("8 3 2 3"),
     Some("12 4"),
+    Some("12 3 2 3 2 3"),
+    Some("4 6"),
 ];
 
 /// Colour of the i-th model, table or series.
@@ -83,6 +85,12 @@ pub(super) enum Ink {
     /// A shaded region.
     Shade,
 }
+
+/// Width of the lines of the i-th branch, px.
+pub(super) fn branch_width(i: usize) -> f64 {
+    BRANCH_WIDTHS[i.min(BRANCH_WIDTHS.len() - 1)]
+}
+const BRANCH_WIDTHS: [f64; 3] = [1.1, 2.3, 3.4];
 
 impl Ink {
     pub(super) fn line(colour: &'static str, dash: Option<&'static str>) -> Self {

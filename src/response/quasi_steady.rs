@@ -47,8 +47,8 @@ impl NonlinearSection {
         if theory.dofs() != structure.dofs {
             return Err(Error::input(
                 "nonlinear section",
-                format!("quasi-steady forces of {:?}", structure.dofs),
-                format!("{:?}", theory.dofs()),
+                format!("quasi-steady forces of {}", Dof::names(&structure.dofs)),
+                Dof::names(theory.dofs()),
             ));
         }
         let inverse_mass = structure.mass.clone().try_inverse().ok_or_else(|| {

@@ -80,7 +80,7 @@ pub(crate) fn fit_harmonics(
         return Err(Error::input(
             "stretch of a signal",
             format!("samples within 0 to {}", signal.len()),
-            format!("{range:?}"),
+            format!("{} to {}", range.start, range.end),
         ));
     }
     let unknowns = 2 + 2 * harmonics;

@@ -20,7 +20,7 @@ mod wind;
 
 pub use deck::{Deck, RecordSet};
 pub use defaults::demo_study_text;
-pub(crate) use defaults::thesis_study_text;
+pub(crate) use defaults::{new_study_text, thesis_study_text};
 pub use failures::StageFailure;
 pub(crate) use failures::{attempt, is_of_a_file};
 pub(crate) use intervals::{KnownUncertainty, interval_of, state_intervals, state_route_intervals};
@@ -53,6 +53,17 @@ use std::path::{Path, PathBuf};
 pub(crate) const STUDY_SCHEMA: u32 = 1;
 
 /// Contents of a study file.
+///
+/// ```
+/// use aerodeck::prelude::*;
+/// use aerodeck::study::demo_study_text;
+///
+/// let study = Study::from_toml(demo_study_text(), "".into())?;
+/// assert_eq!(study.models.len(), 3);
+/// let wrong = demo_study_text().replace("speeds = 120", "speeds = -1");
+/// assert!(Study::from_toml(&wrong, "".into()).unwrap_err().to_string().contains("line"));
+/// # Ok::<(), Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Study {

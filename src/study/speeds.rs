@@ -34,6 +34,9 @@ pub struct FlutterBlock {
     pub speed_min_m_s: Option<f64>,
     /// Number of wind speeds.
     pub speeds: usize,
+    /// The onset has to lie above this wind speed, m/s: the criterion of a code. It changes no number, the report judges by it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub required_speed_m_s: Option<f64>,
 }
 
 impl Default for FlutterBlock {
@@ -42,12 +45,13 @@ impl Default for FlutterBlock {
             speed_max_m_s: None,
             speed_min_m_s: None,
             speeds: 120,
+            required_speed_m_s: None,
         }
     }
 }
 
 /// Wind speeds of curves and search.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct SpeedRange {
     /// Lowest wind speed of the curves, m/s.
     pub speed_min_m_s: f64,
@@ -61,7 +65,7 @@ pub struct SpeedRange {
 
 impl FlutterBlock {
     /// The range for a section.
-    pub(crate) fn range(&self, section: &SectionModel) -> SpeedRange {
+    pub fn range(&self, section: &SectionModel) -> SpeedRange {
         let speed_max_m_s = self.speed_max_m_s.unwrap_or_else(|| {
             let usual = usual_highest_m_s(section).max(self.speed_min_m_s.unwrap_or(0.0) * 2.0);
             rounded_up(usual).min(HIGHEST_SPEED_M_S)
@@ -79,6 +83,7 @@ impl FlutterBlock {
         for (key, speed) in [
             ("speed_max_m_s", self.speed_max_m_s),
             ("speed_min_m_s", self.speed_min_m_s),
+            ("required_speed_m_s", self.required_speed_m_s),
         ] {
             let Some(speed) = speed else { continue };
             let key = format!("{place}.{key}");
@@ -109,7 +114,7 @@ impl FlutterBlock {
 
 impl SpeedRange {
     /// The same as a search range.
-    pub(crate) fn search(&self) -> OnsetSearch {
+    pub fn search(&self) -> OnsetSearch {
         OnsetSearch {
             speed_max_m_s: self.speed_max_m_s,
             speeds: self.speeds,
@@ -124,13 +129,15 @@ impl SpeedRange {
             ""
         };
         format!(
-            "{:.3} to {} m/s in {} steps{why}",
-            self.speed_min_m_s, self.speed_max_m_s, self.speeds
+            "{} to {} m/s in {} steps{why}",
+            (1e3 * self.speed_min_m_s).round() / 1e3,
+            self.speed_max_m_s,
+            self.speeds
         )
     }
 
     /// Wind speeds of the curves, m/s.
-    pub(crate) fn curve_speeds_m_s(&self) -> Vec<f64> {
+    pub fn curve_speeds_m_s(&self) -> Vec<f64> {
         let last = (self.speeds - 1) as f64;
         let span = self.speed_max_m_s - self.speed_min_m_s;
         (0..self.speeds)

@@ -368,7 +368,7 @@ impl CoefficientUncertainty {
     ///
     /// The covariance of an entry is its block of the covariance of all parameters, so that standard errors are the roots of
     /// its diagonal. Coefficients move with the searched poles: whoever draws models needs all parameters.
-    pub(crate) fn enter(&self, report: &mut FitReport) {
+    pub fn enter(&self, report: &mut FitReport) {
         let own = self.own_coefficients();
         for (entry, own) in report.entries.iter_mut().zip(&own) {
             if own.len() != entry.coefficients.len() {

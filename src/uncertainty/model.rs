@@ -102,14 +102,7 @@ impl ModelUncertainty {
             ));
         }
         let known = self.onset.as_ref().map(|o| o.degrees_of_freedom);
-        let error = onset_error(&self.coefficients, structure, onset, known)?;
-        Ok(match self.coefficients.known_bias() {
-            Some(bias) => OnsetInterval::none(format!(
-                "{bias} (standard error of the scatter alone {:.3} m/s)",
-                error.standard_error_m_s
-            )),
-            None => error.interval(),
-        })
+        self.coefficients.interval_knowing(structure, onset, known)
     }
 
     fn belongs_to(&self, model: &dyn Transfer, k: ReducedFrequency) -> Result<bool> {

@@ -62,6 +62,33 @@ pub(super) fn error_at(
     })
 }
 
+impl CoefficientUncertainty {
+    /// 95 % interval of an onset of the model with these coefficients, on any structure: as far as its data carry.
+    ///
+    /// # Errors
+    /// [`crate::Error::Numerical`] when the onset cannot be followed to nearby coefficients.
+    pub fn onset_interval(&self, structure: &Structure, onset: &Onset) -> Result<OnsetInterval> {
+        self.interval_knowing(structure, onset, None)
+    }
+
+    /// The same with the degrees of freedom of an estimate that no longer knows its data.
+    pub(super) fn interval_knowing(
+        &self,
+        structure: &Structure,
+        onset: &Onset,
+        degrees_of_freedom: Option<f64>,
+    ) -> Result<OnsetInterval> {
+        let error = onset_error(self, structure, onset, degrees_of_freedom)?;
+        Ok(match self.known_bias() {
+            Some(bias) => OnsetInterval::none(format!(
+                "{bias} (standard error of the scatter alone {:.3} m/s)",
+                error.standard_error_m_s
+            )),
+            None => error.interval(),
+        })
+    }
+}
+
 impl OnsetError {
     /// Half the width of the interval, m/s: Student's quantile times the standard error.
     pub(crate) fn half_width_m_s(&self) -> f64 {

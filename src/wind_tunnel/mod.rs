@@ -18,6 +18,7 @@ pub use broadband::TrainingMotion;
 pub(crate) use prediction::predicted_forces;
 pub(crate) use raw::CELL_CHANNELS;
 pub use raw::{LoadCell, RawCampaign, RawRecording, RawRun, Rig};
-pub(crate) use record_file::{RecordFile, SAMPLES_AT_LEAST, write_record};
+pub(crate) use record_file::{RecordFile, SAMPLES_AT_LEAST};
+pub use record_file::{read_record, write_record};
 pub use records::{Record, RecordBlock, RecordHeader, RecordSource, Segment};
 pub use virtual_tunnel::TunnelPlan;

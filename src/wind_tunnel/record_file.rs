@@ -5,7 +5,7 @@
 //! Forces are self-excited ones per unit length, N/m and N·m/m. Reading streams the file in blocks of bounded size.
 
 use super::record_format::{RecordColumns, read_head, text, write_head};
-use super::records::{RecordBlock, RecordHeader, RecordSource};
+use super::records::{Record, RecordBlock, RecordHeader, RecordSource};
 use crate::error::{Error, Result};
 use std::fmt::Write as _;
 use std::fs::File;
@@ -84,11 +84,19 @@ impl RecordSource for RecordFile {
     }
 }
 
-/// Writes a record; [`RecordFile`] gives the same numbers back, bit for bit.
+/// Reads a whole record into memory.
+///
+/// # Errors
+/// [`Error::Io`]; [`Error::Input`] with file and line for everything that is wrong in it.
+pub fn read_record(path: impl AsRef<Path>) -> Result<Record> {
+    Record::whole(&RecordFile::open(path)?)
+}
+
+/// Writes a record; [`read_record`] gives the same numbers back, bit for bit.
 ///
 /// # Errors
 /// Those of reading `record`; [`Error::Io`] naming the record when `out` fails.
-pub(crate) fn write_record(record: &dyn RecordSource, out: &mut dyn Write) -> Result<()> {
+pub fn write_record(record: &dyn RecordSource, out: &mut dyn Write) -> Result<()> {
     let header = record.header();
     let io = |e| Error::io(&header.name, e);
     write_head(header, out).map_err(io)?;

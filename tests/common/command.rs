@@ -27,6 +27,11 @@ pub fn succeeds(folder: &Path, arguments: &[&str]) -> String {
     stdout
 }
 
+/// What was said, without the breaks of lines.
+pub fn flowing(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
 /// Wrong input: exit code 2, every fragment in the message, and nothing new in the folder.
 #[track_caller]
 pub fn refused(folder: &Path, arguments: &[&str], fragments: &[&str]) {

@@ -68,7 +68,19 @@ pub(crate) struct PointProblem {
     pub found: String,
 }
 
-/// Measured derivatives of one deck: 18 (or the eight of heave and rotation), each at its own points in test order.
+/// Measured derivatives of one deck.
+///
+/// ```
+/// use aerodeck::aerodynamics::derivatives::Derivative;
+/// use aerodeck::prelude::*;
+///
+/// let table = named_table("LN21-5200", "".as_ref())?;
+/// let first = table.points(Derivative::H1)[0];
+/// assert!(first.v_hat > 0.0 && first.value < 0.0); // heave is damped
+/// # Ok::<(), Error>(())
+/// ```
+///
+/// There are 18 (or the eight of heave and rotation), each at its own points in test order.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DerivativeTable {
     /// Name of the deck.
@@ -152,7 +164,7 @@ impl DerivativeTable {
     }
 
     /// The degrees of freedom that the table covers completely.
-    pub(crate) fn dofs(&self) -> &'static [Dof] {
+    pub fn dofs(&self) -> &'static [Dof] {
         if self.points.len() == Derivative::ALL.len() {
             &Dof::THREE
         } else {
@@ -164,7 +176,7 @@ impl DerivativeTable {
     ///
     /// # Errors
     /// [`Error::Input`] listing those that are missing.
-    pub(crate) fn require(&self, dofs: &[Dof]) -> Result<()> {
+    pub fn require(&self, dofs: &[Dof]) -> Result<()> {
         let missing: Vec<&str> = coupling(dofs)
             .filter(|d| !self.points.contains_key(d))
             .map(Derivative::name)
@@ -189,7 +201,7 @@ impl DerivativeTable {
     }
 
     /// The range of `K` in which every derivative among `dofs` was tested.
-    pub(crate) fn tested_range(&self, dofs: &[Dof]) -> ReducedFrequencyRange {
+    pub fn tested_range(&self, dofs: &[Dof]) -> ReducedFrequencyRange {
         let ranges = |d: Derivative| {
             ReducedFrequencyRange::spanning(self.points(d).iter().map(DerivativePoint::k))
         };

@@ -56,7 +56,7 @@ impl Arms {
             return Err(Error::input(
                 "arms of quasi-steady theory",
                 "a model with the vertical and the torsional degree of freedom",
-                format!("{:?}", model.dofs()),
+                Dof::names(model.dofs()),
             ));
         };
         let arm = |dof: Dof| -> Result<f64> {

@@ -43,7 +43,7 @@ impl QuasiSteady {
             return Err(Error::input(
                 "quasi-steady theory",
                 "vertical and torsional degrees of freedom, with or without the lateral one between",
-                format!("{dofs:?}"),
+                Dof::names(dofs),
             ));
         }
         Ok(Self {

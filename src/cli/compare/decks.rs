@@ -5,8 +5,11 @@ use super::{Common, beside_the_thesis, draw, metrics_table};
 use crate::cli::answer::Answer;
 use crate::cli::output::{OutputDir, list};
 use crate::cli::progress::Progress;
-use crate::comparison::forces::{DecksComparison, Score, THESIS_DECKS, compare_decks, score_table};
+use crate::comparison::forces::{
+    CompareOptions, DecksComparison, Score, THESIS_DECKS, compare_decks, score_table,
+};
 use crate::error::Result;
+use crate::report::{Figure, PageSection};
 use std::fmt::Write as _;
 
 /// Several girders, a Laguerre model each: metrics of the predicted forces side by side (thesis, section 3.5.4)
@@ -35,6 +38,21 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     let results = compare_decks(&options, &|done, of| stage.at(done as u64, of as u64))?;
     drop(stage);
     out.write("decks_metrics.csv", score_table(&results.scores))?;
+    for (stem, figure) in figures(&options, &results)? {
+        draw(&mut out, &stem, &figure)?;
+    }
+    let mut text = account(&results);
+    let written = out.commit()?;
+    text.push_str(&list(&written));
+    Answer::new(
+        text,
+        &serde_json::json!({ "comparison": results, "files": written }),
+    )
+}
+
+/// The metrics, one figure a motion and kind of speed.
+fn figures(options: &CompareOptions, results: &DecksComparison) -> Result<Vec<(String, Figure)>> {
+    let mut figures = Vec::new();
     for &motion in &options.dofs {
         for held_out in [false, true] {
             let chosen: Vec<_> = results
@@ -67,20 +85,22 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
                 motion.name(),
                 if held_out { "_held_out" } else { "" }
             );
-            draw(
-                &mut out,
-                &stem,
-                &metrics_of(&title, &options.dofs, &chosen, &label)?,
-            )?;
+            figures.push((stem, metrics_of(&title, &options.dofs, &chosen, &label)?));
         }
     }
-    let mut text = account(&results);
-    let written = out.commit()?;
-    text.push_str(&list(&written));
-    Answer::new(
-        text,
-        &serde_json::json!({ "comparison": results, "files": written }),
-    )
+    Ok(figures)
+}
+
+/// The section of the page of the thesis.
+pub(super) fn section(common: &Common, progress: &Progress) -> Result<PageSection> {
+    let options = common.options(THESIS_DECKS.map(str::to_owned).to_vec(), None);
+    let stage = progress.steps("records of several girders");
+    let results = compare_decks(&options, &|done, of| stage.at(done as u64, of as u64))?;
+    drop(stage);
+    let drawn = figures(&options, &results)?.into_iter();
+    let drawn = drawn.map(|(stem, figure)| (format!("Figures 3.10 to 3.13: {stem}"), figure));
+    let title = "3.5.4 Several girders, on rebuilt records";
+    Ok(super::section(title, &results.statements, drawn.collect()))
 }
 
 fn account(results: &DecksComparison) -> String {

@@ -93,12 +93,14 @@ pub fn derivatives(results: &ModelsComparison) -> Result<Figure> {
             results.deck, results.speed_m_s
         ),
         velocity_label: "V̂ = V/(ωB)".into(),
+        bars_label: String::new(),
         derivatives: results
             .derivatives
             .iter()
             .map(|d| DerivativePlot {
                 name: d.name.to_owned(),
                 measured: vec![PlottedSeries::new("measured", d.measured.clone())],
+                bars: Vec::new(),
                 fitted: d
                     .models
                     .iter()

@@ -11,7 +11,7 @@ use super::progress::Progress;
 use crate::comparison::forces::{CompareOptions, ForceMetrics, ScoreSummary, Scoring, Statement};
 use crate::error::Result;
 use crate::identification::DiscreteFit;
-use crate::report::{Figure, PNG_SCALE};
+use crate::report::{Figure, PageSection};
 use crate::section::Dof;
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -79,6 +79,44 @@ impl Common {
     }
 }
 
+/// Sections 3.5.4 to 3.5.6 of the thesis on rebuilt records: its sentences beside what is found, and the figures.
+///
+/// # Errors
+/// Those of the comparisons and figures.
+pub(super) fn thesis_comparisons(progress: &Progress) -> Result<[PageSection; 2]> {
+    let common = Common {
+        speed: 8.0,
+        filters: 3,
+        alpha: 0.6,
+        lateral: false,
+        noise: 0.0,
+        seed: 1,
+        significant_phase: 5.0,
+        out: PathBuf::new(),
+    };
+    Ok([
+        decks::section(&common, progress)?,
+        models::section(&common, progress)?,
+    ])
+}
+
+/// A section of the page of the thesis.
+fn section(title: &str, statements: &[Statement], figures: Vec<(String, Figure)>) -> PageSection {
+    PageSection {
+        title: title.to_owned(),
+        header: vec!["section", "thesis", "here"],
+        rows: statements
+            .iter()
+            .map(|s| vec![s.section.to_owned(), s.thesis.to_owned(), s.here.clone()])
+            .collect(),
+        figures: figures
+            .into_iter()
+            .map(|(caption, figure)| (caption, figure.svg().to_owned()))
+            .collect(),
+        ..PageSection::default()
+    }
+}
+
 /// Runs the command.
 pub fn run(command: &Compare, progress: &Progress) -> Result<Answer> {
     match command {
@@ -141,6 +179,5 @@ fn beside_the_thesis(statements: &[Statement]) -> String {
 
 /// A figure as SVG and PNG.
 fn draw(out: &mut OutputDir, stem: &str, figure: &Figure) -> Result<()> {
-    out.write(format!("{stem}.svg"), figure.svg())?;
-    out.write(format!("{stem}.png"), figure.png(PNG_SCALE)?)
+    crate::cli::figures::write(stem, out, || Ok(figure.clone()))
 }

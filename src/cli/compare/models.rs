@@ -7,6 +7,7 @@ use crate::cli::output::{OutputDir, list};
 use crate::cli::progress::Progress;
 use crate::comparison::forces::{ModelsComparison, compare_models, inside, score_table};
 use crate::error::Result;
+use crate::report::PageSection;
 use std::fmt::Write as _;
 
 /// Laguerre models against rational functions on one girder, in time and frequency (thesis, sections 3.5.5, 3.5.6)
@@ -62,6 +63,32 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
         text,
         &serde_json::json!({ "comparison": results, "files": written }),
     )
+}
+
+/// The section of the page of the thesis.
+pub(super) fn section(common: &Common, progress: &Progress) -> Result<PageSection> {
+    let deck = "LN21-5200".to_owned();
+    let stage = progress.steps("records of one girder");
+    let results = compare_models(&common.options(vec![deck], None), &|done, of| {
+        stage.at(done as u64, of as u64);
+    })?;
+    drop(stage);
+    let mut figures = vec![
+        (
+            "Transfer functions (Figures 3.18 to 3.22)".to_owned(),
+            transfer_functions(&results)?,
+        ),
+        (
+            "Derivatives (Figures 3.23 to 3.26)".to_owned(),
+            derivatives(&results)?,
+        ),
+    ];
+    let forces = histories(&results)?.into_iter();
+    figures.extend(
+        forces.map(|(stem, figure)| (format!("Forces (Figures 3.29 to 3.32): {stem}"), figure)),
+    );
+    let title = "3.5.5, 3.5.6 Models of one girder, on rebuilt records";
+    Ok(super::section(title, &results.statements, figures))
 }
 
 fn account(results: &ModelsComparison) -> String {

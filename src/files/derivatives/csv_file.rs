@@ -193,7 +193,7 @@ pub(crate) fn write_points(
 }
 
 /// Writes a table in this project's CSV in `convention`, which its header states.
-pub(crate) fn write_csv_in(
+pub fn write_csv_in(
     table: &DerivativeTable,
     convention: &Convention,
     out: &mut dyn Write,

@@ -10,8 +10,8 @@ mod xlsx_cells;
 
 #[cfg(test)]
 pub(crate) use csv_file::parse_csv_in;
-pub(crate) use csv_file::{parse_csv, read_csv_with, write_csv_in, write_points};
-pub use csv_file::{read_csv, write_csv};
+pub(crate) use csv_file::{parse_csv, read_csv_with, write_points};
+pub use csv_file::{read_csv, write_csv, write_csv_in};
 pub(crate) use workbook::{TABLE_3_2_FREQUENCIES_HZ, read_workbook_in};
 pub use workbook::{WorkbookOptions, read_workbook};
 pub(crate) use workbook_writer::{workbook_bytes, workbook_bytes_in};
@@ -35,7 +35,7 @@ pub fn named_table(name: &str, directory: &std::path::Path) -> crate::Result<Der
 
 /// What a file of derivatives does not say of itself.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub(crate) struct ReadOptions {
+pub struct ReadOptions {
     /// Notation, argument and axes; what the file states must not contradict them.
     pub convention: notation::StatedConvention,
     /// Width of the section model, m.
@@ -52,7 +52,10 @@ pub fn read_table(path: impl AsRef<std::path::Path>) -> crate::Result<Derivative
 }
 
 /// The same with what the caller states; the second value is the convention that the file is in.
-pub(crate) fn read_table_with(
+///
+/// # Errors
+/// [`crate::Error::Io`]; [`crate::Error::Input`] with file and place, also where the caller contradicts the file.
+pub fn read_table_with(
     path: impl AsRef<std::path::Path>,
     options: &ReadOptions,
 ) -> crate::Result<(DerivativeTable, notation::Convention)> {

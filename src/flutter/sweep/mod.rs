@@ -17,7 +17,7 @@ pub use basis::LinearForces;
 pub use samples::at_samples;
 
 use crate::error::{Error, Result, positive};
-use crate::section::{SectionModel, Structure};
+use crate::section::{Dof, SectionModel, Structure};
 use crate::units::ReducedFrequency;
 use crossing::{Crossing, refine};
 use nalgebra::Complex;
@@ -68,6 +68,20 @@ pub struct SweptOnset {
 }
 
 /// Finds onsets of many sections with one kind of force model.
+///
+/// ```
+/// use aerodeck::flutter::{LinearForces, OnsetSweep, SweepOutcome};
+/// use aerodeck::prelude::*;
+///
+/// let nominal = SectionModel::iabse_1_1a();
+/// let forces = LinearForces::of_rational(&RationalModel::jones_flat_plate(), None);
+/// let sweep = OnsetSweep::new(forces, &nominal.structure()?, 160.0)?;
+/// let SweepOutcome::Onset(onset) = sweep.onset(&nominal, sweep.forces().coefficients())? else {
+///     panic!("the plate flutters")
+/// };
+/// assert!((onset.speed_m_s - 76.679).abs() < 0.001);
+/// # Ok::<(), Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct OnsetSweep {
     forces: LinearForces,
@@ -88,8 +102,11 @@ impl OnsetSweep {
         if !matches!(forces.dofs.len(), 2 | 3) || forces.dofs != nominal.dofs {
             return Err(Error::input(
                 "onset sweep",
-                format!("two or three degrees of freedom, {:?}", nominal.dofs),
-                format!("{:?}", forces.dofs),
+                format!(
+                    "two or three degrees of freedom, {}",
+                    Dof::names(&nominal.dofs)
+                ),
+                Dof::names(&forces.dofs),
             ));
         }
         let slowest = (0..nominal.dofs.len())

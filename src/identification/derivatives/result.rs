@@ -101,7 +101,7 @@ impl IdentifiedDerivatives {
     ///
     /// # Errors
     /// [`Error::Input`] when the runs did not drive both heave and rotation.
-    pub(crate) fn table(&self, name: &str, header: TableHeader) -> Result<DerivativeTable> {
+    pub fn table(&self, name: &str, header: TableHeader) -> Result<DerivativeTable> {
         DerivativeTable::new(name, self.width_m, header, self.points())
     }
 

@@ -53,6 +53,16 @@ pub(crate) struct RecordingSummary {
     pub channels: Vec<String>,
 }
 
+/// All recordings that a campaign file names, and in words what is odd about them.
+///
+/// # Errors
+/// [`Error::Io`]; [`Error::Input`] naming file, run, recording, channel and sample.
+pub fn read_campaign(path: impl AsRef<std::path::Path>) -> Result<(RawCampaign, Vec<String>)> {
+    let reading = Campaign::read(path)?.load()?;
+    let findings = reading.findings.iter().map(ToString::to_string);
+    Ok((reading.raw, findings.collect()))
+}
+
 impl Campaign {
     /// Reads all recordings.
     ///

@@ -15,6 +15,7 @@ mod section_forces;
 mod write;
 
 pub(crate) use file::Campaign;
+pub use load::read_campaign;
 pub(crate) use load::{CampaignReading, RecordingSummary};
 pub(crate) use write::{FileFormat, write_virtual_campaign};
 

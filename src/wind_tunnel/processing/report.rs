@@ -136,7 +136,7 @@ pub struct ProcessingReport {
 
 impl ProcessingReport {
     /// Every warning with its run.
-    pub(crate) fn warnings(&self) -> Vec<String> {
+    pub fn warnings(&self) -> Vec<String> {
         self.runs
             .iter()
             .flat_map(|r| {

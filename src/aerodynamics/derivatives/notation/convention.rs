@@ -152,7 +152,7 @@ impl StatedConvention {
     }
 
     /// For writing: what is not stated is as usual for the notation, the notation itself as in the crate.
-    pub(crate) fn or_usual(self) -> Convention {
+    pub fn or_usual(self) -> Convention {
         let usual = Convention::usual(self.notation.unwrap_or_default());
         Convention {
             argument: self.argument.unwrap_or(usual.argument),
@@ -166,7 +166,7 @@ impl StatedConvention {
     ///
     /// # Errors
     /// [`Error::Input`] for a contradiction, and for a notation or an argument that nobody states.
-    pub(crate) fn with_file(self, file: Self) -> Result<Convention> {
+    pub fn with_file(self, file: Self) -> Result<Convention> {
         let notation = agree("notation", self.notation, file.notation)?
             .ok_or_else(|| unstated("notation", &Notation::ALL.map(Notation::name).join(", ")))?;
         let argument = agree("argument", self.argument, file.argument)?

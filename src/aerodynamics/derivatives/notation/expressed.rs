@@ -34,7 +34,7 @@ pub(crate) struct ExpressedDerivative {
 
 /// One test point.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub(crate) struct ExpressedPoint {
+pub struct ExpressedPoint {
     /// Mean wind speed of the run, m/s; `None` when the source does not say.
     pub mean_speed_m_s: Option<f64>,
     /// Reduced velocity or frequency, as the convention has it.
@@ -68,11 +68,7 @@ impl Convention {
     }
 
     /// One point of `derivative` in this convention.
-    pub(crate) fn express_point(
-        &self,
-        derivative: Derivative,
-        point: &DerivativePoint,
-    ) -> ExpressedPoint {
+    pub fn express_point(&self, derivative: Derivative, point: &DerivativePoint) -> ExpressedPoint {
         ExpressedPoint {
             mean_speed_m_s: point.mean_speed_m_s,
             argument: self.argument.at_v_hat(point.v_hat),
@@ -81,11 +77,7 @@ impl Convention {
     }
 
     /// One point in this convention as the crate has it.
-    pub(crate) fn read_point(
-        &self,
-        derivative: Derivative,
-        point: &ExpressedPoint,
-    ) -> DerivativePoint {
+    pub fn read_point(&self, derivative: Derivative, point: &ExpressedPoint) -> DerivativePoint {
         let v_hat = self.argument.to_v_hat(point.argument);
         let k = ReducedFrequency::from_v_hat(v_hat);
         DerivativePoint {

@@ -18,7 +18,8 @@ mod names;
 
 pub use argument::Argument;
 pub use convention::{Axes, Convention, StatedConvention};
-pub(crate) use expressed::{ExpressedDerivative, ExpressedPoint, ExpressedTable};
+pub use expressed::ExpressedPoint;
+pub(crate) use expressed::{ExpressedDerivative, ExpressedTable};
 
 use super::{Derivative, Part};
 use crate::error::{Error, Result};

@@ -21,7 +21,7 @@ const STAROSSEK: [&str; 18] = [
 impl Notation {
     /// Name of a number in this notation: `H1`, `h1`, `c_hh_im`. `derivative` is its place in the matrix: for drag,
     /// PoliMi's `p1` stands where Scanlan's `P5` does.
-    pub(crate) fn name_of(self, derivative: Derivative) -> &'static str {
+    pub fn name_of(self, derivative: Derivative) -> &'static str {
         match self {
             Self::Scanlan | Self::Classical => derivative.name(),
             Self::Polimi => POLIMI[derivative as usize],
@@ -33,7 +33,7 @@ impl Notation {
     ///
     /// # Errors
     /// [`Error::Input`] with the names of the notation.
-    pub(crate) fn derivative(self, name: &str) -> Result<Derivative> {
+    pub fn derivative(self, name: &str) -> Result<Derivative> {
         let bare = name.trim().trim_end_matches('*');
         Derivative::ALL
             .into_iter()

@@ -21,7 +21,8 @@ fn unit_of(kind: &str) -> Unit {
     let json = std::fs::read(archive.folder.path().join("model.json")).unwrap();
     let options = ForceOptions::single(0.45).to_json().unwrap();
     std::fs::write(archive.folder.path().join(FORCE_FILE), &options).unwrap();
-    archive.resources = Resources::from_bytes(&json, Some(options.as_bytes())).unwrap();
+    archive.resources =
+        Resources::from_bytes(&json, OptionFiles::of_force(Some(options.as_bytes()))).unwrap();
     Unit::instantiate(archive)
 }
 

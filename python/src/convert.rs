@@ -1,0 +1,117 @@
+//! Values of Python and of the library into each other.
+
+use crate::error::{raised, wrong};
+use aerodeck::section::Dof;
+use numpy::{PyArray2, PyArrayMethods};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use std::sync::Mutex;
+
+/// Anything the library can write as JSON, as dicts, lists and numbers.
+pub fn to_python<'py>(py: Python<'py>, value: &impl Serialize) -> PyResult<Bound<'py, PyAny>> {
+    let text = serde_json::to_string(value)
+        .map_err(|e| raised(aerodeck::Error::Numerical(e.to_string())))?;
+    py.import("json")?.call_method1("loads", (text,))
+}
+
+/// Keys and values as a value of the library, with the words of a study file; `place` is named when they do not fit.
+pub fn from_python<T: DeserializeOwned>(place: &str, value: &Bound<'_, PyAny>) -> PyResult<T> {
+    let text: String = value
+        .py()
+        .import("json")?
+        .call_method1("dumps", (value,))?
+        .extract()?;
+    serde_json::from_str(&text)
+        .map_err(|e| wrong(place, "the keys and values of a study file", e.to_string()))
+}
+
+/// Adds `key` unless the caller has stated it.
+pub fn set_default(dict: &Bound<'_, PyDict>, key: &str, value: impl Serialize) -> PyResult<()> {
+    if dict.contains(key)? {
+        return Ok(());
+    }
+    dict.set_item(key, to_python(dict.py(), &value)?)
+}
+
+/// A word of the library's files: a notation, a motion, …
+pub fn word<T: DeserializeOwned>(place: &str, expected: &str, text: &str) -> PyResult<T> {
+    serde_json::from_value(text.into()).map_err(|_| wrong(place, expected, format!("`{text}`")))
+}
+
+/// Names of motions: `vertical`, `lateral`, `torsion`.
+pub fn dof_names(dofs: &[Dof]) -> Vec<&'static str> {
+    dofs.iter()
+        .map(|d| match d {
+            Dof::Vertical => "vertical",
+            Dof::Lateral => "lateral",
+            Dof::Torsion => "torsion",
+        })
+        .collect()
+}
+
+/// The motions of these names.
+pub fn dofs(names: &[String]) -> PyResult<Vec<Dof>> {
+    let one = |name: &String| word("dofs", "vertical, lateral or torsion", name);
+    names.iter().map(one).collect()
+}
+
+/// Rows as an array.
+pub fn rows<'py>(
+    py: Python<'py>,
+    width: usize,
+    rows: impl IntoIterator<Item = impl AsRef<[f64]>>,
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let flat: Vec<f64> = rows.into_iter().flat_map(|r| r.as_ref().to_vec()).collect();
+    let count = flat.len() / width.max(1);
+    numpy::PyArray1::from_vec(py, flat).reshape([count, width])
+}
+
+/// A callable that is told how far long work has come, from any thread. What it raises ends nothing by itself: it is
+/// raised when the work is done.
+pub struct Callback {
+    function: Option<Py<PyAny>>,
+    raised: Mutex<Option<PyErr>>,
+}
+
+impl Callback {
+    /// `function` is called with what is done and all there is to do.
+    pub fn new(function: Option<Py<PyAny>>) -> Self {
+        Self {
+            function,
+            raised: Mutex::new(None),
+        }
+    }
+
+    /// Tells it; not again after it has raised something.
+    pub fn tell(&self, done: usize, total: usize) {
+        let Some(function) = &self.function else {
+            return;
+        };
+        Python::attach(|py| {
+            let mut raised = self.raised.lock().unwrap_or_else(|e| e.into_inner());
+            if raised.is_none() {
+                *raised = function.call1(py, (done, total)).err();
+            }
+        });
+    }
+
+    /// What it raised.
+    pub fn finish(self) -> PyResult<()> {
+        let raised = self.raised.into_inner().unwrap_or_else(|e| e.into_inner());
+        raised.map_or(Ok(()), Err)
+    }
+}
+
+/// Calls a method of `aerodeck/_show.py` on `of`.
+pub fn shown<'py>(
+    of: &Bound<'py, PyAny>,
+    function: &str,
+    keywords: Option<&Bound<'py, PyDict>>,
+) -> PyResult<Bound<'py, PyAny>> {
+    of.py()
+        .import("aerodeck._show")?
+        .getattr(function)?
+        .call((of,), keywords)
+}

@@ -1,0 +1,42 @@
+//! Errors of the library as the exceptions of `aerodeck/_errors.py`.
+
+use aerodeck::Error;
+use pyo3::prelude::*;
+
+/// The exception for an error: `InputError` knows file, place, expected and found.
+pub fn raised(error: Error) -> PyErr {
+    Python::attach(|py| exception(py, &error).unwrap_or_else(|failed| failed))
+}
+
+/// Wrong input at `place`.
+pub fn wrong(place: &str, expected: &str, found: String) -> PyErr {
+    let made = || {
+        Python::attach(|py| {
+            let class = py.import("aerodeck._errors")?.getattr("InputError")?;
+            let file: Option<&str> = None;
+            let value = class.call1((file, place, expected, found))?;
+            Ok(PyErr::from_value(value))
+        })
+    };
+    made().unwrap_or_else(|failed| failed)
+}
+
+fn exception(py: Python<'_>, error: &Error) -> PyResult<PyErr> {
+    let module = py.import("aerodeck._errors")?;
+    let value = match error {
+        Error::Input(e) => {
+            let file = e.file.as_ref().map(|f| f.display().to_string());
+            let class = module.getattr("InputError")?;
+            class.call1((file, &e.place, &e.expected, &e.found))?
+        }
+        Error::Io { path, source } => {
+            let class = module.getattr("FileError")?;
+            class.call1((path.display().to_string(), source.to_string()))?
+        }
+        Error::Unstable(text) => module.getattr("UnstableError")?.call1((text,))?,
+        Error::Numerical(_) | Error::NotDistinct(_) | Error::Several(_) => module
+            .getattr("NumericalError")?
+            .call1((error.to_string(),))?,
+    };
+    Ok(PyErr::from_value(value))
+}

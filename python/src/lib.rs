@@ -1,0 +1,45 @@
+//! The Python package `aerodeck`: the library's own names, with NumPy arrays.
+//!
+//! One file a noun. Nothing is computed here: each function takes arrays apart, releases the interpreter, calls the
+//! library and puts arrays together. Plots and pages for notebooks are Python (`aerodeck/_show.py`).
+
+mod convert;
+mod derivatives;
+mod error;
+mod export;
+mod fit;
+mod flutter;
+mod model;
+mod monte_carlo;
+mod process;
+mod records;
+mod response;
+mod section;
+
+use pyo3::prelude::*;
+
+/// The compiled half of the package.
+#[pymodule]
+fn _aerodeck(m: &Bound<'_, PyModule>) -> PyResult<()> {
+    m.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    m.add_class::<derivatives::Derivatives>()?;
+    m.add_class::<records::Records>()?;
+    m.add_class::<section::Section>()?;
+    m.add_class::<model::Model>()?;
+    m.add_class::<flutter::Onset>()?;
+    m.add_class::<flutter::Sweep>()?;
+    m.add_class::<flutter::Onsets>()?;
+    m.add_class::<response::Motion>()?;
+    m.add_class::<response::Stepper>()?;
+    m.add_class::<monte_carlo::MonteCarlo>()?;
+    m.add_class::<process::Processing>()?;
+    m.add_function(wrap_pyfunction!(fit::fit_laguerre, m)?)?;
+    m.add_function(wrap_pyfunction!(fit::fit_rational, m)?)?;
+    m.add_function(wrap_pyfunction!(flutter::flutter, m)?)?;
+    m.add_function(wrap_pyfunction!(flutter::sweep, m)?)?;
+    m.add_function(wrap_pyfunction!(flutter::onsets, m)?)?;
+    m.add_function(wrap_pyfunction!(response::simulate, m)?)?;
+    m.add_function(wrap_pyfunction!(monte_carlo::monte_carlo, m)?)?;
+    m.add_function(wrap_pyfunction!(export::export_fmu, m)?)?;
+    m.add_function(wrap_pyfunction!(process::process, m)?)
+}

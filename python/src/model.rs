@@ -1,0 +1,189 @@
+//! `Model`: a trained model of the self-excited forces.
+
+use crate::convert::{dof_names, shown, to_python};
+use crate::error::{raised, wrong};
+use crate::section::Section;
+use aerodeck::aerodynamics::{Realizable, Transfer};
+use aerodeck::identification::FitReport;
+use aerodeck::section::SectionModel;
+use aerodeck::trained_model::{self, Experiment, Provenance, TrainedModel};
+use aerodeck::uncertainty::CoefficientUncertainty;
+use aerodeck::units::{ReducedFrequency, ReducedFrequencyRange};
+use nalgebra::Complex;
+use numpy::{PyArray1, PyArray3, PyArrayMethods, PyReadonlyArrayDyn};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::path::PathBuf;
+
+/// A model of the self-excited forces, `q̂ = G(K) r̂`, with the account of its fit.
+#[pyclass(frozen, module = "aerodeck")]
+pub struct Model {
+    /// The forces.
+    pub model: trained_model::Model,
+    /// Where the data were taken.
+    pub tested: ReducedFrequencyRange,
+    pub provenance: Provenance,
+    /// `None` for a model that was read from a file.
+    pub report: Option<FitReport>,
+    /// How far the data leave the coefficients open, or why that is not known.
+    pub uncertainty: Result<CoefficientUncertainty, String>,
+    /// Section and experiment of the file it was read from.
+    pub stored: Option<(SectionModel, Experiment)>,
+    pub name: String,
+}
+
+#[pymethods]
+impl Model {
+    /// Read `model.json` as `save` and `aerodeck train` write it.
+    #[staticmethod]
+    fn load(path: PathBuf) -> PyResult<Self> {
+        let trained = TrainedModel::read(&path).map_err(raised)?;
+        Ok(Self {
+            model: trained.model,
+            tested: trained.tested_range,
+            provenance: trained.provenance,
+            report: None,
+            uncertainty: Err("no covariance is saved with a model".to_owned()),
+            stored: Some((trained.section, trained.experiment)),
+            name: trained.name,
+        })
+    }
+
+    /// Write `model.json`: the model with the section it is coupled with (left out, that of the file it came from).
+    #[pyo3(signature = (path, section = None))]
+    fn save(&self, path: PathBuf, section: Option<&Bound<'_, Section>>) -> PyResult<()> {
+        let trained = self.trained(section.map(|s| s.get()))?;
+        Ok(std::fs::write(path, trained.to_json().map_err(raised)?)?)
+    }
+
+    /// The transfer matrix at reduced frequencies K = ωB/V.
+    ///
+    /// Parameters
+    /// ----------
+    /// K : float or array of shape (n,)
+    ///
+    /// Returns
+    /// -------
+    /// ndarray of complex, shape (n, d, d)
+    ///     Force over motion, both without dimension: F/(½ρV²B), M/(½ρV²B²) over (y/B, x/B, θ).
+    #[allow(non_snake_case)] // the field's own letter
+    fn transfer<'py>(
+        &self,
+        py: Python<'py>,
+        K: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyArray3<Complex<f64>>>> {
+        let array = py
+            .import("numpy")?
+            .call_method1("asarray", (K, "float64"))?;
+        let values: PyReadonlyArrayDyn<'py, f64> = array.extract()?;
+        let n = self.model.dofs().len();
+        let mut flat = Vec::with_capacity(values.as_array().len() * n * n);
+        for k in values.as_array() {
+            let k = ReducedFrequency::from_full_width(*k);
+            let g = self.model.transfer(k).map_err(raised)?;
+            flat.extend((0..n * n).map(|at| g[(at / n, at % n)]));
+        }
+        let count = flat.len() / (n * n);
+        PyArray1::from_vec(py, flat).reshape([count, n, n])
+    }
+
+    /// The account of the fit as dicts and lists: residuals, poles, condition, coefficients with standard errors, active
+    /// constraints, notes. None for a model that was read from a file.
+    #[getter]
+    fn report<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        self.report.as_ref().map(|r| to_python(py, r)).transpose()
+    }
+
+    /// Kind of model in words.
+    #[getter]
+    fn kind(&self) -> &'static str {
+        self.model.kind()
+    }
+
+    /// How it was fitted, in words.
+    #[getter]
+    fn method(&self) -> &str {
+        &self.provenance.method
+    }
+
+    /// Number of states of the realisation.
+    #[getter]
+    fn states(&self) -> usize {
+        self.model.realize().states()
+    }
+
+    /// Motions in the order of every array.
+    #[getter]
+    fn dofs(&self) -> Vec<&'static str> {
+        dof_names(self.model.dofs())
+    }
+
+    /// Lowest and highest reduced frequency K = ωB/V of the data.
+    #[getter]
+    fn tested_range(&self) -> (f64, f64) {
+        (self.tested.min.full_width(), self.tested.max.full_width())
+    }
+
+    /// What a user of the model should know.
+    #[getter]
+    fn notes(&self) -> Vec<String> {
+        self.provenance.notes.clone()
+    }
+
+    /// Section of the file the model was read from.
+    #[getter]
+    fn section(&self) -> Option<Section> {
+        self.stored.as_ref().map(|(s, _)| Section(s.clone()))
+    }
+
+    fn __repr__(&self) -> String {
+        let (low, high) = self.tested_range();
+        format!("Model({}, tested K {low:.3} to {high:.3})", self.kind())
+    }
+
+    fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        shown(slf.as_any(), "model_html", None)
+    }
+
+    /// Draw the derivatives of the model over V̂ with matplotlib, with measured ones if `derivatives` is given.
+    #[pyo3(signature = (**keywords))]
+    fn plot<'py>(
+        slf: &Bound<'py, Self>,
+        keywords: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        shown(slf.as_any(), "model_plot", keywords)
+    }
+}
+
+impl Model {
+    /// What is saved and exported, for `section` or that of the file.
+    pub fn trained(&self, section: Option<&Section>) -> PyResult<TrainedModel> {
+        let stored = self.stored.as_ref().map(|(s, _)| s);
+        let section = section.map(|s| &s.0).or(stored).cloned();
+        let section = section.ok_or_else(|| {
+            wrong(
+                "section",
+                "the section that the model is coupled with",
+                "none".to_owned(),
+            )
+        })?;
+        let limit = crate::flutter::usual_range(&section).speed_max_m_s;
+        let experiment = self.stored.as_ref().map(|(_, e)| e.clone());
+        Ok(TrainedModel {
+            schema_version: self.model.schema_version(),
+            name: self.name.clone(),
+            section,
+            model: self.model.clone(),
+            tested_range: self.tested,
+            provenance: self.provenance.clone(),
+            experiment: experiment.unwrap_or(Experiment {
+                wind_speed_m_s: 0.5 * limit,
+                initial_vertical_m: 0.01,
+                initial_rotation_rad: 1f64.to_radians(),
+                stop_time_s: 10.0,
+                step_size_s: 0.01,
+                onset_search_limit_m_s: limit,
+            }),
+        })
+    }
+}

@@ -1,0 +1,182 @@
+//! `monte_carlo`: the distribution of the onset when section and forces are random.
+
+use crate::convert::{Callback, from_python, set_default, shown, to_python};
+use crate::error::raised;
+use crate::model::Model;
+use crate::section::Section;
+use aerodeck::reliability::{self, MonteCarloPlan, MonteCarloResult};
+use numpy::PyArray1;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+use serde_json::json;
+
+/// Distribution of the onset speed.
+#[pyclass(frozen, module = "aerodeck")]
+pub struct MonteCarlo(MonteCarloResult);
+
+#[pymethods]
+impl MonteCarlo {
+    /// Onset of the model itself, m/s; None when it has none.
+    #[getter]
+    fn nominal_m_s(&self) -> Option<f64> {
+        self.0.nominal_m_s
+    }
+
+    /// Mean of all onsets, m/s.
+    #[getter]
+    fn mean_m_s(&self) -> Option<f64> {
+        self.0.mean_m_s
+    }
+
+    /// Standard deviation of all onsets, m/s.
+    #[getter]
+    fn standard_deviation_m_s(&self) -> Option<f64> {
+        self.0.standard_deviation_m_s
+    }
+
+    /// Numbers of samples by what became of them: onsets, unstable, stable, failed.
+    #[getter]
+    fn counts(&self) -> std::collections::BTreeMap<&'static str, usize> {
+        [
+            ("samples", self.0.samples),
+            ("onsets", self.0.onsets),
+            ("unstable", self.0.unstable_at_or_below),
+            ("stable", self.0.stable),
+            ("failed", self.0.failed),
+        ]
+        .into()
+    }
+
+    /// Speeds below which a part of all sections flutters, m/s, by that part; None where it is above the searched speeds.
+    #[getter]
+    fn quantiles(&self) -> Vec<(f64, Option<f64>)> {
+        let one = |q: &aerodeck::reliability::Quantile| (q.probability, q.speed_m_s);
+        self.0.quantiles.iter().map(one).collect()
+    }
+
+    /// Edges (m/s; shape (n + 1,)) and counts (shape (n,)) of the histogram.
+    #[getter]
+    fn histogram<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<u64>>) {
+        let h = &self.0.histogram;
+        let edge = |i: usize| h.from_m_s + i as f64 * h.width_m_s;
+        let edges = (0..=h.counts.len()).map(edge).collect();
+        (
+            PyArray1::from_vec(py, edges),
+            PyArray1::from_slice(py, &h.counts),
+        )
+    }
+
+    /// Probability of an onset below the design speed and its confidence interval, as (probability, low, high); None when
+    /// no design speed was given.
+    #[getter]
+    fn probability(&self) -> Option<(f64, f64, f64)> {
+        self.0
+            .design
+            .as_ref()
+            .map(|d| (d.probability, d.lower, d.upper))
+    }
+
+    /// Everything, as `monte_carlo.json` of the command line holds it.
+    fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        to_python(py, &self.0)
+    }
+
+    fn __repr__(&self) -> String {
+        format!(
+            "MonteCarlo({} samples, {} onsets)",
+            self.0.samples, self.0.onsets
+        )
+    }
+
+    fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        shown(slf.as_any(), "monte_carlo_html", None)
+    }
+
+    /// Draw the histogram with matplotlib; returns the figure.
+    #[pyo3(signature = (**keywords))]
+    fn plot<'py>(
+        slf: &Bound<'py, Self>,
+        keywords: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        shown(slf.as_any(), "monte_carlo_plot", keywords)
+    }
+}
+
+/// Draw sections and forces at random and find the onset of each, over all cores.
+///
+/// Parameters
+/// ----------
+/// section : Section
+/// model : Model
+/// parameters : dict of str to dict
+///     Distributions by the names of the numbers in a study file:
+///     `{"torsion.frequency_hz": {"kind": "lognormal", "coefficient_of_variation": 0.05}}`; kinds are normal, lognormal (with
+///     standard_deviation or coefficient_of_variation) and uniform (lower, upper).
+/// samples, seed : int
+///     The same seed gives the same samples on every machine and number of threads.
+/// aerodynamic_scatter : float, optional
+///     Standard deviation of every coefficient of the force model over its value.
+/// design_speed_m_s : float, optional
+///     The probability of an onset below this wind speed is asked, m/s.
+/// speed_max_m_s : float, optional
+///     Highest wind speed searched, m/s.
+/// progress : callable, optional
+///     Called with (done, total), from any thread.
+/// **plan
+///     Further keys of the file of a Monte Carlo analysis: `correlation`, `quantiles`, `confidence`.
+///
+/// Returns
+/// -------
+/// MonteCarlo
+#[pyfunction]
+#[pyo3(signature = (section, model, parameters, *, samples = 10_000, seed = 0, aerodynamic_scatter = None,
+    design_speed_m_s = None, speed_max_m_s = None, progress = None, **plan))]
+#[allow(clippy::too_many_arguments)] // keywords of Python, not positions
+pub fn monte_carlo(
+    py: Python<'_>,
+    section: &Bound<'_, Section>,
+    model: &Bound<'_, Model>,
+    parameters: &Bound<'_, PyDict>,
+    samples: usize,
+    seed: u64,
+    aerodynamic_scatter: Option<f64>,
+    design_speed_m_s: Option<f64>,
+    speed_max_m_s: Option<f64>,
+    progress: Option<Py<PyAny>>,
+    plan: Option<&Bound<'_, PyDict>>,
+) -> PyResult<MonteCarlo> {
+    let trained = model.get().trained(Some(section.get()))?;
+    let plan = plan.map_or_else(|| Ok(PyDict::new(py)), |p| p.copy())?;
+    let list = PyList::empty(py);
+    for (name, distribution) in parameters {
+        let one = PyDict::new(py);
+        one.set_item("name", name)?;
+        one.set_item("distribution", distribution)?;
+        list.append(one)?;
+    }
+    plan.set_item("parameter", list)?;
+    for (key, value) in [
+        ("schema", json!(1)),
+        ("model", json!("model.json")),
+        ("samples", json!(samples)),
+        ("seed", json!(seed)),
+        ("design_speed_m_s", json!(design_speed_m_s)),
+        ("speed_max_m_s", json!(speed_max_m_s)),
+        (
+            "aerodynamics",
+            json!({ "relative_scatter": aerodynamic_scatter }),
+        ),
+    ] {
+        set_default(&plan, key, value)?;
+    }
+    let plan: MonteCarloPlan = from_python("parameters", plan.as_any())?;
+    let callback = Callback::new(progress);
+    let result = py.detach(|| {
+        reliability::monte_carlo(&plan, &trained, &|done, total| callback.tell(done, total))
+    });
+    callback.finish()?;
+    result.map(MonteCarlo).map_err(raised)
+}

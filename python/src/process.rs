@@ -1,0 +1,96 @@
+//! `process`: from the load cells of a campaign to records and derivatives.
+
+use crate::convert::{Callback, from_python, to_python};
+use crate::derivatives::Derivatives;
+use crate::error::raised;
+use crate::records::Records;
+use aerodeck::aerodynamics::derivatives::TableHeader;
+use aerodeck::identification::derivatives::{DerivativeOptions, identify_derivatives};
+use aerodeck::wind_tunnel::RecordSource;
+use aerodeck::wind_tunnel::campaign::read_campaign;
+use aerodeck::wind_tunnel::processing::{self, ProcessingOptions};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::path::PathBuf;
+
+/// Records and derivatives of a campaign.
+#[pyclass(frozen, module = "aerodeck", get_all)]
+pub struct Processing {
+    /// Self-excited forces, one record a run.
+    records: Py<Records>,
+    /// The table of derivatives.
+    derivatives: Py<Derivatives>,
+    /// Every derivative at every test point with its standard error, as dicts.
+    estimates: Py<PyAny>,
+    /// What was done with each run, as dicts and lists.
+    report: Py<PyAny>,
+    /// What is odd about the files and runs.
+    warnings: Vec<String>,
+}
+
+#[pymethods]
+impl Processing {
+    fn __repr__(&self) -> String {
+        let (records, warnings) = (self.records.get().0.len(), self.warnings.len());
+        format!("Processing({records} records, {warnings} warnings)")
+    }
+}
+
+/// Process the raw runs of a campaign file into records and derivatives.
+///
+/// Parameters
+/// ----------
+/// campaign : str or os.PathLike
+///     The campaign file (.toml).
+/// progress : callable, optional
+///     Called with (runs done, runs), from any thread.
+/// **options
+///     Options of processing: `lag_s`, `low_pass`, …
+///
+/// Returns
+/// -------
+/// Processing
+#[pyfunction]
+#[pyo3(signature = (campaign, *, progress = None, **options))]
+pub fn process(
+    py: Python<'_>,
+    campaign: PathBuf,
+    progress: Option<Py<PyAny>>,
+    options: Option<&Bound<'_, PyDict>>,
+) -> PyResult<Processing> {
+    let options: ProcessingOptions = match options {
+        Some(options) => from_python("options", options.as_any())?,
+        None => ProcessingOptions::default(),
+    };
+    let callback = Callback::new(progress);
+    let done = py.detach(|| {
+        let (raw, mut warnings) = read_campaign(&campaign)?;
+        let runs = raw.runs.len();
+        let processed = processing::process(&raw, &options, &|done| callback.tell(done, runs))?;
+        let sources: Vec<&dyn RecordSource> = processed
+            .records
+            .iter()
+            .map(|r| r as &dyn RecordSource)
+            .collect();
+        let found = identify_derivatives(&sources, &DerivativeOptions::default())?;
+        let header = TableHeader {
+            source: raw.source.clone(),
+            licence: raw.licence.clone(),
+            model_length_m: Some(raw.rig.model_length_m),
+            ..TableHeader::default()
+        };
+        let table = found.table(&raw.section, header)?;
+        warnings.extend(processed.report.warnings());
+        warnings.extend(found.warnings.iter().cloned());
+        aerodeck::Result::Ok((processed, found, table, warnings))
+    });
+    callback.finish()?;
+    let (processed, found, table, warnings) = done.map_err(raised)?;
+    Ok(Processing {
+        estimates: to_python(py, &found.estimates)?.unbind(),
+        report: to_python(py, &processed.report)?.unbind(),
+        records: Py::new(py, Records(processed.records))?,
+        derivatives: Py::new(py, Derivatives(table))?,
+        warnings,
+    })
+}

@@ -1,0 +1,193 @@
+//! `Records`: forced-vibration records.
+
+use crate::convert::{dof_names, dofs, from_python, rows, to_python};
+use crate::derivatives::Derivatives;
+use crate::error::{raised, wrong};
+use aerodeck::section::Dof;
+use aerodeck::wind_tunnel::{
+    Record, RecordHeader, RecordSource, Segment, TunnelPlan, read_record, write_record,
+};
+use numpy::{PyArray1, PyArray2, PyReadonlyArray2, PyUntypedArrayMethods};
+use pyo3::exceptions::PyIndexError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::path::PathBuf;
+
+/// Motion and self-excited force of a section model in forced vibration, one or several runs.
+#[pyclass(frozen, module = "aerodeck")]
+pub struct Records(pub Vec<Record>);
+
+#[pymethods]
+impl Records {
+    /// Read record files (.csv).
+    #[staticmethod]
+    #[pyo3(signature = (*paths))]
+    fn read(py: Python<'_>, paths: Vec<PathBuf>) -> PyResult<Self> {
+        let read = || {
+            paths
+                .iter()
+                .map(read_record)
+                .collect::<aerodeck::Result<_>>()
+        };
+        py.detach(read).map(Self).map_err(raised)
+    }
+
+    /// One record from arrays.
+    ///
+    /// Parameters
+    /// ----------
+    /// motion : array of shape (n, d)
+    ///     Displacements in the order of `dofs`: m, m, rad.
+    /// force : array of shape (n, d)
+    ///     Self-excited forces per metre of span: N/m, N/m, N·m/m.
+    /// sampling_hz, mean_speed_m_s, width_m, air_density_kg_m3 : float
+    /// dofs : sequence of str
+    ///     `("vertical", "torsion")` or with `"lateral"` between.
+    /// segments : sequence of (float, float, float), optional
+    ///     Stretches of harmonic motion, ramps included: frequency (Hz), start and end (s).
+    #[staticmethod]
+    #[pyo3(signature = (motion, force, *, sampling_hz, mean_speed_m_s, width_m, air_density_kg_m3,
+        dofs = vec!["vertical".to_owned(), "torsion".to_owned()], segments = vec![], name = "record"))]
+    #[allow(clippy::too_many_arguments)] // keywords of Python, not positions
+    fn from_arrays(
+        motion: PyReadonlyArray2<'_, f64>,
+        force: PyReadonlyArray2<'_, f64>,
+        sampling_hz: f64,
+        mean_speed_m_s: f64,
+        width_m: f64,
+        air_density_kg_m3: f64,
+        dofs: Vec<String>,
+        segments: Vec<(f64, f64, f64)>,
+        name: &str,
+    ) -> PyResult<Self> {
+        let dofs = self::dofs(&dofs)?;
+        let shapes = [motion.shape(), force.shape()];
+        if shapes[0] != shapes[1] || shapes[0][1] != dofs.len() {
+            let expected = format!("two arrays of one shape (n, {})", dofs.len());
+            return Err(wrong("motion, force", &expected, format!("{shapes:?}")));
+        }
+        let columns = |a: &PyReadonlyArray2<'_, f64>| {
+            let column = |c: numpy::ndarray::ArrayView1<'_, f64>| c.to_vec();
+            a.as_array().columns().into_iter().map(column).collect()
+        };
+        let segment = |(frequency_hz, start_s, end_s)| Segment {
+            frequency_hz,
+            start_s,
+            end_s,
+        };
+        Ok(Self(vec![Record {
+            motion: columns(&motion),
+            force: columns(&force),
+            header: RecordHeader {
+                name: name.to_owned(),
+                dofs,
+                width_m,
+                air_density_kg_m3,
+                mean_speed_m_s,
+                sampling_hz,
+                segments: segments.into_iter().map(segment).collect(),
+                source: "arrays".to_owned(),
+                licence: "as of the data".to_owned(),
+            },
+        }]))
+    }
+
+    /// Records of a virtual wind tunnel: what a forced-vibration rig would measure on a deck with these derivatives.
+    ///
+    /// Parameters
+    /// ----------
+    /// derivatives : Derivatives
+    /// lateral : bool
+    ///     Whether sway is moved and drag measured.
+    /// **plan
+    ///     Keys of `[tunnel]` in a study file: `noise_fraction`, `seed`, `sampling_hz`, …
+    #[staticmethod]
+    #[pyo3(signature = (derivatives, *, lateral = false, **plan))]
+    fn virtual_tunnel(
+        py: Python<'_>,
+        derivatives: &Bound<'_, Derivatives>,
+        lateral: bool,
+        plan: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<Self> {
+        let plan: TunnelPlan = match plan {
+            Some(plan) => from_python("tunnel", plan.as_any())?,
+            None => TunnelPlan::default(),
+        };
+        let dofs: &[Dof] = if lateral { &Dof::THREE } else { &Dof::TWO };
+        let table = &derivatives.get().0;
+        py.detach(|| plan.records_from_table(table, dofs))
+            .map(Self)
+            .map_err(raised)
+    }
+
+    /// Write every record as `<name>.csv` into a folder; returns the paths.
+    fn write(&self, py: Python<'_>, folder: PathBuf) -> PyResult<Vec<PathBuf>> {
+        py.detach(|| {
+            let one = |record: &Record| {
+                let path = folder.join(format!("{}.csv", record.header.name));
+                let file = std::fs::File::create(&path)?;
+                write_record(record, &mut std::io::BufWriter::new(file)).map_err(raised)?;
+                Ok(path)
+            };
+            self.0.iter().map(one).collect()
+        })
+    }
+
+    /// Time (s, shape (n,)), motion (m, rad; shape (n, d)) and force per metre (N/m, N·m/m; shape (n, d)) of a record.
+    #[allow(clippy::type_complexity)] // three arrays
+    fn to_numpy<'py>(
+        &self,
+        py: Python<'py>,
+        index: usize,
+    ) -> PyResult<(
+        Bound<'py, PyArray1<f64>>,
+        Bound<'py, PyArray2<f64>>,
+        Bound<'py, PyArray2<f64>>,
+    )> {
+        let record = self.get(index)?;
+        let samples = record.motion.first().map_or(0, Vec::len);
+        let step = 1.0 / record.header.sampling_hz;
+        let time = PyArray1::from_vec(py, (0..samples).map(|i| i as f64 * step).collect());
+        let array = |channels: &[Vec<f64>]| {
+            let row = |i: usize| channels.iter().map(|c| c[i]).collect::<Vec<_>>();
+            rows(py, channels.len(), (0..samples).map(row))
+        };
+        Ok((time, array(&record.motion)?, array(&record.force)?))
+    }
+
+    /// What is known of a record besides its samples.
+    fn header<'py>(&self, py: Python<'py>, index: usize) -> PyResult<Bound<'py, PyAny>> {
+        to_python(py, &self.get(index)?.header)
+    }
+
+    /// Motions of the first record.
+    #[getter]
+    fn dofs(&self) -> Vec<&'static str> {
+        self.0.first().map_or(vec![], |r| dof_names(&r.header.dofs))
+    }
+
+    fn __len__(&self) -> usize {
+        self.0.len()
+    }
+
+    fn __add__(&self, other: &Bound<'_, Self>) -> Self {
+        Self([self.0.clone(), other.get().0.clone()].concat())
+    }
+
+    fn __repr__(&self) -> String {
+        let names: Vec<&str> = self.0.iter().map(|r| r.header.name.as_str()).collect();
+        format!("Records({})", names.join(", "))
+    }
+}
+
+impl Records {
+    fn get(&self, index: usize) -> PyResult<&Record> {
+        let missing = || PyIndexError::new_err(format!("{} records, not {index}", self.0.len()));
+        self.0.get(index).ok_or_else(missing)
+    }
+
+    /// For the library.
+    pub fn sources(&self) -> Vec<&dyn RecordSource> {
+        self.0.iter().map(|r| r as &dyn RecordSource).collect()
+    }
+}

@@ -1,0 +1,276 @@
+"""The package against the library's own figures, and what a user touches first."""
+
+import os
+import pickle
+import re
+import subprocess
+import sys
+import threading
+from pathlib import Path
+
+import aerodeck
+import numpy as np
+import pytest
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.fixture(scope="module")
+def table():
+    return aerodeck.Derivatives.deck("LN21-5200")
+
+
+@pytest.fixture(scope="module")
+def section():
+    return aerodeck.Section.table_4_1()
+
+
+@pytest.fixture(scope="module")
+def model(table):
+    return aerodeck.fit_laguerre(table)
+
+
+def test_onset_is_that_of_the_library_with_an_interval_around_it(section, model):
+    onset = aerodeck.flutter(section, model)
+    # the figure of the README's Rust program
+    assert onset.state == "onset" and abs(onset.speed_m_s - 36.87) < 0.01
+    low, high = onset.interval
+    assert low < onset.speed_m_s < high and onset.in_tested_range
+    assert onset.card["onset"]["speed_m_s"] == onset.speed_m_s
+    assert re.fullmatch(r"flutter onset 36\.9 m/s, \d+\.\d–\d+\.\d, inside the tested range", onset.headline)
+    other = aerodeck.flutter(section, model, method="determinant")
+    assert abs(other.speed_m_s / onset.speed_m_s - 1) < 1e-6
+
+
+@pytest.mark.parametrize("deck", aerodeck.Derivatives.decks())
+@pytest.mark.parametrize("at", ["table_4_1", "iabse_1_1a"])
+def test_every_deck_at_both_scales(deck, at):
+    section = getattr(aerodeck.Section, at)()
+    measured = aerodeck.Derivatives.deck(deck)
+    onset = aerodeck.flutter(section, aerodeck.fit_laguerre(measured))
+    own = aerodeck.flutter(section, measured)
+    assert onset.state == "onset"
+    if own.state == "onset" and onset.in_tested_range:
+        assert abs(onset.speed_m_s / own.speed_m_s - 1) < 0.08
+
+
+def test_three_motions(table):
+    section = aerodeck.Section(
+        width_m=0.5, mass_kg_m=15, inertia_kg_m2_m=0.6, vertical_frequency_hz=2, torsion_frequency_hz=5,
+        vertical_damping_ratio=0.003, torsion_damping_ratio=0.003, air_density_kg_m3=1.19, lateral=(15, 1.5, 0.003),
+    )
+    model = aerodeck.fit_laguerre(table, lateral=True)
+    assert model.dofs == section.dofs == ["vertical", "lateral", "torsion"]
+    assert model.transfer([0.3, 0.5]).shape == (2, 3, 3)
+    assert 30 < aerodeck.flutter(section, model).speed_m_s < 45
+
+
+def test_flat_plate_of_iabse():
+    found = aerodeck.flutter(aerodeck.Section.iabse_1_1a(), "flat plate")
+    assert abs(found.speed_m_s - 77) < 2 and found.in_tested_range is None
+
+
+def test_transfer_is_the_formula_of_the_table(table, model):
+    """At measured points V̂²·Re and Im of G are the derivatives the model was fitted to, up to its residual."""
+    points = table.to_numpy()["H1"]
+    fitted = (model.transfer(1 / points[:, 1])[:, 0, 0] * points[:, 1] ** 2).imag
+    rms = np.sqrt(np.mean((fitted - points[:, 2]) ** 2) / np.mean(points[:, 2] ** 2))
+    assert rms < 0.1
+
+
+@pytest.mark.parametrize("notation", ["scanlan", "classical", "polimi", "starossek"])
+def test_notations_round_trip(table, notation):
+    argument = "k_semi"
+    columns = table.to_numpy(notation, argument=argument)
+    again = aerodeck.Derivatives.from_arrays(columns, notation=notation, argument=argument, width_m=table.width_m)
+    for name, points in table.to_numpy().items():
+        np.testing.assert_allclose(again.to_numpy()[name][:, 1:], points[:, 1:], rtol=1e-12)
+
+
+def test_a_pair_of_arrays_is_a_table_without_speeds(table):
+    columns = {n: (p[:8, 1], p[:8, 2]) for n, p in table.to_numpy().items()}
+    one_speed = aerodeck.Derivatives.from_arrays(columns, notation="scanlan", argument="v_hat", width_m=0.5)
+    assert np.isnan(one_speed.to_numpy()["H1"][:, 0]).all()
+    with pytest.raises(aerodeck.InputError, match="columns"):
+        aerodeck.Derivatives.from_arrays({"H1": np.ones((3, 5))}, notation="scanlan", argument="v_hat", width_m=0.5)
+
+
+def test_sweep_crosses_zero_at_the_onset(section, model):
+    onset = aerodeck.flutter(section, model)
+    speeds = onset.speed_m_s * np.array([0.5, 0.999, 1.001, 1.1])
+    curves = aerodeck.sweep(section, model, speeds)
+    lowest = curves.damping_ratio.min(axis=1)
+    assert list(lowest > 0) == [True, True, False, False]
+    assert curves.frequency_hz.shape == curves.tested.shape == (4, 2)
+
+
+def test_motion_grows_above_the_onset_and_the_stepper_gives_the_same_bits(section, model):
+    onset = aerodeck.flutter(section, model).speed_m_s
+    for factor, grows in [(0.95, False), (1.05, True)]:
+        motion = aerodeck.simulate(section, model, factor * onset, stop_time_s=20)
+        rotation = np.abs(motion.displacement[:, 1])
+        assert (rotation[-300:].max() > rotation[:300].max()) == grows
+    stepper = aerodeck.Stepper(section, model)
+    early = stepper.snapshot()
+    first = [stepper.step(0.01, factor * onset) for _ in range(50)]
+    np.testing.assert_array_equal(first, motion.displacement[1:51])
+    stepper.restore(early)
+    np.testing.assert_array_equal([stepper.step(0.01, factor * onset) for _ in range(50)], first)
+
+
+def test_many_onsets_are_single_ones(section, model):
+    mass = np.array([13.0, 15.0, 17.0])
+    told = []
+    many = aerodeck.onsets(section, model, {"vertical.mass_kg_m": mass}, progress=lambda *at: told.append(at))
+    single = [aerodeck.flutter(section.replace({"vertical.mass_kg_m": m}), model).speed_m_s for m in mass]
+    np.testing.assert_allclose(many.speed_m_s, single, rtol=1e-6)
+    assert many.tested.all() and not many.unstable.any() and told[-1] == (3, 3)
+
+
+def test_monte_carlo_is_seeded_and_the_design_speed_counts(section, model):
+    scatter = {"torsion.frequency_hz": {"kind": "lognormal", "coefficient_of_variation": 0.05}}
+    a, b = (aerodeck.monte_carlo(section, model, scatter, samples=2000, seed=7, design_speed_m_s=36) for _ in range(2))
+    assert a.to_dict() == b.to_dict() and a.counts["onsets"] == 2000
+    probability, low, high = a.probability
+    assert low < probability < high
+    edges, counts = a.histogram
+    assert len(edges) == len(counts) + 1 and counts.sum() == 2000
+
+
+def test_records_from_arrays_are_those_of_the_tunnel(table, section):
+    records = aerodeck.Records.virtual_tunnel(table)
+    direct = aerodeck.flutter(section, aerodeck.fit_laguerre(records))
+    rebuilt = None
+    for i in range(len(records)):
+        _, motion, force = records.to_numpy(i)
+        head = records.header(i)
+        one = aerodeck.Records.from_arrays(
+            motion, force, sampling_hz=head["sampling_hz"], mean_speed_m_s=head["mean_speed_m_s"],
+            width_m=head["width_m"], air_density_kg_m3=head["air_density_kg_m3"], name=head["name"],
+            segments=[(s["frequency_hz"], s["start_s"], s["end_s"]) for s in head["segments"]],
+        )
+        rebuilt = one if rebuilt is None else rebuilt + one
+    assert aerodeck.flutter(section, aerodeck.fit_laguerre(rebuilt)).speed_m_s == direct.speed_m_s
+    assert direct.interval is not None
+
+
+def test_saved_models_and_records_come_back(tmp_path, table, section, model):
+    model.save(tmp_path / "model.json", section)
+    again = aerodeck.Model.load(tmp_path / "model.json")
+    assert again.section == section
+    np.testing.assert_array_equal(again.transfer([0.1, 1.0]), model.transfer([0.1, 1.0]))
+    records = aerodeck.Records.virtual_tunnel(table)
+    paths = records.write(tmp_path)
+    np.testing.assert_array_equal(aerodeck.Records.read(*paths).to_numpy(0)[2], records.to_numpy(0)[2])
+    table.write(tmp_path / "table.csv", "polimi")
+    np.testing.assert_allclose(aerodeck.Derivatives.read(tmp_path / "table.csv").to_numpy()["A2"], table.to_numpy()["A2"], rtol=1e-12)
+
+
+def test_fmu_runs_in_fmpy_and_gives_the_same_motion(tmp_path, section, model):
+    fmpy = pytest.importorskip("fmpy")
+    path = tmp_path / "deck.fmu"
+    aerodeck.export_fmu(path, section, model, wind_speed_m_s=30.0)
+    result = fmpy.simulate_fmu(str(path), stop_time=2.0, output_interval=0.01, output=["heave", "rotation"])
+    motion = aerodeck.simulate(section, model, 30.0, stop_time_s=2.0)
+    scale = np.abs(motion.displacement).max(axis=0)
+    np.testing.assert_allclose(result["heave"] / scale[0], motion.displacement[:, 0] / scale[0], atol=1e-9)
+    np.testing.assert_allclose(result["rotation"] / scale[1], motion.displacement[:, 1] / scale[1], atol=1e-9)
+    with pytest.raises(aerodeck.AerodeckError):
+        aerodeck.export_fmu(path, section, model)
+
+
+def test_errors_say_file_place_expected_and_found(tmp_path, section, model):
+    broken = tmp_path / "broken.json"
+    broken.write_text('{"schema_version": 99}')
+    with pytest.raises(aerodeck.InputError) as caught:
+        aerodeck.Model.load(broken)
+    error = pickle.loads(pickle.dumps(caught.value))
+    assert (error.file, error.place, error.found) == (str(broken), "schema_version", "99")
+    assert isinstance(error, ValueError) and "99" in str(error)
+    with pytest.raises(aerodeck.FileError):
+        aerodeck.Model.load(tmp_path / "none.json")
+    with pytest.raises(aerodeck.InputError, match="torsion"):
+        section.replace({"torsion.nonsense": 1.0})
+    with pytest.raises(aerodeck.InputError, match="positive"):
+        section.replace({"width_m": -1.0})
+    with pytest.raises(aerodeck.InputError, match="scanlan"):
+        aerodeck.Derivatives.deck("LN21-5200").to_numpy("nonsense")
+    with pytest.raises(aerodeck.InputError, match="options"):
+        aerodeck.fit_laguerre(aerodeck.Derivatives.deck("LN21-5200"), nonsense=1)
+
+
+def test_what_a_callback_raises_is_raised(table):
+    def stop(done, total):
+        raise KeyboardInterrupt
+
+    records = aerodeck.Records.virtual_tunnel(table)
+    with pytest.raises(KeyboardInterrupt):
+        aerodeck.fit_laguerre(records, progress=stop)
+
+
+def test_other_threads_run_while_the_library_works(section, model):
+    ticks, stop = [], threading.Event()
+
+    def tick():
+        while not stop.wait(0.001):
+            ticks.append(None)
+
+    other = threading.Thread(target=tick)
+    other.start()
+    aerodeck.onsets(section, model, {"torsion.frequency_hz": np.linspace(4, 6, 50_000)})
+    stop.set()
+    other.join()
+    assert len(ticks) > 5
+
+
+def test_process_finds_the_derivatives_of_a_virtual_campaign():
+    campaign = os.environ.get("AERODECK_CAMPAIGN")
+    if not campaign:
+        pytest.skip("AERODECK_CAMPAIGN names no campaign; tests/python_package.rs makes one")
+    found = aerodeck.process(campaign)
+    assert len(found.records) > 0 and found.report["runs"] and found.estimates
+    onset = aerodeck.flutter(aerodeck.Section.table_4_1(), aerodeck.fit_laguerre(found.derivatives))
+    assert abs(onset.speed_m_s / 36.87 - 1) < 0.02
+
+
+def test_pages_for_notebooks(table, section, model):
+    for shown in [table, section, model, aerodeck.flutter(section, model), aerodeck.sweep(section, model)]:
+        html = shown._repr_html_()
+        assert html.startswith("<table") and html.count("<tr>") >= 2 and repr(shown)
+
+
+def test_plots(table, section, model):
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("agg")
+    onset = aerodeck.flutter(section, model)
+    figures = [
+        aerodeck.sweep(section, model).plot(onset=onset),
+        table.plot(models=[model]),
+        model.plot(derivatives=table),
+        aerodeck.simulate(section, model, 30.0, stop_time_s=1.0).plot(),
+    ]
+    assert all(figure.axes[0].lines for figure in figures)
+
+
+def test_nothing_but_numpy_is_needed():
+    script = (
+        "import sys; sys.modules['matplotlib'] = None; import aerodeck; "
+        "print(aerodeck.flutter(aerodeck.Section.table_4_1(), aerodeck.fit_laguerre(aerodeck.Derivatives.deck('LN21-5200'))).state)"
+    )
+    assert subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True).stdout == "onset\n"
+
+
+def test_stubs_are_those_of_the_module():
+    checked = subprocess.run(
+        [sys.executable, "-m", "mypy.stubtest", "aerodeck", "--ignore-missing-stub"], capture_output=True, text=True
+    )
+    assert checked.returncode == 0, checked.stdout + checked.stderr
+
+
+def test_readme_runs(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    text = "".join((ROOT / page).read_text(encoding="utf-8") for page in ("python/README.md", "docs/python.md"))
+    blocks = re.findall(r"```python\n(.*?)```", text, re.S)
+    assert len(blocks) >= 5
+    for block in blocks:
+        exec(compile(block, "README.md", "exec"), {})

@@ -1,0 +1,210 @@
+//! What stands behind the answer of a study: measured derivatives beside the models, curves as numbers, the motion below, at
+//! and above the onset.
+
+use super::figures;
+use super::output::OutputDir;
+use super::simulate::simulated;
+use super::stages::MAX_CURVES;
+use crate::aerodynamics::Transfer;
+use crate::aerodynamics::derivatives::Derivative;
+use crate::error::Result;
+use crate::flutter::FlutterCurves;
+use crate::report::{
+    DerivativePlot, DerivativesPlot, PlottedSeries, TimePanel, derivatives_figure,
+    root_locus_figure, time_history_figure,
+};
+use crate::section::Dof;
+use crate::study::{Deck, Study, TrainedWithReport, derivative_lines};
+use crate::trained_model::TrainedModel;
+use crate::units::{SAME_SPEED, group_of, near_groups};
+use std::fmt::Write as _;
+
+/// Stem of the figure of derivatives.
+pub(super) const DERIVATIVES: &str = "derivatives";
+/// Stem of the figure of the motion around the onset.
+pub(super) const RESPONSE: &str = "response";
+/// Stem of the figure of eigenvalues.
+pub(super) const ROOTS: &str = "roots";
+/// The curves as numbers.
+pub(super) const CURVES: &str = "curves.csv";
+/// Wind speeds over the onset at which the motion is shown.
+const AROUND_ONSET: [f64; 3] = [0.95, 1.0, 1.05];
+/// Periods and samples of a period that are shown.
+const PERIODS: (f64, f64) = (30.0, 24.0);
+
+/// Frequencies and damping ratios over wind speed, one row a point.
+pub(super) fn write_curves(
+    study: &Study,
+    curves: &[FlutterCurves],
+    out: &mut OutputDir,
+) -> Result<()> {
+    let mut text = format!(
+        "# {}: modes over wind speed\n# generator: aerodeck {}\n# units: speed_m_s in m/s; frequency_hz in Hz; \
+         damping_ratio of critical damping, negative when the motion grows; growth_rate_per_s in 1/s\n\
+         model,branch,speed_m_s,frequency_hz,damping_ratio,growth_rate_per_s,in_tested_range\n",
+        study.name.replace('\n', " "),
+        env!("CARGO_PKG_VERSION")
+    );
+    for curve in curves {
+        for branch in &curve.branches {
+            for p in &branch.points {
+                let tested = p
+                    .in_tested_range
+                    .map_or("", |t| if t { "yes" } else { "no" });
+                let _ = writeln!(
+                    text,
+                    "{},{},{},{},{},{},{tested}",
+                    quoted(&curve.model),
+                    branch.name,
+                    p.speed_m_s,
+                    p.frequency_hz,
+                    p.damping_ratio,
+                    p.eigenvalue.re
+                );
+            }
+        }
+    }
+    out.write(CURVES, text)?;
+    if curves.is_empty() {
+        return Ok(());
+    }
+    let drawn = &curves[..curves.len().min(MAX_CURVES)];
+    let title = format!("{}: eigenvalues as the wind rises", study.name);
+    figures::write(ROOTS, out, || root_locus_figure(drawn, &title))
+}
+
+/// A field of a CSV file.
+fn quoted(text: &str) -> String {
+    if text.contains([',', '"', '\n']) {
+        format!("\"{}\"", text.replace('"', "\"\""))
+    } else {
+        text.to_owned()
+    }
+}
+
+/// The models beside the derivatives they were fitted to, with the intervals of the exported one.
+pub(super) fn write_derivatives(
+    study: &Study,
+    deck: &Deck,
+    trained: &[TrainedWithReport],
+    out: &mut OutputDir,
+) -> Result<()> {
+    let dofs = study.section.dofs();
+    let measured = measured(deck, &dofs);
+    let mut fitted = Vec::new();
+    for one in &trained[..trained.len().min(MAX_CURVES)] {
+        let v_hat = one.model.tested_range.min.v_hat();
+        fitted.push((
+            one.model.name.clone(),
+            derivative_lines(&one.model.model, v_hat)?,
+        ));
+    }
+    let (exact, range) = deck.model()?;
+    let exact = match (range, trained.first()) {
+        (None, Some(first)) => Some(derivative_lines(
+            exact.as_ref(),
+            first.model.tested_range.min.v_hat(),
+        )?),
+        _ => None,
+    };
+    let exported = &study.exported()?.name;
+    let known = trained.iter().find(|t| t.model.name == *exported);
+    let known = known.and_then(|t| t.uncertainty.as_ref().ok());
+    let plot = |d: Derivative| DerivativePlot {
+        name: d.name().to_owned(),
+        measured: measured(d),
+        bars: known.map_or(vec![], |known| {
+            let own = known.derivatives.iter().filter(|i| i.derivative == d);
+            own.map(|i| (1.0 / i.k, i.low, i.high)).collect()
+        }),
+        fitted: fitted
+            .iter()
+            .filter_map(|(name, lines)| Some(PlottedSeries::new(name, lines.get(&d)?.clone())))
+            .collect(),
+        reference: exact
+            .iter()
+            .filter_map(|lines| Some(PlottedSeries::new("exact", lines.get(&d)?.clone())))
+            .collect(),
+    };
+    let all = Derivative::ALL.into_iter().map(plot);
+    let plot = DerivativesPlot {
+        title: format!("{}: measured derivatives and models", study.name),
+        velocity_label: "V̂ = V/(ωB)".to_owned(),
+        bars_label: format!("95 % interval of {exported}"),
+        derivatives: all
+            .filter(|d| !(d.measured.is_empty() && d.fitted.is_empty()))
+            .collect(),
+    };
+    figures::write(DERIVATIVES, out, || derivatives_figure(&plot))
+}
+
+/// The test points of a derivative among `dofs`, one series a mean speed; none for a deck without a table.
+fn measured<'a>(deck: &'a Deck, dofs: &'a [Dof]) -> impl Fn(Derivative) -> Vec<PlottedSeries> + 'a {
+    move |d| {
+        let inside = dofs.contains(&d.force()) && dofs.contains(&d.motion());
+        let Some(table) = deck.table().filter(|_| inside) else {
+            return Vec::new();
+        };
+        let points = table.points(d);
+        let groups = near_groups(points.iter().filter_map(|p| p.mean_speed_m_s), SAME_SPEED);
+        let mut series: Vec<PlottedSeries> = groups
+            .iter()
+            .map(|g| {
+                let mean = g.iter().sum::<f64>() / g.len() as f64;
+                PlottedSeries::new(format!("measured, {mean:.1} m/s"), Vec::new())
+            })
+            .collect();
+        if series.is_empty() {
+            series.push(PlottedSeries::new("measured", Vec::new()));
+        }
+        for p in points {
+            let group = p.mean_speed_m_s.map_or(0, |v| group_of(&groups, v));
+            series[group].points.push((p.v_hat, p.value));
+        }
+        series.retain(|s| !s.points.is_empty());
+        series
+    }
+}
+
+/// The released section of the exported model below, at and above its onset.
+pub(super) fn write_response(
+    model: &TrainedModel,
+    onset: (f64, f64),
+    out: &mut OutputDir,
+) -> Result<()> {
+    let (speed_m_s, frequency_hz) = onset;
+    let step = 1.0 / (PERIODS.1 * frequency_hz);
+    let mut panels: Vec<TimePanel> = Vec::new();
+    for factor in AROUND_ONSET {
+        let speed = factor * speed_m_s;
+        let percent = (100.0 * (factor - 1.0_f64)).round();
+        let label = if percent == 0.0 {
+            format!("{speed:.1} m/s, the onset")
+        } else {
+            format!("{speed:.1} m/s ({percent:+} %)")
+        };
+        let rows = simulated(model, speed, (PERIODS.0 / frequency_hz, step))?;
+        for (i, dof) in model.model.dofs().iter().enumerate() {
+            let (unit, scale) = match dof {
+                Dof::Torsion => ("deg", 1f64.to_degrees()),
+                Dof::Vertical | Dof::Lateral => ("mm", 1e3),
+            };
+            let points = rows
+                .iter()
+                .map(|row| (row[0], scale * row[1 + i]))
+                .collect();
+            let series = PlottedSeries::new(label.clone(), points);
+            match panels.get_mut(i) {
+                Some(panel) => panel.series.push(series),
+                None => panels.push(TimePanel {
+                    y_label: format!("{} {} ({unit})", dof.name(), dof.symbol()),
+                    series: vec![series],
+                }),
+            }
+        }
+    }
+    let title = format!("{}: released below, at and above the onset", model.name);
+    figures::write(RESPONSE, out, || {
+        time_history_figure(&title, &panels, "Time t (s)")
+    })
+}

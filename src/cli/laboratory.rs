@@ -1,0 +1,103 @@
+//! The laboratory's report of `process`: what was found odd, every run, the derivatives with their errors, the stages of each run.
+
+use super::output::OutputDir;
+use super::process::{file_name, line};
+use crate::identification::derivatives::{DerivativeEstimate, IdentifiedDerivatives};
+use crate::report::{PageSection, SectionsPage};
+use crate::wind_tunnel::RawCampaign;
+use crate::wind_tunnel::processing::{ProcessingReport, RunReport};
+
+/// The page; its figures are those that stand in `out`.
+pub(super) fn laboratory_page(
+    raw: &RawCampaign,
+    report: &ProcessingReport,
+    found: Option<&IdentifiedDerivatives>,
+    (notes, out): (&[String], &OutputDir),
+) -> SectionsPage {
+    let estimates = found.map_or(&[][..], |f| &f.estimates);
+    let caption = "Points: test points of each mean speed, with 95 % intervals. Lines: theory.";
+    let derivatives = svg(out, "derivatives").map(|svg| (caption.to_owned(), svg));
+    let stages = report.runs.iter().filter_map(|run| {
+        let drawn = svg(out, &format!("processing/{}", file_name(&run.run)))?;
+        Some((run.run.clone(), drawn))
+    });
+    let section = |title: &str| PageSection {
+        title: title.to_owned(),
+        ..PageSection::default()
+    };
+    SectionsPage {
+        title: format!("{}: processing of a campaign", raw.section),
+        subtitle: format!(
+            "{}; licence: {}",
+            raw.source,
+            raw.licence.lines().next().unwrap_or("")
+        ),
+        answer: format!(
+            "{} runs, {} values of derivatives, {} remarks",
+            report.runs.len(),
+            estimates.len(),
+            notes.len()
+        ),
+        sections: vec![
+            PageSection {
+                text: notes.to_vec(),
+                ..section("Remarks")
+            },
+            PageSection {
+                text: vec![format!(
+                    "Lag of the force channels {:.3} ms.",
+                    1e3 * report.lag_s
+                )],
+                header: vec!["run", "what was found"],
+                rows: report.runs.iter().map(run_row).collect(),
+                ..section("Runs")
+            },
+            PageSection {
+                text: vec![
+                    "Scanlan's with ½ρV² and K², heave and lift up, over V̂ = V/(ωB).".to_owned(),
+                ],
+                header: vec![
+                    "derivative",
+                    "V m/s",
+                    "f Hz",
+                    "V̂",
+                    "value",
+                    "standard error",
+                ],
+                rows: estimates.iter().map(estimate_row).collect(),
+                figures: derivatives.into_iter().collect(),
+                ..section("Derivatives")
+            },
+            PageSection {
+                figures: stages.collect(),
+                ..section("Stages of the runs")
+            },
+        ],
+    }
+}
+
+fn run_row(run: &RunReport) -> Vec<String> {
+    let said = line(run);
+    let rest = said
+        .strip_prefix(&format!("{}: ", run.run))
+        .unwrap_or(&said);
+    vec![run.run.clone(), rest.to_owned()]
+}
+
+fn estimate_row(e: &DerivativeEstimate) -> Vec<String> {
+    vec![
+        e.derivative.name().to_owned(),
+        format!("{:.2}", e.mean_speed_m_s),
+        format!("{:.3}", e.frequency_hz),
+        format!("{:.4}", e.v_hat),
+        format!("{:.4}", e.value),
+        format!("{:.4}", e.standard_error),
+    ]
+}
+
+/// A figure that was drawn, without what only a file of its own needs.
+pub(super) fn svg(out: &OutputDir, stem: &str) -> Option<String> {
+    let text = std::fs::read_to_string(out.staging().join(format!("{stem}.svg"))).ok()?;
+    let start = text.find("<svg")?;
+    Some(text[start..].to_owned())
+}

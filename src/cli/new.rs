@@ -1,0 +1,77 @@
+//! `aerodeck new`: a commented study to begin with.
+
+use super::answer::Answer;
+use super::output::{OutputDir, list};
+use crate::error::{Error, Result};
+use crate::study::{Deck, Study, new_study_text};
+use std::path::{Path, PathBuf};
+
+/// Write a commented study file for an embedded deck, the flat plate or a table of your own
+///
+/// Example: aerodeck new --workbook AerodynamicDerivatives_LN21_5200.xlsx --out my-bridge.toml
+#[derive(clap::Args)]
+#[command(verbatim_doc_comment)]
+pub(crate) struct Args {
+    /// An embedded deck (see `aerodeck derivatives show --help`) or `flat plate`.
+    #[arg(long, default_value = "LN21-5200")]
+    deck: String,
+    /// A table of derivatives of your own (.xlsx, .csv).
+    #[arg(long, conflicts_with = "deck")]
+    workbook: Option<PathBuf>,
+    /// The study file.
+    #[arg(long, default_value = "study.toml")]
+    out: PathBuf,
+    /// Replace a study file that differs.
+    #[arg(long)]
+    force: bool,
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> Result<Answer> {
+    let folder = args.out.parent().filter(|p| !p.as_os_str().is_empty());
+    let folder = folder.unwrap_or(Path::new("."));
+    let name = args.out.file_name().ok_or_else(|| {
+        let found = args.out.display().to_string();
+        Error::input("--out", "the name of a file", found)
+    })?;
+    let source = match &args.workbook {
+        Some(table) => beside(table, folder)?,
+        None => args.deck.clone(),
+    };
+    let text = new_study_text(&source);
+    let study = Study::from_toml(&text, folder.to_path_buf())?;
+    let deck = Deck::load(&study)?;
+    let mut out = OutputDir::new(folder)?;
+    out.write(name, &text)?;
+    let instead = "choose another --out";
+    out.refuse_edited(&name.to_string_lossy(), args.force, instead)?;
+    let written = out.commit()?;
+    let mut said = format!("{}\n", deck.description());
+    for warning in deck.warnings() {
+        said.push_str(&format!("warning: deck: {warning}\n"));
+    }
+    said.push_str(&format!(
+        "{}state your section in it, then run `aerodeck study {}`\n",
+        list(&written),
+        args.out.display()
+    ));
+    Answer::new(
+        said,
+        &serde_json::json!({ "deck": deck.description(), "warnings": deck.warnings(), "files": written }),
+    )
+}
+
+/// The path of a table as the study in `folder` has to name it.
+fn beside(table: &Path, folder: &Path) -> Result<String> {
+    let full = |path: &Path| path.canonicalize().map_err(|e| Error::io(path, e));
+    let here = table.parent().filter(|p| !p.as_os_str().is_empty());
+    let table_folder = full(here.unwrap_or(Path::new(".")))?;
+    std::fs::create_dir_all(folder).map_err(|e| Error::io(folder, e))?;
+    let name = Path::new(table.file_name().unwrap_or_default());
+    let inside = table_folder.strip_prefix(full(folder)?);
+    let path = match inside {
+        Ok(below) => below.join(name),
+        Err(_) => table_folder.join(name),
+    };
+    Ok(path.to_string_lossy().replace('\\', "/"))
+}

@@ -1,0 +1,337 @@
+//! `aerodeck report`: one self-contained page from a folder of results; `study` and `demo` end with it.
+
+mod curves;
+mod view;
+
+pub(crate) use view::AnswerView;
+
+use super::answer::Answer;
+use super::evidence::{CURVES, DERIVATIVES, RESPONSE, ROOTS};
+use super::output::{OutputDir, list};
+use super::stages::{FIGURE, FMU_FILE, MODEL_FILE};
+use crate::error::{Error, Result};
+use crate::flutter::OnsetInterval;
+use crate::fmu::resources::{OptionFiles, Resources};
+use crate::fmu::standard::Causality;
+use crate::report::{PageFigure, PageFit, StudyPage, study_page};
+use crate::study::Study;
+use curves::curves_of;
+use std::path::{Path, PathBuf};
+use view::{EntryView, FitView, OnsetView, SummaryView};
+
+/// The page.
+pub(super) const REPORT: &str = "report.html";
+/// What the page is made from.
+pub(super) const SUMMARY: &str = "summary.json";
+
+/// Write report.html, one self-contained page, from a folder of results of `study` or `demo`
+///
+/// Example: aerodeck report aerodeck-out
+#[derive(clap::Args)]
+#[command(verbatim_doc_comment)]
+pub(crate) struct Args {
+    /// The folder of results.
+    folder: PathBuf,
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> Result<Answer> {
+    let page = page(&args.folder, &args.folder)?;
+    let mut out = OutputDir::new(&args.folder)?;
+    out.write(REPORT, page)?;
+    let written = out.commit()?;
+    Answer::new(list(&written), &serde_json::json!({ "files": written }))
+}
+
+/// The page of the results in `folder`; the study stands there or else in `study_folder`.
+///
+/// # Errors
+/// [`Error::Io`] and [`Error::Input`] for a folder without results of `study`.
+pub(super) fn page(folder: &Path, study_folder: &Path) -> Result<String> {
+    let path = folder.join(SUMMARY);
+    let text = std::fs::read_to_string(&path).map_err(|e| Error::io(&path, e))?;
+    let summary: SummaryView = serde_json::from_str(&text).map_err(|e| {
+        let place = format!("line {}, column {}", e.line(), e.column());
+        let expected = "the summary of `aerodeck study` or `aerodeck demo` of this version";
+        Error::input(place, expected, e.to_string()).in_file(&path)
+    })?;
+    let staged = folder.join(&summary.study_file);
+    let study_path = if staged.exists() {
+        staged
+    } else {
+        study_folder.join(&summary.study_file)
+    };
+    let study_text = std::fs::read_to_string(&study_path).map_err(|e| Error::io(&study_path, e))?;
+    let study =
+        Study::from_toml(&study_text, folder.to_path_buf()).map_err(|e| e.in_file(&study_path))?;
+    let read = |name: &str| std::fs::read(folder.join(name)).ok();
+    let mut page = of_summary(&summary, &study);
+    page.figures = figures(&|name| std::fs::read_to_string(folder.join(name)).ok());
+    if let (Some(model), Some(_)) = (read(MODEL_FILE), read(FMU_FILE)) {
+        page.fmu = FMU_FILE.to_owned();
+        page.variables = variables(&model)?;
+    }
+    if let Ok(curves) = std::fs::read_to_string(folder.join(CURVES)) {
+        (page.speeds, page.curves) = curves_of(&curves)?;
+    }
+    let digest = |bytes: &[u8]| sha1_smol::Sha1::from(bytes).digest().to_string();
+    let own = (summary.study_file.clone(), digest(study_text.as_bytes()));
+    page.hashes.push(own);
+    for name in [MODEL_FILE, FMU_FILE, CURVES] {
+        let hash = read(name).map(|bytes| (name.to_owned(), digest(&bytes)));
+        page.hashes.extend(hash);
+    }
+    page.study = study_text;
+    study_page(&page)
+}
+
+fn of_summary(summary: &SummaryView, study: &Study) -> StudyPage {
+    let answer = &summary.answer;
+    let own = summary
+        .onsets
+        .iter()
+        .find(|o| o.model == answer.model && Some(o.speed_m_s) == answer.speed_m_s);
+    let all = summary.onsets.iter().chain(&summary.undetermined);
+    StudyPage {
+        title: summary.study.clone(),
+        generator: summary.generator.clone(),
+        verdict: match answer.required_speed_met {
+            Some(true) => "good",
+            Some(false) => "bad",
+            None => "",
+        },
+        headline: capital(&answer.headline),
+        criterion: criterion(answer),
+        card: own.map_or(vec![], card),
+        whose: format!(
+            "The answer is that of the model “{}”, which the FMU holds; the other models and routes stand below for comparison.",
+            answer.model
+        ),
+        limits: summary.limits.clone(),
+        asked: asked(summary, study),
+        onsets: all.map(row).collect(),
+        comparisons: summary.comparisons.clone(),
+        fits: summary.fits.iter().map(fit).collect(),
+        command: format!("aerodeck study {} --out results", summary.study_file),
+        licence: summary.licence.lines().next().unwrap_or("").to_owned(),
+        onset: answer.speed_m_s,
+        ..StudyPage::default()
+    }
+}
+
+fn capital(text: &str) -> String {
+    let mut characters = text.chars();
+    let first = characters.next().map(|c| c.to_uppercase().to_string());
+    first.unwrap_or_default() + characters.as_str()
+}
+
+fn criterion(answer: &AnswerView) -> Option<String> {
+    let required = answer.required_speed_m_s?;
+    Some(match answer.required_speed_met? {
+        true => format!("Required: above {required} m/s. Met, with the lower end of the interval."),
+        false => {
+            format!("Required: above {required} m/s. NOT met with the lower end of the interval.")
+        }
+    })
+}
+
+fn card(onset: &OnsetView) -> Vec<(String, String)> {
+    let interval = match &onset.interval {
+        OnsetInterval::Known {
+            low_m_s,
+            high_m_s,
+            standard_error_m_s,
+            degrees_of_freedom,
+        } => format!(
+            "{low_m_s:.2} to {high_m_s:.2} m/s (standard error {standard_error_m_s:.2} m/s, {degrees_of_freedom:.0} degrees of freedom)"
+        ),
+        OnsetInterval::None { reason } | OnsetInterval::Undetermined { reason, .. } => {
+            reason.clone()
+        }
+        OnsetInterval::Spread {
+            low_m_s,
+            high_m_s,
+            of,
+        } => {
+            format!("{low_m_s:.2} to {high_m_s:.2} m/s: {of}")
+        }
+    };
+    [
+        ("onset speed V", format!("{:.2} m/s", onset.speed_m_s)),
+        ("95 % interval", interval),
+        ("frequency f", format!("{:.4} Hz", onset.frequency_hz)),
+        (
+            "reduced velocity V/(fB)",
+            format!("{:.3}", onset.reduced_velocity),
+        ),
+        (
+            "motion",
+            format!(
+                "{} branch; |y|/(B|θ|) {:.3}, phase of y to θ {:.1}°",
+                onset.branch, onset.mode_ratio, onset.phase_deg
+            ),
+        ),
+        ("tested range", tested(onset.in_tested_range).to_owned()),
+    ]
+    .map(|(name, value)| (name.to_owned(), value))
+    .into()
+}
+
+fn tested(inside: Option<bool>) -> &'static str {
+    match inside {
+        Some(true) => "inside",
+        Some(false) => "OUTSIDE",
+        None => "exact",
+    }
+}
+
+fn row(onset: &OnsetView) -> Vec<String> {
+    vec![
+        onset.model.clone(),
+        onset.method.name().to_owned(),
+        format!("{:.3}", onset.speed_m_s),
+        super::account::interval(&onset.interval),
+        format!("{:.4}", onset.frequency_hz),
+        format!("{:.3}", onset.reduced_velocity),
+        onset.branch.clone(),
+        tested(onset.in_tested_range).to_owned(),
+    ]
+}
+
+fn asked(summary: &SummaryView, study: &Study) -> Vec<(String, String)> {
+    let s = &study.section;
+    let support =
+        |inertia: String, frequency: Option<f64>, stiffness: Option<f64>, damping: f64| {
+            let spring = match (frequency, stiffness) {
+                (Some(f), _) => format!("{f} Hz in still air"),
+                (None, Some(k)) => format!("stiffness {k} per metre"),
+                (None, None) => "no spring".to_owned(),
+            };
+            format!(
+                "{inertia}, {spring}, damping ratio {} %",
+                round(100.0 * damping)
+            )
+        };
+    let translation = |t: &crate::section::Translation| {
+        let mass = format!("{} kg/m", t.mass_kg_m);
+        support(mass, t.frequency_hz, t.stiffness_n_m2, t.damping_ratio)
+    };
+    let t = &s.torsion;
+    let inertia = format!("{} kg·m²/m", t.inertia_kg_m2_m);
+    let mut asked = vec![
+        ("deck", summary.deck.clone()),
+        (
+            "width B, air",
+            format!("{} m, {} kg/m³", s.width_m, s.air_density_kg_m3),
+        ),
+        ("vertical", translation(&s.vertical)),
+    ];
+    asked.extend(s.lateral.iter().map(|l| ("lateral", translation(l))));
+    asked.push((
+        "torsion",
+        support(inertia, t.frequency_hz, t.stiffness_n, t.damping_ratio),
+    ));
+    if s.axis_offset_m.is_some() || s.mass_offset_m.is_some() {
+        let offset = |x: Option<f64>| x.unwrap_or(0.0);
+        let text = format!(
+            "axis {} m downwind of mid-chord, centre of mass {} m downwind of the axis",
+            offset(s.axis_offset_m),
+            offset(s.mass_offset_m)
+        );
+        asked.push(("offsets", text));
+    }
+    asked.push(("wind speeds", summary.speeds.explain()));
+    let models: Vec<&str> = study.models.iter().map(|m| m.name.as_str()).collect();
+    asked.push(("models", models.join(", ")));
+    let owned = |(name, value): (&str, String)| (name.to_owned(), value);
+    asked.into_iter().map(owned).collect()
+}
+
+/// Without the digits that a product left behind.
+fn round(x: f64) -> f64 {
+    (1e9 * x).round() / 1e9
+}
+
+fn fit(fit: &FitView) -> PageFit {
+    let k = |k: crate::units::ReducedFrequency| format!("{:.3}", k.full_width());
+    let entry = |e: &EntryView| {
+        let residual = e
+            .relative_rms
+            .map_or("–".to_owned(), |r| format!("{:.1} %", 100.0 * r));
+        let poles: Vec<String> = e.poles.iter().map(|p| format!("{p:.3}")).collect();
+        (
+            format!("{} by {}", e.force.name(), e.motion.name()),
+            residual,
+            poles.join(", "),
+        )
+    };
+    let held = fit.constraints.iter().flat_map(|c| &c.sentences);
+    let held = held.map(|s| format!("constraint: {s}"));
+    PageFit {
+        model: fit.model.clone(),
+        method: fit.method.clone(),
+        tested: format!("{} to {}", k(fit.tested_range.min), k(fit.tested_range.max)),
+        condition: format!("{:.0}", fit.condition),
+        entries: fit.entries.iter().map(entry).collect(),
+        remarks: held.chain(fit.notes.iter().cloned()).collect(),
+    }
+}
+
+fn figures(read: &dyn Fn(&str) -> Option<String>) -> Vec<PageFigure> {
+    let all = [
+        (
+            DERIVATIVES,
+            "Derivatives: measured and modelled",
+            "Points: measured. Lines: the models, where they were tested. Bars: 95 % interval of the exported model.",
+        ),
+        (
+            FIGURE,
+            "Frequency and damping over wind speed",
+            "A colour and dash per model, a width per branch; pale outside the tested range. Squares: onset of the FMU, stepped \
+             through its C interface. The lowest panel magnifies the damping around zero, with the intervals of the onsets as bars.",
+        ),
+        (
+            ROOTS,
+            "Root locus",
+            "Eigenvalues as the wind rises; right of the upright line motions grow.",
+        ),
+        (
+            RESPONSE,
+            "Motion below, at and above the onset",
+            "The exported model, released and left alone.",
+        ),
+    ];
+    all.into_iter()
+        .filter_map(|(stem, title, caption)| {
+            let svg = read(&format!("{stem}.svg"))?;
+            // the page says what a file of its own has to
+            let start = svg.find("<svg")?;
+            Some(PageFigure {
+                title,
+                caption,
+                svg: svg[start..].to_owned(),
+            })
+        })
+        .collect()
+}
+
+fn variables(model: &[u8]) -> Result<Vec<[String; 4]>> {
+    let resources = Resources::from_bytes(model, OptionFiles::default())?;
+    let causality = |c| match c {
+        Causality::Parameter => "parameter",
+        Causality::CalculatedParameter => "calculated parameter",
+        Causality::Input => "input",
+        Causality::Output => "output",
+        Causality::Local => "local",
+        Causality::Independent => "time",
+    };
+    let row = |v: &crate::fmu::variables::Variable| {
+        [
+            v.name.clone(),
+            causality(v.causality).to_owned(),
+            v.unit.map_or("–", |u| u.name).to_owned(),
+            v.description.clone(),
+        ]
+    };
+    Ok(resources.table.variables().iter().map(row).collect())
+}

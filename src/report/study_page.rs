@@ -1,0 +1,179 @@
+//! The report of a study as one page that loads nothing from elsewhere.
+
+use super::style::{COLOURS, branch_width, dash};
+use crate::error::{Error, Result};
+use askama::Template;
+use serde::Serialize;
+
+const UPLOT_JS: &str = include_str!("../../templates/uplot/uPlot.iife.min.js");
+const UPLOT_CSS: &str = include_str!("../../templates/uplot/uPlot.min.css");
+
+/// A figure with what a reader has to know.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct PageFigure {
+    pub(crate) title: &'static str,
+    pub(crate) caption: &'static str,
+    pub(crate) svg: String,
+}
+
+/// A fit in short.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct PageFit {
+    pub(crate) model: String,
+    pub(crate) method: String,
+    pub(crate) tested: String,
+    pub(crate) condition: String,
+    /// Force by motion, residual, poles.
+    pub(crate) entries: Vec<(String, String, String)>,
+    /// Active constraints and notes.
+    pub(crate) remarks: Vec<String>,
+}
+
+/// A curve whose values are shown under the cursor; `None` where it is not known.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct PageCurve {
+    pub(crate) model: usize,
+    pub(crate) branch: usize,
+    pub(crate) label: String,
+    /// Hz.
+    pub(crate) frequency: Vec<Option<f64>>,
+    /// Per cent.
+    pub(crate) damping: Vec<Option<f64>>,
+}
+
+/// Everything on the page, in words.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct StudyPage {
+    pub(crate) title: String,
+    pub(crate) generator: String,
+    /// `good`, `bad` or nothing: whether a criterion is met.
+    pub(crate) verdict: &'static str,
+    pub(crate) headline: String,
+    pub(crate) criterion: Option<String>,
+    pub(crate) card: Vec<(String, String)>,
+    /// Which of the models the answer is of, and why.
+    pub(crate) whose: String,
+    pub(crate) limits: Vec<String>,
+    pub(crate) asked: Vec<(String, String)>,
+    pub(crate) onsets: Vec<Vec<String>>,
+    pub(crate) comparisons: Vec<String>,
+    pub(crate) figures: Vec<PageFigure>,
+    pub(crate) fits: Vec<PageFit>,
+    pub(crate) fmu: String,
+    /// Name, causality, unit, meaning.
+    pub(crate) variables: Vec<[String; 4]>,
+    pub(crate) command: String,
+    pub(crate) licence: String,
+    pub(crate) hashes: Vec<(String, String)>,
+    pub(crate) study: String,
+    /// Wind speeds of the curves, m/s.
+    pub(crate) speeds: Vec<f64>,
+    pub(crate) curves: Vec<PageCurve>,
+    /// m/s.
+    pub(crate) onset: Option<f64>,
+}
+
+#[derive(Template)]
+#[template(path = "study_report.html")]
+struct Page<'a> {
+    uplot_css: &'static str,
+    uplot_js: &'static str,
+    axes: String,
+    charts: String,
+    title: &'a str,
+    generator: &'a str,
+    verdict: &'static str,
+    headline: &'a str,
+    criterion: Option<&'a str>,
+    card: &'a [(String, String)],
+    whose: &'a str,
+    limits: &'a [String],
+    asked: &'a [(String, String)],
+    onsets: &'a [Vec<String>],
+    comparisons: &'a [String],
+    figures: &'a [PageFigure],
+    fits: &'a [PageFit],
+    fmu: &'a str,
+    variables: &'a [[String; 4]],
+    command: &'a str,
+    licence: &'a str,
+    hashes: &'a [(String, String)],
+    study: &'a str,
+}
+
+#[derive(Serialize)]
+struct Charts<'a> {
+    speeds: &'a [f64],
+    onset: Option<f64>,
+    series: Vec<ChartSeries<'a>>,
+}
+
+#[derive(Serialize)]
+struct ChartSeries<'a> {
+    label: &'a str,
+    colour: &'static str,
+    width: f64,
+    dash: Vec<f64>,
+    frequency: &'a [Option<f64>],
+    damping: &'a [Option<f64>],
+}
+
+/// The page as HTML text; the same content always gives the same bytes.
+///
+/// # Errors
+/// [`Error::Numerical`] when it cannot be put together.
+pub(crate) fn study_page(of: &StudyPage) -> Result<String> {
+    let failed = |e: String| Error::Numerical(format!("report: {e}"));
+    let charts = match of.curves.is_empty() {
+        true => String::new(),
+        false => charts(of).map_err(|e| failed(e.to_string()))?,
+    };
+    let page = Page {
+        uplot_css: UPLOT_CSS,
+        uplot_js: UPLOT_JS,
+        axes: super::axes_sketch().svg().to_owned(),
+        charts,
+        title: &of.title,
+        generator: &of.generator,
+        verdict: of.verdict,
+        headline: &of.headline,
+        criterion: of.criterion.as_deref(),
+        card: &of.card,
+        whose: &of.whose,
+        limits: &of.limits,
+        asked: &of.asked,
+        onsets: &of.onsets,
+        comparisons: &of.comparisons,
+        figures: &of.figures,
+        fits: &of.fits,
+        fmu: &of.fmu,
+        variables: &of.variables,
+        command: &of.command,
+        licence: &of.licence,
+        hashes: &of.hashes,
+        study: &of.study,
+    };
+    page.render().map_err(|e| failed(e.to_string()))
+}
+
+/// The curves as a value of JavaScript; `<` cannot end the script.
+fn charts(of: &StudyPage) -> serde_json::Result<String> {
+    let charts = Charts {
+        speeds: &of.speeds,
+        onset: of.onset,
+        series: of.curves.iter().map(series).collect(),
+    };
+    Ok(serde_json::to_string(&charts)?.replace('<', "\\u003c"))
+}
+
+fn series(of: &PageCurve) -> ChartSeries<'_> {
+    let numbers = |d: &str| d.split(' ').filter_map(|x| x.parse().ok()).collect();
+    ChartSeries {
+        label: &of.label,
+        colour: COLOURS[of.model % COLOURS.len()],
+        width: branch_width(of.branch),
+        dash: dash(of.model).map_or(vec![], numbers),
+        frequency: &of.frequency,
+        damping: &of.damping,
+    }
+}

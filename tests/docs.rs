@@ -1,0 +1,285 @@
+//! Keeps the documentation true: every key of every file format has its line, every link leads somewhere, every page is in the
+//! table of contents, and the tutorial runs.
+#![cfg(feature = "cli")]
+
+#[path = "common/command.rs"]
+#[allow(dead_code)] // each test file needs a part of it
+mod command;
+#[path = "common/python.rs"]
+mod python;
+
+use aerodeck::study::Study;
+use aerodeck::trained_model::TrainedModel;
+use command::{aerodeck, succeeds};
+use serde_json::Value;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use tempfile::TempDir;
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn page(name: &str) -> String {
+    let path = root().join(name);
+    fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
+}
+
+/// What the code says it would have taken in the place of an unknown key.
+fn listed(message: &str) -> Vec<String> {
+    let (_, after) = message
+        .split_once("expected one of ")
+        .or_else(|| message.split_once("zzz`, expected "))
+        .unwrap_or_else(|| panic!("no list of keys in: {message}"));
+    let list = after.split(')').next().unwrap();
+    let mut keys: Vec<String> = list
+        .split('`')
+        .skip(1)
+        .step_by(2)
+        .map(str::to_owned)
+        .collect();
+    // a long list is cut in the middle of its last word
+    if list.contains('…') {
+        keys.pop();
+    }
+    keys
+}
+
+#[track_caller]
+fn documented(page_name: &str, keys: &[String]) {
+    let text = page(page_name);
+    assert!(!keys.is_empty());
+    for key in keys {
+        assert!(
+            text.contains(&format!("`{key}`")),
+            "`{key}` is not in {page_name}"
+        );
+    }
+}
+
+/// The study with `zzz = 1` in one of its tables.
+fn with_unknown(path: &[&str]) -> String {
+    let text = page("docs/files/study.md");
+    let block = text.split("```toml study\n").nth(1).unwrap();
+    let mut study: toml::Table = toml::from_str(block.split("```").next().unwrap()).unwrap();
+    let mut at = &mut study;
+    for part in path {
+        let next = at
+            .entry(*part)
+            .or_insert_with(|| toml::Value::Table(toml::Table::new()));
+        at = match next {
+            toml::Value::Array(list) => list[0].as_table_mut().unwrap(),
+            other => other.as_table_mut().unwrap(),
+        };
+    }
+    at.insert("zzz".into(), 1.into());
+    toml::to_string(&study).unwrap()
+}
+
+#[test]
+fn every_key_of_a_study_has_its_line() {
+    let text = page("docs/files/study.md");
+    let block = text.split("```toml study\n").nth(1).unwrap();
+    Study::from_toml(block.split("```").next().unwrap(), "".into()).unwrap();
+    for path in [
+        &[][..],
+        &["section"],
+        &["section", "vertical"],
+        &["section", "torsion"],
+        &["deck"],
+        &["tunnel"],
+        &["model"],
+        &["model", "records"],
+        &["flutter"],
+        &["coefficients"],
+        &["export"],
+    ] {
+        let refused = Study::from_toml(&with_unknown(path), "".into()).unwrap_err();
+        documented("docs/files/study.md", &listed(&refused.to_string()));
+    }
+    // lists that are too long for a message
+    let plan = toml::Table::try_from(aerodeck::wind_tunnel::TunnelPlan::default()).unwrap();
+    documented(
+        "docs/files/study.md",
+        &plan.keys().cloned().collect::<Vec<_>>(),
+    );
+    for fit in [
+        serde_json::to_value(aerodeck::identification::TimeFit::default()).unwrap(),
+        serde_json::to_value(aerodeck::identification::FrequencyFit::default()).unwrap(),
+    ] {
+        let keys: Vec<String> = fit.as_object().unwrap().keys().cloned().collect();
+        documented("docs/files/study.md", &keys);
+    }
+}
+
+#[test]
+fn every_key_of_wind_and_campaign_files_has_its_line() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    fs::write(at.join("wind.toml"), "zzz = 1\nschema = 1\nname = \"a\"\n").unwrap();
+    let (_, _, said) = aerodeck(at, &["quasi-steady", "wind.toml"]);
+    documented("docs/files/wind.md", &listed(&said));
+    fs::write(
+        at.join("wind.toml"),
+        "schema = 1\nname = \"a\"\n[simulation]\nzzz = 1\n",
+    )
+    .unwrap();
+    let (_, _, said) = aerodeck(at, &["quasi-steady", "wind.toml"]);
+    documented("docs/files/wind.md", &listed(&said));
+    fs::write(at.join("campaign.toml"), "zzz = 1\nschema = 1\n").unwrap();
+    let (_, _, said) = aerodeck(at, &["campaign", "check", "campaign.toml"]);
+    let text = page("docs/campaigns.md");
+    for key in listed(&said) {
+        let stands = ["[{}", "{} =", "`{}`"].iter().any(|form| {
+            let word = form.replace("{}", &key);
+            text.contains(&word)
+        });
+        assert!(stands, "{key} is not in docs/campaigns.md");
+    }
+}
+
+#[test]
+fn every_key_of_results_has_its_line() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    succeeds(at, &["demo", "--out", "d", "--no-figures"]);
+    let read = |name: &str| fs::read_to_string(at.join("d").join(name)).unwrap();
+    let keys = |value: &Value| {
+        value
+            .as_object()
+            .unwrap()
+            .keys()
+            .cloned()
+            .collect::<Vec<_>>()
+    };
+    let summary: Value = serde_json::from_str(&read("summary.json")).unwrap();
+    documented("docs/files/results.md", &keys(&summary));
+    documented("docs/files/results.md", &keys(&summary["onsets"][0]));
+    documented("docs/files/results.md", &keys(&summary["answer"]));
+    let model = read("model.json");
+    TrainedModel::from_json(&model).unwrap();
+    let model: Value = serde_json::from_str(&model).unwrap();
+    documented("docs/files/model.md", &keys(&model));
+    documented("docs/files/model.md", &keys(&model["provenance"]));
+    documented("docs/files/model.md", &keys(&model["experiment"]));
+    let header = |text: &str| {
+        let lines = text.lines().filter_map(|l| l.strip_prefix("# "));
+        let keys = lines
+            .filter_map(|l| l.split_once(": "))
+            .map(|(k, _)| k.to_owned());
+        keys.filter(|k| !k.contains(' ')).collect::<Vec<_>>()
+    };
+    let record = fs::read_dir(at.join("d/records")).unwrap();
+    let record = record
+        .map(|e| e.unwrap().path())
+        .find(|p| p.extension().is_some_and(|e| e == "csv"))
+        .unwrap();
+    documented(
+        "docs/files/tables.md",
+        &header(&fs::read_to_string(record).unwrap()),
+    );
+    documented(
+        "docs/files/tables.md",
+        &header(&page("data/decks/LN21-5200.csv")),
+    );
+    let curves = read("curves.csv");
+    let columns = curves.lines().find(|l| !l.starts_with('#')).unwrap();
+    let columns: Vec<String> = columns.split(',').map(str::to_owned).collect();
+    documented("docs/files/tables.md", &columns);
+}
+
+/// All pages: the README files and everything in `docs/`.
+fn pages() -> Vec<PathBuf> {
+    let mut all = vec![root().join("README.md"), root().join("python/README.md")];
+    let mut folders = vec![root().join("docs")];
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|e| e == "md") {
+                all.push(path);
+            }
+        }
+    }
+    all
+}
+
+#[test]
+fn links_lead_somewhere_and_every_page_is_in_the_contents() {
+    let mut linked = Vec::new();
+    for path in pages() {
+        let text = fs::read_to_string(&path).unwrap();
+        for target in text
+            .split("](")
+            .skip(1)
+            .map(|t| t.split(')').next().unwrap())
+        {
+            let file = target.split('#').next().unwrap();
+            if file.is_empty() || target.contains("://") {
+                continue;
+            }
+            let at = path.parent().unwrap().join(file);
+            assert!(at.exists(), "{}: {target}", path.display());
+            if path.ends_with("SUMMARY.md") {
+                linked.push(at.canonicalize().unwrap());
+            }
+        }
+    }
+    let inside = |p: &&PathBuf| p.starts_with(root().join("docs")) && !p.ends_with("SUMMARY.md");
+    for path in pages().iter().filter(inside) {
+        assert!(
+            linked.contains(&path.canonicalize().unwrap()),
+            "{} is not in docs/SUMMARY.md",
+            path.display()
+        );
+    }
+}
+
+#[test]
+fn the_tutorial_runs() {
+    let python = python::interpreter().unwrap_or_else(|why| panic!("{why}"));
+    let folder = TempDir::new().unwrap();
+    let program = Path::new(env!("CARGO_BIN_EXE_aerodeck")).parent().unwrap();
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    let mut folders: Vec<PathBuf> = std::env::split_paths(&path).collect();
+    folders.insert(0, program.to_path_buf());
+    let path = std::env::join_paths(folders).unwrap();
+    let text = page("docs/tutorial.md");
+    let mut ran = 0;
+    for part in text.split("```").skip(1).step_by(2) {
+        let (language, code) = part.split_once('\n').unwrap();
+        let mut command = match language {
+            "sh" => {
+                let mut shell = Command::new("sh");
+                shell.args(["-e", "-c", code]);
+                shell
+            }
+            "python" => {
+                let mut interpreter = Command::new(&python);
+                interpreter.args(["-c", code]);
+                interpreter
+            }
+            _ => continue,
+        };
+        let output = command
+            .current_dir(folder.path())
+            .env("PATH", &path)
+            .output()
+            .unwrap();
+        assert!(
+            output.status.success(),
+            "{code}\n{}{}",
+            String::from_utf8_lossy(&output.stdout),
+            String::from_utf8_lossy(&output.stderr)
+        );
+        ran += 1;
+    }
+    assert!(ran >= 6, "{ran} blocks of code");
+    let report = fs::read_to_string(folder.path().join("lab/report.html")).unwrap();
+    assert!(
+        report.contains("Flutter onset 3"),
+        "no answer in the report"
+    );
+}

@@ -1,0 +1,86 @@
+//! Builds the wheel of the Python package into the target directory, installs it there and runs its tests.
+//!
+//! The wheel is built by the same cargo in the same target directory, so that it costs one link beside a build of the tests.
+#![cfg(feature = "cli")]
+
+#[path = "common/python.rs"]
+mod python;
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+/// Runs a command to its end; says what it said when it fails.
+fn run(what: &str, command: &mut Command) {
+    let output = command.output().unwrap_or_else(|e| panic!("{what}: {e}"));
+    assert!(
+        output.status.success(),
+        "{what} failed:\n{}{}",
+        String::from_utf8_lossy(&output.stdout),
+        String::from_utf8_lossy(&output.stderr)
+    );
+}
+
+#[test]
+fn the_package_builds_installs_and_passes_its_tests() {
+    let interpreter = python::interpreter().unwrap_or_else(|why| panic!("{why}"));
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let target = python::target_directory();
+    let (wheels, installed) = (target.join("wheels"), target.join("tmp/python-package"));
+    let pip = || {
+        let mut pip = Command::new(&interpreter);
+        pip.args(["-m", "pip", "--disable-pip-version-check", "--no-input"])
+            .args(["install", "--quiet"]);
+        pip
+    };
+    let needs = root.join("python/tests/requirements.txt");
+    run(
+        "installing maturin",
+        pip().args(["--only-binary=:all:", "-r"]).arg(needs),
+    );
+    // no wheel for this platform: the notebooks that need it are skipped and say so
+    let notebooks = root.join("python/tests/requirements-optional.txt");
+    let _ = pip()
+        .args(["--only-binary=:all:", "-r"])
+        .arg(notebooks)
+        .output();
+    let _ = fs::remove_dir_all(&wheels);
+    let _ = fs::remove_dir_all(&installed);
+    run(
+        "building the wheel",
+        Command::new(&interpreter)
+            .args(["-m", "maturin", "build", "--release", "--target-dir"])
+            .arg(&target)
+            .arg("--interpreter")
+            .arg(&interpreter)
+            .arg("--out")
+            .arg(&wheels)
+            .arg("--manifest-path")
+            .arg(root.join("python/Cargo.toml")),
+    );
+    let wheel = fs::read_dir(&wheels).unwrap().next().unwrap().unwrap();
+    run(
+        "installing the wheel",
+        pip()
+            .args(["--no-deps", "--target"])
+            .arg(&installed)
+            .arg(wheel.path()),
+    );
+    // a campaign for `process`, made by the program
+    let campaign = target.join("tmp/python-campaign");
+    let _ = fs::remove_dir_all(&campaign);
+    run(
+        "making a campaign",
+        Command::new(env!("CARGO_BIN_EXE_aerodeck"))
+            .args(["campaign", "virtual", "LN21-5200", "--out"])
+            .arg(&campaign),
+    );
+    run(
+        "the tests of the package",
+        Command::new(&interpreter)
+            .args(["-m", "pytest", "-q", "-p", "no:cacheprovider"])
+            .arg(root.join("python/tests"))
+            .env("PYTHONPATH", &installed)
+            .env("AERODECK_CAMPAIGN", campaign.join("campaign.toml")),
+    );
+}
