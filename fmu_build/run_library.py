@@ -1,6 +1,7 @@
 """Runs the libraries of all platforms that this machine can run, itself or with qemu and wine, and compares what they
 compute: every FMU of a deck must move alike everywhere."""
 
+import os
 import pathlib
 import platform
 import re
@@ -31,7 +32,7 @@ def runner(name):
     return foreign if foreign and shutil.which(foreign[0]) else None
 
 
-def values(python, root, name, library, folder):
+def values(python, name, library, folder):
     """What the library computes of the model in `folder`."""
     loader = folder / f"run_{name}{'.exe' if name == 'win64' else ''}"
     target, _, _ = LOADERS[name]
@@ -39,9 +40,13 @@ def values(python, root, name, library, folder):
     subprocess.run([*map(str, compiler), *(["-ldl"] if "linux" in target else [])], check=True)
     description = (folder / "modelDescription.xml").read_text(encoding="utf-8")
     guid = re.search(r'guid="([^"]+)"', description).group(1)
+    program = runner(name)
+    location = (folder / "resources").as_uri()
+    if "wine" in program:
+        location = location.replace("file:///", "file:///Z:/")
     # inputs and outputs of a section of two degrees of freedom come first
-    run = [*runner(name), loader, library, (folder / "resources").as_uri(), guid, "11"]
-    done = subprocess.run([str(part) for part in run], capture_output=True, text=True, timeout=120)
+    run = [str(part) for part in [*program, loader, library, location, guid, "11"]]
+    done = subprocess.run(run, capture_output=True, text=True, timeout=120, env={**os.environ, "WINEDEBUG": "-all"})
     if done.returncode:
         raise SystemExit(f"{name}: ended with {done.returncode}: {done.stderr.strip()}")
     return [struct.unpack(">d", bytes.fromhex(line.strip()))[0] for line in done.stdout.split()]
@@ -62,7 +67,7 @@ def compare(python, root, libraries):
             if runner(name) is None:
                 print(f"  {name}: not run, {LOADERS[name][2][0] if LOADERS[name][2] else 'macOS'} is not here")
                 continue
-            found = values(python, root, name, library, folder)
+            found = values(python, name, library, folder)
             first = first or found
             size = max(map(abs, first))
             off = max(abs(a - b) for a, b in zip(found, first, strict=True)) / size
