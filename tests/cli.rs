@@ -354,6 +354,10 @@ fn every_command_explains_itself_with_an_example() {
         "thesis",
         "compare decks",
         "compare models",
+        "new",
+        "report",
+        "plot",
+        "completions",
     ] {
         let mut arguments: Vec<&str> = command.split(' ').collect();
         arguments.push("--help");

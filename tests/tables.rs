@@ -11,7 +11,7 @@ use aerodeck::aerodynamics::derivatives::{
 use aerodeck::aerodynamics::{FlatPlate, Transfer};
 use aerodeck::flutter::{FlutterSearch, OnsetSearch, determinant_onset, pk_onset};
 use aerodeck::section::{Dof, SectionModel};
-use command::{onset_of, refused, succeeds};
+use command::{flowing, onset_of, refused, succeeds};
 use serde_json::Value;
 use std::f64::consts::TAU;
 use std::fs;
@@ -83,7 +83,7 @@ fn a_wide_table_without_speeds_goes_through_the_chain() {
         at,
         "source = \"paper.csv\"\nconvention = { notation = \"scanlan\" }\nmissing = \"quasi_steady\"",
     );
-    let said = succeeds(at, &["study", "study.toml", "--out", "."]);
+    let said = flowing(&succeeds(at, &["study", "study.toml", "--out", "."]));
     for part in [
         "H4* = K H2*, A4* = K A2* taken, quasi-steady, as stated",
         "1 m is taken",

@@ -22,7 +22,9 @@ pub fn chain(
         summary.answer.model,
         super::report::REPORT
     );
-    for limit in &summary.limits {
+    // what was assumed in reading the deck stands beside the deck
+    let beside = deck.warnings();
+    for limit in summary.limits.iter().filter(|l| !beside.contains(l)) {
         let _ = writeln!(text, "          but: {limit}");
     }
     let s = &study.section;

@@ -5,7 +5,7 @@ use super::common::StudyArgs;
 use super::output::{OutputDir, list};
 use super::progress::Progress;
 use super::routes;
-use super::{account, stages};
+use super::{account, evidence, headline, stages};
 use crate::error::Result;
 use crate::study::{
     Deck, KnownUncertainty, StageFailure, Study, attempt, route_table, state_route_intervals,
@@ -42,9 +42,17 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     let mut out = OutputDir::new(&directory)?;
     let figure = stages::flutter_figure(&study, &results, &[], &mut out);
     attempt(&mut failed, "figure", figure)?;
+    let curves = evidence::write_curves(&study, &results.curves, &mut out);
+    attempt(&mut failed, "curves", curves)?;
     results.failed.splice(0..0, failed);
     let written = out.commit()?;
-    let mut text = format!("{}\n{}\n", study.name, deck.description());
+    let answer = headline::answer(&study, &results, &study.exported()?.name);
+    let mut text = format!(
+        "{}: {}\n{}\n",
+        study.name,
+        answer.headline,
+        deck.description()
+    );
     text.push_str(&account::deck_warnings(&deck));
     text.push('\n');
     text.push_str(&account::onsets(
@@ -59,7 +67,9 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     text.push_str(&list(&written));
     let answer = Answer::new(
         text,
-        &serde_json::json!({ "flutter": results, "warnings": deck.warnings(), "files": written }),
+        &serde_json::json!({
+            "answer": answer, "flutter": results, "warnings": deck.warnings(), "files": written
+        }),
     )?;
     Ok(answer.with_verdict(results.failed.is_empty()))
 }

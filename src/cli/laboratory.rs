@@ -56,6 +56,14 @@ pub(super) fn laboratory_page(
                 text: vec![
                     "Scanlan's with ½ρV² and K², heave and lift up, over V̂ = V/(ωB).".to_owned(),
                 ],
+                figures: derivatives.into_iter().collect(),
+                ..section("Derivatives")
+            },
+            PageSection {
+                figures: stages.collect(),
+                ..section("Stages of the runs")
+            },
+            PageSection {
                 header: vec![
                     "derivative",
                     "V m/s",
@@ -65,12 +73,7 @@ pub(super) fn laboratory_page(
                     "standard error",
                 ],
                 rows: estimates.iter().map(estimate_row).collect(),
-                figures: derivatives.into_iter().collect(),
-                ..section("Derivatives")
-            },
-            PageSection {
-                figures: stages.collect(),
-                ..section("Stages of the runs")
+                ..section("Every derivative at every test point")
             },
         ],
     }

@@ -246,7 +246,10 @@ fn mark_onset(
     onset: &Onset,
     colour: &'static str,
 ) {
+    let again = onset.at.method == OnsetMethod::FmuStepping;
     let bar = match onset.interval {
+        // that of the model, which is drawn already
+        _ if again => vec![],
         OnsetInterval::Known {
             low_m_s, high_m_s, ..
         }

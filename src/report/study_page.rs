@@ -6,6 +6,8 @@ use askama::Template;
 use serde::Serialize;
 
 const UPLOT_JS: &str = include_str!("../../templates/uplot/uPlot.iife.min.js");
+/// Has to go wherever the library goes.
+const UPLOT_LICENCE: &str = include_str!("../../templates/uplot/LICENSE");
 const UPLOT_CSS: &str = include_str!("../../templates/uplot/uPlot.min.css");
 
 /// A figure with what a reader has to know.
@@ -78,6 +80,7 @@ pub(crate) struct StudyPage {
 struct Page<'a> {
     uplot_css: &'static str,
     uplot_js: &'static str,
+    uplot_licence: &'static str,
     axes: String,
     charts: String,
     title: &'a str,
@@ -131,6 +134,7 @@ pub(crate) fn study_page(of: &StudyPage) -> Result<String> {
     let page = Page {
         uplot_css: UPLOT_CSS,
         uplot_js: UPLOT_JS,
+        uplot_licence: UPLOT_LICENCE,
         axes: super::axes_sketch().svg().to_owned(),
         charts,
         title: &of.title,
