@@ -8,10 +8,11 @@ use aerodeck::aerodynamics::{FlatPlate, RationalModel, Realizable, Transfer};
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::bridge::{Bridge, BridgeMode, Node, StripGroup, similarities, tributary_lengths};
 use aerodeck::flutter::{
-    FlutterSearch, Onset, OnsetSearch, determinant_onset, find_onset, impedance, motion_at_onset,
-    pk_onset, trace_modes,
+    FlutterSearch, NearbyOnset, Onset, OnsetSearch, determinant_onset, divergence_speed,
+    find_onset, impedance, motion_at_onset, pk_onset, static_deflection, trace_modes,
 };
 use aerodeck::section::SectionModel;
+use aerodeck::study::bridge::Scatter;
 use aerodeck::units::{ReducedFrequency, ReducedFrequencyRange};
 use bridges::{DECKS, THREE, TWO, langenuen, read};
 use std::f64::consts::PI;
@@ -374,4 +375,93 @@ fn like_shapes_have_a_similarity_of_one() {
         shape[0] = (2.0 * PI * x / 900.0).sin();
     }
     near(similarities(&other)[0].similarity, 0.0, 1e-12);
+}
+
+/// Without scatter every sample is the mean; with it the mode followed is the one that a search finds.
+#[test]
+fn scatter_follows_the_onset() {
+    let study = langenuen("LN21-5200", TWO);
+    let found = find_onset(
+        "model",
+        &coupled(&study.by_model),
+        &SEARCH,
+        study.tested_range(),
+    );
+    let found = onset(found.unwrap());
+    let none = Scatter {
+        frequency: 0.0,
+        damping: 0.0,
+        derivatives: 0.0,
+        samples: 3,
+        seed: 1,
+    };
+    let still = study.scattered_onset(&found, &none).unwrap();
+    near(still.mean_m_s / found.at.speed_m_s, 1.0, 1e-8);
+    assert!(still.standard_deviation_m_s < 1e-6 * still.mean_m_s);
+    let some = Scatter {
+        frequency: 0.01,
+        damping: 0.2,
+        derivatives: 0.03,
+        samples: 60,
+        seed: 5,
+    };
+    let scattered = study.scattered_onset(&found, &some).unwrap();
+    assert_eq!(scattered, study.scattered_onset(&found, &some).unwrap());
+    println!("{scattered:?}");
+    assert_eq!(scattered.without_onset, 0);
+    near(scattered.mean_m_s / found.at.speed_m_s, 1.0, 0.03);
+    let relative = scattered.standard_deviation_m_s / scattered.mean_m_s;
+    assert!((0.005..0.1).contains(&relative), "{relative}");
+    // one bridge of another damping, found by search and from nearby
+    let mut other = study.by_model.clone();
+    other.modes.iter_mut().for_each(|m| m.damping_ratio = 0.004);
+    let other = coupled(&other);
+    let searched = onset(find_onset("model", &other, &SEARCH, None).unwrap());
+    let nearby = NearbyOnset::of(&study.by_model, &found.at).unwrap();
+    let (speed, hertz) = nearby.find(&other).unwrap();
+    near(speed / searched.at.speed_m_s, 1.0, 1e-7);
+    near(hertz / searched.at.frequency_hz, 1.0, 1e-6);
+}
+
+/// In slow wind the mean displacement is the sum of the modes under the steady load; near divergence it grows.
+#[test]
+fn static_deflection_by_hand() {
+    let bridge = langenuen("LN21-5200", TWO).by_model;
+    let at_rest = bridge
+        .forces()
+        .transfer(ReducedFrequency::from_full_width(0.0))
+        .unwrap();
+    let speed = 0.1;
+    let found = static_deflection(&bridge, &[[-0.2, 0.1, 0.03]], &at_rest, speed).unwrap();
+    let pressure = 0.5 * 1.25 * speed * speed;
+    let load = [
+        -0.2 * 31.0 * pressure,
+        0.1 * 31.0 * pressure,
+        0.03 * 961.0 * pressure,
+    ];
+    let node = 31;
+    for (i, found) in found[node].into_iter().enumerate() {
+        let expected: f64 = bridge
+            .modes
+            .iter()
+            .map(|m| {
+                let work: f64 = bridge
+                    .nodes
+                    .iter()
+                    .zip(&m.shape)
+                    .map(|(n, s)| n.length_m * (0..3).map(|j| s[j] * load[j]).sum::<f64>())
+                    .sum();
+                let stiffness = m.generalised_mass * (2.0 * PI * m.frequency_hz).powi(2);
+                m.shape[node][i] * work / stiffness
+            })
+            .sum();
+        near(found / expected, 1.0, 1e-4);
+    }
+    let divergence = divergence_speed(&bridge.structure(), &at_rest)
+        .unwrap()
+        .unwrap();
+    let close =
+        static_deflection(&bridge, &[[0.0, 0.0, 0.03]], &at_rest, 0.99 * divergence).unwrap();
+    let half = static_deflection(&bridge, &[[0.0, 0.0, 0.03]], &at_rest, 0.5 * divergence).unwrap();
+    assert!(close[node][2] > 20.0 * half[node][2]);
 }

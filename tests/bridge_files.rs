@@ -186,9 +186,7 @@ fn refused(change: impl FnOnce(&Path) -> String, expected: &[&str]) {
     let folder = TempDir::new().unwrap();
     tables(folder.path());
     let text = change(folder.path());
-    let message = study(folder.path(), &text)
-        .unwrap_err()
-        .to_string();
+    let message = study(folder.path(), &text).unwrap_err().to_string();
     for part in expected {
         assert!(message.contains(part), "{message} lacks {part}");
     }
@@ -271,7 +269,7 @@ fn wrong_bridge_files_are_named_with_their_line() {
             )
         },
         &[
-            "bridge.toml: line 13, wind.profile: expected wind somewhere along the bridge, found zero everywhere",
+            "bridge.toml: line 14, wind.profile: expected wind somewhere along the bridge, found zero everywhere",
         ],
     );
     refused(

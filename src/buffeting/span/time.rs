@@ -55,6 +55,58 @@ pub struct SpanEnsemble {
     pub peak_factor: Vec<[f64; 3]>,
 }
 
+/// Response of named nodes to one field: vertical, lateral (m), rotation (rad).
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SpanRecord {
+    /// Mean wind speed, m/s.
+    pub speed_m_s: f64,
+    /// Root mean square about the mean over the record.
+    pub rms: Vec<[f64; 3]>,
+    /// Greatest departure from the mean over `rms`.
+    pub peak_factor: Vec<[f64; 3]>,
+}
+
+/// Steps one field through the coupled bridge, as one period of a periodic process: it warms up with its own end.
+///
+/// # Errors
+/// [`Error::Input`] for a field of other nodes and parts that do not fit together; [`Error::Unstable`] when the bridge is
+/// unstable at this speed.
+pub fn span_record(
+    problem: &SpanProblem<'_>,
+    nodes: &[usize],
+    speed_m_s: f64,
+    field: &TurbulenceField,
+) -> Result<SpanRecord> {
+    problem.validate(speed_m_s)?;
+    let (coupled, roots) = problem.coupled(speed_m_s)?;
+    let warm_up = warm_up(&roots, field.step_s, field.samples());
+    let forces = modal_forces(problem, field, speed_m_s)?;
+    let shapes = problem.bridge.shapes_at(nodes);
+    let mut stepper = Stepper::new(coupled);
+    let found = run(
+        &mut stepper,
+        &forces,
+        &shapes,
+        (speed_m_s, field.step_s, warm_up),
+    )?;
+    let list = |of: fn(&(f64, f64)) -> f64| -> Vec<[f64; 3]> {
+        (0..nodes.len())
+            .map(|n| std::array::from_fn(|i| of(&found[3 * n + i])))
+            .collect()
+    };
+    Ok(SpanRecord {
+        speed_m_s,
+        rms: list(|r| r.0.sqrt()),
+        peak_factor: list(|r| r.1 / r.0.sqrt()),
+    })
+}
+
+/// Samples of warming up.
+fn warm_up(roots: &[Complex<f64>], step_s: f64, samples: usize) -> usize {
+    let slowest = roots.iter().map(|z| -z.re).fold(f64::INFINITY, f64::min);
+    ((DECAY_TIMES / slowest / step_s) as usize).min(MOST_WARM_UP * samples)
+}
+
 /// Steps `plan.records` fields through the coupled bridge. `progress` is told how many are done.
 ///
 /// # Errors
@@ -78,9 +130,8 @@ pub fn span_ensemble(
         ));
     }
     let (coupled, roots) = problem.coupled(speed_m_s)?;
-    let slowest = roots.iter().map(|z| -z.re).fold(f64::INFINITY, f64::min);
     let samples = 2 * (0.5 * plan.duration_s / plan.step_s).round() as usize;
-    let warm_up = ((DECAY_TIMES / slowest / plan.step_s) as usize).min(MOST_WARM_UP * samples);
+    let warm_up = warm_up(&roots, plan.step_s, samples);
     let mut stepper = Stepper::new(coupled);
     let shapes = problem.bridge.shapes_at(nodes);
     let mut runs = Vec::with_capacity(plan.records);
