@@ -164,7 +164,7 @@ mod tests {
 
     #[test]
     fn one_pass_is_the_double_sum() {
-        let along: [f64; 5] = [0.0, 3.0, 4.5, 10.0, 11.0];
+        let along = [0.0, 3.0, 4.5, 10.0, 11.0f64];
         let v: Vec<Complex<f64>> = (0..5)
             .map(|i| Complex::new((f64::from(i) * 1.3).sin(), 0.2 * f64::from(i)))
             .collect();
@@ -172,10 +172,11 @@ mod tests {
             .windows(2)
             .map(|x| (-0.3 * (x[1] - x[0])).exp())
             .collect();
-        let mut expected: Complex<f64> = Complex::default();
+        let mut expected = Complex::<f64>::default();
         for (a, x) in v.iter().zip(along) {
             for (b, y) in v.iter().zip(along) {
-                expected += a.conj() * b * (-0.3 * (x - y).abs()).exp();
+                let coherence: f64 = (-0.3 * f64::abs(x - y)).exp();
+                expected += a.conj() * b * coherence;
             }
         }
         assert!((coherent_power(&v, &gaps) - expected.re).abs() < 1e-13);
