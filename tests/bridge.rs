@@ -103,7 +103,10 @@ fn langenuen_by_eigenvalues() {
         );
         near(found.at.speed_m_s / speed, 1.0, 0.01);
         assert_eq!(found.in_tested_range, Some(true));
-        assert!(found.warnings.is_empty(), "{:?}", found.warnings);
+        // modes 21 and 22 have one frequency: with some decks their shapes turn at once with the first breath of wind, so that they
+        // cannot be followed, and the onset is that of all eigenvalues, which is said
+        let said = |w: &String| w.contains("found among all eigenvalues");
+        assert!(found.warnings.iter().all(said), "{:?}", found.warnings);
         let motion = motion_at_onset(&study.by_model, &study.by_model.forces(), &found.at).unwrap();
         let total: f64 = motion.modes.iter().map(|m| m.energy_share).sum();
         near(total, 1.0, 1e-12);
