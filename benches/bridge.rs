@@ -148,7 +148,7 @@ fn turbulence() {
         .expect("a response");
     let all = begin.elapsed().as_secs_f64();
     println!(
-        "field of {} nodes x 12000 samples {field:.3} s; both domains with two records and their warming up {all:.2} s ({} nodes)",
+        "field of {} nodes x 12000 samples {field:.3} s; both domains with two records {all:.2} s ({} nodes)",
         study.by_model.nodes.len(),
         found.nodes.len()
     );

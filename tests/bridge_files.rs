@@ -269,7 +269,7 @@ fn wrong_bridge_files_are_named_with_their_line() {
             )
         },
         &[
-            "bridge.toml: line 13, wind.profile: expected wind somewhere along the bridge, found zero everywhere",
+            "bridge.toml: line 14, wind.profile: expected wind somewhere along the bridge, found zero everywhere",
         ],
     );
     refused(

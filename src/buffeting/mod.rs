@@ -21,8 +21,8 @@ pub(crate) use frequency::{buffeting_response, response_spectrum};
 pub(crate) use problem::{BuffetingProblem, GustForces};
 pub use problem::{Gust, Turbulence};
 pub use span::{
-    Coherence, SpanEnsemble, SpanPlan, SpanProblem, SpanResponse, TurbulenceField, span_ensemble,
-    span_response, turbulence_field,
+    Coherence, SpanEnsemble, SpanPlan, SpanProblem, SpanRecord, SpanResponse, TurbulenceField,
+    span_ensemble, span_record, span_response, turbulence_field,
 };
 pub use spectrum::{GustComponent, GustSpectrum, SpectrumFormula, SpectrumShape};
 pub(crate) use stability::unstable_roots;

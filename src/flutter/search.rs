@@ -9,6 +9,9 @@ use crate::error::{Error, Result, positive};
 use crate::units::ReducedFrequencyRange;
 use serde::{Deserialize, Serialize};
 
+/// States at most of which all eigenvalues are looked at, a hundred times or more: those of some 700 take a second each.
+const SCANNED_STATES: usize = 700;
+
 /// Where and how densely to look.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
@@ -73,7 +76,15 @@ pub fn find_onset(
         )),
         other => other?,
     }
-    scan.add_missed(&mut found, search.speed_max_m_s)?;
+    if section.states() <= SCANNED_STATES {
+        scan.add_missed(&mut found, search.speed_max_m_s)?;
+    } else {
+        found.warnings.push(format!(
+            "{} states are too many to look at all eigenvalues: the {} structural modes alone were followed",
+            section.states(),
+            section.structure().dofs.len()
+        ));
+    }
     Ok(choose(found, tested))
 }
 

@@ -9,11 +9,12 @@ use super::following::{
 };
 use super::modal_characteristic::ModalCharacteristic;
 use super::onset::{Onset, OnsetMethod};
+use crate::aerodynamics::Realization;
 use crate::aeroelastic::{CoupledSection, CoupledSystem};
 use crate::error::{Error, Result};
 use crate::section::{Dof, Structure};
 use crate::state_space::{damping_ratio, eigenvalues, eigenvector};
-use nalgebra::{Complex, DVector};
+use nalgebra::{Complex, DMatrix, DVector, SymmetricEigen};
 
 /// A step is halved until every mode is clearly nearest to one eigenvalue, at most this many times.
 const MAX_HALVINGS: usize = 14;
@@ -68,6 +69,9 @@ impl<'a> Tracker<'a> {
     /// Modes at the lowest speed at which they are the structure's own: still air, or for the sampled system the
     /// speed with enough samples per period.
     pub(super) fn start(&self) -> Result<Modes> {
+        if let Some(all) = modes_of_many(self.section) {
+            return Ok(Modes { speed: 0.0, all });
+        }
         let all = natural_modes(self.section)?;
         let speed = start_speed(self.section, &all);
         self.matched(&Modes { speed, all }, speed)?.ok_or_else(|| {
@@ -293,6 +297,45 @@ pub(super) fn mode_shape(
     Ok(shape)
 }
 
+/// The same for the mass-normalised modes of a bridge, by the symmetric problem of the undamped structure: modes of one
+/// frequency, of which bridges have some, keep shapes of their own. The damping is that of each mode by itself; the first step
+/// corrects it. `None` for a section and for sampled models.
+fn modes_of_many(section: &CoupledSection) -> Option<Vec<Mode>> {
+    let s = section.structure();
+    let sampled = matches!(section.aerodynamics(), Realization::Discrete(_));
+    if !s.is_modal() || sampled || s.stiffness.diagonal().min() <= 0.0 {
+        return None;
+    }
+    let n = s.dofs.len();
+    let root: Vec<f64> = s.stiffness.diagonal().iter().map(|k| k.sqrt()).collect();
+    let inverse = section.inverse_mass();
+    let symmetric = DMatrix::from_fn(n, n, |i, j| {
+        0.5 * (inverse[(i, j)] + inverse[(j, i)]) * root[i] * root[j]
+    });
+    let natural = SymmetricEigen::new(symmetric);
+    let mut modes = Vec::with_capacity(n);
+    for (square, vector) in natural
+        .eigenvalues
+        .iter()
+        .zip(natural.eigenvectors.column_iter())
+    {
+        let shape = DVector::from_fn(n, |i, _| vector[i] / root[i]);
+        let decay = 0.5 * square * shape.dot(&(&s.damping * &shape));
+        let lambda = Complex::new(-decay, (square - decay * decay).max(0.0).sqrt());
+        if !oscillates(&lambda) {
+            return None;
+        }
+        modes.push(Mode {
+            branch: 0,
+            lambda,
+            shape: shape.normalize().map(Complex::from),
+            slope: Complex::new(0.0, 0.0),
+        });
+    }
+    order_by_dof(section, &mut modes);
+    Some(modes)
+}
+
 /// Modes of the structure with its added mass in still air, in the order of the degrees of freedom they move most.
 fn natural_modes(section: &CoupledSection) -> Result<Vec<Mode>> {
     let s = section.structure();
@@ -342,7 +385,7 @@ pub(super) fn lowest_speed(section: &CoupledSection) -> Result<f64> {
 }
 
 fn start_speed(section: &CoupledSection, modes: &[Mode]) -> f64 {
-    let crate::aerodynamics::Realization::Discrete(d) = section.aerodynamics() else {
+    let Realization::Discrete(d) = section.aerodynamics() else {
         return 0.0;
     };
     let highest_hz = modes.iter().map(|m| m.lambda.im).fold(0.0, f64::max) / std::f64::consts::TAU;

@@ -11,7 +11,7 @@ mod time;
 
 pub use field::{TurbulenceField, turbulence_field};
 pub use frequency::{SpanResponse, span_response};
-pub use time::{SpanEnsemble, SpanPlan, span_ensemble};
+pub use time::{SpanEnsemble, SpanPlan, SpanRecord, span_ensemble, span_record};
 
 use super::problem::Turbulence;
 use super::spectrum::GustComponent;

@@ -1,17 +1,13 @@
 //! Response of a bridge in the time domain: a turbulence field stepped through the coupled modes, many records.
 
 use super::{SpanProblem, TurbulenceField, turbulence_field};
+use crate::aeroelastic::CoupledSection;
 use crate::buffeting::spectrum::GustComponent;
 use crate::error::{Error, Result, positive};
-use crate::response::{Inputs, Stepper};
-use nalgebra::{Complex, DMatrix};
+use crate::response::{Inputs, SectionState, Stepper};
+use nalgebra::{Complex, DMatrix, DVector, Dyn, LU};
 use rustfft::FftPlanner;
 use serde::{Deserialize, Serialize};
-
-/// Decay times of the least damped mode before a record counts: a record is one period, with which it warms up.
-const DECAY_TIMES: f64 = 5.0;
-/// Periods of warming up at most.
-const MOST_WARM_UP: usize = 40;
 
 /// How many records, how long, how fine.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -55,6 +51,74 @@ pub struct SpanEnsemble {
     pub peak_factor: Vec<[f64; 3]>,
 }
 
+/// Response of named nodes to one field: vertical, lateral (m), rotation (rad).
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SpanRecord {
+    /// Mean wind speed, m/s.
+    pub speed_m_s: f64,
+    /// Root mean square about the mean over the record.
+    pub rms: Vec<[f64; 3]>,
+    /// Greatest departure from the mean over `rms`.
+    pub peak_factor: Vec<[f64; 3]>,
+}
+
+/// Steps one field through the coupled bridge, as one period of a periodic process.
+///
+/// # Errors
+/// [`Error::Input`] for a field of other nodes and parts that do not fit together; [`Error::Unstable`] when the bridge is
+/// unstable at this speed.
+pub fn span_record(
+    problem: &SpanProblem<'_>,
+    nodes: &[usize],
+    speed_m_s: f64,
+    field: &TurbulenceField,
+) -> Result<SpanRecord> {
+    problem.validate(speed_m_s)?;
+    let (coupled, _) = problem.coupled(speed_m_s)?;
+    let mut periodic = Periodic::new(coupled, speed_m_s, field.step_s, field.samples())?;
+    let forces = modal_forces(problem, field, speed_m_s)?;
+    let shapes = problem.bridge.shapes_at(nodes);
+    let found = run(&mut periodic, &forces, &shapes, (speed_m_s, field.step_s))?;
+    let list = |of: fn(&(f64, f64)) -> f64| -> Vec<[f64; 3]> {
+        (0..nodes.len())
+            .map(|n| std::array::from_fn(|i| of(&found[3 * n + i])))
+            .collect()
+    };
+    Ok(SpanRecord {
+        speed_m_s,
+        rms: list(|r| r.0.sqrt()),
+        peak_factor: list(|r| r.1 / r.0.sqrt()),
+    })
+}
+
+/// What a period from rest leaves behind becomes the state with which the period repeats itself: `z₀ = (I − Φᴺ)⁻¹ z_N`.
+struct Periodic {
+    stepper: Stepper,
+    less_one_period: LU<f64, Dyn, Dyn>,
+}
+
+impl Periodic {
+    fn new(coupled: CoupledSection, speed: f64, step: f64, samples: usize) -> Result<Self> {
+        let mut square = coupled.continuous_at(speed)?.c2d(step)?.phi;
+        let n = square.nrows();
+        let mut power = DMatrix::<f64>::identity(n, n);
+        let mut left = samples;
+        while left > 0 {
+            if left % 2 == 1 {
+                power = &power * &square;
+            }
+            left /= 2;
+            if left > 0 {
+                square = &square * &square;
+            }
+        }
+        Ok(Self {
+            stepper: Stepper::new(coupled),
+            less_one_period: (DMatrix::identity(n, n) - power).lu(),
+        })
+    }
+}
+
 /// Steps `plan.records` fields through the coupled bridge. `progress` is told how many are done.
 ///
 /// # Errors
@@ -77,11 +141,9 @@ pub fn span_ensemble(
             plan.records.to_string(),
         ));
     }
-    let (coupled, roots) = problem.coupled(speed_m_s)?;
-    let slowest = roots.iter().map(|z| -z.re).fold(f64::INFINITY, f64::min);
+    let (coupled, _) = problem.coupled(speed_m_s)?;
     let samples = 2 * (0.5 * plan.duration_s / plan.step_s).round() as usize;
-    let warm_up = ((DECAY_TIMES / slowest / plan.step_s) as usize).min(MOST_WARM_UP * samples);
-    let mut stepper = Stepper::new(coupled);
+    let mut periodic = Periodic::new(coupled, speed_m_s, plan.step_s, samples)?;
     let shapes = problem.bridge.shapes_at(nodes);
     let mut runs = Vec::with_capacity(plan.records);
     for i in 0..plan.records {
@@ -89,10 +151,10 @@ pub fn span_ensemble(
         let field = turbulence_field(problem, speed_m_s, (plan.step_s, samples), seed)?;
         let forces = modal_forces(problem, &field, speed_m_s)?;
         runs.push(run(
-            &mut stepper,
+            &mut periodic,
             &forces,
             &shapes,
-            (speed_m_s, plan.step_s, warm_up),
+            (speed_m_s, plan.step_s),
         )?);
         progress(i + 1, plan.records);
     }
@@ -164,34 +226,42 @@ pub fn modal_forces(
 type Run = Vec<(f64, f64)>;
 
 fn run(
-    stepper: &mut Stepper,
+    periodic: &mut Periodic,
     forces: &[Vec<f64>],
     shapes: &DMatrix<f64>,
-    (speed, step, warm_up): (f64, f64, usize),
+    (speed, step): (f64, f64),
 ) -> Result<Run> {
     let (modes, samples) = (forces.len(), forces[0].len());
+    let stepper = &mut periodic.stepper;
     let mut state = stepper.released(&vec![0.0; modes], &vec![0.0; modes])?;
     let mut inputs = Inputs::steady(speed, modes);
-    let mut rows = vec![Vec::with_capacity(samples); shapes.nrows()];
-    for i in 0..warm_up + samples {
-        let now = (i + (MOST_WARM_UP * samples) - warm_up) % samples;
+    let mut advance = |state: &mut SectionState, now: usize| {
         let next = (now + 1) % samples;
         for (m, force) in forces.iter().enumerate() {
             inputs.force[m] = force[now];
             inputs.force_rate[m] = (force[next] - force[now]) / step;
         }
-        stepper.advance(&mut state, &inputs, step)?;
-        if i >= warm_up {
-            for (row, values) in rows.iter_mut().enumerate() {
-                let shape = shapes.row(row);
-                values.push(
-                    shape
-                        .iter()
-                        .zip(&state.values)
-                        .map(|(phi, x)| phi * x)
-                        .sum::<f64>(),
-                );
-            }
+        stepper.advance(state, &inputs, step)
+    };
+    for i in 0..samples {
+        advance(&mut state, i)?;
+    }
+    let left = DVector::from_column_slice(&state.values);
+    let start = periodic.less_one_period.solve(&left).ok_or_else(|| {
+        Error::Numerical("buffeting: the motion does not repeat itself with the record".into())
+    })?;
+    state.values.copy_from_slice(start.as_slice());
+    let mut rows = vec![Vec::with_capacity(samples); shapes.nrows()];
+    for i in 0..samples {
+        advance(&mut state, i)?;
+        for (row, values) in rows.iter_mut().enumerate() {
+            let shape = shapes.row(row);
+            let value: f64 = shape
+                .iter()
+                .zip(&state.values)
+                .map(|(phi, x)| phi * x)
+                .sum();
+            values.push(value);
         }
     }
     let statistics = |values: &Vec<f64>| {

@@ -6,8 +6,10 @@ use super::super::progress::Progress;
 use super::BridgeArgs;
 use crate::buffeting::TurbulenceField;
 use crate::error::Result;
-use crate::study::bridge::BridgeBuffeting;
+use crate::files::bridge::read_field;
+use crate::study::bridge::{BridgeBuffeting, BridgeStudy, BuffetingBlock};
 use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
 
 /// Response of a whole bridge to turbulence at a wind speed, in the frequency and the time domain
 ///
@@ -23,6 +25,9 @@ pub(crate) struct Args {
     /// Write the turbulence of the first record as turbulence.csv: time, then u and w of every node.
     #[arg(long)]
     field: bool,
+    /// Take the turbulence of this file, written as by --field, instead of making records.
+    #[arg(long, conflicts_with = "field")]
+    turbulence: Option<PathBuf>,
 }
 
 /// Runs the command.
@@ -31,6 +36,9 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     let block = study
         .buffeting_block()
         .map_err(|e| e.in_file(&args.bridge.bridge))?;
+    if let Some(path) = &args.turbulence {
+        return by_file(args, &study, &block, path);
+    }
     let mut out = args.bridge.out()?;
     let stage = progress.steps("records of turbulence");
     let results = study.buffeting(&block, args.speed, &|done, all| {
@@ -57,6 +65,40 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     )
 }
 
+/// The response to the turbulence of a file.
+fn by_file(
+    args: &Args,
+    study: &BridgeStudy,
+    block: &BuffetingBlock,
+    path: &Path,
+) -> Result<Answer> {
+    let found = study
+        .buffeting_by(block, args.speed, read_field(path)?)
+        .map_err(|e| e.in_file(path))?;
+    let mut text = format!(
+        "{} at {} m/s in the turbulence of {}\n{:<8} {:<14} {:>12} {:>8}\n",
+        study.file.name,
+        args.speed,
+        path.display(),
+        "node",
+        "motion",
+        "RMS",
+        "peak f."
+    );
+    for (n, name) in found.nodes.iter().enumerate() {
+        for (i, motion) in MOTIONS.into_iter().enumerate() {
+            let (rms, peak) = (found.record.rms[n][i], found.record.peak_factor[n][i]);
+            let _ = writeln!(text, "{name:<8} {motion:<14} {rms:>12.5e} {peak:>8.3}");
+        }
+    }
+    Answer::new(
+        text,
+        &serde_json::json!({ "buffeting": found, "notes": study.notes }),
+    )
+}
+
+const MOTIONS: [&str; 3] = ["vertical m", "lateral m", "rotation rad"];
+
 fn table(results: &BridgeBuffeting) -> String {
     let time = &results.time;
     let mut text = format!(
@@ -75,10 +117,7 @@ fn table(results: &BridgeBuffeting) -> String {
         "expected"
     );
     for (n, name) in results.nodes.iter().enumerate() {
-        for (i, motion) in ["vertical m", "lateral m", "rotation rad"]
-            .into_iter()
-            .enumerate()
-        {
+        for (i, motion) in MOTIONS.into_iter().enumerate() {
             let _ = writeln!(
                 text,
                 "{name:<8} {motion:<14} {:>12.5e} {:>12.5e} {:>11.2e} {:>11.4} {:>8.3} {:>8.3}",

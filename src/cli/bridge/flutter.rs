@@ -126,9 +126,12 @@ pub(crate) fn staged(
         .collect();
     let onset = answer.and_then(|a| a.search.onset()).map(|o| &o.at);
     let title = format!("{}: modes over wind speed", study.file.name);
-    let figure = bridge_curves_figure(&results.curves, &shown, onset, &title)?;
-    stage_figure(&figure, "bridge_flutter", out)?;
-    out.write("bridge_curves.csv", curves_csv(results))?;
+    // where no mode can be followed there is nothing to draw; the card says so
+    if results.curves.branches.iter().any(|b| !b.points.is_empty()) {
+        let figure = bridge_curves_figure(&results.curves, &shown, onset, &title)?;
+        stage_figure(&figure, "bridge_flutter", out)?;
+        out.write("bridge_curves.csv", curves_csv(results))?;
+    }
     if let Some(motion) = motion {
         let title = format!("{}: motion at flutter", study.file.name);
         let figure = flutter_motion_figure(motion, 0.5 * study.by_model.width_m(), &title)?;

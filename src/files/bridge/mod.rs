@@ -6,6 +6,7 @@
 
 mod abaqus;
 mod axes;
+mod field;
 mod matlab;
 mod modal_data;
 mod opensees;
@@ -16,6 +17,7 @@ mod toml_file;
 mod wawi;
 
 pub use axes::{Axes, Direction};
+pub use field::{FieldTable, read_field};
 pub use modal_data::{Modes, RawMode};
 pub use single_file::write_modes;
 pub use toml_file::{

@@ -2,12 +2,13 @@
 
 use super::BridgeStudy;
 use crate::aerodynamics::quasi_steady::LinearQuasiSteady;
-use crate::bridge::motion_index;
+use crate::bridge::{Node, motion_index};
 use crate::buffeting::{
-    Coherence, Gust, SpanEnsemble, SpanPlan, SpanProblem, SpanResponse, Turbulence,
-    TurbulenceField, span_ensemble, span_response, turbulence_field,
+    Coherence, Gust, SpanEnsemble, SpanPlan, SpanProblem, SpanRecord, SpanResponse, Turbulence,
+    TurbulenceField, span_ensemble, span_record, span_response, turbulence_field,
 };
 use crate::error::{Error, Result, positive};
+use crate::files::bridge::FieldTable;
 use crate::section::Dof;
 use serde::{Deserialize, Serialize};
 
@@ -44,6 +45,19 @@ pub struct BridgeBuffeting {
     /// Time domain.
     pub time: SpanEnsemble,
 }
+
+/// Response to turbulence of a file.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct BridgeRecord {
+    /// Names of the nodes.
+    pub nodes: Vec<String>,
+    /// Response of each.
+    #[serde(flatten)]
+    pub record: SpanRecord,
+}
+
+/// Places closer than this are one, m.
+const SAME_PLACE: f64 = 1e-3;
 
 impl BridgeStudy {
     /// The block, read and checked.
@@ -125,6 +139,41 @@ impl BridgeStudy {
             expected_peak_factor: frequency.peak_factors(block.time.duration_s),
             frequency,
             time,
+        })
+    }
+
+    /// Response to the turbulence of a file; its columns are those of the nodes of the bridge.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for other nodes; those of the block.
+    pub fn buffeting_by(
+        &self,
+        block: &BuffetingBlock,
+        speed_m_s: f64,
+        field: FieldTable,
+    ) -> Result<BridgeRecord> {
+        let nodes = &self.by_model.nodes;
+        let same = |(a, n): (&f64, &Node)| (a - n.along_m).abs() < SAME_PLACE;
+        if field.along_m.len() != nodes.len() || !field.along_m.iter().zip(nodes).all(same) {
+            let expected = format!(
+                "columns at the places of the {} nodes of the bridge",
+                nodes.len()
+            );
+            return Err(Error::input(
+                "heading",
+                expected,
+                format!("{} places", field.along_m.len()),
+            ));
+        }
+        let field = TurbulenceField {
+            step_s: field.step_s,
+            along_m: field.along_m,
+            gusts: field.gusts,
+        };
+        let places = self.named(&block.nodes)?;
+        Ok(BridgeRecord {
+            nodes: places.iter().map(|n| nodes[*n].name.clone()).collect(),
+            record: span_record(&self.problem(block)?, &places, speed_m_s, &field)?,
         })
     }
 

@@ -8,7 +8,7 @@ mod scatter;
 
 use answers::coupled;
 pub use answers::{BridgeAnswer, BridgeFlutter, LeftOut, bridge_flutter};
-pub use buffeting::{BridgeBuffeting, BuffetingBlock};
+pub use buffeting::{BridgeBuffeting, BridgeRecord, BuffetingBlock};
 pub use export::BridgeExport;
 pub use forces::SectionForces;
 pub use scatter::{Scatter, ScatteredOnset};

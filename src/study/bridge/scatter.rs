@@ -6,7 +6,7 @@ use crate::aerodynamics::{
 };
 use crate::bridge::Bridge;
 use crate::error::{Error, Result, non_negative};
-use crate::flutter::{NearbyOnset, Onset};
+use crate::flutter::{NearbyOnset, Onset, OnsetSearch, find_onset};
 use crate::section::Dof;
 use crate::units::ReducedFrequency;
 use nalgebra::DMatrix;
@@ -46,13 +46,13 @@ pub struct ScatteredOnset {
     pub standard_deviation_m_s: f64,
     /// 95 % of the samples lie between these, m/s.
     pub interval_m_s: [f64; 2],
-    /// Samples in which the mode that flutters could not be followed to an onset; they are not in the numbers above.
+    /// Samples without an onset up to the highest wind speed; they are not in the numbers above.
     pub without_onset: usize,
 }
 
 impl BridgeStudy {
     /// The onset when frequencies, damping and forces scatter: that of the mode which flutters in the mean, followed in every
-    /// sample from the onset of the mean.
+    /// sample from the onset of the mean; where it cannot be followed the onset is searched.
     ///
     /// # Errors
     /// [`Error::Input`] for scatter that cannot be; those of the forces; [`Error::Numerical`] when fewer than two samples have an
@@ -71,11 +71,7 @@ impl BridgeStudy {
         let nearby = NearbyOnset::of(&self.by_model, &onset.at)?;
         let found = (0..scatter.samples)
             .into_par_iter()
-            .map(|i| {
-                Ok(nearby
-                    .find(&coupled(&self.sample(scatter, i as u64)?)?)
-                    .map(|(speed, _)| speed))
-            })
+            .map(|i| self.onset_of_sample(&nearby, scatter, i as u64))
             .collect::<Result<Vec<_>>>()?;
         let mut speeds: Vec<f64> = found.iter().copied().flatten().collect();
         if speeds.len() < 2 {
@@ -95,6 +91,25 @@ impl BridgeStudy {
             interval_m_s: [quantile(0.025), quantile(0.975)],
             without_onset: found.len() - speeds.len(),
         })
+    }
+
+    /// The onset of one sample, m/s: from nearby, else by a search.
+    fn onset_of_sample(
+        &self,
+        nearby: &NearbyOnset,
+        scatter: &Scatter,
+        index: u64,
+    ) -> Result<Option<f64>> {
+        let other = coupled(&self.sample(scatter, index)?)?;
+        if let Some((speed, _)) = nearby.find(&other) {
+            return Ok(Some(speed));
+        }
+        let search = OnsetSearch {
+            speed_max_m_s: self.file.flutter.speed_max_m_s,
+            speeds: self.file.flutter.speeds,
+        };
+        let found = find_onset("sample", &other, &search, self.tested_range())?;
+        Ok(found.critical_speed_m_s())
     }
 
     fn sample(&self, scatter: &Scatter, index: u64) -> Result<Bridge> {
