@@ -13,6 +13,7 @@ mod layout;
 mod saving;
 mod section;
 mod section_derivatives;
+mod section_places;
 mod section_unit;
 mod serialized;
 mod stepping;
