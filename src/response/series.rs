@@ -212,8 +212,9 @@ impl Series {
         let norm = self.norm(wind + change.abs(), tau);
         let work = &mut self.work;
         let mut gusts = self.gusts.as_mut().filter(|_| gusts);
-        if let Some(gusts) = &mut gusts {
-            gusts.begin(&work.gusts);
+        match &mut gusts {
+            Some(gusts) => gusts.begin(&work.gusts),
+            None => work.by_gusts.fill(0.0),
         }
         let [gust, gust_rate] = drive.gust;
         let gust_now = [0, 1].map(|j| gust[j] + start * gust_rate[j]);
@@ -301,7 +302,7 @@ impl Work {
         let [g, g_before, g_first] = &self.aerodynamic;
         for i in 0..n {
             let velocity = self.term[i];
-            let push = push.map_or(0.0, |p| p[i]);
+            let push = push.map_or(0.0, |p| p[i]) + self.by_gusts[i];
             let mut sum = s[i] + push + wind * (s[n + i] + wind * g[i]);
             if change != 0.0 {
                 sum += change * (s_before[n + i] + 2.0 * wind * g_before[i] + change * g_first[i]);

@@ -40,6 +40,7 @@ mod tests {
             .collect();
         let all = Study::from_toml(&on.join("\n"), "".into()).unwrap();
         assert_eq!(plain, all);
-        assert!(text.lines().filter(|l| l.starts_with("#: ")).count() > 15);
+        // otherwise nothing has been switched on
+        assert!(text.lines().filter(|l| l.starts_with("#: ")).count() > 10);
     }
 }

@@ -113,7 +113,7 @@ fn speeds_must_rise_and_degrees_of_freedom_agree() {
     let structure = SectionModel::iabse_1_1a().structure().unwrap();
     let theory = QuasiSteady::new(table(|a| a), Arms::default(), &Dof::THREE).unwrap();
     let message = static_equilibria(&structure, &theory, &[10.0]).unwrap_err();
-    assert!(message.to_string().contains("Lateral"), "{message}");
+    assert!(message.to_string().contains("lateral"), "{message}");
     let theory = QuasiSteady::new(table(|a| a), Arms::default(), &Dof::TWO).unwrap();
     let message = static_equilibria(&structure, &theory, &[10.0, 5.0]).unwrap_err();
     assert!(message.to_string().contains("5 after 10"), "{message}");
