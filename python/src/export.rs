@@ -1,4 +1,4 @@
-//! `export_fmu`: a co-simulation FMU; its runtime is part of this module.
+//! `export_fmu`: an FMU; its runtime is part of this module.
 
 use crate::convert::from_python;
 use crate::error::{raised, wrong};
@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::PathBuf;
 
-/// Write an FMI 2.0 co-simulation FMU.
+/// Write an FMI 2.0 FMU.
 ///
 /// Parameters
 /// ----------
@@ -65,15 +65,13 @@ pub fn export_fmu(
     } else {
         Overwrite::Refuse
     };
+    let export = Export {
+        force,
+        ..growing.into()
+    };
     py.detach(|| {
         let runtimes = Runtime::available()?;
-        write_fmu(
-            &path,
-            &trained,
-            &runtimes,
-            existing,
-            Export { growing, force },
-        )
+        write_fmu(&path, &trained, &runtimes, existing, export)
     })
     .map_err(raised)
 }

@@ -197,10 +197,10 @@ impl Stepper {
         let own = &mut *guard;
         let n = own.outputs.displacement.len();
         let mut inputs = Inputs {
-            wind_speed_m_s,
             wind_speed_rate_m_s2,
             force: force.unwrap_or_else(|| vec![0.0; n]),
             force_rate: force_rate.unwrap_or_else(|| vec![0.0; n]),
+            ..Inputs::steady(wind_speed_m_s, n)
         };
         own.stepper
             .advance(&mut own.state, &inputs, step_s)
@@ -248,6 +248,7 @@ impl Stepper {
             values: snapshot.1,
             phase: snapshot.2,
             last_wind_m_s: snapshot.3,
+            ..SectionState::default()
         };
         Ok(())
     }

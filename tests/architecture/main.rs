@@ -1,4 +1,4 @@
-//! Keeps the design true of the tree: direction of imports, `unsafe` in two places, no abrupt ends, no printing, short
+//! Keeps the design true of the tree: direction of imports, `unsafe` in three places, no abrupt ends, no printing, short
 //! files. The table is in `rules.rs`.
 
 mod rules;

@@ -68,6 +68,8 @@ pub const ARROWS: &[Row] = &[
     row("buffeting", &["flutter+", "response+"]),
     row("fmu", &["flutter+", "response+", "trained_model+"]),
     row("fmu::fmi2", &["fmu"]),
+    // a second shell over the guard of the first
+    row("fmu::fmi3", &["fmu", "fmu::fmi2"]),
     row(
         "uncertainty",
         &["flutter+", "identification+", "wind_tunnel+"],
@@ -118,7 +120,7 @@ const BELOW_STUDY: &[&str] = &[
 const FOR_ALL: &[&str] = &["error"];
 
 /// Directories whose code may be `unsafe`.
-const UNSAFE_DIRECTORIES: &[&str] = &["src/fmu/fmi2", "src/fmu/importer"];
+const UNSAFE_DIRECTORIES: &[&str] = &["src/fmu/fmi2", "src/fmu/fmi3", "src/fmu/importer"];
 
 /// Ways to end the caller's process.
 const ABRUPT: &[&str] = &[
