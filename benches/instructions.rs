@@ -3,8 +3,9 @@
 //!
 //! `cargo bench --bench instructions` prints a table; nothing is asserted here. Without valgrind the times stand alone.
 
+use aerodeck::fmu::location::location_of;
 use aerodeck::fmu::package::Runtime;
-use aerodeck::fmu::resources::{OptionFiles, Resources, location_of};
+use aerodeck::fmu::resources::{OptionFiles, Resources};
 use std::ffi::{CString, c_char, c_int, c_void};
 use std::hint::black_box;
 use std::path::{Path, PathBuf};

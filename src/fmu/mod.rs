@@ -17,6 +17,7 @@ pub mod identity;
 pub mod importer;
 pub mod instance;
 pub mod lifecycle;
+pub mod location;
 pub mod log_categories;
 #[cfg(feature = "cli")]
 pub mod package;

@@ -13,7 +13,8 @@ mod torture;
 
 use super::types::*;
 use super::*;
-use crate::fmu::resources::{OptionFiles, Resources, location_of};
+use crate::fmu::location::location_of;
+use crate::fmu::resources::{OptionFiles, Resources};
 use crate::trained_model::{Model, TrainedModel};
 use std::ffi::{CStr, CString, c_void};
 use std::path::Path;

@@ -32,7 +32,7 @@ pub use simulation::{Simulation, Table, simulate};
 pub use slave::{FmuState, Slave, Status};
 
 use crate::error::{Error, Result};
-use crate::fmu::resources::location_of;
+use crate::fmu::location::location_of;
 use crate::fmu::xml::Element;
 use findings::Findings;
 use library::Binary;
