@@ -109,6 +109,8 @@ pub enum Status {
     WindInTestedRange,
     /// Whether the rotation is one of linear theory.
     AmplitudeInLinearRange,
+    /// Onset speed, for tools that take outputs only.
+    FlutterSpeed,
 }
 
 /// The quantity behind a variable: what getters and setters dispatch on.

@@ -25,7 +25,10 @@ OUTPUTS = [
 
 
 # outputs that say whether the others can be trusted
-STATUS = ["flutter_margin", "damping_now", "wind_in_tested_range", "amplitude_in_linear_range"]
+STATUS = [
+    "flutter_margin", "damping_now", "wind_in_tested_range", "amplitude_in_linear_range",
+    "flutter_speed",
+]  # fmt: skip
 
 
 class Message(NamedTuple):

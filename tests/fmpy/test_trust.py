@@ -16,6 +16,7 @@ def test_margin_and_damping_change_sign_at_the_onset(continuous_model):
             section.set(wind_speed=wind)
             margin, damping = section.get("flutter_margin", "damping_now")
             assert margin == pytest.approx(onset - wind, rel=1e-9)
+            assert section.get("flutter_speed") == section.get("onset_speed")
             assert np.sign(damping) == sign
         section.set(wind_speed=onset)
         assert section.get("damping_now")[0] == pytest.approx(0.0, abs=1e-8)

@@ -197,8 +197,13 @@ impl SectionUnit {
             instant = Instant::of(&mut stepper, &state, &self.inputs)?;
         }
         let wind = values[self.places.wind_speed];
-        let margin = |u: &Role| *u == Role::Status(Status::FlutterMargin);
-        let card = if wants(|u| matches!(u, Role::Calculated(_))) || unknowns.iter().any(margin) {
+        let of_onset = |u: &Role| {
+            matches!(
+                u,
+                Role::Calculated(_) | Role::Status(Status::FlutterMargin | Status::FlutterSpeed)
+            )
+        };
+        let card = if wants(of_onset) {
             Some(self.onset_card(resources, values))
         } else {
             None
@@ -210,6 +215,7 @@ impl SectionUnit {
         };
         let value = |unknown: &Role| match (unknown, &card) {
             (Role::Calculated(which), Some(card)) => card.value(*which),
+            (Role::Status(Status::FlutterSpeed), Some(card)) => card.value(Calculated::OnsetSpeed),
             (Role::Status(Status::FlutterMargin), Some(card)) => {
                 card.value(Calculated::OnsetSpeed) - wind
             }

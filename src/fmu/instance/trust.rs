@@ -62,6 +62,10 @@ impl SectionUnit {
         let wind = memory.values[self.places.wind_speed];
         let flag = |holds: bool| f64::from(u8::from(holds));
         match role {
+            Role::Status(Status::FlutterSpeed) => {
+                self.calculate(resources, memory, notices);
+                memory.values[self.places.onset_speed]
+            }
             Role::Status(Status::FlutterMargin) => {
                 self.calculate(resources, memory, notices);
                 memory.values[self.places.onset_speed] - wind

@@ -44,8 +44,9 @@ pub(super) fn fill(variables: &mut [Variable], model: &TrainedModel, gusts: Opti
             ),
             Role::Calculated(_) => (Vec::new(), parameters(variables)),
             Role::Status(status) => {
+                let windless = [Status::AmplitudeInLinearRange, Status::FlutterSpeed];
                 let wind = places(variables, |role| {
-                    role == Role::WindSpeed && status != Status::AmplitudeInLinearRange
+                    role == Role::WindSpeed && !windless.contains(&status)
                 });
                 let known = dependent(wind.iter().copied());
                 let stated = parameters(variables).into_iter();

@@ -339,6 +339,12 @@ fn status() -> Vec<Variable> {
             Status::AmplitudeInLinearRange,
             "Whether the rotation is at most 10 degrees, where linear forces end",
         ),
+        output(
+            "flutter_speed",
+            Status::FlutterSpeed,
+            "onset_speed once more, for tools that take outputs only",
+        )
+        .quantity("Velocity", SPEED),
     ]
 }
 

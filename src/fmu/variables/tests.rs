@@ -91,7 +91,7 @@ fn a_lateral_support_brings_its_variables() {
     ] {
         assert!(table.find_name(name).is_some(), "{name}");
     }
-    assert_eq!(table.variables().len(), 40 + 1 + 4 + 3 + 2);
+    assert_eq!(table.variables().len(), 41 + 1 + 4 + 3 + 2);
 }
 
 #[test]
