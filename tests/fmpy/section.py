@@ -25,9 +25,10 @@ OUTPUTS = [
 
 
 # outputs that say whether the others can be trusted
+# real ones first, as FMPy reads them
 STATUS = [
-    "flutter_margin", "damping_now", "wind_in_tested_range", "amplitude_in_linear_range",
-    "flutter_speed",
+    "flutter_margin", "damping_now", "flutter_speed",
+    "wind_in_tested_range", "amplitude_in_linear_range",
 ]  # fmt: skip
 
 
