@@ -1,6 +1,6 @@
 //! How bridges are written down: `bridge.toml` ([`BridgeFile`]) and the modes of finite-element programs.
 //!
-//! Every reader of modes ends in [`ModalData`]: nodes, and for every mode three displacements and three rotations a node along
+//! Every reader of modes ends in `ModalData`: nodes, and for every mode three displacements and three rotations a node along
 //! the axes of the program. [`Axes`] says which way is up and downwind, and nothing is assumed about either. Files that know
 //! vertical, lateral and rotation themselves (our own single file, MATLAB `phi`) are in those axes already.
 
