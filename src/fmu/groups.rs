@@ -10,6 +10,8 @@ use std::collections::HashMap;
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Groups {
     groups: Vec<Vec<u32>>,
+    /// Value reference of each place in the table.
+    references: Vec<usize>,
     arrays: bool,
 }
 
@@ -31,8 +33,15 @@ impl Groups {
                 None => groups.push(vec![place]),
             }
         }
+        let mut references = vec![0; table.variables().len()];
+        for (reference, places) in groups.iter().enumerate() {
+            for place in places {
+                references[*place as usize] = reference;
+            }
+        }
         Self {
             arrays: !arrays.is_empty(),
+            references,
             groups,
         }
     }
@@ -49,11 +58,7 @@ impl Groups {
 
     /// Value reference of the variable to which a place in the table belongs.
     pub fn reference_of(&self, place: usize) -> Option<usize> {
-        if !self.arrays {
-            return Some(place);
-        }
-        let belongs = |group: &Vec<u32>| group.iter().any(|p| *p as usize == place);
-        self.groups.iter().position(belongs)
+        self.references.get(place).copied()
     }
 
     /// The places of these references, one number each.

@@ -94,9 +94,12 @@ impl Stepper {
         let way = self.sampling()?.way_m;
         let mean = inputs.wind_speed_m_s + 0.5 * inputs.wind_speed_rate_m_s2 * step;
         let samples = (mean * step / way).ceil();
-        let parts = match inputs.wind_speed_rate_m_s2 {
-            0.0 => 0.0,
-            _ => self.series.parts(0.0, step, false),
+        let gusts = self.gusts_act(state, inputs);
+        let parts = if inputs.wind_speed_rate_m_s2 == 0.0 && !gusts {
+            0.0
+        } else {
+            let fastest = inputs.wind_speed_m_s.max(wind_after(inputs, step));
+            self.series.parts(fastest, step, gusts)
         };
         let mut next = state.clone();
         // a wind that stays is worth a matrix for the way from sample to sample

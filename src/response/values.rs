@@ -45,15 +45,19 @@ impl SectionState {
         behind.map_or_else(|| self.values[i], |behind| self.gusts[behind])
     }
 
-    /// The same state with the numbers of [`SectionState::all`] replaced.
+    /// Replaces the numbers of [`SectionState::all`].
+    pub fn set_all(&mut self, numbers: &[f64]) {
+        let (values, gusts) = numbers.split_at(self.values.len());
+        self.values.copy_from_slice(values);
+        self.gusts.copy_from_slice(gusts);
+    }
+
+    /// The same state with other numbers in [`SectionState::all`].
     #[must_use]
     pub fn with_all(&self, numbers: &[f64]) -> Self {
-        let (values, gusts) = numbers.split_at(self.values.len());
-        Self {
-            values: values.to_vec(),
-            gusts: gusts.to_vec(),
-            ..self.clone()
-        }
+        let mut other = self.clone();
+        other.set_all(numbers);
+        other
     }
 }
 
@@ -89,8 +93,15 @@ impl Inputs {
         } else {
             Err(Error::input(
                 "inputs",
-                format!("{dofs} finite forces and rates"),
-                format!("forces {:?}, rates {:?}", self.force, self.force_rate),
+                format!("{dofs} finite forces and rates, finite gusts and rate of the wind"),
+                format!(
+                    "forces {:?}, rates {:?}, gusts {:?}, rates {:?}, rate of the wind {}",
+                    self.force,
+                    self.force_rate,
+                    self.gust_m_s,
+                    self.gust_rate_m_s2,
+                    self.wind_speed_rate_m_s2
+                ),
             ))
         }
     }

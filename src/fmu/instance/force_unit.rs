@@ -382,7 +382,11 @@ impl Unit for ForceUnit {
             let entry = |role: &Role| self.entry(memory, &forces, *role).force;
             return Ok(unknowns.iter().map(entry).collect());
         }
-        let step = RELATIVE_STEP * memory.values[known].abs().max(RELATIVE_STEP);
+        let step = match resources.table.variables()[known].role {
+            // forces are linear in gusts
+            Role::Gust(..) => 1.0,
+            _ => RELATIVE_STEP * memory.values[known].abs().max(RELATIVE_STEP),
+        };
         let renewed = self.renewed(memory);
         central_difference(resources, memory, (known, step), |other| {
             let forces = self.ahead(other, renewed)?;

@@ -58,7 +58,7 @@ impl Instance {
         if !states.iter().all(|x| x.is_finite()) {
             return Err(Refusal::discard("states: expected finite numbers"));
         }
-        self.memory.system = self.memory.system.with_all(states);
+        self.memory.system.set_all(states);
         self.outputs_current = false;
         Ok(())
     }

@@ -142,6 +142,18 @@ fn an_importer_that_integrates_feels_the_same_gusts() {
     }
 }
 
+/// A gust needs the series, whose parts are counted before: a step of ages is refused at once, in all kinds.
+#[test]
+fn a_step_of_ages_under_a_gust_is_refused_at_once() {
+    for kind in KINDS {
+        let unit = Unit::instantiate(in_gusts(kind, RationalAdmittance::Sears));
+        unit.set("wind_speed", 1e-3);
+        unit.start();
+        unit.set("gust_w", 1.0);
+        unit.refused(unit.step(0.0, 1e9), fmi2Status::fmi2Discard, &["sub-steps"]);
+    }
+}
+
 /// A harmonic gust, long after its beginning, against `(−ω²M + iωR + K − ½ρV² P(G))⁻¹ F`.
 #[test]
 fn a_harmonic_gust_gives_the_response_of_the_frequency_domain() {
