@@ -5,47 +5,21 @@
 mod bridges;
 
 use aerodeck::aerodynamics::Transfer;
-use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::bridge::Bridge;
 use aerodeck::flutter::{
-    FlutterSearch, NearbyOnset, Onset, OnsetSearch, find_onset, impedance, motion_at_onset,
-    pk_onset,
+    FlutterSearch, NearbyOnset, OnsetSearch, find_onset, impedance, motion_at_onset, pk_onset,
 };
 use aerodeck::study::bridge::Scatter;
-use bridges::{DECKS, THREE, TWO, langenuen, read};
+use bridges::{DECKS, SEARCH, THREE, TWO, coupled, langenuen, near, onset, read};
 use std::f64::consts::PI;
 
 /// Half of the last printed digit of the reference figures, and what 63 of 311 nodes cost (4e-5 m/s).
 const PRINTED: f64 = 6e-4;
 
-const SEARCH: OnsetSearch = OnsetSearch {
-    speed_max_m_s: 100.0,
-    speeds: 50,
-};
-
-fn coupled(bridge: &Bridge) -> CoupledSection {
-    CoupledSection::new(bridge.structure(), bridge.forces().realize().unwrap()).unwrap()
-}
-
 fn by_table(bridge: &Bridge) -> FlutterSearch {
     let forces = bridge.forces();
     let range = forces.known_range();
     pk_onset("table", &bridge.structure(), &forces, &SEARCH, range).unwrap()
-}
-
-fn onset(search: FlutterSearch) -> Onset {
-    match search {
-        FlutterSearch::Onset(onset) => *onset,
-        other => panic!("{}", other.explain()),
-    }
-}
-
-#[track_caller]
-fn near(found: f64, expected: f64, tolerance: f64) {
-    assert!(
-        (found - expected).abs() <= tolerance,
-        "{found} instead of {expected} ± {tolerance}"
-    );
 }
 
 /// Interpolated linearly in V̂ as the reference program does; vertical and torsional motion.

@@ -8,38 +8,14 @@ use aerodeck::aerodynamics::{FlatPlate, RationalModel, Realizable, Transfer};
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::bridge::{Bridge, BridgeMode, Node, StripGroup, similarities, tributary_lengths};
 use aerodeck::flutter::{
-    FlutterSearch, Onset, OnsetSearch, determinant_onset, divergence_speed, find_onset, pk_onset,
-    static_deflection, trace_modes,
+    OnsetSearch, determinant_onset, divergence_speed, find_onset, pk_onset, static_deflection,
+    trace_modes,
 };
 use aerodeck::section::SectionModel;
 use aerodeck::units::{ReducedFrequency, ReducedFrequencyRange};
-use bridges::{THREE, TWO, langenuen};
+use bridges::{SEARCH, THREE, TWO, coupled, langenuen, near, onset};
 use std::f64::consts::PI;
 use std::sync::Arc;
-
-const SEARCH: OnsetSearch = OnsetSearch {
-    speed_max_m_s: 100.0,
-    speeds: 50,
-};
-
-fn coupled(bridge: &Bridge) -> CoupledSection {
-    CoupledSection::new(bridge.structure(), bridge.forces().realize().unwrap()).unwrap()
-}
-
-fn onset(search: FlutterSearch) -> Onset {
-    match search {
-        FlutterSearch::Onset(onset) => *onset,
-        other => panic!("{}", other.explain()),
-    }
-}
-
-#[track_caller]
-fn near(found: f64, expected: f64, tolerance: f64) {
-    assert!(
-        (found - expected).abs() <= tolerance,
-        "{found} instead of {expected} ± {tolerance}"
-    );
-}
 
 /// All modes with one shape, sin(πx/L): the bridge is the section.
 fn uniform(section: &SectionModel, forces: Arc<dyn Transfer>) -> Bridge {

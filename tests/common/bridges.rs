@@ -1,8 +1,35 @@
 //! Bridges of the tests.
 
+use aerodeck::aeroelastic::CoupledSection;
+use aerodeck::bridge::Bridge;
 use aerodeck::files::bridge::BridgeFile;
+use aerodeck::flutter::{FlutterSearch, Onset, OnsetSearch};
 use aerodeck::study::bridge::BridgeStudy;
 use std::path::PathBuf;
+
+pub const SEARCH: OnsetSearch = OnsetSearch {
+    speed_max_m_s: 100.0,
+    speeds: 50,
+};
+
+pub fn coupled(bridge: &Bridge) -> CoupledSection {
+    CoupledSection::new(bridge.structure(), bridge.forces().realize().unwrap()).unwrap()
+}
+
+pub fn onset(search: FlutterSearch) -> Onset {
+    match search {
+        FlutterSearch::Onset(onset) => *onset,
+        other => panic!("{}", other.explain()),
+    }
+}
+
+#[track_caller]
+pub fn near(found: f64, expected: f64, tolerance: f64) {
+    assert!(
+        (found - expected).abs() <= tolerance,
+        "{found} instead of {expected} ± {tolerance}"
+    );
+}
 
 /// Names of the measured girders of the Langenuen bridge.
 pub const DECKS: [&str; 5] = [
