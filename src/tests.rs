@@ -144,8 +144,8 @@ fn mutated_gust_forces() {
     let gusts = r#"{"dofs": ["vertical", "torsion"], "coefficients": [[0.3, -5.0], [0.05, 1.2]], "admittance": "sears", "source": "test"}"#;
     fn with(gusts: &[u8]) -> OptionFiles<'_> {
         OptionFiles {
-            force: None,
             gusts: Some(gusts),
+            ..OptionFiles::default()
         }
     }
     assert!(Resources::from_bytes(&rational, with(gusts.as_bytes())).is_ok_and(run));

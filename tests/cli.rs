@@ -7,6 +7,7 @@ mod command;
 use command::{listing, onset_of, refused, succeeds};
 use serde_json::Value;
 use std::fs;
+use std::path::Path;
 use tempfile::TempDir;
 
 #[test]
@@ -69,6 +70,37 @@ fn the_demo_does_the_whole_chain() {
     }
     assert!((speed("Laguerre", "fmu_stepping") / laguerre - 1.0).abs() < 0.001);
 
+    // the archive carries the interval of its onset, as does one made from the model where it lies; a model that went
+    // elsewhere has left its covariance behind
+    let interval = &onset_of(&summary, "Laguerre", "eigenvalues")["interval"];
+    fs::copy(out.join("model.json"), folder.path().join("alone.json")).unwrap();
+    for (model, known) in [
+        ("aerodeck-out/model.json", true),
+        ("aerodeck-out/models/laguerre.json", true),
+        ("alone.json", false),
+    ] {
+        let export = ["fmu", "export", model, "--out", "again.fmu", "--force"];
+        succeeds(folder.path(), &export);
+        let xml = entry(&folder.path().join("again.fmu"), "modelDescription.xml");
+        let demo = entry(&out.join("deck_section.fmu"), "modelDescription.xml");
+        for (name, end) in [
+            ("onset_speed_low", "low_m_s"),
+            ("onset_speed_high", "high_m_s"),
+        ] {
+            let expected = interval[end].as_f64().unwrap();
+            for (xml, known) in [(&demo, true), (&xml, known)] {
+                let found = start_of(xml, name);
+                // the same root, searched up to another speed
+                let same = found.map(|found| (found / expected - 1.0).abs() < 1e-8);
+                assert_eq!(
+                    same,
+                    known.then_some(true),
+                    "{model}: {found:?} of {expected}"
+                );
+            }
+        }
+    }
+
     // a second run says what it replaces; an edited study is left alone
     assert!(succeeds(folder.path(), &["demo"]).contains("replaced"));
     let study = out.join("study.toml");
@@ -78,6 +110,19 @@ fn the_demo_does_the_whole_chain() {
     assert_eq!(fs::read_to_string(&study).unwrap(), edited);
     // and can be run as it stands
     assert!(succeeds(folder.path(), &["study", "aerodeck-out/study.toml"]).contains("FMU stepped"));
+}
+
+/// Start value of a variable in a description.
+fn start_of(xml: &str, name: &str) -> Option<f64> {
+    let (_, rest) = xml.split_once(&format!("name=\"{name}\""))?;
+    let (_, rest) = rest.split_once("start=\"")?;
+    rest.split('"').next()?.parse().ok()
+}
+
+/// A text in an archive.
+fn entry(archive: &Path, name: &str) -> String {
+    let mut archive = zip::ZipArchive::new(fs::File::open(archive).unwrap()).unwrap();
+    std::io::read_to_string(archive.by_name(name).unwrap()).unwrap()
 }
 
 #[test]

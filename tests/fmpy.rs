@@ -11,6 +11,11 @@ mod bridge_fmu;
 mod bridges;
 #[path = "common/in_process.rs"]
 mod in_process;
+#[path = "common/matrix.rs"]
+#[allow(dead_code)] // its cells alone
+mod matrix;
+#[path = "common/matrix_fmus.rs"]
+mod matrix_fmus;
 #[path = "common/models.rs"]
 #[allow(dead_code)] // how the fixtures are made is not needed here
 mod models;
@@ -97,8 +102,9 @@ fn export() -> PathBuf {
     export_reals(&folder, &runtimes);
     export_fmi3(&folder, &runtimes);
     bridge_fmu::export(&folder, &runtimes);
+    let matrix = matrix_fmus::export(&folder, &runtimes);
     let text = serde_json::to_string(&json!({
-        "models": Value::Object(expected), "three_dof": in_process::three_dof(&lateral),
+        "matrix": matrix, "models": Value::Object(expected), "three_dof": in_process::three_dof(&lateral),
     }))
     .unwrap();
     fs::write(folder.join("expected.json"), text).unwrap();
@@ -123,6 +129,7 @@ fn export_forces(folder: &Path, runtimes: &[Runtime]) {
             growing: Growing::Refuse,
             force: Some(options),
             gusts: None,
+            bounds: None,
             listing: Listing::All,
             label: Label::default(),
             version: FmiVersion::Two,
@@ -150,6 +157,7 @@ fn export_gusts(folder: &Path, runtimes: &[Runtime]) {
             growing: Growing::Refuse,
             force,
             gusts: Some(gusts.clone()),
+            bounds: None,
             listing: Listing::All,
             label: Label::default(),
             version: FmiVersion::Two,
@@ -193,6 +201,7 @@ fn export_reals(folder: &Path, runtimes: &[Runtime]) {
                 growing: Growing::Allow,
                 force,
                 gusts: None,
+                bounds: None,
                 listing: Listing::Reals,
                 label: Label::default(),
                 version: FmiVersion::Two,

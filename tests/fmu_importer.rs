@@ -52,6 +52,7 @@ fn real_variables_alone_pass_every_check() {
             growing: Growing::Allow,
             force: None,
             gusts: None,
+            bounds: None,
             listing: Listing::Reals,
             label: Label::default(),
             version: FmiVersion::Two,

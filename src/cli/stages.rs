@@ -3,14 +3,16 @@
 use super::figures;
 use super::output::OutputDir;
 use super::progress::Progress;
+use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
-use crate::flutter::{FlutterCurves, Onset};
+use crate::flutter::{FlutterCurves, Onset, OnsetSearch, find_onset};
+use crate::fmu::onset_bounds::OnsetBounds;
 use crate::fmu::package::{Export, Growing, Label, Runtime, package};
 use crate::identification::{self, FitReport};
 use crate::report::{VfVgOptions, vf_vg_figure};
 use crate::study::{
     Deck, FlutterStudy, KnownUncertainty, ModelBlock, RecordSet, StageFailure, Study,
-    TrainedWithReport, flutter_study, is_of_a_file, slug, state_intervals, train_one,
+    TrainedWithReport, flutter_study, interval_of, is_of_a_file, slug, state_intervals, train_one,
 };
 use crate::trained_model::TrainedModel;
 use crate::uncertainty::ModelUncertainty;
@@ -259,7 +261,7 @@ pub(crate) fn routes_figure(
 
 /// Packs a model of a study with all runtimes that are there.
 pub fn export(
-    model: &TrainedModel,
+    (model, known): (&TrainedModel, &KnownUncertainty),
     study: &Study,
     growing: Growing,
     progress: &Progress,
@@ -273,11 +275,29 @@ pub fn export(
     };
     let export = Export {
         label: label.dated()?,
+        bounds: onset_bounds(model, known)?,
         ..growing.into()
     };
     let bytes = package(model, &Runtime::available()?, export).map_err(or_allow_unstable)?;
     drop(stage);
     Ok(bytes)
+}
+
+/// The interval of the onset of a model's own section, as its archive carries it; none where the data give none.
+pub(crate) fn onset_bounds(
+    model: &TrainedModel,
+    known: &KnownUncertainty,
+) -> Result<Option<OnsetBounds>> {
+    let structure = model.section.structure()?;
+    let section = CoupledSection::with_model(&structure, &model.model)?;
+    let search = OnsetSearch {
+        speed_max_m_s: model.experiment.onset_search_limit_m_s,
+        ..OnsetSearch::default()
+    };
+    let found = find_onset(&model.name, &section, &search, Some(model.tested_range))?;
+    Ok(found
+        .onset()
+        .and_then(|onset| OnsetBounds::of(&interval_of(&structure, model, known, onset))))
 }
 
 /// What the flag `--allow-unstable` says.

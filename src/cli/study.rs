@@ -139,7 +139,13 @@ pub(crate) fn run_chain(
     let mut results = stages::flutter(study, &deck, &models, &known, progress)?;
     failed.append(&mut results.failed);
     let name = study.exported()?.name.clone();
-    let exported = export(study, &models, (&mut out, &mut failed), growing, progress)?;
+    let exported = export(
+        study,
+        (&models, &known),
+        (&mut out, &mut failed),
+        growing,
+        progress,
+    )?;
     let mut stepped = None;
     if let Some((model, path)) = exported {
         let stage = progress.stage("stepping the FMU");
@@ -237,18 +243,18 @@ fn records(
 /// Packs the model that the study exports; it with the place of its FMU.
 fn export<'a>(
     study: &Study,
-    models: &'a [TrainedModel],
+    (models, known): (&'a [TrainedModel], &[KnownUncertainty]),
     (out, failed): (&mut OutputDir, &mut Vec<StageFailure>),
     growing: Growing,
     progress: &Progress,
 ) -> Result<Option<(&'a TrainedModel, PathBuf)>> {
     let name = &study.exported()?.name;
-    let Some(model) = models.iter().find(|m| m.name == *name) else {
+    let Some((model, known)) = models.iter().zip(known).find(|(m, _)| m.name == *name) else {
         let reason = format!("{name} was not trained");
         failed.push(StageFailure::new("export", reason));
         return Ok(None);
     };
-    let bytes = stages::export(model, study, growing, progress);
+    let bytes = stages::export((model, known), study, growing, progress);
     let Some(bytes) = attempt(failed, "export", bytes)? else {
         return Ok(None);
     };

@@ -19,6 +19,7 @@ pub mod instance;
 pub mod lifecycle;
 pub mod location;
 pub mod log_categories;
+pub mod onset_bounds;
 #[cfg(feature = "cli")]
 pub mod package;
 pub mod refusal;

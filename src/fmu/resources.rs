@@ -4,6 +4,7 @@ use super::bridge_options::{BRIDGE_FILE, BridgeOptions};
 use super::force_options::{FORCE_FILE, ForceOptions};
 use super::identity;
 use super::location::{MODEL_FILE, beside, folder_of, own_binary, raw_folder, refused};
+use super::onset_bounds::{BOUNDS_FILE, OnsetBounds};
 use super::variables::VariableTable;
 use crate::aerodynamics::{GustForce, Transfer};
 use crate::error::{Error, Result};
@@ -21,12 +22,17 @@ pub struct OptionFiles<'a> {
     pub force: Option<&'a [u8]>,
     /// Forces of gusts, see [`GustForce`].
     pub gusts: Option<&'a [u8]>,
+    /// Interval of the onset, see [`OnsetBounds`].
+    pub bounds: Option<&'a [u8]>,
 }
 
 impl<'a> OptionFiles<'a> {
     /// Of forces alone where there are options of them, without gusts.
     pub fn of_force(force: Option<&'a [u8]>) -> Self {
-        Self { force, gusts: None }
+        Self {
+            force,
+            ..Self::default()
+        }
     }
 }
 
@@ -75,6 +81,7 @@ impl Resources {
             option.exists().then(|| read(&option)).transpose()
         };
         let (force, gusts) = (optional(FORCE_FILE)?, optional(GUST_FILE)?);
+        let bounds = optional(BOUNDS_FILE)?;
         if let Some(bridge) = optional(BRIDGE_FILE)? {
             let place = file.with_file_name(BRIDGE_FILE);
             return Self::of_bridge(&read(&file)?, &bridge).map_err(|e| e.in_file(&place));
@@ -82,6 +89,7 @@ impl Resources {
         let options = OptionFiles {
             force: force.as_deref(),
             gusts: gusts.as_deref(),
+            bounds: bounds.as_deref(),
         };
         Self::from_bytes(&read(&file)?, options).map_err(|e| e.in_file(&file))
     }
@@ -100,9 +108,14 @@ impl Resources {
             .gusts
             .map(|gusts| gust_force(text(gusts)?, &model).map_err(|e| e.at(GUST_FILE)))
             .transpose()?;
-        let table = VariableTable::new(&model, force.as_ref(), gusts.as_ref())?;
+        let bounds = options
+            .bounds
+            .map(|bounds| OnsetBounds::from_json(text(bounds)?).map_err(|e| e.at(BOUNDS_FILE)))
+            .transpose()?;
+        let table = VariableTable::new(&model, force.as_ref(), gusts.as_ref(), bounds)?;
+        let of_options = [options.force, options.gusts, options.bounds];
         let files = std::iter::once(bytes);
-        let files: Vec<&[u8]> = files.chain(options.force).chain(options.gusts).collect();
+        let files: Vec<&[u8]> = files.chain(of_options.into_iter().flatten()).collect();
         let guid = identity::guid(&table, &files);
         Ok(Self {
             model,

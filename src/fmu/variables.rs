@@ -23,6 +23,7 @@ pub use parameters::SectionParameter;
 
 use super::bridge_options::BridgeOptions;
 use super::force_options::ForceOptions;
+use super::onset_bounds::OnsetBounds;
 use super::si::Unit;
 use crate::aerodynamics::GustForce;
 use crate::error::{Error, Result};
@@ -277,7 +278,7 @@ pub struct VariableTable {
 
 impl VariableTable {
     /// The table of a trained model: of its coupled section or, with options, of its forces alone; with gusts where their
-    /// forces are known.
+    /// forces are known, with the interval of the onset where that is known (of a section alone).
     ///
     /// # Errors
     /// [`Error::Input`] when a start value is not finite or outside the limits of its variable.
@@ -285,10 +286,11 @@ impl VariableTable {
         model: &TrainedModel,
         force: Option<&ForceOptions>,
         gusts: Option<&GustForce>,
+        bounds: Option<OnsetBounds>,
     ) -> Result<Self> {
         let variables = match force {
             None => {
-                let mut variables = section::variables(model, gusts)?;
+                let mut variables = section::variables(model, gusts, bounds)?;
                 dependencies::fill(&mut variables, model, gusts);
                 variables
             }

@@ -35,6 +35,7 @@ pub fn export(folder: &Path, runtimes: &[Runtime]) {
         growing: Growing::Refuse,
         force: Some(options),
         gusts: None,
+        bounds: None,
         listing: Listing::All,
         label: Label::default(),
         version: FmiVersion::Two,

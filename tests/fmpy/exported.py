@@ -13,7 +13,8 @@ from section import Section
 FOLDER = Path(os.environ.get("AERODECK_FMUS", ""))
 if not (FOLDER / "expected.json").is_file():
     pytest.exit("AERODECK_FMUS names no folder of exported FMUs: run `cargo test --test fmpy`", 2)
-MODELS = json.loads((FOLDER / "expected.json").read_text(encoding="utf-8"))["models"]
+EXPECTED = json.loads((FOLDER / "expected.json").read_text(encoding="utf-8"))
+MODELS = EXPECTED["models"]
 
 
 def number(bits):

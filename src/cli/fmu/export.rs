@@ -11,6 +11,7 @@ use crate::error::{Error, Result};
 use crate::files::bridge::BridgeFile;
 use crate::files::coefficients::named_coefficients;
 use crate::fmu::force_options::{ForceOptions, MAX_STRIPS};
+use crate::fmu::onset_bounds::OnsetBounds;
 use crate::fmu::package::{
     Export, FmiVersion, Label, Overwrite, Runtime, growth_of, package_bridge, write_archive,
     write_fmu,
@@ -225,6 +226,18 @@ impl Args {
     }
 }
 
+/// The interval of the onset by the covariance that was saved with the model: beside it, or beside the folder it is in.
+fn saved_bounds(file: &Path, model: &TrainedModel) -> Result<Option<OnsetBounds>> {
+    let folder = file.parent().unwrap_or(Path::new(""));
+    for folder in [folder, &folder.join("..")] {
+        let known = stages::read_uncertainties(std::slice::from_ref(model), folder)?;
+        if let [known @ Ok(_)] = &known[..] {
+            return stages::onset_bounds(model, known);
+        }
+    }
+    Ok(None)
+}
+
 /// Runs the command.
 pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     if args.bridge {
@@ -237,10 +250,15 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
             Kind::Force => "deck_force.fmu",
         })
     });
+    let bounds = match args.kind {
+        Kind::Section => saved_bounds(&args.model, &model)?,
+        Kind::Force => None,
+    };
     let export = Export {
         growing: stages::growing(args.allow_unstable),
         force: args.force(&model)?,
         gusts: args.gusts(&model)?,
+        bounds,
         label: args.label()?,
         version: args.fmi.into(),
         listing: if args.reals_only {

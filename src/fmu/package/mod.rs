@@ -19,11 +19,13 @@ use super::description::model_description;
 use super::description_fmi3;
 use super::force_options::{FORCE_FILE, ForceOptions};
 use super::location::MODEL_FILE;
+use super::onset_bounds::{BOUNDS_FILE, OnsetBounds};
 use super::resources::{GUST_FILE, OptionFiles, Resources};
 use super::variables::Listing;
 use crate::aerodynamics::GustForce;
 use crate::error::{Error, Result};
 use crate::trained_model::TrainedModel;
+use serde::Serialize;
 use std::collections::BTreeMap;
 use std::io::{Cursor, Write};
 use std::path::Path;
@@ -60,6 +62,8 @@ pub struct Export {
     pub force: Option<ForceOptions>,
     /// Forces of gusts, so that gusts are inputs.
     pub gusts: Option<GustForce>,
+    /// 95 % interval of the onset of the section, where it is known.
+    pub bounds: Option<OnsetBounds>,
     /// Which variables its description lists.
     pub listing: Listing,
     /// What it says of its origin.
@@ -84,6 +88,7 @@ impl From<Growing> for Export {
             growing,
             force: None,
             gusts: None,
+            bounds: None,
             listing: Listing::All,
             label: Label::default(),
             version: FmiVersion::default(),
@@ -105,6 +110,7 @@ pub fn package(
         growing,
         force,
         gusts,
+        bounds,
         listing,
         label,
         version,
@@ -114,10 +120,8 @@ pub fn package(
     }
     growth::check(model, growing)?;
     let force = force.map(|force| force.to_json()).transpose()?;
-    let gusts = gusts.map(|gusts| serde_json::to_string_pretty(&gusts));
-    let gusts = gusts
-        .transpose()
-        .map_err(|e| Error::Numerical(e.to_string()))?;
+    let gusts = gusts.as_ref().map(as_json).transpose()?;
+    let bounds = bounds.as_ref().map(as_json).transpose()?;
     if runtimes.is_empty() {
         let expected = "a runtime for at least one platform";
         return Err(Error::input("FMU", expected, "none"));
@@ -126,10 +130,15 @@ pub fn package(
     let files = OptionFiles {
         force: force.as_deref().map(str::as_bytes),
         gusts: gusts.as_deref().map(str::as_bytes),
+        bounds: bounds.as_deref().map(str::as_bytes),
     };
     let resources = Resources::from_bytes(json.as_bytes(), files)?;
     let page = documentation(&resources, runtimes, listing)?;
-    let options = [(FORCE_FILE, force), (GUST_FILE, gusts)];
+    let options = [
+        (FORCE_FILE, force),
+        (GUST_FILE, gusts),
+        (BOUNDS_FILE, bounds),
+    ];
     let options = options
         .into_iter()
         .filter_map(|(name, text)| Some((name, text?)));
@@ -140,6 +149,10 @@ pub fn package(
         page,
         runtimes,
     )
+}
+
+fn as_json(options: &impl Serialize) -> Result<String> {
+    serde_json::to_string_pretty(options).map_err(|e| Error::Numerical(e.to_string()))
 }
 
 /// The FMU of a whole bridge as the bytes of its archive, with these runtimes in it. `model` is the model of the girder with

@@ -2,13 +2,14 @@
 
 use super::parameters::SectionParameter;
 use super::real::{
-    CALCULATED, DISCRETE, FIXED, INNER, INPUT, OUTPUT, SMALLEST, SPEED, TUNABLE, constants,
+    CALCULATED, DISCRETE, FIXED, INNER, INPUT, LOCAL, OUTPUT, SMALLEST, SPEED, TUNABLE, constants,
     force_scale, nominal, real,
 };
 use super::words::{Words, motion, words};
-use super::{Calculated, Gust, Response, Role, Status, Value, Variable, find};
+use super::{Calculated, Gust, Initial, Response, Role, Status, Value, Variable, find};
 use crate::aerodynamics::{GustForce, Realizable, Realization};
 use crate::error::Result;
+use crate::fmu::onset_bounds::OnsetBounds;
 use crate::fmu::si::{self, Unit};
 use crate::section::{Dof, SectionModel};
 use crate::trained_model::{Model, TrainedModel};
@@ -19,7 +20,11 @@ const FILTER_SIZE: f64 = 0.01;
 const SMALLEST_INERTIA: f64 = 1e-9;
 
 /// All variables without their dependencies.
-pub(super) fn variables(model: &TrainedModel, gusts: Option<&GustForce>) -> Result<Vec<Variable>> {
+pub(super) fn variables(
+    model: &TrainedModel,
+    gusts: Option<&GustForce>,
+    bounds: Option<OnsetBounds>,
+) -> Result<Vec<Variable>> {
     let dofs = model.section.dofs();
     let mut table = inputs(model, &dofs);
     table.extend(
@@ -37,6 +42,7 @@ pub(super) fn variables(model: &TrainedModel, gusts: Option<&GustForce>) -> Resu
     table.push(search_limit(model));
     table.extend(calculated_parameters());
     table.extend(constants(model)?);
+    table.extend(bounds.into_iter().flat_map(onset_bounds));
     table.extend(status());
     if let Realization::Continuous(c) = model.model.realize() {
         let (filters, lags) = (c.a.nrows(), gusts.map_or(0, GustForce::states));
@@ -50,6 +56,25 @@ pub(super) fn variables(model: &TrainedModel, gusts: Option<&GustForce>) -> Resu
         name_rates(&mut table, &dofs);
     }
     Ok(table)
+}
+
+/// The interval that the data leave of the onset.
+fn onset_bounds(bounds: OnsetBounds) -> [Variable; 2] {
+    let end = |name, end, value| {
+        let text = format!(
+            "{end} end of the 95 % interval of the flutter onset by the scatter of the data, for the section as exported"
+        );
+        Variable {
+            initial: Some(Initial::Exact),
+            ..real(name, Role::Constant, LOCAL, text)
+        }
+        .start(value)
+        .quantity("Velocity", SPEED)
+    };
+    [
+        end("onset_speed_low", "Lower", bounds.low_m_s),
+        end("onset_speed_high", "Upper", bounds.high_m_s),
+    ]
 }
 
 /// The gusts at a strip.

@@ -26,7 +26,7 @@ fn direct<'a>(table: &'a VariableTable, output: &str) -> Vec<&'a str> {
 #[test]
 fn names_are_unique_and_numbers_carry_units() {
     for kind in ["continuous_laguerre", "rational", "discrete_laguerre"] {
-        let table = VariableTable::new(&fixture(kind), None, None).unwrap();
+        let table = VariableTable::new(&fixture(kind), None, None, None).unwrap();
         for (i, v) in table.variables().iter().enumerate() {
             assert_eq!(table.find_name(&v.name), Some(i));
             let ratio = matches!(
@@ -47,13 +47,13 @@ fn names_are_unique_and_numbers_carry_units() {
 
 #[test]
 fn added_mass_couples_every_force_into_every_acceleration() {
-    let with = VariableTable::new(&fixture("rational"), None, None).unwrap();
+    let with = VariableTable::new(&fixture("rational"), None, None, None).unwrap();
     let all = ["wind_speed", "external_lift", "external_moment"];
     let inputs = |output| direct(&with, output)[..3].to_vec();
     assert_eq!(inputs("heave_acceleration"), all);
     assert_eq!(inputs("moment"), all);
     assert_eq!(direct(&with, "moment")[3..5], ["heave", "heave_rate"]);
-    let without = VariableTable::new(&fixture("discrete_laguerre"), None, None).unwrap();
+    let without = VariableTable::new(&fixture("discrete_laguerre"), None, None, None).unwrap();
     assert_eq!(direct(&without, "heave_acceleration"), all[..2]);
     assert_eq!(direct(&without, "moment"), all[..1]);
     assert!(direct(&without, "heave").is_empty());
@@ -75,7 +75,7 @@ fn a_lateral_support_brings_its_variables() {
         stiffness_n_m2: None,
         damping_ratio: 0.003,
     });
-    let table = VariableTable::new(&model, None, None).unwrap();
+    let table = VariableTable::new(&model, None, None, None).unwrap();
     assert_eq!(table.dofs(), Dof::THREE);
     for name in [
         "external_drag",
@@ -98,7 +98,7 @@ fn a_lateral_support_brings_its_variables() {
 fn start_values_outside_their_limits_are_refused() {
     let mut model = fixture("rational");
     model.section.vertical.mass_kg_m = 1e-9;
-    let message = VariableTable::new(&model, None, None)
+    let message = VariableTable::new(&model, None, None, None)
         .unwrap_err()
         .to_string();
     assert_eq!(
