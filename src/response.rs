@@ -146,11 +146,21 @@ impl Stepper {
         inputs: &Inputs,
         step_s: f64,
     ) -> Result<()> {
-        // most steps
-        if self.repeats(state, inputs, step_s) && self.advance_as_before(state, inputs) {
+        if self.repeat(state, inputs, step_s) {
             return Ok(());
         }
         self.advance_anew(state, inputs, step_s)
+    }
+
+    /// Takes the step if it is the last one once more, in wind and size, as most steps are; else the state is as it was.
+    #[inline]
+    pub(crate) fn repeat(
+        &mut self,
+        state: &mut SectionState,
+        inputs: &Inputs,
+        step_s: f64,
+    ) -> bool {
+        self.repeats(state, inputs, step_s) && self.advance_as_before(state, inputs)
     }
 
     /// A step of which nothing is known yet.

@@ -116,11 +116,10 @@ enum AtHand {
     Never,
 }
 
-/// What reading a variable at every step needs, and no more.
+/// What reading a variable at every step needs, and no more: between steps, whatever can be read may be read.
 #[derive(Debug, Clone, Copy)]
 struct Glance {
     at_hand: AtHand,
-    gettable: StateSet,
     /// Its place there.
     entry: u32,
 }
@@ -142,7 +141,6 @@ impl Glance {
         };
         Self {
             at_hand,
-            gettable: access.gettable,
             entry: u32::try_from(entry).unwrap_or(u32::MAX),
         }
     }
@@ -184,20 +182,17 @@ impl Layout {
         (glance.at_hand == AtHand::InState).then_some(glance.entry as usize)
     }
 
-    /// The value of a real variable that may be read now and needs no work: most of what is read at every step.
+    /// The value of a real variable that needs no work, between steps: most of what is read at every step.
     #[inline]
     pub fn at_hand(&self, reference: u32, memory: &Memory, outputs_current: bool) -> Option<f64> {
         let glance = self.glances.get(reference as usize)?;
-        let state = memory.state;
         let list = match glance.at_hand {
-            // ahead of its release a section is not yet where its initial values put it
-            AtHand::InState if state == State::StepComplete => &memory.system.values,
+            AtHand::InState => &memory.system.values,
             AtHand::WithOutputs if outputs_current => &memory.values,
             AtHand::Always => &memory.values,
             _ => return None,
         };
-        let value = list.get(glance.entry as usize).copied();
-        value.filter(|_| glance.gettable.contains(state))
+        list.get(glance.entry as usize).copied()
     }
 
     /// Where the value at `place` comes from.

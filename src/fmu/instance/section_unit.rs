@@ -267,6 +267,13 @@ impl Unit for SectionUnit {
         Ok(false)
     }
 
+    fn repeat(&mut self, memory: &mut Memory, step: f64) -> Option<bool> {
+        // inputs that are current have no rates, and parameters that change take the stepper with them
+        let stepper = self.stepper.as_mut().filter(|_| self.inputs_current)?;
+        let taken = stepper.repeat(&mut memory.system, &self.inputs, step);
+        taken.then(|| self.rotation_news(memory))
+    }
+
     fn state_rates(&mut self, _: &Resources, memory: &Memory) -> Answer<Vec<f64>> {
         self.load_inputs(memory);
         let Some(stepper) = &mut self.stepper else {

@@ -19,6 +19,14 @@ impl Instance {
     /// with everything as it was, when the step cannot be computed.
     pub fn do_step(&mut self, point: f64, step: f64) -> Answer<()> {
         self.check_step(point, step)?;
+        if let Some(news) = self.unit.repeat(&mut self.memory, step) {
+            self.outputs_current = false;
+            if news {
+                self.watch();
+            }
+            self.memory.time = point + step;
+            return Ok(());
+        }
         if let Err(refusal) = self.advance(step) {
             self.memory.state = State::StepFailed;
             return Err(Refusal::discard(refusal.message));

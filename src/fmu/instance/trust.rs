@@ -119,8 +119,13 @@ impl SectionUnit {
         let wind = memory.values[self.places.wind_speed];
         let tested = self.tested_winds;
         let inside = tested.is_some_and(|[low, high]| (low..=high).contains(&wind));
-        let beyond = self.rotation(memory).abs() > LINEAR_ROTATION_RAD;
-        inside != self.told.wind_was_tested || (beyond && !self.told.rotation_left)
+        inside != self.told.wind_was_tested || self.rotation_news(memory)
+    }
+
+    /// Whether the rotation is beyond linear theory for the first time.
+    #[inline]
+    pub(super) fn rotation_news(&self, memory: &Memory) -> bool {
+        self.rotation(memory).abs() > LINEAR_ROTATION_RAD && !self.told.rotation_left
     }
 
     /// Says when the wind leaves the tested range, and when the rotation leaves linear theory; each once.

@@ -51,6 +51,13 @@ pub(super) trait Unit: Debug + Send {
     /// When the step cannot be computed.
     fn advance(&mut self, resources: &Resources, memory: &mut Memory, step: f64) -> Answer<bool>;
 
+    /// The last step once more, where nothing has been set since and no input runs on: most steps, without the work that
+    /// the others need. Returns whether there may be something to say of it; `None`, with everything as it was, where
+    /// the step has to be taken by [`Unit::advance`].
+    fn repeat(&mut self, _memory: &mut Memory, _step: f64) -> Option<bool> {
+        None
+    }
+
     /// Rates of the state, per second, where an importer may integrate it.
     ///
     /// # Errors

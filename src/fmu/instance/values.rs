@@ -2,6 +2,7 @@
 
 use super::Instance;
 use super::layout::{DataType, Source};
+use crate::fmu::lifecycle::State;
 use crate::fmu::refusal::{Answer, Refusal};
 
 impl Instance {
@@ -10,11 +11,12 @@ impl Instance {
     /// # Errors
     /// A reference that is none, of another type, or not readable now; a value that cannot be computed.
     pub fn reals(&mut self, references: &[u32], values: &mut [f64]) -> Answer<()> {
+        // ahead of its release a section is not yet where its initial values put it
+        let stepping = self.memory.state == State::StepComplete;
         for (reference, value) in references.iter().zip(values) {
-            let at_hand = self
-                .layout
-                .at_hand(*reference, &self.memory, self.outputs_current);
-            *value = match at_hand {
+            let (memory, current) = (&self.memory, self.outputs_current);
+            let at_hand = stepping.then(|| self.layout.at_hand(*reference, memory, current));
+            *value = match at_hand.flatten() {
                 Some(value) => value,
                 None => self.number(*reference, DataType::Real)?,
             };
