@@ -17,6 +17,8 @@ lateral (if present), torsion. Names with a unit end in it (`speed_m_s`).
 """
 
 from ._aerodeck import (
+    Bridge,
+    Buffeting,
     Derivatives,
     Model,
     MonteCarlo,
@@ -43,6 +45,8 @@ from ._errors import AerodeckError, FileError, InputError, NumericalError, Unsta
 
 __all__ = [
     "AerodeckError",
+    "Bridge",
+    "Buffeting",
     "Derivatives",
     "FileError",
     "InputError",

@@ -213,6 +213,64 @@ class Onsets:
     def __len__(self) -> int: ...
 
 @final
+class Bridge:
+    @staticmethod
+    def read(path: _Path) -> Bridge: ...
+    def flutter(self, *, forces: Literal["models", "tables"] = "models") -> Onset: ...
+    def sweep(self, speeds_m_s: _Floats | None = None) -> Sweep: ...
+    def buffeting(self, speed_m_s: float, *, progress: _Progress = None) -> Buffeting: ...
+    def export_fmu(
+        self,
+        path: _Path,
+        *,
+        nodes: Sequence[str] | None = None,
+        name: str | None = None,
+        author: str | None = None,
+        copyright: str | None = None,
+        overwrite: bool = False,
+        allow_unstable: bool = False,
+    ) -> None: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def nodes(self) -> list[str]: ...
+    @property
+    def along_m(self) -> _Floats: ...
+    @property
+    def modes(self) -> list[int]: ...
+    @property
+    def frequency_hz(self) -> _Floats: ...
+    @property
+    def damping_ratio(self) -> _Floats: ...
+    @property
+    def shapes(self) -> _Floats: ...
+    @property
+    def notes(self) -> list[str]: ...
+    def plot(self, **keywords: Any) -> Any: ...
+    def _repr_html_(self) -> str: ...
+
+@final
+class Buffeting:
+    @property
+    def speed_m_s(self) -> float: ...
+    @property
+    def nodes(self) -> list[str]: ...
+    @property
+    def rms(self) -> _Floats: ...
+    @property
+    def rms_of_records(self) -> _Floats: ...
+    @property
+    def standard_error(self) -> _Floats: ...
+    @property
+    def crossing_frequency_hz(self) -> _Floats: ...
+    @property
+    def expected_peak_factor(self) -> _Floats: ...
+    @property
+    def peak_factor(self) -> _Floats: ...
+    def to_dict(self) -> dict[str, Any]: ...
+    def _repr_html_(self) -> str: ...
+
+@final
 class Motion:
     @property
     def time_s(self) -> _Floats: ...
@@ -359,6 +417,15 @@ def export_fmu(
     *,
     kind: Literal["section", "force"] = "section",
     strips: Sequence[tuple[float, float]] | None = None,
+    prediction: float | None = None,
+    gusts: _Path | None = None,
+    admittance: Literal["none", "sears", "liepmann"] | None = None,
+    fmi: Literal[2, 3] = 2,
+    reals_only: bool = False,
+    platforms: Sequence[str] | None = None,
+    name: str | None = None,
+    author: str | None = None,
+    copyright: str | None = None,
     overwrite: bool = False,
     allow_unstable: bool = False,
     **experiment: Any,
@@ -367,6 +434,8 @@ def process(campaign: _Path, *, progress: _Progress = None, **options: Any) -> P
 
 __all__ = [
     "AerodeckError",
+    "Bridge",
+    "Buffeting",
     "Derivatives",
     "FileError",
     "InputError",

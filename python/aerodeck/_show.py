@@ -90,6 +90,38 @@ def monte_carlo_html(result):
     return _table("Distribution of the flutter onset", rows)
 
 
+def bridge_html(bridge):
+    rows = [("nodes", f"{len(bridge.nodes)}, {bridge.along_m[0]:g} to {bridge.along_m[-1]:g} m along the girder")]
+    modes = zip(bridge.modes, bridge.frequency_hz, bridge.damping_ratio)
+    rows += [(f"mode {n}", f"{f:.4f} Hz, damping {100 * z:.2f} %") for n, f, z in modes]
+    rows += [("note", note) for note in bridge.notes]
+    return _table(bridge.name, rows)
+
+
+def buffeting_html(found):
+    words = zip(found.nodes, found.rms, found.expected_peak_factor)
+    text = "RMS vertical {:.4f} m, lateral {:.4f} m, rotation {:.3f} deg; expected peaks {:.2f}, {:.2f}, {:.2f} times as large"
+    rows = [(f"node {n}", text.format(r[0], r[1], np.degrees(r[2]), *p)) for n, r, p in words]
+    return _table(f"Response to turbulence at {found.speed_m_s:g} m/s", rows)
+
+
+def bridge_plot(bridge, modes=6):
+    pyplot = _pyplot()
+    count = min(modes, len(bridge.modes))
+    figure, panels = pyplot.subplots(count, 1, sharex=True, layout="constrained", figsize=(7, 1.2 * count))
+    for i, axes in enumerate(np.atleast_1d(panels)):
+        scale = np.abs(bridge.shapes[i]).max(axis=0)
+        largest = max(scale[:2].max(), np.finfo(float).tiny)
+        axes.plot(bridge.along_m, bridge.shapes[i, :, 0] / largest, color=COLOURS[0], label="vertical")
+        axes.plot(bridge.along_m, bridge.shapes[i, :, 1] / largest, color=COLOURS[2], linestyle="-.", label="lateral")
+        turn = bridge.shapes[i, :, 2] / max(scale[2], np.finfo(float).tiny)
+        axes.plot(bridge.along_m, turn, color=COLOURS[1], linestyle="--", label="rotation, scaled by itself")
+        axes.set_ylabel(f"{bridge.modes[i]}: {bridge.frequency_hz[i]:.3f} Hz", fontsize=8)
+    np.atleast_1d(panels)[0].legend(fontsize=8, ncols=3)
+    axes.set_xlabel("along the girder (m)")
+    return figure
+
+
 def sweep_plot(sweep, onset=None):
     pyplot = _pyplot()
     figure, (above, below) = pyplot.subplots(2, 1, sharex=True, layout="constrained")

@@ -7,7 +7,6 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use std::sync::Mutex;
 
 /// Anything the library can write as JSON, as dicts, lists and numbers.
 pub fn to_python<'py>(py: Python<'py>, value: &impl Serialize) -> PyResult<Bound<'py, PyAny>> {
@@ -66,42 +65,6 @@ pub fn rows<'py>(
     let flat: Vec<f64> = rows.into_iter().flat_map(|r| r.as_ref().to_vec()).collect();
     let count = flat.len() / width.max(1);
     numpy::PyArray1::from_vec(py, flat).reshape([count, width])
-}
-
-/// A callable that is told how far long work has come, from any thread. What it raises ends nothing by itself: it is
-/// raised when the work is done.
-pub struct Callback {
-    function: Option<Py<PyAny>>,
-    raised: Mutex<Option<PyErr>>,
-}
-
-impl Callback {
-    /// `function` is called with what is done and all there is to do.
-    pub fn new(function: Option<Py<PyAny>>) -> Self {
-        Self {
-            function,
-            raised: Mutex::new(None),
-        }
-    }
-
-    /// Tells it; not again after it has raised something.
-    pub fn tell(&self, done: usize, total: usize) {
-        let Some(function) = &self.function else {
-            return;
-        };
-        Python::attach(|py| {
-            let mut raised = self.raised.lock().unwrap_or_else(|e| e.into_inner());
-            if raised.is_none() {
-                *raised = function.call1(py, (done, total)).err();
-            }
-        });
-    }
-
-    /// What it raised.
-    pub fn finish(self) -> PyResult<()> {
-        let raised = self.raised.into_inner().unwrap_or_else(|e| e.into_inner());
-        raised.map_or(Ok(()), Err)
-    }
 }
 
 /// Calls a method of `aerodeck/_show.py` on `of`.

@@ -1,10 +1,11 @@
 //! `fit_laguerre`, `fit_rational`: from derivatives or records to models.
 
-use crate::convert::{Callback, from_python, set_default};
+use crate::convert::{from_python, set_default};
 use crate::derivatives::Derivatives;
 use crate::error::{raised, wrong};
 use crate::model::Model;
 use crate::records::Records;
+use crate::work::Work;
 use aerodeck::identification::{FitReport, FrequencyFit, TimeFit, fit_records, fit_table};
 use aerodeck::section::Dof;
 use aerodeck::trained_model::{self, Provenance};
@@ -91,14 +92,17 @@ fn fit(
     if let Some(poles) = poles {
         set_default(&options, "poles", json!({ "fixed": poles }))?;
     }
-    let callback = Callback::new(progress);
+    let work = Work::new(progress);
     let (fitted, source, licence, name) = if let Ok(table) = data.cast::<Derivatives>() {
         let table = &table.get().0;
         let fit: FrequencyFit = from_python("options", options.as_any())?;
         let dofs: &[Dof] = if lateral { &Dof::THREE } else { &Dof::TWO };
         table.require(dofs).map_err(raised)?;
-        let fitted = py.detach(|| from_table(table.samples(dofs), dofs, &fit));
-        callback.tell(1, 1);
+        let fitted = work.run(py, || {
+            let fitted = from_table(table.samples(dofs), dofs, &fit);
+            work.tell(1, 1);
+            fitted
+        })?;
         let header = &table.header;
         (
             fitted,
@@ -109,7 +113,7 @@ fn fit(
     } else if let Ok(records) = data.cast::<Records>() {
         let records = records.get();
         let fit: TimeFit = from_python("options", options.as_any())?;
-        let fitted = py.detach(|| from_records(records, &fit, &callback));
+        let fitted = work.run(py, || from_records(records, &fit, &work))?;
         let of = |pick: fn(&aerodeck::wind_tunnel::RecordHeader) -> &String| {
             records
                 .0
@@ -127,7 +131,6 @@ fn fit(
         return Err(wrong("data", "Derivatives or Records", found));
     };
     let (model, report, uncertainty) = fitted.map_err(raised)?;
-    callback.finish()?;
     Ok(Model {
         tested: report.tested_range,
         provenance: Provenance {
@@ -156,16 +159,16 @@ fn from_table(
     Ok((model, report, known.map_err(|e| e.to_string())))
 }
 
-fn from_records(records: &Records, fit: &TimeFit, callback: &Callback) -> aerodeck::Result<Fitted> {
+fn from_records(records: &Records, fit: &TimeFit, work: &Work) -> aerodeck::Result<Fitted> {
     let sources = records.sources();
     let progress = |p: aerodeck::identification::Progress| {
-        callback.tell(
+        work.tell(
             (p.pass - 1) * p.records + p.records_done,
             p.passes * p.records,
         );
     };
     let (model, mut report) = fit_records(&sources, fit, &progress)?;
-    let known = record_uncertainty(&sources, fit, &report, &|_| ());
+    let known = record_uncertainty(&sources, fit, &report, &|_| work.check());
     enter(&known, &mut report);
     Ok((model, report, known.map_err(|e| e.to_string())))
 }

@@ -3,6 +3,7 @@
 //! One file a noun. Nothing is computed here: each function takes arrays apart, releases the interpreter, calls the
 //! library and puts arrays together. Plots and pages for notebooks are Python (`aerodeck/_show.py`).
 
+mod bridge;
 mod convert;
 mod derivatives;
 mod error;
@@ -11,10 +12,14 @@ mod fit;
 mod flutter;
 mod model;
 mod monte_carlo;
+mod onset;
+mod onsets;
 mod process;
 mod records;
 mod response;
 mod section;
+mod sweep;
+mod work;
 
 use pyo3::prelude::*;
 
@@ -26,9 +31,11 @@ fn _aerodeck(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<records::Records>()?;
     m.add_class::<section::Section>()?;
     m.add_class::<model::Model>()?;
-    m.add_class::<flutter::Onset>()?;
-    m.add_class::<flutter::Sweep>()?;
-    m.add_class::<flutter::Onsets>()?;
+    m.add_class::<onset::Onset>()?;
+    m.add_class::<sweep::Sweep>()?;
+    m.add_class::<onsets::Onsets>()?;
+    m.add_class::<bridge::Bridge>()?;
+    m.add_class::<bridge::Buffeting>()?;
     m.add_class::<response::Motion>()?;
     m.add_class::<response::Stepper>()?;
     m.add_class::<monte_carlo::MonteCarlo>()?;
@@ -36,8 +43,8 @@ fn _aerodeck(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(fit::fit_laguerre, m)?)?;
     m.add_function(wrap_pyfunction!(fit::fit_rational, m)?)?;
     m.add_function(wrap_pyfunction!(flutter::flutter, m)?)?;
-    m.add_function(wrap_pyfunction!(flutter::sweep, m)?)?;
-    m.add_function(wrap_pyfunction!(flutter::onsets, m)?)?;
+    m.add_function(wrap_pyfunction!(sweep::sweep, m)?)?;
+    m.add_function(wrap_pyfunction!(onsets::onsets, m)?)?;
     m.add_function(wrap_pyfunction!(response::simulate, m)?)?;
     m.add_function(wrap_pyfunction!(monte_carlo::monte_carlo, m)?)?;
     m.add_function(wrap_pyfunction!(export::export_fmu, m)?)?;

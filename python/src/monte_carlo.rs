@@ -1,9 +1,10 @@
 //! `monte_carlo`: the distribution of the onset when section and forces are random.
 
-use crate::convert::{Callback, from_python, set_default, shown, to_python};
+use crate::convert::{from_python, set_default, shown, to_python};
 use crate::error::raised;
 use crate::model::Model;
 use crate::section::Section;
+use crate::work::Work;
 use aerodeck::reliability::{self, MonteCarloPlan, MonteCarloResult};
 use numpy::PyArray1;
 use pyo3::prelude::*;
@@ -173,10 +174,9 @@ pub fn monte_carlo(
         set_default(&plan, key, value)?;
     }
     let plan: MonteCarloPlan = from_python("parameters", plan.as_any())?;
-    let callback = Callback::new(progress);
-    let result = py.detach(|| {
-        reliability::monte_carlo(&plan, &trained, &|done, total| callback.tell(done, total))
-    });
-    callback.finish()?;
+    let work = Work::new(progress);
+    let result = work.run(py, || {
+        reliability::monte_carlo(&plan, &trained, &|done, total| work.tell(done, total))
+    })?;
     result.map(MonteCarlo).map_err(raised)
 }

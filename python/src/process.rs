@@ -1,9 +1,10 @@
 //! `process`: from the load cells of a campaign to records and derivatives.
 
-use crate::convert::{Callback, from_python, to_python};
+use crate::convert::{from_python, to_python};
 use crate::derivatives::Derivatives;
 use crate::error::raised;
 use crate::records::Records;
+use crate::work::Work;
 use aerodeck::aerodynamics::derivatives::TableHeader;
 use aerodeck::identification::derivatives::{DerivativeOptions, identify_derivatives};
 use aerodeck::wind_tunnel::RecordSource;
@@ -62,11 +63,11 @@ pub fn process(
         Some(options) => from_python("options", options.as_any())?,
         None => ProcessingOptions::default(),
     };
-    let callback = Callback::new(progress);
-    let done = py.detach(|| {
+    let work = Work::new(progress);
+    let done = work.run(py, || {
         let (raw, mut warnings) = read_campaign(&campaign)?;
         let runs = raw.runs.len();
-        let processed = processing::process(&raw, &options, &|done| callback.tell(done, runs))?;
+        let processed = processing::process(&raw, &options, &|done| work.tell(done, runs))?;
         let sources: Vec<&dyn RecordSource> = processed
             .records
             .iter()
@@ -83,8 +84,7 @@ pub fn process(
         warnings.extend(processed.report.warnings());
         warnings.extend(found.warnings.iter().cloned());
         aerodeck::Result::Ok((processed, found, table, warnings))
-    });
-    callback.finish()?;
+    })?;
     let (processed, found, table, warnings) = done.map_err(raised)?;
     Ok(Processing {
         estimates: to_python(py, &found.estimates)?.unbind(),

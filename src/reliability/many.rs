@@ -56,6 +56,8 @@ pub fn many_onsets(
             let range = chunk * CHUNK..count.min((chunk + 1) * CHUNK);
             let length = range.len();
             let mut one = model.section.clone();
+            // who wants no more need not wait for what has not begun
+            progress(done.load(std::sync::atomic::Ordering::Relaxed));
             let found = range
                 .map(|i| {
                     section(i, &mut one);

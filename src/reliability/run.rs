@@ -63,6 +63,11 @@ pub fn monte_carlo(
         .map(|chunk| {
             let range = chunk * CHUNK..plan.samples.min((chunk + 1) * CHUNK);
             let count = range.len();
+            // who wants no more need not wait for what has not begun
+            progress(
+                done.load(std::sync::atomic::Ordering::Relaxed),
+                plan.samples,
+            );
             let tally = finder.tally(&sampler, range);
             let before = done.fetch_add(count, std::sync::atomic::Ordering::Relaxed);
             progress(before + count, plan.samples);

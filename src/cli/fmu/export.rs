@@ -9,7 +9,7 @@ use crate::cli::progress::Progress;
 use crate::cli::stages;
 use crate::error::{Error, Result};
 use crate::files::bridge::BridgeFile;
-use crate::files::coefficients::named_coefficients;
+use crate::files::coefficients::gust_force;
 use crate::fmu::force_options::{ForceOptions, MAX_STRIPS};
 use crate::fmu::onset_bounds::OnsetBounds;
 use crate::fmu::package::{
@@ -143,19 +143,8 @@ impl Args {
 
     /// The forces of gusts.
     fn gusts(&self, model: &TrainedModel) -> Result<Option<GustForce>> {
-        match (&self.gusts, self.admittance) {
-            (None, None) => Ok(None),
-            (None, Some(_)) => Err(Error::input(
-                "--admittance",
-                "--gusts TABLE with it: gusts act through static coefficients",
-                "none",
-            )),
-            (Some(source), admittance) => {
-                let admittance = admittance.map_or_else(Default::default, Into::into);
-                let table = named_coefficients(source, Path::new("."))?;
-                GustForce::quasi_steady(table, &model.section.dofs(), admittance).map(Some)
-            }
-        }
+        let admittance = self.admittance.map(Into::into);
+        gust_force(self.gusts.as_deref(), admittance, &model.section.dofs())
     }
 
     /// The options of a force FMU.

@@ -22,11 +22,13 @@ use crate::aerodynamics::quasi_steady::StaticCoefficients;
 use crate::aerodynamics::quasi_steady::TABLE_SIGN_CONVENTION;
 use crate::aerodynamics::quasi_steady::TABLE_UNITS;
 use crate::aerodynamics::quasi_steady::coefficients::check_rows;
+use crate::aerodynamics::{GustForce, RationalAdmittance};
 use crate::error::{Error, Result};
 use crate::files::header_csv::CommentHeader;
 use crate::files::header_csv::csv_error;
 use crate::files::header_csv::find_columns;
 use crate::files::header_csv::number;
+use crate::section::Dof;
 use std::io::Write;
 use std::path::Path;
 
@@ -146,6 +148,31 @@ pub(crate) fn named_coefficients(
         read_coefficients(directory.join(name))
     } else {
         embedded::coefficients(name)
+    }
+}
+
+/// Forces of gusts by quasi-steady theory on a section with these motions, from the static coefficients of that name: an
+/// embedded table, or a file (`.csv`).
+///
+/// # Errors
+/// [`Error::Input`] for an admittance (over the frequency; `None` where gusts are not asked for) without coefficients, an unknown
+/// name, coefficients that do not reach rotation zero or say nothing of a motion; [`Error::Io`].
+pub fn gust_force(
+    name: Option<&str>,
+    admittance: Option<RationalAdmittance>,
+    dofs: &[Dof],
+) -> Result<Option<GustForce>> {
+    match (name, admittance) {
+        (None, None) => Ok(None),
+        (None, Some(_)) => Err(Error::input(
+            "admittance",
+            "a table of static coefficients with it, through which gusts act",
+            "none",
+        )),
+        (Some(name), admittance) => {
+            let table = named_coefficients(name, Path::new("."))?;
+            GustForce::quasi_steady(table, dofs, admittance.unwrap_or_default()).map(Some)
+        }
     }
 }
 

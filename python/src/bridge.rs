@@ -1,0 +1,337 @@
+//! `Bridge`: modes and strips of a whole bridge.
+
+use crate::convert::{rows, shown, to_python};
+use crate::error::{raised, wrong};
+use crate::export::existing;
+use crate::onset::Onset;
+use crate::sweep::Sweep;
+use crate::work::Work;
+use aerodeck::aeroelastic::CoupledSection;
+use aerodeck::files::bridge::BridgeFile;
+use aerodeck::flutter::trace_modes;
+use aerodeck::fmu::package::{Label, Runtime, package_bridge, write_archive};
+use aerodeck::study::bridge::{BridgeBuffeting, BridgeStudy, bridge_flutter};
+use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use serde_json::json;
+use std::path::PathBuf;
+
+/// A whole bridge: natural modes, strips of sections with their forces, wind along the span.
+///
+/// Read from a bridge file (`Bridge.read("bridge.toml")`), which docs/bridge.md describes.
+#[pyclass(frozen, module = "aerodeck")]
+pub struct Bridge(BridgeStudy);
+
+#[pymethods]
+impl Bridge {
+    /// Read a bridge file with the modes, tables and models it names.
+    ///
+    /// Parameters
+    /// ----------
+    /// path : str or os.PathLike
+    ///     The bridge file (.toml).
+    #[staticmethod]
+    fn read(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
+        let work = Work::new(None);
+        let study = work.run(py, || BridgeStudy::new(BridgeFile::read(&path)?))?;
+        study.map(Self).map_err(raised)
+    }
+
+    /// Name in the file.
+    #[getter]
+    fn name(&self) -> &str {
+        &self.0.file.name
+    }
+
+    /// Names of the nodes along the girder; n of them.
+    #[getter]
+    fn nodes(&self) -> Vec<String> {
+        let nodes = self.0.by_model.nodes.iter();
+        nodes.map(|n| n.name.clone()).collect()
+    }
+
+    /// Places of the nodes along the girder, m; shape (n,).
+    #[getter]
+    fn along_m<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        let nodes = self.0.by_model.nodes.iter();
+        PyArray1::from_iter(py, nodes.map(|n| n.along_m))
+    }
+
+    /// Numbers of the modes in the model they come from; m of them.
+    #[getter]
+    fn modes(&self) -> Vec<usize> {
+        self.0.by_model.modes.iter().map(|m| m.number).collect()
+    }
+
+    /// Natural frequencies, Hz; shape (m,).
+    #[getter]
+    fn frequency_hz<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        let modes = self.0.by_model.modes.iter();
+        PyArray1::from_iter(py, modes.map(|m| m.frequency_hz))
+    }
+
+    /// Ratios to critical damping without wind; shape (m,).
+    #[getter]
+    fn damping_ratio<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        let modes = self.0.by_model.modes.iter();
+        PyArray1::from_iter(py, modes.map(|m| m.damping_ratio))
+    }
+
+    /// Vertical (m, up), lateral (m, downwind) and rotation (rad, nose-up) at each node, per unit of the modal coordinate; shape
+    /// (m, n, 3).
+    #[getter]
+    fn shapes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
+        let bridge = &self.0.by_model;
+        let flat = bridge.modes.iter().flat_map(|m| m.shape.iter().flatten());
+        let flat = PyArray1::from_iter(py, flat.copied());
+        flat.reshape([bridge.modes.len(), bridge.nodes.len(), 3])
+    }
+
+    /// What a reader should know: hints about units, simplifications.
+    #[getter]
+    fn notes(&self) -> Vec<String> {
+        self.0.notes.clone()
+    }
+
+    /// Find the flutter onset.
+    ///
+    /// Parameters
+    /// ----------
+    /// forces : {"models", "tables"}
+    ///     Eigenvalues with the force models, or p-k iteration with the tables between their points.
+    ///
+    /// Returns
+    /// -------
+    /// Onset
+    ///     Its card also holds `motion` (modes by their share of the energy, motion of every node), `left_out` (onsets with fewer
+    ///     modes), `divergence_m_s` and `mean_rotation_deg`.
+    #[pyo3(signature = (*, forces = "models"))]
+    fn flutter(&self, py: Python<'_>, forces: &str) -> PyResult<Onset> {
+        let method = match forces {
+            "models" => "eigenvalues",
+            "tables" => "pk",
+            other => return Err(wrong("forces", "models or tables", format!("`{other}`"))),
+        };
+        let found = Work::new(None).run(py, || bridge_flutter(&self.0))?;
+        let found = found.map_err(raised)?;
+        // the answer of the models comes last, that of the tables, where there is one, first
+        let answer = match forces {
+            "tables" if found.answers.len() < 2 => {
+                let why = found.failed.first().cloned();
+                let why = why.unwrap_or_else(|| "no section with a table".to_owned());
+                return Err(wrong("forces", "tables that have an onset to search", why));
+            }
+            "tables" => found.answers.first(),
+            _ => found.answers.last(),
+        };
+        let answer = answer.ok_or_else(|| {
+            raised(aerodeck::Error::Numerical(
+                "no route to the onset".to_owned(),
+            ))
+        })?;
+        let card = json!({
+            "search": answer.search, "motion": answer.motion, "left_out": found.left_out,
+            "divergence_m_s": found.divergence_m_s, "mean_rotation_deg": found.mean_rotation_deg, "failed": found.failed,
+        });
+        Onset::with_card(&answer.search, method, &card)
+    }
+
+    /// Follow the modes over wind speed, with the force models.
+    ///
+    /// Parameters
+    /// ----------
+    /// speeds_m_s : array of shape (n,), optional
+    ///     Rising wind speeds, m/s; left out, those of the bridge file.
+    ///
+    /// Returns
+    /// -------
+    /// Sweep
+    #[pyo3(signature = (speeds_m_s = None))]
+    fn sweep(
+        &self,
+        py: Python<'_>,
+        speeds_m_s: Option<PyReadonlyArray1<'_, f64>>,
+    ) -> PyResult<Sweep> {
+        let study = &self.0;
+        let speeds: Vec<f64> = match speeds_m_s {
+            Some(speeds) => speeds.as_array().to_vec(),
+            None => {
+                let search = &study.file.flutter;
+                let step = search.speed_max_m_s / search.speeds as f64;
+                (1..=search.speeds).map(|i| step * i as f64).collect()
+            }
+        };
+        let curves = Work::new(None).run(py, || {
+            let bridge = &study.by_model;
+            let coupled = CoupledSection::new(bridge.structure(), bridge.forces().realize()?)?;
+            let curves = trace_modes("model", &coupled, &speeds)?;
+            aerodeck::Result::Ok(curves.marked(bridge.width_m(), study.tested_range()))
+        })?;
+        let curves = curves.map_err(raised)?;
+        let names = curves.branches.iter().map(|b| b.name.clone()).collect();
+        Sweep::new(py, &curves, speeds, names)
+    }
+
+    /// Compute the response to the turbulence of the bridge file's `[buffeting]`.
+    ///
+    /// Parameters
+    /// ----------
+    /// speed_m_s : float
+    ///     Mean wind speed, m/s.
+    /// progress : callable, optional
+    ///     Called with (records done, records), from any thread.
+    ///
+    /// Returns
+    /// -------
+    /// Buffeting
+    #[pyo3(signature = (speed_m_s, *, progress = None))]
+    fn buffeting(
+        &self,
+        py: Python<'_>,
+        speed_m_s: f64,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Buffeting> {
+        let work = Work::new(progress);
+        let found = work.run(py, || {
+            let block = self.0.buffeting_block()?;
+            self.0
+                .buffeting(&block, speed_m_s, &|done, all| work.tell(done, all))
+        })?;
+        Buffeting::new(py, &found.map_err(raised)?)
+    }
+
+    /// Write an FMU of the bridge for FMI 2.0.
+    ///
+    /// Parameters
+    /// ----------
+    /// path : str or os.PathLike
+    /// nodes : sequence of str, optional
+    ///     Nodes with inputs and outputs; left out, mid-span and both quarter points.
+    /// name, author, copyright : str, optional
+    ///     What the description says of its origin.
+    /// overwrite : bool
+    ///     Replace a file that is there.
+    /// allow_unstable : bool
+    ///     Export a bridge that grows from the lowest wind speed on.
+    #[pyo3(signature = (path, *, nodes = None, name = None, author = None, copyright = None, overwrite = false,
+        allow_unstable = false))]
+    #[allow(clippy::too_many_arguments)] // keywords of Python, not positions
+    fn export_fmu(
+        &self,
+        py: Python<'_>,
+        path: PathBuf,
+        nodes: Option<Vec<String>>,
+        name: Option<String>,
+        author: Option<String>,
+        copyright: Option<String>,
+        overwrite: bool,
+        allow_unstable: bool,
+    ) -> PyResult<()> {
+        let label = Label {
+            name,
+            author,
+            copyright,
+            generated: None,
+        };
+        let written = Work::new(None).run(py, || {
+            let export = self.0.export(&nodes.unwrap_or_default(), allow_unstable)?;
+            let (runtimes, label) = (Runtime::available()?, label.dated()?);
+            let bytes = package_bridge(&export.model, &export.bridge, &runtimes, &label)?;
+            write_archive(&path, &bytes, existing(overwrite))
+        })?;
+        written.map_err(raised)
+    }
+
+    fn __repr__(&self) -> String {
+        let bridge = &self.0.by_model;
+        format!(
+            "Bridge({}, {} nodes, {} modes)",
+            self.0.file.name,
+            bridge.nodes.len(),
+            bridge.modes.len()
+        )
+    }
+
+    fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        shown(slf.as_any(), "bridge_html", None)
+    }
+
+    /// Draw the vertical and rotational shapes of the modes over the girder with matplotlib; returns the figure.
+    #[pyo3(signature = (**keywords))]
+    fn plot<'py>(
+        slf: &Bound<'py, Self>,
+        keywords: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        shown(slf.as_any(), "bridge_plot", keywords)
+    }
+}
+
+/// Response of a bridge to turbulence: vertical (m), lateral (m) and rotation (rad) at n nodes, by two ways.
+#[pyclass(frozen, module = "aerodeck")]
+pub struct Buffeting {
+    /// Mean wind speed, m/s.
+    #[pyo3(get)]
+    speed_m_s: f64,
+    /// Names of the nodes.
+    #[pyo3(get)]
+    nodes: Vec<String>,
+    /// Root mean square, by spectra; shape (n, 3).
+    #[pyo3(get)]
+    rms: Py<PyArray2<f64>>,
+    /// Root mean square, by records in time; shape (n, 3).
+    #[pyo3(get)]
+    rms_of_records: Py<PyArray2<f64>>,
+    /// Standard error of `rms_of_records`; shape (n, 3).
+    #[pyo3(get)]
+    standard_error: Py<PyArray2<f64>>,
+    /// Mean frequency of upward crossings of the mean, Hz; shape (n, 3).
+    #[pyo3(get)]
+    crossing_frequency_hz: Py<PyArray2<f64>>,
+    /// Expected greatest departure over the root mean square in the length of a record, by spectra; shape (n, 3).
+    #[pyo3(get)]
+    expected_peak_factor: Py<PyArray2<f64>>,
+    /// The same by records; shape (n, 3).
+    #[pyo3(get)]
+    peak_factor: Py<PyArray2<f64>>,
+    all: Py<PyAny>,
+}
+
+impl Buffeting {
+    fn new(py: Python<'_>, found: &BridgeBuffeting) -> PyResult<Self> {
+        let array = |values: &[[f64; 3]]| rows(py, 3, values).map(Bound::unbind);
+        let (frequency, time) = (&found.frequency, &found.time);
+        Ok(Self {
+            speed_m_s: frequency.speed_m_s,
+            nodes: found.nodes.clone(),
+            rms: array(&frequency.rms)?,
+            rms_of_records: array(&time.rms)?,
+            standard_error: array(&time.standard_error)?,
+            crossing_frequency_hz: array(&frequency.crossing_frequency_hz)?,
+            expected_peak_factor: array(&found.expected_peak_factor)?,
+            peak_factor: array(&time.peak_factor)?,
+            all: to_python(py, found)?.unbind(),
+        })
+    }
+}
+
+#[pymethods]
+impl Buffeting {
+    /// Everything, as `bridge_buffeting.json` of the command line holds it.
+    fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        py.import("copy")?
+            .call_method1("deepcopy", (self.all.bind(py),))
+    }
+
+    fn __repr__(&self) -> String {
+        format!(
+            "Buffeting({} m/s, nodes {})",
+            self.speed_m_s,
+            self.nodes.join(", ")
+        )
+    }
+
+    fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        shown(slf.as_any(), "buffeting_html", None)
+    }
+}

@@ -1,0 +1,112 @@
+//! `Onset`: at which wind speed a motion grows.
+
+use crate::convert::shown;
+use crate::error::raised;
+use aerodeck::flutter::{FlutterSearch, OnsetInterval};
+use pyo3::prelude::*;
+use serde::Serialize;
+
+/// The flutter onset of a section in a force model.
+#[pyclass(frozen, module = "aerodeck", get_all)]
+pub struct Onset {
+    /// `onset`; `unstable` when a motion grows already at the lowest speed that could be judged (the onset is there or below);
+    /// `stable` when there is none.
+    state: &'static str,
+    /// Wind speed, m/s; None when stable.
+    speed_m_s: Option<f64>,
+    /// Frequency of the motion, Hz; None when stable.
+    frequency_hz: Option<f64>,
+    /// V* = V/(fB); None when stable.
+    reduced_velocity: Option<f64>,
+    /// 95 % interval of the speed, m/s, as (low, high); None when it is not known or the data do not determine the onset.
+    interval: Option<(f64, f64)>,
+    /// Why there is no interval; None when there is one.
+    no_interval: Option<String>,
+    /// Whether the data reach the onset; None when there is none, or the model is exact.
+    in_tested_range: Option<bool>,
+    /// The answer in one line.
+    headline: String,
+    /// What limits trust in it.
+    warnings: Vec<String>,
+    /// How it was found.
+    method: String,
+    json: String,
+}
+
+#[pymethods]
+impl Onset {
+    /// Everything that is known, as dicts and numbers: the card of `aerodeck flutter --json`.
+    #[getter]
+    fn card<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        py.import("json")?.call_method1("loads", (&self.json,))
+    }
+
+    fn __repr__(&self) -> String {
+        format!("Onset({})", self.headline)
+    }
+
+    fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        shown(slf.as_any(), "onset_html", None)
+    }
+}
+
+impl Onset {
+    /// What was found, by `method`.
+    pub fn new(search: FlutterSearch, method: &str) -> PyResult<Self> {
+        Self::with_card(&search, method, &search)
+    }
+
+    /// What was found, with a card that holds more.
+    pub fn with_card(
+        search: &FlutterSearch,
+        method: &str,
+        card: &impl Serialize,
+    ) -> PyResult<Self> {
+        let json = serde_json::to_string(card)
+            .map_err(|e| raised(aerodeck::Error::Numerical(e.to_string())))?;
+        let mut answer = Self {
+            state: "stable",
+            speed_m_s: None,
+            frequency_hz: None,
+            reduced_velocity: None,
+            interval: None,
+            no_interval: None,
+            in_tested_range: None,
+            headline: search.explain(),
+            warnings: vec![],
+            method: method.to_owned(),
+            json,
+        };
+        let at = match search {
+            FlutterSearch::Onset(onset) => {
+                answer.state = "onset";
+                answer.headline = onset.headline();
+                answer.in_tested_range = onset.in_tested_range;
+                answer.warnings.clone_from(&onset.warnings);
+                match &onset.interval {
+                    OnsetInterval::Known {
+                        low_m_s, high_m_s, ..
+                    } => {
+                        answer.interval = Some((*low_m_s, *high_m_s));
+                    }
+                    OnsetInterval::Undetermined { reason, .. } | OnsetInterval::None { reason } => {
+                        answer.no_interval = Some(reason.clone());
+                    }
+                    OnsetInterval::Spread { of, .. } => answer.no_interval = Some(of.clone()),
+                }
+                &onset.at
+            }
+            FlutterSearch::UnstableAtOrBelow(start) => {
+                answer.state = "unstable";
+                answer.in_tested_range = start.in_tested_range;
+                answer.warnings.clone_from(&start.warnings);
+                &start.at
+            }
+            FlutterSearch::StableUpTo(_) => return Ok(answer),
+        };
+        answer.speed_m_s = Some(at.speed_m_s);
+        answer.frequency_hz = Some(at.frequency_hz);
+        answer.reduced_velocity = Some(at.reduced_velocity.v_star());
+        Ok(answer)
+    }
+}

@@ -1,0 +1,103 @@
+//! `onsets`: one model on many sections, from arrays.
+
+use crate::error::{raised, wrong};
+use crate::model::Model;
+use crate::section::{Section, place};
+use crate::work::Work;
+use aerodeck::reliability::{OnsetKind, Parameter, many_onsets};
+use aerodeck::section::SectionModel;
+use numpy::{PyArray1, PyReadonlyArray1, PyUntypedArrayMethods};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+/// Onsets of many sections, one entry each.
+#[pyclass(frozen, module = "aerodeck", get_all)]
+pub struct Onsets {
+    /// Onset speeds, m/s; NaN where there is none; shape (n,).
+    speed_m_s: Py<PyArray1<f64>>,
+    /// Frequencies at the onset, Hz; shape (n,).
+    frequency_hz: Py<PyArray1<f64>>,
+    /// Whether the data reach the onset; shape (n,).
+    tested: Py<PyArray1<bool>>,
+    /// Whether a motion grows already at the lowest speed that could be judged, which then stands for the onset; shape (n,).
+    unstable: Py<PyArray1<bool>>,
+}
+
+#[pymethods]
+impl Onsets {
+    fn __len__(&self, py: Python<'_>) -> usize {
+        self.speed_m_s.bind(py).len()
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> String {
+        format!("Onsets({} sections)", self.__len__(py))
+    }
+}
+
+/// Find the onsets of one model on many sections, over all cores.
+///
+/// Parameters
+/// ----------
+/// section : Section
+///     What is not varied.
+/// model : Model
+/// values : dict of str to array of shape (n,)
+///     Numbers of the section by their names in a study file: `"vertical.mass_kg_m"`, `"torsion.frequency_hz"`, …
+/// speed_max_m_s : float, optional
+///     Highest wind speed searched, m/s.
+/// progress : callable, optional
+///     Called with (done, total), from any thread.
+///
+/// Returns
+/// -------
+/// Onsets
+#[pyfunction]
+#[pyo3(signature = (section, model, values, *, speed_max_m_s = None, progress = None))]
+pub fn onsets(
+    py: Python<'_>,
+    section: &Bound<'_, Section>,
+    model: &Bound<'_, Model>,
+    values: &Bound<'_, PyDict>,
+    speed_max_m_s: Option<f64>,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Onsets> {
+    let trained = model.get().trained(Some(section.get()))?;
+    let mut varied: Vec<(Parameter, Vec<f64>)> = Vec::new();
+    for (name, array) in values {
+        let name: String = name.extract()?;
+        place(&name, &mut trained.section.clone())?;
+        let array: PyReadonlyArray1<f64> = array.extract()?;
+        let parameter = Parameter::named(&name).map_err(raised)?;
+        varied.push((parameter, array.as_array().to_vec()));
+    }
+    let count = varied.first().map_or(1, |v| v.1.len());
+    if let Some((_, other)) = varied.iter().find(|v| v.1.len() != count) {
+        let found = format!("{count} and {}", other.len());
+        return Err(wrong("values", "arrays of one length", found));
+    }
+    let make = |i: usize, section: &mut SectionModel| {
+        for (parameter, values) in &varied {
+            if let Some(place) = parameter.place(section) {
+                *place = values[i];
+            }
+        }
+    };
+    let limit = speed_max_m_s.unwrap_or(trained.experiment.onset_search_limit_m_s);
+    let work = Work::new(progress);
+    let found = work.run(py, || {
+        many_onsets(&trained, count, &make, limit, &|done| {
+            work.tell(done, count)
+        })
+    })?;
+    let found = found.map_err(raised)?;
+    let are = |kind: OnsetKind| {
+        let all = found.kinds.iter().map(|k| *k == kind).collect();
+        PyArray1::from_vec(py, all).unbind()
+    };
+    Ok(Onsets {
+        tested: are(OnsetKind::Tested),
+        unstable: are(OnsetKind::UnstableAtOrBelow),
+        speed_m_s: PyArray1::from_vec(py, found.speeds_m_s).unbind(),
+        frequency_hz: PyArray1::from_vec(py, found.frequencies_hz).unbind(),
+    })
+}

@@ -1,0 +1,92 @@
+"""A whole bridge: what the command line says of it, as arrays."""
+
+import aerodeck
+import numpy as np
+import pytest
+
+BRIDGE = """
+schema = 1
+name = "Langenuen"
+air_density_kg_m3 = 1.25
+[modes]
+format = "embedded"
+path = "langenuen"
+damping_ratio = 0.002
+[[section]]
+name = "girder"
+width_m = 31.0
+derivatives = "LN21-5200"
+motions = ["vertical", "torsion"]
+static = { drag = 0.08, lift = -0.15, moment = 0.03, drag_slope = 0.0, lift_slope = 4.5, moment_slope = 1.2, \
+arms = { vertical = 0.25, lateral = 0.25, torsion = 0.25 } }
+[flutter]
+speed_max_m_s = 110.0
+speeds = 55
+[buffeting]
+along = { spectrum = { shape = { kind = "kaimal" }, length_m = 150.0, intensity = 0.12 } }
+time = { records = 2, duration_s = 200.0, step_s = 0.1 }
+"""
+
+
+@pytest.fixture(scope="module")
+def bridge(tmp_path_factory):
+    path = tmp_path_factory.mktemp("bridge") / "bridge.toml"
+    path.write_text(BRIDGE)
+    return aerodeck.Bridge.read(path)
+
+
+def test_modes_and_nodes_are_arrays(bridge):
+    n, m = len(bridge.nodes), len(bridge.modes)
+    assert bridge.shapes.shape == (m, n, 3) and bridge.along_m.shape == (n,)
+    assert bridge.frequency_hz.shape == bridge.damping_ratio.shape == (m,)
+    assert np.all(np.diff(bridge.along_m) > 0) and np.all(bridge.damping_ratio == 0.002)
+
+
+@pytest.fixture(scope="module")
+def onset(bridge):
+    return bridge.flutter()
+
+
+def test_onsets_by_both_routes_are_those_of_the_manual(bridge, onset):
+    # docs/bridge.md
+    assert abs(onset.speed_m_s - 76.560) < 0.001
+    assert abs(bridge.flutter(forces="tables").speed_m_s / onset.speed_m_s - 1) < 0.01
+    shares = [mode["energy_share"] for mode in onset.card["motion"]["modes"]]
+    assert shares == sorted(shares, reverse=True) and abs(sum(shares) - 1) < 1e-9
+    with pytest.raises(aerodeck.InputError, match="models or tables"):
+        bridge.flutter(forces="nonsense")
+
+
+def test_damping_of_the_sweep_crosses_zero_at_the_onset(bridge, onset):
+    speeds = onset.speed_m_s * np.array([0.25, 0.5, 0.75, 0.999, 1.001])
+    curves = bridge.sweep(speeds)
+    assert curves.damping_ratio.shape == (5, len(bridge.modes)) == (5, len(curves.modes))
+    assert list(np.nanmin(curves.damping_ratio, axis=1) > 0) == [True] * 4 + [False]
+
+
+def test_buffeting_by_spectra_and_by_records(bridge):
+    told = []
+    found = bridge.buffeting(30.0, progress=lambda *at: told.append(at))
+    assert found.rms.shape == (len(found.nodes), 3) == (3, 3) and told[-1] == (2, 2)
+    assert np.all(np.abs(found.rms_of_records - found.rms) < 5 * found.standard_error + 0.2 * found.rms)
+    assert found.to_dict()["nodes"] == found.nodes and found._repr_html_().count("<tr>") == 3
+
+
+def test_fmu_of_the_bridge_runs(bridge, tmp_path):
+    fmpy = pytest.importorskip("fmpy")
+    path = tmp_path / "bridge.fmu"
+    bridge.export_fmu(path, nodes=["1081"], name="Girder")
+    description = fmpy.read_model_description(str(path))
+    assert description.modelName == "Girder"
+    result = fmpy.simulate_fmu(str(path), stop_time=5.0, output_interval=0.1, output=["node[1081].heave"])
+    motion = result["node[1081].heave"]
+    assert len(motion) == 51 and np.all(np.isfinite(motion)) and np.abs(motion).max() > 0
+    with pytest.raises(aerodeck.AerodeckError):
+        bridge.export_fmu(path)
+
+
+def test_pages_and_plots(bridge):
+    assert bridge._repr_html_().count("<tr>") > len(bridge.modes)
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("agg")
+    assert len(bridge.plot(modes=3).axes) == 3
