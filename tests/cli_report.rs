@@ -42,6 +42,7 @@ fn the_report_of_the_demo_stands_alone() {
         "Flutter onset 36.9 m/s",
         "What limits trust",
         "Derivatives: measured and modelled",
+        "Records: measured forces and the model",
         "Root locus",
         "Motion below, at and above the onset",
         "wind_speed",
@@ -66,6 +67,7 @@ fn the_report_of_the_demo_stands_alone() {
         "derivatives.svg",
         "roots.svg",
         "response.svg",
+        "forces.svg",
     ] {
         let svg = fs::read_to_string(at.join("d").join(figure)).unwrap();
         // some renderers do not know it and hide the text under its halo
@@ -125,6 +127,8 @@ fn a_required_speed_is_judged_by_the_lower_end_of_the_interval() {
         assert_eq!(answer["required_speed_met"], met, "{answer}");
         let page = fs::read_to_string(at.join("r/report.html")).unwrap();
         assert_eq!(page.contains("NOT met"), !met);
+        // the line in the charts
+        assert!(page.contains(&format!("\"required\":{required:?}")));
     }
     assert!(
         listing(at)

@@ -91,7 +91,7 @@ const COLUMNS: usize = 80;
 const HANGING: usize = 10;
 
 /// Long lines cut at spaces; what follows stands under the text of its entry.
-fn wrapped(text: &str) -> String {
+pub(super) fn wrapped(text: &str) -> String {
     let mut all = String::with_capacity(text.len());
     for line in text.lines() {
         if line.chars().count() <= COLUMNS {

@@ -20,6 +20,7 @@ mod headline;
 mod interrupt;
 mod laboratory;
 mod lock;
+mod measured_forces;
 mod monte_carlo;
 mod new;
 mod output;

@@ -1,5 +1,6 @@
 //! `aerodeck process`: from the raw runs of a campaign to records, derivatives and a study.
 
+use super::account::wrapped;
 use super::answer::Answer;
 use super::figures;
 use super::laboratory::laboratory_page;
@@ -150,10 +151,8 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     let known = (&notes[..], &out);
     let page = laboratory_page(&raw, &processed.report, derivatives.as_ref(), known);
     out.write(super::report::REPORT, sections_page(&page)?)?;
-    let mut text = account(&raw, &processed, derivatives.as_ref());
-    for note in &notes {
-        let _ = writeln!(text, "  note: {note}");
-    }
+    let remarks: String = notes.iter().map(|n| format!("  note: {n}\n")).collect();
+    let mut text = wrapped(&(account(&raw, &processed, derivatives.as_ref()) + &remarks));
     let written = out.commit()?;
     text.push_str(&list(&written));
     Answer::new(

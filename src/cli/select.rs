@@ -2,6 +2,7 @@
 
 mod account;
 
+use super::account::wrapped;
 use super::answer::Answer;
 use super::common::StudyArgs;
 use super::output::{OutputDir, Written, list};
@@ -101,8 +102,8 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
         super::figures::write(stem, &mut out, || Ok(figure))?;
     }
     let mut written = out.commit()?;
-    let mut text = format!("{}\n{}\n\n", study.name, deck.description());
-    text.push_str(&account(&selection));
+    let head = format!("{}\n{}\n\n", study.name, deck.description());
+    let mut text = wrapped(&head) + &account(&selection);
     if let Some(name) = &args.write {
         match recommended(&args.choice, &study, &selection) {
             Ok(block) => written.extend(write_study(args, &study, block, name)?),

@@ -235,6 +235,7 @@ pub(crate) fn flutter_figure(
     }
     let options = VfVgOptions {
         title: Some(study.name.clone()),
+        required_speed_m_s: study.flutter.required_speed_m_s,
         ..VfVgOptions::default()
     };
     figures::write(FIGURE, out, || {

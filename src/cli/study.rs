@@ -6,7 +6,7 @@ use super::output::{OutputDir, Written, list};
 use super::progress::Progress;
 use super::ran::{self, Ran};
 use super::report::{self, AnswerView, REPORT, SUMMARY};
-use super::{account, evidence, headline, select, stages};
+use super::{account, evidence, headline, measured_forces, select, stages};
 use crate::error::{Error, Result};
 use crate::flutter::{Onset, UnstableStart};
 use crate::fmu::package::Growing;
@@ -175,6 +175,10 @@ pub(crate) fn run_chain(
     let exported = models.iter().find(|m| m.name == name);
     if let (Some(model), Some(at)) = (exported, headline::own_onset(&results, &name)) {
         let at = (at.at.speed_m_s, at.at.frequency_hz);
+        if let Some(records) = &records {
+            let forces = measured_forces::write(model, records, at, &mut out);
+            attempt(&mut failed, "figure of measured forces", forces)?;
+        }
         let response = evidence::write_response(model, at, &mut out);
         attempt(&mut failed, "figure of the motion", response)?;
     }

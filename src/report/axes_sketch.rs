@@ -80,7 +80,7 @@ fn panel(svg: &mut String, axes: Axes) {
     let beside = if down > 0.0 { cy + 96.0 } else { cy - 90.0 };
     text(svg, (cx + 10.0, beside), motion, "", heave);
     text(svg, (cx + 118.0, cy - 12.0), motion, "", sway);
-    text(svg, (cx - 132.0, cy - 62.0), motion, "", turn);
+    text(svg, (cx - 148.0, cy - 62.0), motion, "", turn);
     dimension(svg);
 }
 

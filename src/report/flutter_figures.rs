@@ -20,6 +20,8 @@ pub struct VfVgOptions {
     /// Ends of the axis of the damping ratio, per cent; without them the data between −10 and 20, because beyond, the
     /// heavily damped heaving branch would hide the crossing.
     pub damping_range_percent: Option<(f64, f64)>,
+    /// Wind speed that the onset has to exceed, m/s, as a full upright line.
+    pub required_speed_m_s: Option<f64>,
 }
 
 /// Frequencies (Hz) and damping ratios (per cent of critical) of all modes over wind speed (m/s).
@@ -88,6 +90,23 @@ pub fn vf_vg_figure(
         mark_onset((&mut frequency, &mut damping, &mut close), onset, colour);
         stated.push(Entry::new(statement(onset), onset_ink(onset, colour)));
     }
+    if let Some(required) = options.required_speed_m_s {
+        let (low, high) = DAMPING_WINDOW_PERCENT;
+        let highest = |p: &Panel| {
+            let points = p.series.iter().flat_map(|s| &s.points);
+            points.map(|p| p.1).fold(0.0, f64::max)
+        };
+        let to = highest(&frequency);
+        for (panel, from, to) in [
+            (&mut frequency, 0.0, to),
+            (&mut damping, low, high),
+            (&mut close, NEAR_ZERO_PERCENT.0, NEAR_ZERO_PERCENT.1),
+        ] {
+            panel.add("required", vec![(required, from), (required, to)], REQUIRED);
+        }
+        let text = format!("required onset above {} m/s", significant(required));
+        models.push(Entry::new(text, REQUIRED));
+    }
     frequency.uprights.clone_from(&upright);
     close.uprights.clone_from(&upright);
     damping.uprights = upright;
@@ -154,6 +173,11 @@ pub fn vf_vg_figure(
 }
 
 const PLACE: &str = "V-f and V-g diagram";
+const REQUIRED: Ink = Ink::Line {
+    colour: BLACK,
+    dash: None,
+    width: 1.6,
+};
 const DAMPING_WINDOW_PERCENT: (f64, f64) = (-10.0, 20.0);
 /// A growth of half a per cent below the onset is a finding, and a hair's breadth in the panel above.
 const NEAR_ZERO_PERCENT: (f64, f64) = (-1.0, 1.0);

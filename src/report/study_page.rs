@@ -73,6 +73,10 @@ pub(crate) struct StudyPage {
     pub(crate) curves: Vec<PageCurve>,
     /// m/s.
     pub(crate) onset: Option<f64>,
+    /// 95 % interval of the onset, m/s.
+    pub(crate) interval: Option<(f64, f64)>,
+    /// Wind speed that the onset has to exceed, m/s.
+    pub(crate) required: Option<f64>,
 }
 
 #[derive(Template)]
@@ -108,6 +112,8 @@ struct Page<'a> {
 struct Charts<'a> {
     speeds: &'a [f64],
     onset: Option<f64>,
+    interval: Option<(f64, f64)>,
+    required: Option<f64>,
     series: Vec<ChartSeries<'a>>,
 }
 
@@ -165,6 +171,8 @@ fn charts(of: &StudyPage) -> serde_json::Result<String> {
     let charts = Charts {
         speeds: &of.speeds,
         onset: of.onset,
+        interval: of.interval,
+        required: of.required,
         series: of.curves.iter().map(series).collect(),
     };
     Ok(serde_json::to_string(&charts)?.replace('<', "\\u003c"))

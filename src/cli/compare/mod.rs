@@ -111,7 +111,7 @@ fn section(title: &str, statements: &[Statement], figures: Vec<(String, Figure)>
             .collect(),
         figures: figures
             .into_iter()
-            .map(|(caption, figure)| (caption, figure.svg().to_owned()))
+            .map(|(caption, figure)| (caption.replace('_', " "), figure.svg().to_owned()))
             .collect(),
         ..PageSection::default()
     }

@@ -7,6 +7,7 @@ pub(crate) use view::AnswerView;
 
 use super::answer::Answer;
 use super::evidence::{CURVES, DERIVATIVES, RESPONSE, ROOTS};
+use super::measured_forces::FORCES;
 use super::output::{OutputDir, list};
 use super::stages::{FIGURE, FMU_FILE, MODEL_FILE};
 use crate::error::{Error, Result};
@@ -115,6 +116,13 @@ fn of_summary(summary: &SummaryView, study: &Study) -> StudyPage {
         command: format!("aerodeck study {} --out results", summary.study_file),
         licence: summary.licence.lines().next().unwrap_or("").to_owned(),
         onset: answer.speed_m_s,
+        interval: own.and_then(|o| match o.interval {
+            OnsetInterval::Known {
+                low_m_s, high_m_s, ..
+            } => Some((low_m_s, high_m_s)),
+            _ => None,
+        }),
+        required: answer.required_speed_m_s,
         ..StudyPage::default()
     }
 }
@@ -289,6 +297,12 @@ fn figures(read: &dyn Fn(&str) -> Option<String>) -> Vec<PageFigure> {
             "Frequency and damping over wind speed",
             "A colour and dash per model, a width per branch; pale outside the tested range. Squares: onset of the FMU, stepped \
              through its C interface. The lowest panel magnifies the damping around zero, with the intervals of the onsets as bars.",
+        ),
+        (
+            FORCES,
+            "Records: measured forces and the model",
+            "Three periods of the steady motion nearest the onset in reduced frequency, of one record a motion. Full: measured. Dashes: the \
+             exported model under the measured motion. Dots: what is left.",
         ),
         (
             ROOTS,

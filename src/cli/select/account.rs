@@ -1,5 +1,6 @@
 //! A selection in words and figures.
 
+use crate::cli::account::wrapped;
 use crate::error::Result;
 use crate::report::{Figure, HeatMap, heat_map_figure};
 use crate::selection::{Cell, CellMetrics, MetricGrid, Selection};
@@ -24,7 +25,7 @@ pub(crate) fn account(selection: &Selection) -> String {
     for at in selection.free.iter().flatten() {
         text.push_str(&line(&selection.cells[*at]));
     }
-    let _ = writeln!(text, "\nRecommended\n{}", selection.reason);
+    let _ = write!(text, "\nRecommended\n{}", wrapped(&selection.reason));
     if let Some(recommended) = &selection.recommended {
         text.push_str(&line(&selection.cells[recommended.cell]));
     }
