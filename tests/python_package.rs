@@ -66,6 +66,7 @@ fn the_package_builds_installs_and_passes_its_tests() {
             .arg(&installed)
             .arg(wheel.path()),
     );
+    source_distribution(&interpreter, root, &target.join("tmp/python-source"));
     // a campaign for `process`, made by the program
     let campaign = target.join("tmp/python-campaign");
     let _ = fs::remove_dir_all(&campaign);
@@ -83,4 +84,51 @@ fn the_package_builds_installs_and_passes_its_tests() {
             .env("PYTHONPATH", &installed)
             .env("AERODECK_CAMPAIGN", campaign.join("campaign.toml")),
     );
+}
+
+/// The source distribution holds everything that the wheel is built of: whoever has Rust can install from it alone.
+fn source_distribution(interpreter: &Path, root: &Path, folder: &Path) {
+    let _ = fs::remove_dir_all(folder);
+    run(
+        "packing the sources",
+        Command::new(interpreter)
+            .args(["-m", "maturin", "sdist", "--manifest-path"])
+            .arg(root.join("python/Cargo.toml"))
+            .arg("--out")
+            .arg(folder),
+    );
+    let packed = fs::read_dir(folder).unwrap().next().unwrap().unwrap();
+    run(
+        "unpacking the sources",
+        Command::new(interpreter)
+            .args(["-m", "tarfile", "-e"])
+            .arg(packed.path())
+            .arg(folder),
+    );
+    let name = packed.file_name().into_string().unwrap();
+    let unpacked = folder.join(name.trim_end_matches(".tar.gz"));
+    for file in ["Cargo.lock", "build.rs", "LICENSE-MIT", "python/Cargo.toml"] {
+        assert!(unpacked.join(file).exists(), "{file} is not in the sources");
+    }
+    for part in ["src", "templates", "data", "fmu_build", "python/src"] {
+        every_file_of(&root.join(part), &unpacked.join(part));
+    }
+    every_file_of(&root.join("python/aerodeck"), &unpacked.join("aerodeck"));
+}
+
+fn every_file_of(folder: &Path, packed: &Path) {
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let (name, there) = (
+            path.file_name().unwrap(),
+            packed.join(path.file_name().unwrap()),
+        );
+        if path.is_dir() {
+            if name != "__pycache__" {
+                every_file_of(&path, &there);
+            }
+        } else {
+            assert!(there.exists(), "{} is not in the sources", path.display());
+        }
+    }
 }
