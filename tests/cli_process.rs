@@ -4,7 +4,7 @@
 #[allow(dead_code)] // each test file needs a part of it
 mod command;
 
-use command::{refused, succeeds};
+use command::{flowing, refused, succeeds};
 use serde_json::Value;
 use std::fs;
 use tempfile::TempDir;
@@ -43,7 +43,7 @@ fn a_campaign_becomes_records_derivatives_and_an_onset() {
         "--section",
         "section.toml",
     ];
-    let text = succeeds(at, &with_section);
+    let text = flowing(&succeeds(at, &with_section));
     for word in [
         "lag of the force channels",
         "test points",
