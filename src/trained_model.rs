@@ -233,14 +233,10 @@ impl TrainedModel {
             ));
         }
         if self.model.dofs() != self.section.dofs() {
-            return Err(Error::input(
-                "model.dofs",
-                format!(
-                    "the section's degrees of freedom {}",
-                    Dof::names(&self.section.dofs())
-                ),
-                Dof::names(self.model.dofs()),
-            ));
+            let own = Dof::names(&self.section.dofs());
+            let expected = format!("the section's degrees of freedom {own}");
+            let found = Dof::names(self.model.dofs());
+            return Err(Error::input("model.dofs", expected, found));
         }
         positive("tested_range.min", self.tested_range.min.full_width())?;
         if self.tested_range.max < self.tested_range.min
@@ -261,17 +257,10 @@ impl Experiment {
         positive("experiment.wind_speed_m_s", self.wind_speed_m_s)?;
         positive("experiment.stop_time_s", self.stop_time_s)?;
         positive("experiment.step_size_s", self.step_size_s)?;
-        positive(
-            "experiment.onset_search_limit_m_s",
-            self.onset_search_limit_m_s,
-        )?;
-        for (key, value) in [
-            ("experiment.initial_vertical_m", self.initial_vertical_m),
-            ("experiment.initial_rotation_rad", self.initial_rotation_rad),
-        ] {
-            finite(key, value)?;
-        }
-        Ok(())
+        let limit = self.onset_search_limit_m_s;
+        positive("experiment.onset_search_limit_m_s", limit)?;
+        finite("experiment.initial_vertical_m", self.initial_vertical_m)?;
+        finite("experiment.initial_rotation_rad", self.initial_rotation_rad).map(drop)
     }
 }
 
@@ -359,24 +348,11 @@ mod tests {
     fn damaged_files_are_refused_with_their_place() {
         let text = jones().to_json().unwrap();
         let newer = text.replace("\"schema_version\": 1", "\"schema_version\": 99");
-        assert_eq!(
-            TrainedModel::from_json(&newer).unwrap_err().to_string(),
-            "schema_version: expected 1 to 2, found 99"
-        );
-        let cut = &text[..text.len() / 2];
-        assert!(
-            TrainedModel::from_json(cut)
-                .unwrap_err()
-                .to_string()
-                .contains("line")
-        );
+        let refusal = |text: &str| TrainedModel::from_json(text).unwrap_err().to_string();
+        assert_eq!(refusal(&newer), "schema_version: expected 1 to 2, found 99");
+        assert!(refusal(&text[..text.len() / 2]).contains("line"));
         let negative = text.replace("\"mass_kg_m\": 15.0", "\"mass_kg_m\": -15.0");
-        assert!(
-            TrainedModel::from_json(&negative)
-                .unwrap_err()
-                .to_string()
-                .contains("mass_kg_m")
-        );
+        assert!(refusal(&negative).contains("mass_kg_m"));
     }
 
     /// Newer forms take the newer layout and survive it; a file of the older layout cannot hold them.

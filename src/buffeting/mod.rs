@@ -22,8 +22,8 @@ pub(crate) use problem::{BuffetingProblem, GustForces};
 pub use problem::{Gust, Turbulence};
 pub use span::{
     Coherence, SpanEnsemble, SpanPlan, SpanProblem, SpanRecord, SpanResponse, TurbulenceField,
-    span_ensemble, span_record, span_response, turbulence_field,
 };
+pub(crate) use span::{span_ensemble, span_record, span_response, turbulence_field};
 pub use spectrum::{GustComponent, GustSpectrum, SpectrumFormula, SpectrumShape};
 pub(crate) use stability::unstable_roots;
 pub(crate) use synthesis::synthesise;

@@ -9,7 +9,7 @@ use crate::study::{
 use std::fmt::Write as _;
 
 /// The whole chain.
-pub fn chain(
+pub(crate) fn chain(
     study: &Study,
     deck: &Deck,
     summary: &Summary,
@@ -137,7 +137,7 @@ pub(super) fn wrapped(text: &str) -> String {
 }
 
 /// One fit.
-pub fn fit(name: &str, report: &FitReport, uncertainty: &KnownUncertainty) -> String {
+pub(crate) fn fit(name: &str, report: &FitReport, uncertainty: &KnownUncertainty) -> String {
     let mut text = format!("Fit       {name}: {}\n", report.method);
     let residuals: Vec<String> = report
         .entries
@@ -238,7 +238,7 @@ fn force_symbol(dof: crate::section::Dof) -> &'static str {
 }
 
 /// The onsets side by side.
-pub fn onsets(
+pub(crate) fn onsets(
     (onsets, undetermined): (&[Onset], &[Onset]),
     unstable: &[UnstableStart],
     stable: &[OnsetSummary],
@@ -304,7 +304,7 @@ pub fn onsets(
 }
 
 /// The ends of an interval.
-pub fn interval(of: &OnsetInterval) -> String {
+pub(crate) fn interval(of: &OnsetInterval) -> String {
     match of {
         OnsetInterval::Spread {
             low_m_s, high_m_s, ..
@@ -320,7 +320,7 @@ pub fn interval(of: &OnsetInterval) -> String {
 }
 
 /// What the scan for growth below the onset found.
-pub fn growth(model: &str, growth: &UnwantedGrowth) -> String {
+pub(crate) fn growth(model: &str, growth: &UnwantedGrowth) -> String {
     let mark = if growth.is_none() { "" } else { "warning: " };
     format!("{mark}{model}: {}\n", growth.explain())
 }
@@ -331,12 +331,12 @@ pub(crate) fn growths(all: &[ModelGrowth]) -> String {
 }
 
 /// Stages that failed.
-pub fn failures(all: &[StageFailure]) -> String {
+pub(crate) fn failures(all: &[StageFailure]) -> String {
     all.iter().map(|f| f.explain() + "\n").collect()
 }
 
 /// Divergence of each model.
-pub fn divergence(all: &[Divergence]) -> String {
+pub(crate) fn divergence(all: &[Divergence]) -> String {
     let assumed: String = all
         .iter()
         .filter_map(|d| Some(format!("  {}: {}\n", d.model, d.assumed.as_ref()?)))
@@ -361,7 +361,7 @@ pub(crate) fn deck_warnings(deck: &Deck) -> String {
 }
 
 /// Deviations from the deck's own onset.
-pub fn deviations(all: &[Deviation]) -> String {
+pub(crate) fn deviations(all: &[Deviation]) -> String {
     all.iter().map(|d| d.explain() + "\n").collect()
 }
 

@@ -11,7 +11,7 @@ pub(crate) const OWN_FAULT: u8 = 70;
 static SAID: Once = Once::new();
 
 /// Replaces the message of the language by one that a user can do something with.
-pub fn install() {
+pub(crate) fn install() {
     set_hook(Box::new(|info| SAID.call_once(|| apologise(info))));
 }
 

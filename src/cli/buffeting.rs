@@ -1,12 +1,12 @@
 //! `aerodeck buffeting`: response to turbulence over wind speed.
 
 use super::answer::Answer;
-use super::output::list;
+use super::common::shown_in;
+use super::figures;
 use super::progress::Progress;
-use super::wind::{WindArgs, write_figure, write_json};
+use super::wind::WindArgs;
 use crate::error::Result;
 use crate::report::{buffeting_rms_figure, buffeting_spectra_figure};
-use crate::section::Dof;
 use crate::study::{BuffetingStudy, WindStudy, buffeting_study};
 use std::fmt::Write as _;
 
@@ -24,41 +24,28 @@ pub(crate) struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     let (study, mut out) = args.wind.open()?;
     let stage = progress.steps("records in the time domain");
     let results = buffeting_study(&study, &|done, all| stage.at(done as u64, all as u64))?;
     drop(stage);
-    write_json(&mut out, "buffeting.json", &results)?;
+    out.write_json("buffeting.json", &results)?;
     if !results.responses.is_empty() {
-        let figure = buffeting_rms_figure(&study.name, &results)?;
-        write_figure(&mut out, "buffeting", &figure)?;
+        figures::write("buffeting", &mut out, || {
+            buffeting_rms_figure(&study.name, &results)
+        })?;
     }
     for spectra in &results.spectra {
         let title = format!("{} at {} m/s", study.name, spectra.speed_m_s);
-        let figure = buffeting_spectra_figure(&title, &results.dofs, spectra)?;
         let stem = format!("buffeting_spectra_{}", spectra.speed_m_s);
-        write_figure(&mut out, &stem, &figure)?;
+        figures::write(&stem, &mut out, || {
+            buffeting_spectra_figure(&title, &results.dofs, spectra)
+        })?;
     }
-    let written = out.commit()?;
-    let text = account(&study, &results) + &list(&written);
-    Answer::new(
-        text,
-        &serde_json::json!({ "buffeting": results, "files": written }),
+    out.answer(
+        account(&study, &results),
+        serde_json::json!({ "buffeting": results }),
     )
-}
-
-/// A number in the unit of tables: m, or degrees.
-fn shown(dof: Dof, value: f64) -> f64 {
-    if dof == Dof::Torsion {
-        value.to_degrees()
-    } else {
-        value
-    }
-}
-
-fn unit(dof: Dof) -> &'static str {
-    if dof == Dof::Torsion { "deg" } else { "m" }
 }
 
 fn account(study: &WindStudy, results: &BuffetingStudy) -> String {
@@ -70,7 +57,7 @@ fn account(study: &WindStudy, results: &BuffetingStudy) -> String {
         let _ = write!(
             text,
             "{:>15}",
-            format!("RMS {} {}", dof.symbol(), unit(*dof))
+            format!("RMS {} {}", dof.symbol(), shown_in(*dof).1)
         );
     }
     for dof in &results.dofs {
@@ -81,7 +68,7 @@ fn account(study: &WindStudy, results: &BuffetingStudy) -> String {
     for response in results.responses.iter().step_by(every) {
         let _ = write!(text, "{:>8.2}", response.speed_m_s);
         for (dof, rms) in results.dofs.iter().zip(&response.rms) {
-            let _ = write!(text, "{:>15.5}", shown(*dof, *rms));
+            let _ = write!(text, "{:>15.5}", shown_in(*dof).0 * rms);
         }
         for frequency in &response.crossing_frequency_hz {
             let _ = write!(text, "{frequency:>12.4}");
@@ -131,14 +118,15 @@ fn time_domain(results: &BuffetingStudy) -> String {
             e.warm_up_s
         );
         for c in &domain.comparison {
+            let (factor, unit) = shown_in(c.dof);
             let _ = writeln!(
                 text,
                 "  {} RMS {:.5} ± {:.5} {}, frequency domain {:.5}: {:+.1} standard errors",
                 c.dof.symbol(),
-                shown(c.dof, c.time_rms),
-                shown(c.dof, c.standard_error),
-                unit(c.dof),
-                shown(c.dof, c.frequency_rms),
+                factor * c.time_rms,
+                factor * c.standard_error,
+                unit,
+                factor * c.frequency_rms,
                 c.deviations
             );
         }

@@ -1,6 +1,7 @@
 //! Arguments that several commands share.
 
 use crate::error::{Error, Result};
+use crate::section::Dof;
 use crate::study::{Study, study_warnings};
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -11,6 +12,32 @@ pub(crate) fn warn(file: &Path, warnings: &[String]) {
         // standard error may be closed
         let _ = writeln!(std::io::stderr(), "warning: {}: {warning}", file.display());
     }
+}
+
+/// The folder of a file.
+pub(crate) fn folder_of(file: &Path) -> &Path {
+    let parent = file.parent().filter(|p| !p.as_os_str().is_empty());
+    parent.unwrap_or(Path::new("."))
+}
+
+/// Factor and unit in which people read a motion: degrees, or m.
+pub(crate) fn shown_in(dof: Dof) -> (f64, &'static str) {
+    match dof {
+        Dof::Torsion => (1f64.to_degrees(), "deg"),
+        Dof::Vertical | Dof::Lateral => (1.0, "m"),
+    }
+}
+
+/// Columns of the motion of degrees of freedom: `vertical_m`, `torsion_rad`; `what` and the units stand behind the name.
+pub(crate) fn motion_columns<'a>(
+    dofs: &'a [Dof],
+    what: &'a str,
+    (linear, angular): (&'a str, &'a str),
+) -> impl Iterator<Item = String> + 'a {
+    dofs.iter().map(move |d| {
+        let unit = if *d == Dof::Torsion { angular } else { linear };
+        format!("{}{what}_{unit}", d.name())
+    })
 }
 
 /// A study file and the folder of its results.
@@ -64,8 +91,7 @@ impl StudyArgs {
 
     /// Folder of the study file.
     pub(crate) fn beside(&self) -> PathBuf {
-        let parent = self.study.parent().filter(|p| !p.as_os_str().is_empty());
-        parent.unwrap_or(Path::new(".")).to_path_buf()
+        folder_of(&self.study).to_path_buf()
     }
 }
 

@@ -52,7 +52,7 @@ enum TruthArg {
 }
 
 /// Runs the command.
-pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     let plan = CoveragePlan {
         truth: match args.truth {
             TruthArg::Jones => Truth::Jones,

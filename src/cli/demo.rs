@@ -31,7 +31,7 @@ pub(crate) struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     if args.bridge {
         return super::bridge::demo::run(&args.out, args.force, progress);
     }

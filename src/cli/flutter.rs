@@ -2,7 +2,7 @@
 
 use super::answer::Answer;
 use super::common::StudyArgs;
-use super::output::{OutputDir, list};
+use super::output::OutputDir;
 use super::progress::Progress;
 use super::routes;
 use super::{account, evidence, headline, stages};
@@ -27,7 +27,7 @@ pub(crate) struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     let study = args.study.read()?;
     let deck = Deck::load(&study)?;
     let directory = args.study.directory();
@@ -45,7 +45,6 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     let curves = evidence::write_curves(&study, &results.curves, &mut out);
     attempt(&mut failed, "curves", curves)?;
     results.failed.splice(0..0, failed);
-    let written = out.commit()?;
     let answer = headline::answer(&study, &results, &study.exported()?.name);
     let mut text = format!(
         "{}: {}\n{}\n",
@@ -64,14 +63,12 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     text.push_str(&account::divergence(&results.divergence));
     text.push_str(&account::deviations(&results.deviations));
     text.push_str(&account::failures(&results.failed));
-    text.push_str(&list(&written));
-    let answer = Answer::new(
-        text,
-        &serde_json::json!({
-            "answer": answer, "flutter": results, "warnings": deck.warnings(), "files": written
-        }),
-    )?;
-    Ok(answer.with_verdict(results.failed.is_empty()))
+    let value = serde_json::json!({
+        "answer": answer, "flutter": results, "warnings": deck.warnings()
+    });
+    Ok(out
+        .answer(text, value)?
+        .with_verdict(results.failed.is_empty()))
 }
 
 /// Every route in one table, with cards and a figure.
@@ -90,18 +87,13 @@ fn all_routes(
     if let Err(e) = stages::routes_figure(study, &table.curves, &routes::marked(&table), &mut out) {
         table.left_out.push(format!("figure of all routes: {e}"));
     }
-    let written = out.commit()?;
     let mut text = format!("{}\n{}\n", study.name, deck.description());
     text.push_str(&account::deck_warnings(deck));
     text.push('\n');
     text.push_str(&routes::account(&table, study.speeds().speed_max_m_s));
     text.push_str(&account::failures(failed));
-    text.push_str(&list(&written));
-    let answer = Answer::new(
-        text,
-        &serde_json::json!({
-            "routes": table, "failed": failed, "warnings": deck.warnings(), "files": written
-        }),
-    )?;
-    Ok(answer.with_verdict(failed.is_empty()))
+    let value = serde_json::json!({
+        "routes": table, "failed": failed, "warnings": deck.warnings()
+    });
+    Ok(out.answer(text, value)?.with_verdict(failed.is_empty()))
 }

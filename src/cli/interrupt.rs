@@ -76,7 +76,7 @@ fn remove(path: &Path) -> bool {
 ///
 /// SIGHUP keeps its effect, so that `nohup` works; what it and SIGKILL leave behind the next run removes.
 #[cfg(unix)]
-pub fn install() {
+pub(crate) fn install() {
     use signal_hook::consts::{SIGINT, SIGTERM};
     use signal_hook::iterator::Signals;
     let Ok(mut signals) = Signals::new([SIGINT, SIGTERM]) else {
@@ -101,4 +101,4 @@ pub fn install() {
 
 /// Nothing is caught here; the next run removes what is left behind.
 #[cfg(not(unix))]
-pub fn install() {}
+pub(crate) fn install() {}

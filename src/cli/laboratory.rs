@@ -1,9 +1,9 @@
 //! The laboratory's report of `process`: what was found odd, every run, the derivatives with their errors, the stages of each run.
 
 use super::output::OutputDir;
-use super::process::{file_name, line};
 use crate::identification::derivatives::{DerivativeEstimate, IdentifiedDerivatives};
 use crate::report::{PageSection, SectionsPage};
+use crate::section::Dof;
 use crate::wind_tunnel::RawCampaign;
 use crate::wind_tunnel::processing::{ProcessingReport, RunReport};
 
@@ -103,4 +103,42 @@ pub(super) fn svg(out: &OutputDir, stem: &str) -> Option<String> {
     let text = std::fs::read_to_string(out.staging().join(format!("{stem}.svg"))).ok()?;
     let start = text.find("<svg")?;
     Some(text[start..].to_owned())
+}
+
+/// A name that can be part of a path everywhere.
+pub(super) fn file_name(name: &str) -> String {
+    let plain = |c: char| c.is_alphanumeric() || matches!(c, '-' | '_' | '.');
+    let text: String = name
+        .chars()
+        .map(|c| if plain(c) { c } else { '_' })
+        .collect();
+    let trimmed = text.trim_matches('.');
+    if trimmed.is_empty() { "run" } else { trimmed }.to_owned()
+}
+
+/// A run in one line.
+pub(super) fn line(run: &RunReport) -> String {
+    let at = crate::wind_tunnel::processing::index(run.dof);
+    let replaced: usize = run.replaced.iter().map(|r| r.samples).sum();
+    let unit = if run.dof == Dof::Torsion {
+        "kg·m²"
+    } else {
+        "kg"
+    };
+    let inertia = run.still_air.as_ref().map_or_else(
+        || "no inertia seen".to_owned(),
+        |s| format!("inertia {:.4} {unit}", s.inertia),
+    );
+    let still_air = run.alignment.as_ref().map_or_else(
+        || "no still air".to_owned(),
+        |a| format!("still air {:+.2} samples", a.offset_samples),
+    );
+    format!(
+        "{}: {} at {:.2} m/s, {} test points, {still_air}, {inertia}, {:.0} dB, {replaced} samples replaced",
+        run.run,
+        run.dof.name(),
+        run.dimensionless.speed_m_s,
+        run.segments.len(),
+        run.signal_to_noise.after_low_pass_db[at],
+    )
 }

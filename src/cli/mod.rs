@@ -8,7 +8,6 @@ mod buffeting;
 mod campaign;
 mod common;
 mod compare;
-mod completions;
 mod coverage;
 mod demo;
 mod derivatives;
@@ -45,7 +44,8 @@ mod wind;
 pub use answer::Answer;
 
 use crate::error::{Error, Result};
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory as _, Parser, Subcommand};
+use clap_complete::Shell;
 use std::io::{ErrorKind, Write as _};
 use std::process::ExitCode;
 
@@ -103,7 +103,17 @@ enum Command {
     Coverage(coverage::Args),
     #[command(subcommand)]
     Compare(compare::Compare),
-    Completions(completions::Args),
+    Completions(Shells),
+}
+
+/// Print the completions of a shell
+///
+/// Example: aerodeck completions bash > ~/.local/share/bash-completion/completions/aerodeck
+#[derive(clap::Args)]
+#[command(verbatim_doc_comment)]
+struct Shells {
+    /// The shell.
+    shell: Shell,
 }
 
 /// Runs the command line of this process.
@@ -197,8 +207,16 @@ fn run(command: &Command, progress: &progress::Progress) -> Result<Answer> {
         Command::Select(args) => select::run(args, progress),
         Command::Coverage(args) => coverage::run(args, progress),
         Command::Compare(command) => compare::run(command, progress),
-        Command::Completions(args) => completions::run(args),
+        Command::Completions(args) => completions(args.shell),
     }
+}
+
+fn completions(shell: Shell) -> Result<Answer> {
+    let mut script = Vec::new();
+    clap_complete::generate(shell, &mut Cli::command(), "aerodeck", &mut script);
+    let script = String::from_utf8_lossy(&script).into_owned();
+    let value = serde_json::json!({ "shell": shell.to_string(), "script": script });
+    Answer::new(script, &value)
 }
 
 fn report(error: &Error, json: bool) -> u8 {

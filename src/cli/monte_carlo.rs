@@ -1,8 +1,9 @@
 //! `aerodeck monte-carlo`: the distribution of the onset when section and forces are random.
 
 use super::answer::Answer;
+use super::common::folder_of;
 use super::figures;
-use super::output::{OutputDir, list};
+use super::output::OutputDir;
 use super::progress::Progress;
 use super::stages;
 use crate::error::Result;
@@ -31,7 +32,7 @@ pub(crate) struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     let text = std::fs::read_to_string(&args.plan).map_err(|e| crate::Error::io(&args.plan, e))?;
     let folder = args.plan.parent().unwrap_or(Path::new(""));
     let mut plan = MonteCarloPlan::from_toml(&text, folder.to_path_buf())
@@ -45,26 +46,14 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     });
     drop(stage);
     let result = result.map_err(|e| MonteCarloPlan::locate(&text, e).in_file(&args.plan))?;
-    let beside = if folder.as_os_str().is_empty() {
-        Path::new(".")
-    } else {
-        folder
-    };
-    let mut out = OutputDir::new(args.out.as_deref().unwrap_or(beside))?;
+    let mut out = OutputDir::new(args.out.as_deref().unwrap_or(folder_of(&args.plan)))?;
     if result.onsets > 1 {
         figures::write("monte_carlo", &mut out, || {
             onset_distribution_figure(&result)
         })?;
     }
-    let mut json = serde_json::to_string_pretty(&result)
-        .map_err(|e| crate::Error::Numerical(e.to_string()))?;
-    json.push('\n');
-    out.write("monte_carlo.json", json)?;
-    let written = out.commit()?;
-    Answer::new(
-        account(&result) + &list(&written),
-        &serde_json::json!({ "result": result, "files": written }),
-    )
+    out.write_json("monte_carlo.json", &result)?;
+    out.answer(account(&result), serde_json::json!({ "result": result }))
 }
 
 fn account(r: &MonteCarloResult) -> String {

@@ -27,7 +27,7 @@ pub(crate) struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args) -> Result<Answer> {
+pub(crate) fn run(args: &Args) -> Result<Answer> {
     let folder = args.out.parent().filter(|p| !p.as_os_str().is_empty());
     let folder = folder.unwrap_or(Path::new("."));
     let name = args.out.file_name().ok_or_else(|| {

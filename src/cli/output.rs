@@ -1,10 +1,13 @@
 //! Files of a command: written aside first, put in place together, nothing left behind however the command ends.
 
+use super::answer::Answer;
 use super::interrupt::{Temporary, uninterrupted};
 use super::lock::{FolderLock, LOCK_FILE};
 use crate::error::{Error, Result};
+use crate::wind_tunnel::{Record, write_record};
 use std::fmt::Write as _;
 use std::fs;
+use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
 /// Start of the names of everything that is not a result.
@@ -105,6 +108,31 @@ impl OutputDir {
         fs::write(&path, bytes).map_err(|e| Error::io(path, e))
     }
 
+    /// Writes a result as indented JSON.
+    ///
+    /// # Errors
+    /// [`Error::Numerical`] when it has no form in JSON; [`Error::Io`].
+    pub(crate) fn write_json(
+        &mut self,
+        name: impl AsRef<Path>,
+        value: &impl serde::Serialize,
+    ) -> Result<()> {
+        let text = serde_json::to_string_pretty(value);
+        let text = text.map_err(|e| Error::Numerical(e.to_string()))?;
+        self.write(name, text + "\n")
+    }
+
+    /// Writes a record as the file `name`; where it stands for now.
+    ///
+    /// # Errors
+    /// [`Error::Io`]; a record that has no form in CSV.
+    pub(crate) fn write_record(&mut self, name: &Path, record: &Record) -> Result<PathBuf> {
+        let path = self.stage(name)?;
+        let file = fs::File::create(&path).map_err(|e| Error::io(&path, e))?;
+        write_record(record, &mut BufWriter::new(file)).map_err(|e| e.in_file(&path))?;
+        Ok(path)
+    }
+
     /// The folder in which the files stand until they are put in place.
     pub(crate) fn staging(&self) -> &Path {
         self.staging.path()
@@ -201,6 +229,16 @@ impl OutputDir {
         Ok(written)
     }
 
+    /// Puts all files in place: they end the text, and are `files` of the object `value`.
+    ///
+    /// # Errors
+    /// [`Error::Io`] when a file cannot be moved.
+    pub(crate) fn answer(self, text: String, mut value: serde_json::Value) -> Result<Answer> {
+        let written = self.commit()?;
+        value["files"] = serde_json::json!(written);
+        Answer::new(text + &list(&written), &value)
+    }
+
     fn mark_complete(&mut self) -> Result<()> {
         let from = self.staging.path().to_path_buf();
         let name = from.file_name().unwrap_or_default().to_string_lossy();
@@ -267,7 +305,7 @@ fn put_all(from: &Path, to: &Path) -> Result<()> {
 }
 
 /// The files as lines of text.
-pub fn list(written: &[Written]) -> String {
+pub(crate) fn list(written: &[Written]) -> String {
     let mut text = String::new();
     for file in written {
         let path = file.path.display();

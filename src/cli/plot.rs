@@ -1,8 +1,9 @@
 //! `aerodeck plot`: columns of a CSV file of results over one of them.
 
 use super::answer::Answer;
+use super::common::folder_of;
 use super::figures;
-use super::output::{OutputDir, list};
+use super::output::OutputDir;
 use crate::error::{Error, Result};
 use crate::report::{PlottedSeries, TimePanel, time_history_figure};
 use std::path::{Path, PathBuf};
@@ -46,7 +47,7 @@ pub(crate) struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args) -> Result<Answer> {
+pub(crate) fn run(args: &Args) -> Result<Answer> {
     let table = Table::read(&args.file)?;
     let numbers: Vec<usize> = (0..table.names.len())
         .filter(|c| table.is_number(*c))
@@ -77,15 +78,13 @@ pub fn run(args: &Args) -> Result<Answer> {
         })
         .collect();
     let stem = args.file.file_stem().unwrap_or_default().to_string_lossy();
-    let beside = args.file.parent().filter(|p| !p.as_os_str().is_empty());
-    let folder = args.out.as_deref().or(beside).unwrap_or(Path::new("."));
+    let folder = args.out.as_deref().unwrap_or(folder_of(&args.file));
     let mut out = OutputDir::new(folder)?;
     let abscissa = label(&table.names[x]);
     figures::write(&stem, &mut out, || {
         time_history_figure(&stem, &panels, &abscissa)
     })?;
-    let written = out.commit()?;
-    Answer::new(list(&written), &serde_json::json!({ "files": written }))
+    out.answer(String::new(), serde_json::json!({}))
 }
 
 /// A name with its unit in words: `frequency_hz` as `frequency (Hz)`.

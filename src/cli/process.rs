@@ -3,8 +3,8 @@
 use super::account::wrapped;
 use super::answer::Answer;
 use super::figures;
-use super::laboratory::laboratory_page;
-use super::output::{OutputDir, list};
+use super::laboratory::{file_name, laboratory_page, line};
+use super::output::OutputDir;
 use super::progress::Progress;
 use super::stages::RECORDS;
 use crate::aerodynamics::FlatPlate;
@@ -30,8 +30,8 @@ use crate::section::Dof;
 use crate::study::{Study, derivative_lines, processed_study_text, read_section};
 use crate::units::group_of;
 use crate::wind_tunnel::campaign::Campaign;
-use crate::wind_tunnel::processing::{Processed, ProcessingOptions, RunReport, process};
-use crate::wind_tunnel::{RawCampaign, RecordSource, write_record};
+use crate::wind_tunnel::processing::{Processed, ProcessingOptions, process};
+use crate::wind_tunnel::{RawCampaign, RecordSource};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -80,7 +80,7 @@ pub(crate) struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     let options = args.options()?;
     let base = args.study.as_ref().map(|p| Study::read(p)).transpose()?;
     let section = args.section.as_ref().map(|p| read_section(p)).transpose()?;
@@ -115,7 +115,7 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
         stage.at(i as u64 + 1, count);
     }
     drop(stage);
-    out.write("processing.json", json(&processed.report)?)?;
+    out.write_json("processing.json", &processed.report)?;
     let derivatives = match derivatives {
         Ok(found) => {
             notes.extend(found.warnings.iter().cloned());
@@ -128,7 +128,7 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
         Err(e) => return Err(e),
     };
     if let Some(found) = &derivatives {
-        out.write("derivatives.json", json(found)?)?;
+        out.write_json("derivatives.json", found)?;
         let plot = plot(&raw, found, args.quasi_steady(&found.dofs)?.as_ref())?;
         figures::write("derivatives", &mut out, || derivatives_figure(&plot))?;
         match write_table(&raw, found, &mut out) {
@@ -152,18 +152,13 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     let page = laboratory_page(&raw, &processed.report, derivatives.as_ref(), known);
     out.write(super::report::REPORT, sections_page(&page)?)?;
     let remarks: String = notes.iter().map(|n| format!("  note: {n}\n")).collect();
-    let mut text = wrapped(&(account(&raw, &processed, derivatives.as_ref()) + &remarks));
-    let written = out.commit()?;
-    text.push_str(&list(&written));
-    Answer::new(
-        text,
-        &serde_json::json!({
-            "report": processed.report,
-            "derivatives": derivatives,
-            "notes": notes,
-            "files": written,
-        }),
-    )
+    let text = wrapped(&(account(&raw, &processed, derivatives.as_ref()) + &remarks));
+    let value = serde_json::json!({
+        "report": processed.report,
+        "derivatives": derivatives,
+        "notes": notes,
+    });
+    out.answer(text, value)
 }
 
 impl Args {
@@ -195,17 +190,6 @@ impl Args {
     }
 }
 
-/// A name that can be part of a path everywhere.
-pub(super) fn file_name(name: &str) -> String {
-    let plain = |c: char| c.is_alphanumeric() || matches!(c, '-' | '_' | '.');
-    let text: String = name
-        .chars()
-        .map(|c| if plain(c) { c } else { '_' })
-        .collect();
-    let trimmed = text.trim_matches('.');
-    if trimmed.is_empty() { "run" } else { trimmed }.to_owned()
-}
-
 /// Writes the records; their paths from the folder of the results.
 fn write_records(processed: &Processed, out: &mut OutputDir) -> Result<Vec<PathBuf>> {
     let mut names = Vec::with_capacity(processed.records.len());
@@ -218,9 +202,7 @@ fn write_records(processed: &Processed, out: &mut OutputDir) -> Result<Vec<PathB
                 format!("`{}` a second time", record.header.name),
             ));
         }
-        let path = out.stage(&name)?;
-        let file = std::fs::File::create(&path).map_err(|e| Error::io(&path, e))?;
-        write_record(record, &mut std::io::BufWriter::new(file)).map_err(|e| e.in_file(&path))?;
+        out.write_record(&name, record)?;
         names.push(name);
     }
     Ok(names)
@@ -256,13 +238,6 @@ fn write_table(
         format!("AerodynamicDerivatives_{}.xlsx", file_name(&raw.section)),
         workbook_bytes(&table)?,
     )
-}
-
-fn json(value: &impl serde::Serialize) -> Result<String> {
-    let mut text =
-        serde_json::to_string_pretty(value).map_err(|e| Error::Numerical(e.to_string()))?;
-    text.push('\n');
-    Ok(text)
 }
 
 /// Measured points of each speed with the lines of the flat plate and of quasi-steady theory.
@@ -376,30 +351,4 @@ fn account(
         );
     }
     text
-}
-
-pub(super) fn line(run: &RunReport) -> String {
-    let at = crate::wind_tunnel::processing::index(run.dof);
-    let replaced: usize = run.replaced.iter().map(|r| r.samples).sum();
-    let unit = if run.dof == Dof::Torsion {
-        "kg·m²"
-    } else {
-        "kg"
-    };
-    let inertia = run.still_air.as_ref().map_or_else(
-        || "no inertia seen".to_owned(),
-        |s| format!("inertia {:.4} {unit}", s.inertia),
-    );
-    let still_air = run.alignment.as_ref().map_or_else(
-        || "no still air".to_owned(),
-        |a| format!("still air {:+.2} samples", a.offset_samples),
-    );
-    format!(
-        "{}: {} at {:.2} m/s, {} test points, {still_air}, {inertia}, {:.0} dB, {replaced} samples replaced",
-        run.run,
-        run.dof.name(),
-        run.dimensionless.speed_m_s,
-        run.segments.len(),
-        run.signal_to_noise.after_low_pass_db[at],
-    )
 }

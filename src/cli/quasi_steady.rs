@@ -2,10 +2,13 @@
 
 use super::account;
 use super::answer::Answer;
-use super::output::{OutputDir, list};
+use super::common::{motion_columns, shown_in};
+use super::figures;
+use super::output::OutputDir;
 use super::progress::Progress;
-use super::wind::{WindArgs, write_figure, write_json};
+use super::wind::WindArgs;
 use crate::aerodynamics::GustSeries;
+use crate::aerodynamics::quasi_steady::{CoefficientRow, CoefficientsAt};
 use crate::error::{Error, Result};
 use crate::files::gusts::write_gusts;
 use crate::flutter::FlutterSearch;
@@ -13,7 +16,6 @@ use crate::report::{
     DerivativePlot, DerivativesPlot, PlottedSeries, TimePanel, VfVgOptions, derivatives_figure,
     equilibrium_figure, time_history_figure, vf_vg_figure,
 };
-use crate::section::Dof;
 use crate::study::{
     QuasiSteadyStudy, SimulatedMotion, WindStudy, quasi_steady_study, simulated_motion,
 };
@@ -33,7 +35,7 @@ pub(crate) struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     let (study, mut out) = args.wind.open()?;
     let stage = progress.stage("equilibria and modes over wind speed");
     let results = quasi_steady_study(&study)?;
@@ -41,74 +43,60 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     let stage = progress.stage("nonlinear run");
     let run = simulated_motion(&study)?;
     drop(stage);
-    write_json(&mut out, "quasi_steady.json", &results)?;
-    figures(&study, &results, &mut out)?;
+    out.write_json("quasi_steady.json", &results)?;
+    draw(&study, &results, &mut out)?;
     if let Some(run) = &run {
         write_run(&study, run, &mut out)?;
     }
-    let written = out.commit()?;
     let mut text = in_words(&study, &results);
     if let Some(run) = &run {
         text.push_str(&run_in_words(run));
     }
-    text.push_str(&list(&written));
-    Answer::new(
-        text,
-        &serde_json::json!({ "quasi_steady": results, "simulation": run, "files": written }),
-    )
+    let value = serde_json::json!({ "quasi_steady": results, "simulation": run });
+    out.answer(text, value)
 }
 
-fn figures(study: &WindStudy, results: &QuasiSteadyStudy, out: &mut OutputDir) -> Result<()> {
-    write_figure(
-        out,
-        "coefficients",
-        &derivatives_figure(&coefficients(results))?,
-    )?;
+fn draw(study: &WindStudy, results: &QuasiSteadyStudy, out: &mut OutputDir) -> Result<()> {
+    figures::write("coefficients", out, || {
+        derivatives_figure(&coefficients(results))
+    })?;
     if results.equilibria.points.is_empty() {
         return Ok(());
     }
-    let figure = equilibrium_figure(&study.name, &results.dofs, &results.equilibria)?;
-    write_figure(out, "equilibrium", &figure)?;
+    figures::write("equilibrium", out, || {
+        equilibrium_figure(&study.name, &results.dofs, &results.equilibria)
+    })?;
     let onsets: Vec<_> = results.onset.search.onset().cloned().into_iter().collect();
     let options = VfVgOptions {
         title: Some(study.name.clone()),
         ..VfVgOptions::default()
     };
-    let figure = vf_vg_figure(std::slice::from_ref(&results.curves), &onsets, &options)?;
-    write_figure(out, "quasi_steady_modes", &figure)
+    figures::write("quasi_steady_modes", out, || {
+        vf_vg_figure(std::slice::from_ref(&results.curves), &onsets, &options)
+    })
 }
 
 /// The table as dots and the line that is computed with.
 fn coefficients(results: &QuasiSteadyStudy) -> DerivativesPlot {
-    let plot = |name: &str, measured: Vec<(f64, f64)>, fitted: Vec<(f64, f64)>| DerivativePlot {
-        name: name.to_owned(),
-        measured: vec![PlottedSeries::new("table", measured)],
-        bars: Vec::new(),
-        fitted: vec![PlottedSeries::new("spline", fitted)],
-        reference: Vec::new(),
+    let plot = |name: &str, row: fn(&CoefficientRow) -> f64, of: fn(&CoefficientsAt) -> f64| {
+        let table = results.rows.iter().map(|r| (r.angle_deg, row(r)));
+        let spline = results.line.iter().map(|(angle, c)| (*angle, of(c)));
+        DerivativePlot {
+            name: name.to_owned(),
+            measured: vec![PlottedSeries::new("table", table.collect())],
+            bars: Vec::new(),
+            fitted: vec![PlottedSeries::new("spline", spline.collect())],
+            reference: Vec::new(),
+        }
     };
-    let rows = || results.rows.iter();
-    let line = || results.line.iter();
     DerivativesPlot {
         title: format!("Static coefficients: {}", results.coefficients),
         velocity_label: "Angle of attack α (deg)".to_owned(),
         bars_label: String::new(),
         derivatives: vec![
-            plot(
-                "Drag C_D",
-                rows().map(|r| (r.angle_deg, r.drag)).collect(),
-                line().map(|(a, c)| (*a, c.drag)).collect(),
-            ),
-            plot(
-                "Lift C_L",
-                rows().map(|r| (r.angle_deg, r.lift)).collect(),
-                line().map(|(a, c)| (*a, c.lift)).collect(),
-            ),
-            plot(
-                "Moment C_M",
-                rows().map(|r| (r.angle_deg, r.moment)).collect(),
-                line().map(|(a, c)| (*a, c.moment)).collect(),
-            ),
+            plot("Drag C_D", |r| r.drag, |c| c.drag),
+            plot("Lift C_L", |r| r.lift, |c| c.lift),
+            plot("Moment C_M", |r| r.moment, |c| c.moment),
         ],
     }
 }
@@ -129,8 +117,8 @@ fn in_words(study: &WindStudy, results: &QuasiSteadyStudy) -> String {
     }
     let _ = write!(text, "\nStatic equilibrium\n{:>8}", "V m/s");
     for dof in &results.dofs {
-        let unit = if *dof == Dof::Torsion { "deg" } else { "m" };
-        let _ = write!(text, "{:>12}", format!("{} {unit}", dof.symbol()));
+        let name = format!("{} {}", dof.symbol(), shown_in(*dof).1);
+        let _ = write!(text, "{name:>12}");
     }
     let _ = writeln!(text, "{:>16}", "stiffness left");
     let points = &results.equilibria.points;
@@ -140,12 +128,7 @@ fn in_words(study: &WindStudy, results: &QuasiSteadyStudy) -> String {
     {
         let _ = write!(text, "{:>8.2}", point.speed_m_s);
         for (dof, value) in results.dofs.iter().zip(&point.displacement) {
-            let shown = if *dof == Dof::Torsion {
-                value.to_degrees()
-            } else {
-                *value
-            };
-            let _ = write!(text, "{shown:>12.5}");
+            let _ = write!(text, "{:>12.5}", shown_in(*dof).0 * value);
         }
         let _ = writeln!(text, "{:>14.1} %", 100.0 * point.stiffness_left);
     }
@@ -187,10 +170,7 @@ fn run_in_words(run: &SimulatedMotion) -> String {
         (mean, square.sqrt())
     };
     for (i, dof) in run.dofs.iter().enumerate().take(n) {
-        let (factor, unit) = match dof {
-            Dof::Torsion => (1f64.to_degrees(), "deg"),
-            _ => (1.0, "m"),
-        };
+        let (factor, unit) = shown_in(*dof);
         let (mean, rms) = spread(&run.nonlinear, i);
         let (linear_mean, linear_rms) = spread(&run.linear, i);
         let _ = writeln!(
@@ -215,8 +195,9 @@ fn write_run(study: &WindStudy, run: &SimulatedMotion, out: &mut OutputDir) -> R
     let source = format!("the run of quasi_steady_run.csv at {} m/s", run.speed_m_s);
     write_gusts(&study.name, &source, &gusts, &mut file).map_err(|e| Error::io(&path, e))?;
     let title = format!("{} at {} m/s", study.name, run.speed_m_s);
-    let figure = time_history_figure(&title, &panels(run), "Time t (s)")?;
-    write_figure(out, "quasi_steady_run", &figure)
+    figures::write("quasi_steady_run", out, || {
+        time_history_figure(&title, &panels(run), "Time t (s)")
+    })
 }
 
 fn csv(study: &WindStudy, run: &SimulatedMotion) -> String {
@@ -227,10 +208,8 @@ fn csv(study: &WindStudy, run: &SimulatedMotion) -> String {
     let mut columns = vec!["time_s".to_owned(), "u_m_s".into(), "w_m_s".into()];
     for kind in ["nonlinear", "linear"] {
         for (what, linear, angular) in [("", "m", "rad"), ("_rate", "m_s", "rad_s")] {
-            columns.extend(run.dofs.iter().map(|d| {
-                let unit = if *d == Dof::Torsion { angular } else { linear };
-                format!("{}{what}_{kind}_{unit}", d.name())
-            }));
+            let what = format!("{what}_{kind}");
+            columns.extend(motion_columns(&run.dofs, &what, (linear, angular)));
         }
     }
     let _ = writeln!(text, "{}", columns.join(","));
@@ -254,10 +233,7 @@ fn panels(run: &SimulatedMotion) -> Vec<TimePanel> {
     };
     let mut panels = Vec::with_capacity(run.dofs.len() + 1);
     for (i, dof) in run.dofs.iter().enumerate() {
-        let (factor, unit) = match dof {
-            Dof::Torsion => (1f64.to_degrees(), "deg"),
-            _ => (1.0, "m"),
-        };
+        let (factor, unit) = shown_in(*dof);
         let of = |rows: &[Vec<f64>]| rows.iter().map(|r| factor * r[i]).collect::<Vec<_>>();
         panels.push(TimePanel {
             y_label: format!("{} {} ({unit})", dof.name(), dof.symbol()),

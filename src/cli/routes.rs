@@ -201,7 +201,7 @@ fn found(o: &Onset, route: &Route) -> String {
 }
 
 /// The onsets that the figure marks: one a force model, as on the cards.
-pub fn marked(table: &RouteTable) -> Vec<Onset> {
+pub(crate) fn marked(table: &RouteTable) -> Vec<Onset> {
     cards(table)
         .filter_map(|route| route.search.onset().cloned())
         .filter(|onset| onset.headline_m_s().is_ok())

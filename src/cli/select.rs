@@ -81,7 +81,7 @@ enum Kind {
 }
 
 /// Runs the command.
-pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     let study = args.study.read()?;
     let deck = Deck::load(&study)?;
     let made: Vec<Record>;

@@ -1,6 +1,7 @@
 //! `aerodeck simulate`: a released section in steady wind, in this process.
 
 use super::answer::Answer;
+use super::common::{folder_of, motion_columns};
 use super::figures;
 use super::output::{OutputDir, list};
 use super::stages;
@@ -13,7 +14,7 @@ use crate::section::Dof;
 use crate::trained_model::TrainedModel;
 use serde::Serialize;
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Longest run that is kept in memory, in steps.
 const MAX_STEPS: f64 = 1e7;
@@ -99,7 +100,7 @@ fn verdict(modes: &[ModeSaid]) -> String {
 }
 
 /// Runs the command.
-pub fn run(args: &Args) -> Result<Answer> {
+pub(crate) fn run(args: &Args) -> Result<Answer> {
     let model = stages::read_model(&args.model)?;
     let e = &model.experiment;
     let speed = positive("--wind-speed", args.wind_speed.unwrap_or(e.wind_speed_m_s))?;
@@ -113,14 +114,7 @@ pub fn run(args: &Args) -> Result<Answer> {
         ));
     }
     let trajectory = simulate(&model, speed, stop, step)?;
-    let beside = args.model.parent().unwrap_or(Path::new("."));
-    let directory = args.out.as_deref().unwrap_or(beside);
-    let directory = if directory.as_os_str().is_empty() {
-        Path::new(".")
-    } else {
-        directory
-    };
-    let mut out = OutputDir::new(directory)?;
+    let mut out = OutputDir::new(args.out.as_deref().unwrap_or(folder_of(&args.model)))?;
     out.write("simulation.csv", csv(&model, speed, &trajectory))?;
     let title = format!("{} at {speed} m/s", model.name);
     figures::write("simulation", &mut out, || {
@@ -173,10 +167,7 @@ fn simulate(model: &TrainedModel, speed: f64, stop: f64, step: f64) -> Result<Tr
         ("_acceleration", "m_s2", "rad_s2"),
         ("_force", "n_m", "n_m_m"),
     ] {
-        columns.extend(dofs.iter().map(|d| {
-            let unit = if *d == Dof::Torsion { angular } else { linear };
-            format!("{}{name}_{unit}", d.name())
-        }));
+        columns.extend(motion_columns(&dofs, name, (linear, angular)));
     }
     Ok(Trajectory {
         columns,

@@ -8,7 +8,7 @@ use crate::error::{Error, Result};
 use crate::flutter::{FlutterCurves, Onset, OnsetSearch, find_onset};
 use crate::fmu::onset_bounds::OnsetBounds;
 use crate::fmu::package::{Export, Growing, Label, Runtime, package};
-use crate::identification::{self, FitReport};
+use crate::identification;
 use crate::report::{VfVgOptions, vf_vg_figure};
 use crate::study::{
     Deck, FlutterStudy, KnownUncertainty, ModelBlock, RecordSet, StageFailure, Study,
@@ -16,9 +16,8 @@ use crate::study::{
 };
 use crate::trained_model::TrainedModel;
 use crate::uncertainty::ModelUncertainty;
-use crate::wind_tunnel::{Record, write_record};
+use crate::wind_tunnel::Record;
 use std::fs;
-use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
 /// Folder of the records in the output directory.
@@ -39,7 +38,7 @@ pub(crate) const MAX_CURVES: usize = 7;
 pub(crate) const FIGURE: &str = "flutter";
 
 /// Writes the records of the virtual tunnel; gives the paths at which they stand for now.
-pub fn tunnel(
+pub(crate) fn tunnel(
     study: &Study,
     deck: &Deck,
     out: &mut OutputDir,
@@ -49,10 +48,8 @@ pub fn tunnel(
     let records = deck.virtual_records(study)?;
     let mut paths = Vec::with_capacity(records.len());
     for record in records {
-        let path = out.stage(Path::new(RECORDS).join(format!("{}.csv", record.header.name)))?;
-        let file = fs::File::create(&path).map_err(|e| Error::io(&path, e))?;
-        write_record(&record, &mut BufWriter::new(file)).map_err(|e| e.in_file(&path))?;
-        paths.push((path, record));
+        let name = Path::new(RECORDS).join(format!("{}.csv", record.header.name));
+        paths.push((out.write_record(&name, &record)?, record));
     }
     // the header of a record names it; a line alone is the whole notice
     let licence = deck.licence();
@@ -66,7 +63,7 @@ pub fn tunnel(
 /// Trains every model and writes model and report; without records (`None`) those that are fitted to the table.
 ///
 /// A model that cannot be trained is noted in `failed`.
-pub fn train(
+pub(crate) fn train(
     study: &Study,
     deck: &Deck,
     records: Option<&RecordSet>,
@@ -110,7 +107,7 @@ pub fn train(
         let file = format!("{}.json", block.slug());
         let json = result.model.to_json()?;
         out.write(Path::new(MODELS).join(&file), &json)?;
-        out.write(Path::new(FITS).join(&file), report_json(&result.report)?)?;
+        out.write_json(Path::new(FITS).join(&file), &result.report)?;
         if let Ok(uncertainty) = &result.uncertainty {
             let file = format!("{}.{UNCERTAINTY}", block.slug());
             out.write(Path::new(FITS).join(file), uncertainty.to_json()?)?;
@@ -141,13 +138,6 @@ fn check_groups(
         Some(records) if block.table.is_none() => records.select(Some(groups)).map(drop),
         _ => deck.samples(study, Some(groups)).map(drop),
     }
-}
-
-fn report_json(report: &FitReport) -> Result<String> {
-    let mut text =
-        serde_json::to_string_pretty(report).map_err(|e| Error::Numerical(e.to_string()))?;
-    text.push('\n');
-    Ok(text)
 }
 
 /// Reads the models that `train` wrote; one that is not there is noted in `failed`.
@@ -208,7 +198,7 @@ pub(crate) fn read_uncertainties(
 }
 
 /// Curves and onsets with their intervals.
-pub fn flutter(
+pub(crate) fn flutter(
     study: &Study,
     deck: &Deck,
     models: &[TrainedModel],
@@ -261,7 +251,7 @@ pub(crate) fn routes_figure(
 }
 
 /// Packs a model of a study with all runtimes that are there.
-pub fn export(
+pub(crate) fn export(
     (model, known): (&TrainedModel, &KnownUncertainty),
     study: &Study,
     growing: Growing,
@@ -302,7 +292,7 @@ pub(crate) fn onset_bounds(
 }
 
 /// What the flag `--allow-unstable` says.
-pub fn growing(allowed: bool) -> Growing {
+pub(crate) fn growing(allowed: bool) -> Growing {
     if allowed {
         Growing::Allow
     } else {

@@ -93,7 +93,7 @@ pub(crate) struct FitSummary {
 }
 
 /// Runs the command.
-pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     let (study, text) = args.study.read_with_text()?;
     let out = OutputDir::new(&args.study.directory())?;
     let ran = Ran {

@@ -27,7 +27,7 @@ pub(crate) struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     let aside = tempfile::tempdir().map_err(|e| Error::io(std::env::temp_dir(), e))?;
     let aside = Temporary::new(aside.keep());
     let study = Study::from_toml(thesis_study_text(), PathBuf::new())?;

@@ -2,7 +2,7 @@
 
 use super::answer::Answer;
 use super::common::StudyArgs;
-use super::output::{OutputDir, list};
+use super::output::OutputDir;
 use super::progress::Progress;
 use super::{account, stages};
 use crate::error::Result;
@@ -20,7 +20,7 @@ pub(crate) struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     let study = args.study.read()?;
     let deck = Deck::load(&study)?;
     let directory = args.study.directory();
@@ -53,8 +53,6 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
         }
     }
     text.push_str(&account::failures(&failed));
-    let written = out.commit()?;
-    text.push_str(&list(&written));
     let fits: Vec<_> = trained
         .iter()
         .map(|t| {
@@ -65,11 +63,8 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
             })
         })
         .collect();
-    let answer = Answer::new(
-        text,
-        &serde_json::json!({
-            "trained": fits, "growth": growths, "failed": failed, "warnings": deck.warnings(), "files": written
-        }),
-    )?;
-    Ok(answer.with_verdict(failed.is_empty()))
+    let value = serde_json::json!({
+        "trained": fits, "growth": growths, "failed": failed, "warnings": deck.warnings()
+    });
+    Ok(out.answer(text, value)?.with_verdict(failed.is_empty()))
 }

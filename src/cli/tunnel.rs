@@ -2,7 +2,7 @@
 
 use super::answer::Answer;
 use super::common::StudyArgs;
-use super::output::{OutputDir, list};
+use super::output::OutputDir;
 use super::progress::Progress;
 use super::stages;
 use crate::error::Result;
@@ -20,7 +20,7 @@ pub(crate) struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     let study = args.study.read()?;
     let deck = Deck::load(&study)?;
     let mut out = OutputDir::new(&args.study.directory())?;
@@ -39,10 +39,5 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
         );
     }
     let headers: Vec<_> = records.iter().map(|(_, r)| r.header.clone()).collect();
-    let written = out.commit()?;
-    text.push_str(&list(&written));
-    Answer::new(
-        text,
-        &serde_json::json!({ "records": headers, "files": written }),
-    )
+    out.answer(text, serde_json::json!({ "records": headers }))
 }

@@ -25,7 +25,7 @@ pub(crate) struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     let stage = progress.stage("reference cases");
     let results = match &args.name {
         Some(name) => run_case(name)?,

@@ -1,9 +1,8 @@
 //! What the commands on a wind file have in common.
 
-use super::common::warn;
+use super::common::{folder_of, warn};
 use super::output::OutputDir;
-use crate::error::{Error, Result};
-use crate::report::Figure;
+use crate::error::Result;
 use crate::study::{WindStudy, example_wind_study_text, section_warnings};
 use std::path::{Path, PathBuf};
 
@@ -39,25 +38,7 @@ impl WindArgs {
         let study = WindStudy::read(file)?;
         let section = study.section.as_ref();
         warn(file, &section.map_or_else(Vec::new, section_warnings));
-        let beside = file.parent().filter(|p| !p.as_os_str().is_empty());
-        let directory = self.out.as_deref().or(beside).unwrap_or(Path::new("."));
+        let directory = self.out.as_deref().unwrap_or(folder_of(file));
         Ok((study, OutputDir::new(directory)?))
     }
-}
-
-/// Writes a figure as SVG and PNG.
-pub(crate) fn write_figure(out: &mut OutputDir, stem: &str, figure: &Figure) -> Result<()> {
-    super::figures::write(stem, out, || Ok(figure.clone()))
-}
-
-/// A result as indented JSON.
-pub(crate) fn write_json(
-    out: &mut OutputDir,
-    name: &str,
-    value: &impl serde::Serialize,
-) -> Result<()> {
-    let mut text =
-        serde_json::to_string_pretty(value).map_err(|e| Error::Numerical(e.to_string()))?;
-    text.push('\n');
-    out.write(name, text)
 }

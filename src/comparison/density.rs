@@ -3,6 +3,7 @@
 use super::kde::{Density, POINTS};
 use super::{Metric, SignalPair};
 use crate::error::{Error, Result};
+use crate::signal::extremes;
 use serde::Serialize;
 
 /// Parameters of [`probability_density`].
@@ -49,9 +50,7 @@ pub fn probability_density(
 ) -> Result<Metric<DensityDetails>> {
     let first = values("reference signal", pair.reference(), parameters)?;
     let second = values("compared signal", pair.compared(), parameters)?;
-    let all = || first.iter().chain(&second).copied();
-    let low = all().fold(f64::INFINITY, f64::min);
-    let high = all().fold(f64::NEG_INFINITY, f64::max);
+    let (low, high) = extremes(first.iter().chain(&second).copied());
     let step = (high - low) / POINTS as f64;
     let [reference, compared] = [&first, &second].map(|x| Density::new(x, [low, high]));
     let overlap: f64 = reference

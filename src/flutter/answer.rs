@@ -1,7 +1,7 @@
 //! What a search for flutter answers: an onset, growth from the lowest speed that could be judged, or none.
 
-use super::critical_point::CriticalPoint;
-use super::onset::{Onset, OnsetMethod};
+use super::critical_point::{CriticalPoint, OnsetMethod};
+use super::onset::Onset;
 use crate::section::Structure;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use nalgebra::Complex;

@@ -1,8 +1,33 @@
 //! The motion at a speed at which flutter begins, or is found to have begun.
 
-use super::onset::OnsetMethod;
 use crate::units::{ReducedFrequency, ReducedVelocity};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
+
+/// How an onset was found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum OnsetMethod {
+    /// Eigenvalues of the coupled state matrix.
+    Eigenvalues,
+    /// Determinant of the impedance in `(V, ω)`.
+    Determinant,
+    /// Growth rate of the stepped FMU.
+    FmuStepping,
+    /// Modes with the forces at their own frequency, iterated (p-k).
+    PkIteration,
+}
+
+impl OnsetMethod {
+    /// The route in a word.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Eigenvalues => "eigenvalues",
+            Self::Determinant => "determinant",
+            Self::FmuStepping => "FMU stepped",
+            Self::PkIteration => "p-k iteration",
+        }
+    }
+}
 
 /// Speed and frequency of a motion that loses its damping or has lost it, by one route for one force model.
 #[derive(Debug, Clone, PartialEq, Serialize)]

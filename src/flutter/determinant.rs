@@ -7,7 +7,8 @@
 use super::answer::{
     Findings, FlutterSearch, Reach, StableRange, UnstableStart, choose, entry_reason,
 };
-use super::onset::{Onset, OnsetMethod};
+use super::critical_point::OnsetMethod;
+use super::onset::Onset;
 use crate::aerodynamics::{Transfer, TransferMatrix};
 use crate::error::{Error, Result, positive};
 use crate::section::{Dof, Structure};

@@ -1,8 +1,8 @@
 //! What the routes that follow modes over wind speed share: the modes, and what is watched from one speed to the next.
 
 use super::answer::{Findings, UnstableStart, entry_reason};
-use super::onset::{Onset, OnsetMethod};
-use super::scan::growing;
+use super::critical_point::OnsetMethod;
+use super::onset::Onset;
 use crate::error::{Error, Result};
 use crate::section::Structure;
 use crate::state_space::root;
@@ -13,6 +13,14 @@ use nalgebra::{Complex, DVector};
 pub(super) const MIN_ASSURANCE: f64 = 0.9;
 /// Two modes closer than this, relatively, are one root found twice.
 pub(super) const SEPARATION: f64 = 1e-9;
+
+/// Growth up to this part of the eigenvalue is rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// Whether a real part is above rounding.
+pub(super) fn growing(lambda: &Complex<f64>) -> bool {
+    lambda.re > ROUNDING * lambda.norm()
+}
 
 /// One mode at one wind speed.
 #[derive(Debug, Clone)]

@@ -1,7 +1,8 @@
 //! What the scan of all eigenvalues adds to the modes that were followed.
 
 use super::answer::{Findings, UnstableStart};
-use super::onset::{Onset, OnsetMethod};
+use super::critical_point::OnsetMethod;
+use super::onset::Onset;
 use super::scan::{AERODYNAMIC, COARSE, FINE, Scan};
 use super::tracking::{SLOPE_STEP, mode_shape};
 use crate::error::Result;

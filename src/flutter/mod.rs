@@ -31,13 +31,13 @@ pub use answer::{FlutterSearch, StableRange, UnstableStart};
 pub use bridge_motion::{
     BridgeMotion, ModeShare, NearbyOnset, NodeMotion, motion_at_onset, static_deflection,
 };
-pub use critical_point::CriticalPoint;
+pub use critical_point::{CriticalPoint, OnsetMethod};
 pub use curves::{FlutterCurves, ModeBranch, ModePoint, trace_modes};
 pub use determinant::{determinant_onset, impedance};
 pub(crate) use divergence::static_part;
 pub use divergence::{divergence_by_eigenvalues, divergence_speed};
 pub use instability::{Instability, ModeAtOnset, Participation, classify};
-pub use onset::{Onset, OnsetInterval, OnsetMethod};
+pub use onset::{Onset, OnsetInterval};
 pub use pk::{pk_curves, pk_onset, quasi_pk_mode};
 pub use quasi_steady::quasi_steady_modes;
 pub(crate) use quasi_steady::{QuasiSteadyOnset, quasi_steady_onset};

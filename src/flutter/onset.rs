@@ -1,37 +1,11 @@
 //! The flutter onset as a result: everything a practitioner wants on the card.
 
-use super::critical_point::CriticalPoint;
+use super::critical_point::{CriticalPoint, OnsetMethod};
 use crate::section::Structure;
 use crate::units::ReducedFrequency;
 use nalgebra::{Complex, DVector};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
-
-/// How an onset was found.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum OnsetMethod {
-    /// Eigenvalues of the coupled state matrix.
-    Eigenvalues,
-    /// Determinant of the impedance in `(V, ω)`.
-    Determinant,
-    /// Growth rate of the stepped FMU.
-    FmuStepping,
-    /// Modes with the forces at their own frequency, iterated (p-k).
-    PkIteration,
-}
-
-impl OnsetMethod {
-    /// The route in a word.
-    pub(crate) fn name(self) -> &'static str {
-        match self {
-            Self::Eigenvalues => "eigenvalues",
-            Self::Determinant => "determinant",
-            Self::FmuStepping => "FMU stepped",
-            Self::PkIteration => "p-k iteration",
-        }
-    }
-}
 
 /// A flutter onset.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -149,7 +123,7 @@ impl Onset {
     ///
     /// # Errors
     /// Why it may not.
-    pub fn headline_m_s(&self) -> std::result::Result<f64, &str> {
+    pub(crate) fn headline_m_s(&self) -> std::result::Result<f64, &str> {
         match &self.interval {
             OnsetInterval::Undetermined { reason, .. } => Err(reason),
             OnsetInterval::Known { .. }

@@ -7,9 +7,9 @@
 
 use super::answer::{Findings, FlutterSearch, StableRange, choose, entry_reason};
 use super::curves::{FlutterCurves, ModePoint, empty_branches};
+use super::following::growing;
 use super::following::{Follower, Watch, dimensionless};
 use super::pk_following::Iteration;
-use super::scan::growing;
 use super::search::OnsetSearch;
 use crate::aerodynamics::Transfer;
 use crate::error::{Error, Result, positive};

@@ -1,11 +1,12 @@
 //! Modes of the p-k iteration followed over wind speed by what they are: small changes and like shapes from step to step.
 
 use super::answer::Reach;
+use super::critical_point::OnsetMethod;
 use super::determinant::damping_slope;
 use super::following::{
     Follower, MIN_ASSURANCE, Mode, Modes, SEPARATION, assurance, dimensionless,
 };
-use super::onset::{Onset, OnsetMethod};
+use super::onset::Onset;
 use super::quasi_pk::{pk_mode, pk_mode_at};
 use crate::aerodynamics::Transfer;
 use crate::error::{Error, Result};

@@ -2,10 +2,11 @@
 //! equilibrium of that speed, so that the linear model itself changes with the speed.
 
 use super::answer::{FlutterSearch, StableRange, UnstableStart};
+use super::critical_point::OnsetMethod;
 use super::curves::{FlutterCurves, empty_branches, trace_modes};
 use super::following::Mode;
 use super::instability::{ModeAtOnset, classify};
-use super::onset::{Onset, OnsetMethod};
+use super::onset::Onset;
 use super::search::OnsetSearch;
 use super::tracking::{SLOPE_STEP, Tracker, oscillates};
 use crate::aerodynamics::quasi_steady::{LinearQuasiSteady, QuasiSteady};

@@ -1,7 +1,7 @@
 //! All eigenvalues over wind speed: the speeds at which any oscillation grows, found without following modes.
 
 use super::answer::StableRange;
-use super::following::dimensionless;
+use super::following::{dimensionless, growing};
 use super::tracking::{Tracker, lowest_speed, mode_shape, oscillates};
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, non_negative, positive};
@@ -17,8 +17,6 @@ const NEARLY_STILL: f64 = 0.01;
 pub(super) const FINE: (f64, f64) = (1.05, 1.0 / 120.0);
 /// The same where the structural modes are followed besides.
 pub(super) const COARSE: (f64, f64) = (1.12, 1.0 / 50.0);
-/// Growth up to this part of the eigenvalue is rounding.
-const ROUNDING: f64 = 1e-9;
 /// Branch of an eigenvalue that belongs to no structural mode.
 pub(super) const AERODYNAMIC: &str = "aerodynamic";
 /// Relative width to which the ends of a band are halved.
@@ -111,11 +109,6 @@ impl Point {
     fn rate(&self) -> f64 {
         self.fastest.map_or(f64::NEG_INFINITY, |z| z.re)
     }
-}
-
-/// Whether a real part is above rounding.
-pub(super) fn growing(lambda: &Complex<f64>) -> bool {
-    lambda.re > ROUNDING * lambda.norm()
 }
 
 /// A section whose eigenvalues are looked at.

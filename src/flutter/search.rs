@@ -1,8 +1,9 @@
 //! Onset by the eigenvalues of the coupled state matrix.
 
 use super::answer::{Findings, FlutterSearch, choose};
+use super::following::growing;
 use super::following::{Follower, Watch};
-use super::scan::{Scan, growing};
+use super::scan::Scan;
 use super::tracking::Tracker;
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, positive};

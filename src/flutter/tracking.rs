@@ -4,11 +4,12 @@
 //! else the nearest eigenvalue of the whole state matrix.
 
 use super::characteristic::Characteristic;
+use super::critical_point::OnsetMethod;
 use super::following::{
     Follower, MIN_ASSURANCE, Mode, Modes, SEPARATION, assurance, dimensionless,
 };
 use super::modal_characteristic::ModalCharacteristic;
-use super::onset::{Onset, OnsetMethod};
+use super::onset::Onset;
 use crate::aerodynamics::Realization;
 use crate::aeroelastic::{CoupledSection, CoupledSystem};
 use crate::error::{Error, Result};

@@ -1,7 +1,7 @@
 //! Growth that a force model makes up: below the onset, at reduced frequencies at which nothing was tested.
 
 use super::answer::FlutterSearch;
-use super::onset::OnsetMethod;
+use super::critical_point::OnsetMethod;
 use super::scan::{GrowthBand, growth_scan};
 use super::search::{OnsetSearch, find_onset};
 use crate::aeroelastic::CoupledSection;

@@ -12,15 +12,14 @@ use super::frequency_options::{FrequencyFit, FrequencyWeights};
 use super::minimum_state::fit_minimum_state;
 use super::own::entry_forms;
 use super::records::describe_own;
-use super::report::{EntryReport, FitReport, SearchReport, variance};
-use super::samples::{Entry, sort_by_entry, state_wishes};
+use super::report::{EntryReport, FitReport, FittedTable, variance};
+use super::samples::{Entry, sizes, sort_by_entry, state_wishes};
 use crate::aerodynamics::derivatives::TransferSample;
 use crate::error::{Error, Result};
 use crate::section::Dof;
 use crate::trained_model::Model;
 use crate::units::ReducedFrequencyRange;
 use joint::{Joint, JointFit};
-use nalgebra::DVector;
 use poles::{choose_poles, choose_poles_together};
 
 /// Fits a continuous model to samples of `G`: real and imaginary parts, each at its own `K`.
@@ -84,14 +83,6 @@ pub fn fit_table(
     report.judge(&fit.poles);
     note_lags(&model, &mut report.notes);
     Ok((model, report))
-}
-
-/// A model fitted to a table and the account of how it was found.
-pub(super) struct FittedTable {
-    pub model: Model,
-    pub reports: Vec<EntryReport>,
-    pub search: Vec<SearchReport>,
-    pub constraints: Option<ConstraintReport>,
 }
 
 /// Every form whose entries are linear in their coefficients once the poles are known: each entry by itself, and all of
@@ -203,39 +194,6 @@ fn describe(weights: FrequencyWeights) -> &'static str {
     }
 }
 
-/// Weighted residuals of all entries with the best coefficients for these poles, each entry relative to its weighted
-/// data: whatever the weights, the poles do not follow the largest entry alone. The norm is the objective.
-fn relative_residuals(entries: &[&Entry], form: &Form, poles: &[f64]) -> Result<DVector<f64>> {
-    let mut all = Vec::new();
-    for (entry, scale) in entries.iter().zip(shares(entries)) {
-        // a ridge weighs the terms of the model themselves, else only the space counts
-        let basis = if entry.ridge > 0.0 {
-            Basis::new(form, poles)?
-        } else {
-            Basis::orthonormal(form, poles)?
-        };
-        let fit = entry.fit(&basis)?;
-        all.extend(entry.weighted_residuals(&basis, &fit.coefficients, scale));
-        all.extend(fit.penalty(&fit.coefficients).map(|r| r * scale));
-    }
-    Ok(DVector::from_vec(all))
-}
-
-/// What the weighted residuals of each entry are multiplied with where entries share something: its weight over its
-/// weighted size.
-pub(super) fn shares(entries: &[&Entry]) -> Vec<f64> {
-    let share = |entry: &&Entry| {
-        let total = entry.total();
-        let size = if total > 0.0 {
-            (total * entries.len() as f64).sqrt()
-        } else {
-            1.0
-        };
-        entry.weight / size
-    };
-    entries.iter().map(share).collect()
-}
-
 /// Account of one entry by itself, in the columns of the model.
 fn fit_entry(entry: &Entry, form: &Form, poles: &[f64]) -> Result<EntryReport> {
     let basis = Basis::new(form, poles)?;
@@ -280,25 +238,6 @@ fn account(
         squares.sum()
     };
     (report, variance(sum, entry.rows.len(), unknowns))
-}
-
-/// Relative root mean square and worst relative size of unweighted residuals.
-pub(super) fn sizes(entry: &Entry, residuals: &[f64]) -> (f64, f64) {
-    let sum: f64 = residuals.iter().map(|r| r * r).sum();
-    let total: f64 = entry.rows.iter().map(|r| r.value * r.value).sum();
-    let relative = residuals
-        .iter()
-        .zip(&entry.rows)
-        .filter(|(_, row)| row.magnitude > 0.0);
-    let worst = relative
-        .map(|(r, row)| r.abs() / row.magnitude)
-        .fold(0.0, f64::max);
-    let rms = if total > 0.0 {
-        (sum / total).sqrt()
-    } else {
-        0.0
-    };
-    (rms, worst)
 }
 
 #[cfg(test)]

@@ -12,10 +12,10 @@ use super::report::{
 };
 use super::time::filters::{ContinuousColumns, NOISE_BANDWIDTH};
 use super::time::fitted::Fitted;
-use super::time::pass::{OnProgress, Pass, PassPlan, pass};
+use super::time::pass::{ColumnOrder, OnProgress, Pass, PassPlan, pass};
 use super::time::record::{DimensionlessRecord, read_all};
 use super::time::search::{Choice, PASSES, choose_poles, padded};
-use super::time::systems::{ColumnOrder, ForceSystems};
+use super::time::systems::ForceSystems;
 use crate::aerodynamics::FilterBank;
 use crate::error::{Error, Result};
 use crate::section::Dof;

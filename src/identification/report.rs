@@ -4,6 +4,7 @@ use super::dissipative::ConstraintReport;
 use super::options::PoleSearch;
 use crate::error::{Error, Result};
 use crate::section::Dof;
+use crate::trained_model::Model;
 use crate::units::ReducedFrequencyRange;
 use nalgebra::DMatrix;
 use serde::Serialize;
@@ -267,6 +268,14 @@ impl SearchReport {
             }
         }
     }
+}
+
+/// A model fitted to a table and the account of how it was found.
+pub(super) struct FittedTable {
+    pub model: Model,
+    pub reports: Vec<EntryReport>,
+    pub search: Vec<SearchReport>,
+    pub constraints: Option<ConstraintReport>,
 }
 
 /// A degree-of-freedom count that leaves something to estimate the variance from.

@@ -250,6 +250,40 @@ fn weigh(rows: &mut [Row], weights: FrequencyWeights) {
     }
 }
 
+/// What the weighted residuals of each entry are multiplied with where entries share something: its weight over its
+/// weighted size.
+pub(super) fn shares(entries: &[&Entry]) -> Vec<f64> {
+    let share = |entry: &&Entry| {
+        let total = entry.total();
+        let size = if total > 0.0 {
+            (total * entries.len() as f64).sqrt()
+        } else {
+            1.0
+        };
+        entry.weight / size
+    };
+    entries.iter().map(share).collect()
+}
+
+/// Relative root mean square and worst relative size of unweighted residuals.
+pub(super) fn sizes(entry: &Entry, residuals: &[f64]) -> (f64, f64) {
+    let sum: f64 = residuals.iter().map(|r| r * r).sum();
+    let total: f64 = entry.rows.iter().map(|r| r.value * r.value).sum();
+    let relative = residuals
+        .iter()
+        .zip(&entry.rows)
+        .filter(|(_, row)| row.magnitude > 0.0);
+    let worst = relative
+        .map(|(r, row)| r.abs() / row.magnitude)
+        .fold(0.0, f64::max);
+    let rms = if total > 0.0 {
+        (sum / total).sqrt()
+    } else {
+        0.0
+    };
+    (rms, worst)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

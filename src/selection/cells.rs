@@ -2,7 +2,6 @@
 
 use super::folds::{CrossValidation, Folds};
 use super::guards::judge;
-use super::recommend::{Recommendation, recommend};
 use crate::error::Result;
 use crate::flutter::OnsetSearch;
 use crate::identification::Grid;
@@ -136,4 +135,133 @@ fn cells_of(grid: &Grid, plan: &SelectionPlan, folds: &Folds, value: usize) -> V
             cell
         })
         .collect()
+}
+
+/// The recommended model.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Recommendation {
+    /// Place among the cells.
+    pub cell: usize,
+    /// Number of filters `L`.
+    pub filters: usize,
+    /// Pole `p` or decay factor `α`.
+    pub value: f64,
+    /// Its error on data left out.
+    pub score: f64,
+    /// Its onset, m/s.
+    pub onset_m_s: Option<f64>,
+}
+
+/// The fewest filters whose error on data left out is within one standard error of the least (the rule of Breiman,
+/// Friedman, Olshen & Stone, *Classification and Regression Trees*, 1984, section 3.4.3), among the cells without a
+/// reason against them; for that number of filters the best value.
+fn recommend(selection: &Selection) -> (Option<Recommendation>, String) {
+    let symbol = &selection.symbol;
+    let usable: Vec<(usize, &Cell, f64)> = selection
+        .cells
+        .iter()
+        .enumerate()
+        .filter(|(_, c)| c.rejected.is_empty())
+        .filter_map(|(at, c)| Some((at, c, c.cross_validation?.score)))
+        .collect();
+    let Some(best) = usable.iter().min_by(|a, b| a.2.total_cmp(&b.2)) else {
+        let most = most_common_reason(selection);
+        return (
+            None,
+            format!(
+                "No model can be recommended: every cell is refused, most often because {most}."
+            ),
+        );
+    };
+    let margin = best
+        .1
+        .cross_validation
+        .map_or(0.0, |v| v.standard_error_of_square);
+    let limit = best.2 * best.2 + margin;
+    let chosen = usable
+        .iter()
+        .filter(|(_, _, score)| score * score <= limit)
+        .min_by(|a, b| {
+            (a.1.filters, a.2)
+                .partial_cmp(&(b.1.filters, b.2))
+                .unwrap_or(std::cmp::Ordering::Equal)
+        })
+        .unwrap_or(best);
+    let mut reason = if chosen.0 == best.0 {
+        format!(
+            "{}: its error on data left out, {}, is the least of all models that may be used",
+            name(chosen.1, symbol),
+            percent(chosen.2)
+        )
+    } else {
+        format!(
+            "{}: the fewest filters whose error on data left out, {}, is within one standard error of the least ({} with \
+             {})",
+            name(chosen.1, symbol),
+            percent(chosen.2),
+            percent(best.2),
+            name(best.1, symbol)
+        )
+    };
+    if let Some(onset) = chosen.1.onset_m_s {
+        reason.push_str(&format!("; onset {onset:.3} m/s"));
+    }
+    reason.push('.');
+    let filters_max = selection.filters_max;
+    let at_edge =
+        chosen.0 / filters_max == 0 || chosen.0 / filters_max + 1 == selection.values.len();
+    if at_edge && selection.values.len() > 1 {
+        reason.push_str(&format!(
+            " {symbol} lies at the edge of the grid: widen it to see whether the error falls further."
+        ));
+    }
+    for refused in free_but_refused(selection) {
+        reason.push_str(&format!(
+            " {} fits the records {}, but is refused: {}.",
+            name(refused, symbol),
+            refused
+                .residual
+                .map_or_else(|| "closely".into(), |r| format!("to {}", percent(r))),
+            refused.rejected.join("; ")
+        ));
+    }
+    (
+        Some(Recommendation {
+            cell: chosen.0,
+            filters: chosen.1.filters,
+            value: chosen.1.value,
+            score: chosen.2,
+            onset_m_s: chosen.1.onset_m_s,
+        }),
+        reason,
+    )
+}
+
+/// What a free search would have taken for each number of filters, where it is refused.
+fn free_but_refused(selection: &Selection) -> Vec<&Cell> {
+    selection
+        .free
+        .iter()
+        .flatten()
+        .map(|at| &selection.cells[*at])
+        .filter(|c| !c.rejected.is_empty())
+        .collect()
+}
+
+fn most_common_reason(selection: &Selection) -> String {
+    // reasons differ in their numbers: the first words tell the kind
+    let kind = |r: &str| r.chars().take(16).collect::<String>();
+    let all: Vec<&String> = selection.cells.iter().flat_map(|c| &c.rejected).collect();
+    let count = |r: &str| all.iter().filter(|o| kind(o) == kind(r)).count();
+    all.iter()
+        .max_by_key(|r| count(r))
+        .map_or_else(|| "nothing could be left out".to_owned(), |r| (*r).clone())
+}
+
+fn name(cell: &Cell, symbol: &str) -> String {
+    format!("L = {}, {symbol} = {:.3}", cell.filters, cell.value)
+}
+
+fn percent(x: f64) -> String {
+    format!("{:.2} %", 100.0 * x)
 }

@@ -2,6 +2,7 @@
 
 use crate::error::Result;
 use crate::identification::{CellFit, Grid, StretchLabel};
+use crate::signal::mean;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -81,11 +82,10 @@ fn held_out(grid: &Grid, value: usize, fold: &[usize], fit: &Result<CellFit>) ->
         .filter(|(_, total)| *total > 0.0)
         .map(|(residual, total)| residual / total)
         .collect();
-    (!ratios.is_empty()).then(|| ratios.iter().sum::<f64>() / ratios.len() as f64)
+    (!ratios.is_empty()).then(|| mean(&ratios))
 }
 
 fn combine(speeds: Option<Vec<f64>>, frequencies: Option<Vec<f64>>) -> Option<CrossValidation> {
-    let mean = |e: &Vec<f64>| e.iter().sum::<f64>() / e.len() as f64;
     let parts: Vec<&Vec<f64>> = speeds.iter().chain(&frequencies).collect();
     if parts.is_empty() {
         return None;

@@ -9,12 +9,10 @@ mod cells;
 mod folds;
 mod guards;
 mod metrics;
-mod recommend;
 
-pub use cells::{Cell, Selection, SelectionPlan, select};
+pub use cells::{Cell, Recommendation, Selection, SelectionPlan, select};
 pub use folds::CrossValidation;
 pub(crate) use metrics::{CellMetrics, MetricGrid, metric_grid};
-pub use recommend::Recommendation;
 
 #[cfg(test)]
 mod tests;

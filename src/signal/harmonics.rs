@@ -171,7 +171,7 @@ pub(crate) fn refine_frequency(
 
 /// The longest stretch within `range` in which the amplitude at `frequency_hz`, taken over one period at a time, is at least
 /// `share` of its typical value, cut to whole periods; `None` when there is not one period.
-pub fn plateau(
+pub(crate) fn plateau(
     signal: &[f64],
     range: Range<usize>,
     sampling_hz: f64,

@@ -3,6 +3,26 @@
 /// A normal variable has its quartiles at this part of its standard deviation, inverted.
 const NORMAL_MAD: f64 = 1.482_602_218_505_602;
 
+/// Mean; zero for none.
+pub(crate) fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len().max(1) as f64
+}
+
+/// Largest distance of a value from the mean of all.
+pub(crate) fn largest_about_mean(values: &[f64]) -> f64 {
+    let mean = mean(values);
+    values
+        .iter()
+        .fold(0.0, |m, v| f64::max(m, (v - mean).abs()))
+}
+
+/// Least and greatest value.
+pub(crate) fn extremes(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
+        (low.min(x), high.max(x))
+    })
+}
+
 /// Median; the mean of the two in the middle for an even count, zero for none.
 pub fn median(values: &[f64]) -> f64 {
     let mut sorted = values.to_vec();
@@ -30,8 +50,7 @@ const STEPS_AT_LEAST: f64 = 3.0;
 /// First sample and length of every stretch of eight or more equal samples at the highest or lowest value.
 /// A rest at the end of the range (a motion to one side) is none: the channel must have come there from elsewhere and go back.
 pub(crate) fn clipped_stretches(samples: &[f64]) -> Vec<(usize, usize)> {
-    let low = samples.iter().copied().fold(f64::INFINITY, f64::min);
-    let high = samples.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let (low, high) = extremes(samples.iter().copied());
     let smallest = samples
         .windows(2)
         .map(|w| (w[1] - w[0]).abs())

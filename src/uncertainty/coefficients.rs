@@ -2,11 +2,11 @@
 
 use super::columns::LinearModel;
 use super::design::Design;
+use super::parameters::{Coordinates, Parameter};
 use super::speed_scatter::{self, Effect, POINTS, Slopes, SpeedScatter};
 use crate::aerodynamics::{DiscreteLaguerre, Transfer, TransferMatrix};
 use crate::error::{Error, Result};
 use crate::identification::basis::assemble;
-use crate::identification::form::Form;
 use crate::identification::report::FitReport;
 use crate::section::Dof;
 use crate::trained_model::Model;
@@ -16,58 +16,6 @@ use serde::{Deserialize, Serialize};
 
 /// Relative step of the differences with respect to the parameters.
 const STEP: f64 = 1e-5;
-
-/// One estimated number of a model.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Parameter {
-    /// Name as in the equations; `pole 0` and so on for poles that were searched.
-    pub name: String,
-    /// Force it belongs to; none for poles that all transfer functions share.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub force: Option<Dof>,
-    /// Motion it belongs to; none for shared poles and static terms.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub motion: Option<Dof>,
-    /// Estimate, dimensionless.
-    pub value: f64,
-    /// Its standard error.
-    pub standard_error: f64,
-}
-
-/// A pole among the parameters.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct SearchedPole {
-    /// Row and column of its transfer function; `None` when all share it.
-    pub entry: Option<(usize, usize)>,
-    /// Place among the free poles.
-    pub index: usize,
-}
-
-/// How parameters make a model.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
-pub enum Coordinates {
-    /// Coefficients of every transfer function row by row, each in the order of its columns; then the searched poles.
-    Continuous {
-        /// Form of the model.
-        form: Form,
-        /// Poles of every transfer function, one a filter, row by row.
-        chains: Vec<Vec<Vec<f64>>>,
-        /// Poles that are parameters.
-        searched: Vec<SearchedPole>,
-    },
-    /// For each force its static term, then the coefficients of every motion.
-    Discrete {
-        /// Decay factor.
-        alpha: f64,
-        /// Step `Δs`.
-        delta_s: f64,
-        /// Number of filters.
-        filters: usize,
-    },
-}
 
 /// Estimates with their covariance.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -362,6 +310,43 @@ impl CoefficientUncertainty {
         let step = design.reweighted(weights)?;
         let moved = self.parameters.iter().zip(step.iter());
         Ok(Some(moved.map(|(p, d)| p.value + d).collect()))
+    }
+
+    /// The fit to the tests at each mean speed alone, with the poles of the fit to all; empty for tests at one speed and
+    /// for an estimate that was read from a file.
+    ///
+    /// The second value is why a speed alone does not tell.
+    pub(crate) fn at_each_speed(&self) -> Vec<(f64, Result<Self>)> {
+        let Some(design) = &self.design else {
+            return Vec::new();
+        };
+        let Some((groups, speeds_m_s)) = speed_scatter::speed_groups(design.blocks()) else {
+            return Vec::new();
+        };
+        let alone = |(g, speed): (usize, f64)| (speed, self.alone(design, &groups, g));
+        speeds_m_s.into_iter().enumerate().map(alone).collect()
+    }
+
+    /// Reduced frequencies of the blocks, where they have one and are known.
+    pub(crate) fn tested_range(&self) -> Option<ReducedFrequencyRange> {
+        let ks = self.design.as_ref()?.blocks().iter().filter_map(|b| b.k);
+        ReducedFrequencyRange::spanning(ks.map(ReducedFrequency::from_full_width))
+    }
+
+    fn alone(&self, design: &Design, groups: &[usize], group: usize) -> Result<Self> {
+        let mut coordinates = self.coordinates.clone();
+        let mut kept = self.parameters.len();
+        if let Coordinates::Continuous { searched, .. } = &mut coordinates {
+            kept -= searched.len();
+            searched.clear();
+        }
+        let (own, step) = design.alone(groups, group, kept)?;
+        let mut moved = self.parameters[..kept].to_vec();
+        for (parameter, change) in moved.iter_mut().zip(step.iter()) {
+            parameter.value += change;
+        }
+        let assumption = ("blocks of one mean speed".into(), None);
+        Self::new(assumption, self.dofs.clone(), coordinates, moved, own)
     }
 
     /// Puts these standard errors and covariances in the place of those of a fit that took residuals for independent.

@@ -307,24 +307,13 @@ impl Design {
     /// Satterthwaite's degrees of freedom of the variance of `contrast · parameters`, under the working variances.
     pub(crate) fn degrees_of_freedom(&self, contrast: &DVector<f64>) -> f64 {
         let along = &self.inverse * contrast;
-        let u: Vec<DVector<f64>> = self
-            .blocks
-            .iter()
-            .zip(&self.enlarge)
-            .map(|(b, enlarge)| enlarge * (&b.rows * &along))
-            .collect();
-        let y: Vec<DVector<f64>> = self
-            .blocks
-            .iter()
-            .zip(&u)
-            .map(|(b, u)| &self.inverse * b.rows.transpose() * u)
-            .collect();
-        let weighted: Vec<DVector<f64>> = self
-            .blocks
-            .iter()
-            .zip(&u)
-            .map(|(b, u)| b.rows.transpose() * u.component_mul(&b.variance))
-            .collect();
+        let (mut u, mut y, mut weighted) = (Vec::new(), Vec::new(), Vec::new());
+        for (b, enlarge) in self.blocks.iter().zip(&self.enlarge) {
+            let own: DVector<f64> = enlarge * (&b.rows * &along);
+            y.push(&self.inverse * b.rows.transpose() * &own);
+            weighted.push(b.rows.transpose() * own.component_mul(&b.variance));
+            u.push(own);
+        }
         let (mut trace, mut squares) = (0.0, 0.0);
         for g in 0..u.len() {
             let spread = &self.working * &y[g];

@@ -29,12 +29,13 @@ mod speed_scatter;
 mod student;
 mod table_covariance;
 
-pub use coefficients::{CoefficientUncertainty, Coordinates, Parameter, SearchedPole};
+pub use coefficients::CoefficientUncertainty;
 pub use coverage::{CoveragePlan, CoverageReport, Share, Truth, coverage};
 pub use derivatives::DerivativeInterval;
 pub use model::ModelUncertainty;
 pub use onset::{OnsetError, ResampledOnset, Resampling};
 pub(crate) use parameters::SEARCHED_POLES;
+pub use parameters::{Coordinates, Parameter, SearchedPole};
 pub(crate) use record_covariance::discrete_uncertainty;
 pub use record_covariance::record_uncertainty;
 pub use speed_onsets::{Contradiction, SpeedOnset, SpeedOnsets};

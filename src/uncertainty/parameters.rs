@@ -1,18 +1,70 @@
 //! What the parameters of a fit with searched poles are: its coefficients, the poles that a search found inside its
 //! bounds, and the directions that active constraints leave to them.
 
-use super::coefficients::{Coordinates, Parameter, SearchedPole};
 use crate::error::Result;
 use crate::identification::basis::Basis;
 use crate::identification::dissipative::Tangent;
 use crate::identification::{ActiveConstraint, FitReport, Form, PoleSearch};
 use crate::section::Dof;
 use nalgebra::{DMatrix, DVector};
+use serde::{Deserialize, Serialize};
 
 /// Relative step of central differences with respect to poles.
 pub(super) const STEP: f64 = 1e-5;
 /// Poles closer than this to a bound, relatively, are held by it.
 const AT_BOUND: f64 = 0.01;
+
+/// One estimated number of a model.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Parameter {
+    /// Name as in the equations; `pole 0` and so on for poles that were searched.
+    pub name: String,
+    /// Force it belongs to; none for poles that all transfer functions share.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub force: Option<Dof>,
+    /// Motion it belongs to; none for shared poles and static terms.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub motion: Option<Dof>,
+    /// Estimate, dimensionless.
+    pub value: f64,
+    /// Its standard error.
+    pub standard_error: f64,
+}
+
+/// A pole among the parameters.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SearchedPole {
+    /// Row and column of its transfer function; `None` when all share it.
+    pub entry: Option<(usize, usize)>,
+    /// Place among the free poles.
+    pub index: usize,
+}
+
+/// How parameters make a model.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+pub enum Coordinates {
+    /// Coefficients of every transfer function row by row, each in the order of its columns; then the searched poles.
+    Continuous {
+        /// Form of the model.
+        form: Form,
+        /// Poles of every transfer function, one a filter, row by row.
+        chains: Vec<Vec<Vec<f64>>>,
+        /// Poles that are parameters.
+        searched: Vec<SearchedPole>,
+    },
+    /// For each force its static term, then the coefficients of every motion.
+    Discrete {
+        /// Decay factor.
+        alpha: f64,
+        /// Step `Δs`.
+        delta_s: f64,
+        /// Number of filters.
+        filters: usize,
+    },
+}
 
 /// How the assumption of a covariance says that searched poles are in it.
 pub(crate) const SEARCHED_POLES: &str =

@@ -1,7 +1,8 @@
 //! Uncertainty of models fitted to records: blocks are the segments.
 
-use super::coefficients::{CoefficientUncertainty, Coordinates, Parameter};
+use super::coefficients::CoefficientUncertainty;
 use super::columns::Expansion;
+use super::parameters::{Coordinates, Parameter};
 use super::parameters::{
     FreePoles, coordinates_of, free_poles, held_sentence, parameters_of, tangent_of,
 };
@@ -14,10 +15,10 @@ use crate::identification::options::TimeFit;
 use crate::identification::own::StaticTerm;
 use crate::identification::records::{RecordFit, Rows, removed_means, tested_range};
 use crate::identification::report::FitReport;
-use crate::identification::time::pass::{OnProgress, Stretch};
+use crate::identification::time::pass::{ColumnOrder, OnProgress, Stretch};
 use crate::identification::time::record::{DimensionlessRecord, read_all};
 use crate::identification::time::search::padded;
-use crate::identification::time::systems::ColumnOrder;
+
 use crate::trained_model::Model;
 use crate::wind_tunnel::RecordSource;
 use nalgebra::{DMatrix, DVector};

@@ -13,12 +13,10 @@
 //!
 //! What each speed says alone is [`CoefficientUncertainty::at_each_speed`].
 
-use super::coefficients::{CoefficientUncertainty, Coordinates, Parameter};
 use super::design::{Block, Design};
 use crate::aerodynamics::TransferMatrix;
 use crate::error::Result;
 use crate::section::Dof;
-use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
@@ -106,7 +104,7 @@ pub(super) fn degrees_of_freedom(
 }
 
 /// Number of the speed of every block, and the speeds, rising; `None` when a block has none or all have the same.
-fn speed_groups(blocks: &[Block]) -> Option<(Vec<usize>, Vec<f64>)> {
+pub(super) fn speed_groups(blocks: &[Block]) -> Option<(Vec<usize>, Vec<f64>)> {
     let speeds: Vec<f64> = blocks.iter().map(|b| b.speed_m_s).collect::<Option<_>>()?;
     let mut sorted = speeds.clone();
     sorted.sort_by(f64::total_cmp);
@@ -350,54 +348,6 @@ impl SpeedScatter {
              that of independent blocks): counted as a random effect of each speed, pooled over the motions of a force",
             forces.join("; "),
             self.ratio
-        )
-    }
-}
-
-impl CoefficientUncertainty {
-    /// The fit to the tests at each mean speed alone, with the poles of the fit to all; empty for tests at one speed and
-    /// for an estimate that was read from a file.
-    ///
-    /// The second value is why a speed alone does not tell.
-    pub(crate) fn at_each_speed(&self) -> Vec<(f64, Result<Self>)> {
-        let Some(design) = &self.design else {
-            return Vec::new();
-        };
-        let Some((groups, speeds_m_s)) = speed_groups(design.blocks()) else {
-            return Vec::new();
-        };
-        let alone = |(g, speed): (usize, f64)| (speed, self.alone(design, &groups, g));
-        speeds_m_s.into_iter().enumerate().map(alone).collect()
-    }
-
-    /// Reduced frequencies of the blocks, where they have one and are known.
-    pub(crate) fn tested_range(&self) -> Option<ReducedFrequencyRange> {
-        let ks = self.design.as_ref()?.blocks().iter().filter_map(|b| b.k);
-        ReducedFrequencyRange::spanning(ks.map(ReducedFrequency::from_full_width))
-    }
-
-    fn alone(&self, design: &Design, groups: &[usize], group: usize) -> Result<Self> {
-        let mut coordinates = self.coordinates.clone();
-        let mut kept = self.parameters.len();
-        if let Coordinates::Continuous { searched, .. } = &mut coordinates {
-            kept -= searched.len();
-            searched.clear();
-        }
-        let (own, step) = design.alone(groups, group, kept)?;
-        let moved = self
-            .parameters
-            .iter()
-            .zip(step.iter())
-            .map(|(p, d)| Parameter {
-                value: p.value + d,
-                ..p.clone()
-            });
-        Self::new(
-            ("blocks of one mean speed".into(), None),
-            self.dofs.clone(),
-            coordinates,
-            moved.collect(),
-            own,
         )
     }
 }

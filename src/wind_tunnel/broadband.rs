@@ -4,7 +4,7 @@
 //! their coefficients best determined (thesis, section 2.4); a multi-sine puts all its power into chosen frequencies. Both
 //! start and end at rest with the ramps of the harmonic motions, and never exceed the amplitude of the plan.
 
-use super::motion::{Timing, UnitMotion, window};
+use super::motion::{Timing, TrainingMotion, UnitMotion, window};
 use super::records::Record;
 use super::virtual_tunnel::TunnelPlan;
 use crate::aerodynamics::derivatives::{
@@ -16,50 +16,10 @@ use nalgebra::Complex;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
-use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
 /// Stream of the random numbers that make a motion; the noise of the forces draws from others.
 const MOTION_STREAM: u64 = u64::MAX;
-
-/// How the rig moves the section.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
-pub enum TrainingMotion {
-    /// One ramped sine a frequency of the plan, in turn (Table 3.2 of the thesis).
-    #[default]
-    Harmonic,
-    /// All frequencies of the plan at once with equal amplitudes; their phases follow from the seed.
-    MultiSine {
-        /// Duration of the motion, ramps included, s.
-        #[serde(default = "three_minutes")]
-        duration_s: f64,
-    },
-    /// Gaussian noise whose spectrum is flat from `min_hz` to `max_hz` and zero elsewhere, up to the ramps.
-    WhiteNoise {
-        /// Lowest frequency, Hz.
-        #[serde(default = "quarter")]
-        min_hz: f64,
-        /// Highest frequency, Hz.
-        #[serde(default = "two_and_a_half")]
-        max_hz: f64,
-        /// Duration of the motion, ramps included, s.
-        #[serde(default = "three_minutes")]
-        duration_s: f64,
-    },
-}
-
-fn three_minutes() -> f64 {
-    180.0
-}
-
-fn quarter() -> f64 {
-    0.25
-}
-
-fn two_and_a_half() -> f64 {
-    2.5
-}
 
 impl TrainingMotion {
     /// The motion in words.

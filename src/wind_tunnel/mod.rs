@@ -14,7 +14,7 @@ pub mod virtual_campaign;
 mod virtual_forces;
 mod virtual_tunnel;
 
-pub use broadband::TrainingMotion;
+pub use motion::TrainingMotion;
 pub(crate) use prediction::predicted_forces;
 pub(crate) use raw::CELL_CHANNELS;
 pub use raw::{LoadCell, RawCampaign, RawRecording, RawRun, Rig};

@@ -1,7 +1,47 @@
 //! The motion of a forced-vibration run: rest, then one ramped sine a frequency.
 
 use super::records::Segment;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
+
+/// How the rig moves the section.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+pub enum TrainingMotion {
+    /// One ramped sine a frequency of the plan, in turn (Table 3.2 of the thesis).
+    #[default]
+    Harmonic,
+    /// All frequencies of the plan at once with equal amplitudes; their phases follow from the seed.
+    MultiSine {
+        /// Duration of the motion, ramps included, s.
+        #[serde(default = "three_minutes")]
+        duration_s: f64,
+    },
+    /// Gaussian noise whose spectrum is flat from `min_hz` to `max_hz` and zero elsewhere, up to the ramps.
+    WhiteNoise {
+        /// Lowest frequency, Hz.
+        #[serde(default = "quarter")]
+        min_hz: f64,
+        /// Highest frequency, Hz.
+        #[serde(default = "two_and_a_half")]
+        max_hz: f64,
+        /// Duration of the motion, ramps included, s.
+        #[serde(default = "three_minutes")]
+        duration_s: f64,
+    },
+}
+
+fn three_minutes() -> f64 {
+    180.0
+}
+
+fn quarter() -> f64 {
+    0.25
+}
+
+fn two_and_a_half() -> f64 {
+    2.5
+}
 
 /// One stretch of harmonic motion of unit amplitude that begins and ends at rest.
 ///

@@ -15,8 +15,7 @@
 //! frequency of the segment is therefore `f = K V/(2πB)` with the point's own `K` and the record's `V`, within a
 //! per cent of the frequency that was driven, and the dimensionless force is exactly `G` at the point's own `K`.
 
-use super::broadband::TrainingMotion;
-use super::motion::{Timing, UnitMotion};
+use super::motion::{Timing, TrainingMotion, UnitMotion};
 use super::records::{Record, RecordHeader};
 use super::virtual_forces::{TestPoints, unit_response};
 use crate::aerodynamics::Transfer;

@@ -1,6 +1,7 @@
-//! Keeps the design true of the tree: direction of imports, `unsafe` in three places, no abrupt ends, no printing, short
-//! files. The table is in `rules.rs`.
+//! Keeps the design true of the tree: direction of imports, no new circles between files, `unsafe` in three places, no
+//! abrupt ends, no printing, short files. The table is in `rules.rs`.
 
+mod circles;
 mod rules;
 mod source;
 
@@ -11,6 +12,27 @@ use std::path::{Path, PathBuf};
 
 /// Files longer than [`LINES_AT_MOST`], each with its reason. Empty, and meant to stay so.
 const LONG_FILES: &[(&str, &str)] = &[];
+
+/// Files with which the circles start that are still there, in order of their paths; meant to become empty.
+const CIRCLES: &[&str] = &[
+    "src/cli/account.rs",
+    "src/cli/bridge/buffeting.rs",
+    "src/files/coefficients/embedded.rs",
+    "src/files/lab/columns.rs",
+    "src/fmu/importer/checks/mod.rs",
+    "src/fmu/importer/log.rs",
+    "src/fmu/importer/mod.rs",
+    "src/fmu/instance.rs",
+    "src/fmu/variables.rs",
+    "src/identification/basis.rs",
+    "src/identification/records.rs",
+    "src/reference/user_case.rs",
+    "src/report/legend.rs",
+    "src/response.rs",
+    "src/study/bridge/answers.rs",
+    "src/study/routes.rs",
+    "src/wind_tunnel/campaign/channel_map.rs",
+];
 
 /// Rust files below `directory` as (path relative to the package with `/`, text), in order.
 fn rust_files(directory: &str) -> Vec<(String, String)> {
@@ -68,11 +90,20 @@ fn the_tree_keeps_the_rules() {
             .iter()
             .any(|t| stem == t || stem.starts_with(&format!("{t}/")))
     };
-    let found: Vec<String> = files
-        .iter()
-        .filter(|(path, _)| !is_test(path))
+    let own = || files.iter().filter(|(path, _)| !is_test(path));
+    let mut found: Vec<String> = own()
         .flat_map(|(path, source)| breaches(path, source))
         .collect();
+    let circles = circles::circles(own().map(|(path, source)| (path.as_str(), source)));
+    let is_known = |circle: &&String| CIRCLES.iter().any(|start| circle.starts_with(start));
+    found.extend(circles.iter().filter(|c| !is_known(c)).cloned());
+    let is_gone = |start: &&&str| !circles.iter().any(|c| c.starts_with(**start));
+    found.extend(
+        CIRCLES
+            .iter()
+            .filter(is_gone)
+            .map(|c| format!("{c}: no circle any more")),
+    );
     report(&found);
 }
 
@@ -113,174 +144,166 @@ fn the_arrows_run_one_way() {
 mod the_checker {
     use super::*;
 
+    /// File, its text, a part of each message.
+    type Case = (&'static str, &'static str, &'static [&'static str]);
+
     #[track_caller]
-    fn check(path: &str, text: &str, expected: &[&str]) {
-        let found = breaches(path, &Source::new(text));
-        assert_eq!(found.len(), expected.len(), "{found:?}");
-        for (found, expected) in found.iter().zip(expected) {
-            assert!(found.contains(expected), "{found} lacks {expected}");
+    fn check(cases: &[Case]) {
+        for (path, text, expected) in cases {
+            let found = breaches(path, &Source::new(text));
+            assert_eq!(found.len(), expected.len(), "{text}: {found:?}");
+            for (found, expected) in found.iter().zip(*expected) {
+                assert!(found.contains(expected), "{found} lacks {expected}");
+            }
         }
     }
 
     #[test]
     fn sees_imports_against_the_arrows() {
-        check(
-            "src/units.rs",
-            "use crate::section::Dof;",
-            &["units.rs:1: `section::Dof`"],
-        );
-        check("src/section.rs", "use crate::units::ReducedVelocity;", &[]);
-        check(
-            "src/fmu/package.rs",
-            "\nfn f() { crate::identification::fit() }",
-            &[":2: `identification::fit`"],
-        );
-        check(
-            "src/fmu/fmi2/exports.rs",
-            "use crate::fmu::instance::Instance;",
-            &[],
-        );
-        check(
-            "src/fmu/fmi2/exports.rs",
-            "use crate::flutter::Onset;",
-            &["flutter::Onset"],
-        );
-        check(
-            "src/cli/demo.rs",
-            "use crate::fmu::{fmi2::exports, package};",
-            &["fmu::fmi2::exports"],
-        );
-        check("src/nowhere/x.rs", "", &["no row"]);
-        check("src/cli/x.rs", "use crate::nowhere::X;", &["without a row"]);
+        let exports = "src/fmu/fmi2/exports.rs";
+        check(&[
+            (
+                "src/units.rs",
+                "use crate::section::Dof;",
+                &["units.rs:1: `section::Dof`"],
+            ),
+            ("src/section.rs", "use crate::units::ReducedVelocity;", &[]),
+            (
+                "src/fmu/package.rs",
+                "\nfn f() { crate::identification::fit() }",
+                &[":2: `identification::fit`"],
+            ),
+            (exports, "use crate::fmu::instance::Instance;", &[]),
+            (exports, "use crate::flutter::Onset;", &["flutter::Onset"]),
+            (
+                "src/cli/demo.rs",
+                "use crate::fmu::{fmi2::exports, package};",
+                &["fmu::fmi2::exports"],
+            ),
+            ("src/nowhere/x.rs", "", &["no row"]),
+            ("src/cli/x.rs", "use crate::nowhere::X;", &["without a row"]),
+        ]);
     }
 
     #[test]
     fn spreads_use_trees_and_follows_super() {
         let tree = "use crate::{\n    error::{Error, Result as R},\n    flutter::{self, Onset},\n    units::K,\n};";
-        check(
-            "src/aeroelastic.rs",
-            tree,
-            &["`flutter`", "`flutter::Onset`"],
-        );
-        check(
-            "src/section.rs",
-            "use super::flutter::Onset;",
-            &["flutter::Onset"],
-        );
-        check("src/flutter/curves.rs", "use super::onset::Onset;", &[]);
-        check(
-            "src/flutter/curves.rs",
-            "use super::super::fmu::Kind;",
-            &["fmu::Kind"],
-        );
-        check("src/section.rs", "mod inner { use super::helper; }", &[]);
-        check(
-            "src/main.rs",
-            "fn main() { aerodeck::fmu::fmi2::run() }",
-            &["fmu::fmi2::run"],
-        );
+        let curves = "src/flutter/curves.rs";
+        check(&[
+            (
+                "src/aeroelastic.rs",
+                tree,
+                &["`flutter`", "`flutter::Onset`"],
+            ),
+            (
+                "src/section.rs",
+                "use super::flutter::Onset;",
+                &["flutter::Onset"],
+            ),
+            (curves, "use super::onset::Onset;", &[]),
+            (curves, "use super::super::fmu::Kind;", &["fmu::Kind"]),
+            ("src/section.rs", "mod inner { use super::helper; }", &[]),
+            (
+                "src/main.rs",
+                "fn main() { aerodeck::fmu::fmi2::run() }",
+                &["fmu::fmi2::run"],
+            ),
+        ]);
     }
 
     #[test]
     fn knows_data_types_and_functions() {
-        check(
-            "src/identification/fit.rs",
-            "use crate::wind_tunnel::{Record, RecordSource};",
-            &[],
-        );
-        check(
-            "src/identification/fit.rs",
-            "use crate::wind_tunnel::generate;",
-            &["generate"],
-        );
-        check(
-            "src/report/plot.rs",
-            "use crate::flutter::FlutterCurves;",
-            &[],
-        );
-        check(
-            "src/report/plot.rs",
-            "use crate::flutter::find_onset;",
-            &["is no type"],
-        );
-        check("src/units.rs", "use crate::Result;", &[]);
+        let fit = "src/identification/fit.rs";
+        let plot = "src/report/plot.rs";
+        check(&[
+            (fit, "use crate::wind_tunnel::{Record, RecordSource};", &[]),
+            (fit, "use crate::wind_tunnel::generate;", &["generate"]),
+            (plot, "use crate::flutter::FlutterCurves;", &[]),
+            (plot, "use crate::flutter::find_onset;", &["is no type"]),
+            ("src/units.rs", "use crate::Result;", &[]),
+        ]);
     }
 
     #[test]
-    fn reads_attributes_but_no_comments() {
-        check(
-            "src/units.rs",
-            "#[serde(with = \"crate::section::rows\")] struct S;",
-            &["section::rows"],
-        );
-        check(
-            "src/units.rs",
-            "// use crate::section::Dof; x.unwrap()\n/* /* unsafe */ panic!() */",
-            &[],
-        );
-        check(
-            "src/units.rs",
-            "/// [`crate::section::Dof`]\nfn f<'a>(c: char) -> bool { c == '\"' }",
-            &[],
-        );
+    fn reads_attributes_and_macros_but_no_comments() {
+        let units = "src/units.rs";
+        check(&[
+            (
+                units,
+                "#[serde(with = \"crate::section::rows\")] struct S;",
+                &["section::rows"],
+            ),
+            (units, "fn f() { vec![crate::section::X] }", &["section::X"]),
+            (
+                units,
+                "// use crate::section::Dof; x.unwrap()\n/* /* unsafe */ panic!() */",
+                &[],
+            ),
+            (
+                units,
+                "/// [`crate::section::Dof`]\nfn f<'a>(c: char) -> bool { c == '\"' }",
+                &[],
+            ),
+        ]);
     }
 
     #[test]
     fn sees_abrupt_ends_and_printing() {
-        check(
-            "src/units.rs",
-            "fn f() { x.unwrap(); y.unwrap_or(1); }",
-            &["`.unwrap()`"],
-        );
-        check(
-            "src/cli/x.rs",
-            "fn f() { x.expect(\"y\"); println!(\"z\"); }",
-            &["`.expect(`"],
-        );
-        check(
-            "src/units.rs",
-            "fn f() { eprintln!(\"z\"); }",
-            &["`eprintln!(`"],
-        );
-        check(
-            "src/units.rs",
-            "fn f() { g(\"panic!( .unwrap() \\\" todo!(\", r#\"a\"panic!(\"#); }",
-            &[],
-        );
-        check(
-            "src/units.rs",
-            "fn f() { todo!() }\nfn g() { unreachable!() }",
-            &["todo", "unreachable"],
-        );
+        let units = "src/units.rs";
+        check(&[
+            (
+                units,
+                "fn f() { x.unwrap(); y.unwrap_or(1); }",
+                &["`.unwrap(`"],
+            ),
+            (
+                "src/cli/x.rs",
+                "fn f() { x.expect(\"y\"); println!(\"z\"); }",
+                &["`.expect(`"],
+            ),
+            (units, "fn f() { eprintln!(\"z\"); }", &["`eprintln!`"]),
+            (
+                units,
+                "fn f() { g(\"panic!( .unwrap() \\\" todo!(\", r#\"a\"panic!(\"#); }",
+                &[],
+            ),
+            (
+                units,
+                "fn f() { todo!() }\nfn g() { unreachable!() }",
+                &["todo", "unreachable"],
+            ),
+        ]);
     }
 
     #[test]
     fn sees_unsafe_where_it_may_not_be() {
-        check("src/fmu/instance.rs", "unsafe fn f() {}", &["`unsafe`"]);
-        check(
-            "src/fmu/fmi2/exports.rs",
-            "#[unsafe(no_mangle)] extern \"C\" fn f() {}",
-            &[],
-        );
-        check("src/fmu/importer/library.rs", "unsafe { f() }", &[]);
-        check("src/fmu/importer.rs", "#![allow(unsafe_code)]", &[]);
-        check("src/units.rs", "#![deny(unsafe_code)]", &[]);
+        check(&[
+            ("src/fmu/instance.rs", "unsafe fn f() {}", &["`unsafe`"]),
+            (
+                "src/fmu/fmi2/exports.rs",
+                "#[unsafe(no_mangle)] extern \"C\" fn f() {}",
+                &[],
+            ),
+            ("src/fmu/importer/library.rs", "unsafe { f() }", &[]),
+            ("src/fmu/importer.rs", "#![allow(unsafe_code)]", &[]),
+            ("src/units.rs", "#![deny(unsafe_code)]", &[]),
+        ]);
     }
 
     #[test]
     fn leaves_test_code_out() {
         let module = "#[cfg(test)]\nmod tests { use crate::section::Dof; fn f() { x.unwrap() } }\nfn g() { y.unwrap() }";
-        check("src/units.rs", module, &["units.rs:3"]);
-        check(
-            "src/units.rs",
-            "#[cfg(all(test, unix))] fn f(a: [u8; 2]) { x.unwrap() }",
-            &[],
-        );
-        check(
-            "src/units.rs",
-            "#[cfg(not(test))] fn f() { x.unwrap() }",
-            &["unwrap"],
-        );
+        let function = "#[cfg(all(test, unix))] fn f(a: [u8; 2]) { x.unwrap() }";
+        check(&[
+            ("src/units.rs", module, &["units.rs:3"]),
+            ("src/units.rs", function, &[]),
+            (
+                "src/units.rs",
+                "#[cfg(not(test))] fn f() { x.unwrap() }",
+                &["unwrap"],
+            ),
+            ("src/units.rs", "#![cfg(test)] fn f() { x.unwrap() }", &[]),
+        ]);
         let names = |path: &str, text: &str| test_modules(path, &Source::new(text));
         assert_eq!(
             names("src/a/mod.rs", "#[cfg(test)]\nmod checks;"),
@@ -292,5 +315,21 @@ mod the_checker {
         );
         let by_path = "#[cfg(test)]\n#[path = \"b_tests.rs\"]\nmod tests;";
         assert_eq!(names("src/a/b.rs", by_path), ["src/a/b_tests"]);
+    }
+
+    #[test]
+    fn sees_circles_through_names_that_are_passed_on() {
+        let room = "mod b; mod c;\npub use b::B;";
+        let found = |b: &str, c: &str| {
+            let files = [("src/a/mod.rs", room), ("src/a/b.rs", b), ("src/a/c.rs", c)];
+            let files = files.map(|(path, text)| (path, Source::new(text)));
+            circles::circles(files.iter().map(|(path, source)| (*path, source)))
+        };
+        assert_eq!(
+            found("use super::c::C;", "use crate::a::B;"),
+            ["src/a/b.rs ↔ src/a/c.rs"]
+        );
+        assert_eq!(found("use super::c::{self, C};", ""), [""; 0]);
+        assert_eq!(found("", "fn f() { super::b::g() }"), [""; 0]);
     }
 }

@@ -4,7 +4,6 @@
 mod bank;
 mod continuous;
 mod discrete;
-mod discrete_layout;
 mod guidelines;
 
 pub use bank::FilterBank;

@@ -30,7 +30,7 @@ pub struct SpanResponse {
 
 impl SpanResponse {
     /// Expected greatest departure from the mean in `duration_s`, over the root mean square (Davenport 1964).
-    pub fn peak_factors(&self, duration_s: f64) -> Vec<[f64; 3]> {
+    pub(crate) fn peak_factors(&self, duration_s: f64) -> Vec<[f64; 3]> {
         let factor = |hertz: f64| {
             let root = (2.0 * (hertz * duration_s).max(1.0).ln()).sqrt();
             root + 0.577_215_664_901_532_9 / root
@@ -47,7 +47,7 @@ impl SpanResponse {
 /// # Errors
 /// [`Error::Input`] for parts that do not fit together; [`Error::Unstable`] when the bridge is unstable at this speed; those of
 /// the forces.
-pub fn span_response(
+pub(crate) fn span_response(
     problem: &SpanProblem<'_>,
     nodes: &[usize],
     speed_m_s: f64,

@@ -67,7 +67,7 @@ pub struct SpanRecord {
 /// # Errors
 /// [`Error::Input`] for a field of other nodes and parts that do not fit together; [`Error::Unstable`] when the bridge is
 /// unstable at this speed.
-pub fn span_record(
+pub(crate) fn span_record(
     problem: &SpanProblem<'_>,
     nodes: &[usize],
     speed_m_s: f64,
@@ -124,7 +124,7 @@ impl Periodic {
 /// # Errors
 /// [`Error::Input`] for a plan that cannot be and parts that do not fit together; [`Error::Unstable`] when the bridge is unstable
 /// at this speed.
-pub fn span_ensemble(
+pub(crate) fn span_ensemble(
     problem: &SpanProblem<'_>,
     nodes: &[usize],
     speed_m_s: f64,
@@ -165,7 +165,7 @@ pub fn span_ensemble(
 ///
 /// # Errors
 /// [`Error::Input`] for a field of other nodes.
-pub fn modal_forces(
+pub(crate) fn modal_forces(
     problem: &SpanProblem<'_>,
     field: &TurbulenceField,
     speed_m_s: f64,

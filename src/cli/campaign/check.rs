@@ -19,7 +19,7 @@ pub(crate) struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     let campaign = Campaign::read(&args.campaign)?;
     let stage = progress.stage("reading the recordings");
     let reading = campaign.load()?;

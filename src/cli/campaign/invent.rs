@@ -2,7 +2,7 @@
 
 use crate::aerodynamics::{FlatPlate, RationalModel};
 use crate::cli::answer::Answer;
-use crate::cli::output::{OutputDir, list};
+use crate::cli::output::OutputDir;
 use crate::cli::progress::Progress;
 use crate::error::{Error, Result};
 use crate::files::derivatives::named_table;
@@ -60,7 +60,7 @@ enum Format {
 }
 
 /// Runs the command.
-pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     let plan = plan(args)?;
     let stage = progress.stage("virtual campaign");
     let made = make(args, &plan)?;
@@ -77,7 +77,6 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
         out.refuse_edited(name, args.force, "choose another --out")?;
     }
     drop(stage);
-    let written = out.commit()?;
     let mut text = format!("{}: {}\n", made.raw.section, made.raw.source);
     for run in &made.raw.runs {
         let _ = writeln!(
@@ -92,14 +91,12 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     for hint in plan.tunnel.hints() {
         let _ = writeln!(text, "  note: {hint}");
     }
-    text.push_str(&list(&written));
-    let answer = serde_json::json!({
+    let value = serde_json::json!({
         "section": made.raw.section,
         "runs": made.truth.disturbances,
         "plan": plan,
-        "files": written,
     });
-    Answer::new(text, &answer)
+    out.answer(text, value)
 }
 
 fn plan(args: &Args) -> Result<VirtualCampaignPlan> {

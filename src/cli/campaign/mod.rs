@@ -15,7 +15,7 @@ pub(crate) enum Campaign {
 }
 
 /// Runs the command.
-pub fn run(command: &Campaign, progress: &Progress) -> Result<Answer> {
+pub(crate) fn run(command: &Campaign, progress: &Progress) -> Result<Answer> {
     match command {
         Campaign::Check(args) => check::run(args, progress),
         Campaign::Virtual(args) => invent::run(args, progress),

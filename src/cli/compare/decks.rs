@@ -1,9 +1,10 @@
 //! `aerodeck compare decks`: one model on several girders.
 
+use super::common::{self, Common, beside_the_thesis, metrics_table};
 use super::figures::metrics_of;
-use super::{Common, beside_the_thesis, draw, metrics_table};
 use crate::cli::answer::Answer;
-use crate::cli::output::{OutputDir, list};
+use crate::cli::figures as drawn;
+use crate::cli::output::OutputDir;
 use crate::cli::progress::Progress;
 use crate::comparison::forces::{
     CompareOptions, DecksComparison, Score, THESIS_DECKS, compare_decks, score_table,
@@ -29,7 +30,7 @@ pub(crate) struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     let options = args
         .common
         .options(args.decks.clone(), args.trained_on.clone());
@@ -39,15 +40,10 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     drop(stage);
     out.write("decks_metrics.csv", score_table(&results.scores))?;
     for (stem, figure) in figures(&options, &results)? {
-        draw(&mut out, &stem, &figure)?;
+        drawn::write(&stem, &mut out, || Ok(figure))?;
     }
-    let mut text = account(&results);
-    let written = out.commit()?;
-    text.push_str(&list(&written));
-    Answer::new(
-        text,
-        &serde_json::json!({ "comparison": results, "files": written }),
-    )
+    let text = account(&results);
+    out.answer(text, serde_json::json!({ "comparison": results }))
 }
 
 /// The metrics, one figure a motion and kind of speed.
@@ -100,7 +96,7 @@ pub(super) fn section(common: &Common, progress: &Progress) -> Result<PageSectio
     let drawn = figures(&options, &results)?.into_iter();
     let drawn = drawn.map(|(stem, figure)| (format!("Figures 3.10 to 3.13: {stem}"), figure));
     let title = "3.5.4 Several girders, on rebuilt records";
-    Ok(super::section(title, &results.statements, drawn.collect()))
+    Ok(common::section(title, &results.statements, drawn.collect()))
 }
 
 fn account(results: &DecksComparison) -> String {

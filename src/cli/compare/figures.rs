@@ -86,7 +86,7 @@ pub(crate) fn transfer_functions(results: &ModelsComparison) -> Result<Figure> {
 }
 
 /// Derivatives over reduced velocity (Figures 3.23 to 3.26).
-pub fn derivatives(results: &ModelsComparison) -> Result<Figure> {
+pub(crate) fn derivatives(results: &ModelsComparison) -> Result<Figure> {
     derivatives_figure(&DerivativesPlot {
         title: format!(
             "{} at {:.2} m/s: aerodynamic derivatives",
@@ -113,7 +113,7 @@ pub fn derivatives(results: &ModelsComparison) -> Result<Figure> {
 }
 
 /// Forces over a few periods, one figure a motion and frequency (Figures 3.29 to 3.32).
-pub fn histories(results: &ModelsComparison) -> Result<Vec<(String, Figure)>> {
+pub(crate) fn histories(results: &ModelsComparison) -> Result<Vec<(String, Figure)>> {
     let same = |a: &History, b: &History| (a.motion, a.frequency_hz) == (b.motion, b.frequency_hz);
     results
         .histories

@@ -1,9 +1,10 @@
 //! `aerodeck compare models`: Laguerre models against rational functions on one girder.
 
+use super::common::{self, Common, beside_the_thesis, metrics_table};
 use super::figures::{derivatives, histories, metrics_of, transfer_functions};
-use super::{Common, beside_the_thesis, draw, metrics_table};
 use crate::cli::answer::Answer;
-use crate::cli::output::{OutputDir, list};
+use crate::cli::figures;
+use crate::cli::output::OutputDir;
 use crate::cli::progress::Progress;
 use crate::comparison::forces::{ModelsComparison, compare_models, inside, score_table};
 use crate::error::Result;
@@ -24,7 +25,7 @@ pub(crate) struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     let options = args.common.options(vec![args.deck.clone()], None);
     let mut out = OutputDir::new(&args.common.out)?;
     let stage = progress.steps("records");
@@ -32,8 +33,8 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     drop(stage);
     out.write("models_metrics.csv", score_table(&results.scores))?;
     out.write("models_transfer.csv", transfer_table(&results))?;
-    draw(&mut out, "models_transfer", &transfer_functions(&results)?)?;
-    draw(&mut out, "models_derivatives", &derivatives(&results)?)?;
+    figures::write("models_transfer", &mut out, || transfer_functions(&results))?;
+    figures::write("models_derivatives", &mut out, || derivatives(&results))?;
     for &motion in &options.dofs {
         let chosen: Vec<_> = results
             .scores
@@ -46,23 +47,16 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
             results.speed_m_s,
             motion.name()
         );
-        let figure = metrics_of(&title, &options.dofs, &chosen, &|s| s.model.clone())?;
-        draw(
-            &mut out,
-            &format!("models_metrics_{}", motion.name()),
-            &figure,
-        )?;
+        let stem = format!("models_metrics_{}", motion.name());
+        figures::write(&stem, &mut out, || {
+            metrics_of(&title, &options.dofs, &chosen, &|s| s.model.clone())
+        })?;
     }
     for (stem, figure) in histories(&results)? {
-        draw(&mut out, &stem, &figure)?;
+        figures::write(&stem, &mut out, || Ok(figure))?;
     }
-    let mut text = account(&results);
-    let written = out.commit()?;
-    text.push_str(&list(&written));
-    Answer::new(
-        text,
-        &serde_json::json!({ "comparison": results, "files": written }),
-    )
+    let text = account(&results);
+    out.answer(text, serde_json::json!({ "comparison": results }))
 }
 
 /// The section of the page of the thesis.
@@ -88,7 +82,7 @@ pub(super) fn section(common: &Common, progress: &Progress) -> Result<PageSectio
         forces.map(|(stem, figure)| (format!("Forces (Figures 3.29 to 3.32): {stem}"), figure)),
     );
     let title = "3.5.5, 3.5.6 Models of one girder, on rebuilt records";
-    Ok(super::section(title, &results.statements, figures))
+    Ok(common::section(title, &results.statements, figures))
 }
 
 fn account(results: &ModelsComparison) -> String {

@@ -86,7 +86,7 @@ impl Line {
 }
 
 /// Runs the command.
-pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     let set = ChannelSet::read(&args.file, args.group.as_deref())?;
     let channel = |name: &str| {
         let found = set.channel(name);

@@ -55,7 +55,7 @@ fn line(cell: &Cell) -> String {
 }
 
 /// Errors and onsets over the grid, and the metrics of the forces.
-pub fn figures(
+pub(crate) fn figures(
     study: &Study,
     selection: &Selection,
     metrics: &[MetricGrid],

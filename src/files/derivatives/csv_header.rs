@@ -1,5 +1,6 @@
 //! Head of a file of derivatives: where the table comes from, and in which convention it is written.
 
+use crate::aerodynamics::derivatives::Missing;
 use crate::aerodynamics::derivatives::SIGN_CONVENTION;
 use crate::aerodynamics::derivatives::TableHeader;
 use crate::aerodynamics::derivatives::UNITS;
@@ -12,6 +13,19 @@ use crate::error::{Error, Result};
 use crate::files::header_csv::CommentHeader;
 use crate::files::header_csv::Entry;
 use std::io::Write;
+
+/// What a file of derivatives does not say of itself.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct ReadOptions {
+    /// Notation, argument and axes; what the file states must not contradict them.
+    pub convention: StatedConvention,
+    /// Width of the section model, m.
+    pub width_m: Option<f64>,
+    /// Frequencies of motion of a workbook in test order, Hz, from which its width follows.
+    pub frequencies_hz: Option<Vec<f64>>,
+    /// What stands for H4*, A4* when there are none; zero when nothing is stated.
+    pub missing: Option<Missing>,
+}
 
 /// First line of the file: the one that is written, and that of files whose convention could only be the crate's own.
 const FORMATS: [&str; 2] = ["aerodeck derivative table 2", "aerodeck derivative table 1"];

@@ -12,11 +12,12 @@ mod xlsx_cells;
 pub(crate) use csv_file::parse_csv_in;
 pub(crate) use csv_file::{parse_csv, read_csv_with, write_points};
 pub use csv_file::{read_csv, write_csv, write_csv_in};
+pub use csv_header::ReadOptions;
 pub(crate) use workbook::{TABLE_3_2_FREQUENCIES_HZ, read_workbook_in};
 pub use workbook::{WorkbookOptions, read_workbook};
 pub(crate) use workbook_writer::{workbook_bytes, workbook_bytes_in};
 
-use crate::aerodynamics::derivatives::{DerivativeTable, Missing, notation};
+use crate::aerodynamics::derivatives::{DerivativeTable, notation};
 
 /// Whether `name` means a file that holds a table, not an embedded deck: it ends in `.csv` or `.xlsx`.
 pub(crate) fn is_table_file(name: &str) -> bool {
@@ -31,19 +32,6 @@ pub fn named_table(name: &str, directory: &std::path::Path) -> crate::Result<Der
     } else {
         embedded::deck(name)
     }
-}
-
-/// What a file of derivatives does not say of itself.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct ReadOptions {
-    /// Notation, argument and axes; what the file states must not contradict them.
-    pub convention: notation::StatedConvention,
-    /// Width of the section model, m.
-    pub width_m: Option<f64>,
-    /// Frequencies of motion of a workbook in test order, Hz, from which its width follows.
-    pub frequencies_hz: Option<Vec<f64>>,
-    /// What stands for H4*, A4* when there are none; zero when nothing is stated.
-    pub missing: Option<Missing>,
 }
 
 /// Reads a table from `path`: an NTNU workbook when the name ends in `.xlsx`, else a CSV.

@@ -216,30 +216,32 @@ impl TdmsFile {
         if layouts.is_empty() {
             return Ok(());
         }
+        let place = format!("byte {}", bytes.at);
         if block == 0 || !raw.is_multiple_of(block) {
+            let expected = format!("whole blocks of {block} bytes");
             return Err(Error::input(
-                format!("byte {}", bytes.at),
-                format!("whole blocks of {block} bytes"),
+                place,
+                expected,
                 format!("{raw} bytes of samples"),
             ));
         }
         self.samples += samples.saturating_mul(raw / block) as u64;
-        check_count(&format!("byte {}", bytes.at), self.samples)?;
+        check_count(&place, self.samples)?;
         let rows = layouts[0].1.count;
         if is_interleaved && layouts.iter().any(|(_, l)| l.count != rows) {
-            let place = format!("byte {}", bytes.at);
             return Err(Error::input(
                 place,
                 "interleaved channels of one length",
                 "others",
             ));
         }
+        // row by row, or channel by channel
+        let (rows, each) = if is_interleaved {
+            (rows, 1)
+        } else {
+            (1, usize::MAX)
+        };
         for _ in 0..raw / block {
-            let (rows, each) = if is_interleaved {
-                (rows, 1)
-            } else {
-                (1, usize::MAX)
-            };
             for _ in 0..rows {
                 for (place, layout) in &layouts {
                     let samples = &mut self.objects[*place].samples;

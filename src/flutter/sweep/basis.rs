@@ -75,7 +75,7 @@ impl LinearForces {
     /// The discrete Laguerre model as a continuous force: its transfer function times that of the hold,
     /// `(1 − e^{−pΔs})/(pΔs)`. What is left out are the images of the motion at multiples of the sampling rate, which a
     /// structure does not follow; see [`at_samples`](super::at_samples).
-    pub fn of_discrete_laguerre(
+    pub(crate) fn of_discrete_laguerre(
         model: &DiscreteLaguerre,
         tested: Option<ReducedFrequencyRange>,
     ) -> Self {

@@ -100,12 +100,11 @@ impl OnsetSweep {
     pub fn new(forces: LinearForces, nominal: &Structure, speed_max_m_s: f64) -> Result<Self> {
         let speed_max = positive("speed_max_m_s", speed_max_m_s)?;
         if !matches!(forces.dofs.len(), 2 | 3) || forces.dofs != nominal.dofs {
+            let nominal = Dof::names(&nominal.dofs);
+            let expected = format!("two or three degrees of freedom, {nominal}");
             return Err(Error::input(
                 "onset sweep",
-                format!(
-                    "two or three degrees of freedom, {}",
-                    Dof::names(&nominal.dofs)
-                ),
+                expected,
                 Dof::names(&forces.dofs),
             ));
         }
@@ -237,11 +236,8 @@ impl<'a, const N: usize> Sweep<'a, N> {
         let g = self.tabulated(0);
         let mut omega = Pencil::new(&self.supports, k, &g).uncoupled();
         // a static unbalance draws the roots apart: they are followed from none to all of it
-        let parts = if self.supports.coupling == 0.0 {
-            1
-        } else {
-            COUPLING_STEPS
-        };
+        let is_coupled = self.supports.coupling != 0.0;
+        let parts = if is_coupled { COUPLING_STEPS } else { 1 };
         for part in 1..=parts {
             let mut supports = self.supports;
             supports.coupling *= f64::from(part) / f64::from(parts);
@@ -269,11 +265,8 @@ impl<'a, const N: usize> Sweep<'a, N> {
         let mut halvings = 1;
         while at.k != k {
             let ratio = (k / from.k).powf(1.0 / parts);
-            let next_k = if at.k * ratio <= k * (1.0 + 1e-9) {
-                k
-            } else {
-                at.k * ratio
-            };
+            let beyond = at.k * ratio <= k * (1.0 + 1e-9);
+            let next_k = if beyond { k } else { at.k * ratio };
             let p = Complex64::new(0.0, next_k);
             let (g, _) = self.sweep.forces.transfer::<N>(p, self.coefficients);
             let g = self.supports.at_axis(g);

@@ -6,6 +6,7 @@ use crate::aerodynamics::derivatives::{Derivative, Part};
 use crate::error::{Error, Result};
 use crate::identification::least_squares::StreamingQr;
 use crate::section::Dof;
+use crate::signal::mean;
 use nalgebra::DMatrix;
 use std::f64::consts::TAU;
 
@@ -171,5 +172,5 @@ fn noise_level(rest: &[f64], periods: usize) -> f64 {
             sum.norm_sqr() / n as f64
         })
         .collect();
-    levels.iter().sum::<f64>() / levels.len().max(1) as f64
+    mean(&levels)
 }

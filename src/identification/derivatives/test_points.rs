@@ -3,7 +3,7 @@
 use super::result::DerivativeOptions;
 use crate::error::{Error, Result, positive};
 use crate::section::Dof;
-use crate::signal::{HarmonicFit, fit_harmonics, plateau, refine_frequency};
+use crate::signal::{HarmonicFit, fit_harmonics, largest_about_mean, plateau, refine_frequency};
 use crate::units::ReducedFrequency;
 use crate::wind_tunnel::{Record, RecordHeader, RecordSource};
 
@@ -123,9 +123,7 @@ fn stretch(
     let at = |t: f64| ((t * rate).round().max(0.0) as usize).min(count);
     let range = at(s.start_s)..at(s.end_s);
     let size = |j: usize| {
-        let x = &channels[j][range.clone()];
-        let mean = x.iter().sum::<f64>() / x.len().max(1) as f64;
-        let greatest = x.iter().fold(0.0_f64, |m, v| m.max((v - mean).abs()));
+        let greatest = largest_about_mean(&channels[j][range.clone()]);
         greatest * header.dofs[j].motion_scale(header.width_m)
     };
     let driven = (0..n).max_by(|a, b| size(*a).total_cmp(&size(*b)));

@@ -1,12 +1,11 @@
 //! All transfer functions of a table at once, held together by constraints.
 
-use super::shares;
 use crate::error::Result;
 use crate::identification::basis::Basis;
 use crate::identification::constrained::LinearSolution;
 use crate::identification::dissipative::{Dissipation, LinearEntry, Solution, Wishes};
 use crate::identification::form::Form;
-use crate::identification::samples::Entry;
+use crate::identification::samples::{Entry, shares};
 use nalgebra::{DMatrix, DVector};
 
 /// Share of an entry that the search leaves out (weight zero) over the largest: it is free to follow the others.

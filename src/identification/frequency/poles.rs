@@ -1,13 +1,14 @@
 //! Poles of fits to tables: of every group of entries that shares them, by itself and under constraints.
 
 use super::joint::Joint;
-use super::relative_residuals;
 use crate::error::{Error, Result};
+use crate::identification::basis::Basis;
+use crate::identification::form::Form;
 use crate::identification::frequency_options::FrequencyFit;
 use crate::identification::options::PoleSearch;
 use crate::identification::own::{EntryForm, search_for, searched_together};
 use crate::identification::report::SearchReport;
-use crate::identification::samples::Entry;
+use crate::identification::samples::{Entry, shares};
 use crate::identification::search::{Bounds, search_poles};
 use crate::units::ReducedFrequencyRange;
 use nalgebra::DVector;
@@ -127,4 +128,22 @@ fn state_lags_of_forces(forms: &mut [EntryForm], fit: &FrequencyFit, n: usize) -
         form.fixed = Some(list.to_vec());
     }
     Ok(())
+}
+
+/// Weighted residuals of all entries with the best coefficients for these poles, each entry relative to its weighted
+/// data: whatever the weights, the poles do not follow the largest entry alone. The norm is the objective.
+fn relative_residuals(entries: &[&Entry], form: &Form, poles: &[f64]) -> Result<DVector<f64>> {
+    let mut all = Vec::new();
+    for (entry, scale) in entries.iter().zip(shares(entries)) {
+        // a ridge weighs the terms of the model themselves, else only the space counts
+        let basis = if entry.ridge > 0.0 {
+            Basis::new(form, poles)?
+        } else {
+            Basis::orthonormal(form, poles)?
+        };
+        let fit = entry.fit(&basis)?;
+        all.extend(entry.weighted_residuals(&basis, &fit.coefficients, scale));
+        all.extend(fit.penalty(&fit.coefficients).map(|r| r * scale));
+    }
+    Ok(DVector::from_vec(all))
 }

@@ -2,7 +2,6 @@
 //! take columns; weights multiply whole stretches after they have been factored.
 
 use super::record::{DimensionlessRecord, Signals};
-use super::systems::ColumnOrder;
 use crate::error::{Error, Result};
 use crate::identification::least_squares::{BLOCK_ROWS, Factor, StreamingQr};
 use crate::identification::options::TimeWeights;
@@ -15,6 +14,42 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 const STRETCH_S: f64 = 10.0;
 /// Greatest number of such stretches; the last takes the rest.
 const MAX_STRETCHES: usize = 2000;
+
+/// Columns of the whole system: an optional constant, then every column of one input for all inputs, interleaved so
+/// that fewer filters are a leading subset.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ColumnOrder {
+    pub inputs: usize,
+    pub per_input: usize,
+    pub constant: bool,
+}
+
+impl ColumnOrder {
+    /// Number of columns with `active` inputs.
+    pub(crate) fn width(&self, active: usize) -> usize {
+        self.leading(self.per_input, active)
+    }
+
+    /// Number of columns that the first `per_input` columns of each of `active` inputs take.
+    pub(crate) fn leading(&self, per_input: usize, active: usize) -> usize {
+        usize::from(self.constant) + per_input * active
+    }
+
+    /// Column `c` of input `j` in the whole system.
+    pub(crate) fn index(&self, c: usize, j: usize) -> usize {
+        usize::from(self.constant) + c * self.inputs + j
+    }
+
+    /// Columns of the whole system for which `used(c, j)`, in their order.
+    pub(super) fn columns(&self, used: impl Fn(usize, usize) -> bool) -> Vec<usize> {
+        let pairs = (0..self.per_input).flat_map(|c| (0..self.inputs).map(move |j| (c, j)));
+        let used = pairs.filter(|(c, j)| used(*c, *j));
+        let constant = self.constant.then_some(0).into_iter();
+        constant
+            .chain(used.map(|(c, j)| self.index(c, j)))
+            .collect()
+    }
+}
 
 /// How far a fit to records has come.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

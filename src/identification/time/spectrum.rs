@@ -1,5 +1,6 @@
 //! The band of a motion that is not a series of sines: where its power lies, from averaged periodograms (Welch 1967).
 
+use crate::signal::mean;
 use nalgebra::Complex;
 use rustfft::FftPlanner;
 use std::f64::consts::TAU;
@@ -41,7 +42,7 @@ fn power(motions: &[Vec<f64>]) -> Vec<f64> {
     for start in (0..).step_by(BLOCK / 2) {
         for motion in motions {
             let samples = &motion[start..count.min(start + BLOCK)];
-            let mean = samples.iter().sum::<f64>() / samples.len().max(1) as f64;
+            let mean = mean(samples);
             let step = TAU / samples.len().max(1) as f64;
             let windowed = samples
                 .iter()

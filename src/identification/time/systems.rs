@@ -1,46 +1,10 @@
 //! Systems of equations of one candidate model: what all records say of every force, and which columns of it a model has.
 
-use super::pass::{Pass, Stretch};
+use super::pass::{ColumnOrder, Pass, Stretch};
 use crate::identification::least_squares::{Factor, StreamingQr};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::rc::Rc;
-
-/// Columns of the whole system: an optional constant, then every column of one input for all inputs, interleaved so
-/// that fewer filters are a leading subset.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct ColumnOrder {
-    pub inputs: usize,
-    pub per_input: usize,
-    pub constant: bool,
-}
-
-impl ColumnOrder {
-    /// Number of columns with `active` inputs.
-    pub(crate) fn width(&self, active: usize) -> usize {
-        self.leading(self.per_input, active)
-    }
-
-    /// Number of columns that the first `per_input` columns of each of `active` inputs take.
-    pub(crate) fn leading(&self, per_input: usize, active: usize) -> usize {
-        usize::from(self.constant) + per_input * active
-    }
-
-    /// Column `c` of input `j` in the whole system.
-    pub(crate) fn index(&self, c: usize, j: usize) -> usize {
-        usize::from(self.constant) + c * self.inputs + j
-    }
-
-    /// Columns of the whole system for which `used(c, j)`, in their order.
-    fn columns(&self, used: impl Fn(usize, usize) -> bool) -> Vec<usize> {
-        let pairs = (0..self.per_input).flat_map(|c| (0..self.inputs).map(move |j| (c, j)));
-        let used = pairs.filter(|(c, j)| used(*c, *j));
-        let constant = self.constant.then_some(0).into_iter();
-        constant
-            .chain(used.map(|(c, j)| self.index(c, j)))
-            .collect()
-    }
-}
 
 /// Factored systems of one candidate.
 pub(crate) struct Systems {

@@ -5,6 +5,7 @@ use super::section_forces::SectionForces;
 use crate::error::{Error, Result};
 use crate::files::lab::{Channel, ChannelSet};
 use crate::section::Dof;
+use crate::signal::mean;
 use crate::wind_tunnel::{CELL_CHANNELS, Rig};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -179,10 +180,6 @@ impl ChannelRef {
             )),
         }
     }
-}
-
-pub(super) fn mean(samples: &[f64]) -> f64 {
-    samples.iter().sum::<f64>() / samples.len() as f64
 }
 
 impl ChannelMap {

@@ -7,7 +7,7 @@ use crate::plausibility::{
     DECK_WIDTH, MODEL_LENGTH, MODEL_WIDTH, SAMPLING, WIND_SPEED, hint, ratio_hint,
 };
 use crate::section::Dof;
-use crate::signal::clipped_stretches;
+use crate::signal::{clipped_stretches, extremes, mean};
 use crate::wind_tunnel::{RawRecording, RawRun};
 use serde::Serialize;
 use std::fmt;
@@ -92,8 +92,7 @@ pub(super) fn channel_findings(
         samples,
         what,
     };
-    let low = samples.iter().copied().fold(f64::INFINITY, f64::min);
-    let high = samples.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let (low, high) = extremes(samples.iter().copied());
     if low == high {
         let what = format!("is {low} all the time");
         return if must_change {
@@ -122,7 +121,6 @@ pub(super) fn channel_findings(
 pub(super) fn run_findings(run: &RawRun, motion: &[Dof], width_m: f64) -> Result<Vec<Finding>> {
     let mut found = Vec::new();
     let mut say = |what: String| found.push(Finding::of_run(&run.name, what));
-    let mean = |x: &[f64]| x.iter().sum::<f64>() / x.len() as f64;
     let measured = &run.in_wind.wind_speed_m_s;
     if let Some(still) = &run.still_air {
         let (in_wind, still_air) = (run.in_wind.len(), still.len());
@@ -200,12 +198,9 @@ fn exchanged(run: &str, recording: &str, stated: &[Dof], found: Dof, ratio: f64)
 
 /// Standard deviation; 0 for a channel that is not there.
 fn deviation(samples: &[f64]) -> f64 {
-    if samples.is_empty() {
-        return 0.0;
-    }
-    let n = samples.len() as f64;
-    let mean = samples.iter().sum::<f64>() / n;
-    (samples.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / n).sqrt()
+    let centre = mean(samples);
+    let squares = samples.iter().map(|x| (x - centre).powi(2)).sum::<f64>();
+    (squares / samples.len().max(1) as f64).sqrt()
 }
 
 /// Usual amplitudes of a forced motion: displacements over the width, rotations in rad.
@@ -256,8 +251,7 @@ fn motion_hints(
 ) -> Vec<Finding> {
     let mut found = Vec::new();
     for (dof, motion) in Dof::THREE.into_iter().zip(&recording.motion) {
-        let low = motion.iter().copied().fold(f64::INFINITY, f64::min);
-        let high = motion.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let (low, high) = extremes(motion.iter().copied());
         let amplitude = 0.5 * (high - low);
         let size = amplitude * dof.motion_scale(width_m);
         let (unit, large, small, (least, most)) = match dof {

@@ -1,13 +1,14 @@
 //! Reading the recordings that a campaign file names.
 
 use super::air::Air;
-use super::channel_map::{ChannelMap, mean};
+use super::channel_map::ChannelMap;
 use super::file::{Campaign, RunBlock};
 use super::findings::{Finding, file_hints, run_findings};
 use super::recording::{Loading, SAME_RATE};
 use super::section_forces::SectionForces;
 use crate::error::{Error, Result, all_or_errors, positive};
 use crate::section::Dof;
+use crate::signal::mean;
 use crate::wind_tunnel::{RawCampaign, RawRecording, RawRun, Rig};
 use rayon::prelude::*;
 use serde::Serialize;

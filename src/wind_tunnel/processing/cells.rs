@@ -8,6 +8,7 @@
 //! clamping does to one cell it does oppositely to the others (3.1): it falls out of the sums. Lift is `F_y`, drag `F_x`, the
 //! nose-up moment `−M_z`.
 
+use crate::signal::mean;
 use crate::wind_tunnel::{LoadCell, RawRecording, Rig};
 use serde::{Deserialize, Serialize};
 
@@ -44,7 +45,6 @@ pub(crate) fn sum_about_centre(
 
 /// Means of every cell, for the report.
 pub(crate) fn shares(cells: &[GlobalCell], rig: &Rig) -> Vec<CellShare> {
-    let mean = |x: &[f64]| x.iter().sum::<f64>() / x.len().max(1) as f64;
     rig.cells
         .iter()
         .zip(cells)

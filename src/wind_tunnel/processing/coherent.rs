@@ -4,7 +4,7 @@
 //! and `w_s` one in segment s and zero elsewhere. Without segments the motion has one pair for all. The pair is equation (1.14)
 //! at the frequency of the segment; drift and motion are fitted together, so that neither takes what is the other's.
 
-use super::segmentation::HarmonicSegment;
+use super::signals::HarmonicSegment;
 use crate::error::{Error, Result};
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;

@@ -13,9 +13,9 @@
 
 use super::cells::{self, GlobalCell};
 use super::coherent::Regressors;
-use super::segmentation::HarmonicSegment;
+use super::signals::HarmonicSegment;
 use crate::error::Result;
-use crate::signal::robust_deviation;
+use crate::signal::{extremes, robust_deviation};
 use crate::wind_tunnel::{CELL_CHANNELS, LoadCell, RawRecording, Rig};
 use serde::{Deserialize, Serialize};
 
@@ -64,8 +64,8 @@ pub(crate) fn remove_cell_drift(
                 continue;
             }
             channel.iter_mut().zip(&drift[c]).for_each(|(f, d)| *f -= d);
-            let low = drift[c].iter().copied().fold(f64::INFINITY, f64::min);
-            found[i].range[c] = drift[c].iter().copied().fold(f64::NEG_INFINITY, f64::max) - low;
+            let (low, high) = extremes(drift[c].iter().copied());
+            found[i].range[c] = high - low;
         }
     }
     Ok(found)

@@ -7,7 +7,7 @@
 
 use super::body;
 use super::cells::sum_about_centre;
-use super::segmentation::HarmonicSegment;
+use super::signals::HarmonicSegment;
 use crate::error::{Error, Result};
 use crate::section::Dof;
 use crate::signal::fit_sine;

@@ -38,7 +38,7 @@ pub use report::{
 };
 pub(crate) use run::ProcessedRun;
 pub use run::StageSignals;
-pub use segmentation::HarmonicSegment;
+pub use signals::HarmonicSegment;
 pub use signals::{SectionSignals, index};
 
 use super::{RawCampaign, Record};

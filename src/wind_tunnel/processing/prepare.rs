@@ -3,7 +3,8 @@
 use super::check::{Findings, check_run};
 use super::lag::{StillAirInertia, still_air_inertia};
 use super::options::ProcessingOptions;
-use super::segmentation::{HarmonicSegment, find_segments, moving_dof, whole_periods};
+use super::segmentation::{find_segments, moving_dof, whole_periods};
+use super::signals::HarmonicSegment;
 use super::{body, index, still_air};
 use crate::error::{Error, Result};
 use crate::section::Dof;

@@ -7,7 +7,7 @@ use super::lag::StillAirInertia;
 use super::low_pass::AppliedLowPass;
 use super::options::ProcessingOptions;
 use super::rest::{CrossTalk, RemovedMeans};
-use super::segmentation::HarmonicSegment;
+use super::signals::HarmonicSegment;
 use super::signals::{SectionSignals, peak_and_rms};
 use super::spikes::Replaced;
 use super::still_air::Alignment;

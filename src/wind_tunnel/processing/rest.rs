@@ -9,9 +9,10 @@
 //! Noise of a sensor, or the foot of a filter, is not that first motion. So before the first and after the last segment the motion
 //! is zero, and a channel that moves by less than a part of the driven one is zero throughout.
 
-use super::segmentation::HarmonicSegment;
+use super::signals::HarmonicSegment;
 use super::signals::{SectionSignals, index, peak_and_rms};
 use crate::section::Dof;
+use crate::signal::mean;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
@@ -98,7 +99,7 @@ pub(crate) fn remove_means(signals: &mut SectionSignals, range: &Range<usize>) -
 
 fn remove_mean(x: &mut [f64], range: &Range<usize>) -> f64 {
     let stretch = &x[range.start.min(x.len())..range.end.min(x.len())];
-    let mean = stretch.iter().sum::<f64>() / stretch.len().max(1) as f64;
+    let mean = mean(stretch);
     x.iter_mut().for_each(|v| *v -= mean);
     mean
 }

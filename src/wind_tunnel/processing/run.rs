@@ -8,13 +8,13 @@ use super::options::ProcessingOptions;
 use super::prepare::Prepared;
 use super::report::{DimensionlessFactors, RemovedDrift, RunReport, SignalToNoise, StageLevels};
 use super::rest::{RemovedMeans, remove_means, rest, still_the_rest};
-use super::segmentation::HarmonicSegment;
+use super::signals::HarmonicSegment;
 use super::signals::{SectionSignals, peak_and_rms};
 use super::still_air::Alignment;
 use super::{cells, drift, index, low_pass, report, signals, spikes, still_air};
 use crate::error::Result;
 use crate::section::Dof;
-use crate::signal::{ButterworthLowPass, delayed};
+use crate::signal::{ButterworthLowPass, delayed, extremes};
 use crate::wind_tunnel::{RawCampaign, RawRecording, Record, Rig};
 use std::ops::Range;
 
@@ -248,8 +248,8 @@ fn clean(
         let drift = &cleaned.parts[d].drift;
         let force = &mut signals.force[d];
         force.iter_mut().zip(drift).for_each(|(f, x)| *f -= x);
-        let low = drift.iter().copied().fold(f64::INFINITY, f64::min);
-        drift.iter().copied().fold(f64::NEG_INFINITY, f64::max) - low
+        let (low, high) = extremes(drift.iter().copied());
+        high - low
     });
     stages.add("drift removed", signals);
     Ok((

@@ -6,12 +6,11 @@
 //! halves of the steady part, and the steady part cut to whole periods.
 
 use super::options::SegmentOptions;
+use super::signals::HarmonicSegment;
 use crate::error::{Error, Result};
 use crate::section::Dof;
-use crate::signal::{Plateau, median, plateau, refine_frequency};
+use crate::signal::{largest_about_mean, median, plateau, refine_frequency};
 use crate::wind_tunnel::{RawRecording, Segment};
-use serde::{Deserialize, Serialize};
-use std::ops::Range;
 
 /// Passages are counted from and to this part of the amplitude.
 const HYSTERESIS: f64 = 0.3;
@@ -24,30 +23,9 @@ const PERIODS_AT_LEAST: usize = 2;
 /// A stated frequency is met within this fraction.
 const SAME_FREQUENCY: f64 = 0.05;
 
-/// A stretch with one frequency, and its steady part.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct HarmonicSegment {
-    /// Frequency, first and last instant, ramps included.
-    pub segment: Segment,
-    /// Whole periods at full amplitude.
-    pub plateau: Plateau,
-}
-
-impl HarmonicSegment {
-    /// Samples of the whole segment in a recording of `count` samples.
-    pub(crate) fn range(&self, sampling_hz: f64, count: usize) -> Range<usize> {
-        let at = |t: f64| ((t * sampling_hz).round().max(0.0) as usize).min(count);
-        at(self.segment.start_s)..at(self.segment.end_s)
-    }
-}
-
 /// The degree of freedom that moves most: displacements over the width of the model, rotation in rad.
 pub(crate) fn moving_dof(motion: &[Vec<f64>; 3], width_m: f64) -> Option<Dof> {
-    let size = |d: Dof| {
-        let x = &motion[super::index(d)];
-        let mean = x.iter().sum::<f64>() / x.len().max(1) as f64;
-        x.iter().fold(0.0_f64, |m, v| m.max((v - mean).abs())) * d.motion_scale(width_m)
-    };
+    let size = |d: Dof| largest_about_mean(&motion[super::index(d)]) * d.motion_scale(width_m);
     Dof::THREE
         .into_iter()
         .filter(|d| size(*d) > 0.0)

@@ -1,14 +1,32 @@
 //! Motion and force of the section as they go through the stages, and the records that they become.
 
 use super::options::Ramps;
-use super::segmentation::HarmonicSegment;
 use crate::section::Dof;
+use crate::signal::Plateau;
 use crate::wind_tunnel::{RawCampaign, RawRun, Record, RecordHeader, Segment};
+use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
 /// Place of a degree of freedom in the arrays of a [`SectionSignals`], that of [`Dof::THREE`].
 pub fn index(dof: Dof) -> usize {
     dof as usize
+}
+
+/// A stretch with one frequency, and its steady part.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct HarmonicSegment {
+    /// Frequency, first and last instant, ramps included.
+    pub segment: Segment,
+    /// Whole periods at full amplitude.
+    pub plateau: Plateau,
+}
+
+impl HarmonicSegment {
+    /// Samples of the whole segment in a recording of `count` samples.
+    pub(crate) fn range(&self, sampling_hz: f64, count: usize) -> Range<usize> {
+        let at = |t: f64| ((t * sampling_hz).round().max(0.0) as usize).min(count);
+        at(self.segment.start_s)..at(self.segment.end_s)
+    }
 }
 
 /// Motion of the section and force on the cells by the whole model, each vertical, lateral, torsion; of one length.

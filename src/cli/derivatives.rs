@@ -1,0 +1,287 @@
+//! `aerodeck derivatives`: tables of derivatives, shown and converted between notations.
+
+use super::answer::Answer;
+use super::common::folder_of;
+use super::output::OutputDir;
+use crate::aerodynamics::derivatives::notation::{
+    Argument, Axes, Convention, ExpressedDerivative, ExpressedPoint, ExpressedTable, Notation,
+    StatedConvention,
+};
+use crate::aerodynamics::derivatives::{DerivativeTable, Missing};
+use crate::error::{Error, Result};
+use crate::files::derivatives::{
+    ReadOptions, embedded, is_table_file, read_table_with, workbook_bytes_in, write_csv_in,
+};
+use crate::report::{PNG_SCALE, axes_sketch};
+use crate::signal::extremes;
+use clap::Subcommand;
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+/// Show tables of aerodynamic derivatives and convert them between notations
+#[derive(Subcommand)]
+pub(crate) enum Derivatives {
+    Convert(ConvertArgs),
+    Show(ShowArgs),
+    Notations(NotationsArgs),
+}
+
+/// Runs the command.
+pub(crate) fn run(command: &Derivatives) -> Result<Answer> {
+    match command {
+        Derivatives::Convert(args) => convert(args),
+        Derivatives::Show(args) => show(args),
+        Derivatives::Notations(args) => notations(args),
+    }
+}
+
+/// A table and its conventions.
+#[derive(clap::Args)]
+struct TableArgs {
+    /// Table of derivatives (.csv, .xlsx), or the name of an embedded deck.
+    table: String,
+    /// Notation of the file: scanlan, classical, polimi, starossek. A CSV file states it itself; what is stated here must
+    /// not contradict it.
+    #[arg(long, value_name = "NOTATION")]
+    from: Option<Notation>,
+    /// What the file is tabulated over: v_hat = V/(omega B), v_star = V/(f B), k_full = omega B/V, k_semi = omega b/V.
+    #[arg(long, value_name = "ARGUMENT")]
+    from_argument: Option<Argument>,
+    /// Direction of heave and lift in the file: heave_up, heave_down.
+    #[arg(long, value_name = "AXES")]
+    from_axes: Option<Axes>,
+    /// Notation of the result; by default scanlan.
+    #[arg(long, value_name = "NOTATION")]
+    to: Option<Notation>,
+    /// What the result is tabulated over; by default what is usual for the notation.
+    #[arg(long, value_name = "ARGUMENT")]
+    to_argument: Option<Argument>,
+    /// Direction of heave and lift in the result; by default what is usual for the notation.
+    #[arg(long, value_name = "AXES")]
+    to_axes: Option<Axes>,
+    /// Width of the section model, m; by default what the file states, and for a workbook what follows from the frequencies.
+    #[arg(long)]
+    width_m: Option<f64>,
+    /// What stands for H4*, A4* in a table without them: zero (as when nothing is stated), quasi_steady (K H2*, K A2*).
+    #[arg(long, value_name = "HOW")]
+    missing: Option<Missing>,
+    /// Frequencies of motion of a workbook in test order, Hz, with commas between them; by default those of the NTNU
+    /// tests.
+    #[arg(long, value_delimiter = ',')]
+    frequencies_hz: Vec<f64>,
+}
+
+impl TableArgs {
+    /// The convention of the result.
+    fn target(&self) -> Convention {
+        let stated = StatedConvention {
+            notation: self.to,
+            argument: self.to_argument,
+            axes: self.to_axes,
+        };
+        stated.or_usual()
+    }
+
+    /// The table and the convention it was in.
+    fn read(&self) -> Result<(DerivativeTable, Convention)> {
+        let stated = StatedConvention {
+            notation: self.from,
+            argument: self.from_argument,
+            axes: self.from_axes,
+        };
+        if is_table_file(&self.table) {
+            let options = ReadOptions {
+                convention: stated,
+                width_m: self.width_m,
+                missing: self.missing,
+                frequencies_hz: (!self.frequencies_hz.is_empty())
+                    .then(|| self.frequencies_hz.clone()),
+            };
+            return read_table_with(&self.table, &options);
+        }
+        let table = embedded::deck(&self.table)?;
+        let convention = stated.with_file(Convention::default().into())?;
+        Ok((table, convention))
+    }
+}
+
+/// Write a table of derivatives in another notation, argument or axes; the result states them
+///
+/// Example: aerodeck derivatives convert LN21-5200 polimi.csv --to polimi
+#[derive(clap::Args)]
+#[command(verbatim_doc_comment)]
+pub(crate) struct ConvertArgs {
+    #[command(flatten)]
+    table: TableArgs,
+    /// The result (.csv, .xlsx).
+    out: PathBuf,
+}
+
+fn convert(args: &ConvertArgs) -> Result<Answer> {
+    let extension = args
+        .out
+        .extension()
+        .map(|e| e.to_string_lossy().to_lowercase());
+    let is_workbook = extension.as_deref() == Some("xlsx");
+    let known = is_workbook || extension.as_deref() == Some("csv");
+    let name = args.out.file_name().filter(|_| known).ok_or_else(|| {
+        let found = args.out.display().to_string();
+        Error::input("out", "a file name that ends in .csv or .xlsx", found)
+    })?;
+    let (table, from) = args.table.read()?;
+    let to = args.table.target();
+    let bytes = if is_workbook {
+        workbook_bytes_in(&table, &to)?
+    } else {
+        let mut bytes = Vec::new();
+        write_csv_in(&table, &to, &mut bytes).map_err(|e| Error::io(&args.out, e))?;
+        bytes
+    };
+    let mut out = OutputDir::new(folder_of(&args.out))?;
+    out.write(name, bytes)?;
+    let text = format!(
+        "{}: {} derivatives\n  from {from}\n  to   {to}\n",
+        table.name,
+        table.derivatives().count()
+    );
+    let value = serde_json::json!({ "table": table.name, "from": from, "to": to });
+    out.answer(text, value)
+}
+
+/// Show a table of derivatives: where it comes from, its convention, ranges or all its points
+///
+/// Example: aerodeck derivatives show LN21-5200 --to polimi
+#[derive(clap::Args)]
+#[command(verbatim_doc_comment)]
+pub(crate) struct ShowArgs {
+    #[command(flatten)]
+    table: TableArgs,
+    /// Every test point instead of the ranges.
+    #[arg(long)]
+    points: bool,
+}
+
+fn show(args: &ShowArgs) -> Result<Answer> {
+    let (table, from) = args.table.read()?;
+    let expressed = args.table.target().express(&table);
+    let mut text = head(&table, &from, &expressed.convention);
+    let warnings: Vec<String> = table
+        .header
+        .notes
+        .iter()
+        .cloned()
+        .chain(table.hints(&from))
+        .collect();
+    for warning in &warnings {
+        let _ = writeln!(text, "  warning: {warning}");
+    }
+    for derivative in &expressed.derivatives {
+        let symbol = expressed.convention.symbol(derivative.derivative);
+        if args.points {
+            let _ = writeln!(text, "  {symbol}");
+            for p in &derivative.points {
+                let speed = p
+                    .mean_speed_m_s
+                    .map_or_else(String::new, |v| format!("{v:8.3} m/s"));
+                let _ = writeln!(text, "{speed:>16}{:12.5}{:14.6}", p.argument, p.value);
+            }
+        } else {
+            text.push_str(&ranges(&symbol, derivative, &expressed));
+        }
+    }
+    Answer::new(
+        text,
+        &serde_json::json!({
+            "source": table.header.source,
+            "licence": table.header.licence,
+            "in_file": from,
+            "warnings": warnings,
+            "table": expressed,
+        }),
+    )
+}
+
+fn head(table: &DerivativeTable, from: &Convention, shown: &Convention) -> String {
+    let mut text = format!("{}: {}\n", table.name, table.header.source);
+    let speeds = table.speed_groups();
+    let range = table.tested_range(table.dofs());
+    let _ = write!(text, "  width {:.4} m", table.width_m);
+    if !speeds.is_empty() {
+        let words: Vec<_> = speeds.iter().map(|v| format!("{v:.2}")).collect();
+        let _ = write!(text, ", mean speeds {} m/s", words.join(", "));
+    }
+    let _ = writeln!(
+        text,
+        ", all tested between K = {:.4} and {:.4}",
+        range.min.full_width(),
+        range.max.full_width()
+    );
+    let _ = writeln!(text, "  in the file: {from}");
+    if from != shown {
+        let _ = writeln!(text, "  shown:       {shown}");
+    }
+    text
+}
+
+fn ranges(symbol: &str, derivative: &ExpressedDerivative, table: &ExpressedTable) -> String {
+    let span = |pick: fn(&ExpressedPoint) -> f64| extremes(derivative.points.iter().map(pick));
+    let (from, to) = span(|p| p.argument);
+    let (low, high) = span(|p| p.value);
+    format!(
+        "  {symbol:<6} {:>3} points, {} {from:.3} to {to:.3}, values {low:.4} to {high:.4}\n",
+        derivative.points.len(),
+        table.convention.argument
+    )
+}
+
+/// List the notations, arguments and axes that are understood; draw the axes
+///
+/// Example: aerodeck derivatives notations --sketch figures
+#[derive(clap::Args)]
+#[command(verbatim_doc_comment)]
+pub(crate) struct NotationsArgs {
+    /// Folder into which a sketch of the axes is drawn (axes.svg, axes.png).
+    #[arg(long)]
+    sketch: Option<PathBuf>,
+}
+
+fn notations(args: &NotationsArgs) -> Result<Answer> {
+    let mut text = String::from("notation\n");
+    for notation in Notation::ALL {
+        let _ = writeln!(
+            text,
+            "  {notation:<10} {}; {}; usually over {}, {}\n             {}",
+            notation.title(),
+            notation.names(),
+            notation.usual_argument(),
+            notation.usual_axes(),
+            notation.definition()
+        );
+    }
+    text.push_str("argument\n");
+    for argument in Argument::ALL {
+        let _ = writeln!(text, "  {argument:<10} {}", argument.definition());
+    }
+    text.push_str("axes\n");
+    for axes in Axes::ALL {
+        let _ = writeln!(text, "  {axes:<10} {}", axes.words());
+    }
+    let notations = Notation::ALL.map(|n| {
+        serde_json::json!({
+            "notation": n,
+            "title": n.title(),
+            "usual_argument": n.usual_argument(),
+            "usual_axes": n.usual_axes(),
+            "definition": n.definition(),
+        })
+    });
+    let value = serde_json::json!({ "notations": notations, "files": [] });
+    let Some(folder) = &args.sketch else {
+        return Answer::new(text, &value);
+    };
+    let figure = axes_sketch();
+    let mut out = OutputDir::new(folder)?;
+    out.write("axes.svg", figure.svg())?;
+    out.write("axes.png", figure.png(PNG_SCALE)?)?;
+    out.answer(text, value)
+}
