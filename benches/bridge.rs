@@ -8,12 +8,20 @@
 #[path = "../tests/common/bridges.rs"]
 mod bridges;
 
+use aerodeck::aerodynamics::RationalModel;
 use aerodeck::aeroelastic::{CoupledSection, CoupledSystem};
+use aerodeck::bridge::{Bridge, BridgeMode, Node, StripGroup, tributary_lengths};
+use aerodeck::buffeting::{
+    Coherence, Gust, GustSpectrum, SpanProblem, SpectrumShape, Turbulence, span_record,
+    turbulence_field,
+};
 use aerodeck::flutter::trace_modes;
 use aerodeck::response::{Inputs, Stepper};
 use nalgebra::{DMatrix, DVector};
+use std::f64::consts::PI;
 use std::io::Write;
 use std::process::Command;
+use std::sync::Arc;
 use std::time::Instant;
 
 const ROUNDS: usize = 5;
@@ -29,6 +37,8 @@ fn main() {
     step(&section);
     sweep(&section);
     turbulence();
+    hundred_strips();
+    thousand_nodes();
 }
 
 /// Median of the seconds that each round takes.
@@ -151,5 +161,103 @@ fn turbulence() {
         "field of {} nodes x 12000 samples {field:.3} s; both domains with two records {all:.2} s ({} nodes)",
         study.by_model.nodes.len(),
         found.nodes.len()
+    );
+}
+
+/// A beam of 1000 m on the flat plate: half sines, a third of the modes vertical, lateral and torsional each.
+fn beam(nodes: usize, modes: usize) -> Bridge {
+    let along: Vec<f64> = (0..nodes)
+        .map(|i| 1000.0 * i as f64 / (nodes - 1) as f64)
+        .collect();
+    let lengths = tributary_lengths(&along);
+    let mode = |m: usize| BridgeMode {
+        number: m + 1,
+        frequency_hz: 0.06 + 0.012 * m as f64 + if m % 3 == 2 { 0.2 } else { 0.0 },
+        generalised_mass: if m % 3 == 2 { 1.3e9 } else { 9e6 },
+        damping_ratio: 0.005,
+        shape: along
+            .iter()
+            .map(|x| {
+                let mut shape = [0.0; 3];
+                shape[m % 3] = ((m / 3 + 1) as f64 * PI * x / 1000.0).sin();
+                shape
+            })
+            .collect(),
+    };
+    let group = StripGroup {
+        name: "girder".into(),
+        width_m: 30.0,
+        wind_factor: 1.0,
+        nodes: (0..nodes).collect(),
+        forces: Arc::new(RationalModel::jones_flat_plate()),
+    };
+    let node = |(i, (along_m, length_m)): (usize, (&f64, f64))| Node {
+        name: (i + 1).to_string(),
+        along_m: *along_m,
+        length_m,
+    };
+    let all = along.iter().zip(lengths).enumerate().map(node).collect();
+    let modes = (0..modes).map(mode).collect();
+    Bridge::new("beam", 1.25, all, modes, vec![group]).expect("a bridge")
+}
+
+/// Ten minutes at 20 Hz with 39 modes and 100 strips, field and response each.
+fn hundred_strips() {
+    let bridge = beam(100, 39);
+    let gust = |length_m, intensity| {
+        let shape = SpectrumShape::Kaimal;
+        Some(Gust {
+            spectrum: GustSpectrum {
+                shape,
+                length_m,
+                intensity,
+            },
+            admittance: Default::default(),
+        })
+    };
+    let problem = SpanProblem {
+        bridge: &bridge,
+        gust_matrices: vec![[[-0.2, 4.1], [0.16, 0.1], [0.04, 1.1]]],
+        turbulence: Turbulence {
+            along: gust(150.0, 0.12),
+            vertical: gust(15.0, 0.06),
+        },
+        coherence: Coherence::default(),
+    };
+    let made = || turbulence_field(&problem, 30.0, (0.05, 12_000), 1).expect("a field");
+    let field = median(|| drop(made()));
+    let turbulence = made();
+    let response = median(|| {
+        span_record(&problem, &[50], 30.0, &turbulence).expect("a response");
+    });
+    println!(
+        "100 strips, 12000 samples: field {field:.3} s, response of 39 modes after it {response:.3} s"
+    );
+}
+
+/// Memory of a bridge of 1000 nodes and 100 modes: coupled, followed over twenty wind speeds, stepped.
+fn thousand_nodes() {
+    let bridge = beam(1000, 100);
+    let realised = bridge.forces().realize().expect("a realisation");
+    let section = CoupledSection::new(bridge.structure(), realised).expect("a coupled bridge");
+    let speeds: Vec<f64> = (1..=20).map(f64::from).collect();
+    let begin = Instant::now();
+    let curves = trace_modes("beam", &section, &speeds).expect("modes");
+    let n = bridge.modes.len();
+    let mut stepper = Stepper::new(section.clone());
+    let mut state = stepper
+        .released(&vec![1.0; n], &vec![0.0; n])
+        .expect("a release");
+    stepper
+        .advance(&mut state, &Inputs::steady(30.0, n), 0.05)
+        .expect("a step");
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let peak = status.lines().find(|l| l.starts_with("VmHWM"));
+    println!(
+        "1000 nodes, 100 modes, {} states: {:.2} s, curves {:?}, peak memory of this whole program: {}",
+        section.states(),
+        begin.elapsed().as_secs_f64(),
+        curves.ended,
+        peak.unwrap_or("not known")
     );
 }

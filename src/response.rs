@@ -10,6 +10,7 @@ mod gusts;
 mod packed;
 mod prescribed;
 mod quasi_steady;
+mod rates;
 mod sampled;
 mod series;
 mod step_cache;
@@ -21,7 +22,7 @@ pub use quasi_steady::{NonlinearRun, NonlinearSection};
 pub use strip_gusts::StripGusts;
 pub use values::{Inputs, Outputs, SectionState, wind_at_rest};
 
-use crate::aerodynamics::{GustForce, Realization};
+use crate::aerodynamics::{GustForce, RationalAdmittance, Realization};
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, finite_numbers, non_negative, positive};
 use crate::section::Dof;
@@ -42,6 +43,8 @@ const MAX_SUBSTEPS: f64 = 1e4;
 const SAMPLE_BY_MATRIX: f64 = 0.125;
 /// Parts of a series that cost as much as a matrix exponential.
 const PARTS_OF_A_MATRIX: f64 = 32.0;
+/// States at most whose step becomes a matrix: that of more takes seconds to make and leaves the caches of any processor.
+const STATES_OF_A_MATRIX: usize = 800;
 /// Steps a coupled section.
 ///
 /// ```
@@ -84,6 +87,21 @@ impl Stepper {
     /// A stepper on whose section gusts act with these forces.
     pub fn in_gusts(section: CoupledSection, force: Option<&GustForce>) -> Self {
         let gusts = force.map(|force| Gusts::new(force, section.structure()));
+        Self::with_gusts(section, gusts)
+    }
+
+    /// A stepper of modes in gusts: see [`Inputs::gust_m_s`]; `passing` is the wind factor over the width (1/m) of each group
+    /// of strips, so many inputs as there are modes for each.
+    pub fn in_modal_gusts(
+        section: CoupledSection,
+        passing: &[f64],
+        admittance: RationalAdmittance,
+    ) -> Self {
+        let modes = section.structure().dofs.len();
+        Self::with_gusts(section, Some(Gusts::on_modes(modes, passing, admittance)))
+    }
+
+    fn with_gusts(section: CoupledSection, gusts: Option<Gusts>) -> Self {
         let (states, n) = (section.states(), section.structure().dofs.len());
         let operand = vec![0.0; states + 2 * n];
         Self {
@@ -95,6 +113,11 @@ impl Stepper {
             cache: StepCache::default(),
             operand,
         }
+    }
+
+    /// Numbers of the state of the gusts.
+    pub fn gust_states(&self) -> usize {
+        self.series.gusts().map_or(0, Gusts::states)
     }
 
     /// The section that is stepped.
@@ -128,7 +151,7 @@ impl Stepper {
         }
         Ok(SectionState {
             values,
-            gusts: vec![0.0; self.series.gusts().map_or(0, Gusts::states)],
+            gusts: vec![0.0; self.gust_states()],
             ..SectionState::default()
         })
     }
@@ -192,13 +215,18 @@ impl Stepper {
         let same_wind = state
             .last_wind_m_s
             .is_none_or(|last| last == inputs.wind_speed_m_s);
-        if inputs.wind_speed_rate_m_s2 == 0.0 && same_wind && !self.gusts_act(state, inputs) {
+        let steady = inputs.wind_speed_rate_m_s2 == 0.0 && same_wind;
+        if steady && self.may_have_matrix() && !self.gusts_act(state, inputs) {
             self.advance_by_matrix(state, inputs, step_s)?;
         } else {
             self.advance_by_series(state, inputs, step_s)?;
         }
         state.last_wind_m_s = Some(inputs.wind_speed_m_s);
         Ok(())
+    }
+
+    fn may_have_matrix(&self) -> bool {
+        self.section.states() <= STATES_OF_A_MATRIX
     }
 
     /// Whether a gust blows or has not yet passed.
@@ -216,19 +244,22 @@ impl Stepper {
         let n = self.section.structure().dofs.len();
         match self.series.gusts() {
             Some(gusts) => (
-                gusts.force_per_wind(inputs.gust_m_s, &state.gusts)[..n].to_vec(),
-                gusts.rates_per_wind(inputs.gust_m_s, &state.gusts),
+                gusts.force_per_wind(&inputs.gust_m_s, &state.gusts),
+                gusts.rates_per_wind(&inputs.gust_m_s, &state.gusts),
             ),
             None => (vec![0.0; n], Vec::new()),
         }
     }
 
-    /// Force of the gusts per unit length.
-    fn gust_force(&self, state: &SectionState, inputs: &Inputs) -> [f64; MAX_DOFS] {
+    /// Force of the gusts per unit length; none without gusts.
+    fn gust_force(&self, state: &SectionState, inputs: &Inputs) -> Vec<f64> {
         let wind = inputs.wind_speed_m_s.max(0.0);
         let gusts = self.series.gusts();
-        let force = gusts.map(|g| g.force_per_wind(inputs.gust_m_s, &state.gusts));
-        force.unwrap_or_default().map(|f| wind * f)
+        let mut force = gusts.map_or_else(Vec::new, |g| {
+            g.force_per_wind(&inputs.gust_m_s, &state.gusts)
+        });
+        force.iter_mut().for_each(|f| *f *= wind);
+        force
     }
 
     /// Whether wind and step are those of the last step by a matrix, and so are known to be right.
@@ -292,7 +323,8 @@ impl Stepper {
         let parts = self
             .series
             .parts(wind + wind_rate.abs() * step, step, gusts);
-        if wind_rate == 0.0 && !gusts && (parts.is_nan() || parts > PARTS_OF_A_MATRIX) {
+        let long = parts.is_nan() || parts > PARTS_OF_A_MATRIX;
+        if wind_rate == 0.0 && !gusts && long && self.may_have_matrix() {
             return self.advance_by_matrix(state, inputs, step);
         }
         check_substeps(parts, step)?;
@@ -300,7 +332,7 @@ impl Stepper {
             wind,
             wind_rate,
             force: [&inputs.force, &inputs.force_rate, &[]],
-            gust: [inputs.gust_m_s, inputs.gust_rate_m_s2],
+            gust: inputs.gusts_from(0.0),
         };
         let moving = Moving {
             values: &mut state.values,
@@ -349,38 +381,6 @@ impl Stepper {
         outputs.acceleration.copy_from_slice(&both[..n]);
         outputs.self_excited_force.copy_from_slice(&both[n..]);
         Ok(())
-    }
-
-    /// `d/dt` of the state values and, behind them, of the lagging gusts; filters of the discrete model stand still between samples.
-    ///
-    /// # Errors
-    /// [`Error::Input`] for inputs that are not finite.
-    pub fn state_derivative(&mut self, state: &SectionState, inputs: &Inputs) -> Result<Vec<f64>> {
-        let n = self.section.structure().dofs.len();
-        inputs.check(n)?;
-        if let Some(sampling) = &self.sampling {
-            let z = DVector::from_column_slice(&state.values);
-            let gusts = self.gust_force(state, inputs);
-            let w = DVector::from_fn(n, |i, _| inputs.force[i] + gusts[i]);
-            let force = sampling.force(&state.values, inputs.wind_speed_m_s.max(0.0));
-            let force = DVector::from_column_slice(&force[..n]);
-            let (a, b) = self.section.structure_alone();
-            let motion = a * z.rows(0, 2 * n) + b * (w + force);
-            let mut derivative = vec![0.0; state.values.len()];
-            derivative[..2 * n].copy_from_slice(motion.as_slice());
-            return Ok(derivative);
-        }
-        let mut now = Outputs::default();
-        self.outputs(state, inputs, &mut now)?;
-        let mut derivative = [now.rate, now.acceleration].concat();
-        let by_wind = self.section.filter_rates_per_wind(&state.values);
-        let wind = inputs.wind_speed_m_s.max(0.0);
-        derivative.extend(by_wind.iter().map(|x| wind * x));
-        if let Some(gusts) = self.series.gusts() {
-            let lagging = gusts.rates_per_wind(inputs.gust_m_s, &state.gusts);
-            derivative.extend(lagging.iter().map(|x| wind * x));
-        }
-        Ok(derivative)
     }
 }
 

@@ -37,6 +37,16 @@ fn both_domains_agree() {
                 (time - frequency).abs() < 3.5 * error,
                 "{frequency} {time} ± {error}"
             );
+            // the spectrum holds the variance
+            let (f, s) = (
+                &found.spectra.frequencies_hz,
+                &found.spectra.densities[n][i],
+            );
+            let trapezoid: f64 = (1..f.len())
+                .map(|k| 0.5 * (s[k] + s[k - 1]) * (f[k] - f[k - 1]))
+                .sum();
+            let part = trapezoid / (frequency * frequency);
+            assert!((part - 1.0).abs() < 0.02, "{part} of the variance");
             // Davenport's expectation scatters by a few per cent over twelve records
             let peak = found.time.peak_factor[n][i] / found.expected_peak_factor[n][i];
             assert!((peak - 1.0).abs() < 0.12, "{peak}");

@@ -1,5 +1,8 @@
 //! Every format of modes gives the same bridge; what is wrong in a file is named with its place.
 
+#[path = "common/matlab.rs"]
+mod matlab;
+
 use aerodeck::bridge::Bridge;
 use aerodeck::files::bridge::BridgeFile;
 use aerodeck::study::bridge::BridgeStudy;
@@ -353,4 +356,34 @@ fn degrees_and_unit_masses_are_hinted_at() {
             .any(|n| n.contains("mode 1 has a generalised mass of 1")),
         "{notes:?}"
     );
+}
+
+/// Half sines of a span of 100 m: lateral, vertical, torsional; `∫φ²` is half the span.
+#[test]
+fn matlab_files_are_read() {
+    let folder = TempDir::new().unwrap();
+    let points = 21;
+    let sine = |i: usize| (std::f64::consts::PI * i as f64 / (points as f64 - 1.0)).sin();
+    let phi: Vec<f64> = (0..points).flat_map(|i| [sine(i); 3]).collect();
+    let arrays = [
+        ("wn", vec![3, 1], vec![0.7, 0.9, 2.1]),
+        ("phi", vec![3, 1, points], phi),
+    ];
+    let arrays = arrays.map(|(n, size, x)| (n, size.into_iter().map(|s| s as i32).collect(), x));
+    fs::write(folder.path().join("modes"), matlab::file(&arrays)).unwrap();
+    let span =
+        "span = { span_m = 100.0, mass_kg_m = 5000.0, inertia_kg_m2_m = 60000.0 }\n[[section]]";
+    let named = text("matlab", "").replace("path = \".\"", "path = \"modes\"");
+    let stated = named.replacen("[[section]]", span, 1);
+    let modes = study(folder.path(), &stated).unwrap().by_model.modes;
+    for (m, (omega, mass, motion)) in [(0.7, 5e3, 1), (0.9, 5e3, 0), (2.1, 6e4, 2)]
+        .into_iter()
+        .enumerate()
+    {
+        assert!((modes[m].frequency_hz * TAU / omega - 1.0).abs() < 1e-12);
+        assert!((modes[m].generalised_mass / (mass * 50.0) - 1.0).abs() < 1e-12);
+        assert_eq!(modes[m].shape[5][motion], sine(5));
+    }
+    let message = study(folder.path(), &named).unwrap_err().to_string();
+    assert!(message.contains("modes.span: expected span_m"), "{message}");
 }

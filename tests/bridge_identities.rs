@@ -7,13 +7,17 @@ mod bridges;
 use aerodeck::aerodynamics::{FlatPlate, RationalModel, Realizable, Transfer};
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::bridge::{Bridge, BridgeMode, Node, StripGroup, similarities, tributary_lengths};
+use aerodeck::files::bridge::BridgeFile;
+use aerodeck::flutter::OnsetInterval;
 use aerodeck::flutter::{
     OnsetSearch, determinant_onset, divergence_speed, find_onset, pk_onset, static_deflection,
     trace_modes,
 };
+use aerodeck::section::Dof;
 use aerodeck::section::SectionModel;
+use aerodeck::study::bridge::BridgeStudy;
 use aerodeck::units::{ReducedFrequency, ReducedFrequencyRange};
-use bridges::{SEARCH, THREE, TWO, coupled, langenuen, near, onset};
+use bridges::{SEARCH, THREE, TWO, coupled, langenuen, langenuen_text, near, onset};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -244,4 +248,100 @@ fn static_deflection_by_hand() {
         static_deflection(&bridge, &[[0.0, 0.0, 0.03]], &at_rest, 0.99 * divergence).unwrap();
     let half = static_deflection(&bridge, &[[0.0, 0.0, 0.03]], &at_rest, 0.5 * divergence).unwrap();
     assert!(close[node][2] > 20.0 * half[node][2]);
+}
+
+/// Modes of one shape make the section; so the interval of its onset is that of the section, which takes its slopes from the
+/// eigenvectors.
+#[test]
+fn the_interval_is_that_of_the_section() {
+    let folder = tempfile::tempdir().unwrap();
+    let (mut nodes, mut shapes) = (
+        "node,x_m,y_m,z_m\n".to_owned(),
+        "mode,node,ux,uy,uz,rx,ry,rz\n".to_owned(),
+    );
+    for i in 0..41 {
+        let x = 25.0 * f64::from(i);
+        let sine = (PI * x / 1000.0).sin();
+        nodes += &format!("{},{x},0,0\n", i + 1);
+        shapes += &format!("1,{},0,0,{sine},0,0,0\n2,{0},0,0,0,{sine},0,0\n", i + 1);
+    }
+    let modes = "mode,frequency_hz,generalised_mass_kg\n1,0.10,6e6\n2,0.30,8e8\n";
+    for (name, text) in [
+        ("nodes.csv", nodes.as_str()),
+        ("modes.csv", modes),
+        ("shapes.csv", &shapes),
+    ] {
+        std::fs::write(folder.path().join(name), text).unwrap();
+    }
+    let text = langenuen_text("LN21-5200", TWO, "modified_akima")
+        .replace("\"embedded\"", "\"csv\"")
+        .replace("\"langenuen\"", "\".\"")
+        .replace(
+            "damping_ratio",
+            "axes = { up = \"z\", downwind = \"-y\" }\ndamping_ratio",
+        );
+    let file = BridgeFile::from_toml(&text, folder.path().to_path_buf()).unwrap();
+    let study = BridgeStudy::new(file).unwrap();
+    let found = onset(find_onset("bridge", &coupled(&study.by_model), &SEARCH, None).unwrap());
+    let structure = study
+        .by_model
+        .equivalent_section(&Dof::TWO)
+        .unwrap()
+        .structure()
+        .unwrap();
+    let model = study.sections[0].model.realizable().unwrap().realize();
+    let section = CoupledSection::new(structure.clone(), model).unwrap();
+    let of_section = onset(find_onset("section", &section, &SEARCH, None).unwrap());
+    near(found.at.speed_m_s / of_section.at.speed_m_s, 1.0, 1e-8);
+    let estimate = study.sections[0]
+        .uncertainty
+        .as_ref()
+        .unwrap()
+        .as_ref()
+        .unwrap();
+    let expected = estimate.onset_interval(&structure, &of_section).unwrap();
+    let (
+        OnsetInterval::Known {
+            standard_error_m_s: a,
+            degrees_of_freedom: p,
+            low_m_s,
+            ..
+        },
+        OnsetInterval::Known {
+            standard_error_m_s: b,
+            degrees_of_freedom: q,
+            ..
+        },
+    ) = (study.onset_interval(&found).unwrap(), expected)
+    else {
+        panic!("no interval");
+    };
+    println!("{a} {b} {p} {q}");
+    near(a / b, 1.0, 1e-4);
+    near(p / q, 1.0, 1e-4);
+    assert!(low_m_s < found.at.speed_m_s);
+}
+
+/// One torsional mode alone flutters by its own damping, or not at all; nothing is followed that is not there.
+#[test]
+fn a_bridge_of_one_mode() {
+    for deck in ["LN21-5200", "LN21-6100"] {
+        let all = langenuen(deck, TWO).by_model;
+        let one = all.with_modes(|m| all.modes[m].number == 23).unwrap();
+        let section = coupled(&one);
+        let found = find_onset("one mode", &section, &SEARCH, None).unwrap();
+        let growing = |v: f64| {
+            section
+                .at(v)
+                .unwrap()
+                .eigenvalues()
+                .unwrap()
+                .iter()
+                .any(|z| z.re > 0.0 && z.im > 0.0)
+        };
+        match found.onset() {
+            Some(o) => assert!(growing(1.001 * o.at.speed_m_s) && !growing(0.999 * o.at.speed_m_s)),
+            None => assert!((1..=100).all(|v| !growing(f64::from(v)))),
+        }
+    }
 }

@@ -9,8 +9,8 @@ use crate::work::Work;
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::files::bridge::BridgeFile;
 use aerodeck::flutter::trace_modes;
-use aerodeck::fmu::package::{Label, Runtime, package_bridge, write_archive};
-use aerodeck::study::bridge::{BridgeBuffeting, BridgeStudy, bridge_flutter};
+use aerodeck::fmu::package::{FmiVersion, Label, Runtime, package_bridge, write_archive};
+use aerodeck::study::bridge::{BridgeBuffeting, BridgeStudy, Wanted, bridge_flutter};
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -235,9 +235,13 @@ impl Bridge {
             generated: None,
         };
         let written = Work::new(None).run(py, || {
-            let export = self.0.export(&nodes.unwrap_or_default(), allow_unstable)?;
+            let export = self.0.export(&Wanted {
+                nodes: nodes.unwrap_or_default(),
+                allow_unstable,
+                ..Wanted::default()
+            })?;
             let (runtimes, label) = (Runtime::available()?, label.dated()?);
-            let bytes = package_bridge(&export.model, &export.bridge, &runtimes, &label)?;
+            let bytes = package_bridge(&export, &runtimes, &label, FmiVersion::Two)?;
             write_archive(&path, &bytes, existing(overwrite))
         })?;
         written.map_err(raised)

@@ -13,10 +13,12 @@
 //! FMU treat it as they treat a section. A section is the bridge of one node of unit length with unit shapes
 //! ([`Bridge::of_section`]).
 
+mod gusts;
 mod modal;
 mod similarity;
 mod sums;
 
+pub use gusts::GustChannels;
 pub use modal::ModalForces;
 pub use similarity::{Similarity, similarities};
 

@@ -21,9 +21,9 @@ pub(crate) use frequency::{buffeting_response, response_spectrum};
 pub(crate) use problem::{BuffetingProblem, GustForces};
 pub use problem::{Gust, Turbulence};
 pub use span::{
-    Coherence, SpanEnsemble, SpanPlan, SpanProblem, SpanRecord, SpanResponse, TurbulenceField,
+    Coherence, SpanEnsemble, SpanPlan, SpanProblem, SpanRecord, SpanResponse, SpanSpectra,
+    TurbulenceField, span_ensemble, span_record, span_response, span_spectra, turbulence_field,
 };
-pub(crate) use span::{span_ensemble, span_record, span_response, turbulence_field};
 pub use spectrum::{GustComponent, GustSpectrum, SpectrumFormula, SpectrumShape};
 pub(crate) use stability::unstable_roots;
 pub(crate) use synthesis::synthesise;

@@ -39,6 +39,8 @@ pub struct UnstableStart {
     pub reason: String,
     /// What a reader must know before using the number.
     pub warnings: Vec<String>,
+    /// The first onset above that, where all modes that grew are damped again.
+    pub onset_above: Option<Box<Onset>>,
 }
 
 /// Speeds between which every mode was looked at and none grows.
@@ -154,6 +156,7 @@ impl UnstableStart {
             in_tested_range: None,
             reason,
             warnings: Vec::new(),
+            onset_above: None,
         }
     }
 
@@ -168,7 +171,20 @@ impl UnstableStart {
             self.at.reduced_frequency.full_width(),
             self.growth_rate_per_s,
             self.reason
-        )
+        ) + &self.above()
+    }
+
+    /// What comes above, in words.
+    fn above(&self) -> String {
+        self.onset_above.as_ref().map_or_else(String::new, |o| {
+            format!(
+                "; damped again above that, then onset at {:.3} m/s: {} branch, {:.4} Hz, K {:.4}",
+                o.at.speed_m_s,
+                o.branch,
+                o.at.frequency_hz,
+                o.at.reduced_frequency.full_width()
+            )
+        })
     }
 }
 
@@ -200,6 +216,8 @@ pub(super) struct Findings {
     pub(super) crossings: Vec<Onset>,
     /// Modes that grow where they could be judged first.
     pub(super) starts: Vec<UnstableStart>,
+    /// Speeds, m/s, at which a mode that grew is damped again, and its branch.
+    pub(super) recoveries: Vec<(f64, String)>,
     /// The speeds that were judged.
     pub(super) judged: StableRange,
     /// What a reader of an onset must know.
@@ -246,6 +264,7 @@ impl Findings {
         Self {
             crossings: Vec::new(),
             starts: Vec::new(),
+            recoveries: Vec::new(),
             judged,
             warnings: Vec::new(),
         }
@@ -278,11 +297,34 @@ impl Findings {
     }
 
     fn start(mut self, chosen: usize) -> FlutterSearch {
+        let above = self.onset_above(self.starts[chosen].at.speed_m_s);
         let mut start = self.starts.swap_remove(chosen);
+        start.onset_above = above;
         let (_, warnings) = self.below(start.at.speed_m_s, "an extrapolation");
         start.warnings.extend(warnings);
         start.warnings.append(&mut self.warnings);
         FlutterSearch::UnstableAtOrBelow(Box::new(start))
+    }
+
+    /// The first crossing above a speed at which nothing else grows.
+    fn onset_above(&self, speed_m_s: f64) -> Option<Box<Onset>> {
+        let began = |at: &CriticalPoint, speed: f64| at.speed_m_s < speed;
+        let clear = |onset: &&Onset| {
+            let speed = onset.at.speed_m_s;
+            let starts = self.starts.iter().filter(|s| began(&s.at, speed));
+            let crossings = self.crossings.iter().filter(|o| began(&o.at, speed));
+            let grown = starts
+                .map(|s| (&s.branch, s.at.speed_m_s))
+                .chain(crossings.map(|o| (&o.branch, o.at.speed_m_s)));
+            let mut grown = grown.collect::<Vec<_>>();
+            // each growth ends with a recovery of its own
+            grown.retain(|(branch, from)| {
+                let ends = |(at, of): &(f64, String)| of == *branch && (*from..speed).contains(at);
+                !self.recoveries.iter().any(ends)
+            });
+            speed > speed_m_s && grown.is_empty()
+        };
+        self.crossings.iter().find(clear).cloned().map(Box::new)
     }
 
     /// Growth below a speed, all of it outside the tested range.

@@ -109,6 +109,11 @@ impl<F: Follower> Watch<'_, F> {
                     .crossings
                     .extend(self.follower.complete(onset, low, &mode)?);
             }
+            if before.lambda.re >= 0.0 && after.lambda.re < 0.0 {
+                let (speed, mode) = self.zero((low, before), (high, after), |_, m| m.lambda.re)?;
+                let name = self.follower.name(mode.branch);
+                found.recoveries.push((speed, name));
+            }
             found
                 .starts
                 .extend(self.entry((low, before), (high, after))?);

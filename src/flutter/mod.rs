@@ -6,6 +6,7 @@
 mod answer;
 mod bridge_motion;
 mod characteristic;
+mod clusters;
 mod critical_point;
 mod curves;
 mod determinant;

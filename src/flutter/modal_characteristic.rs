@@ -108,6 +108,22 @@ impl AtSpeed<'_> {
         None
     }
 
+    /// `D(λ)⁻¹ D'(λ) U` for the columns of `U`.
+    pub(super) fn inverse_iteration(
+        &self,
+        lambda: Complex64,
+        basis: &DMatrix<Complex64>,
+    ) -> Option<DMatrix<Complex64>> {
+        let mut value = None;
+        let mut slopes = Vec::with_capacity(basis.ncols());
+        for column in basis.column_iter() {
+            let (of, slope) = self.evaluate(lambda, &column.into_owned())?;
+            value = Some(of);
+            slopes.push(slope);
+        }
+        value?.lu().solve(&DMatrix::from_columns(&slopes))
+    }
+
     /// `D(λ)` and `D'(λ) v`.
     fn evaluate(&self, lambda: Complex64, v: &Shape) -> Option<(DMatrix<Complex64>, Shape)> {
         let p = self.problem;

@@ -4,6 +4,7 @@
 //! else the nearest eigenvalue of the whole state matrix.
 
 use super::characteristic::Characteristic;
+use super::clusters::by_shapes;
 use super::critical_point::OnsetMethod;
 use super::following::{
     Follower, MIN_ASSURANCE, Mode, Modes, SEPARATION, assurance, dimensionless,
@@ -26,6 +27,8 @@ const SAMPLES_PER_PERIOD: f64 = 5.0;
 
 /// Relative distance of the second speed of a slope.
 pub(super) const SLOPE_STEP: f64 = 1e-5;
+/// Modal assurance above which two shapes are one.
+const SAME_SHAPE: f64 = 0.99;
 /// A mode with more damping than this, as a ratio to critical, may stop oscillating.
 const NEARLY_CRITICAL: f64 = 0.8;
 
@@ -103,10 +106,8 @@ impl<'a> Tracker<'a> {
                 distinct(self.section, roots)
             }
             Correction::Shapes(problem) => {
-                let problem = problem.at(speed);
-                let pairs = predicted.iter().zip(&before.all);
-                let roots = pairs.map(|(l, mode)| problem.solve(*l, &mode.shape));
-                distinct(self.section, roots)
+                let roots = by_shapes(&problem.at(speed), &predicted, &before.all);
+                distinct(self.section, roots.into_iter())
             }
             Correction::Nearest => nearest(self.section, &predicted, speed)?,
         };
@@ -114,8 +115,10 @@ impl<'a> Tracker<'a> {
             return Ok(None);
         };
         let mut all = Vec::with_capacity(roots.len());
+        // shapes of many modes have been looked at where they were corrected
+        let seen = matches!(self.correction, Correction::Shapes(_));
         for ((lambda, shape), old) in roots.into_iter().zip(&before.all) {
-            if assurance(&shape, &old.shape) < MIN_ASSURANCE {
+            if !seen && assurance(&shape, &old.shape) < MIN_ASSURANCE {
                 return Ok(None);
             }
             let slope = if speed == before.speed {
@@ -225,7 +228,11 @@ fn distinct(
     let mut roots: Vec<Root> = Vec::new();
     for root in corrected {
         let (lambda, shape) = root?;
-        let distinct = |(other, _): &Root| (other - lambda).norm() > SEPARATION * lambda.norm();
+        // modes of one frequency differ by their shapes
+        let distinct = |(other, of): &Root| {
+            (other - lambda).norm() > SEPARATION * lambda.norm()
+                || assurance(of, &shape) < SAME_SHAPE
+        };
         if !oscillates(&lambda) || !roots.iter().all(distinct) {
             return None;
         }

@@ -1,5 +1,6 @@
 //! What makes an exported unit a whole bridge: its modes, its strips, the nodes that an importer sees.
 
+use super::bridge_gusts::BridgeGusts;
 use crate::bridge::{Bridge, BridgeMode, Node, StripGroup};
 use crate::error::{Error, Result, positive};
 use crate::trained_model::Model;
@@ -52,6 +53,9 @@ pub struct BridgeOptions {
     pub tested_range: Option<ReducedFrequencyRange>,
     /// Modal coordinates at release, one a mode.
     pub initial: Vec<f64>,
+    /// Gusts as inputs of strips; none without.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gusts: Option<BridgeGusts>,
 }
 
 impl BridgeOptions {
@@ -137,7 +141,8 @@ impl BridgeOptions {
                 format!("{:?}", self.initial),
             ));
         }
-        self.bridge().map(drop)
+        let bridge = self.bridge()?;
+        self.gusts.iter().try_for_each(|g| g.validate(&bridge))
     }
 
     /// Reads and checks the options.

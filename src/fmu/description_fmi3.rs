@@ -1,7 +1,7 @@
-//! `modelDescription.xml` of FMI 3.0, made from the same variable table: strips are arrays, and the time has a variable.
+//! `modelDescription.xml` of FMI 3.0, made from the same variable table: strips, modes and nodes are arrays, and the time has a variable.
 
 use super::description::{described, experiment, log_categories, number, units};
-use super::groups::{Groups, of_strips};
+use super::groups::{Groups, array_of};
 use super::identity::MODEL_IDENTIFIER;
 use super::package::Label;
 use super::resources::Resources;
@@ -97,10 +97,15 @@ impl Listed<'_> {
             Value::String(_) => "String",
         };
         let text = |x: Option<f64>| x.map(number).transpose();
+        let array = array_of(v.role, &v.name);
+        let description = match places.len() {
+            1 => v.description.clone(),
+            count => format!("{} (the first of {count})", v.description),
+        };
         let element = Element::new(kind)
-            .with("name", of_strips(v.role, &v.name).unwrap_or(&v.name))
+            .with("name", array.as_deref().unwrap_or(&v.name))
             .with("valueReference", reference)
-            .with("description", &v.description)
+            .with("description", description)
             .with("causality", v.causality.word())
             .with("variability", v.variability.word())
             .with_any("initial", v.initial.map(Word::word));
@@ -128,8 +133,7 @@ impl Listed<'_> {
                 element.containing([Element::new("Start").with("value", start)])
             }
         };
-        let dimension = of_strips(v.role, &v.name)
-            .map(|_| Element::new("Dimension").with("start", places.len()));
+        let dimension = array.map(|_| Element::new("Dimension").with("start", places.len()));
         Ok(element.containing(dimension))
     }
 

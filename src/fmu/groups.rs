@@ -1,4 +1,4 @@
-//! Variables as FMI 3.0 lists them: what all strips have is one array.
+//! Variables as FMI 3.0 lists them: what all strips, modes or nodes have is one array.
 
 use super::refusal::{Answer, Refusal};
 use super::variables::{Role, VariableTable};
@@ -19,11 +19,11 @@ impl Groups {
     /// The listed variables of a table.
     pub fn new(table: &VariableTable) -> Self {
         let mut groups: Vec<Vec<u32>> = Vec::new();
-        let mut arrays: HashMap<&str, usize> = HashMap::new();
+        let mut arrays: HashMap<Cow<'_, str>, usize> = HashMap::new();
         for (place, variable) in table.variables().iter().enumerate() {
             let place = u32::try_from(place).unwrap_or(u32::MAX);
-            match of_strips(variable.role, &variable.name) {
-                Some(name) => match arrays.get(name) {
+            match array_of(variable.role, &variable.name) {
+                Some(name) => match arrays.get(&name) {
                     Some(group) => groups[*group].push(place),
                     None => {
                         arrays.insert(name, groups.len());
@@ -80,12 +80,19 @@ impl Groups {
     }
 }
 
-/// The name of the array to which a variable of named strips belongs.
-pub fn of_strips(role: Role, name: &str) -> Option<&str> {
-    let strip = matches!(
-        role,
-        Role::Motion(..) | Role::Gust(..) | Role::Force(..) | Role::Strip(..)
-    );
+/// The name of the array to which a variable of named strips, modes or nodes belongs: `heave` of strips, `mode.coordinate`.
+pub fn array_of(role: Role, name: &str) -> Option<Cow<'_, str>> {
     let (of, rest) = name.split_once("].")?;
-    (strip && of.starts_with("strip[")).then_some(rest)
+    let (kind, _) = of.split_once('[')?;
+    match role {
+        Role::Motion(..) | Role::Gust(..) | Role::Force(..) | Role::Strip(..) => {
+            (kind == "strip").then_some(rest.into())
+        }
+        Role::Mode(..)
+        | Role::InitialMode(_)
+        | Role::ModeParameter(..)
+        | Role::NodeForce(..)
+        | Role::NodeMotion(..) => Some(format!("{kind}.{rest}").into()),
+        _ => None,
+    }
 }

@@ -5,6 +5,10 @@
 //! and run on with the rates that were set for them (zero unless set); at its end they stand where those rates have
 //! taken them. Outputs are computed once per step when first asked for.
 
+mod bridge_built;
+mod bridge_derivatives;
+mod bridge_places;
+mod bridge_search;
 mod bridge_unit;
 mod derivatives;
 mod force_unit;
@@ -57,7 +61,7 @@ impl Instance {
     /// [`crate::Error::Input`] for a model without a realisation, or whose section cannot be coupled with it.
     pub fn new(resources: Resources) -> Result<Self> {
         let mut unit: Box<dyn Unit> = match (&resources.bridge, &resources.force) {
-            (Some(options), _) => Box::new(BridgeUnit::new(&resources.table, options)?),
+            (Some(options), _) => Box::new(BridgeUnit::new(&resources, options)?),
             (None, Some(options)) => Box::new(ForceUnit::new(&resources, options)?),
             (None, None) => Box::new(SectionUnit::new(&resources)?),
         };

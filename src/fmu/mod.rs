@@ -1,5 +1,6 @@
 //! The coupled section, its forces alone, or a whole bridge as a co-simulation slave: version-neutral instance, variables, resources, packing, importer.
 
+pub mod bridge_gusts;
 pub mod bridge_options;
 #[cfg(feature = "cli")]
 pub mod description;

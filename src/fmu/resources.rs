@@ -1,5 +1,6 @@
 //! What is in the folder `resources/` of an unpacked archive.
 
+use super::bridge_gusts::{TURBULENCE_FILE, TurbulenceOptions};
 use super::bridge_options::{BRIDGE_FILE, BridgeOptions};
 use super::force_options::{FORCE_FILE, ForceOptions};
 use super::identity;
@@ -47,6 +48,8 @@ pub struct Resources {
     pub gusts: Option<GustForce>,
     /// What makes it a whole bridge; `None` for a section.
     pub bridge: Option<BridgeOptions>,
+    /// Turbulence that blows on the bridge; `None` for calm air but what the inputs bring.
+    pub turbulence: Option<TurbulenceOptions>,
     /// Its variables.
     pub table: VariableTable,
     /// Identity of table and model file.
@@ -84,7 +87,9 @@ impl Resources {
         let bounds = optional(BOUNDS_FILE)?;
         if let Some(bridge) = optional(BRIDGE_FILE)? {
             let place = file.with_file_name(BRIDGE_FILE);
-            return Self::of_bridge(&read(&file)?, &bridge).map_err(|e| e.in_file(&place));
+            let turbulence = optional(TURBULENCE_FILE)?;
+            return Self::of_bridge(&read(&file)?, &bridge, turbulence.as_deref())
+                .map_err(|e| e.in_file(&place));
         }
         let options = OptionFiles {
             force: force.as_deref(),
@@ -122,25 +127,32 @@ impl Resources {
             force,
             gusts,
             bridge: None,
+            turbulence: None,
             table,
             guid,
         })
     }
 
-    /// A whole bridge from the bytes of the file of the model of its girder and of the bridge's own.
+    /// A whole bridge from the bytes of the file of the model of its girder, of the bridge's own, and of its turbulence.
     ///
     /// # Errors
     /// [`Error::Input`] for bytes that are no trained model, or no bridge.
-    pub fn of_bridge(bytes: &[u8], bridge: &[u8]) -> Result<Self> {
+    pub fn of_bridge(bytes: &[u8], bridge: &[u8], turbulence: Option<&[u8]>) -> Result<Self> {
         let model = TrainedModel::from_json(text(bytes)?)?;
         let options = BridgeOptions::from_json(text(bridge)?)?;
-        let table = VariableTable::of_bridge(&model, &options)?;
-        let guid = identity::guid(&table, &[bytes, bridge]);
+        let field = |json| {
+            TurbulenceOptions::from_json(text(json)?, &options).map_err(|e| e.at(TURBULENCE_FILE))
+        };
+        let field = turbulence.map(field).transpose()?;
+        let table = VariableTable::of_bridge(&model, &options, field.is_some())?;
+        let files: Vec<&[u8]> = [bytes, bridge].into_iter().chain(turbulence).collect();
+        let guid = identity::guid(&table, &files);
         Ok(Self {
             model,
             force: None,
             gusts: None,
             bridge: Some(options),
+            turbulence: field,
             table,
             guid,
         })

@@ -19,7 +19,7 @@ mod words;
 pub use super::standard::{Causality, Initial, Variability};
 #[cfg(feature = "cli")]
 pub use listing::Listing;
-pub use parameters::SectionParameter;
+pub use parameters::{ModeParameter, SectionParameter};
 
 use super::bridge_options::BridgeOptions;
 use super::force_options::ForceOptions;
@@ -162,6 +162,10 @@ pub enum Role {
     Mode(usize, ModeOutput),
     /// Modal coordinate at release.
     InitialMode(usize),
+    /// A property of a mode of a bridge.
+    ModeParameter(usize, ModeParameter),
+    /// Factor on the turbulence that a bridge has in its archive.
+    TurbulenceFactor,
 }
 
 /// A number of a mode.
@@ -296,20 +300,24 @@ impl VariableTable {
             }
             Some(options) => force::variables(model, options, gusts)?,
         };
-        let table = Self { variables };
-        table.variables.iter().try_for_each(check_start)?;
-        Ok(table)
+        Self::checked(variables)
     }
 
-    /// The table of a whole bridge.
+    /// The table of a whole bridge, with or without turbulence of its own.
     ///
     /// # Errors
     /// As [`VariableTable::new`].
-    pub fn of_bridge(model: &TrainedModel, options: &BridgeOptions) -> Result<Self> {
-        let variables = bridge::variables(model, options)?;
-        let table = Self { variables };
-        table.variables.iter().try_for_each(check_start)?;
-        Ok(table)
+    pub fn of_bridge(
+        model: &TrainedModel,
+        options: &BridgeOptions,
+        turbulence: bool,
+    ) -> Result<Self> {
+        Self::checked(bridge::variables(model, options, turbulence)?)
+    }
+
+    fn checked(variables: Vec<Variable>) -> Result<Self> {
+        variables.iter().try_for_each(check_start)?;
+        Ok(Self { variables })
     }
 
     /// The variables; the place of each is its value reference.

@@ -42,6 +42,67 @@ impl Packed {
     }
 }
 
+/// A matrix of which most entries are zero, row by row.
+#[derive(Debug, Clone)]
+pub(super) struct Sparse {
+    /// Where the entries of each row end.
+    ends: Vec<usize>,
+    /// Column and entry.
+    entries: Vec<(usize, f64)>,
+}
+
+impl Sparse {
+    pub fn of(m: &DMatrix<f64>) -> Self {
+        let (mut ends, mut entries) = (Vec::with_capacity(m.nrows()), Vec::new());
+        for row in m.row_iter() {
+            let filled = row.iter().enumerate().filter(|(_, x)| **x != 0.0);
+            entries.extend(filled.map(|(j, x)| (j, *x)));
+            ends.push(entries.len());
+        }
+        Self { ends, entries }
+    }
+
+    /// `y = W v`.
+    pub fn apply(&self, v: &[f64], y: &mut [f64]) {
+        let mut from = 0;
+        for (y, end) in y.iter_mut().zip(&self.ends) {
+            *y = self.entries[from..*end]
+                .iter()
+                .map(|(j, x)| x * v[*j])
+                .sum();
+            from = *end;
+        }
+    }
+}
+
+/// Filters of which every pair is multiplied; of more only those that are linked.
+const FEW_FILTERS: usize = 24;
+
+/// The equation of the filters. Those of a bridge hang together in short chains, one or a few for each mode, so that a product
+/// costs modes × filters.
+#[derive(Debug, Clone)]
+pub(super) enum Filters {
+    Few(Packed),
+    Many(Sparse),
+}
+
+impl Filters {
+    pub fn of(matrix: &DMatrix<f64>) -> Self {
+        if matrix.nrows() > FEW_FILTERS {
+            Self::Many(Sparse::of(matrix))
+        } else {
+            Self::Few(Packed::of(matrix))
+        }
+    }
+
+    pub fn apply(&self, v: &[f64], y: &mut [f64]) {
+        match self {
+            Self::Few(matrix) => apply(matrix, v, y),
+            Self::Many(matrix) => matrix.apply(v, y),
+        }
+    }
+}
+
 /// Sums that run side by side, so that no addition waits for the one before it.
 const PARTIAL_SUMS: usize = 4;
 

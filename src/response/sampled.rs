@@ -156,7 +156,7 @@ impl Stepper {
             wind,
             wind_rate: inputs.wind_speed_rate_m_s2,
             force: [&force[0], &force[1], &force[2]],
-            gust: inputs.gusts_after(time),
+            gust: inputs.gusts_from(time),
         };
         let gusts = self.gusts_act(state, inputs);
         let fastest = drive.wind.max(wind_after(inputs, time + piece));

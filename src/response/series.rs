@@ -14,7 +14,7 @@
 //! to the system and their force to `w`.
 
 use super::gusts::{GustCourse, Gusts};
-use super::packed::{Packed, apply};
+use super::packed::{Filters, Packed, apply};
 use crate::aerodynamics::Realization;
 use crate::aeroelastic::CoupledSection;
 use nalgebra::DMatrix;
@@ -35,8 +35,8 @@ pub(super) struct Drive<'a> {
     pub wind_rate: f64,
     /// Forces and their coefficients of first and second degree, per unit length; an empty list is zero.
     pub force: [&'a [f64]; 3],
-    /// Gusts and their rates.
-    pub gust: GustCourse,
+    /// Gusts.
+    pub gust: GustCourse<'a>,
 }
 
 /// What moves in a step: `[q, q̇, x]` (of a sampled model `[q, q̇]`), and gusts on their way through the admittance. No gusts
@@ -66,10 +66,14 @@ pub(super) struct Series {
     scale: Vec<f64>,
     /// Unit of the rates, rad/s.
     rate: f64,
-    /// `[A₀; A₁]` on `[q̇, q]`.
+    /// `A₀` on `[q̇, q]`.
     structure: Packed,
-    /// `[A₂; G]` on `[q, x]`.
-    aerodynamic: Packed,
+    /// `A₁` on `q̇`.
+    damping: Packed,
+    /// `A₂` on `[q, x]`.
+    pressure: Packed,
+    /// `G` on `[q, x]`.
+    filters: Filters,
     /// `M⁻¹`, scaled.
     force: DMatrix<f64>,
     norms: Norms,
@@ -123,8 +127,10 @@ impl Series {
             dofs: n,
             scale,
             rate,
-            structure: Packed::of(&structure),
-            aerodynamic: Packed::of(&aerodynamic),
+            structure: Packed::of(&structure.rows(0, n).into_owned()),
+            damping: Packed::of(&structure.view((n, 0), (n, n)).into_owned()),
+            pressure: Packed::of(&aerodynamic.rows(0, n).into_owned()),
+            filters: Filters::of(&aerodynamic.rows(n, filters).into_owned()),
             force,
             norms,
             gusts,
@@ -216,28 +222,22 @@ impl Series {
             Some(gusts) => gusts.begin(&work.gusts),
             None => work.by_gusts.fill(0.0),
         }
-        let [gust, gust_rate] = drive.gust;
-        let gust_now = [0, 1].map(|j| gust[j] + start * gust_rate[j]);
-        let gust_slope = gust_rate.map(|rate| tau * rate);
         let mut largest = work.begin();
         let mut last = [0.0; 3];
         for k in 0..MAX_TERMS {
             work.structure.swap(0, 1);
             work.aerodynamic.rotate_right(1);
-            apply(
-                &self.structure,
-                &work.term[..2 * self.dofs],
-                &mut work.structure[0],
-            );
-            apply(
-                &self.aerodynamic,
-                &work.term[self.dofs..],
-                &mut work.aerodynamic[0],
-            );
+            let n = self.dofs;
+            let (by_structure, by_damping) = work.structure[0].split_at_mut(n);
+            apply(&self.structure, &work.term[..2 * n], by_structure);
+            apply(&self.damping, &work.term[..n], by_damping);
+            let (by_pressure, by_filters) = work.aerodynamic[0].split_at_mut(n);
+            apply(&self.pressure, &work.term[n..], by_pressure);
+            self.filters.apply(&work.term[n..], by_filters);
             let mut pushed = 0.0;
             if let Some(gusts) = &mut gusts {
-                let course = [gust_now, gust_slope].get(k).copied().unwrap_or_default();
-                let force = gusts.next((k, tau), (wind, change), course, &mut work.gusts);
+                let time = (start, tau);
+                let force = gusts.next(k, time, (wind, change), drive.gust, &mut work.gusts);
                 for (i, push) in work.by_gusts.iter_mut().enumerate() {
                     *push = (0..self.dofs).map(|j| self.force[(i, j)] * force[j]).sum();
                     pushed = f64::max(pushed, tau * push.abs());

@@ -27,10 +27,11 @@ pub struct Inputs {
     pub force: Vec<f64>,
     /// Rates of the external forces over the step (n): per second.
     pub force_rate: Vec<f64>,
-    /// Gusts `u` along the mean wind and `w` upwards, m/s; they act on a stepper that knows their forces.
-    pub gust_m_s: [f64; 2],
-    /// Their rates over the step, m/s².
-    pub gust_rate_m_s2: [f64; 2],
+    /// Gusts `u` along the mean wind and `w` upwards, m/s (on a bridge the forces of all gusts on each mode, per 1 m/s of
+    /// wind), for a stepper that knows their forces; what is not stated is zero.
+    pub gust_m_s: Vec<f64>,
+    /// Their rates over the step, per second.
+    pub gust_rate_m_s2: Vec<f64>,
 }
 
 impl SectionState {
@@ -69,15 +70,18 @@ impl Inputs {
             wind_speed_rate_m_s2: 0.0,
             force: vec![0.0; dofs],
             force_rate: vec![0.0; dofs],
-            gust_m_s: [0.0; 2],
-            gust_rate_m_s2: [0.0; 2],
+            gust_m_s: Vec::new(),
+            gust_rate_m_s2: Vec::new(),
         }
     }
 
-    /// Gusts `time_s` after the start of the step, and their rates.
-    pub(super) fn gusts_after(&self, time_s: f64) -> GustCourse {
-        let now = [0, 1].map(|j| self.gust_m_s[j] + time_s * self.gust_rate_m_s2[j]);
-        [now, self.gust_rate_m_s2]
+    /// Gusts from `after` seconds behind the start of the step on.
+    pub(super) fn gusts_from(&self, after: f64) -> GustCourse<'_> {
+        GustCourse {
+            gust: &self.gust_m_s,
+            rate: &self.gust_rate_m_s2,
+            after,
+        }
     }
 
     pub(super) fn check(&self, dofs: usize) -> Result<()> {

@@ -176,6 +176,7 @@ fn unstable(model: &TrainedModel, at: GrowthPoint, reason: String) -> SteppedAns
         in_tested_range: Some(model.tested_range.contains(k)),
         reason,
         warnings: Vec::new(),
+        onset_above: None,
     }))
 }
 

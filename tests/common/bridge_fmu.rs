@@ -1,7 +1,8 @@
 //! The FMUs of the Langenuen bridge: the whole of it, and its forces alone.
 
-use crate::bridges::{TWO, langenuen};
+use crate::bridges::{TWO, langenuen, lively};
 use aerodeck::aeroelastic::CoupledSection;
+use aerodeck::files::bridge::FieldTable;
 use aerodeck::flutter::{OnsetSearch, find_onset, motion_at_onset};
 use aerodeck::fmu::force_options::{ForceOptions, StripOptions};
 use aerodeck::fmu::package::{
@@ -9,6 +10,7 @@ use aerodeck::fmu::package::{
     write_fmu,
 };
 use aerodeck::fmu::variables::Listing;
+use aerodeck::study::bridge::Wanted;
 use serde_json::json;
 use std::fs;
 use std::path::Path;
@@ -16,10 +18,20 @@ use std::path::Path;
 /// Writes `bridge.fmu`, `bridge_force.fmu` and, in `bridge.json`, the structure and the onset by eigenvalues.
 pub fn export(folder: &Path, runtimes: &[Runtime]) {
     let study = langenuen("LN21-5200", TWO);
-    let named: Vec<String> = ["1156", "1081"].map(String::from).to_vec();
-    let export = study.export(&named, false).unwrap();
-    let bytes = package_bridge(&export.model, &export.bridge, runtimes, &Label::default()).unwrap();
-    write_archive(&folder.join("bridge.fmu"), &bytes, Overwrite::Refuse).unwrap();
+    let wanted = Wanted {
+        nodes: ["1156", "1081"].map(String::from).to_vec(),
+        ..Wanted::default()
+    };
+    let export = study.export(&wanted).unwrap();
+    for (name, version) in [
+        ("bridge", FmiVersion::Two),
+        ("bridge_fmi3", FmiVersion::Three),
+    ] {
+        let bytes = package_bridge(&export, runtimes, &Label::default(), version).unwrap();
+        let path = folder.join(format!("{name}.fmu"));
+        write_archive(&path, &bytes, Overwrite::Refuse).unwrap();
+    }
+    gusts(folder, runtimes);
     let bridge = &study.by_model;
     let strip = |node: &aerodeck::bridge::Node| StripOptions {
         width_m: bridge.width_m(),
@@ -70,4 +82,34 @@ pub fn export(folder: &Path, runtimes: &[Runtime]) {
         "modes": bridge.modes,
     });
     fs::write(folder.join("bridge.json"), text.to_string()).unwrap();
+}
+
+/// Writes `bridge_gusts.fmu`: every node with forces of its own and with gusts of its own, and a little turbulence.
+fn gusts(folder: &Path, runtimes: &[Runtime]) {
+    let study = lively();
+    let block = study.buffeting_block().unwrap();
+    let mut field = study.first_field(&block, 35.0).unwrap();
+    field
+        .gusts
+        .iter_mut()
+        .flatten()
+        .for_each(|row| row.truncate(50));
+    let wanted = Wanted {
+        nodes: study
+            .by_model
+            .nodes
+            .iter()
+            .map(|n| n.name.clone())
+            .collect(),
+        gust_strips: Some(study.by_model.nodes.len()),
+        turbulence: Some(FieldTable {
+            step_s: field.step_s,
+            along_m: field.along_m,
+            gusts: field.gusts,
+        }),
+        ..Wanted::default()
+    };
+    let export = study.export(&wanted).unwrap();
+    let bytes = package_bridge(&export, runtimes, &Label::default(), FmiVersion::Two).unwrap();
+    write_archive(&folder.join("bridge_gusts.fmu"), &bytes, Overwrite::Refuse).unwrap();
 }

@@ -59,6 +59,25 @@ pub fn read(text: &str) -> BridgeStudy {
     BridgeStudy::new(BridgeFile::from_toml(text, folder).unwrap()).unwrap()
 }
 
+/// Eight modes of Langenuen, well damped, with static coefficients.
+pub fn lively() -> BridgeStudy {
+    read(
+        &(langenuen_text("LN21-5200", TWO, "modified_akima")
+            .replace(
+                "damping_ratio = 0.002",
+                "damping_ratio = 0.02\nselect = [2, 3, 5, 12, 14, 16, 17, 23]",
+            )
+            .replace(
+                "motions =",
+                "static = { drag = 0.08, lift = -0.1, lift_slope = 4.0, moment = 0.02, moment_slope = 1.1 }\nmotions =",
+            )
+            + "[buffeting]\nnodes = [\"1081\", \"1156\"]\n\
+               along = { spectrum = { shape = { kind = \"kaimal\" }, length_m = 150.0, intensity = 0.12 } }\n\
+               vertical = { spectrum = { shape = { kind = \"kaimal\" }, length_m = 15.0, intensity = 0.06 } }\n\
+               time = { records = 2, duration_s = 200.0, step_s = 0.1, seed = 3 }\n"),
+    )
+}
+
 pub fn langenuen(deck: &str, motions: &str) -> BridgeStudy {
     read(&langenuen_text(deck, motions, "linear_v_hat"))
 }

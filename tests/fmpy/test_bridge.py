@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from exported import FOLDER
 from fmpy.fmi2 import FMU2Slave
+from fmpy.fmi3 import FMU3Slave
 from fmpy.model_description import read_model_description
 from fmpy.validation import validate_fmu
 
@@ -55,7 +56,7 @@ class Slave:
 @pytest.fixture(scope="module")
 def unpacked(tmp_path_factory):
     folder = tmp_path_factory.mktemp("bridge")
-    for name in ("bridge", "bridge_force"):
+    for name in ("bridge", "bridge_force", "bridge_fmi3", "bridge_gusts"):
         fmpy.extract(str(FOLDER / f"{name}.fmu"), unzipdir=str(folder / name))
     return folder
 
@@ -195,6 +196,105 @@ def test_wrong_values_are_refused(bridge):
     bridge.start(wind_speed=10.0)
     with pytest.raises(Exception):
         bridge.set({"wind_speed": -1.0})
+
+
+def test_fmi3_gives_the_same_bits(bridge, unpacked):
+    """Modes and nodes are arrays; wind that changes, a force, and the same numbers to the last bit."""
+    assert validate_fmu(str(FOLDER / "bridge_fmi3.fmu")) == []
+    description = read_model_description(str(FOLDER / "bridge_fmi3.fmu"))
+    reference = {v.name: v.valueReference for v in description.modelVariables}
+    third = FMU3Slave(
+        guid=description.guid,
+        unzipDirectory=str(unpacked / "bridge_fmi3"),
+        modelIdentifier=description.coSimulation.modelIdentifier,
+        instanceName="third",
+    )
+    third.instantiate()
+    third.enterInitializationMode(startTime=0.0)
+    third.setFloat64([reference["wind_speed"]], [60.0])
+    third.exitInitializationMode()
+    bridge.start(wind_speed=60.0)
+    count, names, step = len(BRIDGE["modes"]), coordinates(), 0.1
+    for i in range(100):
+        wind = 60.0 + 0.1 * max(i - 50, 0)
+        lift = 1e6 * np.sin(0.3 * i)
+        bridge.set({"wind_speed": wind, "node[1156].external_lift": lift})
+        third.setFloat64([reference["wind_speed"]], [wind])
+        # the nodes in the order of the export: 1156, 1081
+        third.setFloat64([reference["node.external_lift"]], [lift, 0.0])
+        bridge.step(step)
+        third.doStep(i * step, step)
+        modes = np.array(third.getFloat64([reference["mode.coordinate"]], nValues=count))
+        assert np.array_equal(modes, bridge.get(names))
+        heave = third.getFloat64([reference["node.heave"]], nValues=2)[0]
+        assert heave == bridge.get(["node[1156].heave"])[0]
+    assert third.getFloat64([reference["flutter_speed"]])[0] == pytest.approx(ONSET, rel=1e-6)
+    third.terminate()
+    third.freeInstance()
+
+
+@pytest.fixture
+def gusty(unpacked):
+    slaves = [Slave("bridge_gusts", unpacked / "bridge_gusts") for _ in range(2)]
+    yield slaves
+    for slave in slaves:
+        slave.close()
+
+
+def gust_options():
+    with zipfile.ZipFile(FOLDER / "bridge_gusts.fmu") as archive:
+        read = lambda name: json.loads(archive.read(f"resources/{name}.json"))
+        return read("bridge"), read("turbulence")
+
+
+def test_gusts_are_forces(gusty):
+    """Gusts on every node and the forces that they exert there are one."""
+    assert validate_fmu(str(FOLDER / "bridge_gusts.fmu")) == []
+    options, _ = gust_options()
+    blown, pushed = gusty
+    for slave in gusty:
+        slave.start(wind_speed=35.0, turbulence_factor=0.0)
+    matrix = np.array(options["gusts"]["coefficients"][0])
+    width, step, random = options["groups"][0]["width_m"], 0.1, np.random.default_rng(5)
+    scale = np.array([width, width, width**2])
+    nodes = options["nodes"]
+    for _ in range(100):
+        gusts = random.normal(size=(len(nodes), 2)) * [4.0, 2.0]
+        values, forces = {}, {}
+        for i, (node, gust) in enumerate(zip(nodes, gusts)):
+            values[f"strip[{i + 1}].gust_u"], values[f"strip[{i + 1}].gust_w"] = gust
+            force = 0.5 * options["air_density_kg_m3"] * 35.0 * node["length_m"] * scale * (matrix @ gust)
+            for name, f in zip(("lift", "drag", "moment"), force):
+                forces[f"node[{node['name']}].external_{name}"] = f
+        blown.set(values)
+        pushed.set(forces)
+        for slave in gusty:
+            slave.step(step)
+    names = [f"mode[{m['number']}].coordinate" for m in options["modes"]]
+    expected = pushed.get(names)
+    assert np.abs(blown.get(names) - expected).max() <= 1e-10 * np.abs(expected).max()
+    assert np.abs(expected).max() > 0
+
+
+def test_turbulence_of_the_archive_is_that_of_the_inputs(gusty):
+    """The field in resources/ and the same field set as inputs with their slopes."""
+    options, field = gust_options()
+    own, driven = gusty
+    own.start(wind_speed=35.0)
+    driven.start(wind_speed=35.0, turbulence_factor=0.0)
+    step, count = field["step_s"], len(field["u"])
+    names = [f"strip[{i + 1}].gust_{g}" for g in "uw" for i in range(count)]
+    references = [driven.references[n] for n in names]
+    samples = np.array(field["u"] + field["w"])
+    for i in range(120):
+        now, then = samples[:, i % 50], samples[:, (i + 1) % 50]
+        driven.fmu.setReal(references, now.tolist())
+        driven.fmu.setRealInputDerivatives(references, [1] * len(references), ((then - now) / step).tolist())
+        for slave in gusty:
+            slave.step(step)
+    names = [f"mode[{m['number']}].coordinate" for m in options["modes"]]
+    expected = driven.get(names)
+    assert np.abs(own.get(names) - expected).max() <= 1e-9 * np.abs(expected).max()
 
 
 class Outside:

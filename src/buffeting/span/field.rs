@@ -41,7 +41,7 @@ impl TurbulenceField {
 ///
 /// # Errors
 /// [`Error::Input`] for parts that do not fit together and a number of samples that is odd or out of range.
-pub(crate) fn turbulence_field(
+pub fn turbulence_field(
     problem: &SpanProblem<'_>,
     speed_m_s: f64,
     (step_s, samples): (f64, usize),

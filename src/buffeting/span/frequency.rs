@@ -14,6 +14,9 @@ use std::f64::consts::TAU;
 const TOLERANCE: f64 = 1e-5;
 /// The integration ends at this many times the highest frequency of the bridge.
 const REACH: f64 = 4.0;
+/// Frequencies of a spectrum that are spread evenly, and those to each side of a resonance.
+const EVEN: usize = 300;
+const AROUND: i32 = 12;
 
 /// Response at named nodes to turbulence at one mean wind speed.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -47,7 +50,7 @@ impl SpanResponse {
 /// # Errors
 /// [`Error::Input`] for parts that do not fit together; [`Error::Unstable`] when the bridge is unstable at this speed; those of
 /// the forces.
-pub(crate) fn span_response(
+pub fn span_response(
     problem: &SpanProblem<'_>,
     nodes: &[usize],
     speed_m_s: f64,
@@ -94,6 +97,60 @@ pub(crate) fn span_response(
             .map(|n| std::array::from_fn(|i| crossing(n, i)))
             .collect(),
     })
+}
+
+/// One-sided spectra of the displacements of named nodes.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SpanSpectra {
+    /// Hz, rising; close together at the resonances.
+    pub frequencies_hz: Vec<f64>,
+    /// Vertical, lateral (m²/Hz) and rotation (rad²/Hz) of each node at every frequency.
+    pub densities: Vec<[Vec<f64>; 3]>,
+}
+
+/// Spectra of the displacements of `nodes`, from a hundredth of the slowest resonance to four times the highest frequency.
+///
+/// # Errors
+/// As [`span_response`].
+pub fn span_spectra(
+    problem: &SpanProblem<'_>,
+    nodes: &[usize],
+    speed_m_s: f64,
+) -> Result<SpanSpectra> {
+    problem.validate(speed_m_s)?;
+    let (_, roots) = problem.coupled(speed_m_s)?;
+    let frequencies_hz = resolved(&roots);
+    let shapes = problem.bridge.shapes_at(nodes);
+    let forces = problem.bridge.forces();
+    let mut densities = vec![[const { Vec::new() }; 3]; nodes.len()];
+    for frequency in &frequencies_hz {
+        let all = spectra(problem, &forces, &shapes, (*frequency, speed_m_s))?;
+        for (row, density) in all.into_iter().enumerate() {
+            densities[row / 3][row % 3].push(density);
+        }
+    }
+    Ok(SpanSpectra {
+        frequencies_hz,
+        densities,
+    })
+}
+
+/// Frequencies, Hz, that show every resonance: evenly spread on a logarithmic scale, and within ten half-power widths of
+/// each eigenvalue.
+fn resolved(roots: &[Complex<f64>]) -> Vec<f64> {
+    let resonances = roots.iter().filter(|z| z.im > 1e-6 * z.norm());
+    let hertz: Vec<(f64, f64)> = resonances.map(|z| (z.im / TAU, -z.re / TAU)).collect();
+    let lowest = hertz.iter().map(|r| r.0).fold(f64::INFINITY, f64::min) / 100.0;
+    let highest = hertz.iter().map(|r| r.0).fold(0.0, f64::max) * REACH;
+    let even = (0..=EVEN).map(|i| lowest * (highest / lowest).powf(i as f64 / EVEN as f64));
+    let near = hertz.iter().flat_map(|(f, half)| {
+        (-AROUND..=AROUND)
+            .map(move |i| f + half * 10.0 * (f64::from(i) / f64::from(AROUND)).powi(3))
+    });
+    let mut all: Vec<f64> = even.chain(near.filter(|f| *f > 0.0)).collect();
+    all.sort_by(f64::total_cmp);
+    all.dedup_by(|a, b| *a <= *b * (1.0 + 1e-9));
+    all
 }
 
 /// One-sided spectra of the rows of `shapes` at a frequency.

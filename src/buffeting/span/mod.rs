@@ -9,12 +9,9 @@ mod field;
 mod frequency;
 mod time;
 
-pub use field::TurbulenceField;
-pub(crate) use field::turbulence_field;
-pub use frequency::SpanResponse;
-pub(crate) use frequency::span_response;
-pub use time::{SpanEnsemble, SpanPlan, SpanRecord};
-pub(crate) use time::{span_ensemble, span_record};
+pub use field::{TurbulenceField, turbulence_field};
+pub use frequency::{SpanResponse, SpanSpectra, span_response, span_spectra};
+pub use time::{SpanEnsemble, SpanPlan, SpanRecord, span_ensemble, span_record};
 
 use super::problem::Turbulence;
 use super::spectrum::GustComponent;

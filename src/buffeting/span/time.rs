@@ -67,7 +67,7 @@ pub struct SpanRecord {
 /// # Errors
 /// [`Error::Input`] for a field of other nodes and parts that do not fit together; [`Error::Unstable`] when the bridge is
 /// unstable at this speed.
-pub(crate) fn span_record(
+pub fn span_record(
     problem: &SpanProblem<'_>,
     nodes: &[usize],
     speed_m_s: f64,
@@ -124,7 +124,7 @@ impl Periodic {
 /// # Errors
 /// [`Error::Input`] for a plan that cannot be and parts that do not fit together; [`Error::Unstable`] when the bridge is unstable
 /// at this speed.
-pub(crate) fn span_ensemble(
+pub fn span_ensemble(
     problem: &SpanProblem<'_>,
     nodes: &[usize],
     speed_m_s: f64,

@@ -1,6 +1,6 @@
 //! The onset card of a bridge, in words.
 
-use crate::flutter::FlutterSearch;
+use crate::flutter::{FlutterSearch, OnsetInterval};
 use crate::study::bridge::{BridgeAnswer, BridgeFlutter, BridgeStudy};
 use std::fmt::Write as _;
 
@@ -58,6 +58,26 @@ pub(crate) fn card(study: &BridgeStudy, results: &BridgeFlutter) -> String {
     text
 }
 
+fn interval(of: &OnsetInterval) -> String {
+    match of {
+        OnsetInterval::Known {
+            low_m_s,
+            high_m_s,
+            standard_error_m_s,
+            ..
+        } => format!(
+            "95 % interval {low_m_s:.3} to {high_m_s:.3} m/s by the scatter of the tests (standard error {standard_error_m_s:.3} m/s)"
+        ),
+        OnsetInterval::Spread {
+            low_m_s,
+            high_m_s,
+            of,
+        } => format!("between {low_m_s:.3} and {high_m_s:.3} m/s: {of}"),
+        OnsetInterval::Undetermined { reason, .. } => reason.clone(),
+        OnsetInterval::None { reason } => format!("no interval: {reason}"),
+    }
+}
+
 fn one(answer: &BridgeAnswer) -> String {
     let mut text = format!("Onset card: {}\n", answer.forces);
     match &answer.search {
@@ -77,6 +97,7 @@ fn one(answer: &BridgeAnswer) -> String {
                 o.at.reduced_frequency.full_width(),
                 o.branch
             );
+            let _ = writeln!(text, "  {}", interval(&o.interval));
             if let Some(slope) = o.damping_slope_s_m {
                 let _ = writeln!(text, "  damping slope dζ/dV {slope:.5} s/m");
             }

@@ -49,6 +49,7 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     let json = serde_json::to_string_pretty(&results)
         .map_err(|e| crate::Error::Numerical(e.to_string()))?;
     out.write("bridge_buffeting.json", json + "\n")?;
+    out.write("bridge_spectra.csv", spectra_csv(&results))?;
     if args.field {
         out.write(
             "turbulence.csv",
@@ -129,6 +130,25 @@ fn table(results: &BridgeBuffeting) -> String {
                 results.expected_peak_factor[n][i]
             );
         }
+    }
+    text
+}
+
+fn spectra_csv(results: &BridgeBuffeting) -> String {
+    let mut text = "# one-sided spectra of the displacements\nfrequency_hz".to_owned();
+    for name in &results.nodes {
+        for motion in ["vertical_m2_hz", "lateral_m2_hz", "rotation_rad2_hz"] {
+            let _ = write!(text, ",node[{name}].{motion}");
+        }
+    }
+    text.push('\n');
+    let spectra = &results.spectra;
+    for (i, frequency) in spectra.frequencies_hz.iter().enumerate() {
+        let _ = write!(text, "{frequency}");
+        for density in spectra.densities.iter().flatten() {
+            let _ = write!(text, ",{:e}", density[i]);
+        }
+        text.push('\n');
     }
     text
 }

@@ -8,8 +8,8 @@ use super::{BRIDGE_FMU, card, computed, staged};
 use crate::error::{Error, Result};
 use crate::files::bridge::BridgeFile;
 use crate::flutter::Onset;
-use crate::fmu::package::{Label, Runtime, package_bridge};
-use crate::study::bridge::{BridgeFlutter, BridgeStudy, demo_bridge_text};
+use crate::fmu::package::{FmiVersion, Label, Runtime, package_bridge};
+use crate::study::bridge::{BridgeFlutter, BridgeStudy, Wanted, demo_bridge_text};
 use crate::study::{Deck, RecordSet, Study, demo_study_text};
 use crate::trained_model::TrainedModel;
 use serde::Serialize;
@@ -90,13 +90,9 @@ pub(crate) fn run(directory: &Path, force: bool, progress: &Progress) -> Result<
 
 /// The FMU of the bridge.
 fn packed(study: &BridgeStudy, out: &mut OutputDir) -> Result<()> {
-    let export = study.export(&[], false)?;
-    let bytes = package_bridge(
-        &export.model,
-        &export.bridge,
-        &Runtime::available()?,
-        &Label::default().dated()?,
-    )?;
+    let export = study.export(&Wanted::default())?;
+    let label = Label::default().dated()?;
+    let bytes = package_bridge(&export, &Runtime::available()?, &label, FmiVersion::Two)?;
     out.write(BRIDGE_FMU, bytes)
 }
 

@@ -8,7 +8,7 @@ use crate::cli::common::warn;
 use crate::cli::progress::Progress;
 use crate::cli::stages;
 use crate::error::{Error, Result};
-use crate::files::bridge::BridgeFile;
+use crate::files::bridge::{BridgeFile, read_field};
 use crate::files::coefficients::gust_force;
 use crate::fmu::force_options::{ForceOptions, MAX_STRIPS};
 use crate::fmu::onset_bounds::OnsetBounds;
@@ -17,7 +17,7 @@ use crate::fmu::package::{
     write_fmu,
 };
 use crate::fmu::variables::Listing;
-use crate::study::bridge::BridgeStudy;
+use crate::study::bridge::{BridgeStudy, Wanted};
 use crate::trained_model::TrainedModel;
 use std::path::{Path, PathBuf};
 
@@ -32,7 +32,7 @@ pub(crate) struct Args {
     /// The trained model, or the bridge file with --bridge.
     model: PathBuf,
     /// Pack a whole bridge: the file is a bridge file (see docs/bridge.md).
-    #[arg(long, conflicts_with_all = ["kind", "strips", "strip_length", "prediction"])]
+    #[arg(long, conflicts_with_all = ["kind", "strips", "strip_length", "prediction", "gusts", "reals_only"])]
     bridge: bool,
     /// Nodes of a bridge with inputs and outputs; left out, mid-span and both quarter points.
     #[arg(long, value_delimiter = ',', requires = "bridge")]
@@ -61,6 +61,13 @@ pub(crate) struct Args {
     /// `flat plate`.
     #[arg(long, value_name = "TABLE")]
     gusts: Option<String>,
+    /// Take gusts of so many strips of a bridge as inputs, neighbouring nodes together; their forces follow from the
+    /// `static` coefficients of its sections.
+    #[arg(long, value_name = "COUNT", requires = "bridge")]
+    gust_strips: Option<usize>,
+    /// Turbulence that blows on a bridge and goes into its archive: a file as `bridge buffeting --field` writes it.
+    #[arg(long, value_name = "FILE", requires = "bridge")]
+    turbulence: Option<PathBuf>,
     /// Admittance of the gusts [default: none].
     #[arg(long, value_enum)]
     admittance: Option<Admittance>,
@@ -141,6 +148,14 @@ impl Args {
         label.dated()
     }
 
+    fn runtimes(&self) -> Result<Vec<Runtime>> {
+        if self.platforms.is_empty() {
+            Runtime::available()
+        } else {
+            Runtime::chosen(&self.platforms)
+        }
+    }
+
     /// The forces of gusts.
     fn gusts(&self, model: &TrainedModel) -> Result<Option<GustForce>> {
         let admittance = self.admittance.map(Into::into);
@@ -189,9 +204,15 @@ impl Args {
             .clone()
             .unwrap_or_else(|| self.model.with_file_name(BRIDGE_FMU));
         let stage = progress.stage("packing the FMU");
-        let export = study.export(&self.nodes, self.allow_unstable)?;
-        let runtimes = Runtime::available()?;
-        let bytes = package_bridge(&export.model, &export.bridge, &runtimes, &self.label()?)?;
+        let turbulence = self.turbulence.as_deref().map(read_field).transpose()?;
+        let export = study.export(&Wanted {
+            nodes: self.nodes.clone(),
+            allow_unstable: self.allow_unstable,
+            gust_strips: self.gust_strips,
+            admittance: self.admittance.map_or_else(Default::default, Into::into),
+            turbulence,
+        })?;
+        let bytes = package_bridge(&export, &self.runtimes()?, &self.label()?, self.fmi.into())?;
         let overwrite = if self.force {
             Overwrite::Replace
         } else {
@@ -257,11 +278,7 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
         },
     };
     let strips = export.force.as_ref().map(|f| f.strips.len());
-    let runtimes = if args.platforms.is_empty() {
-        Runtime::available()?
-    } else {
-        Runtime::chosen(&args.platforms)?
-    };
+    let runtimes = args.runtimes()?;
     let overwrite = if args.force {
         Overwrite::Replace
     } else {

@@ -15,15 +15,16 @@ mod table;
 mod tables;
 mod toml_file;
 mod wawi;
+mod wind_block;
 
 pub use axes::{Axes, Direction};
 pub use field::{FieldTable, read_field};
 pub use modal_data::{Modes, RawMode};
 pub use single_file::write_modes;
 pub use toml_file::{
-    BridgeFile, DampingRatios, ModesBlock, ModesFormat, ProfilePoint, SearchBlock, SectionBlock,
-    StaticBlock, WindBlock,
+    BridgeFile, DampingRatios, ModesBlock, ModesFormat, SearchBlock, SectionBlock, StaticBlock,
 };
+pub use wind_block::{ProfilePoint, WindBlock};
 
 /// Modes of bridges that come with the program.
 pub mod embedded {

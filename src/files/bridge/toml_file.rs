@@ -1,10 +1,11 @@
 //! `bridge.toml`: where the modes are, sections along the span, wind profile, damping.
 
 use super::modal_data::Modes;
+use super::wind_block::WindBlock;
 use super::{Axes, abaqus, embedded, matlab, opensees, single_file, tables, wawi};
 use crate::aerodynamics::derivatives::Interpolation;
 use crate::aerodynamics::quasi_steady::{Arms, CoefficientsAt};
-use crate::error::{Error, Result, finite, non_negative, positive};
+use crate::error::{Error, Result, non_negative, positive};
 use crate::files::toml_lines;
 use crate::section::Dof;
 use serde::{Deserialize, Serialize};
@@ -183,25 +184,6 @@ impl StaticBlock {
     }
 }
 
-/// Wind along the span.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct WindBlock {
-    /// Wind speed at places along the girder over the wind speed of the bridge, linear between; left out, 1 everywhere.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub profile: Vec<ProfilePoint>,
-}
-
-/// A point of the wind profile.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ProfilePoint {
-    /// Place along the girder, m.
-    pub along_m: f64,
-    /// Wind speed there over that of the bridge.
-    pub factor: f64,
-}
-
 /// Speeds that are looked at.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
@@ -217,22 +199,6 @@ impl Default for SearchBlock {
         Self {
             speed_max_m_s: 120.0,
             speeds: 60,
-        }
-    }
-}
-
-impl WindBlock {
-    /// The factor at a place along the girder.
-    pub fn factor(&self, along_m: f64) -> f64 {
-        let points = &self.profile;
-        let after = points.partition_point(|p| p.along_m <= along_m);
-        match (after.checked_sub(1).map(|i| points[i]), points.get(after)) {
-            (Some(a), Some(b)) => {
-                a.factor + (b.factor - a.factor) * (along_m - a.along_m) / (b.along_m - a.along_m)
-            }
-            (Some(end), None) => end.factor,
-            (None, Some(end)) => end.factor,
-            (None, None) => 1.0,
         }
     }
 }
@@ -273,7 +239,7 @@ impl BridgeFile {
         for (i, section) in self.sections.iter().enumerate() {
             section.validate(&format!("section[{i}]"))?;
         }
-        self.validate_profile()?;
+        self.wind.validate()?;
         match (self.modes.format, &self.modes.axes, &self.modes.span) {
             (ModesFormat::Matlab, _, None) => {
                 return Err(Error::input(
@@ -299,27 +265,6 @@ impl BridgeFile {
                 .iter()
                 .try_for_each(|r| non_negative("modes.damping_ratio", *r).map(|_| ())),
         }
-    }
-
-    fn validate_profile(&self) -> Result<()> {
-        let points = &self.wind.profile;
-        for (i, point) in points.iter().enumerate() {
-            let place = format!("wind.profile[{i}]");
-            finite(&format!("{place}.along_m"), point.along_m)?;
-            non_negative(&format!("{place}.factor"), point.factor)?;
-            if i > 0 && points[i - 1].along_m >= point.along_m {
-                let expected = format!("a place beyond {} m", points[i - 1].along_m);
-                return Err(Error::input(place, expected, point.along_m.to_string()));
-            }
-        }
-        if !points.is_empty() && points.iter().all(|p| p.factor == 0.0) {
-            return Err(Error::input(
-                "wind.profile",
-                "wind somewhere along the bridge",
-                "zero everywhere",
-            ));
-        }
-        Ok(())
     }
 
     /// The modes that take part, with their damping.

@@ -55,9 +55,12 @@ impl Source {
             | Role::Gust(..)
             | Role::Motion(..)
             | Role::NodeForce(..) => Self::Input,
-            Role::Section(_) | Role::Strip(..) | Role::Prediction | Role::MotionDerivatives => {
-                Self::Section
-            }
+            Role::Section(_)
+            | Role::Strip(..)
+            | Role::Prediction
+            | Role::MotionDerivatives
+            | Role::ModeParameter(..)
+            | Role::TurbulenceFactor => Self::Section,
             Role::InitialDisplacement(_) | Role::InitialRate(_) | Role::InitialMode(_) => {
                 Self::Release
             }

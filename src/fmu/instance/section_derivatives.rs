@@ -72,7 +72,7 @@ impl SectionUnit {
         let velocity = memory.system.with_all(&velocity);
         let driven = Inputs {
             force: self.inputs.force_rate.clone(),
-            gust_m_s: self.inputs.gust_rate_m_s2,
+            gust_m_s: self.inputs.gust_rate_m_s2.clone(),
             ..Inputs::steady(self.inputs.wind_speed_m_s, self.inputs.force.len())
         };
         let mut rates = Outputs::default();
@@ -133,9 +133,8 @@ impl SectionUnit {
         for (force, place) in unit.force.iter_mut().zip(&self.places.force) {
             *force = f64::from(u8::from(*place == known));
         }
-        for (gust, place) in unit.gust_m_s.iter_mut().zip(&self.places.gusts) {
-            *gust = f64::from(u8::from(*place == known));
-        }
+        let gusts = self.places.gusts.iter();
+        unit.gust_m_s = gusts.map(|p| f64::from(u8::from(*p == known))).collect();
         let at_rest = memory
             .system
             .with_all(&vec![0.0; memory.system.all().len()]);

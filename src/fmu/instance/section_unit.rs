@@ -59,7 +59,11 @@ impl SectionUnit {
         Ok(Self {
             inputs_at: inputs.collect(),
             lags: resources.gusts.as_ref().map_or(0, GustForce::states),
-            inputs: Inputs::steady(0.0, places.force.len()),
+            inputs: Inputs {
+                gust_m_s: vec![0.0; places.gusts.len()],
+                gust_rate_m_s2: vec![0.0; places.gusts.len()],
+                ..Inputs::steady(0.0, places.force.len())
+            },
             places,
             aerodynamics: resources.model.model.realize(),
             stepper: None,

@@ -14,6 +14,7 @@ pub use growth::{Growing, growth_of};
 pub use label::Label;
 pub use runtime::{RUNTIME_DIR_VARIABLE, Runtime};
 
+use super::bridge_gusts::{TURBULENCE_FILE, TurbulenceOptions};
 use super::bridge_options::{BRIDGE_FILE, BridgeOptions};
 use super::description::model_description;
 use super::description_fmi3;
@@ -155,28 +156,47 @@ fn as_json(options: &impl Serialize) -> Result<String> {
     serde_json::to_string_pretty(options).map_err(|e| Error::Numerical(e.to_string()))
 }
 
-/// The FMU of a whole bridge as the bytes of its archive, with these runtimes in it. `model` is the model of the girder with
-/// the section that its first modes make.
+/// A whole bridge as it is exported.
+#[derive(Debug, Clone)]
+pub struct BridgeExport {
+    /// The force model of the first section, with the section that the first modes make.
+    pub model: TrainedModel,
+    /// The bridge.
+    pub bridge: BridgeOptions,
+    /// Turbulence that blows on it.
+    pub turbulence: Option<TurbulenceOptions>,
+}
+
+/// The FMU of a whole bridge as the bytes of its archive, with these runtimes in it.
 ///
 /// # Errors
 /// As [`package`]; what a bridge does below its onset is for the caller to judge.
 pub fn package_bridge(
-    model: &TrainedModel,
-    bridge: &BridgeOptions,
+    export: &BridgeExport,
     runtimes: &[Runtime],
     label: &Label,
+    version: FmiVersion,
 ) -> Result<Vec<u8>> {
     if runtimes.is_empty() {
         let expected = "a runtime for at least one platform";
         return Err(Error::input("FMU", expected, "none"));
     }
-    let (json, options) = (model.to_json()?, bridge.to_json()?);
-    let resources = Resources::of_bridge(json.as_bytes(), options.as_bytes())?;
-    let page = bridge_page::documentation(&resources, bridge);
-    let files = [(MODEL_FILE, json), (BRIDGE_FILE, options)];
+    let (json, options) = (export.model.to_json()?, export.bridge.to_json()?);
+    let field = export.turbulence.as_ref().map(serde_json::to_string);
+    let field = field
+        .transpose()
+        .map_err(|e| Error::Numerical(e.to_string()))?;
+    let resources = Resources::of_bridge(
+        json.as_bytes(),
+        options.as_bytes(),
+        field.as_deref().map(str::as_bytes),
+    )?;
+    let page = bridge_page::documentation(&resources, &export.bridge);
+    let files = [(MODEL_FILE, json), (BRIDGE_FILE, options)].into_iter();
+    let files = files.chain(field.map(|field| (TURBULENCE_FILE, field)));
     assembled(
         &resources,
-        (Listing::All, label, FmiVersion::Two),
+        (Listing::All, label, version),
         files,
         page,
         runtimes,

@@ -1,9 +1,14 @@
 //! The variables of a whole bridge, in the order of the table.
 
-use super::real::{FIXED, INPUT, OUTPUT, constants, real};
-use super::section::{calculated_parameters, capitalized, search_limit, wind_speed};
+use super::real::{FIXED, INPUT, OUTPUT, SMALLEST, TUNABLE, constants, real};
+use super::section::{
+    calculated_parameters, capitalized, gust_inputs, search_limit, status, wind_speed,
+};
 use super::words::words;
-use super::{InitialDependency, ModeOutput, Response, Role, Variable};
+use super::{
+    InitialDependency, ModeOutput, ModeParameter, Response, Role, SectionParameter, Status,
+    Variable,
+};
 use crate::error::Result;
 use crate::fmu::bridge_options::BridgeOptions;
 use crate::fmu::si;
@@ -18,7 +23,11 @@ const MOTION: [Response; 3] = [
 ];
 
 /// All variables with their dependencies.
-pub(super) fn variables(model: &TrainedModel, options: &BridgeOptions) -> Result<Vec<Variable>> {
+pub(super) fn variables(
+    model: &TrainedModel,
+    options: &BridgeOptions,
+    turbulence: bool,
+) -> Result<Vec<Variable>> {
     let mut table = vec![wind_speed(model)];
     let named = 0..options.named.len();
     table.extend(
@@ -26,14 +35,84 @@ pub(super) fn variables(model: &TrainedModel, options: &BridgeOptions) -> Result
             .clone()
             .flat_map(|n| Dof::THREE.map(|dof| force(options, n, dof))),
     );
+    table.extend(options.gusts.iter().flat_map(|g| gusts(options, &g.strips)));
     table.extend(named.flat_map(|n| motions(options, n)));
     table.extend((0..options.modes.len()).flat_map(|m| mode(options, m)));
+    table.extend(parameters(options, turbulence));
     table.push(search_limit(model));
     table.extend((0..options.modes.len()).map(|m| initial(options, m)));
     table.extend(calculated_parameters());
     table.extend(constants(model)?);
+    table.extend(status());
     fill_dependencies(&mut table);
     Ok(table)
+}
+
+/// The gusts of every strip.
+fn gusts<'a>(
+    options: &'a BridgeOptions,
+    strips: &'a [Vec<usize>],
+) -> impl Iterator<Item = Variable> + 'a {
+    strips.iter().enumerate().flat_map(|(s, nodes)| {
+        let ends = [nodes.first(), nodes.last()].map(|n| n.map(|n| &options.nodes[*n].name));
+        let place = match ends {
+            [Some(a), Some(b)] if a != b => format!(", at the nodes {a} to {b}"),
+            [Some(a), _] => format!(", at node {a}"),
+            _ => String::new(),
+        };
+        gust_inputs(s, |of| format!("strip[{}].{of}", s + 1)).map(|mut v| {
+            v.description.push_str(&place);
+            v
+        })
+    })
+}
+
+/// What may change while it runs.
+fn parameters(options: &BridgeOptions, turbulence: bool) -> Vec<Variable> {
+    let density = real(
+        "air_density",
+        Role::Section(SectionParameter::AirDensity),
+        TUNABLE,
+        "Air density rho",
+    )
+    .quantity("Density", Some(&si::KILOGRAM_PER_METRE3))
+    .min(SMALLEST)
+    .start(options.air_density_kg_m3);
+    let factor = real(
+        "turbulence_factor",
+        Role::TurbulenceFactor,
+        TUNABLE,
+        "Factor on the turbulence in the archive, which begins at the time zero and repeats itself",
+    )
+    .start(1.0);
+    let modes = options.modes.iter().enumerate().flat_map(|(m, mode)| {
+        let parameter = |of, which, text: &str| {
+            let name = format!("mode[{}].{of}", mode.number);
+            real(name, Role::ModeParameter(m, which), TUNABLE, text)
+        };
+        [
+            parameter(
+                "frequency",
+                ModeParameter::Frequency,
+                "Natural frequency without wind",
+            )
+            .quantity("Frequency", Some(&si::HERTZ))
+            .min(SMALLEST)
+            .start(mode.frequency_hz),
+            parameter(
+                "damping_ratio",
+                ModeParameter::DampingRatio,
+                "Structural damping as a ratio to critical",
+            )
+            .quantity("DampingRatio", None)
+            .min(0.0)
+            .start(mode.damping_ratio),
+        ]
+    });
+    std::iter::once(density)
+        .chain(turbulence.then_some(factor))
+        .chain(modes)
+        .collect()
 }
 
 /// Where a node is, in words.
@@ -113,18 +192,33 @@ fn initial(options: &BridgeOptions, m: usize) -> Variable {
     real(name, Role::InitialMode(m), FIXED, text).start(options.initial[m])
 }
 
-/// Displacements and rates follow the state; accelerations and forces follow wind and external forces at once.
+/// Displacements and rates follow the state; accelerations and forces follow wind, external forces and gusts at once.
 fn fill_dependencies(table: &mut [Variable]) {
     let places = |wanted: &dyn Fn(Role) -> bool| -> Vec<usize> {
         (0..table.len())
             .filter(|i| wanted(table[*i].role))
             .collect()
     };
-    let inputs = places(&|r| matches!(r, Role::WindSpeed | Role::NodeForce(..)));
+    let inputs = places(&|r| matches!(r, Role::WindSpeed | Role::NodeForce(..) | Role::Gust(..)));
+    let wind = places(&|r| r == Role::WindSpeed);
     let release = places(&|r| matches!(r, Role::InitialMode(_)));
-    let limit = places(&|r| r == Role::OnsetSearchLimit);
-    let mut all = [inputs.clone(), release.clone()].concat();
-    all.sort_unstable();
+    let structure = |r| {
+        let density = Role::Section(SectionParameter::AirDensity);
+        matches!(r, Role::ModeParameter(..)) || r == density
+    };
+    let searched = places(&|r| structure(r) || r == Role::OnsetSearchLimit);
+    let all = places(&|r| {
+        structure(r)
+            || matches!(
+                r,
+                Role::WindSpeed
+                    | Role::NodeForce(..)
+                    | Role::Gust(..)
+                    | Role::InitialMode(_)
+                    | Role::TurbulenceFactor
+            )
+    });
+    let with_wind = [wind.clone(), searched.clone()].concat();
     let dependent = |on: &[usize]| -> Vec<InitialDependency> {
         on.iter()
             .map(|on| InitialDependency {
@@ -138,8 +232,13 @@ fn fill_dependencies(table: &mut [Variable]) {
             Role::NodeMotion(_, Response::Acceleration, _) | Role::Mode(_, ModeOutput::Force) => {
                 (inputs.clone(), dependent(&all))
             }
-            Role::NodeMotion(..) | Role::Mode(..) => (Vec::new(), dependent(&release)),
-            Role::Calculated(_) => (Vec::new(), dependent(&limit)),
+            Role::NodeMotion(..)
+            | Role::Mode(..)
+            | Role::Status(Status::AmplitudeInLinearRange) => (Vec::new(), dependent(&release)),
+            Role::Calculated(_) | Role::Status(Status::FlutterSpeed) => {
+                (Vec::new(), dependent(&searched))
+            }
+            Role::Status(_) => (wind.clone(), dependent(&with_wind)),
             _ => continue,
         };
     }

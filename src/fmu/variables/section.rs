@@ -335,7 +335,7 @@ pub(super) fn calculated_parameters() -> Vec<Variable> {
 }
 
 /// What can be read while running in any importer, also in those that take outputs only.
-fn status() -> Vec<Variable> {
+pub(super) fn status() -> Vec<Variable> {
     let output = |name, what, text: &str| real(name, Role::Status(what), OUTPUT, text);
     let flag = |name, what, text: &str| Variable {
         value: Value::Boolean(None),

@@ -72,7 +72,13 @@ pub fn bridge_flutter(study: &BridgeStudy) -> Result<BridgeFlutter> {
         }
     }
     let tested = study.tested_range();
-    let by_model = by_model(&study.by_model, &search, tested)?;
+    let mut by_model = by_model(&study.by_model, &search, tested)?;
+    if let FlutterSearch::Onset(onset) = &mut by_model.search {
+        match study.onset_interval(onset) {
+            Ok(interval) => onset.interval = interval,
+            Err(e) => failed.push(format!("interval of the onset: {e}")),
+        }
+    }
     let section = coupled(&study.by_model)?;
     let speeds = search_speeds(&search);
     let curves = trace_modes("model", &section, &speeds)?;

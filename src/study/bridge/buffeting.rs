@@ -4,8 +4,9 @@ use super::BridgeStudy;
 use crate::aerodynamics::quasi_steady::LinearQuasiSteady;
 use crate::bridge::{Node, motion_index};
 use crate::buffeting::{
-    Coherence, Gust, SpanEnsemble, SpanPlan, SpanProblem, SpanRecord, SpanResponse, Turbulence,
-    TurbulenceField, span_ensemble, span_record, span_response, turbulence_field,
+    Coherence, Gust, SpanEnsemble, SpanPlan, SpanProblem, SpanRecord, SpanResponse, SpanSpectra,
+    Turbulence, TurbulenceField, span_ensemble, span_record, span_response, span_spectra,
+    turbulence_field,
 };
 use crate::error::{Error, Result, positive};
 use crate::files::bridge::FieldTable;
@@ -42,6 +43,9 @@ pub struct BridgeBuffeting {
     pub frequency: SpanResponse,
     /// Expected peak factors in the length of a record, from the frequency domain.
     pub expected_peak_factor: Vec<[f64; 3]>,
+    /// Spectra of the nodes; too many numbers for the JSON of a command.
+    #[serde(skip)]
+    pub spectra: SpanSpectra,
     /// Time domain.
     pub time: SpanEnsemble,
 }
@@ -86,7 +90,8 @@ impl BridgeStudy {
         Ok(block)
     }
 
-    fn problem(&self, block: &BuffetingBlock) -> Result<SpanProblem<'_>> {
+    /// Buffeting matrix of each group: rows vertical, lateral, rotation; columns `u/V`, `w/V`.
+    pub(super) fn gust_matrices(&self) -> Result<Vec<[[f64; 2]; 3]>> {
         let matrix = |section: &usize| {
             let stated = &self.file.sections[*section];
             let statics = stated.statics.as_ref().ok_or_else(|| {
@@ -102,19 +107,34 @@ impl BridgeStudy {
             }
             Ok(matrix)
         };
+        self.section_of_group.iter().map(matrix).collect()
+    }
+
+    fn problem(&self, block: &BuffetingBlock) -> Result<SpanProblem<'_>> {
         Ok(SpanProblem {
             bridge: &self.by_model,
-            gust_matrices: self
-                .section_of_group
-                .iter()
-                .map(matrix)
-                .collect::<Result<_>>()?,
+            gust_matrices: self.gust_matrices()?,
             turbulence: Turbulence {
                 along: block.along,
                 vertical: block.vertical,
             },
             coherence: block.coherence,
         })
+    }
+
+    /// Whether a field blows at the nodes of the bridge.
+    pub(super) fn check_field(&self, field: &FieldTable) -> Result<()> {
+        let nodes = &self.by_model.nodes;
+        let same = |(a, n): (&f64, &Node)| (a - n.along_m).abs() < SAME_PLACE;
+        if field.along_m.len() == nodes.len() && field.along_m.iter().zip(nodes).all(same) {
+            return Ok(());
+        }
+        let count = nodes.len();
+        Err(Error::input(
+            "heading",
+            format!("columns at the places of the {count} nodes of the bridge"),
+            format!("{} places", field.along_m.len()),
+        ))
     }
 
     /// Response at the nodes of the block at a wind speed, in both domains.
@@ -138,6 +158,7 @@ impl BridgeStudy {
                 .collect(),
             expected_peak_factor: frequency.peak_factors(block.time.duration_s),
             frequency,
+            spectra: span_spectra(&problem, &nodes, speed_m_s)?,
             time,
         })
     }
@@ -152,19 +173,7 @@ impl BridgeStudy {
         speed_m_s: f64,
         field: FieldTable,
     ) -> Result<BridgeRecord> {
-        let nodes = &self.by_model.nodes;
-        let same = |(a, n): (&f64, &Node)| (a - n.along_m).abs() < SAME_PLACE;
-        if field.along_m.len() != nodes.len() || !field.along_m.iter().zip(nodes).all(same) {
-            let expected = format!(
-                "columns at the places of the {} nodes of the bridge",
-                nodes.len()
-            );
-            return Err(Error::input(
-                "heading",
-                expected,
-                format!("{} places", field.along_m.len()),
-            ));
-        }
+        self.check_field(&field)?;
         let field = TurbulenceField {
             step_s: field.step_s,
             along_m: field.along_m,
@@ -172,7 +181,10 @@ impl BridgeStudy {
         };
         let places = self.named(&block.nodes)?;
         Ok(BridgeRecord {
-            nodes: places.iter().map(|n| nodes[*n].name.clone()).collect(),
+            nodes: places
+                .iter()
+                .map(|n| self.by_model.nodes[*n].name.clone())
+                .collect(),
             record: span_record(&self.problem(block)?, &places, speed_m_s, &field)?,
         })
     }

@@ -1,9 +1,13 @@
 //! A bridge study as what goes into an FMU.
 
 use super::{BridgeStudy, coupled};
+use crate::aerodynamics::RationalAdmittance;
 use crate::error::{Error, Result};
+use crate::files::bridge::FieldTable;
 use crate::flutter::{BridgeMotion, FlutterSearch, OnsetSearch, find_onset};
+use crate::fmu::bridge_gusts::{BridgeGusts, TurbulenceOptions};
 use crate::fmu::bridge_options::{BridgeOptions, GroupOptions};
+use crate::fmu::package::BridgeExport;
 use crate::trained_model::{Experiment, Provenance, TrainedModel};
 
 /// Amplitude of the default release where the girder moves most, of half the width.
@@ -14,31 +18,38 @@ const PART_OF_ONSET: f64 = 0.98;
 const PERIODS: f64 = 10.0;
 const STEPS_PER_PERIOD: f64 = 50.0;
 
-/// Model of the girder and bridge of an FMU.
-#[derive(Debug, Clone)]
-pub struct BridgeExport {
-    /// The force model of the first section, with the section that the first modes make.
-    pub model: TrainedModel,
-    /// The bridge.
-    pub bridge: BridgeOptions,
+/// What is wanted of an FMU.
+#[derive(Debug, Clone, Default)]
+pub struct Wanted {
+    /// Names of the nodes with inputs and outputs; none for mid-span and both quarter points.
+    pub nodes: Vec<String>,
+    /// Whether a bridge that grows below its onset is exported.
+    pub allow_unstable: bool,
+    /// Strips with gusts of their own, neighbouring nodes together; `None` for no gusts as inputs.
+    pub gust_strips: Option<usize>,
+    /// On the gusts.
+    pub admittance: RationalAdmittance,
+    /// Turbulence that goes with it.
+    pub turbulence: Option<FieldTable>,
 }
 
 impl BridgeStudy {
-    /// What goes into an FMU, with inputs and outputs at the nodes named `named` (left out: mid-span and both quarter points).
+    /// What goes into an FMU.
     ///
     /// # Errors
-    /// [`Error::Input`] for nodes that are none; [`Error::Unstable`] for a bridge that grows below its onset, unless
-    /// `allow_unstable`.
-    pub fn export(&self, named: &[String], allow_unstable: bool) -> Result<BridgeExport> {
+    /// [`Error::Input`] for nodes and strips that are none, and for gusts on sections without static coefficients;
+    /// [`Error::Unstable`] for a bridge that grows below its onset, unless that is allowed.
+    pub fn export(&self, wanted: &Wanted) -> Result<BridgeExport> {
         let bridge = &self.by_model;
-        let named = self.named(named)?;
+        let named = self.named(&wanted.nodes)?;
+        let gusts = self.gusts(wanted)?;
         let search = OnsetSearch {
             speed_max_m_s: self.file.flutter.speed_max_m_s,
             speeds: self.file.flutter.speeds,
         };
         // as the unit itself judges: whatever grows counts, tested or not
         let found = find_onset("bridge", &coupled(bridge)?, &search, None)?;
-        if let (FlutterSearch::UnstableAtOrBelow(_), false) = (&found, allow_unstable) {
+        if let (FlutterSearch::UnstableAtOrBelow(_), false) = (&found, wanted.allow_unstable) {
             return Err(Error::Unstable(format!(
                 "the bridge {}: a unit that grows from the lowest wind speed on is exported only with --allow-unstable",
                 found.explain()
@@ -94,7 +105,52 @@ impl BridgeStudy {
                 named,
                 tested_range: self.tested_range(),
                 initial: self.release(motion.transpose()?.as_ref()),
+                gusts,
             },
+            turbulence: wanted
+                .turbulence
+                .as_ref()
+                .map(|field| self.turbulence(field))
+                .transpose()?,
+        })
+    }
+
+    /// Gust forces of the sections on strips of neighbouring nodes.
+    fn gusts(&self, wanted: &Wanted) -> Result<Option<BridgeGusts>> {
+        if wanted.gust_strips.is_none() && wanted.turbulence.is_none() {
+            return Ok(None);
+        }
+        let nodes = self.by_model.nodes.len();
+        let count = wanted.gust_strips.unwrap_or(0);
+        if count > nodes || wanted.gust_strips == Some(0) {
+            let expected = format!("1 to {nodes}, the nodes of the bridge");
+            return Err(Error::input(
+                "strips with gusts",
+                expected,
+                count.to_string(),
+            ));
+        }
+        let first = |strip: usize| (strip * nodes).div_ceil(count);
+        let sections = self.file.sections.iter().map(|s| s.name.as_str());
+        let names = sections.collect::<Vec<_>>().join(", ");
+        Ok(Some(BridgeGusts {
+            coefficients: self.gust_matrices()?,
+            admittance: wanted.admittance,
+            strips: (0..count)
+                .map(|s| (first(s)..first(s + 1)).collect())
+                .collect(),
+            source: format!("quasi-steady theory with the static coefficients of {names}"),
+        }))
+    }
+
+    /// A field of a file, one gust a node.
+    fn turbulence(&self, field: &FieldTable) -> Result<TurbulenceOptions> {
+        self.check_field(field)?;
+        let [u, w] = field.gusts.clone();
+        Ok(TurbulenceOptions {
+            step_s: field.step_s,
+            u,
+            w,
         })
     }
 

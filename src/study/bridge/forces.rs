@@ -8,6 +8,7 @@ use crate::files::bridge::SectionBlock;
 use crate::files::derivatives::named_table;
 use crate::identification::{FeedThrough, Form, FrequencyFit, FrequencyWeights, fit_table};
 use crate::trained_model::{Model, TrainedModel};
+use crate::uncertainty::{CoefficientUncertainty, table_uncertainty};
 use crate::units::ReducedFrequencyRange;
 use nalgebra::DMatrix;
 use std::path::Path;
@@ -30,6 +31,8 @@ pub struct SectionForces {
     pub tested: Option<ReducedFrequencyRange>,
     /// What a user should know of the fit.
     pub notes: Vec<String>,
+    /// How far the data leave the coefficients of the model open, or why that is not known; `None` for stated coefficients.
+    pub uncertainty: std::result::Result<Option<CoefficientUncertainty>, String>,
 }
 
 impl std::fmt::Debug for SectionForces {
@@ -67,6 +70,7 @@ impl SectionForces {
                 licence: trained.provenance.licence,
                 tested: Some(trained.tested_range),
                 notes: Vec::new(),
+                uncertainty: Err("the data behind its model are not known here".to_owned()),
             });
         }
         if let Some(Some(fitted)) = fitted {
@@ -99,6 +103,7 @@ impl SectionForces {
             licence: "that of the bridge file".to_owned(),
             tested: None,
             notes: Vec::new(),
+            uncertainty: Ok(None),
         })
     }
 
@@ -145,7 +150,9 @@ fn by_table(
             ..FrequencyFit::default()
         },
     };
-    let (model, report) = fit_table(&table.samples(&block.motions), &block.motions, &options)?;
+    let samples = table.samples(&block.motions);
+    let (model, report) = fit_table(&samples, &block.motions, &options)?;
+    let uncertainty = table_uncertainty(&samples, &block.motions, &options, &report);
     let forces = SectionForces {
         table: None,
         model: Arc::new(model.clone()),
@@ -158,6 +165,7 @@ fn by_table(
             .iter()
             .map(|n| format!("section {}: {n}", block.name))
             .collect(),
+        uncertainty: uncertainty.map(Some).map_err(|e| e.to_string()),
     };
     Ok((between, Some(forces)))
 }

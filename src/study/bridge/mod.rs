@@ -4,12 +4,13 @@ mod answers;
 mod buffeting;
 mod export;
 mod forces;
+mod interval;
 mod scatter;
 
 use answers::coupled;
 pub use answers::{BridgeAnswer, BridgeFlutter, LeftOut, bridge_flutter};
 pub use buffeting::{BridgeBuffeting, BridgeRecord, BuffetingBlock};
-pub use export::BridgeExport;
+pub use export::Wanted;
 pub use forces::SectionForces;
 pub use scatter::{Scatter, ScatteredOnset};
 

@@ -1,0 +1,113 @@
+//! Gusts on strips of a bridge as forces on its modes.
+//!
+//! Gust forces per unit length are quasi-steady, `½ρVB A (u, w)` (the moment with `B²`), so strip `s` gives mode `m`
+//! `V Σ_{i in s} w_i φ_m(i)ᵀ ½ρp diag(B, B, B²) A (u_s, w_s)`. The admittance delays a gust by lags that follow with the wind and
+//! the width of their strip: strips of one `p/B` share the lags of each mode, and their forces per 1 m/s of wind are a channel.
+
+use super::Bridge;
+use crate::error::{Error, Result};
+use crate::section::Dof;
+
+/// What the gusts of strips do to the mass-normalised modes, per 1 m/s of wind.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GustChannels {
+    /// Wind factor over width of each group of channels, 1/m; as many channels in a group as modes.
+    pub passing: Vec<f64>,
+    /// Force on each channel by a gust of 1 m/s: `u` of the first strip, `w` of the first strip, `u` of the second …
+    pub by_gust: Vec<Vec<f64>>,
+}
+
+impl GustChannels {
+    /// Of a bridge with the buffeting matrices `A` of its groups (rows vertical, lateral, rotation; columns `u`, `w`), where
+    /// each of `strips` holds places of nodes in one gust. Nodes in no strip and in no group feel none.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for another number of matrices than of groups and for strips of nodes that are none or already taken.
+    pub fn new(bridge: &Bridge, matrices: &[[[f64; 2]; 3]], strips: &[Vec<usize>]) -> Result<Self> {
+        if matrices.len() != bridge.groups.len() {
+            return Err(Error::input(
+                "gust forces",
+                format!("coefficients of {} groups", bridge.groups.len()),
+                matrices.len().to_string(),
+            ));
+        }
+        let strip_of_node = owners(bridge, strips)?;
+        let modes = bridge.modes.len();
+        let mut all = Self {
+            passing: Vec::new(),
+            by_gust: vec![Vec::new(); 2 * strips.len()],
+        };
+        for (group, matrix) in bridge.groups.iter().zip(matrices) {
+            if group.wind_factor == 0.0 {
+                continue;
+            }
+            let at = all.channel_of(group.wind_factor / group.width_m, modes);
+            let pressure = 0.5 * bridge.air_density_kg_m3 * group.wind_factor;
+            let scale = Dof::THREE.map(|dof| pressure * dof.force_scale(group.width_m));
+            for &node in &group.nodes {
+                let Some(strip) = strip_of_node[node] else {
+                    continue;
+                };
+                let length = bridge.nodes[node].length_m;
+                for (m, mode) in bridge.modes.iter().enumerate() {
+                    let by_mass = length / mode.generalised_mass.sqrt();
+                    for component in 0..2 {
+                        let rows = mode.shape[node].iter().zip(matrix).zip(scale);
+                        let work: f64 = rows.map(|((phi, a), s)| phi * s * a[component]).sum();
+                        all.by_gust[2 * strip + component][at + m] += by_mass * work;
+                    }
+                }
+            }
+        }
+        Ok(all)
+    }
+
+    /// First channel of the strips with this wind factor over width.
+    fn channel_of(&mut self, passing: f64, modes: usize) -> usize {
+        let known = self.passing.iter().position(|p| *p == passing);
+        let group = known.unwrap_or_else(|| {
+            self.passing.push(passing);
+            let channels = self.passing.len() * modes;
+            self.by_gust
+                .iter_mut()
+                .for_each(|c| c.resize(channels, 0.0));
+            self.passing.len() - 1
+        });
+        group * modes
+    }
+
+    /// Adds the forces of these gusts, m/s, to every channel.
+    pub fn add(&self, gusts: impl Iterator<Item = f64>, channels: &mut [f64]) {
+        for (gust, column) in gusts.zip(&self.by_gust).filter(|(gust, _)| *gust != 0.0) {
+            for (channel, force) in channels.iter_mut().zip(column) {
+                *channel += gust * force;
+            }
+        }
+    }
+}
+
+/// Strip of every node.
+fn owners(bridge: &Bridge, strips: &[Vec<usize>]) -> Result<Vec<Option<usize>>> {
+    let mut owner = vec![None; bridge.nodes.len()];
+    for (s, strip) in strips.iter().enumerate() {
+        for &node in strip {
+            let place = format!("gusts: strip {}", s + 1);
+            let claimed = owner.get_mut(node).ok_or_else(|| {
+                let expected = format!("nodes below {}", bridge.nodes.len());
+                Error::input(&place, expected, node.to_string())
+            })?;
+            if let Some(other) = claimed.replace(s) {
+                return Err(Error::input(
+                    place,
+                    "each node in one strip",
+                    format!(
+                        "node {} also in strip {}",
+                        bridge.nodes[node].name,
+                        other + 1
+                    ),
+                ));
+            }
+        }
+    }
+    Ok(owner)
+}

@@ -1,0 +1,155 @@
+//! Derivatives of an exported bridge. Outputs are linear in state, forces and gusts, and the derivative with respect to the wind
+//! is closed; only parameters are differenced.
+
+use super::bridge_built::Built;
+use super::bridge_search::Found;
+use super::bridge_unit::BridgeUnit;
+use super::derivatives::central_difference;
+use super::layout::Source;
+use super::saving::Memory;
+use super::trust::smallest_damping;
+use super::unit::Unit;
+use crate::error::Result;
+use crate::fmu::lifecycle::State;
+use crate::fmu::refusal::Answer;
+use crate::fmu::resources::Resources;
+use crate::fmu::variables::{Calculated, Role, Status};
+use crate::response::Outputs;
+
+/// Relative step of the central differences.
+const RELATIVE_STEP: f64 = 1e-4;
+/// Step of a parameter that is zero.
+const STEP_FROM_ZERO: f64 = 1e-6;
+
+impl BridgeUnit {
+    /// Derivatives of all unknowns with respect to one known.
+    pub fn column(
+        &mut self,
+        resources: &Resources,
+        memory: &mut Memory,
+        known: usize,
+        unknowns: &[Role],
+    ) -> Answer<Vec<f64>> {
+        let role = resources.table.variables()[known].role;
+        let modal = match (Source::of(role), role) {
+            (_, Role::WindSpeed) => {
+                self.load_inputs(memory);
+                let modal = self.by_wind(memory);
+                let slope = |role: &Role| match role {
+                    Role::Status(_) => self.present_by_wind(memory, *role),
+                    other => Ok(self.pick(&modal, *other)),
+                };
+                return Ok(unknowns.iter().map(slope).collect::<Result<_>>()?);
+            }
+            (Source::Limit, _) => return Ok(self.by_limit(resources, memory, unknowns)),
+            (Source::Section, _) => return self.by_parameter(resources, memory, known, unknowns),
+            _ => self.by_unit(memory, known)?,
+        };
+        Ok(unknowns.iter().map(|u| self.pick(&modal, *u)).collect())
+    }
+
+    /// What a force, a gust or a coordinate at release of one does.
+    fn by_unit(&mut self, memory: &Memory, known: usize) -> Result<Outputs> {
+        let mut unit = memory.clone();
+        let inputs = &self.places.inputs[1..];
+        for place in inputs.iter().chain(&self.places.initial) {
+            unit.values[*place] = f64::from(u8::from(*place == known));
+        }
+        if let Some(place) = self.places.turbulence_factor {
+            unit.values[place] = 0.0;
+        }
+        unit.input_rates.fill(0.0);
+        self.load_inputs(&unit);
+        let released = self.places.initial.contains(&known);
+        // while initialising the lags stand where the gusts are
+        let initial = memory.state == State::Initialization;
+        let state = if released || initial {
+            self.release(&unit.values)?
+        } else {
+            self.built.at_rest()
+        };
+        self.modal(&state)
+    }
+
+    /// What is found below the limit of the search does not depend on it; what is not found is the limit.
+    fn by_limit(
+        &mut self,
+        resources: &Resources,
+        memory: &mut Memory,
+        unknowns: &[Role],
+    ) -> Vec<f64> {
+        self.calculate(resources, memory, &mut Vec::new());
+        let place = |which| resources.table.find(Role::Calculated(which));
+        let none = |which| place(which).is_some_and(|p| memory.values[p] == 0.0);
+        let slope = |role: &Role| match role {
+            Role::Calculated(Calculated::OnsetSpeed)
+            | Role::Status(Status::FlutterSpeed | Status::FlutterMargin) => {
+                none(Calculated::OnsetFound)
+            }
+            Role::Calculated(Calculated::DivergenceSpeed) => none(Calculated::DivergenceFound),
+            _ => false,
+        };
+        unknowns
+            .iter()
+            .map(|u| f64::from(u8::from(slope(u))))
+            .collect()
+    }
+
+    fn by_parameter(
+        &mut self,
+        resources: &Resources,
+        memory: &Memory,
+        known: usize,
+        unknowns: &[Role],
+    ) -> Answer<Vec<f64>> {
+        let Some(options) = &resources.bridge else {
+            return Ok(vec![0.0; unknowns.len()]);
+        };
+        let value = memory.values[known];
+        let step = if value == 0.0 {
+            STEP_FROM_ZERO
+        } else {
+            RELATIVE_STEP * value.abs()
+        };
+        let present = std::mem::replace(
+            &mut self.built,
+            Built::new(resources, options, &memory.values)?,
+        );
+        let found = central_difference(resources, memory, (known, step), |other| {
+            self.built = Built::new(resources, options, &other.values)?;
+            Ok(self.unknowns(other, unknowns)?)
+        });
+        self.built = present;
+        found
+    }
+
+    /// The unknowns of a bridge that is released with the values in `memory`.
+    fn unknowns(&mut self, memory: &Memory, unknowns: &[Role]) -> Result<Vec<f64>> {
+        self.load_inputs(memory);
+        let state = self.release(&memory.values)?;
+        let modal = self.modal(&state)?;
+        let wind = memory.values[self.places.inputs[0]];
+        let wants = |wanted: fn(&Role) -> bool| unknowns.iter().any(wanted);
+        let of_onset = |u: &Role| {
+            let status = Role::Status(Status::FlutterMargin);
+            matches!(u, Role::Calculated(_) | Role::Status(Status::FlutterSpeed)) || *u == status
+        };
+        let limit = memory.values[self.places.limit];
+        let found = wants(of_onset).then(|| Found::search(&self.built, self.tested, limit));
+        let damping = if unknowns.contains(&Role::Status(Status::DampingNow)) {
+            smallest_damping(self.built.stepper.section(), wind)?
+        } else {
+            0.0
+        };
+        let value = |unknown: &Role| match (unknown, &found) {
+            (Role::Calculated(which), Some(found)) => found.value(*which),
+            (Role::Status(Status::FlutterSpeed), Some(f)) => f.value(Calculated::OnsetSpeed),
+            (Role::Status(Status::FlutterMargin), Some(f)) => {
+                f.value(Calculated::OnsetSpeed) - wind
+            }
+            (Role::Status(Status::DampingNow), _) => damping,
+            (other, _) => self.pick(&modal, *other),
+        };
+        Ok(unknowns.iter().map(value).collect())
+    }
+}

@@ -1,0 +1,79 @@
+//! How far the data behind the models of the sections leave the onset of a bridge open.
+
+use super::{BridgeStudy, coupled};
+use crate::error::{Error, Result};
+use crate::flutter::{NearbyOnset, Onset, OnsetInterval};
+use crate::uncertainty::{CoefficientUncertainty, OnsetError};
+use std::sync::Arc;
+
+/// Relative step of the difference of onsets, and the smallest coefficient that it is relative to.
+const STEP: f64 = 1e-4;
+const SMALLEST: f64 = 1e-2;
+
+impl BridgeStudy {
+    /// 95 % interval of an onset of the bridge by its models: the covariance of the coefficients of every section through the
+    /// slopes of the onset, sections independent of each other. Slopes are differences of onsets, each found by following the
+    /// mode that flutters.
+    ///
+    /// # Errors
+    /// Those of the forces; [`Error::Numerical`] when the mode cannot be followed to nearby coefficients.
+    pub fn onset_interval(&self, onset: &Onset) -> Result<OnsetInterval> {
+        let nearby = NearbyOnset::of(&self.by_model, &onset.at)?;
+        let (mut variance, mut of_each) = (0.0, 0.0);
+        for (section, forces) in self.sections.iter().enumerate() {
+            let name = &self.file.sections[section].name;
+            let estimate = match &forces.uncertainty {
+                Ok(Some(estimate)) => estimate,
+                // static coefficients are stated without errors
+                Ok(None) => continue,
+                Err(why) => return Ok(OnsetInterval::none(format!("section {name}: {why}"))),
+            };
+            let gradient = self.onset_slopes(&nearby, section, estimate)?;
+            let part = estimate.standard_error(&gradient)?.powi(2);
+            let freedom = estimate.degrees_of_freedom(&gradient).unwrap_or(1.0);
+            variance += part;
+            // as Satterthwaite adds them
+            of_each += part * part / freedom;
+        }
+        if variance == 0.0 {
+            let reason = "the forces are stated without errors";
+            return Ok(OnsetInterval::none(reason));
+        }
+        let error = OnsetError {
+            speed_m_s: onset.at.speed_m_s,
+            standard_error_m_s: variance.sqrt(),
+            degrees_of_freedom: variance * variance / of_each,
+        };
+        Ok(error.interval())
+    }
+
+    /// Slopes of the onset over the coefficients of one section, m/s.
+    fn onset_slopes(
+        &self,
+        nearby: &NearbyOnset,
+        section: usize,
+        estimate: &CoefficientUncertainty,
+    ) -> Result<Vec<f64>> {
+        let values = estimate.values();
+        let onset_at = |p: usize, step: f64| -> Result<f64> {
+            let mut moved = values.clone();
+            moved[p] += step;
+            let forces = Arc::new(estimate.model_at(&moved)?);
+            let mut bridge = self.by_model.clone();
+            let groups = bridge.groups.iter_mut().zip(&self.section_of_group);
+            for (group, _) in groups.filter(|(_, of)| **of == section) {
+                group.forces = forces.clone();
+            }
+            let found = nearby.find(&coupled(&bridge)?);
+            found.map(|(speed, _)| speed).ok_or_else(|| {
+                Error::Numerical("interval: the mode that flutters cannot be followed".into())
+            })
+        };
+        (0..values.len())
+            .map(|p| {
+                let step = STEP * values[p].abs().max(SMALLEST);
+                Ok((onset_at(p, step)? - onset_at(p, -step)?) / (2.0 * step))
+            })
+            .collect()
+    }
+}
