@@ -1,6 +1,5 @@
 //! Gusts that an exported bridge takes: as inputs of strips, and from a field in its archive.
 
-use super::bridge_options::BridgeOptions;
 use crate::aerodynamics::RationalAdmittance;
 use crate::bridge::{Bridge, GustChannels};
 use crate::error::{Error, Result, finite, positive};
@@ -51,22 +50,22 @@ pub struct TurbulenceOptions {
 }
 
 impl TurbulenceOptions {
-    /// Reads a field for a bridge.
+    /// Reads a field for a bridge of so many nodes, with the forces of its gusts.
     ///
     /// # Errors
-    /// [`Error::Input`] for text that is none, and for another number of nodes or of samples.
-    pub fn from_json(text: &str, bridge: &BridgeOptions) -> Result<Self> {
+    /// [`Error::Input`] for text that is none, for a bridge without such forces, and for another number of nodes or of
+    /// samples.
+    pub fn from_json(text: &str, nodes: usize, gusts: Option<&BridgeGusts>) -> Result<Self> {
         let field: Self = serde_json::from_str(text).map_err(|e| {
             let place = format!("line {}, column {}", e.line(), e.column());
             Error::input(place, "a field of turbulence", e.to_string())
         })?;
         positive("step_s", field.step_s)?;
-        if bridge.gusts.is_none() {
+        if gusts.is_none() {
             let expected = "a bridge with gust forces";
             return Err(Error::input("turbulence", expected, "one without"));
         }
         let samples = field.samples();
-        let nodes = bridge.nodes.len();
         for (name, rows) in [("u", &field.u), ("w", &field.w)] {
             if rows.len() != nodes || samples < 2 || rows.iter().any(|r| r.len() != samples) {
                 return Err(Error::input(

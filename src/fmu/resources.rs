@@ -141,7 +141,9 @@ impl Resources {
         let model = TrainedModel::from_json(text(bytes)?)?;
         let options = BridgeOptions::from_json(text(bridge)?)?;
         let field = |json| {
-            TurbulenceOptions::from_json(text(json)?, &options).map_err(|e| e.at(TURBULENCE_FILE))
+            let (nodes, gusts) = (options.nodes.len(), options.gusts.as_ref());
+            TurbulenceOptions::from_json(text(json)?, nodes, gusts)
+                .map_err(|e| e.at(TURBULENCE_FILE))
         };
         let field = turbulence.map(field).transpose()?;
         let table = VariableTable::of_bridge(&model, &options, field.is_some())?;
