@@ -4,8 +4,7 @@ use super::answer::Answer;
 use super::common::StudyArgs;
 use super::output::OutputDir;
 use super::progress::Progress;
-use super::routes;
-use super::{account, evidence, headline, stages};
+use super::{account, evidence, headline, routes, stages};
 use crate::error::Result;
 use crate::study::{
     Deck, KnownUncertainty, StageFailure, Study, attempt, route_table, state_route_intervals,

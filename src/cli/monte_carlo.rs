@@ -2,10 +2,9 @@
 
 use super::answer::Answer;
 use super::common::folder_of;
-use super::figures;
 use super::output::OutputDir;
 use super::progress::Progress;
-use super::stages;
+use super::{figures, stages};
 use crate::error::Result;
 use crate::reliability::{MonteCarloPlan, MonteCarloResult, monte_carlo};
 use crate::report::onset_distribution_figure;

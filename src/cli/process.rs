@@ -8,16 +8,11 @@ use super::output::OutputDir;
 use super::progress::Progress;
 use super::stages::RECORDS;
 use crate::aerodynamics::FlatPlate;
-use crate::aerodynamics::derivatives::Derivative;
-use crate::aerodynamics::derivatives::TableHeader;
-use crate::aerodynamics::quasi_steady::Arms;
-use crate::aerodynamics::quasi_steady::LinearQuasiSteady;
-use crate::aerodynamics::quasi_steady::QuasiSteady;
+use crate::aerodynamics::derivatives::{Derivative, TableHeader};
+use crate::aerodynamics::quasi_steady::{Arms, LinearQuasiSteady, QuasiSteady};
 use crate::error::{Error, Result};
 use crate::files::coefficients::named_coefficients;
-use crate::files::derivatives::workbook_bytes;
-use crate::files::derivatives::write_csv;
-use crate::files::derivatives::write_points;
+use crate::files::derivatives::{workbook_bytes, write_csv, write_points};
 use crate::files::toml_lines;
 use crate::identification::derivatives::{
     DerivativeOptions, IdentifiedDerivatives, identify_derivatives,

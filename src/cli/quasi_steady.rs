@@ -1,12 +1,11 @@
 //! `aerodeck quasi-steady`: equilibrium, linear model, onset and a nonlinear run from static coefficients.
 
-use super::account;
 use super::answer::Answer;
 use super::common::{motion_columns, shown_in};
-use super::figures;
 use super::output::OutputDir;
 use super::progress::Progress;
 use super::wind::WindArgs;
+use super::{account, figures};
 use crate::aerodynamics::GustSeries;
 use crate::aerodynamics::quasi_steady::{CoefficientRow, CoefficientsAt};
 use crate::error::{Error, Result};

@@ -2,9 +2,8 @@
 
 use super::answer::Answer;
 use super::common::{folder_of, motion_columns};
-use super::figures;
 use super::output::{OutputDir, list};
-use super::stages;
+use super::{figures, stages};
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, positive};
 

@@ -14,10 +14,7 @@
 
 use crate::aerodynamics::GustSeries;
 use crate::error::{Error, Result};
-use crate::files::header_csv::CommentHeader;
-use crate::files::header_csv::csv_error;
-use crate::files::header_csv::find_columns;
-use crate::files::header_csv::number;
+use crate::files::header_csv::{CommentHeader, csv_error, find_columns, number};
 use std::io::Write;
 use std::path::Path;
 

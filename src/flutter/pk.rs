@@ -7,8 +7,7 @@
 
 use super::answer::{Findings, FlutterSearch, StableRange, choose, entry_reason};
 use super::curves::{FlutterCurves, ModePoint, empty_branches};
-use super::following::growing;
-use super::following::{Follower, Watch, dimensionless};
+use super::following::{Follower, Watch, dimensionless, growing};
 use super::pk_following::Iteration;
 use super::search::OnsetSearch;
 use crate::aerodynamics::Transfer;

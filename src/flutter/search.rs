@@ -1,8 +1,7 @@
 //! Onset by the eigenvalues of the coupled state matrix.
 
 use super::answer::{Findings, FlutterSearch, choose};
-use super::following::growing;
-use super::following::{Follower, Watch};
+use super::following::{Follower, Watch, growing};
 use super::scan::Scan;
 use super::tracking::Tracker;
 use crate::aeroelastic::CoupledSection;

@@ -2,8 +2,7 @@
 
 use super::form::{FeedThrough, Form};
 use super::testing::{onset_above, onset_m_s, table_alone};
-use super::{FitReport, fit_table};
-use super::{FrequencyFit, FrequencyWeights};
+use super::{FitReport, FrequencyFit, FrequencyWeights, fit_table};
 use crate::aerodynamics::derivatives::DerivativeTable;
 use crate::files::derivatives::embedded;
 use crate::section::Dof;

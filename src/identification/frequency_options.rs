@@ -18,10 +18,8 @@ pub struct QuasiSteadyLimit {
     /// Motion (column of `G`).
     pub motion: Dof,
     /// `G(0)`, dimensionless; left out, free.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub value: Option<f64>,
     /// `dG/d(iK)` at 0, dimensionless; left out, free.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub slope: Option<f64>,
 }
 
@@ -99,7 +97,6 @@ pub struct FrequencyFit {
     pub own: Vec<OwnFilters>,
     /// Weight of each entry besides, rows and columns in the order of the degrees of freedom; left out, one. It matters
     /// where entries share something: poles, or the states of the minimum-state form.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub entry_weights: Option<Vec<Vec<f64>>>,
     /// Regularisation `λ ≥ 0` of lag terms (filters): a term as large as the data counts as much as a relative residual
     /// of `λ`. Zero for none.

@@ -14,16 +14,12 @@ use serde::{Deserialize, Serialize};
 pub struct PoleSearch {
     /// Poles to be used as they are; one for Laguerre filters, else one a filter. For lags of each force either one list
     /// for all of them, or the lists of the forces one after the other.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub fixed: Option<Vec<f64>>,
     /// Where the nonlinear step starts; left out, the best point of a grid.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub start: Option<Vec<f64>>,
     /// Lower bound; left out, half the lowest tested `K`.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub min: Option<f64>,
     /// Upper bound; left out, twice the highest tested `K`.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub max: Option<f64>,
     /// Least ratio of neighbouring poles when there are several: closer ones have nearly equal columns, whose
     /// coefficients grow and cancel.
@@ -132,7 +128,6 @@ pub struct TimeFit {
     pub constraints: Constraints,
     /// Cut-off of the low-pass filter that motion and force go through alike, Hz; left out, a twentieth of the
     /// sampling frequency.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub low_pass_hz: Option<f64>,
     /// Seconds at the start of each record that only settle the filters.
     pub discard_s: f64,

@@ -34,10 +34,8 @@ pub struct OwnFilters {
     /// Motion (column of `G`).
     pub motion: Dof,
     /// Number of filters; left out, that of the form.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub filters: Option<usize>,
     /// Poles as in [`PoleSearch::fixed`]; left out, they are searched for this transfer function alone.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub poles: Option<Vec<f64>>,
 }
 
@@ -50,10 +48,8 @@ pub struct OwnDecay {
     /// Motion (column of `G`).
     pub motion: Dof,
     /// Number of filters; left out, that of the fit.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub filters: Option<usize>,
     /// Decay factor, `0 < α < 1`; left out, that of the fit.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub alpha: Option<f64>,
 }
 

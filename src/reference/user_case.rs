@@ -10,14 +10,14 @@ use crate::flutter::OnsetMethod;
 use crate::section::{Dof, SectionModel};
 use evaluate::Loaded;
 use nalgebra::DMatrix;
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
 /// Version of the case file.
 pub(crate) const CASE_SCHEMA: u32 = 1;
 
 /// Contents of a case file.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct UserCase {
     /// [`CASE_SCHEMA`].
@@ -27,7 +27,6 @@ pub(crate) struct UserCase {
     /// What is computed, in words.
     pub what: String,
     /// The suspended section; may be left out for a trained model, which brings its own.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub section: Option<SectionModel>,
     /// The forces: exactly one kind.
     pub aerodynamics: UserAerodynamics,
@@ -47,28 +46,23 @@ fn usual_speed_max() -> f64 {
 }
 
 /// The forces of a case: exactly one of these.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct UserAerodynamics {
     /// Theodorsen's flat plate; `rotary_inertia` keeps the apparent rotary inertia.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub flat_plate: Option<UserFlatPlate>,
     /// Rational functions in Roger's form.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rational: Option<UserRational>,
     /// A table of derivatives (`.csv`, `.xlsx`) or the name of an embedded deck.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub table: Option<String>,
     /// How the table is read between its points.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub interpolation: Option<Interpolation>,
     /// A trained model (`.json`).
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub model: Option<PathBuf>,
 }
 
 /// Options of the flat plate.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct UserFlatPlate {
     /// Keep the apparent rotary inertia of the air (the `π/64` term of `A3*`).
@@ -76,7 +70,7 @@ pub(crate) struct UserFlatPlate {
 }
 
 /// `G = a₁ + a₂ p + a₃ p² + Σ a_{l+3} p/(p + d_l)`; rows of matrices are forces, in the order of the section.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct UserRational {
     /// `a₁`.
@@ -97,19 +91,16 @@ pub(crate) struct UserRational {
 }
 
 /// One expected figure.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct UserFigure {
     /// What.
     pub quantity: Quantity,
     /// Route of the onset; left out, eigenvalues where the forces have a realisation, else the determinant.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub route: Option<OnsetMethod>,
     /// Wind speed of a mode in wind, m/s.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub speed_m_s: Option<f64>,
     /// Degree of freedom that a mode in wind moves in still air.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub dof: Option<Dof>,
     /// The reference.
     pub expected: f64,
@@ -123,7 +114,7 @@ pub(crate) struct UserFigure {
 }
 
 /// What a figure of a case file can be.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Quantity {
     /// Onset speed, m/s.

@@ -2,7 +2,7 @@
 
 use super::probability::{cdf, quantile};
 use crate::error::{Error, Result, finite, positive};
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 
 /// Probability that must be left between the ends of a truncated distribution.
 const SMALLEST_PROBABILITY: f64 = 1e-9;
@@ -10,7 +10,7 @@ const SMALLEST_PROBABILITY: f64 = 1e-9;
 /// Distribution of one parameter. Mean and scatter are those of the parameter itself (for the lognormal one too); a mean
 /// that is left out is the value of the model, and the scatter is either a standard deviation in the unit of the
 /// parameter or a coefficient of variation.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum Distribution {
     /// Gaussian; a bound that is given truncates it.
@@ -27,23 +27,18 @@ pub enum Distribution {
 }
 
 /// A Gaussian or lognormal distribution, in numbers of the parameter itself.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Gaussian {
     /// Mean before truncation.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub mean: Option<f64>,
     /// Standard deviation before truncation.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub standard_deviation: Option<f64>,
     /// Standard deviation over mean, before truncation.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub coefficient_of_variation: Option<f64>,
     /// Lower end.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub lower: Option<f64>,
     /// Upper end.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub upper: Option<f64>,
 }
 

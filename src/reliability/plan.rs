@@ -4,7 +4,7 @@ use super::distribution::Distribution;
 use super::parameter::Parameter;
 use crate::error::{Error, Result, positive};
 use crate::files::toml_lines;
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 use std::path::PathBuf;
 
 /// Version of the file.
@@ -13,7 +13,7 @@ pub(crate) const PLAN_SCHEMA: u32 = 1;
 const MAX_SAMPLES: usize = 100_000_000;
 
 /// What is random, and what is asked.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MonteCarloPlan {
     /// `PLAN_SCHEMA`.
@@ -26,10 +26,8 @@ pub struct MonteCarloPlan {
     #[serde(default)]
     pub seed: u64,
     /// Onsets are searched up to this wind speed, m/s; left out, as far as the study of the model did.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub speed_max_m_s: Option<f64>,
     /// The probability of an onset below this wind speed is asked, m/s.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub design_speed_m_s: Option<f64>,
     /// Level of the confidence interval of that probability.
     #[serde(default = "usual_confidence")]
@@ -52,7 +50,7 @@ pub struct MonteCarloPlan {
 }
 
 /// One random number of the section.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RandomParameter {
     /// Which.
@@ -62,7 +60,7 @@ pub struct RandomParameter {
 }
 
 /// Correlation of two random numbers (of the Gaussian variables behind them).
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Correlation {
     /// The two.
@@ -72,16 +70,14 @@ pub struct Correlation {
 }
 
 /// Scatter of the coefficients of the force model: nothing, a relative one, or a covariance.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AerodynamicScatter {
     /// Standard deviation of every coefficient over its value, Gaussian and independent.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub relative_scatter: Option<f64>,
     /// Covariance of the coefficients: that of all parameters of a fit (`fits/<model>.uncertainty.json` as `train` writes it,
     /// also found beside the fit's report `fits/<model>.json`), or a table (`.csv`: names of the coefficients in the first
     /// line, then the matrix).
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub covariance: Option<PathBuf>,
 }
 

@@ -3,18 +3,13 @@
 mod onset;
 
 use super::Study;
-use crate::aerodynamics::derivatives::DerivativeTable;
-use crate::aerodynamics::derivatives::Extrapolation;
-use crate::aerodynamics::derivatives::InterpolatedTable;
-use crate::aerodynamics::derivatives::Interpolation;
-use crate::aerodynamics::derivatives::TransferSample;
 use crate::aerodynamics::derivatives::notation::Convention;
+use crate::aerodynamics::derivatives::{
+    DerivativeTable, Extrapolation, InterpolatedTable, Interpolation, TransferSample,
+};
 use crate::aerodynamics::{FlatPlate, Transfer};
 use crate::error::{Error, Result};
-use crate::files::derivatives::ReadOptions;
-use crate::files::derivatives::embedded;
-use crate::files::derivatives::is_table_file;
-use crate::files::derivatives::read_table_with;
+use crate::files::derivatives::{ReadOptions, embedded, is_table_file, read_table_with};
 use crate::identification::sample_model;
 use crate::section::Dof;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange, SAME_SPEED, group_of, near_groups};

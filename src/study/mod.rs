@@ -88,7 +88,6 @@ pub struct Study {
     #[serde(default)]
     pub flutter: FlutterBlock,
     /// Static coefficients, for quasi-steady theory beside the other routes to the onset.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub coefficients: Option<CoefficientsBlock>,
     /// What to export.
     #[serde(default)]
@@ -111,14 +110,11 @@ pub struct DeckSource {
     #[serde(default, skip_serializing_if = "is_default")]
     pub interpolation: Interpolation,
     /// Width of the section model, m, for a table that does not state it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub width_m: Option<f64>,
     /// What stands for H4*, A4* in a table without them: `zero` (as when nothing is stated, with a warning) or
     /// `quasi_steady`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub missing: Option<Missing>,
     /// Mean speeds of the table to be used, numbered from 1 for the lowest; left out, all.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub speed_groups: Option<Vec<usize>>,
     /// Measured records (`.csv`) to be used instead of the virtual tunnel.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -137,16 +133,12 @@ pub struct ModelBlock {
     /// Name in tables and figures.
     pub name: String,
     /// Mean speeds used for this model, numbered from 1 for the lowest; left out, all of the deck.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub speed_groups: Option<Vec<usize>>,
     /// Continuous model fitted to records in the time domain.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub records: Option<TimeFit>,
     /// Continuous model fitted to the derivatives in the frequency domain.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub table: Option<FrequencyFit>,
     /// The thesis's discrete Laguerre model, fitted to records.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub discrete: Option<DiscreteFit>,
 }
 
@@ -155,7 +147,6 @@ pub struct ModelBlock {
 #[serde(deny_unknown_fields, default)]
 pub struct ExportBlock {
     /// Name of the model; left out, the first.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub model: Option<String>,
     /// Wind speed of the default experiment as a part of the onset speed.
     pub part_of_onset: f64,
@@ -168,10 +159,8 @@ pub struct ExportBlock {
     /// Communication step, s.
     pub step_size_s: f64,
     /// Who is responsible for the FMU.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub author: Option<String>,
     /// Whose it is.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub copyright: Option<String>,
 }
 

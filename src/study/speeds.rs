@@ -27,15 +27,12 @@ const WITHOUT_SPRINGS_M_S: f64 = 60.0;
 #[serde(deny_unknown_fields, default)]
 pub struct FlutterBlock {
     /// Highest wind speed of curves and search, m/s.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub speed_max_m_s: Option<f64>,
     /// Lowest wind speed of the curves, m/s.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub speed_min_m_s: Option<f64>,
     /// Number of wind speeds.
     pub speeds: usize,
     /// The onset has to lie above this wind speed, m/s: the criterion of a code. It changes no number, the report judges by it.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub required_speed_m_s: Option<f64>,
 }
 

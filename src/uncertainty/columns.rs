@@ -4,8 +4,7 @@
 //! all poles a second time spans it exactly (for Laguerre filters one more of the same pole is enough). One pass over
 //! the records with that chain serves coefficients and poles, and its leading columns are those of the fit.
 
-use super::parameters::SearchedPole;
-use super::parameters::{STEP, moved_pole};
+use super::parameters::{STEP, SearchedPole, moved_pole};
 use crate::error::{Error, Result};
 use crate::identification::basis::{Basis, assemble};
 use crate::identification::form::Form;

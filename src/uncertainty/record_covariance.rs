@@ -2,9 +2,9 @@
 
 use super::coefficients::CoefficientUncertainty;
 use super::columns::Expansion;
-use super::parameters::{Coordinates, Parameter};
 use super::parameters::{
-    FreePoles, coordinates_of, free_poles, held_sentence, parameters_of, tangent_of,
+    Coordinates, FreePoles, Parameter, coordinates_of, free_poles, held_sentence, parameters_of,
+    tangent_of,
 };
 use super::segments::{Part, Stretched, gather, sandwich};
 use crate::error::{Error, Result};

@@ -18,8 +18,7 @@
 
 use super::records::{RecordHeader, Segment};
 use crate::error::{Error, Result};
-use crate::files::header_csv::CommentHeader;
-use crate::files::header_csv::Entry;
+use crate::files::header_csv::{CommentHeader, Entry};
 use crate::section::Dof;
 use std::io::{BufRead, Write};
 use std::path::Path;

@@ -2,8 +2,7 @@
 
 use super::super::motion::RampedSine;
 use super::*;
-use crate::aerodynamics::derivatives::Derivative;
-use crate::aerodynamics::derivatives::Part;
+use crate::aerodynamics::derivatives::{Derivative, Part};
 use crate::aerodynamics::{RationalModel, Realizable, Realization};
 use crate::files::derivatives::embedded;
 use crate::units::ReducedFrequency;

@@ -8,7 +8,6 @@ mod guidelines;
 
 pub use bank::FilterBank;
 pub use continuous::{FilterTerm, LaguerreModel};
-pub(crate) use discrete::Recursion;
 pub use discrete::{DiscreteLaguerre, DiscreteTerm};
-pub(crate) use discrete::{discrete_filter_matrices, impulse_response};
+pub(crate) use discrete::{Recursion, discrete_filter_matrices, impulse_response};
 pub(crate) use guidelines::{alpha_lower_bound, alpha_upper_bound, discrete_memory};

@@ -2,8 +2,7 @@
 
 use super::*;
 use crate::aerodynamics::RationalModel;
-use crate::aerodynamics::quasi_steady::Arms;
-use crate::aerodynamics::quasi_steady::QuasiSteady;
+use crate::aerodynamics::quasi_steady::{Arms, QuasiSteady};
 use crate::buffeting::{
     Admittance, Gust, GustForces, GustSpectrum, SpectrumShape, Turbulence, buffeting_response,
 };

@@ -22,21 +22,14 @@
 //! double back. The mean speed may be left empty throughout. Files of the first format, without notation, argument and
 //! axes but with a `sign_convention`, are read as what they are: Scanlan with ½ over V̂, heave up.
 
-use crate::aerodynamics::derivatives::Derivative;
-use crate::aerodynamics::derivatives::DerivativePoint;
-use crate::aerodynamics::derivatives::DerivativeTable;
-use crate::aerodynamics::derivatives::TableHeader;
 use crate::aerodynamics::derivatives::missing::fill_in;
-use crate::aerodynamics::derivatives::notation::Argument;
-use crate::aerodynamics::derivatives::notation::Convention;
-use crate::aerodynamics::derivatives::notation::ExpressedPoint;
-use crate::aerodynamics::derivatives::notation::StatedConvention;
-use crate::aerodynamics::derivatives::table::check_point_count;
-use crate::aerodynamics::derivatives::table::check_points;
+use crate::aerodynamics::derivatives::notation::{
+    Argument, Convention, ExpressedPoint, StatedConvention,
+};
+use crate::aerodynamics::derivatives::table::{check_point_count, check_points};
+use crate::aerodynamics::derivatives::{Derivative, DerivativePoint, DerivativeTable, TableHeader};
 use crate::error::{Error, Result};
-use crate::files::derivatives::csv_header::Head;
-use crate::files::derivatives::csv_header::ReadOptions;
-use crate::files::derivatives::csv_header::write_head;
+use crate::files::derivatives::csv_header::{Head, ReadOptions, write_head};
 use crate::files::derivatives::csv_wide;
 use crate::files::header_csv::{at_place, csv_error, find_columns, missing_column, number};
 use std::collections::BTreeMap;

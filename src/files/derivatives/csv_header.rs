@@ -1,17 +1,11 @@
 //! Head of a file of derivatives: where the table comes from, and in which convention it is written.
 
-use crate::aerodynamics::derivatives::Missing;
-use crate::aerodynamics::derivatives::SIGN_CONVENTION;
-use crate::aerodynamics::derivatives::TableHeader;
-use crate::aerodynamics::derivatives::UNITS;
-use crate::aerodynamics::derivatives::notation::Argument;
-use crate::aerodynamics::derivatives::notation::Axes;
-use crate::aerodynamics::derivatives::notation::Convention;
-use crate::aerodynamics::derivatives::notation::Notation;
-use crate::aerodynamics::derivatives::notation::StatedConvention;
+use crate::aerodynamics::derivatives::notation::{
+    Argument, Axes, Convention, Notation, StatedConvention,
+};
+use crate::aerodynamics::derivatives::{Missing, SIGN_CONVENTION, TableHeader, UNITS};
 use crate::error::{Error, Result};
-use crate::files::header_csv::CommentHeader;
-use crate::files::header_csv::Entry;
+use crate::files::header_csv::{CommentHeader, Entry};
 use std::io::Write;
 
 /// What a file of derivatives does not say of itself.

@@ -12,18 +12,12 @@
 //! commas, and tabs are understood. The `# key: value` lines of the long form may stand above, all of them optional but
 //! what states the convention.
 
-use crate::aerodynamics::derivatives::Derivative;
-use crate::aerodynamics::derivatives::DerivativePoint;
-use crate::aerodynamics::derivatives::DerivativeTable;
 use crate::aerodynamics::derivatives::missing::fill_in;
-use crate::aerodynamics::derivatives::notation::Argument;
-use crate::aerodynamics::derivatives::notation::Convention;
-use crate::aerodynamics::derivatives::notation::ExpressedPoint;
-use crate::aerodynamics::derivatives::table::check_point_count;
-use crate::aerodynamics::derivatives::table::check_points;
+use crate::aerodynamics::derivatives::notation::{Argument, Convention, ExpressedPoint};
+use crate::aerodynamics::derivatives::table::{check_point_count, check_points};
+use crate::aerodynamics::derivatives::{Derivative, DerivativePoint, DerivativeTable};
 use crate::error::{Error, Result, positive};
-use crate::files::derivatives::csv_header::Head;
-use crate::files::derivatives::csv_header::ReadOptions;
+use crate::files::derivatives::csv_header::{Head, ReadOptions};
 use crate::files::derivatives::workbook::WIDTH_ASSUMED;
 use crate::files::header_csv::number;
 use std::collections::BTreeMap;

@@ -11,20 +11,14 @@
 //! `axes` beside their values); the columns are then called as in that notation (`MeanWind_h1`, `Vred_h1`, `h1`),
 //! whatever the sheet `Reduced Velocities` holds.
 
-use crate::aerodynamics::derivatives::Derivative;
-use crate::aerodynamics::derivatives::DerivativePoint;
-use crate::aerodynamics::derivatives::DerivativeTable;
-use crate::aerodynamics::derivatives::Missing;
-use crate::aerodynamics::derivatives::TableHeader;
 use crate::aerodynamics::derivatives::missing::fill_in;
-use crate::aerodynamics::derivatives::notation::Convention;
-use crate::aerodynamics::derivatives::notation::ExpressedPoint;
-use crate::aerodynamics::derivatives::notation::StatedConvention;
+use crate::aerodynamics::derivatives::notation::{Convention, ExpressedPoint, StatedConvention};
 use crate::aerodynamics::derivatives::table::check_point_count;
+use crate::aerodynamics::derivatives::{
+    Derivative, DerivativePoint, DerivativeTable, Missing, TableHeader,
+};
 use crate::error::{Error, Result, positive};
-use crate::files::derivatives::xlsx_cells::Book;
-use crate::files::derivatives::xlsx_cells::Cell;
-use crate::files::derivatives::xlsx_cells::Sheet;
+use crate::files::derivatives::xlsx_cells::{Book, Cell, Sheet};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::path::Path;

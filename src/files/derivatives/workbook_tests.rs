@@ -1,11 +1,8 @@
 //! Tests on the workbooks of `tests/data/make_workbook.py`.
 
-use crate::aerodynamics::derivatives::notation::Argument;
-use crate::aerodynamics::derivatives::notation::Axes;
-use crate::aerodynamics::derivatives::notation::Notation;
-use crate::files::derivatives::parse_csv;
+use crate::aerodynamics::derivatives::notation::{Argument, Axes, Notation};
 use crate::files::derivatives::workbook::*;
-use crate::files::derivatives::write_csv;
+use crate::files::derivatives::{parse_csv, write_csv};
 use std::path::PathBuf;
 
 fn fixture(name: &str) -> PathBuf {

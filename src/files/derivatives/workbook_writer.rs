@@ -4,16 +4,10 @@
 //! table does not hold have no columns. A fourth sheet, `Notes`, which other readers of the layout do not look at, says where
 //! the figures come from, in which convention they are, and which width belongs to them.
 
-use crate::aerodynamics::derivatives::Derivative;
-use crate::aerodynamics::derivatives::DerivativeTable;
-use crate::aerodynamics::derivatives::notation::Convention;
-use crate::aerodynamics::derivatives::notation::ExpressedPoint;
-use crate::aerodynamics::derivatives::notation::ExpressedTable;
+use crate::aerodynamics::derivatives::notation::{Convention, ExpressedPoint, ExpressedTable};
+use crate::aerodynamics::derivatives::{Derivative, DerivativeTable};
 use crate::error::{Error, Result};
-use crate::files::derivatives::workbook::DERIVATIVES;
-use crate::files::derivatives::workbook::NOTES;
-use crate::files::derivatives::workbook::REDUCED_VELOCITIES;
-use crate::files::derivatives::workbook::SPEEDS;
+use crate::files::derivatives::workbook::{DERIVATIVES, NOTES, REDUCED_VELOCITIES, SPEEDS};
 use rust_xlsxwriter::{Workbook, Worksheet, XlsxError};
 
 /// One number of a test point.

@@ -6,7 +6,7 @@
 //! samples: as many blocks of that layout as fit. What a segment does not state is as in the one before. Not read:
 //! DAQmx raw data, strings, time stamps, and channels whose samples still have to be scaled.
 
-use super::tdms_bytes::Bytes;
+use super::tdms_bytes::{Bytes, STRING, TIME_STAMP, property, sample, size_of};
 use super::{Attribute, ChannelSet, check_count, no_group};
 use crate::error::{Error, Result};
 use std::collections::{BTreeMap, HashMap};
@@ -22,10 +22,6 @@ const IS_DAQMX: u32 = 1 << 7;
 const NO_SAMPLES: u32 = u32::MAX;
 /// In place of a length: samples as in the segment before.
 const AS_BEFORE: u32 = 0;
-/// Type codes.
-const STRING: u32 = 0x20;
-const BOOLEAN: u32 = 0x21;
-const TIME_STAMP: u32 = 0x44;
 
 /// Reads the bytes of a file, or one group of it.
 ///
@@ -357,55 +353,4 @@ fn path_parts(path: &str) -> Vec<String> {
         }
     }
     parts
-}
-
-/// Bytes a sample.
-fn size_of(kind: u32, path: &str) -> Result<usize> {
-    match kind {
-        1 | 5 | BOOLEAN => Ok(1),
-        2 | 6 => Ok(2),
-        3 | 7 | 9 | 0x19 => Ok(4),
-        4 | 8 | 10 | 0x1a => Ok(8),
-        TIME_STAMP => Ok(16),
-        other => Err(Error::input(
-            path,
-            "samples that are numbers",
-            format!("type {other:#x}"),
-        )),
-    }
-}
-
-fn sample(bytes: &mut Bytes<'_>, kind: u32) -> Result<f64> {
-    Ok(match kind {
-        1 => i8::from_le_bytes(bytes.little()?).into(),
-        2 => i16::from_le_bytes(bytes.little()?).into(),
-        3 => i32::from_le_bytes(bytes.little()?).into(),
-        4 => i64::from_le_bytes(bytes.little()?) as f64,
-        5 | BOOLEAN => u8::from_le_bytes(bytes.little()?).into(),
-        6 => u16::from_le_bytes(bytes.little()?).into(),
-        7 => u32::from_le_bytes(bytes.little()?).into(),
-        8 => u64::from_le_bytes(bytes.little()?) as f64,
-        9 | 0x19 => f32::from_le_bytes(bytes.little()?).into(),
-        TIME_STAMP => {
-            bytes.take(16)?;
-            f64::NAN
-        }
-        // every other kind was refused before
-        _ => f64::from_le_bytes(bytes.little()?),
-    })
-}
-
-/// A property; `None` for one that is of no use here.
-fn property(bytes: &mut Bytes<'_>) -> Result<Option<Attribute>> {
-    match bytes.u32()? {
-        STRING => Ok(Some(Attribute::Text(bytes.text()?))),
-        TIME_STAMP => {
-            bytes.take(16)?;
-            Ok(None)
-        }
-        kind => {
-            size_of(kind, &format!("byte {}, property", bytes.at))?;
-            Ok(Some(Attribute::Number(sample(bytes, kind)?)))
-        }
-    }
 }

@@ -1,6 +1,12 @@
-//! Numbers and texts out of a slice of bytes, in either byte order.
+//! Numbers, texts, samples and properties out of the bytes of a TDMS file, in either byte order.
 
+use super::Attribute;
 use crate::error::{Error, Result};
+
+/// Type codes.
+pub(super) const STRING: u32 = 0x20;
+const BOOLEAN: u32 = 0x21;
+pub(super) const TIME_STAMP: u32 = 0x44;
 
 /// A place in the bytes of a file.
 #[derive(Debug, Clone)]
@@ -55,5 +61,57 @@ impl<'a> Bytes<'a> {
     pub(crate) fn text(&mut self) -> Result<String> {
         let length = self.u32()? as usize;
         Ok(String::from_utf8_lossy(self.take(length)?).into_owned())
+    }
+}
+
+/// Bytes a sample.
+pub(super) fn size_of(kind: u32, path: &str) -> Result<usize> {
+    match kind {
+        1 | 5 | BOOLEAN => Ok(1),
+        2 | 6 => Ok(2),
+        3 | 7 | 9 | 0x19 => Ok(4),
+        4 | 8 | 10 | 0x1a => Ok(8),
+        TIME_STAMP => Ok(16),
+        other => Err(Error::input(
+            path,
+            "samples that are numbers",
+            format!("type {other:#x}"),
+        )),
+    }
+}
+
+/// One sample of a channel.
+pub(super) fn sample(bytes: &mut Bytes<'_>, kind: u32) -> Result<f64> {
+    Ok(match kind {
+        1 => i8::from_le_bytes(bytes.little()?).into(),
+        2 => i16::from_le_bytes(bytes.little()?).into(),
+        3 => i32::from_le_bytes(bytes.little()?).into(),
+        4 => i64::from_le_bytes(bytes.little()?) as f64,
+        5 | BOOLEAN => u8::from_le_bytes(bytes.little()?).into(),
+        6 => u16::from_le_bytes(bytes.little()?).into(),
+        7 => u32::from_le_bytes(bytes.little()?).into(),
+        8 => u64::from_le_bytes(bytes.little()?) as f64,
+        9 | 0x19 => f32::from_le_bytes(bytes.little()?).into(),
+        TIME_STAMP => {
+            bytes.take(16)?;
+            f64::NAN
+        }
+        // every other kind was refused before
+        _ => f64::from_le_bytes(bytes.little()?),
+    })
+}
+
+/// A property; `None` for one that is of no use here.
+pub(super) fn property(bytes: &mut Bytes<'_>) -> Result<Option<Attribute>> {
+    match bytes.u32()? {
+        STRING => Ok(Some(Attribute::Text(bytes.text()?))),
+        TIME_STAMP => {
+            bytes.take(16)?;
+            Ok(None)
+        }
+        kind => {
+            size_of(kind, &format!("byte {}, property", bytes.at))?;
+            Ok(Some(Attribute::Number(sample(bytes, kind)?)))
+        }
     }
 }

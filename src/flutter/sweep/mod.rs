@@ -136,12 +136,10 @@ impl OnsetSweep {
     /// # Errors
     /// Those of [`SectionModel::structure`]; [`Error::Input`] for coefficients of another number.
     pub fn onset(&self, section: &SectionModel, coefficients: &[f64]) -> Result<SweepOutcome> {
-        if coefficients.len() != self.forces.coefficients().len() {
-            return Err(Error::input(
-                "coefficients of the force model",
-                self.forces.coefficients().len().to_string(),
-                coefficients.len().to_string(),
-            ));
+        let (expected, found) = (self.forces.coefficients().len(), coefficients.len());
+        if found != expected {
+            let place = "coefficients of the force model";
+            return Err(Error::input(place, expected.to_string(), found.to_string()));
         }
         Ok(match self.forces.dofs.len() {
             2 => Sweep::<2>::new(self, supports(section)?, coefficients).run(),
@@ -269,8 +267,7 @@ impl<'a, const N: usize> Sweep<'a, N> {
             let next_k = if beyond { k } else { at.k * ratio };
             let p = Complex64::new(0.0, next_k);
             let (g, _) = self.sweep.forces.transfer::<N>(p, self.coefficients);
-            let g = self.supports.at_axis(g);
-            let pencil = Pencil::new(&self.supports, next_k, &g);
+            let pencil = Pencil::new(&self.supports, next_k, &self.supports.at_axis(g));
             if let Some(next) = self.step(&at, next_k, &pencil) {
                 self.look(&at, &next)?;
                 at = next;
@@ -359,10 +356,8 @@ impl<'a, const N: usize> Sweep<'a, N> {
 
     /// Growth where a mode was first judged, of those that are no extrapolation.
     fn unstable(&self) -> Option<(f64, f64)> {
-        match self.sweep.forces.tested {
-            Some(_) => self.entered,
-            None => self.still,
-        }
+        let is_tested = self.sweep.forces.tested.is_some();
+        if is_tested { self.entered } else { self.still }
     }
 
     fn inside(&self, c: &Crossing) -> bool {

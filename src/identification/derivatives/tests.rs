@@ -1,8 +1,7 @@
 //! Derivatives of records whose transfer matrix is known.
 
 use super::*;
-use crate::aerodynamics::derivatives::Derivative;
-use crate::aerodynamics::derivatives::Part;
+use crate::aerodynamics::derivatives::{Derivative, Part};
 use crate::aerodynamics::{RationalModel, Transfer};
 use crate::files::derivatives::embedded;
 use crate::section::Dof;

@@ -1,8 +1,7 @@
 //! Loads the forces of a case and computes its figures.
 
 use super::{Quantity, UserCase, UserFigure};
-use crate::aerodynamics::derivatives::Extrapolation;
-use crate::aerodynamics::derivatives::InterpolatedTable;
+use crate::aerodynamics::derivatives::{Extrapolation, InterpolatedTable};
 use crate::aerodynamics::{FlatPlate, Lags, RationalModel, Transfer};
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};

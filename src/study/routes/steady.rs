@@ -5,8 +5,7 @@ use super::super::Study;
 use super::{Forces, RouteTable};
 use crate::aerodynamics::quasi_steady::QuasiSteady;
 use crate::aerodynamics::{Lags, RationalModel, Transfer};
-use crate::aeroelastic::CoupledSection;
-use crate::aeroelastic::{EquilibriumEnd, static_equilibria};
+use crate::aeroelastic::{CoupledSection, EquilibriumEnd, static_equilibria};
 use crate::error::Result;
 use crate::flutter::{
     OnsetMethod, divergence_speed, find_onset, quasi_steady_modes, quasi_steady_onset, trace_modes,

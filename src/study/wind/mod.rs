@@ -9,11 +9,8 @@ pub(crate) use quasi_steady::{
 };
 
 use super::{FlutterBlock, SpeedRange};
-use crate::aerodynamics::derivatives::Extrapolation;
-use crate::aerodynamics::derivatives::InterpolatedTable;
-use crate::aerodynamics::quasi_steady::Arms;
-use crate::aerodynamics::quasi_steady::QuasiSteady;
-use crate::aerodynamics::quasi_steady::StaticCoefficients;
+use crate::aerodynamics::derivatives::{Extrapolation, InterpolatedTable};
+use crate::aerodynamics::quasi_steady::{Arms, QuasiSteady, StaticCoefficients};
 use crate::buffeting::{TimePlan, Turbulence};
 use crate::error::{Error, Result, positive};
 use crate::files::coefficients::named_coefficients;
@@ -33,7 +30,7 @@ pub fn example_wind_study_text() -> &'static str {
 }
 
 /// Contents of a wind file.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct WindStudy {
     /// Version of the file, 1.
@@ -41,10 +38,8 @@ pub(crate) struct WindStudy {
     /// Name in titles.
     pub name: String,
     /// The suspended section; may be left out with a trained model, which has its own.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub section: Option<SectionModel>,
     /// Static coefficients, for quasi-steady theory and for gust forces.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub coefficients: Option<CoefficientsBlock>,
     /// Self-excited forces in turbulence: `quasi-steady`, `flat plate`, `flat plate (Jones)` or a trained model (`.json`).
     #[serde(default = "quasi_steady_forces")]
@@ -53,13 +48,11 @@ pub(crate) struct WindStudy {
     #[serde(default)]
     pub speeds: FlutterBlock,
     /// The turbulence.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub turbulence: Option<Turbulence>,
     /// Wind speeds at which the response is computed in the time domain as well.
     #[serde(default)]
     pub time: TimeBlock,
     /// A run with nonlinear forces.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub simulation: Option<SimulationBlock>,
     /// Directory of the file, against which paths in it are read.
     #[serde(skip)]
@@ -79,15 +72,13 @@ pub struct CoefficientsBlock {
     /// Name of an embedded table, or the path of one (`.csv`).
     pub source: String,
     /// `B₁/B` of each force; left out, none.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub arms: Option<Arms>,
     /// Derivatives from which the arms follow at their highest reduced velocity (1.18): an embedded deck or a table.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub arms_from: Option<String>,
 }
 
 /// What is stepped in the time domain.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct TimeBlock {
     /// Mean wind speeds, m/s; none by default.
@@ -97,7 +88,7 @@ pub(crate) struct TimeBlock {
 }
 
 /// A run with nonlinear quasi-steady forces, released from the static equilibrium.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct SimulationBlock {
     /// Mean wind speed, m/s.
@@ -107,7 +98,6 @@ pub(crate) struct SimulationBlock {
     /// Time between rows of the result, s.
     pub step_s: f64,
     /// Gusts (`.csv`); left out, they are generated from the turbulence, or there are none.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gusts: Option<PathBuf>,
     /// Seed of generated gusts.
     #[serde(default = "first_seed")]

@@ -15,16 +15,12 @@ const ZERO_CELSIUS: f64 = 273.15;
 #[serde(deny_unknown_fields)]
 pub(crate) struct Air {
     /// Density, kg/m³.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub density_kg_m3: Option<f64>,
     /// Temperature, °C.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub temperature_c: Option<f64>,
     /// Static pressure, Pa.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pressure_pa: Option<f64>,
     /// Relative humidity, 0 to 1; left out, dry air.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub relative_humidity: Option<f64>,
 }
 

@@ -17,7 +17,6 @@ pub(crate) struct ChannelRef {
     /// Name in the file.
     pub name: String,
     /// Unit; may be left out where the file states it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unit: Option<String>,
     /// Factor on the samples before they are taken in `unit`; negative to turn the sign, 1 when left out.
     #[serde(default = "one", skip_serializing_if = "is_one")]
@@ -29,31 +28,22 @@ pub(crate) struct ChannelRef {
 #[serde(deny_unknown_fields)]
 pub(crate) struct ChannelMap {
     /// Time; may be left out where the sampling frequency is known.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub time: Option<ChannelRef>,
     /// Heave, positive up.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub vertical: Option<ChannelRef>,
     /// Sway, positive downwind.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lateral: Option<ChannelRef>,
     /// Rotation, positive nose-up.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub torsion: Option<ChannelRef>,
     /// Wind speed.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wind_speed: Option<ChannelRef>,
     /// Air density, a channel or a single number.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub air_density: Option<ChannelRef>,
     /// Air temperature, a channel or a single number.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub temperature: Option<ChannelRef>,
     /// Static pressure, a channel or a single number.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pressure: Option<ChannelRef>,
     /// Forces on the whole section, in place of cells.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub section: Option<SectionForces>,
     /// For each cell its channels `fx`, `fy`, `fz`, `mx`, `my`, `mz` in local axes.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]

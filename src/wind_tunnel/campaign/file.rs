@@ -34,7 +34,6 @@ pub(crate) struct Campaign {
     #[serde(default)]
     pub recording: RecordingBlock,
     /// The rig; left out where `channels.section` has the forces on the whole section.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rig: Option<Rig>,
     /// Which channel is what.
     #[serde(default)]
@@ -60,10 +59,8 @@ pub(crate) struct SectionBlock {
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub licence: String,
     /// Width B, m, where there is no rig that states it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub width_m: Option<f64>,
     /// Length along the span, m, that the forces are those of, where there is no rig; left out, 1 m.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub length_m: Option<f64>,
 }
 
@@ -72,10 +69,8 @@ pub(crate) struct SectionBlock {
 #[serde(deny_unknown_fields)]
 pub(crate) struct RecordingBlock {
     /// Sampling frequency, Hz; may be left out where the files state it or have a time channel.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sampling_hz: Option<f64>,
     /// A known layout of the files; left out, that of `channels`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub layout: Option<RecordingLayout>,
 }
 
@@ -113,10 +108,8 @@ pub(crate) struct RunBlock {
     /// Recording in wind.
     pub in_wind: FileRef,
     /// Recording of the same motion in still air; not needed for `channels.section`, the forces of the wind alone.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub still_air: Option<FileRef>,
     /// Mean wind speed, m/s; left out, the mean of the channel `wind_speed`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mean_speed_m_s: Option<f64>,
     /// The air of this run where it differs from that of the campaign.
     #[serde(default, skip_serializing_if = "Air::is_empty")]

@@ -14,13 +14,10 @@ pub(super) const CELL: &str = "section";
 #[serde(deny_unknown_fields)]
 pub(crate) struct SectionForces {
     /// Lift, positive up.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lift: Option<ChannelRef>,
     /// Drag, positive downwind.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub drag: Option<ChannelRef>,
     /// Pitching moment, positive nose-up.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub moment: Option<ChannelRef>,
 }
 

@@ -1,8 +1,7 @@
 //! The low-pass: zero phase, and the same on motion and force, so that their ratio stays what it was.
 
 use super::options::LowPassOptions;
-use super::signals::HarmonicSegment;
-use super::signals::SectionSignals;
+use super::signals::{HarmonicSegment, SectionSignals};
 use crate::error::{Error, Result};
 use crate::signal::ButterworthLowPass;
 use serde::{Deserialize, Serialize};

@@ -38,8 +38,7 @@ pub use report::{
 };
 pub(crate) use run::ProcessedRun;
 pub use run::StageSignals;
-pub use signals::HarmonicSegment;
-pub use signals::{SectionSignals, index};
+pub use signals::{HarmonicSegment, SectionSignals, index};
 
 use super::{RawCampaign, Record};
 use crate::error::{Error, Result, all_or_errors};

@@ -7,11 +7,9 @@ use super::lag::StillAirInertia;
 use super::low_pass::AppliedLowPass;
 use super::options::ProcessingOptions;
 use super::rest::{CrossTalk, RemovedMeans};
-use super::signals::HarmonicSegment;
-use super::signals::{SectionSignals, peak_and_rms};
+use super::signals::{HarmonicSegment, SectionSignals, peak_and_rms};
 use super::spikes::Replaced;
-use super::still_air::Alignment;
-use super::still_air::RemovedInertia;
+use super::still_air::{Alignment, RemovedInertia};
 use crate::section::Dof;
 use serde::{Deserialize, Serialize};
 

@@ -9,8 +9,7 @@
 //! Noise of a sensor, or the foot of a filter, is not that first motion. So before the first and after the last segment the motion
 //! is zero, and a channel that moves by less than a part of the driven one is zero throughout.
 
-use super::signals::HarmonicSegment;
-use super::signals::{SectionSignals, index, peak_and_rms};
+use super::signals::{HarmonicSegment, SectionSignals, index, peak_and_rms};
 use crate::section::Dof;
 use crate::signal::mean;
 use serde::{Deserialize, Serialize};

@@ -1,9 +1,9 @@
 //! Carrying out the plan of a virtual campaign.
 
-use super::forces::Gusts;
-use super::forces::readings;
-use super::forces::{Drift, noise, place_spike, spike_at};
-use super::forces::{Kinematics, Wrench, gravity_and_inertia, wind_coefficients};
+use super::forces::{
+    Drift, Gusts, Kinematics, Wrench, gravity_and_inertia, noise, place_spike, readings, spike_at,
+    wind_coefficients,
+};
 use super::plan::VirtualCampaignPlan;
 use super::truth::{AppliedDisturbances, CampaignTruth, TruthPoint};
 use crate::aerodynamics::derivatives::DerivativeTable;

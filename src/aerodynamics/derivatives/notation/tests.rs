@@ -2,11 +2,8 @@
 
 use super::*;
 use crate::aerodynamics::FlatPlate;
-use crate::aerodynamics::derivatives::DerivativePoint;
-use crate::aerodynamics::derivatives::DerivativeTable;
-use crate::aerodynamics::derivatives::TableHeader;
-use crate::files::derivatives::parse_csv_in;
-use crate::files::derivatives::write_csv_in;
+use crate::aerodynamics::derivatives::{DerivativePoint, DerivativeTable, TableHeader};
+use crate::files::derivatives::{parse_csv_in, write_csv_in};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::collections::BTreeMap;
