@@ -3,7 +3,7 @@
 //!
 //! `cargo bench --bench changes` prints a table; nothing is asserted here.
 
-use aerodeck::aerodynamics::Realizable;
+use aerodeck::aerodynamics::{GustForce, RationalAdmittance, Realizable};
 use aerodeck::aeroelastic::{CoupledSection, CoupledSystem};
 use aerodeck::flutter::{OnsetSearch, find_onset};
 use aerodeck::fmu::instance::Instance;
@@ -25,6 +25,7 @@ fn main() {
         let model = model(kind);
         println!("{kind}, {} states", coupled(&model).states());
         winds(&model);
+        gusts(&model);
         parameters(&model);
         println!();
     }
@@ -88,6 +89,41 @@ fn winds(model: &TrainedModel) {
     stepped("steady wind, died out", &section, steady, &[1e-249, 0.0]);
     stepped("wind set at every step", &section, held, &[0.01, 0.0]);
     stepped("wind on ramps", &section, ramps, &[0.01, 0.0]);
+}
+
+/// Gusts on top, through four lags each, against the same steps without them.
+fn gusts(model: &TrainedModel) {
+    let tau = std::f64::consts::TAU;
+    let force = GustForce {
+        dofs: model.section.dofs(),
+        coefficients: vec![[0.0, tau], [0.0, 0.25 * tau]],
+        admittance: RationalAdmittance::Sears,
+        source: "thin plate".into(),
+    };
+    let run = |force: Option<&GustForce>| {
+        let mut stepper = Stepper::in_gusts(coupled(model), force);
+        let mut state = stepper
+            .released(&[0.01, 0.0], &[0.0; 2])
+            .expect("a release");
+        let blows = force.is_some();
+        move |i: usize| {
+            let mut inputs = Inputs::steady(wind(i), 2);
+            inputs.wind_speed_rate_m_s2 = (wind(i + 1) - wind(i)) / STEP_S;
+            if blows {
+                inputs.gust_m_s = vec![0.1 * wind(i), 0.05 * wind(7 * i)];
+                inputs.gust_rate_m_s2 = vec![1.0, -2.0];
+            }
+            stepper
+                .advance(&mut state, &inputs, STEP_S)
+                .expect("a step");
+        }
+    };
+    compare(
+        "gusts at every step and wind on ramps",
+        2000,
+        run(Some(&force)),
+        ("wind on ramps alone", run(None)),
+    );
 }
 
 /// Against a matrix exponential for every step: of the whole section at the wind of its middle or, of a sampled model, of
