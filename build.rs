@@ -12,13 +12,14 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
 /// Parts of `src/` that never reach the runtime, beside tests; every other file there leads to a new build of it.
-const NOT_IN_RUNTIME: [&str; 19] = [
+const NOT_IN_RUNTIME: [&str; 20] = [
     "main.rs",
     "reference",
     "buffeting",
     "cli",
     "comparison",
     "identification",
+    "live",
     "plausibility.rs",
     "reliability",
     "report",
@@ -97,7 +98,8 @@ fn ready_made(ready: &Path, here: &str) -> Result<Vec<(String, PathBuf)>, String
     let mut runtimes = Vec::new();
     for folder in entries.flatten().map(|e| e.path()) {
         let platform = folder.file_name().unwrap_or_default().to_string_lossy();
-        let libraries = ["so", "dll", "dylib"].map(|e| folder.join(LIBRARY).with_extension(e));
+        let libraries =
+            ["so", "dll", "dylib", "wasm"].map(|e| folder.join(LIBRARY).with_extension(e));
         if let Some(library) = libraries.into_iter().find(|l| l.is_file()) {
             println!("cargo::rerun-if-changed={}", library.display());
             runtimes.push((platform.into_owned(), library));

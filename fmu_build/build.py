@@ -36,6 +36,7 @@ TARGETS = {
     "x86_64-apple-darwin": ("libaerodeck.dylib", "dylib", ["darwin64"]),
     "aarch64-apple-darwin": ("libaerodeck.dylib", "dylib", ["aarch64-darwin"]),
 }
+LIVE = "wasm32-unknown-unknown"  # no platform of FMI: the module that answers the sliders of reports
 # linkers that export less than zig's, where they are there
 LINKERS = {"x86_64-pc-windows-gnu": "x86_64-w64-mingw32-gcc"}
 MACHINES = {"x86_64-apple-darwin": (0x01000007, 3), "aarch64-apple-darwin": (0x0100000C, 0)}  # of Mach-O
@@ -100,6 +101,17 @@ def build(target, zig):
     run(*tool, "--locked", "--lib", "--crate-type", "cdylib", "--no-default-features", "--profile", "fmu",
         "--target", wanted, "--target-dir", target_dir, env=environment)  # fmt: skip
     return target_dir / target / "fmu" / file
+
+
+def build_live(out):
+    """The module for the sliders of reports, beside the runtimes."""
+    target_dir = ROOT / "target" / "fmu-release"
+    run("cargo", "rustc", "--locked", "--lib", "--crate-type", "cdylib", "--no-default-features", "--profile", "live",
+        "--target", LIVE, "--target-dir", target_dir, env=dict(os.environ, CARGO_ENCODED_RUSTFLAGS=flags(LIVE)))  # fmt: skip
+    file = out / "wasm32" / f"{NAME}.wasm"
+    file.parent.mkdir(parents=True, exist_ok=True)
+    shutil.copyfile(target_dir / LIVE / "live" / "aerodeck.wasm", file)
+    print(f"{file}: {file.stat().st_size} bytes")
 
 
 def universal(libraries):
@@ -168,6 +180,10 @@ def main():
         else:
             built[target] = build(target, python is not None)
     files = place(built, out)
+    if LIVE in there:
+        build_live(out)
+    else:
+        print(f"skipped the sliders of reports: rustup target add {LIVE}")
     if python:
         run(python, pathlib.Path(__file__).with_name("check_library.py"), *files)
         run_library.compare(python, ROOT, {file.parent.name: file for file in files})

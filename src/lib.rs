@@ -46,7 +46,7 @@
 //! packing and importer. `wind_tunnel` leads from load cells to records, `identification` from records and tables to
 //! derivatives and models, `uncertainty` from their scatter to intervals, `selection` to one model among many;
 //! `files` reads and writes tables, `comparison` compares time histories, `buffeting` adds gusts, `reliability` scatters the section. `study` runs the
-//! whole chain, `report` draws it and `cli` is the program.
+//! whole chain, `report` draws it, [`live`] answers its sliders and `cli` is the program.
 #![deny(unsafe_code, missing_docs)]
 // the runtime of the FMU reaches only a part of the rooms it is built of
 #![cfg_attr(not(feature = "cli"), allow(dead_code, unused_imports))]
@@ -64,9 +64,12 @@ pub mod error;
 #[cfg(feature = "cli")]
 pub mod files;
 pub mod flutter;
+// the module of a report has no use for it
+#[cfg(not(target_arch = "wasm32"))]
 pub mod fmu;
 #[cfg(feature = "cli")]
 pub mod identification;
+pub mod live;
 #[cfg(feature = "cli")]
 mod plausibility;
 pub mod prelude;

@@ -50,6 +50,14 @@ impl OnsetSearch {
     }
 }
 
+/// Wind speeds of curves, m/s: `count` of them from the lowest to the highest, equally spaced.
+pub(crate) fn curve_speeds_m_s(lowest_m_s: f64, highest_m_s: f64, count: usize) -> Vec<f64> {
+    let last = count.saturating_sub(1) as f64;
+    let span = highest_m_s - lowest_m_s;
+    let speed = |i: usize| lowest_m_s + span * i as f64 / last;
+    (0..count).map(speed).collect()
+}
+
 /// First wind speed at which a mode of `section` loses its damping.
 ///
 /// Modes are followed from nearly still air and every crossing up to the highest speed is refined; beside that all

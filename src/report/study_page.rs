@@ -77,6 +77,8 @@ pub(crate) struct StudyPage {
     pub(crate) interval: Option<(f64, f64)>,
     /// Wind speed that the onset has to exceed, m/s.
     pub(crate) required: Option<f64>,
+    /// What the sliders start from and the module they ask, as JSON; they need the curves.
+    pub(crate) live: Option<String>,
 }
 
 #[derive(Template)]
@@ -87,6 +89,7 @@ struct Page<'a> {
     uplot_licence: &'static str,
     axes: String,
     charts: String,
+    live: String,
     title: &'a str,
     generator: &'a str,
     verdict: &'static str,
@@ -143,6 +146,7 @@ pub(crate) fn study_page(of: &StudyPage) -> Result<String> {
         uplot_licence: UPLOT_LICENCE,
         axes: super::axes_sketch().svg().to_owned(),
         charts,
+        live: of.live.as_deref().map_or(String::new(), in_script),
         title: &of.title,
         generator: &of.generator,
         verdict: of.verdict,
@@ -166,7 +170,12 @@ pub(crate) fn study_page(of: &StudyPage) -> Result<String> {
     page.render().map_err(|e| failed(e.to_string()))
 }
 
-/// The curves as a value of JavaScript; `<` cannot end the script.
+/// JSON as it may stand in a script: `<` cannot end it.
+fn in_script(json: &str) -> String {
+    json.replace('<', "\\u003c")
+}
+
+/// The curves as a value of JavaScript.
 fn charts(of: &StudyPage) -> serde_json::Result<String> {
     let charts = Charts {
         speeds: &of.speeds,
@@ -175,7 +184,7 @@ fn charts(of: &StudyPage) -> serde_json::Result<String> {
         required: of.required,
         series: of.curves.iter().map(series).collect(),
     };
-    Ok(serde_json::to_string(&charts)?.replace('<', "\\u003c"))
+    Ok(in_script(&serde_json::to_string(&charts)?))
 }
 
 fn series(of: &PageCurve) -> ChartSeries<'_> {

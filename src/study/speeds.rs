@@ -1,7 +1,7 @@
 //! Wind speeds of curves and searches: stated in the file, else from the section.
 
 use crate::error::{Error, Result, positive};
-use crate::flutter::OnsetSearch;
+use crate::flutter::{OnsetSearch, curve_speeds_m_s};
 use crate::section::{Dof, SectionModel};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -135,11 +135,7 @@ impl SpeedRange {
 
     /// Wind speeds of the curves, m/s.
     pub fn curve_speeds_m_s(&self) -> Vec<f64> {
-        let last = (self.speeds - 1) as f64;
-        let span = self.speed_max_m_s - self.speed_min_m_s;
-        (0..self.speeds)
-            .map(|i| self.speed_min_m_s + span * i as f64 / last)
-            .collect()
+        curve_speeds_m_s(self.speed_min_m_s, self.speed_max_m_s, self.speeds)
     }
 }
 

@@ -66,6 +66,7 @@ pub const ARROWS: &[Row] = &[
     row("flutter", &["aeroelastic+", "bridge"]),
     row("response", &["aeroelastic+"]),
     row("buffeting", &["flutter+", "response+"]),
+    row("live", &["flutter+", "trained_model+"]),
     row("fmu", &["flutter+", "response+", "trained_model+"]),
     row("fmu::fmi2", &["fmu"]),
     // a second shell over the guard of the first
@@ -120,7 +121,12 @@ const BELOW_STUDY: &[&str] = &[
 const FOR_ALL: &[&str] = &["error"];
 
 /// Directories whose code may be `unsafe`.
-const UNSAFE_DIRECTORIES: &[&str] = &["src/fmu/fmi2", "src/fmu/fmi3", "src/fmu/importer"];
+const UNSAFE_DIRECTORIES: &[&str] = &[
+    "src/fmu/fmi2",
+    "src/fmu/fmi3",
+    "src/fmu/importer",
+    "src/live/interface.rs",
+];
 
 /// Ways to end the caller's process.
 const ABRUPT: &[&str] = &[

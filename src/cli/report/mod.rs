@@ -1,6 +1,7 @@
 //! `aerodeck report`: one self-contained page from a folder of results; `study` and `demo` end with it.
 
 mod curves;
+mod live;
 mod view;
 
 pub(crate) use view::AnswerView;
@@ -75,6 +76,7 @@ pub(super) fn page(folder: &Path, study_folder: &Path) -> Result<String> {
     if let Ok(curves) = std::fs::read_to_string(folder.join(CURVES)) {
         (page.speeds, page.curves) = curves_of(&curves)?;
     }
+    page.live = live::sliders(&study, read(MODEL_FILE))?;
     let digest = |bytes: &[u8]| sha1_smol::Sha1::from(bytes).digest().to_string();
     let own = (summary.study_file.clone(), digest(study_text.as_bytes()));
     page.hashes.push(own);

@@ -12,7 +12,7 @@ mod runtime;
 pub use documentation::documentation;
 pub use growth::{Growing, growth_of};
 pub use label::Label;
-pub use runtime::{RUNTIME_DIR_VARIABLE, Runtime};
+pub use runtime::{RUNTIME_DIR_VARIABLE, Runtime, live_module};
 
 use super::bridge_gusts::{TURBULENCE_FILE, TurbulenceOptions};
 use super::bridge_options::{BRIDGE_FILE, BridgeOptions};

@@ -4,12 +4,15 @@ use super::FmiVersion;
 use crate::error::{Error, Result};
 use crate::fmu::identity::MODEL_IDENTIFIER;
 use std::borrow::Cow;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Environment variable that names a folder of runtimes for further platforms, laid out as in an FMU:
 /// `linux64/aerodeck_section.so`, `win64/aerodeck_section.dll`, `darwin64/aerodeck_section.dylib`,
 /// `aarch64-linux/aerodeck_section.so`, …
 pub const RUNTIME_DIR_VARIABLE: &str = "AERODECK_RUNTIME_DIR";
+
+/// Folder of the module for WebAssembly, which is no runtime of an FMU but is made and found as one.
+const LIVE: &str = "wasm32";
 
 /// Platform folders below `binaries/`, ending of the library, how it may begin, name in words.
 const PLATFORMS: [(&str, &str, &[&[u8]], &str); 7] = [
@@ -69,7 +72,7 @@ impl Runtime {
             None => Vec::new(),
         };
         for (platform, bytes) in EMBEDDED {
-            if all.iter().all(|r| r.platform != *platform) {
+            if *platform != LIVE && all.iter().all(|r| r.platform != *platform) {
                 all.push(Self::new(platform, Cow::Borrowed(bytes))?);
             }
         }
@@ -122,7 +125,7 @@ impl Runtime {
                 found.push(Self::new(platform, Cow::Owned(bytes)).map_err(|e| e.in_file(&file))?);
             }
         }
-        if found.is_empty() {
+        if found.is_empty() && !live_file(folder).is_file() {
             return Err(Error::input(
                 RUNTIME_DIR_VARIABLE,
                 format!("a folder with, for example, linux64/{MODEL_IDENTIFIER}.so"),
@@ -178,6 +181,31 @@ impl Runtime {
         };
         format!("binaries/{platform}/{MODEL_IDENTIFIER}.{}", self.extension)
     }
+}
+
+fn live_file(folder: &Path) -> PathBuf {
+    folder.join(LIVE).join(format!("{MODEL_IDENTIFIER}.wasm"))
+}
+
+/// The module that answers the sliders of a report, [`crate::live`] for WebAssembly: the one in the folder that
+/// [`RUNTIME_DIR_VARIABLE`] names, else the one that this program carries; `None` without either.
+///
+/// # Errors
+/// [`Error::Io`] for a file that cannot be read, [`Error::Input`] for one that is no such module.
+pub fn live_module() -> Result<Option<Cow<'static, [u8]>>> {
+    if let Some(folder) = std::env::var_os(RUNTIME_DIR_VARIABLE) {
+        let file = live_file(Path::new(&folder));
+        if file.is_file() {
+            let bytes = std::fs::read(&file).map_err(|e| Error::io(&file, e))?;
+            if !bytes.starts_with(b"\0asm") {
+                let found = format!("{} other bytes", bytes.len());
+                return Err(Error::input("module", "WebAssembly", found).in_file(&file));
+            }
+            return Ok(Some(Cow::Owned(bytes)));
+        }
+    }
+    let own = EMBEDDED.iter().find(|(platform, _)| *platform == LIVE);
+    Ok(own.map(|(_, bytes)| Cow::Borrowed(*bytes)))
 }
 
 /// Whether an ELF file is for 64-bit ARM: its machine, at byte 18, is 183.
