@@ -8,7 +8,7 @@ impl Stepper {
     /// `d/dt` of the state values and, behind them, of the lagging gusts; filters of the discrete model stand still between samples.
     ///
     /// # Errors
-    /// [`Error::Input`] for inputs that are not finite.
+    /// [`crate::Error::Input`] for inputs that are not finite.
     pub fn state_derivative(&mut self, state: &SectionState, inputs: &Inputs) -> Result<Vec<f64>> {
         let n = self.section.structure().dofs.len();
         inputs.check(n)?;
