@@ -45,6 +45,7 @@ const SAMPLE_BY_MATRIX: f64 = 0.125;
 const PARTS_OF_A_MATRIX: f64 = 32.0;
 /// States at most whose step becomes a matrix: that of more takes seconds to make and leaves the caches of any processor.
 const STATES_OF_A_MATRIX: usize = 800;
+
 /// Steps a coupled section.
 ///
 /// ```
@@ -235,33 +236,6 @@ impl Stepper {
         self.series.gusts().is_some() && blowing.chain(&state.gusts).any(|x| *x != 0.0)
     }
 
-    /// Force of the gusts per unit length and 1 m/s of wind, and the rates of their lags per 1 m/s.
-    pub(crate) fn gusts_per_wind(
-        &self,
-        state: &SectionState,
-        inputs: &Inputs,
-    ) -> (Vec<f64>, Vec<f64>) {
-        let n = self.section.structure().dofs.len();
-        match self.series.gusts() {
-            Some(gusts) => (
-                gusts.force_per_wind(&inputs.gust_m_s, &state.gusts),
-                gusts.rates_per_wind(&inputs.gust_m_s, &state.gusts),
-            ),
-            None => (vec![0.0; n], Vec::new()),
-        }
-    }
-
-    /// Force of the gusts per unit length; none without gusts.
-    fn gust_force(&self, state: &SectionState, inputs: &Inputs) -> Vec<f64> {
-        let wind = inputs.wind_speed_m_s.max(0.0);
-        let gusts = self.series.gusts();
-        let mut force = gusts.map_or_else(Vec::new, |g| {
-            g.force_per_wind(&inputs.gust_m_s, &state.gusts)
-        });
-        force.iter_mut().for_each(|f| *f *= wind);
-        force
-    }
-
     /// Whether wind and step are those of the last step by a matrix, and so are known to be right.
     #[inline]
     fn repeats(&self, state: &SectionState, inputs: &Inputs, step: f64) -> bool {
@@ -365,16 +339,18 @@ impl Stepper {
         outputs.rate.extend_from_slice(&state.values[n..2 * n]);
         outputs.acceleration.resize(n, 0.0);
         outputs.self_excited_force.resize(n, 0.0);
-        let gust_force = self.gust_force(state, inputs);
-        let rows = self
-            .cache
-            .output_rows(&self.section, inputs.wind_speed_m_s.max(0.0))?;
+        let wind = inputs.wind_speed_m_s.max(0.0);
         self.operand[..state.values.len()].copy_from_slice(&state.values);
         let external = &mut self.operand[state.values.len()..][..n];
         external.copy_from_slice(&inputs.force);
-        for (w, gust) in external.iter_mut().zip(gust_force) {
-            *w += gust;
+        if let Some(gusts) = self.series.gusts() {
+            let by_gusts = &mut self.both[..n];
+            gusts.force_per_wind(&inputs.gust_m_s, &state.gusts, by_gusts);
+            for (w, gust) in external.iter_mut().zip(by_gusts) {
+                *w += wind * *gust;
+            }
         }
+        let rows = self.cache.output_rows(&self.section, wind)?;
         let columns = state.values.len() + n;
         let both = &mut self.both[..];
         apply(rows, &self.operand[..columns], both);

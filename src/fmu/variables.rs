@@ -99,6 +99,11 @@ pub enum Calculated {
     StableBelowOnset,
 }
 
+impl Calculated {
+    /// How many there are.
+    pub const COUNT: usize = Self::StableBelowOnset as usize + 1;
+}
+
 /// What is known of the present moment: how far from flutter, and whether the answer can be trusted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Status {

@@ -6,15 +6,17 @@
 use crate::aerodynamics::{GustForce, RationalAdmittance};
 use crate::section::Structure;
 use nalgebra::DMatrix;
+use std::ops::Range;
 
 /// Gust forces `F = V Q g` with `g` the channels through their lags.
 #[derive(Debug, Clone)]
 pub(super) struct Gusts {
     force: ByChannel,
-    /// 1/m of each channel: a lag follows at its pole times this times the wind.
-    passing: Vec<f64>,
+    channels: usize,
     /// Pole and weight of each lag.
     lags: &'static [[f64; 2]],
+    /// How fast each number of the state follows its gust, 1/m times the wind: the pole of its lag over the width.
+    speeds: Vec<f64>,
     /// Part of a gust that acts at once.
     direct: f64,
     series: LagSeries,
@@ -35,7 +37,6 @@ struct LagSeries {
     term: Vec<f64>,
     lacking: Vec<f64>,
     passed: Vec<f64>,
-    before: Vec<f64>,
     force: Vec<f64>,
     largest: f64,
     last: f64,
@@ -76,12 +77,15 @@ impl Gusts {
         Self::of(ByChannel::Modes(modes), passing, admittance)
     }
 
+    /// `passing`: 1/m of each channel.
     fn of(force: ByChannel, passing: Vec<f64>, admittance: RationalAdmittance) -> Self {
         let lags = admittance.lags();
+        let of_channel = |p: &f64| lags.iter().map(|[pole, _]| pole * p).collect::<Vec<_>>();
         Self {
             force,
-            passing,
+            channels: passing.len(),
             lags,
+            speeds: passing.iter().flat_map(of_channel).collect(),
             // the weights of lags sum to one
             direct: if lags.is_empty() { 1.0 } else { 0.0 },
             series: LagSeries::default(),
@@ -90,48 +94,42 @@ impl Gusts {
 
     /// Numbers of the state: each channel behind each lag.
     pub fn states(&self) -> usize {
-        self.passing.len() * self.lags.len()
+        self.speeds.len()
     }
 
     /// Largest speed of a lag, 1/m.
     pub fn fastest(&self) -> f64 {
-        let pole = self.lags.iter().map(|[p, _]| *p).fold(0.0, f64::max);
-        pole * self.passing.iter().copied().fold(0.0, f64::max)
+        self.speeds.iter().copied().fold(0.0, f64::max)
     }
 
-    /// Channel `j` as it is felt.
-    fn passed(&self, j: usize, gust: f64, lagging: &[f64]) -> f64 {
-        let count = self.lags.len();
-        let of_channel = &lagging[j * count..(j + 1) * count];
-        let lagged = self.lags.iter().zip(of_channel).map(|([_, w], g)| w * g);
+    /// Numbers of the state that belong to a channel.
+    fn of_channel(&self, j: usize) -> Range<usize> {
+        j * self.lags.len()..(j + 1) * self.lags.len()
+    }
+
+    /// A channel as it is felt.
+    fn passed(&self, gust: f64, lagging: &[f64]) -> f64 {
+        let lagged = self.lags.iter().zip(lagging).map(|([_, w], g)| w * g);
         self.direct * gust + lagged.sum::<f64>()
     }
 
     /// `Q g`: force per unit length and 1 m/s of wind.
-    pub fn force_per_wind(&self, gust: &[f64], lagging: &[f64]) -> Vec<f64> {
-        let each = 0..self.passing.len();
-        let passed: Vec<f64> = each
-            .map(|j| self.passed(j, stated(gust, j), lagging))
-            .collect();
-        let mut force = Vec::new();
-        self.force.times(&passed, &mut force);
-        force
+    pub fn force_per_wind(&self, gust: &[f64], lagging: &[f64], force: &mut [f64]) {
+        force.fill(0.0);
+        for j in 0..self.channels {
+            let felt = self.passed(stated(gust, j), &lagging[self.of_channel(j)]);
+            self.force.add(j, felt, force);
+        }
     }
 
     /// Rates of the lagging gusts per 1 m/s of wind.
     pub fn rates_per_wind(&self, gust: &[f64], lagging: &[f64]) -> Vec<f64> {
-        let rate = |(i, g): (usize, &f64)| {
-            let (channel, speed) = self.lag(i);
-            speed * (stated(gust, channel) - g)
+        let of_channel = |j: usize| {
+            let (gust, range) = (stated(gust, j), self.of_channel(j));
+            let lags = lagging[range.clone()].iter().zip(&self.speeds[range]);
+            lags.map(move |(g, speed)| speed * (gust - g))
         };
-        lagging.iter().enumerate().map(rate).collect()
-    }
-
-    /// Channel of a number of the state, and the speed of its lag, 1/m.
-    fn lag(&self, i: usize) -> (usize, f64) {
-        let count = self.lags.len();
-        let channel = i / count;
-        (channel, self.lags[i % count][0] * self.passing[channel])
+        (0..self.channels).flat_map(of_channel).collect()
     }
 
     /// Begins the series of one part at the present lagging gusts.
@@ -142,7 +140,8 @@ impl Gusts {
         s.lacking.clear();
         s.lacking.resize(lagging.len(), 0.0);
         s.passed.clear();
-        s.passed.resize(self.passing.len(), 0.0);
+        s.passed.resize(self.channels, 0.0);
+        s.force.resize(self.force.motions(), 0.0);
         s.largest = largest(lagging);
         s.last = s.largest;
     }
@@ -158,30 +157,32 @@ impl Gusts {
         sum: &mut [f64],
     ) -> &[f64] {
         let mut s = std::mem::take(&mut self.series);
-        let gust = |j: usize| match k {
-            0 => course.at(j, start),
-            1 => tau * stated(course.rate, j),
-            _ => 0.0,
-        };
-        std::mem::swap(&mut s.before, &mut s.passed);
-        s.passed.clear();
-        s.passed
-            .extend((0..self.passing.len()).map(|j| self.passed(j, gust(j), &s.term)));
-        for (before, passed) in s.before.iter_mut().zip(&s.passed) {
-            *before = wind * passed + change * *before;
-        }
-        self.force.times(&s.before, &mut s.force);
         let factor = tau / (k + 1) as f64;
-        for (i, sum) in sum.iter_mut().enumerate() {
-            let (channel, speed) = self.lag(i);
-            let lacking = gust(channel) - s.term[i];
-            s.term[i] = factor * speed * (wind * lacking + change * s.lacking[i]);
-            s.lacking[i] = lacking;
-            *sum += s.term[i];
+        s.force.fill(0.0);
+        for j in 0..self.channels {
+            let gust = match k {
+                0 => course.at(j, start),
+                1 => tau * stated(course.rate, j),
+                _ => 0.0,
+            };
+            let range = self.of_channel(j);
+            let term = &mut s.term[range.clone()];
+            let passed = self.passed(gust, term);
+            self.force
+                .add(j, wind * passed + change * s.passed[j], &mut s.force);
+            s.passed[j] = passed;
+            let lags = term.iter_mut().zip(&mut s.lacking[range.clone()]);
+            let places = sum[range.clone()].iter_mut().zip(&self.speeds[range]);
+            for ((term, lacking), (sum, speed)) in lags.zip(places) {
+                let now = gust - *term;
+                *term = factor * speed * (wind * now + change * *lacking);
+                *lacking = now;
+                *sum += *term;
+            }
+            s.largest = s.largest.max(gust.abs());
         }
         s.last = largest(&s.term);
-        let blown = (0..self.passing.len()).map(|j| gust(j).abs());
-        s.largest = blown.fold(s.largest.max(s.last), f64::max);
+        s.largest = s.largest.max(s.last);
         self.series = s;
         &self.series.force
     }
@@ -193,21 +194,22 @@ impl Gusts {
 }
 
 impl ByChannel {
-    /// `Q` times what is felt of each channel.
-    fn times(&self, felt: &[f64], force: &mut Vec<f64>) {
-        force.clear();
+    fn motions(&self) -> usize {
         match self {
-            Self::Section(matrix) => force.extend(
-                matrix
-                    .row_iter()
-                    .map(|row| row.iter().zip(felt).map(|(q, g)| q * g).sum::<f64>()),
-            ),
-            Self::Modes(modes) => {
-                force.resize(*modes, 0.0);
-                for of_group in felt.chunks_exact(*modes) {
-                    force.iter_mut().zip(of_group).for_each(|(f, g)| *f += g);
+            Self::Section(matrix) => matrix.nrows(),
+            Self::Modes(modes) => *modes,
+        }
+    }
+
+    /// Adds what a channel does that is felt so strongly.
+    fn add(&self, channel: usize, felt: f64, force: &mut [f64]) {
+        match self {
+            Self::Section(matrix) => {
+                for (force, q) in force.iter_mut().zip(&matrix.column(channel)) {
+                    *force += q * felt;
                 }
             }
+            Self::Modes(modes) => force[channel % modes] += felt,
         }
     }
 }

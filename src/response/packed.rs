@@ -75,21 +75,25 @@ impl Sparse {
     }
 }
 
-/// Filters of which every pair is multiplied; of more only those that are linked.
-const FEW_FILTERS: usize = 24;
+/// Rows of a matrix that are multiplied one and all, because there are few of them.
+const FEW_ROWS: usize = 40;
 
-/// The equation of the filters. Those of a bridge hang together in short chains, one or a few for each mode, so that a product
-/// costs modes × filters.
+/// The equation of pressure and filters. Filters of a bridge hang together in short chains, one or a few for each mode, so
+/// that a product with their rows, taken by their links, costs modes × filters; on a section a row costs less than its links.
 #[derive(Debug, Clone)]
-pub(super) enum Filters {
+pub(super) enum Linked {
     Few(Packed),
-    Many(Sparse),
+    /// Rows of which most entries count, and behind them those of the filters.
+    Many(Packed, Sparse),
 }
 
-impl Filters {
-    pub fn of(matrix: &DMatrix<f64>) -> Self {
-        if matrix.nrows() > FEW_FILTERS {
-            Self::Many(Sparse::of(matrix))
+impl Linked {
+    /// A matrix whose first `full` rows are full.
+    pub fn of(matrix: &DMatrix<f64>, full: usize) -> Self {
+        let rest = matrix.nrows() - full;
+        if matrix.nrows() > FEW_ROWS {
+            let linked = Sparse::of(&matrix.rows(full, rest).into_owned());
+            Self::Many(Packed::of(&matrix.rows(0, full).into_owned()), linked)
         } else {
             Self::Few(Packed::of(matrix))
         }
@@ -98,7 +102,11 @@ impl Filters {
     pub fn apply(&self, v: &[f64], y: &mut [f64]) {
         match self {
             Self::Few(matrix) => apply(matrix, v, y),
-            Self::Many(matrix) => matrix.apply(v, y),
+            Self::Many(full, linked) => {
+                let (first, rest) = y.split_at_mut(full.rows);
+                apply(full, v, first);
+                linked.apply(v, rest);
+            }
         }
     }
 }

@@ -14,10 +14,10 @@ impl Stepper {
         inputs.check(n)?;
         if let Some(sampling) = &self.sampling {
             let z = DVector::from_column_slice(&state.values);
-            let gusts = self.gust_force(state, inputs);
-            let mut w = DVector::from_column_slice(&inputs.force);
-            w.iter_mut().zip(gusts).for_each(|(w, gust)| *w += gust);
-            let force = sampling.force(&state.values, inputs.wind_speed_m_s.max(0.0));
+            let (gusts, _) = self.gusts_per_wind(state, inputs);
+            let wind = inputs.wind_speed_m_s.max(0.0);
+            let w = DVector::from_fn(n, |i, _| inputs.force[i] + wind * gusts[i]);
+            let force = sampling.force(&state.values, wind);
             let force = DVector::from_column_slice(&force[..n]);
             let (a, b) = self.section.structure_alone();
             let motion = a * z.rows(0, 2 * n) + b * (w + force);
@@ -31,10 +31,23 @@ impl Stepper {
         let by_wind = self.section.filter_rates_per_wind(&state.values);
         let wind = inputs.wind_speed_m_s.max(0.0);
         derivative.extend(by_wind.iter().map(|x| wind * x));
-        if let Some(gusts) = self.series.gusts() {
-            let lagging = gusts.rates_per_wind(&inputs.gust_m_s, &state.gusts);
-            derivative.extend(lagging.iter().map(|x| wind * x));
-        }
+        let (_, lagging) = self.gusts_per_wind(state, inputs);
+        derivative.extend(lagging.iter().map(|x| wind * x));
         Ok(derivative)
+    }
+
+    /// Force of the gusts per unit length and 1 m/s of wind, and the rates of their lags per 1 m/s.
+    pub(crate) fn gusts_per_wind(
+        &self,
+        state: &SectionState,
+        inputs: &Inputs,
+    ) -> (Vec<f64>, Vec<f64>) {
+        let mut force = vec![0.0; self.section.structure().dofs.len()];
+        let Some(gusts) = self.series.gusts() else {
+            return (force, Vec::new());
+        };
+        gusts.force_per_wind(&inputs.gust_m_s, &state.gusts, &mut force);
+        let rates = gusts.rates_per_wind(&inputs.gust_m_s, &state.gusts);
+        (force, rates)
     }
 }

@@ -14,7 +14,7 @@
 //! to the system and their force to `w`.
 
 use super::gusts::{GustCourse, Gusts};
-use super::packed::{Filters, Packed, apply};
+use super::packed::{Linked, Packed, apply};
 use crate::aerodynamics::Realization;
 use crate::aeroelastic::CoupledSection;
 use nalgebra::DMatrix;
@@ -66,14 +66,10 @@ pub(super) struct Series {
     scale: Vec<f64>,
     /// Unit of the rates, rad/s.
     rate: f64,
-    /// `A₀` on `[q̇, q]`.
+    /// `[A₀; A₁]` on `[q̇, q]`.
     structure: Packed,
-    /// `A₁` on `q̇`.
-    damping: Packed,
-    /// `A₂` on `[q, x]`.
-    pressure: Packed,
-    /// `G` on `[q, x]`.
-    filters: Filters,
+    /// `[A₂; G]` on `[q, x]`.
+    aerodynamic: Linked,
     /// `M⁻¹`, scaled.
     force: DMatrix<f64>,
     norms: Norms,
@@ -127,10 +123,8 @@ impl Series {
             dofs: n,
             scale,
             rate,
-            structure: Packed::of(&structure.rows(0, n).into_owned()),
-            damping: Packed::of(&structure.view((n, 0), (n, n)).into_owned()),
-            pressure: Packed::of(&aerodynamic.rows(0, n).into_owned()),
-            filters: Filters::of(&aerodynamic.rows(n, filters).into_owned()),
+            structure: Packed::of(&structure),
+            aerodynamic: Linked::of(&aerodynamic, n),
             force,
             norms,
             gusts,
@@ -227,13 +221,9 @@ impl Series {
         for k in 0..MAX_TERMS {
             work.structure.swap(0, 1);
             work.aerodynamic.rotate_right(1);
-            let n = self.dofs;
-            let (by_structure, by_damping) = work.structure[0].split_at_mut(n);
-            apply(&self.structure, &work.term[..2 * n], by_structure);
-            apply(&self.damping, &work.term[..n], by_damping);
-            let (by_pressure, by_filters) = work.aerodynamic[0].split_at_mut(n);
-            apply(&self.pressure, &work.term[n..], by_pressure);
-            self.filters.apply(&work.term[n..], by_filters);
+            let (motion, filtered) = (&work.term[..2 * self.dofs], &work.term[self.dofs..]);
+            apply(&self.structure, motion, &mut work.structure[0]);
+            self.aerodynamic.apply(filtered, &mut work.aerodynamic[0]);
             let mut pushed = 0.0;
             if let Some(gusts) = &mut gusts {
                 let time = (start, tau);

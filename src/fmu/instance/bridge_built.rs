@@ -1,11 +1,10 @@
 //! What follows from the parameters of an exported bridge: its coupled modes, and what gusts do to them.
 
-use super::trust::smallest_damping;
 use crate::aerodynamics::RationalAdmittance;
 use crate::aeroelastic::CoupledSection;
 use crate::bridge::{Bridge, GustChannels};
 use crate::error::{Error, Result};
-use crate::fmu::bridge_gusts::GustRecord;
+use crate::fmu::bridge_gusts::{BridgeGusts, GustRecord};
 use crate::fmu::bridge_options::BridgeOptions;
 use crate::fmu::resources::Resources;
 use crate::fmu::variables::{ModeParameter, Role, SectionParameter};
@@ -15,8 +14,6 @@ use crate::response::{Inputs, SectionState, Stepper};
 const MAX_PIECES: f64 = 1e4;
 /// Part of a step that is not worth a piece of its own.
 const LAST_PIECE: f64 = 1e-9;
-/// Relative step of a difference over the wind speed.
-const WIND_STEP: f64 = 1e-5;
 
 /// See the module.
 #[derive(Debug)]
@@ -42,9 +39,7 @@ impl Built {
             }
         }
         let coupled = CoupledSection::new(bridge.structure(), bridge.forces().realize()?)?;
-        let channels = |g: &crate::fmu::bridge_gusts::BridgeGusts| {
-            GustChannels::new(&bridge, &g.coefficients, &g.strips)
-        };
+        let channels = |g: &BridgeGusts| GustChannels::new(&bridge, &g.coefficients, &g.strips);
         let gusts = options.gusts.as_ref().map(channels).transpose()?;
         let turbulence = match (&resources.turbulence, &options.gusts) {
             (Some(field), Some(gusts)) => Some(field.channels(&bridge, gusts)?),
@@ -140,14 +135,6 @@ impl Built {
             done = if last { step } else { done + piece };
         }
         Ok(())
-    }
-
-    /// Derivative of the smallest damping ratio with respect to the wind speed, per m/s.
-    pub fn damping_slope(&self, wind: f64) -> Result<f64> {
-        let step = WIND_STEP * wind.max(1.0);
-        let low = (wind - step).max(0.0);
-        let damping = |v: f64| smallest_damping(self.stepper.section(), v);
-        Ok((damping(wind + step)? - damping(low)?) / (wind + step - low))
     }
 }
 

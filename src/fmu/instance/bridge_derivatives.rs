@@ -2,12 +2,12 @@
 //! is closed; only parameters are differenced.
 
 use super::bridge_built::Built;
-use super::bridge_search::Found;
 use super::bridge_unit::BridgeUnit;
 use super::derivatives::central_difference;
 use super::layout::Source;
 use super::saving::Memory;
-use super::trust::smallest_damping;
+use super::section::OnsetCard;
+use super::trust::{Present, is_of_onset, smallest_damping, without_motion};
 use super::unit::Unit;
 use crate::error::Result;
 use crate::fmu::lifecycle::State;
@@ -111,16 +111,13 @@ impl BridgeUnit {
         } else {
             RELATIVE_STEP * value.abs()
         };
-        let present = std::mem::replace(
-            &mut self.built,
-            Built::new(resources, options, &memory.values)?,
-        );
-        let found = central_difference(resources, memory, (known, step), |other| {
-            self.built = Built::new(resources, options, &other.values)?;
-            Ok(self.unknowns(other, unknowns)?)
-        });
-        self.built = present;
-        found
+        central_difference(resources, memory, (known, step), |other| {
+            let changed = Built::new(resources, options, &other.values)?;
+            let present = std::mem::replace(&mut self.built, changed);
+            let found = self.unknowns(other, unknowns);
+            self.built = present;
+            Ok(found?)
+        })
     }
 
     /// The unknowns of a bridge that is released with the values in `memory`.
@@ -130,25 +127,18 @@ impl BridgeUnit {
         let modal = self.modal(&state)?;
         let wind = memory.values[self.places.inputs[0]];
         let wants = |wanted: fn(&Role) -> bool| unknowns.iter().any(wanted);
-        let of_onset = |u: &Role| {
-            let status = Role::Status(Status::FlutterMargin);
-            matches!(u, Role::Calculated(_) | Role::Status(Status::FlutterSpeed)) || *u == status
-        };
         let limit = memory.values[self.places.limit];
-        let found = wants(of_onset).then(|| Found::search(&self.built, self.tested, limit));
+        let card =
+            wants(is_of_onset).then(|| OnsetCard::of_bridge(&self.built, self.tested, limit));
         let damping = if unknowns.contains(&Role::Status(Status::DampingNow)) {
             smallest_damping(self.built.stepper.section(), wind)?
         } else {
             0.0
         };
-        let value = |unknown: &Role| match (unknown, &found) {
-            (Role::Calculated(which), Some(found)) => found.value(*which),
-            (Role::Status(Status::FlutterSpeed), Some(f)) => f.value(Calculated::OnsetSpeed),
-            (Role::Status(Status::FlutterMargin), Some(f)) => {
-                f.value(Calculated::OnsetSpeed) - wind
-            }
-            (Role::Status(Status::DampingNow), _) => damping,
-            (other, _) => self.pick(&modal, *other),
+        let calculated = |which| card.as_ref().map_or(0.0, |card| card.value(which));
+        let value = |unknown: &Role| {
+            let still = without_motion(*unknown, calculated, wind, damping);
+            still.unwrap_or_else(|| self.pick(&modal, *unknown))
         };
         Ok(unknowns.iter().map(value).collect())
     }

@@ -5,19 +5,20 @@
 
 use super::bridge_built::Built;
 use super::bridge_places::Places;
-use super::bridge_search::Found;
 use super::layout::Source;
-use super::saving::Memory;
+use super::saving::{Memory, starts};
+use super::section::OnsetCard;
 use super::section_derivatives::{add, speed_sensitivity};
 use super::section_unit::check_finite;
-use super::trust::{LINEAR_ROTATION_RAD, beyond_linear, smallest_damping};
+use super::trust::{LINEAR_ROTATION_RAD, Present, beyond_linear};
 use super::unit::Unit;
+use crate::aeroelastic::CoupledSection;
 use crate::error::Result;
 use crate::fmu::bridge_options::BridgeOptions;
 use crate::fmu::lifecycle::State;
 use crate::fmu::refusal::Answer;
 use crate::fmu::resources::Resources;
-use crate::fmu::variables::{ModeOutput, Role, Status, Value, Variable};
+use crate::fmu::variables::{ModeOutput, Role};
 use crate::response::{Inputs, Outputs, SectionState};
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use nalgebra::DMatrix;
@@ -49,12 +50,7 @@ impl BridgeUnit {
     /// [`crate::Error::Input`] for numbers that make no bridge; [`crate::Error::Numerical`] for a table that is not one of a bridge.
     pub fn new(resources: &Resources, options: &BridgeOptions) -> Result<Self> {
         let table = &resources.table;
-        let start = |v: &Variable| match v.value {
-            Value::Real(start) => start.unwrap_or(0.0),
-            _ => 0.0,
-        };
-        let starts: Vec<f64> = table.variables().iter().map(start).collect();
-        let built = Built::new(resources, options, &starts)?;
+        let built = Built::new(resources, options, &starts(table))?;
         let masses = options.modes.iter().map(|m| m.generalised_mass.sqrt());
         Ok(Self {
             places: Places::new(table, options)?,
@@ -150,8 +146,22 @@ impl BridgeUnit {
     pub fn by_wind(&self, memory: &Memory) -> Outputs {
         speed_sensitivity(&self.built.stepper, &memory.system, &self.inputs)
     }
+}
 
-    /// Greatest rotation of a named node, rad.
+impl Present for BridgeUnit {
+    fn coupled(&self) -> Option<&CoupledSection> {
+        Some(self.built.stepper.section())
+    }
+
+    fn wind_speed(&self, memory: &Memory) -> f64 {
+        memory.values[self.places.inputs[0]]
+    }
+
+    fn onset_speed(&self, memory: &Memory) -> f64 {
+        memory.values[self.places.onset_speed]
+    }
+
+    /// Of a named node.
     fn rotation(&self, memory: &Memory) -> f64 {
         let modes = &memory.system.values[..self.roots.len()];
         let rotation = |row: usize| -> f64 {
@@ -162,16 +172,19 @@ impl BridgeUnit {
         rotations.fold(0.0, |a: f64, b| if b.abs() > a.abs() { b } else { a })
     }
 
-    /// Derivative of a number of the present moment with respect to the wind speed, per m/s.
-    pub fn present_by_wind(&self, memory: &Memory, role: Role) -> Result<f64> {
-        match role {
-            Role::Status(Status::FlutterMargin) => Ok(-1.0),
-            Role::Status(Status::DampingNow) => {
-                let wind = memory.values[self.places.inputs[0]];
-                self.built.damping_slope(wind)
-            }
-            _ => Ok(0.0),
-        }
+    /// At the frequency of flutter: the modes of a bridge have too many of their own.
+    fn wind_is_tested(
+        &mut self,
+        resources: &Resources,
+        memory: &mut Memory,
+        notices: &mut Vec<String>,
+    ) -> bool {
+        self.calculate(resources, memory, notices);
+        let found = memory.values[self.places.onset_found] != 0.0;
+        let hertz = memory.values[self.places.onset_frequency];
+        let wind = self.wind_speed(memory);
+        let k = ReducedFrequency::from_hertz(hertz, self.built.bridge.width_m(), wind);
+        found && wind > 0.0 && self.tested.is_some_and(|r| r.contains(k))
     }
 }
 
@@ -271,11 +284,12 @@ impl Unit for BridgeUnit {
         if self.onset_current {
             return;
         }
-        let found = Found::search(&self.built, self.tested, memory.values[self.places.limit]);
+        let limit = memory.values[self.places.limit];
+        let card = OnsetCard::of_bridge(&self.built, self.tested, limit);
         for (place, which) in &self.places.calculated {
-            memory.values[*place] = found.value(*which);
+            memory.values[*place] = card.value(*which);
         }
-        notices.extend(found.notices);
+        notices.extend(card.warnings);
         self.onset_current = true;
     }
 
@@ -286,40 +300,7 @@ impl Unit for BridgeUnit {
         role: Role,
         notices: &mut Vec<String>,
     ) -> f64 {
-        let wind = memory.values[self.places.inputs[0]];
-        let flag = |holds: bool| f64::from(u8::from(holds));
-        let Role::Status(status) = role else {
-            return 0.0;
-        };
-        match status {
-            Status::FlutterSpeed | Status::FlutterMargin => {
-                self.calculate(resources, memory, notices);
-                let speed = memory.values[self.places.onset_speed];
-                speed
-                    - if status == Status::FlutterMargin {
-                        wind
-                    } else {
-                        0.0
-                    }
-            }
-            Status::DampingNow => {
-                let damping = smallest_damping(self.built.stepper.section(), wind);
-                damping.unwrap_or_else(|why| {
-                    notices.push(format!("damping_now is not known: {why}"));
-                    0.0
-                })
-            }
-            Status::WindInTestedRange => {
-                self.calculate(resources, memory, notices);
-                let found = memory.values[self.places.onset_found] != 0.0;
-                let hertz = memory.values[self.places.onset_frequency];
-                let k = ReducedFrequency::from_hertz(hertz, self.built.bridge.width_m(), wind);
-                flag(found && wind > 0.0 && self.tested.is_some_and(|r| r.contains(k)))
-            }
-            Status::AmplitudeInLinearRange => {
-                flag(self.rotation(memory).abs() <= LINEAR_ROTATION_RAD)
-            }
-        }
+        self.present(resources, memory, role, notices)
     }
 
     /// `ẏ = C ż + D ẇ + (∂y/∂V) V̇`.

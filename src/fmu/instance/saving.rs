@@ -24,7 +24,7 @@ pub(super) struct Memory {
     pub experiment: Option<Experiment>,
     /// Point of time of `system`, s.
     pub time: f64,
-    /// One number a variable; truth values are 0 and 1, texts 0.
+    /// One number per variable, as in [`starts`].
     pub values: Vec<f64>,
     /// Rates of the inputs: wind speed, then the others.
     pub input_rates: Vec<f64>,
@@ -35,21 +35,26 @@ pub(super) struct Memory {
 impl Memory {
     /// The start values of the table, at rest.
     pub fn new(table: &VariableTable, unit: &dyn Unit) -> Self {
-        let start = |value: &Value| match value {
-            Value::Real(start) => start.unwrap_or(0.0),
-            Value::Integer(start) => f64::from(start.unwrap_or(0)),
-            Value::Boolean(start) => f64::from(u8::from(start.unwrap_or(false))),
-            Value::String(_) => 0.0,
-        };
         Self {
             state: State::Instantiated,
             experiment: None,
             time: 0.0,
-            values: table.variables().iter().map(|v| start(&v.value)).collect(),
+            values: starts(table),
             input_rates: vec![0.0; unit.inputs().len()],
             system: unit.at_rest(),
         }
     }
+}
+
+/// Start value of each variable; truth values are 0 and 1, texts 0.
+pub(super) fn starts(table: &VariableTable) -> Vec<f64> {
+    let start = |value: &Value| match value {
+        Value::Real(start) => start.unwrap_or(0.0),
+        Value::Integer(start) => f64::from(start.unwrap_or(0)),
+        Value::Boolean(start) => f64::from(u8::from(start.unwrap_or(false))),
+        Value::String(_) => 0.0,
+    };
+    table.variables().iter().map(|v| start(&v.value)).collect()
 }
 
 /// A saved state of an instance.

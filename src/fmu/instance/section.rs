@@ -132,7 +132,7 @@ fn check_searchable(section: &CoupledSection) -> Result<()> {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct OnsetCard {
     /// The calculated parameters in their order; truth values are 0 and 1.
-    values: [f64; 8],
+    values: [f64; Calculated::COUNT],
     /// What a reader must know before using the numbers.
     pub warnings: Vec<String>,
 }
@@ -147,16 +147,9 @@ impl OnsetCard {
         plain: Option<SweptOnset>,
     ) -> Self {
         let mut card = Self::nothing_found(limit, Vec::new());
-        let unknown =
-            |what: &str, why: &Error| format!("{what} is not known for these parameters: {why}");
         match divergence_of(model, section) {
-            Ok(speed) => {
-                if let Some(speed) = speed.filter(|v| *v <= limit) {
-                    card.set(Calculated::DivergenceSpeed, speed);
-                    card.set(Calculated::DivergenceFound, 1.0);
-                }
-            }
-            Err(why) => card.warnings.push(unknown("divergence", &why)),
+            Ok(speed) => card.set_divergence(speed, limit),
+            Err(why) => card.unknown_part("divergence", &why),
         }
         if let Some(onset) = plain {
             let width = section.structure().width_m;
@@ -171,11 +164,11 @@ impl OnsetCard {
         }
         match onset_of(model, section, limit) {
             Ok(found) => card.take(found),
-            Err(why) => card.warnings.push(unknown("flutter onset", &why)),
+            Err(why) => card.unknown_part("flutter onset", &why),
         }
         // what cannot be judged is not called stable
         let stable = growth_of(model, section, limit).is_ok_and(|growth| growth.is_none());
-        card.set(Calculated::StableBelowOnset, f64::from(u8::from(stable)));
+        card.set_flag(Calculated::StableBelowOnset, stable);
         card
     }
 
@@ -185,9 +178,9 @@ impl OnsetCard {
         Self::nothing_found(limit, vec![why])
     }
 
-    fn nothing_found(limit: f64, warnings: Vec<String>) -> Self {
+    pub(super) fn nothing_found(limit: f64, warnings: Vec<String>) -> Self {
         let mut card = Self {
-            values: [0.0; 8],
+            values: [0.0; Calculated::COUNT],
             warnings,
         };
         card.set(Calculated::OnsetSpeed, limit);
@@ -196,7 +189,7 @@ impl OnsetCard {
     }
 
     /// Enters the answer of a search. Growth from the lowest speed on is an onset at that speed or lower.
-    fn take(&mut self, found: FlutterSearch) {
+    pub(super) fn take(&mut self, found: FlutterSearch) {
         let (at, tested, warnings) = match found {
             FlutterSearch::Onset(o) => (
                 (o.at.speed_m_s, o.at.frequency_hz, o.at.reduced_velocity),
@@ -224,7 +217,25 @@ impl OnsetCard {
         self.set(Calculated::OnsetFrequency, frequency);
         self.set(Calculated::OnsetReducedVelocity, velocity.v_star());
         self.set(Calculated::OnsetFound, 1.0);
-        self.set(Calculated::OnsetInTestedRange, f64::from(u8::from(tested)));
+        self.set_flag(Calculated::OnsetInTestedRange, tested);
+    }
+
+    /// Enters a speed of divergence below the limit.
+    pub(super) fn set_divergence(&mut self, speed: Option<f64>, limit: f64) {
+        if let Some(speed) = speed.filter(|v| *v <= limit) {
+            self.set(Calculated::DivergenceSpeed, speed);
+            self.set(Calculated::DivergenceFound, 1.0);
+        }
+    }
+
+    /// Says what could not be searched for.
+    pub(super) fn unknown_part(&mut self, what: &str, why: &Error) {
+        let warning = format!("{what} is not known for these parameters: {why}");
+        self.warnings.push(warning);
+    }
+
+    pub(super) fn set_flag(&mut self, which: Calculated, holds: bool) {
+        self.set(which, f64::from(u8::from(holds)));
     }
 
     fn set(&mut self, which: Calculated, value: f64) {

@@ -6,12 +6,12 @@ use super::derivatives::central_difference;
 use super::layout::Source;
 use super::saving::Memory;
 use super::section_unit::{SectionUnit, check_finite};
-use super::trust::smallest_damping;
+use super::trust::{Present, is_of_onset, smallest_damping, without_motion};
 use crate::aerodynamics::Realization;
 use crate::error::Result;
 use crate::fmu::refusal::Answer;
 use crate::fmu::resources::Resources;
-use crate::fmu::variables::{Calculated, Role, Status};
+use crate::fmu::variables::{Role, Status};
 use crate::response::{Inputs, Outputs, SectionState, Stepper};
 use crate::section::Dof;
 use nalgebra::{DMatrix, DVector};
@@ -196,13 +196,7 @@ impl SectionUnit {
             instant = Instant::of(&mut stepper, &state, &self.inputs)?;
         }
         let wind = values[self.places.wind_speed];
-        let of_onset = |u: &Role| {
-            matches!(
-                u,
-                Role::Calculated(_) | Role::Status(Status::FlutterMargin | Status::FlutterSpeed)
-            )
-        };
-        let card = if wants(of_onset) {
+        let card = if wants(is_of_onset) {
             Some(self.onset_card(resources, values))
         } else {
             None
@@ -212,14 +206,10 @@ impl SectionUnit {
         } else {
             0.0
         };
-        let value = |unknown: &Role| match (unknown, &card) {
-            (Role::Calculated(which), Some(card)) => card.value(*which),
-            (Role::Status(Status::FlutterSpeed), Some(card)) => card.value(Calculated::OnsetSpeed),
-            (Role::Status(Status::FlutterMargin), Some(card)) => {
-                card.value(Calculated::OnsetSpeed) - wind
-            }
-            (Role::Status(Status::DampingNow), _) => damping,
-            (other, _) => instant.pick(*other),
+        let calculated = |which| card.as_ref().map_or(0.0, |card| card.value(which));
+        let value = |unknown: &Role| {
+            let still = without_motion(*unknown, calculated, wind, damping);
+            still.unwrap_or_else(|| instant.pick(*unknown))
         };
         Ok(unknowns.iter().map(value).collect())
     }

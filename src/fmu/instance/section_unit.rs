@@ -6,7 +6,7 @@ use super::saving::Memory;
 use super::section::{self, OnsetCard};
 use super::section_derivatives::pick;
 use super::section_places::Places;
-use super::trust::{Told, tested_winds};
+use super::trust::{Present, Told, tested_winds};
 use super::unit::Unit;
 use crate::aerodynamics::{GustForce, Realizable, Realization};
 use crate::error::Result;

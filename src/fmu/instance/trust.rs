@@ -1,4 +1,4 @@
-//! What is known of the present moment of a section: how far from flutter it is, and whether that can be trusted.
+//! What is known of the present moment of a section or a bridge: how far from flutter it is, and whether that can be trusted.
 
 use super::saving::Memory;
 use super::section_unit::SectionUnit;
@@ -6,7 +6,7 @@ use super::unit::Unit;
 use crate::aeroelastic::CoupledSection;
 use crate::error::Result;
 use crate::fmu::resources::Resources;
-use crate::fmu::variables::{Role, Status};
+use crate::fmu::variables::{Calculated, Role, Status};
 use crate::response::Stepper;
 
 /// Rotation up to which forces are taken as linear: 10 degrees.
@@ -21,6 +21,106 @@ pub(super) fn smallest_damping(section: &CoupledSection, wind: f64) -> Result<f6
     let oscillating = modes.iter().filter(|z| z.im > 0.0);
     let least = oscillating.map(|z| -z.re / z.norm()).reduce(f64::min);
     Ok(least.unwrap_or(1.0))
+}
+
+/// Its derivative with respect to the wind speed, per m/s.
+fn damping_slope(section: &CoupledSection, wind: f64) -> Result<f64> {
+    let step = WIND_STEP * wind.max(1.0);
+    let low = (wind - step).max(0.0);
+    let rise = smallest_damping(section, wind + step)? - smallest_damping(section, low)?;
+    Ok(rise / (wind + step - low))
+}
+
+/// Whether an unknown follows from the search for the onset.
+pub(super) fn is_of_onset(unknown: &Role) -> bool {
+    matches!(
+        unknown,
+        Role::Calculated(_) | Role::Status(Status::FlutterMargin | Status::FlutterSpeed)
+    )
+}
+
+/// An unknown that follows from what is calculated or from the smallest damping ratio at a wind speed; `None` for the motion.
+pub(super) fn without_motion(
+    unknown: Role,
+    calculated: impl Fn(Calculated) -> f64,
+    wind: f64,
+    damping: f64,
+) -> Option<f64> {
+    match unknown {
+        Role::Calculated(which) => Some(calculated(which)),
+        Role::Status(Status::FlutterSpeed) => Some(calculated(Calculated::OnsetSpeed)),
+        Role::Status(Status::FlutterMargin) => Some(calculated(Calculated::OnsetSpeed) - wind),
+        Role::Status(Status::DampingNow) => Some(damping),
+        _ => None,
+    }
+}
+
+/// What has a present moment.
+pub(super) trait Present: Unit {
+    /// The motion in its forces; `None` while there is none.
+    fn coupled(&self) -> Option<&CoupledSection>;
+
+    fn wind_speed(&self, memory: &Memory) -> f64;
+
+    /// Flutter speed as it was calculated last, m/s.
+    fn onset_speed(&self, memory: &Memory) -> f64;
+
+    /// Greatest rotation, rad.
+    fn rotation(&self, memory: &Memory) -> f64;
+
+    fn wind_is_tested(
+        &mut self,
+        resources: &Resources,
+        memory: &mut Memory,
+        notices: &mut Vec<String>,
+    ) -> bool;
+
+    /// One of the numbers of the present moment.
+    fn present(
+        &mut self,
+        resources: &Resources,
+        memory: &mut Memory,
+        role: Role,
+        notices: &mut Vec<String>,
+    ) -> f64 {
+        let wind = self.wind_speed(memory);
+        let flag = |holds: bool| f64::from(u8::from(holds));
+        let Role::Status(status) = role else {
+            return 0.0;
+        };
+        match status {
+            Status::FlutterSpeed => {
+                self.calculate(resources, memory, notices);
+                self.onset_speed(memory)
+            }
+            Status::FlutterMargin => {
+                self.calculate(resources, memory, notices);
+                self.onset_speed(memory) - wind
+            }
+            Status::DampingNow => {
+                let damping = self.coupled().map(|s| smallest_damping(s, wind));
+                damping.unwrap_or(Ok(0.0)).unwrap_or_else(|why| {
+                    notices.push(format!("damping_now is not known: {why}"));
+                    0.0
+                })
+            }
+            Status::WindInTestedRange => flag(self.wind_is_tested(resources, memory, notices)),
+            Status::AmplitudeInLinearRange => {
+                flag(self.rotation(memory).abs() <= LINEAR_ROTATION_RAD)
+            }
+        }
+    }
+
+    /// Derivative of such a number with respect to the wind speed, per m/s.
+    fn present_by_wind(&self, memory: &Memory, role: Role) -> Result<f64> {
+        match (role, self.coupled()) {
+            (Role::Status(Status::FlutterMargin), _) => Ok(-1.0),
+            (Role::Status(Status::DampingNow), Some(section)) => {
+                damping_slope(section, self.wind_speed(memory))
+            }
+            _ => Ok(0.0),
+        }
+    }
 }
 
 /// Wind speeds (m/s) at which every motion, at its frequency in still air, lies in the tested range; `None` where there
@@ -50,76 +150,40 @@ pub(super) struct Told {
     rotation_left: bool,
 }
 
-impl SectionUnit {
-    /// One of the numbers of the present moment.
-    pub(super) fn present(
-        &mut self,
-        resources: &Resources,
-        memory: &mut Memory,
-        role: Role,
-        notices: &mut Vec<String>,
-    ) -> f64 {
-        let wind = memory.values[self.places.wind_speed];
-        let flag = |holds: bool| f64::from(u8::from(holds));
-        match role {
-            Role::Status(Status::FlutterSpeed) => {
-                self.calculate(resources, memory, notices);
-                memory.values[self.places.onset_speed]
-            }
-            Role::Status(Status::FlutterMargin) => {
-                self.calculate(resources, memory, notices);
-                memory.values[self.places.onset_speed] - wind
-            }
-            Role::Status(Status::DampingNow) => match self.damping(wind) {
-                Ok(ratio) => ratio,
-                Err(why) => {
-                    notices.push(format!("damping_now is not known: {why}"));
-                    0.0
-                }
-            },
-            Role::Status(Status::WindInTestedRange) => {
-                let range = self.tested_winds;
-                flag(range.is_some_and(|[low, high]| (low..=high).contains(&wind)))
-            }
-            Role::Status(Status::AmplitudeInLinearRange) => {
-                flag(self.rotation(memory).abs() <= LINEAR_ROTATION_RAD)
-            }
-            _ => 0.0,
-        }
+impl Present for SectionUnit {
+    fn coupled(&self) -> Option<&CoupledSection> {
+        self.stepper.as_ref().map(Stepper::section)
     }
 
-    fn damping(&self, wind: f64) -> Result<f64> {
-        match &self.stepper {
-            Some(stepper) => smallest_damping(stepper.section(), wind),
-            None => Ok(0.0),
-        }
+    fn wind_speed(&self, memory: &Memory) -> f64 {
+        memory.values[self.places.wind_speed]
     }
 
-    /// Derivative of such a number with respect to the wind speed, per m/s.
-    pub(super) fn present_by_wind(&self, memory: &Memory, role: Role) -> Result<f64> {
-        let wind = memory.values[self.places.wind_speed];
-        Ok(match role {
-            Role::Status(Status::FlutterMargin) => -1.0,
-            Role::Status(Status::DampingNow) => {
-                let step = WIND_STEP * wind.max(1.0);
-                let low = (wind - step).max(0.0);
-                (self.damping(wind + step)? - self.damping(low)?) / (wind + step - low)
-            }
-            _ => 0.0,
-        })
+    fn onset_speed(&self, memory: &Memory) -> f64 {
+        memory.values[self.places.onset_speed]
     }
 
     fn rotation(&self, memory: &Memory) -> f64 {
         memory.system.values[self.places.force.len() - 1]
     }
 
+    fn wind_is_tested(&mut self, _: &Resources, memory: &mut Memory, _: &mut Vec<String>) -> bool {
+        self.in_tested_winds(memory)
+    }
+}
+
+impl SectionUnit {
+    #[inline]
+    fn in_tested_winds(&self, memory: &Memory) -> bool {
+        let wind = self.wind_speed(memory);
+        let tested = self.tested_winds;
+        tested.is_some_and(|[low, high]| (low..=high).contains(&wind))
+    }
+
     /// Whether there may be something to say; part of every step.
     #[inline]
     pub(super) fn trust_changes(&self, memory: &Memory) -> bool {
-        let wind = memory.values[self.places.wind_speed];
-        let tested = self.tested_winds;
-        let inside = tested.is_some_and(|[low, high]| (low..=high).contains(&wind));
-        inside != self.told.wind_was_tested || self.rotation_news(memory)
+        self.in_tested_winds(memory) != self.told.wind_was_tested || self.rotation_news(memory)
     }
 
     /// Whether the rotation is beyond linear theory for the first time.
@@ -131,12 +195,11 @@ impl SectionUnit {
     /// Says when the wind leaves the tested range, and when the rotation leaves linear theory; each once.
     #[cold]
     pub(super) fn watch_trust(&mut self, memory: &Memory, notices: &mut Vec<String>) {
-        let wind = memory.values[self.places.wind_speed];
-        let tested = self.tested_winds;
-        let inside = tested.is_some_and(|[low, high]| (low..=high).contains(&wind));
+        let inside = self.in_tested_winds(memory);
         let leaves = self.told.wind_was_tested && !inside && !self.told.wind_left;
-        if let Some([low, high]) = tested.filter(|_| leaves) {
+        if let Some([low, high]) = self.tested_winds.filter(|_| leaves) {
             self.told.wind_left = true;
+            let wind = self.wind_speed(memory);
             notices.push(format!(
                 "wind_speed = {wind} m/s leaves the speeds at which this section was tested, {low:.3} to {high:.3} m/s \
                  at its frequencies in still air: the forces are extrapolated"
