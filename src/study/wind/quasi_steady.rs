@@ -2,9 +2,7 @@
 
 use super::{SimulationBlock, WindStudy};
 use crate::aerodynamics::GustSeries;
-use crate::aerodynamics::quasi_steady::{
-    CoefficientRow, CoefficientsAt, LinearQuasiSteady, QuasiSteady,
-};
+use crate::aerodynamics::quasi_steady::{CoefficientRow, CoefficientsAt, LinearQuasiSteady};
 use crate::aeroelastic::{CoupledSection, EquilibriumPath, StaticEquilibrium, static_equilibria};
 use crate::buffeting::{BuffetingProblem, GustForces, synthesise};
 use crate::error::{Error, Result};
@@ -128,7 +126,8 @@ pub(crate) fn simulated_motion(study: &WindStudy) -> Result<Option<SimulatedMoti
         .collect();
     let wind = (run.wind_speed_m_s, &gusts);
     let grid = (run.step_s, steps);
-    let nonlinear = nonlinear(&structure, &theory, &start, wind, grid)?;
+    let section = NonlinearSection::new(structure.clone(), theory)?;
+    let nonlinear = section.run(&start, wind, grid, STEP_TOLERANCE)?;
     let about = linear_rows(&structure, &linear, &released, wind, grid)?;
     let with_rest = |row: Vec<f64>| -> Vec<f64> {
         let rest = equilibrium
@@ -150,16 +149,6 @@ pub(crate) fn simulated_motion(study: &WindStudy) -> Result<Option<SimulatedMoti
         nonlinear: nonlinear.rows,
         equilibrium,
     }))
-}
-
-fn nonlinear(
-    structure: &Structure,
-    theory: &QuasiSteady,
-    start: &[f64],
-    wind: (f64, &GustSeries),
-    grid: (f64, usize),
-) -> Result<crate::response::NonlinearRun> {
-    NonlinearSection::new(structure.clone(), theory.clone())?.run(start, wind, grid, STEP_TOLERANCE)
 }
 
 /// Gusts of the run: from the file named, generated, or none. The last sample is at least at the end of the run.
