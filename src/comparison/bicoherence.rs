@@ -2,9 +2,9 @@
 
 use super::amplitude::distance_metric;
 use super::morlet::{Morlet, WaveletParameters};
-use super::surrogates::random_stream;
 use super::{Metric, SignalPair};
 use crate::error::{Error, Result, non_negative, positive};
+use crate::signal::random_stream;
 use rand::Rng;
 use rayon::prelude::*;
 use rustfft::num_complex::Complex64;

@@ -1,9 +1,8 @@
 //! Metric of non-stationary content.
 
 use super::amplitude::{DistanceDetails, distance_metric};
-use super::gamma::Gamma;
 use super::morlet::{Morlet, WaveletParameters};
-use super::surrogates::phase_randomised;
+use super::surrogates::{Gamma, phase_randomised};
 use super::{Metric, SignalPair};
 use crate::error::{Error, Result, non_negative};
 use rayon::prelude::*;
@@ -287,7 +286,7 @@ fn mean_and_deviation(values: impl ExactSizeIterator<Item = f64> + Clone) -> (f6
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::comparison::surrogates::random_stream;
+    use crate::signal::random_stream;
     use approx::assert_relative_eq;
     use rand_distr::{Distribution, StandardNormal};
 

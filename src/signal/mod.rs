@@ -16,5 +16,7 @@ pub(crate) use delay::delay;
 pub use harmonics::Plateau;
 pub(crate) use harmonics::{HarmonicFit, fit_harmonics, fit_sine, plateau, refine_frequency};
 pub(crate) use resample::{delayed, resampled};
-pub(crate) use samples::{clipped_stretches, extremes, largest_about_mean, mean, robust_deviation};
+pub(crate) use samples::{
+    clipped_stretches, extremes, largest_about_mean, mean, random_stream, robust_deviation,
+};
 pub use samples::{median, rate};

@@ -1,7 +1,17 @@
-//! Plain statistics and rates of samples: median and robust scatter, clipping, central differences.
+//! Plain statistics and rates of samples: median and robust scatter, clipping, central differences; streams of random numbers.
+
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
 
 /// A normal variable has its quartiles at this part of its standard deviation, inverted.
 const NORMAL_MAD: f64 = 1.482_602_218_505_602;
+
+/// Random numbers of one purpose: the same for the same seed and stream, whatever else is drawn and on however many threads.
+pub(crate) fn random_stream(seed: u64, stream: u64) -> ChaCha8Rng {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    random.set_stream(stream);
+    random
+}
 
 /// Mean; zero for none.
 pub(crate) fn mean(values: &[f64]) -> f64 {

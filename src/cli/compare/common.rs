@@ -1,8 +1,12 @@
-//! What the comparisons of the thesis share: arguments, tables, the section of a page.
+//! What the comparisons of the thesis share: arguments, tables, figures of metrics, the section of a page.
 
-use crate::comparison::forces::{CompareOptions, ForceMetrics, ScoreSummary, Scoring, Statement};
+use crate::cli::progress::Progress;
+use crate::comparison::forces::{
+    CompareOptions, ForceMetrics, OnRecords, Score, ScoreSummary, Scoring, Statement,
+};
+use crate::error::Result;
 use crate::identification::DiscreteFit;
-use crate::report::{Figure, PageSection};
+use crate::report::{Figure, MetricPanel, PageSection, PlottedSeries, metrics_figure};
 use crate::section::Dof;
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -42,10 +46,9 @@ impl Common {
             decks,
             trained_on,
             speed_m_s: self.speed,
-            dofs: if self.lateral {
-                Dof::THREE.to_vec()
-            } else {
-                Dof::TWO.to_vec()
+            dofs: match self.lateral {
+                true => Dof::THREE.to_vec(),
+                false => Dof::TWO.to_vec(),
             },
             laguerre: DiscreteFit {
                 filters: self.filters,
@@ -59,6 +62,55 @@ impl Common {
                 ..Scoring::default()
             },
         }
+    }
+}
+
+/// The results of a comparison, with the records that are done shown as those of `what`.
+pub(super) fn compared<T>(
+    compare: fn(&CompareOptions, OnRecords<'_>) -> Result<T>,
+    options: &CompareOptions,
+    (progress, what): (&Progress, &'static str),
+) -> Result<T> {
+    let stage = progress.steps(what);
+    compare(options, &|done, of| stage.at(done as u64, of as u64))
+}
+
+/// The thesis's three metrics of every force over frequency, one line a label (Figures 3.20, 3.27 and 3.28).
+pub(super) fn metrics_of(
+    title: &str,
+    forces: &[Dof],
+    scores: &[&Score],
+    label: &dyn Fn(&Score) -> String,
+) -> Result<Figure> {
+    let mut panels = Vec::new();
+    for &force in forces {
+        for (name, pick) in [
+            ("phase", (|s| s.metrics.phase) as fn(&Score) -> f64),
+            ("peak", |s| s.metrics.peak),
+            ("warped magnitude", |s| s.metrics.magnitude_warped),
+        ] {
+            let mut series: Vec<PlottedSeries> = Vec::new();
+            for score in scores.iter().filter(|s| s.case.force == force) {
+                let (label, point) = (label(score), (score.frequency_hz, pick(score)));
+                match series.iter_mut().find(|s| s.label == label) {
+                    Some(known) => known.points.push(point),
+                    None => series.push(PlottedSeries::new(label, vec![point])),
+                }
+            }
+            panels.push(MetricPanel {
+                title: format!("{}: {name}", force_name(force)),
+                series,
+            });
+        }
+    }
+    metrics_figure(title, &panels, 3)
+}
+
+pub(super) fn force_name(force: Dof) -> &'static str {
+    match force {
+        Dof::Vertical => "lift",
+        Dof::Lateral => "drag",
+        Dof::Torsion => "moment",
     }
 }
 
@@ -84,10 +136,7 @@ pub(super) fn section(
 }
 
 /// Mean of every metric over the frequencies, a line a deck or model, speed, motion and force.
-pub(super) fn metrics_table(
-    summaries: &[ScoreSummary],
-    name: fn(&ScoreSummary) -> String,
-) -> String {
+pub(super) fn metrics_table(summaries: &[ScoreSummary], name: fn(&ScoreSummary) -> &str) -> String {
     let widest = summaries.iter().map(|s| name(s).chars().count()).max();
     let width = widest.unwrap_or(0);
     let mut text = format!(
@@ -107,10 +156,10 @@ pub(super) fn metrics_table(
             text,
             "{:<width$} {:>6.2}{:<3} {:<9} {:<9}",
             name(s),
-            s.speed_m_s,
-            if s.held_out { " *" } else { "" },
-            s.motion.name(),
-            s.force.name(),
+            s.case.speed_m_s,
+            if s.case.held_out { " *" } else { "" },
+            s.case.motion.name(),
+            s.case.force.name(),
             width = width.max(22)
         );
         for mean in s.mean {
@@ -118,7 +167,7 @@ pub(super) fn metrics_table(
         }
         let _ = writeln!(text, "   {:.3}", s.lowest[0]);
     }
-    if summaries.iter().any(|s| s.held_out) {
+    if summaries.iter().any(|s| s.case.held_out) {
         text.push_str("* not used for training\n");
     }
     text

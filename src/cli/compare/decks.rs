@@ -1,7 +1,6 @@
 //! `aerodeck compare decks`: one model on several girders.
 
-use super::common::{self, Common, beside_the_thesis, metrics_table};
-use super::figures::metrics_of;
+use super::common::{self, Common, beside_the_thesis, compared, metrics_of, metrics_table};
 use crate::cli::answer::Answer;
 use crate::cli::figures as drawn;
 use crate::cli::output::OutputDir;
@@ -35,9 +34,7 @@ pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
         .common
         .options(args.decks.clone(), args.trained_on.clone());
     let mut out = OutputDir::new(&args.common.out)?;
-    let stage = progress.steps("records");
-    let results = compare_decks(&options, &|done, of| stage.at(done as u64, of as u64))?;
-    drop(stage);
+    let results = compared(compare_decks, &options, (progress, "records"))?;
     out.write("decks_metrics.csv", score_table(&results.scores))?;
     for (stem, figure) in figures(&options, &results)? {
         drawn::write(&stem, &mut out, || Ok(figure))?;
@@ -50,37 +47,27 @@ pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
 fn figures(options: &CompareOptions, results: &DecksComparison) -> Result<Vec<(String, Figure)>> {
     let mut figures = Vec::new();
     for &motion in &options.dofs {
-        for held_out in [false, true] {
-            let chosen: Vec<_> = results
-                .scores
-                .iter()
-                .filter(|s| s.motion == motion && s.held_out == held_out)
+        for (held_out, which, ending) in [
+            (false, "speed of the training", ""),
+            (true, "other speed", "_held_out"),
+        ] {
+            let scores = results.scores.iter();
+            let chosen: Vec<_> = scores
+                .filter(|s| s.case.motion == motion && s.case.held_out == held_out)
                 .collect();
             if chosen.is_empty() {
                 continue;
             }
-            let which = if held_out {
-                "other speed"
-            } else {
-                "speed of the training"
-            };
             let title = format!(
                 "Metrics of the predicted forces, {} motion, {which}, {}",
                 motion.name(),
                 options.laguerre_name()
             );
-            let label = |s: &Score| {
-                if options.trained_on.is_some() || held_out {
-                    format!("{} {:.2} m/s", s.deck, s.speed_m_s)
-                } else {
-                    s.deck.clone()
-                }
+            let label = |s: &Score| match options.trained_on.is_some() || held_out {
+                true => format!("{} {:.2} m/s", s.case.deck, s.case.speed_m_s),
+                false => s.case.deck.clone(),
             };
-            let stem = format!(
-                "decks_{}{}",
-                motion.name(),
-                if held_out { "_held_out" } else { "" }
-            );
+            let stem = format!("decks_{}{ending}", motion.name());
             figures.push((stem, metrics_of(&title, &options.dofs, &chosen, &label)?));
         }
     }
@@ -90,9 +77,8 @@ fn figures(options: &CompareOptions, results: &DecksComparison) -> Result<Vec<(S
 /// The section of the page of the thesis.
 pub(super) fn section(common: &Common, progress: &Progress) -> Result<PageSection> {
     let options = common.options(THESIS_DECKS.map(str::to_owned).to_vec(), None);
-    let stage = progress.steps("records of several girders");
-    let results = compare_decks(&options, &|done, of| stage.at(done as u64, of as u64))?;
-    drop(stage);
+    let shown = (progress, "records of several girders");
+    let results = compared(compare_decks, &options, shown)?;
     let drawn = figures(&options, &results)?.into_iter();
     let drawn = drawn.map(|(stem, figure)| (format!("Figures 3.10 to 3.13: {stem}"), figure));
     let title = "3.5.4 Several girders, on rebuilt records";
@@ -116,7 +102,7 @@ fn account(results: &DecksComparison) -> String {
     text.push_str(
         "Forces are those of the measured derivatives (virtual tunnel), without the disturbances of the thesis's records.\n\n",
     );
-    text.push_str(&metrics_table(&results.summaries, |s| s.deck.clone()));
+    text.push_str(&metrics_table(&results.summaries, |s| &s.case.deck));
     text.push('\n');
     text.push_str(&beside_the_thesis(&results.statements));
     text

@@ -2,7 +2,6 @@
 
 mod common;
 mod decks;
-mod figures;
 mod models;
 mod signals;
 
@@ -22,9 +21,6 @@ pub(crate) enum Compare {
 }
 
 /// Sections 3.5.4 to 3.5.6 of the thesis on rebuilt records: its sentences beside what is found, and the figures.
-///
-/// # Errors
-/// Those of the comparisons and figures.
 pub(super) fn thesis_comparisons(progress: &Progress) -> Result<[PageSection; 2]> {
     let common = Common {
         speed: 8.0,

@@ -1,14 +1,19 @@
 //! `aerodeck compare models`: Laguerre models against rational functions on one girder.
 
-use super::common::{self, Common, beside_the_thesis, metrics_table};
-use super::figures::{derivatives, histories, metrics_of, transfer_functions};
+use super::common::{
+    self, Common, beside_the_thesis, compared, force_name, metrics_of, metrics_table,
+};
 use crate::cli::answer::Answer;
 use crate::cli::figures;
 use crate::cli::output::OutputDir;
 use crate::cli::progress::Progress;
-use crate::comparison::forces::{ModelsComparison, compare_models, inside, score_table};
+use crate::comparison::forces::{History, ModelsComparison, compare_models, inside, score_table};
 use crate::error::Result;
-use crate::report::PageSection;
+use crate::report::{
+    DerivativePlot, DerivativesPlot, Figure, PageSection, PlottedSeries, TimePanel, TransferCurve,
+    TransferPlot, derivatives_figure, time_history_figure, transfer_figure,
+};
+use crate::section::Dof;
 use std::fmt::Write as _;
 
 /// Laguerre models against rational functions on one girder, in time and frequency (thesis, sections 3.5.5, 3.5.6)
@@ -28,9 +33,7 @@ pub(crate) struct Args {
 pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     let options = args.common.options(vec![args.deck.clone()], None);
     let mut out = OutputDir::new(&args.common.out)?;
-    let stage = progress.steps("records");
-    let results = compare_models(&options, &|done, of| stage.at(done as u64, of as u64))?;
-    drop(stage);
+    let results = compared(compare_models, &options, (progress, "records"))?;
     out.write("models_metrics.csv", score_table(&results.scores))?;
     out.write("models_transfer.csv", transfer_table(&results))?;
     figures::write("models_transfer", &mut out, || transfer_functions(&results))?;
@@ -39,7 +42,7 @@ pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
         let chosen: Vec<_> = results
             .scores
             .iter()
-            .filter(|s| s.motion == motion)
+            .filter(|s| s.case.motion == motion)
             .collect();
         let title = format!(
             "{} at {:.2} m/s: metrics of the predicted forces, {} motion",
@@ -49,7 +52,7 @@ pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
         );
         let stem = format!("models_metrics_{}", motion.name());
         figures::write(&stem, &mut out, || {
-            metrics_of(&title, &options.dofs, &chosen, &|s| s.model.clone())
+            metrics_of(&title, &options.dofs, &chosen, &|s| s.case.model.clone())
         })?;
     }
     for (stem, figure) in histories(&results)? {
@@ -59,28 +62,121 @@ pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     out.answer(text, serde_json::json!({ "comparison": results }))
 }
 
+/// Magnitude and phase with the bands (Figures 3.21 and 3.22).
+fn transfer_functions(results: &ModelsComparison) -> Result<Figure> {
+    let plots: Vec<TransferPlot> = results
+        .entries
+        .iter()
+        .map(|entry| TransferPlot {
+            name: format!(
+                "{} due to {} motion",
+                force_name(entry.force),
+                entry.motion.name()
+            ),
+            reference: TransferCurve {
+                label: "measured".into(),
+                points: entry
+                    .points
+                    .iter()
+                    .map(|p| (p.frequency_hz, p.magnitude, p.phase_deg))
+                    .collect(),
+            },
+            reference_is_points: true,
+            tolerance: Some((0.15, 5.0)),
+            models: entry
+                .curves
+                .iter()
+                .map(|c| TransferCurve {
+                    label: c.model.clone(),
+                    points: c.points.clone(),
+                })
+                .collect(),
+        })
+        .collect();
+    let title = format!(
+        "{} at {:.2} m/s: transfer functions",
+        results.deck, results.speed_m_s
+    );
+    transfer_figure(&title, "Frequency (Hz)", &plots)
+}
+
+/// Derivatives over reduced velocity (Figures 3.23 to 3.26).
+fn derivatives(results: &ModelsComparison) -> Result<Figure> {
+    derivatives_figure(&DerivativesPlot {
+        title: format!(
+            "{} at {:.2} m/s: aerodynamic derivatives",
+            results.deck, results.speed_m_s
+        ),
+        velocity_label: "V̂ = V/(ωB)".into(),
+        bars_label: String::new(),
+        derivatives: results
+            .derivatives
+            .iter()
+            .map(|d| DerivativePlot {
+                name: d.name.to_owned(),
+                measured: vec![PlottedSeries::new("measured", d.measured.clone())],
+                bars: Vec::new(),
+                fitted: d
+                    .models
+                    .iter()
+                    .map(|(model, points)| PlottedSeries::new(model, points.clone()))
+                    .collect(),
+                reference: Vec::new(),
+            })
+            .collect(),
+    })
+}
+
+/// Forces over a few periods, one figure a motion and frequency (Figures 3.29 to 3.32).
+fn histories(results: &ModelsComparison) -> Result<Vec<(String, Figure)>> {
+    let same = |a: &History, b: &History| (a.motion, a.frequency_hz) == (b.motion, b.frequency_hz);
+    results
+        .histories
+        .chunk_by(same)
+        .map(|group| {
+            let panels: Vec<TimePanel> = group.iter().map(|h| panel(results, h)).collect();
+            let (motion, f) = (group[0].motion.name(), group[0].frequency_hz);
+            let title = format!("{}: {motion} motion at {f:.2} Hz", results.deck);
+            let figure = time_history_figure(&title, &panels, "Time (s)")?;
+            Ok((format!("models_history_{motion}_{f:.1}_hz"), figure))
+        })
+        .collect()
+}
+
+fn panel(results: &ModelsComparison, history: &History) -> TimePanel {
+    let series = |label: &str, values: &[f64]| {
+        let points = history.time_s.iter().copied().zip(values.iter().copied());
+        PlottedSeries::new(label, points.collect())
+    };
+    let unit = if history.force == Dof::Torsion {
+        "N·m/m"
+    } else {
+        "N/m"
+    };
+    let measured = [series("measured", &history.measured)];
+    let models = results.models.iter().zip(&history.predicted);
+    TimePanel {
+        y_label: format!("{} ({unit})", force_name(history.force)),
+        series: measured
+            .into_iter()
+            .chain(models.map(|(m, values)| series(&m.name, values)))
+            .collect(),
+    }
+}
+
 /// The section of the page of the thesis.
 pub(super) fn section(common: &Common, progress: &Progress) -> Result<PageSection> {
     let deck = "LN21-5200".to_owned();
-    let stage = progress.steps("records of one girder");
-    let results = compare_models(&common.options(vec![deck], None), &|done, of| {
-        stage.at(done as u64, of as u64);
-    })?;
-    drop(stage);
+    let shown = (progress, "records of one girder");
+    let results = compared(compare_models, &common.options(vec![deck], None), shown)?;
+    let (first, second) = (transfer_functions(&results)?, derivatives(&results)?);
     let mut figures = vec![
-        (
-            "Transfer functions (Figures 3.18 to 3.22)".to_owned(),
-            transfer_functions(&results)?,
-        ),
-        (
-            "Derivatives (Figures 3.23 to 3.26)".to_owned(),
-            derivatives(&results)?,
-        ),
+        ("Transfer functions (Figures 3.18 to 3.22)".into(), first),
+        ("Derivatives (Figures 3.23 to 3.26)".into(), second),
     ];
-    let forces = histories(&results)?.into_iter();
-    figures.extend(
-        forces.map(|(stem, figure)| (format!("Forces (Figures 3.29 to 3.32): {stem}"), figure)),
-    );
+    for (stem, figure) in histories(&results)? {
+        figures.push((format!("Forces (Figures 3.29 to 3.32): {stem}"), figure));
+    }
     let title = "3.5.5, 3.5.6 Models of one girder, on rebuilt records";
     Ok(common::section(title, &results.statements, figures))
 }
@@ -120,7 +216,7 @@ fn account(results: &ModelsComparison) -> String {
         }
     }
     text.push_str("\nTime domain\n");
-    text.push_str(&metrics_table(&results.summaries, |s| s.model.clone()));
+    text.push_str(&metrics_table(&results.summaries, |s| &s.case.model));
     text.push('\n');
     text.push_str(&beside_the_thesis(&results.statements));
     text

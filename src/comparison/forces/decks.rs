@@ -1,13 +1,12 @@
 //! One model on several girders (section 3.5.4 of the thesis).
 
-use super::score::{Score, ScoreSummary, summaries};
+use super::score::{Score, ScoreSummary, Trial, run_all, summaries};
 use super::statements::{Statement, on_decks};
-use super::trial::{Trial, run_all};
-use super::{CompareOptions, TestedDeck};
+use super::{CompareOptions, OnRecords, TestedDeck};
 use crate::error::{Error, Result};
-use crate::identification::fit_discrete;
+use crate::identification::{FitReport, fit_discrete};
 use crate::trained_model::Model;
-use crate::wind_tunnel::{Record, RecordSource};
+use crate::wind_tunnel::Record;
 use serde::Serialize;
 
 /// What was done on one deck.
@@ -49,21 +48,20 @@ pub(crate) struct DecksComparison {
 /// [`Error::Input`] for unknown decks and impossible options; those of fits and metrics.
 pub(crate) fn compare_decks(
     options: &CompareOptions,
-    progress: &(dyn Fn(usize, usize) + Sync),
+    progress: OnRecords<'_>,
 ) -> Result<DecksComparison> {
     if options.decks.is_empty() {
         return Err(Error::input("decks", "at least one", "none"));
     }
-    let teacher = match &options.trained_on {
-        Some(name) => Some(train(&TestedDeck::new(name, options)?, options)?),
-        None => None,
-    };
+    let teacher = options.trained_on.as_ref();
+    let teacher = teacher.map(|name| Trained::new(&TestedDeck::new(name, options)?, options));
+    let teacher = teacher.transpose()?;
     let mut decks = Vec::with_capacity(options.decks.len());
     for name in &options.decks {
         let deck = TestedDeck::new(name, options)?;
         let trained = match &teacher {
             Some(teacher) => teacher.clone(),
-            None => train(&deck, options)?,
+            None => Trained::new(&deck, options)?,
         };
         decks.push((deck, trained));
     }
@@ -83,7 +81,7 @@ pub(crate) fn compare_decks(
     let outcomes = run_all(&trials, options, progress)?;
     let scores: Vec<Score> = outcomes.into_iter().flat_map(|o| o.scores).collect();
     Ok(DecksComparison {
-        decks: decks.iter().map(|(d, t)| t.account(d)).collect(),
+        decks: decks.into_iter().map(|(d, t)| t.account(d)).collect(),
         summaries: summaries(&scores),
         statements: on_decks(&scores),
         options: options.clone(),
@@ -94,39 +92,34 @@ pub(crate) fn compare_decks(
 /// A model and where it comes from.
 #[derive(Clone)]
 struct Trained {
-    deck: String,
-    speed_m_s: f64,
+    /// Deck and speed, m/s.
+    on: (String, f64),
     model: Model,
-    method: String,
-    notes: Vec<String>,
+    report: FitReport,
 }
 
 impl Trained {
-    fn held_out(&self, deck: &TestedDeck, record: &Record) -> bool {
-        self.deck != deck.table.name || self.speed_m_s != record.header.mean_speed_m_s
+    fn new(deck: &TestedDeck, options: &CompareOptions) -> Result<Self> {
+        let (model, report) = fit_discrete(&deck.training(), &options.laguerre, &|_| ())?;
+        Ok(Self {
+            on: (deck.table.name.clone(), deck.training_speed_m_s()),
+            model,
+            report,
+        })
     }
 
-    fn account(&self, deck: &TestedDeck) -> DeckAccount {
+    fn held_out(&self, deck: &TestedDeck, record: &Record) -> bool {
+        self.on.0 != deck.table.name || self.on.1 != record.header.mean_speed_m_s
+    }
+
+    fn account(self, deck: TestedDeck) -> DeckAccount {
         DeckAccount {
-            deck: deck.table.name.clone(),
+            deck: deck.table.name,
             width_m: deck.table.width_m,
-            speeds_m_s: deck.speeds_m_s.clone(),
-            trained_on: (self.deck.clone(), self.speed_m_s),
-            method: self.method.clone(),
-            notes: self.notes.clone(),
+            speeds_m_s: deck.speeds_m_s,
+            trained_on: self.on,
+            method: self.report.method,
+            notes: self.report.notes,
         }
     }
-}
-
-fn train(deck: &TestedDeck, options: &CompareOptions) -> Result<Trained> {
-    let records = deck.at_speed(deck.training_group);
-    let sources: Vec<&dyn RecordSource> = records.iter().map(|r| r as &dyn RecordSource).collect();
-    let (model, report) = fit_discrete(&sources, &options.laguerre, &|_| ())?;
-    Ok(Trained {
-        deck: deck.table.name.clone(),
-        speed_m_s: deck.speeds_m_s[deck.training_group],
-        model,
-        method: report.method,
-        notes: report.notes,
-    })
 }

@@ -1,7 +1,7 @@
 //! Models against test points in the frequency domain: transfer functions with their tolerance bands, and derivatives.
 
 use crate::aerodynamics::Transfer;
-use crate::aerodynamics::derivatives::{Derivative, DerivativeTable, Part};
+use crate::aerodynamics::derivatives::{Derivative, DerivativePoint, DerivativeTable, Part};
 use crate::error::Result;
 use crate::section::Dof;
 use crate::units::ReducedFrequency;
@@ -29,22 +29,13 @@ pub(crate) struct TestPoint {
     pub phase_deg: f64,
 }
 
-/// A model at the test points: magnitude off by so many percent, phase by so many degrees.
+/// What belongs to one model.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub(crate) struct ModelPoints {
+pub(crate) struct OfModel<P> {
     /// Model.
     pub model: String,
-    /// `(100 (|G_model|/|G| − 1), phase of G_model/G in degrees)` at each test point.
-    pub points: Vec<(f64, f64)>,
-}
-
-/// A model between the test points.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub(crate) struct ModelCurve {
-    /// Model.
-    pub model: String,
-    /// Frequency (Hz), magnitude, phase (degrees).
-    pub points: Vec<(f64, f64, f64)>,
+    /// One entry a point.
+    pub points: Vec<P>,
 }
 
 /// One transfer function.
@@ -56,10 +47,10 @@ pub(crate) struct EntryComparison {
     pub motion: Dof,
     /// What was measured.
     pub points: Vec<TestPoint>,
-    /// The models there.
-    pub models: Vec<ModelPoints>,
-    /// The models in between.
-    pub curves: Vec<ModelCurve>,
+    /// The models there: `100 (|G_model|/|G| − 1)` percent and the phase of `G_model/G` in degrees.
+    pub models: Vec<OfModel<(f64, f64)>>,
+    /// The models in between: frequency (Hz), magnitude, phase (degrees).
+    pub curves: Vec<OfModel<(f64, f64, f64)>>,
 }
 
 /// One derivative over `V̂`.
@@ -139,11 +130,11 @@ pub(super) fn compare_entries(
                     let ratio = at(*k)? / g;
                     deviations.push((100.0 * (ratio.norm() - 1.0), ratio.arg().to_degrees()));
                 }
-                comparison.models.push(ModelPoints {
+                comparison.models.push(OfModel {
                     model: name.clone(),
                     points: deviations,
                 });
-                comparison.curves.push(ModelCurve {
+                comparison.curves.push(OfModel {
                     model: name.clone(),
                     points: curve(&comparison.points, &hz, &at)?,
                 });
@@ -161,9 +152,7 @@ fn measured(
     motion: Dof,
 ) -> Vec<(ReducedFrequency, Complex<f64>)> {
     let part = |p| group.points(Derivative::of(force, motion, p));
-    let value = |p: &crate::aerodynamics::derivatives::DerivativePoint| {
-        p.value * p.k().full_width().powi(2)
-    };
+    let value = |p: &DerivativePoint| p.value * p.k().full_width().powi(2);
     let mut all: Vec<_> = part(Part::Real)
         .iter()
         .zip(part(Part::Imaginary))

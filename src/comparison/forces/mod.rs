@@ -10,7 +10,6 @@ mod entries;
 mod models;
 mod score;
 mod statements;
-mod trial;
 
 pub(crate) use decks::{DecksComparison, compare_decks};
 pub use entries::inside;
@@ -23,11 +22,14 @@ use crate::error::{Error, Result};
 use crate::files::derivatives::embedded;
 use crate::identification::{Constraints, DiscreteFit, Form, FrequencyFit, FrequencyWeights};
 use crate::section::Dof;
-use crate::wind_tunnel::{Record, TunnelPlan};
+use crate::wind_tunnel::{Record, RecordSource, TunnelPlan};
 use serde::{Deserialize, Serialize};
 
 /// The four girders of Table 3.1 of the thesis.
 pub(crate) const THESIS_DECKS: [&str; 4] = ["LN21-5200", "LN21-5500", "LN21-5800", "LN21-6100"];
+
+/// Called with the records that are done and all of them, from any thread.
+pub(crate) type OnRecords<'a> = &'a (dyn Fn(usize, usize) + Sync);
 
 /// What is compared and how; the defaults are those of the thesis.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -118,10 +120,20 @@ impl TestedDeck {
         })
     }
 
-    /// Records of one speed, one a motion.
-    fn at_speed(&self, group: usize) -> &[Record] {
+    /// Mean wind speed of the records for training, m/s.
+    fn training_speed_m_s(&self) -> f64 {
+        self.speeds_m_s[self.training_group]
+    }
+
+    /// Records for training, one a motion.
+    fn training_records(&self) -> &[Record] {
         let motions = self.records.len() / self.speeds_m_s.len().max(1);
-        &self.records[group * motions..(group + 1) * motions]
+        &self.records[self.training_group * motions..][..motions]
+    }
+
+    fn training(&self) -> Vec<&dyn RecordSource> {
+        let records = self.training_records().iter();
+        records.map(|r| r as &dyn RecordSource).collect()
     }
 }
 

@@ -1,15 +1,14 @@
 //! Several models on one girder, in the time and the frequency domain (sections 3.5.5 and 3.5.6 of the thesis).
 
 use super::entries::{DerivativeComparison, EntryComparison, compare_derivatives, compare_entries};
-use super::score::{Score, ScoreSummary, summaries};
+use super::score::{Score, ScoreSummary, Trial, run_all, summaries};
 use super::statements::{Statement, on_models};
-use super::trial::{Trial, run_all};
-use super::{CompareOptions, TestedDeck, thesis_rational_functions};
+use super::{CompareOptions, OnRecords, TestedDeck, thesis_rational_functions};
 use crate::aerodynamics::Transfer;
 use crate::error::{Error, Result};
 use crate::identification::{FitReport, TimeFit, fit_discrete, fit_records, fit_table};
 use crate::section::Dof;
-use crate::wind_tunnel::{Record, RecordSource};
+use crate::wind_tunnel::Record;
 use serde::Serialize;
 
 /// Frequencies whose histories the thesis shows (Figures 3.29 to 3.32), Hz.
@@ -81,7 +80,7 @@ pub(crate) struct ModelsComparison {
 /// [`Error::Input`] for anything but one deck; those of fits and metrics.
 pub(crate) fn compare_models(
     options: &CompareOptions,
-    progress: &(dyn Fn(usize, usize) + Sync),
+    progress: OnRecords<'_>,
 ) -> Result<ModelsComparison> {
     let [name] = options.decks.as_slice() else {
         return Err(Error::input(
@@ -91,10 +90,9 @@ pub(crate) fn compare_models(
         ));
     };
     let deck = TestedDeck::new(name, options)?;
-    let speed = deck.speeds_m_s[deck.training_group];
+    let speed = deck.training_speed_m_s();
     let group = deck.table.at_speed_group(deck.training_group)?;
-    let records = deck.at_speed(deck.training_group);
-    let sources: Vec<&dyn RecordSource> = records.iter().map(|r| r as &dyn RecordSource).collect();
+    let (records, sources) = (deck.training_records(), deck.training());
     let fits = [
         (
             format!("Laguerre, {}", options.laguerre_name()),

@@ -1,14 +1,19 @@
-//! Metrics of predicted against measured forces, one set a frequency of the motion.
+//! Models asked for the forces of records, and the metrics of these against what was measured, one set a frequency of the motion.
 
+use super::{CompareOptions, OnRecords, TestedDeck};
 use crate::comparison::{
     DensityParameters, PhaseParameters, SignalPair, WarpingParameters, WaveletParameters,
     magnitude, magnitude_warped, peak, phase, probability_density, rms, wavelet,
 };
 use crate::error::{Error, Result, positive};
 use crate::section::Dof;
-use crate::wind_tunnel::{Record, Segment};
+use crate::trained_model::Model;
+use crate::wind_tunnel::{Record, Segment, predicted_forces};
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::fmt::Write as _;
+use std::ops::Range;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// How the metrics are taken.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -69,9 +74,9 @@ impl ForceMetrics {
     }
 }
 
-/// Metrics of one force at one frequency of one motion.
+/// A force due to a motion, as one model predicts it for one deck at one wind speed.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub(crate) struct Score {
+pub(crate) struct Case {
     /// Deck.
     pub deck: String,
     /// Model that predicts.
@@ -84,6 +89,14 @@ pub(crate) struct Score {
     pub motion: Dof,
     /// Force.
     pub force: Dof,
+}
+
+/// Metrics at one frequency.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(crate) struct Score {
+    /// What is predicted.
+    #[serde(flatten)]
+    pub case: Case,
     /// Frequency of the motion, Hz.
     pub frequency_hz: f64,
     /// The metrics.
@@ -92,15 +105,7 @@ pub(crate) struct Score {
 
 impl Scoring {
     /// Samples of the steady motion that are compared: whole periods in the middle between the ramps.
-    ///
-    /// # Errors
-    /// [`Error::Input`] for a window or a steady part that holds no period.
-    pub(crate) fn window(
-        &self,
-        record: &Record,
-        segment: &Segment,
-        ramp_s: f64,
-    ) -> Result<(usize, usize)> {
+    fn window(&self, record: &Record, segment: &Segment, ramp_s: f64) -> Result<Range<usize>> {
         let length = positive("window_s", self.window_s)?;
         let (start, end) = (segment.start_s + ramp_s, segment.end_s - ramp_s);
         let periods = ((end - start).min(length) * segment.frequency_hz + 1e-6).floor();
@@ -114,7 +119,7 @@ impl Scoring {
         let half = 0.5 * periods / segment.frequency_hz;
         let at = |t: f64| (t * record.header.sampling_hz).round() as usize;
         let middle = 0.5 * (start + end);
-        Ok((at(middle - half), at(middle + half)))
+        Ok(at(middle - half)..at(middle + half))
     }
 
     /// Metrics of one force in a window of samples.
@@ -152,50 +157,31 @@ impl Scoring {
     }
 }
 
-/// Mean and lowest metrics over the frequencies of one motion.
+/// Mean and lowest metrics over the frequencies.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(crate) struct ScoreSummary {
-    /// Deck.
-    pub deck: String,
-    /// Model.
-    pub model: String,
-    /// Mean wind speed, m/s.
-    pub speed_m_s: f64,
-    /// Whether the model was not trained at this speed.
-    pub held_out: bool,
-    /// Motion.
-    pub motion: Dof,
-    /// Force.
-    pub force: Dof,
+    /// What is predicted.
+    #[serde(flatten)]
+    pub case: Case,
     /// Mean of each metric, in the order of [`ForceMetrics::NAMES`].
     pub mean: [f64; 7],
     /// Lowest value of each metric.
     pub lowest: [f64; 7],
 }
 
-/// One summary a deck, model, speed, motion and force, in the order of the scores.
+/// One summary a case, in the order of the scores.
 pub(crate) fn summaries(scores: &[Score]) -> Vec<ScoreSummary> {
-    let same = |a: &Score, b: &Score| {
-        (&a.deck, &a.model, a.motion, a.force) == (&b.deck, &b.model, b.motion, b.force)
-            && a.speed_m_s == b.speed_m_s
-    };
     let mut all: Vec<Vec<&Score>> = Vec::new();
     for score in scores {
-        match all.iter_mut().find(|group| same(group[0], score)) {
+        match all.iter_mut().find(|group| group[0].case == score.case) {
             Some(group) => group.push(score),
             None => all.push(vec![score]),
         }
     }
     let summary = |group: Vec<&Score>| {
         let of = |m: usize| group.iter().map(move |s| s.metrics.values()[m]);
-        let first = group[0];
         ScoreSummary {
-            deck: first.deck.clone(),
-            model: first.model.clone(),
-            speed_m_s: first.speed_m_s,
-            held_out: first.held_out,
-            motion: first.motion,
-            force: first.force,
+            case: group[0].case.clone(),
             mean: std::array::from_fn(|m| of(m).sum::<f64>() / group.len() as f64),
             lowest: std::array::from_fn(|m| of(m).fold(f64::INFINITY, f64::min)),
         }
@@ -209,26 +195,97 @@ pub(crate) fn score_table(scores: &[Score]) -> String {
         "deck,model,speed_m_s,held_out,motion,force,frequency_hz,{},lag_deg\n",
         ForceMetrics::NAMES.join(",")
     );
-    for s in scores {
-        let values: Vec<String> = s
-            .metrics
-            .values()
-            .iter()
-            .map(|v| format!("{v:.6}"))
-            .collect();
+    for Score {
+        case,
+        frequency_hz,
+        metrics,
+    } in scores
+    {
+        let values = metrics.values().map(|v| format!("{v:.6}")).join(",");
         let _ = writeln!(
             text,
-            "{},\"{}\",{:.3},{},{},{},{:.4},{},{:.4}",
-            s.deck,
-            s.model,
-            s.speed_m_s,
-            s.held_out,
-            s.motion.name(),
-            s.force.name(),
-            s.frequency_hz,
-            values.join(","),
-            s.metrics.lag_deg
+            "{},\"{}\",{:.3},{},{},{},{frequency_hz:.4},{values},{:.4}",
+            case.deck,
+            case.model,
+            case.speed_m_s,
+            case.held_out,
+            case.motion.name(),
+            case.force.name(),
+            metrics.lag_deg
         );
     }
     text
+}
+
+/// A model and a record.
+pub(super) struct Trial<'a> {
+    pub(super) deck: &'a TestedDeck,
+    pub(super) record: &'a Record,
+    /// Name of the model in the results.
+    pub(super) name: &'a str,
+    pub(super) model: &'a Model,
+    /// Whether the model was not trained on this record.
+    pub(super) held_out: bool,
+}
+
+/// What a model predicts for a record.
+pub(super) struct Outcome {
+    /// One vector a force, one number a sample.
+    pub(super) predicted: Vec<Vec<f64>>,
+    /// One entry a force and frequency.
+    pub(super) scores: Vec<Score>,
+}
+
+/// The outcomes in the order of the trials. `progress` hears how many of how many are done.
+pub(super) fn run_all(
+    trials: &[Trial<'_>],
+    options: &CompareOptions,
+    progress: OnRecords<'_>,
+) -> Result<Vec<Outcome>> {
+    let done = AtomicUsize::new(0);
+    trials
+        .par_iter()
+        .map(|trial| {
+            let outcome = trial.run(options);
+            progress(1 + done.fetch_add(1, Ordering::Relaxed), trials.len());
+            outcome
+        })
+        .collect()
+}
+
+impl Trial<'_> {
+    fn run(&self, options: &CompareOptions) -> Result<Outcome> {
+        let record = self.record;
+        let predicted = predicted_forces(self.model, record)?;
+        let h = &record.header;
+        let moves = |m: &Vec<f64>| m.iter().any(|x| *x != 0.0);
+        let moving = record.motion.iter().position(moves).unwrap_or(0);
+        let mut scores = Vec::new();
+        for (i, &force) in h.dofs.iter().enumerate() {
+            let case = Case {
+                deck: self.deck.table.name.clone(),
+                model: self.name.to_owned(),
+                speed_m_s: h.mean_speed_m_s,
+                held_out: self.held_out,
+                motion: h.dofs[moving],
+                force,
+            };
+            for segment in &h.segments {
+                let ramp_s = self.deck.plan.ramp_s;
+                let window = options.scoring.window(record, segment, ramp_s)?;
+                let metrics = options.scoring.metrics(
+                    &record.force[i][window.clone()],
+                    &predicted[i][window],
+                    h.sampling_hz,
+                    segment.frequency_hz,
+                )?;
+                scores.push(Score {
+                    case: case.clone(),
+                    frequency_hz: segment.frequency_hz,
+                    metrics,
+                });
+            }
+        }
+        Ok(Outcome { predicted, scores })
+    }
 }

@@ -16,22 +16,18 @@ pub(crate) struct Statement {
     pub here: String,
 }
 
-fn found<'a>(
-    scores: &'a [Score],
-    wanted: impl Fn(&Score) -> bool + 'a,
-) -> impl Iterator<Item = &'a Score> {
-    scores.iter().filter(move |s| wanted(s))
-}
-
 /// Section 3.5.4 on the scores of several decks.
 pub(super) fn on_decks(scores: &[Score]) -> Vec<Statement> {
-    let rotating =
-        |force: Dof| move |s: &Score| s.motion == Dof::Torsion && s.force == force && !s.held_out;
+    let rotating = || {
+        let all = scores.iter();
+        all.filter(|s| s.case.motion == Dof::Torsion && !s.case.held_out)
+    };
     let spread = |force: Dof, metric: usize| {
         let mut worst: Option<(f64, f64)> = None;
-        for one in found(scores, rotating(force)) {
-            let same = found(scores, rotating(force))
-                .filter(|s| (s.frequency_hz / one.frequency_hz - 1.0).abs() < 0.08);
+        let of_force = || rotating().filter(|s| s.case.force == force);
+        for one in of_force() {
+            let same =
+                of_force().filter(|s| (s.frequency_hz / one.frequency_hz - 1.0).abs() < 0.08);
             let values: Vec<f64> = same.map(|s| s.metrics.values()[metric]).collect();
             let high = values.iter().copied().fold(0.0, f64::max);
             let low = values.iter().copied().fold(1.0, f64::min);
@@ -49,10 +45,7 @@ pub(super) fn on_decks(scores: &[Score]) -> Vec<Statement> {
              {at_moment:.2} Hz)"
         )
     });
-    let lowest = scores
-        .iter()
-        .filter(|s| s.motion == Dof::Torsion && !s.held_out)
-        .min_by(|a, b| a.metrics.peak.total_cmp(&b.metrics.peak));
+    let lowest = rotating().min_by(|a, b| a.metrics.peak.total_cmp(&b.metrics.peak));
     vec![
         Statement {
             section: "3.5.4",
@@ -67,8 +60,8 @@ pub(super) fn on_decks(scores: &[Score]) -> Vec<Statement> {
                 format!(
                     "no spike in these records: lowest M_p {:.3} ({}, {} force, {:.2} Hz)",
                     s.metrics.peak,
-                    s.deck,
-                    s.force.name(),
+                    s.case.deck,
+                    s.case.force.name(),
                     s.frequency_hz
                 )
             }),
@@ -118,18 +111,12 @@ pub(super) fn on_models(entries: &[EntryComparison], scores: &[Score]) -> Vec<St
         });
     }
     let at_2_hz = |motion: Dof| {
-        found(scores, move |s: &Score| {
-            s.motion == motion && s.force == t && (s.frequency_hz / 2.0 - 1.0).abs() < 0.05
-        })
-        .next()
-        .map(|s| {
-            let delay = s.metrics.lag_deg / 360.0 / s.frequency_hz;
-            format!(
-                "{} motion {:.1}° ({delay:.4} s)",
-                motion.name(),
-                s.metrics.lag_deg
-            )
-        })
+        let near = |s: &&Score| (s.frequency_hz / 2.0 - 1.0).abs() < 0.05;
+        let mut moments = scores.iter().filter(|s| s.case.force == t);
+        let score = moments.find(|s| s.case.motion == motion && near(s))?;
+        let (lag_deg, name) = (score.metrics.lag_deg, motion.name());
+        let delay = lag_deg / 360.0 / score.frequency_hz;
+        Some(format!("{name} motion {lag_deg:.1}° ({delay:.4} s)"))
     };
     statements.push(Statement {
         section: "3.5.2",
@@ -146,12 +133,12 @@ pub(super) fn on_models(entries: &[EntryComparison], scores: &[Score]) -> Vec<St
 
 /// How often each model is ahead in each of the thesis's three metrics.
 fn better(scores: &[Score]) -> Statement {
-    let mut models: Vec<&str> = scores.iter().map(|s| s.model.as_str()).collect();
+    let mut models: Vec<&str> = scores.iter().map(|s| s.case.model.as_str()).collect();
     models.dedup();
     models.sort_unstable();
     models.dedup();
     let means = models.iter().map(|model| {
-        let own: Vec<&Score> = scores.iter().filter(|s| s.model == *model).collect();
+        let own: Vec<&Score> = scores.iter().filter(|s| s.case.model == *model).collect();
         let mean = |m: usize| {
             own.iter().map(|s| s.metrics.values()[m]).sum::<f64>() / own.len().max(1) as f64
         };

@@ -68,8 +68,8 @@ fn time_and_frequency_domain_agree() {
             let scores: Vec<_> = results
                 .scores
                 .iter()
-                .filter(|s| (s.force, s.motion) == (entry.force, entry.motion))
-                .filter(|s| s.model == model.name)
+                .filter(|s| (s.case.force, s.case.motion) == (entry.force, entry.motion))
+                .filter(|s| s.case.model == model.name)
                 .collect();
             for (point, (percent, degrees)) in entry.points.iter().zip(&points.points) {
                 let near = |a: &&&Score, b: &&&Score| {
@@ -109,7 +109,7 @@ fn time_and_frequency_domain_agree() {
 fn decks_are_compared_at_both_speeds() {
     let results = compare_decks(&quick(), &|_, _| ()).unwrap();
     assert_eq!(results.scores.len(), 2 * 2 * 2 * 2 * 8);
-    let held_out = results.scores.iter().filter(|s| s.held_out).count();
+    let held_out = results.scores.iter().filter(|s| s.case.held_out).count();
     assert_eq!(2 * held_out, results.scores.len());
     assert_eq!(results.summaries.len(), 16);
     for s in &results.scores {
@@ -122,7 +122,7 @@ fn decks_are_compared_at_both_speeds() {
     assert!((trained[0] - 8.18).abs() < 0.01 && (trained[1] - 8.39).abs() < 0.01);
     // under rotation, trained and asked at the same speed, the warped magnitude is good on every girder
     for s in &results.summaries {
-        if s.motion == Dof::Torsion && !s.held_out {
+        if s.case.motion == Dof::Torsion && !s.case.held_out {
             assert!(s.mean[4] > 0.9, "{s:?}");
         }
     }
@@ -136,12 +136,15 @@ fn decks_are_compared_at_both_speeds() {
     };
     let other = compare_decks(&borrowed, &|_, _| ()).unwrap();
     let mean = |r: &DecksComparison| {
-        let own = r.summaries.iter().filter(|s| s.deck == "LN21-6100");
+        let own = r.summaries.iter().filter(|s| s.case.deck == "LN21-6100");
         own.map(|s| s.mean[3]).sum::<f64>()
     };
     assert!(mean(&other) < mean(&results));
-    let last = other.summaries.iter().filter(|s| s.deck == "LN21-6100");
-    assert!(last.clone().count() > 0 && last.into_iter().all(|s| s.held_out));
+    let last = other
+        .summaries
+        .iter()
+        .filter(|s| s.case.deck == "LN21-6100");
+    assert!(last.clone().count() > 0 && last.into_iter().all(|s| s.case.held_out));
 }
 
 #[test]
