@@ -44,8 +44,8 @@
 //! [`aerodynamics`] holds the force models, [`section`] the structure, [`bridge`] the modes of a whole one, [`aeroelastic`] their coupling, [`flutter`] modes and
 //! onsets, [`response`] the exact steps, [`trained_model`] what is saved, [`fmu`] the co-simulation slave with its
 //! packing and importer. `wind_tunnel` leads from load cells to records, `identification` from records and tables to
-//! derivatives and models, `uncertainty` from their scatter to intervals, `selection` to one model among many;
-//! `files` reads and writes tables, `comparison` compares time histories, `buffeting` adds gusts, `reliability` scatters the section. `study` runs the
+//! derivatives and models, `uncertainty` from their scatter, and that of the section, to intervals, `selection` to one model among many;
+//! `files` reads and writes tables, `comparison` compares time histories, `buffeting` adds gusts. `study` runs the
 //! whole chain, `report` draws it, [`live`] answers its sliders and `cli` is the program.
 #![deny(unsafe_code, missing_docs)]
 // the runtime of the FMU reaches only a part of the rooms it is built of
@@ -75,8 +75,6 @@ mod plausibility;
 pub mod prelude;
 #[cfg(feature = "cli")]
 pub mod reference;
-#[cfg(feature = "cli")]
-pub mod reliability;
 #[cfg(feature = "cli")]
 pub mod report;
 pub mod response;

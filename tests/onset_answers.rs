@@ -20,9 +20,9 @@ use aerodeck::flutter::{
     determinant_onset, find_onset, pk_curves, pk_onset, quasi_pk_mode, trace_modes,
 };
 use aerodeck::identification::{Form, FrequencyFit, fit_table};
-use aerodeck::reliability::{MonteCarloPlan, monte_carlo};
 use aerodeck::section::{Dof, SectionModel, Structure};
 use aerodeck::trained_model::Model;
+use aerodeck::uncertainty::monte_carlo::{MonteCarloPlan, monte_carlo};
 use aerodeck::units::{ReducedFrequency, ReducedFrequencyRange};
 
 const SEARCH: OnsetSearch = OnsetSearch {

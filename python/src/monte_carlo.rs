@@ -5,7 +5,7 @@ use crate::error::raised;
 use crate::model::Model;
 use crate::section::Section;
 use crate::work::Work;
-use aerodeck::reliability::{self, MonteCarloPlan, MonteCarloResult};
+use aerodeck::uncertainty::monte_carlo::{self as analysis, MonteCarloPlan, MonteCarloResult};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -51,7 +51,7 @@ impl MonteCarlo {
     /// Speeds below which a part of all sections flutters, m/s, by that part; None where it is above the searched speeds.
     #[getter]
     fn quantiles(&self) -> Vec<(f64, Option<f64>)> {
-        let one = |q: &aerodeck::reliability::Quantile| (q.probability, q.speed_m_s);
+        let one = |q: &analysis::Quantile| (q.probability, q.speed_m_s);
         self.0.quantiles.iter().map(one).collect()
     }
 
@@ -176,7 +176,7 @@ pub fn monte_carlo(
     let plan: MonteCarloPlan = from_python("parameters", plan.as_any())?;
     let work = Work::new(progress);
     let result = work.run(py, || {
-        reliability::monte_carlo(&plan, &trained, &|done, total| work.tell(done, total))
+        analysis::monte_carlo(&plan, &trained, &|done, total| work.tell(done, total))
     })?;
     result.map(MonteCarlo).map_err(raised)
 }

@@ -2,8 +2,8 @@
 
 use crate::convert::{dof_names, from_python, shown, to_python};
 use crate::error::raised;
-use aerodeck::reliability::Parameter;
 use aerodeck::section::{Rotation, SectionModel, Translation};
+use aerodeck::uncertainty::monte_carlo::Parameter;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 

@@ -10,9 +10,9 @@ use super::problem::BuffetingProblem;
 use super::spectrum::GustComponent;
 use crate::aerodynamics::GustSeries;
 use crate::error::{Error, Result, positive};
+use crate::signal::random_stream;
 use nalgebra::Complex;
-use rand::{Rng, SeedableRng};
-use rand_chacha::ChaCha8Rng;
+use rand::Rng;
 use rand_distr::StandardNormal;
 use rustfft::FftPlanner;
 
@@ -73,8 +73,7 @@ pub(crate) fn synthesise(
             continue;
         };
         // a stream of its own for each component: switching one off leaves the other as it is
-        let mut random = ChaCha8Rng::seed_from_u64(seed);
-        random.set_stream(j as u64);
+        let mut random = random_stream(seed, j as u64);
         for k in 1..samples / 2 {
             let middle = k as f64 * width_hz;
             let variance: f64 = GAUSS_3

@@ -6,8 +6,8 @@ use super::output::OutputDir;
 use super::progress::Progress;
 use super::{figures, stages};
 use crate::error::Result;
-use crate::reliability::{MonteCarloPlan, MonteCarloResult, monte_carlo};
 use crate::report::onset_distribution_figure;
+use crate::uncertainty::monte_carlo::{MonteCarloPlan, MonteCarloResult, monte_carlo};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 

@@ -1,16 +1,15 @@
 //! The thesis's discrete Laguerre model fitted to records (2.30–2.33, 3.2–3.6).
 
+use super::least_squares::BLOCK_ROWS;
 use super::options::{PoleSearch, TimeWeights, number_of_filters};
-use super::own::{OwnDecay, StaticTerm, each_once, place_of};
-use super::records::{describe, describe_own, removed_means, tested_range};
+use super::own::{OwnDecay, StaticTerm, describe_own, each_once, place_of};
 use super::report::{AlphaGuideline, FitReport, MemoryReport};
-use super::time::discrete_columns::DiscreteColumns;
 use super::time::fitted::Fitted;
-use super::time::pass::{ColumnOrder, OnProgress, Pass, PassPlan, pass};
-use super::time::record::{DimensionlessRecord, read_all};
+use super::time::pass::{ColumnOrder, Columns, OnProgress, Pass, PassPlan, Piece, pass};
+use super::time::record::{DimensionlessRecord, Records};
 use super::time::systems::ForceSystems;
 use crate::aerodynamics::DiscreteLaguerre;
-use crate::aerodynamics::laguerre::{DiscreteTerm, alpha_lower_bound, discrete_memory};
+use crate::aerodynamics::laguerre::{DiscreteTerm, Recursion, alpha_lower_bound, discrete_memory};
 use crate::error::{Error, Result};
 use crate::section::Dof;
 use crate::trained_model::Model;
@@ -101,11 +100,10 @@ pub(crate) fn fit_discrete(
     progress: OnProgress<'_>,
 ) -> Result<(Model, FitReport)> {
     fit.validate()?;
-    let (dofs, mut records) = read_all(records)?;
-    let means = removed_means(fit.static_term, &dofs, &mut records);
-    let tested = tested_range(&records)?;
-    let delta_s = longest_step(&records);
-    let parameters = fit.parameters(&dofs)?;
+    let records = Records::read(records, fit.static_term)?;
+    let (dofs, tested) = (&records.dofs, records.tested_range()?);
+    let delta_s = records.longest_step();
+    let parameters = fit.parameters(dofs)?;
     let rows = parameters.chunks(dofs.len());
     let mut alphas: Vec<Vec<f64>> = rows.map(|r| r.iter().map(|(a, _)| *a).collect()).collect();
     // filters that serve all forces are filtered once
@@ -117,18 +115,13 @@ pub(crate) fn fit_discrete(
         per_input: parameters.iter().map(|(_, l)| *l).max().unwrap_or(0),
         constant: fit.static_term == StaticTerm::Estimated,
     };
-    let pass = discrete_pass(
-        (&records, delta_s),
-        (order, &alphas),
-        (fit.weights, 0),
-        progress,
-    )?;
+    let pass = discrete_pass(&records, (order, &alphas), (fit.weights, 0), progress)?;
     let systems = ForceSystems {
         counts: parameters.iter().map(|(_, filters)| *filters).collect(),
         systems: pass.systems(),
     };
-    let fitted = Fitted::new(&dofs, systems, 1.0, "the filters")?;
-    let model = model(&fitted, &dofs, &parameters, delta_s)?;
+    let fitted = Fitted::new(dofs, systems, 1.0, "the filters")?;
+    let model = model(&fitted, dofs, &parameters, delta_s)?;
     let entries = fitted.reports(|e| {
         let names = (0..parameters[e].1).map(|l| format!("c{l}")).collect();
         Ok((names, Vec::new()))
@@ -140,9 +133,9 @@ pub(crate) fn fit_discrete(
             fit.filters,
             fit.alpha,
             describe_own(fit.own.len()),
-            records.len()
+            records.each.len()
         ),
-        weights: describe(fit.weights).into(),
+        weights: fit.weights.describe().into(),
         samples: fitted.systems.whole(0).rows(),
         tested_range: tested,
         condition: entries.iter().map(|e| e.condition).fold(1.0, f64::max),
@@ -150,7 +143,7 @@ pub(crate) fn fit_discrete(
         search: Vec::new(),
         orders: if shared { fitted.orders(0) } else { Vec::new() },
         alpha_guideline: Some(guideline(&parameters, tested, delta_s, &records)),
-        static_terms: [means, fitted.constants()?].concat(),
+        static_terms: [records.removed_means.clone(), fitted.constants()?].concat(),
         memory: memory(&parameters, &records, delta_s, &pass.still_samples),
         constraints: None,
         covariance_assumption: "white residuals, exact motions".into(),
@@ -159,16 +152,10 @@ pub(crate) fn fit_discrete(
     Ok((Model::DiscreteLaguerre(model), with_notes(report)))
 }
 
-/// The dimensionless step to which all records are resampled: the longest.
-pub(crate) fn longest_step(records: &[DimensionlessRecord]) -> f64 {
-    let steps = records.iter().map(DimensionlessRecord::delta_s);
-    steps.fold(0.0, f64::max)
-}
-
 /// One pass over the records, resampled to one step, with the filters (2.33) of the given decay factors, one for each
 /// input of each candidate; `stretches` as in [`PassPlan`].
 pub(crate) fn discrete_pass(
-    (records, delta_s): (&[DimensionlessRecord], f64),
+    records: &Records,
     (order, alphas): (ColumnOrder, &[Vec<f64>]),
     (weights, stretches): (TimeWeights, usize),
     progress: OnProgress<'_>,
@@ -176,7 +163,7 @@ pub(crate) fn discrete_pass(
     let plan = PassPlan {
         order,
         weights,
-        delta_s: Some(delta_s),
+        delta_s: Some(records.longest_step()),
         discard_s: 0.0,
         stride: 1,
         stretches,
@@ -189,7 +176,65 @@ pub(crate) fn discrete_pass(
             order.constant,
         ))
     };
-    pass(records, &plan, progress, columns)
+    pass(&records.each, &plan, progress, columns)
+}
+
+/// Columns of the discrete model by the recursion (2.33); a candidate is a decay factor for each input.
+struct DiscreteColumns {
+    /// One a candidate and input.
+    recursions: Vec<Vec<Recursion>>,
+    filters: usize,
+    /// The constant, if there is one.
+    ones: Option<Vec<f64>>,
+    /// Filter states at the last sample, one vector a candidate and input.
+    states: Vec<Vec<Vec<f64>>>,
+    /// Filter columns of the candidate asked for last, one stretch of [`BLOCK_ROWS`] a filter, one vector an input.
+    columns: Vec<Vec<f64>>,
+}
+
+impl DiscreteColumns {
+    /// `filters` columns an input; `constant` puts a column of ones in front.
+    fn new(alphas: &[Vec<f64>], filters: usize, constant: bool) -> Self {
+        let recursions = |alphas: &Vec<f64>| alphas.iter().map(|a| Recursion::new(*a)).collect();
+        let inputs = alphas.first().map_or(0, Vec::len);
+        Self {
+            recursions: alphas.iter().map(recursions).collect(),
+            filters,
+            ones: constant.then(|| vec![1.0; BLOCK_ROWS]),
+            states: vec![vec![vec![0.0; filters]; inputs]; alphas.len()],
+            columns: vec![vec![0.0; filters * BLOCK_ROWS]; inputs],
+        }
+    }
+}
+
+impl Columns for DiscreteColumns {
+    fn candidates(&self) -> usize {
+        self.recursions.len()
+    }
+
+    fn advance(&mut self, _: &Piece<'_>, _: &[usize]) {}
+
+    fn columns<'a>(
+        &'a mut self,
+        piece: &Piece<'a>,
+        candidate: usize,
+        active: &[usize],
+    ) -> Vec<&'a [f64]> {
+        for &j in active {
+            let state = &mut self.states[candidate][j];
+            let recursion = self.recursions[candidate][j];
+            recursion.advance(state, piece.motion[j], &mut self.columns[j], BLOCK_ROWS);
+        }
+        let rows = piece.rows();
+        let mut columns: Vec<&[f64]> = Vec::new();
+        columns.extend(self.ones.as_ref().map(|ones| &ones[..rows]));
+        for l in 0..self.filters {
+            let stretch = l * BLOCK_ROWS..l * BLOCK_ROWS + rows;
+            columns.extend(active.iter().map(|&j| &self.columns[j][stretch.clone()]));
+        }
+        columns.extend(&piece.force);
+        columns
+    }
 }
 
 /// One chain a motion for all forces that share its parameters (`α` and `L` of every transfer function, row by row).
@@ -235,7 +280,7 @@ fn model(
 /// Memory of the slowest chain against the rest before the motion, at the step of the model.
 fn memory(
     parameters: &[(f64, usize)],
-    records: &[DimensionlessRecord],
+    records: &Records,
     delta_s: f64,
     still_samples: &[usize],
 ) -> Vec<MemoryReport> {
@@ -247,7 +292,8 @@ fn memory(
         available_samples: *still,
         step_s: delta_s / record.rate,
     };
-    records.iter().zip(still_samples).map(account).collect()
+    let each = records.each.iter().zip(still_samples);
+    each.map(account).collect()
 }
 
 /// (2.36) at the highest reduced frequency: `f_max/f_s = K Δs/2π`, whatever the speed; for the smallest `α` in use.
@@ -255,9 +301,9 @@ fn guideline(
     parameters: &[(f64, usize)],
     tested: ReducedFrequencyRange,
     delta_s: f64,
-    records: &[DimensionlessRecord],
+    records: &Records,
 ) -> AlphaGuideline {
-    let rate = records.iter().map(|r| r.rate).fold(0.0, f64::max);
+    let rate = records.each.iter().map(|r| r.rate).fold(0.0, f64::max);
     let sampling_hz = rate / delta_s;
     let highest_frequency_hz = tested.max.full_width() * rate / TAU;
     AlphaGuideline {

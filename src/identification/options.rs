@@ -1,11 +1,13 @@
 //! What a fit is asked to do. The fields are keys of a study file; units are in their names, the rest is
 //! dimensionless.
 
-use super::dissipative::Constraints;
+use super::dissipative::{Constraints, Wishes};
 use super::form::Form;
-use super::frequency_options::{QuasiSteadyLimit, validate_limits};
+use super::frequency_options::{QuasiSteadyLimit, limits_by_entry, validate_limits};
 use super::own::{OwnFilters, StaticTerm, validate_own};
 use crate::error::{Error, Result, positive};
+use crate::section::Dof;
+use crate::units::ReducedFrequencyRange;
 use serde::{Deserialize, Serialize};
 
 /// Where the poles (lags) come from: fixed, or searched for within bounds.
@@ -175,4 +177,30 @@ pub(crate) fn number_of_filters(place: &str, count: usize) -> Result<()> {
         format!("at most {MOST_FILTERS}")
     };
     Err(Error::input(place, expected, count.to_string()))
+}
+
+impl TimeWeights {
+    /// In words.
+    pub(crate) fn describe(self) -> &'static str {
+        match self {
+            Self::None => "none: residuals of the dimensionless forces",
+            Self::PerRecord => "1/RMS of each force in each record",
+            Self::PerSegment => "1/RMS of each force in each segment",
+        }
+    }
+}
+
+impl TimeFit {
+    /// What the fit is asked for besides least squares.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for limits of degrees of freedom that are not there.
+    pub(crate) fn wishes(&self, dofs: &[Dof], tested: ReducedFrequencyRange) -> Result<Wishes> {
+        Ok(Wishes {
+            dofs: dofs.to_vec(),
+            k_max: tested.max.full_width(),
+            constraints: self.constraints,
+            limits: limits_by_entry(dofs, &self.limits)?,
+        })
+    }
 }

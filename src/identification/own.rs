@@ -63,6 +63,14 @@ pub(crate) struct EntryForm {
     pub alone: bool,
 }
 
+/// How many transfer functions have filters of their own, in words.
+pub(crate) fn describe_own(count: usize) -> String {
+    match count {
+        0 => String::new(),
+        n => format!(", filters of their own for {n} transfer function(s)"),
+    }
+}
+
 /// Refuses the same transfer function twice.
 pub(crate) fn each_once(named: impl Iterator<Item = (Dof, Dof)>) -> Result<()> {
     let mut seen = Vec::new();

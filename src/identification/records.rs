@@ -2,29 +2,21 @@
 
 use super::basis::{Basis, assemble};
 use super::degenerate::note_lags;
-use super::dissipative::{ConstraintReport, Wishes};
+use super::dissipative::ConstraintReport;
 use super::form::Form;
-use super::frequency_options::limits_by_entry;
-use super::options::{TimeFit, TimeWeights};
-use super::own::{EntryForm, StaticTerm, entry_forms};
-use super::report::{
-    EntryReport, FitReport, MemoryReport, OrderReport, SearchReport, StaticReport,
-};
-use super::time::filters::{ContinuousColumns, NOISE_BANDWIDTH};
+use super::options::TimeFit;
+use super::own::describe_own;
+use super::report::{EntryReport, FitReport, MemoryReport, OrderReport, SearchReport};
+use super::time::continuous::{RecordFit, Rows};
 use super::time::fitted::Fitted;
-use super::time::pass::{ColumnOrder, OnProgress, Pass, PassPlan, pass};
-use super::time::record::{DimensionlessRecord, read_all};
-use super::time::search::{Choice, PASSES, choose_poles, padded};
+use super::time::pass::OnProgress;
+use super::time::record::{DimensionlessRecord, Records};
+use super::time::search::{ChosenPoles, PASSES, choose_poles, padded};
 use super::time::systems::ForceSystems;
 use crate::aerodynamics::FilterBank;
 use crate::error::{Error, Result};
-use crate::section::Dof;
 use crate::trained_model::Model;
-use crate::units::ReducedFrequencyRange;
 use crate::wind_tunnel::RecordSource;
-
-/// Default cut-off of the low-pass over the sampling frequency.
-const CUTOFF_OVER_SAMPLING: f64 = 1.0 / 20.0;
 
 /// Fits a continuous model to records of any speeds and sampling frequencies.
 ///
@@ -40,29 +32,24 @@ pub fn fit_records(
     progress: OnProgress<'_>,
 ) -> Result<(Model, FitReport)> {
     fit.validate()?;
-    let (dofs, mut records) = read_all(records)?;
-    let means = removed_means(fit.static_term, &dofs, &mut records);
-    let tested = tested_range(&records)?;
-    let entries = entry_forms(&dofs, &fit.form, &fit.poles, &fit.own)?;
+    let records = Records::read(records, fit.static_term)?;
+    let tested = records.tested_range()?;
     let task = RecordFit {
         fit,
-        dofs: &dofs,
         records: &records,
-        entries: &entries,
         progress,
     };
-    let wishes = wishes(fit, &dofs, tested)?;
-    let (alone, held) = choose_poles(&task, tested, &wishes)?;
-    let (at_poles, search, constraints) = task.fit_at(alone, held, &wishes)?;
+    let poles = choose_poles(&task, tested)?;
+    let (at_poles, search, constraints) = task.fit_at(poles)?;
     let model = at_poles.model()?;
     let mut report = FitReport {
         method: format!(
             "{}{}, fitted to {} record(s) in the time domain",
             fit.form.describe(),
             describe_own(fit.own.len()),
-            records.len()
+            records.each.len()
         ),
-        weights: describe(fit.weights).into(),
+        weights: fit.weights.describe().into(),
         samples: at_poles.fitted.systems.whole(0).rows(),
         tested_range: tested,
         condition: 1.0,
@@ -70,7 +57,7 @@ pub fn fit_records(
         search,
         orders: at_poles.orders(),
         alpha_guideline: None,
-        static_terms: [means, at_poles.fitted.constants()?].concat(),
+        static_terms: [records.removed_means.clone(), at_poles.fitted.constants()?].concat(),
         memory: at_poles.memory()?,
         constraints,
         covariance_assumption:
@@ -86,134 +73,40 @@ pub fn fit_records(
     Ok((model, report))
 }
 
-/// Removes the means where that is asked for, and reports them.
-pub(crate) fn removed_means(
-    wanted: StaticTerm,
-    dofs: &[Dof],
-    records: &mut [DimensionlessRecord],
-) -> Vec<StaticReport> {
-    let mut reports = Vec::new();
-    for record in records.iter_mut().filter(|_| wanted == StaticTerm::Removed) {
-        for (value, &force) in record.remove_means().into_iter().zip(dofs) {
-            reports.push(StaticReport {
-                force,
-                record: Some(record.name().to_owned()),
-                value,
-                standard_error: None,
-            });
-        }
-    }
-    reports
-}
-
-pub(crate) fn describe_own(count: usize) -> String {
-    match count {
-        0 => String::new(),
-        n => format!(", filters of their own for {n} transfer function(s)"),
-    }
-}
-
-/// Range of all records together.
-///
-/// # Errors
-/// [`Error::Input`] for records that never move.
-pub(crate) fn tested_range(records: &[DimensionlessRecord]) -> Result<ReducedFrequencyRange> {
-    let ranges = records.iter().filter_map(DimensionlessRecord::tested_range);
-    ReducedFrequencyRange::spanning(ranges.flat_map(|r| [r.min, r.max]))
-        .ok_or_else(|| Error::input("records", "a motion", "none that moves"))
-}
-
-pub(crate) fn describe(weights: TimeWeights) -> &'static str {
-    match weights {
-        TimeWeights::None => "none: residuals of the dimensionless forces",
-        TimeWeights::PerRecord => "1/RMS of each force in each record",
-        TimeWeights::PerSegment => "1/RMS of each force in each segment",
-    }
-}
-
-/// What a fit is asked for besides least squares.
-///
-/// # Errors
-/// [`Error::Input`] for limits of degrees of freedom that are not there.
-pub(crate) fn wishes(fit: &TimeFit, dofs: &[Dof], tested: ReducedFrequencyRange) -> Result<Wishes> {
-    Ok(Wishes {
-        dofs: dofs.to_vec(),
-        k_max: tested.max.full_width(),
-        constraints: fit.constraints,
-        limits: limits_by_entry(dofs, &fit.limits)?,
-    })
-}
-
-/// What stays the same over all passes of a fit.
-pub(crate) struct RecordFit<'a> {
-    pub fit: &'a TimeFit,
-    pub dofs: &'a [Dof],
-    pub records: &'a [DimensionlessRecord],
-    /// Form and poles of every transfer function, row by row.
-    pub entries: &'a [EntryForm],
-    pub progress: OnProgress<'a>,
-}
-
-/// Which rows a pass makes.
-#[derive(Clone, Copy)]
-pub(crate) struct Rows {
-    /// Columns of orthonormal filters in place of those of the model.
-    pub orthonormal: bool,
-    /// Only as many rows as the low-passed signals need.
-    pub thinned: bool,
-    /// As in [`PassPlan`].
-    pub stretches: usize,
-}
-
-impl Rows {
-    /// For a search of poles.
-    pub(crate) const THINNED: Self = Self {
-        orthonormal: true,
-        thinned: true,
-        stretches: 0,
-    };
-    /// For the fit itself.
-    const ALL: Self = Self {
-        orthonormal: false,
-        thinned: false,
-        stretches: 0,
-    };
-}
-
 impl<'a> RecordFit<'a> {
     /// The last pass: least squares alone, and under the constraints where these are asked for and bind; with the search
     /// that led there and what the constraints cost.
     fn fit_at(
         &'a self,
-        alone: Choice,
-        held: Option<Choice>,
-        wishes: &Wishes,
+        poles: ChosenPoles,
     ) -> Result<(AtPoles<'a>, Vec<SearchReport>, Option<ConstraintReport>)> {
-        let chains = |choice: &Choice| -> Vec<Vec<f64>> {
-            let pairs = choice.poles.iter().zip(self.entries);
-            pairs.map(|(p, e)| e.form.expand(p)).collect()
-        };
-        let mut sets = vec![chains(&alone)];
-        sets.extend(held.as_ref().map(chains));
+        let ChosenPoles {
+            alone,
+            held,
+            wishes,
+        } = poles;
+        let mut sets = vec![alone.chains];
+        sets.extend(held.as_ref().map(|h| h.chains.clone()));
         sets.dedup();
         let mut fits = self.at_poles(sets)?.into_iter();
         let none = || Error::Numerical("fit to records: no fit".into());
         let mut found = fits.next().ok_or_else(none)?;
         let (reports, model, bases) = (found.reports()?, found.model()?, found.bases()?);
         if held.is_some() {
-            found.fitted.constrain(&bases, wishes)?;
+            found.fitted.constrain(&bases, &wishes)?;
         }
         let Some(held) = held.filter(|_| found.fitted.active().is_some()) else {
             return Ok((found, alone.search, None));
         };
         if let Some(other) = fits.next() {
             found = other;
-            found.fitted.constrain(&found.bases()?, wishes)?;
+            found.fitted.constrain(&found.bases()?, &wishes)?;
         }
         let active = found.fitted.active().unwrap_or_default();
         let with = found.reports()?;
         let compared = (reports.as_slice(), bases.as_slice());
-        let constraints = ConstraintReport::new(active, self.dofs, compared, &with, model);
+        let dofs = &self.records.dofs;
+        let constraints = ConstraintReport::new(active, dofs, compared, &with, model);
         Ok((found, held.search, Some(constraints)))
     }
 
@@ -225,7 +118,10 @@ impl<'a> RecordFit<'a> {
         let mut candidates: Vec<Vec<Vec<f64>>> = Vec::new();
         let mut counts = Vec::new();
         for chains in &sets {
-            let mut of_force: Vec<_> = chains.chunks(self.dofs.len()).map(padded_row).collect();
+            let mut of_force: Vec<_> = chains
+                .chunks(self.records.dofs.len())
+                .map(padded_row)
+                .collect();
             // filters that serve all forces are filtered once
             if of_force.iter().all(|row| *row == of_force[0]) {
                 of_force.truncate(1);
@@ -244,67 +140,11 @@ impl<'a> RecordFit<'a> {
             Ok(AtPoles {
                 task: self,
                 chains,
-                fitted: Fitted::new(self.dofs, systems, self.noise_ratio(), &filters)?,
+                fitted: Fitted::new(&self.records.dofs, systems, self.noise_ratio(), &filters)?,
                 still_samples: pass.still_samples.clone(),
             })
         };
         sets.into_iter().zip(counts).map(fit).collect()
-    }
-
-    /// One pass with the given candidates, a chain of filters for each input, all of one length.
-    pub(crate) fn pass(
-        &self,
-        candidates: &[Vec<Vec<f64>>],
-        rows: Rows,
-        number: (usize, usize),
-    ) -> Result<Pass> {
-        let basis = |poles: &Vec<f64>| {
-            if rows.orthonormal {
-                Basis::orthonormal(&self.fit.form, poles)
-            } else {
-                Basis::new(&self.fit.form, poles)
-            }
-        };
-        let bases = candidates
-            .iter()
-            .map(|chains| chains.iter().map(basis).collect())
-            .collect::<Result<Vec<Vec<_>>>>()?;
-        let constant = self.fit.static_term == StaticTerm::Estimated;
-        let plan = PassPlan {
-            order: ColumnOrder {
-                inputs: self.dofs.len(),
-                per_input: bases.first().map_or(0, |b| b[0].len()),
-                constant,
-            },
-            weights: self.fit.weights,
-            delta_s: None,
-            discard_s: self.fit.discard_s,
-            stride: if rows.thinned { self.thinning() } else { 1 },
-            stretches: rows.stretches,
-            pass: number,
-        };
-        pass(self.records, &plan, self.progress, |record| {
-            ContinuousColumns::new(record, &bases, self.cutoff_hz(record), constant)
-        })
-    }
-
-    /// Cut-off of the low-pass, Hz.
-    fn cutoff_hz(&self, record: &DimensionlessRecord) -> f64 {
-        let default = CUTOFF_OVER_SAMPLING / record.step_s;
-        self.fit.low_pass_hz.unwrap_or(default)
-    }
-
-    /// Every how many samples a row is enough: four rows a period of the cut-off still hold what the low-pass lets
-    /// through.
-    fn thinning(&self) -> usize {
-        let stride = |r: &DimensionlessRecord| (0.25 / (self.cutoff_hz(r) * r.step_s)) as usize;
-        self.records.iter().map(stride).min().unwrap_or(1).max(1)
-    }
-
-    /// Variance of the noise before the low-pass over that of the residuals behind it.
-    fn noise_ratio(&self) -> f64 {
-        let passed = |r: &DimensionlessRecord| 2.0 * NOISE_BANDWIDTH * self.cutoff_hz(r) * r.step_s;
-        1.0 / self.records.iter().map(passed).fold(0.0, f64::max).min(1.0)
     }
 }
 
@@ -324,11 +164,16 @@ impl AtPoles<'_> {
     }
 
     fn model(&self) -> Result<Model> {
-        let n = self.task.dofs.len();
+        let n = self.task.records.dofs.len();
         let chains: Vec<_> = self.chains.chunks(n).map(<[_]>::to_vec).collect();
         let row = |i| (0..n).map(|j| self.fitted.values(i, j)).collect();
         let values: Vec<Vec<Vec<f64>>> = (0..n).map(row).collect();
-        assemble(&self.task.fit.form, self.task.dofs, &chains, &values)
+        assemble(
+            &self.task.fit.form,
+            &self.task.records.dofs,
+            &chains,
+            &values,
+        )
     }
 
     fn reports(&self) -> Result<Vec<EntryReport>> {
@@ -354,7 +199,7 @@ impl AtPoles<'_> {
                 step_s: record.step_s,
             })
         };
-        let each = self.task.records.iter().zip(&self.still_samples);
+        let each = self.task.records.each.iter().zip(&self.still_samples);
         each.map(account).collect()
     }
 

@@ -7,7 +7,7 @@ use super::panel::{Note, Panel};
 use super::sheet::Sheet;
 use super::style::{BLACK, Ink, Shape, colour};
 use crate::error::{Error, Result};
-use crate::reliability::MonteCarloResult;
+use crate::uncertainty::monte_carlo::MonteCarloResult;
 
 const PLACE: &str = "distribution of the onset";
 

@@ -16,6 +16,8 @@ use serde::{Deserialize, Serialize};
 
 /// Relative step of the differences with respect to the parameters.
 const STEP: f64 = 1e-5;
+/// A model whose transfer matrix differs by more than this, relatively, is another one.
+const SAME_MODEL: f64 = 1e-6;
 
 /// Estimates with their covariance.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -307,9 +309,23 @@ impl CoefficientUncertainty {
         let Some(design) = &self.design else {
             return Ok(None);
         };
-        let step = design.reweighted(weights)?;
+        Ok(Some(self.moved_by(&design.reweighted(weights)?)))
+    }
+
+    /// The estimates and a step from them.
+    pub(super) fn moved_by(&self, step: &DVector<f64>) -> Vec<f64> {
         let moved = self.parameters.iter().zip(step.iter());
-        Ok(Some(moved.map(|(p, d)| p.value + d).collect()))
+        moved.map(|(p, d)| p.value + d).collect()
+    }
+
+    /// Whether these coefficients make `model`, as its transfer matrix at one `K` tells.
+    pub(super) fn makes(&self, model: &dyn Transfer, k: ReducedFrequency) -> Result<bool> {
+        let own = self.model_at(&self.values())?;
+        if own.dofs() != model.dofs() {
+            return Ok(false);
+        }
+        let (a, b) = (own.transfer(k)?, model.transfer(k)?);
+        Ok((a - &b).norm() <= SAME_MODEL * b.norm())
     }
 
     /// The fit to the tests at each mean speed alone, with the poles of the fit to all; empty for tests at one speed and
@@ -367,4 +383,13 @@ impl CoefficientUncertainty {
         }
         report.covariance_assumption.clone_from(&self.assumption);
     }
+}
+
+/// `points` reduced frequencies from one end of a range to the other, logarithmic.
+pub(super) fn spread_over(range: ReducedFrequencyRange, points: usize) -> Vec<ReducedFrequency> {
+    let (low, high) = (range.min.full_width(), range.max.full_width());
+    let last = points.max(2) as f64 - 1.0;
+    (0..points)
+        .map(|i| ReducedFrequency::from_full_width(low * (high / low).powf(i as f64 / last)))
+        .collect()
 }

@@ -51,13 +51,26 @@ impl Expansion {
         Ok(expansion)
     }
 
-    /// Derivatives of the whole transfer function with coefficients `values` with respect to the free poles, E×m.
-    pub(crate) fn jacobian(
+    /// Derivatives of the transfer function at `place` with coefficients `values` with respect to the searched poles, E×(number of
+    /// these); zero for poles of other transfer functions.
+    pub(super) fn slopes(
         &self,
-        form: &Form,
-        free: &[f64],
+        (form, chain): (&Form, &[f64]),
         values: &[f64],
+        (place, searched): ((usize, usize), &[SearchedPole]),
     ) -> Result<DMatrix<f64>> {
+        let all = self.jacobian(form, &form.collapse(chain), values)?;
+        let mut slopes = DMatrix::zeros(all.nrows(), searched.len());
+        for (m, pole) in searched.iter().enumerate() {
+            if pole.entry.is_none_or(|entry| entry == place) {
+                slopes.column_mut(m).copy_from(&all.column(pole.index));
+            }
+        }
+        Ok(slopes)
+    }
+
+    /// Derivatives of the whole transfer function with coefficients `values` with respect to the free poles, E×m.
+    fn jacobian(&self, form: &Form, free: &[f64], values: &[f64]) -> Result<DMatrix<f64>> {
         let pairs = (0..free.len()).map(|m| moved_pole(form, free, m));
         let pairs = pairs.collect::<Result<Vec<_>>>()?;
         let sum = |basis: &Basis, p: Complex<f64>| -> Complex<f64> {
@@ -136,13 +149,7 @@ impl LinearModel {
                 let expansion = Expansion::new(form, chain, true)?;
                 let count = expansion.native.ncols();
                 let values = &estimate[first..first + count];
-                let all = expansion.jacobian(form, &form.collapse(chain), values)?;
-                let mut slopes = DMatrix::zeros(all.nrows(), searched.len());
-                for (m, pole) in searched.iter().enumerate() {
-                    if pole.entry.is_none_or(|entry| entry == (i, j)) {
-                        slopes.column_mut(m).copy_from(&all.column(pole.index));
-                    }
-                }
+                let slopes = expansion.slopes((form, chain), values, ((i, j), searched))?;
                 entries.push((expansion.extended, expansion.native, slopes));
                 first += count;
             }

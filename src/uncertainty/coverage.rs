@@ -1,7 +1,7 @@
 //! Do the intervals keep their word? Virtual campaigns whose truth is known, fitted many times over.
 
-use super::coefficients::CoefficientUncertainty;
-use super::derivatives::{derivative_intervals, spread_over};
+use super::coefficients::{CoefficientUncertainty, spread_over};
+use super::model::derivative_intervals;
 use super::onset::onset_error;
 use super::record_covariance::record_uncertainty;
 use super::scattered::ScatteredTunnel;

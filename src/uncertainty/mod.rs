@@ -8,39 +8,39 @@
 //! segments motion and force come to rest, so that blocks do not leak into each other.
 //! See [`CoefficientUncertainty::assumption`] for what is assumed in each case.
 //!
-//! The onset follows by two routes that check each other: the gradient of the onset speed by eigenvalue sensitivities
-//! (`onset_error`, the interval that is printed), and onsets solved anew for resampled blocks or drawn coefficients
-//! (`resample_onset`). Intervals hold scatter only; [`coverage`] shows bias beside it where the truth is known.
+//! | what | does | for |
+//! |---|---|---|
+//! | covariance, [`CoefficientUncertainty`] | sandwich of the residuals of independent blocks, and the scatter between mean speeds | every interval of a fit |
+//! | delta method, [`OnsetError`] | carries it to the onset by the sensitivities of an eigenvalue | the interval that is printed |
+//! | bootstrap, [`ResampledOnset`] | weighs the blocks anew, or draws parameters from the covariance, and solves every onset anew | the check of that interval |
+//! | Monte Carlo, [`monte_carlo`] | draws the section as well, and counts | the probability of flutter below a design speed |
+//! | [`coverage`] | repeats virtual campaigns whose truth is known | whether intervals hold it: they hold scatter, not bias |
 
 mod coefficients;
 mod columns;
 mod coverage;
-mod derivatives;
 mod design;
 mod model;
+pub mod monte_carlo;
 mod onset;
 mod parameters;
 mod record_covariance;
 mod scattered;
 mod segments;
-mod sensitivity;
 mod speed_onsets;
 mod speed_scatter;
-mod student;
+mod statistics;
 mod table_covariance;
 
 pub use coefficients::CoefficientUncertainty;
 pub use coverage::{CoveragePlan, CoverageReport, Share, Truth, coverage};
-pub use derivatives::DerivativeInterval;
-pub use model::ModelUncertainty;
+pub use model::{DerivativeInterval, ModelUncertainty};
 pub use onset::{OnsetError, ResampledOnset, Resampling};
-pub(crate) use parameters::SEARCHED_POLES;
 pub use parameters::{Coordinates, Parameter, SearchedPole};
 pub(crate) use record_covariance::discrete_uncertainty;
 pub use record_covariance::record_uncertainty;
 pub use speed_onsets::{Contradiction, SpeedOnset, SpeedOnsets};
 pub use speed_scatter::{ForceScatter, SpeedScatter};
-pub(crate) use student::incomplete_beta;
 pub use table_covariance::table_uncertainty;
 
 #[cfg(test)]

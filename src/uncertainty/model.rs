@@ -1,12 +1,13 @@
 //! All that is known of the uncertainty of one trained model, as it is saved beside it.
 
-use super::coefficients::CoefficientUncertainty;
-use super::derivatives::{DerivativeInterval, derivative_intervals, spread_over};
+use super::coefficients::{CoefficientUncertainty, spread_over};
 use super::onset::{
-    OnsetError, ResampledOnset, Resampling, ResamplingPlan, onset_error, resample_onset,
+    CONFIDENCE, OnsetError, ResampledOnset, Resampling, ResamplingPlan, onset_error, resample_onset,
 };
 use super::speed_onsets::{Contradiction, SpeedOnsets, speed_onsets};
-use crate::aerodynamics::Transfer;
+use super::statistics::two_sided_quantile;
+use crate::aerodynamics::derivatives::{Derivative, Part};
+use crate::aerodynamics::{Transfer, TransferMatrix};
 use crate::error::{Error, Result};
 use crate::flutter::{Onset, OnsetInterval, OnsetMethod, OnsetSearch};
 use crate::section::Structure;
@@ -19,8 +20,6 @@ const REPLICATES: usize = 400;
 const SEED: u64 = 1;
 /// Reduced frequencies at which derivatives are stated.
 const DERIVATIVE_POINTS: usize = 9;
-/// A model whose transfer matrix differs by more than this, relatively, is another one.
-const SAME_MODEL: f64 = 1e-6;
 
 /// Uncertainty of a trained model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -96,22 +95,13 @@ impl ModelUncertainty {
         if onset.at.method == OnsetMethod::Determinant {
             return Ok(OnsetInterval::none("found without the model's realisation"));
         }
-        if !self.belongs_to(model, onset.at.reduced_frequency)? {
+        if !self.coefficients.makes(model, onset.at.reduced_frequency)? {
             return Ok(OnsetInterval::none(
                 "the covariance on file belongs to another training",
             ));
         }
         let known = self.onset.as_ref().map(|o| o.degrees_of_freedom);
         self.coefficients.interval_knowing(structure, onset, known)
-    }
-
-    fn belongs_to(&self, model: &dyn Transfer, k: ReducedFrequency) -> Result<bool> {
-        let own = self.coefficients.model_at(&self.coefficients.values())?;
-        if own.dofs() != model.dofs() {
-            return Ok(false);
-        }
-        let (a, b) = (own.transfer(k)?, model.transfer(k)?);
-        Ok((a - &b).norm() <= SAME_MODEL * b.norm())
     }
 
     /// Reads what was saved.
@@ -177,4 +167,58 @@ impl ModelUncertainty {
             other(&self.drawn_coefficients),
         ))
     }
+}
+
+/// One derivative at one reduced frequency.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DerivativeInterval {
+    /// Which one.
+    pub derivative: Derivative,
+    /// Reduced frequency `K = ωB/V`.
+    pub k: f64,
+    /// Value of the model.
+    pub value: f64,
+    /// Standard error.
+    pub standard_error: f64,
+    /// Lower end of the 95 % interval.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+}
+
+/// All derivatives of the model at the reduced frequencies `ks`.
+pub(crate) fn derivative_intervals(
+    estimate: &CoefficientUncertainty,
+    ks: &[ReducedFrequency],
+) -> Result<Vec<DerivativeInterval>> {
+    let mut intervals = Vec::new();
+    for (&k, (here, slopes)) in ks.iter().zip(estimate.transfer_slopes(ks)?) {
+        for (i, &force) in estimate.dofs.iter().enumerate() {
+            for (j, &motion) in estimate.dofs.iter().enumerate() {
+                for part in [Part::Imaginary, Part::Real] {
+                    let at = |g: &TransferMatrix| match part {
+                        Part::Real => g[(i, j)].re,
+                        Part::Imaginary => g[(i, j)].im,
+                    } / k.full_width().powi(2);
+                    let gradient: Vec<f64> = slopes.iter().map(at).collect();
+                    let standard_error = estimate.standard_error(&gradient)?;
+                    let nu = estimate
+                        .degrees_of_freedom(&gradient)
+                        .unwrap_or(f64::INFINITY);
+                    let half = two_sided_quantile(CONFIDENCE, nu.min(1e6)) * standard_error;
+                    let value = at(&here);
+                    intervals.push(DerivativeInterval {
+                        derivative: Derivative::of(force, motion, part),
+                        k: k.full_width(),
+                        value,
+                        standard_error,
+                        low: value - half,
+                        high: value + half,
+                    });
+                }
+            }
+        }
+    }
+    Ok(intervals)
 }

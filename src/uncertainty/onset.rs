@@ -1,16 +1,20 @@
-//! Interval of an onset: by its gradient, and by re-solving it for other weights of the blocks.
+//! Interval of an onset: by its gradient, and by solving it anew for other weights of the blocks or drawn parameters.
+//!
+//! For a simple eigenvalue `λ` of the state matrix `A(V, θ)` with right and left vectors `v`, `u`,
+//! `dλ = uᴴ dA v / uᴴ v` (Murthy & Haftka, "Derivatives of eigenvalues and eigenvectors of a general complex matrix",
+//! IJNME 26, 1988). At the onset `Re λ = 0`, so `dV_F/dθ = −Re(∂λ/∂θ)/Re(∂λ/∂V)`.
 
 use super::coefficients::CoefficientUncertainty;
-use super::sensitivity::{onset_gradient, onset_nearby};
-use super::student::two_sided_quantile;
+use super::statistics::{covariance_root, moments, sample_quantile, two_sided_quantile};
 use crate::aerodynamics::Realizable;
-use crate::aeroelastic::CoupledSection;
-use crate::error::Result;
+use crate::aeroelastic::{CoupledSection, CoupledSystem};
+use crate::error::{Error, Result};
 use crate::flutter::{FlutterSearch, Onset, OnsetInterval, OnsetSearch, find_onset};
 use crate::section::Structure;
+use crate::signal::random_stream;
+use crate::state_space::{complex, eigenvector};
 use crate::units::ReducedFrequencyRange;
-use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
+use nalgebra::{Complex, DMatrix, DVector};
 use rand_distr::{Distribution, Exp1, StandardNormal};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -18,6 +22,14 @@ use std::f64::consts::TAU;
 
 /// Confidence of every interval.
 pub(crate) const CONFIDENCE: f64 = 0.95;
+/// Relative step of the difference of state matrices.
+const STEP: f64 = 1e-6;
+/// Secant steps to a zero of the growth rate.
+const MAX_STEPS: usize = 40;
+/// Relative size of the last secant step.
+const TOLERANCE: f64 = 1e-10;
+/// An onset this far from the estimate, relatively, is looked for afresh.
+const REACH: f64 = 0.5;
 
 /// Onset with its standard error.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -66,7 +78,7 @@ impl CoefficientUncertainty {
     /// 95 % interval of an onset of the model with these coefficients, on any structure: as far as its data carry.
     ///
     /// # Errors
-    /// [`crate::Error::Numerical`] when the onset cannot be followed to nearby coefficients.
+    /// [`Error::Numerical`] when the onset cannot be followed to nearby coefficients.
     pub fn onset_interval(&self, structure: &Structure, onset: &Onset) -> Result<OnsetInterval> {
         self.interval_knowing(structure, onset, None)
     }
@@ -184,17 +196,16 @@ pub(crate) fn resample_onset(
     }
     let mut speeds: Vec<f64> = drawn.iter().filter_map(|d| d.flatten()).collect();
     speeds.sort_by(f64::total_cmp);
-    let count = speeds.len() as f64;
-    let mean = speeds.iter().sum::<f64>() / count;
-    let squares: f64 = speeds.iter().map(|v| (v - mean).powi(2)).sum();
+    let (mean_m_s, standard_deviation_m_s) = moments(&speeds);
+    let quantile = |part| sample_quantile(&speeds, speeds.len(), part).unwrap_or(f64::NAN);
     Ok(Some(ResampledOnset {
         resampling: plan.resampling,
         replicates: plan.replicates,
         without_onset: plan.replicates - speeds.len(),
-        mean_m_s: mean,
-        standard_deviation_m_s: (squares / (count - 1.0)).sqrt(),
-        low_m_s: quantile(&speeds, 0.5 * (1.0 - CONFIDENCE)),
-        high_m_s: quantile(&speeds, 0.5 * (1.0 + CONFIDENCE)),
+        mean_m_s,
+        standard_deviation_m_s,
+        low_m_s: quantile(0.5 * (1.0 - CONFIDENCE)),
+        high_m_s: quantile(0.5 * (1.0 + CONFIDENCE)),
     }))
 }
 
@@ -219,7 +230,7 @@ fn solve(
 enum Draw {
     Blocks(usize),
     /// Square root of the covariance.
-    Normal(nalgebra::DMatrix<f64>),
+    Normal(DMatrix<f64>),
 }
 
 impl Draw {
@@ -227,17 +238,9 @@ impl Draw {
         if plan.resampling == Resampling::Blocks {
             return Ok(Self::Blocks(estimate.blocks.len()));
         }
-        let covariance = estimate.covariance.clone();
-        let scale = covariance.amax();
-        let eigen = nalgebra::SymmetricEigen::try_new(covariance, f64::EPSILON, 10_000)
-            .filter(|_| scale.is_finite())
-            .ok_or_else(|| {
-                crate::Error::Numerical("resampling: the covariance has no root".into())
-            })?;
-        let root = eigen.eigenvalues.map(|x| x.max(0.0).sqrt());
-        let columns = eigen.eigenvectors.column_iter().zip(root.iter());
-        let columns: Vec<_> = columns.map(|(c, r)| c * *r).collect();
-        Ok(Self::Normal(nalgebra::DMatrix::from_columns(&columns)))
+        let (root, _) = covariance_root(estimate.covariance.clone())
+            .ok_or_else(|| Error::Numerical("resampling: the covariance has no root".into()))?;
+        Ok(Self::Normal(root))
     }
 
     fn parameters(
@@ -246,8 +249,7 @@ impl Draw {
         plan: &ResamplingPlan,
         replicate: usize,
     ) -> Result<Option<Vec<f64>>> {
-        let mut random = ChaCha8Rng::seed_from_u64(plan.seed);
-        random.set_stream(replicate as u64);
+        let mut random = random_stream(plan.seed, replicate as u64);
         match self {
             Self::Blocks(count) => {
                 let weights: Vec<f64> = (0..*count).map(|_| Exp1.sample(&mut random)).collect();
@@ -258,24 +260,124 @@ impl Draw {
                 Ok(drawn)
             }
             Self::Normal(root) => {
-                let normal = nalgebra::DVector::from_fn(root.ncols(), |_, _| {
-                    StandardNormal.sample(&mut random)
-                });
-                let step: nalgebra::DVector<f64> = root * normal;
-                let moved = estimate.parameters.iter().zip(step.iter());
-                Ok(Some(moved.map(|(p, d)| p.value + d).collect()))
+                let normal = |_, _| StandardNormal.sample(&mut random);
+                let step: DVector<f64> = root * DVector::from_fn(root.ncols(), normal);
+                Ok(Some(estimate.moved_by(&step)))
             }
         }
     }
 }
 
-/// Quantile of sorted values, linear between them; not a number for none.
-fn quantile(sorted: &[f64], part: f64) -> f64 {
-    let Some(last) = sorted.len().checked_sub(1) else {
-        return f64::NAN;
+/// The section with the model that the parameters make.
+///
+/// # Errors
+/// Parameters that make no model, or a model that cannot be coupled.
+fn section_at(
+    structure: &Structure,
+    estimate: &CoefficientUncertainty,
+    values: &[f64],
+) -> Result<CoupledSection> {
+    CoupledSection::with_model(structure, &estimate.model_at(values)?)
+}
+
+/// Gradient of the onset speed (m/s) with respect to the parameters.
+///
+/// # Errors
+/// [`Error::Numerical`] when the growth rate does not cross zero with speed.
+pub(crate) fn onset_gradient(
+    estimate: &CoefficientUncertainty,
+    structure: &Structure,
+    (speed_m_s, omega): (f64, f64),
+) -> Result<Vec<f64>> {
+    let values = estimate.values();
+    let section = section_at(structure, estimate, &values)?;
+    let start = Complex::new(0.0, omega);
+    let lambda = nearest(&section.at(speed_m_s)?, start)?;
+    let h = STEP * speed_m_s;
+    let ahead = nearest(&section.at(speed_m_s + h)?, lambda)?;
+    let behind = nearest(&section.at(speed_m_s - h)?, lambda)?;
+    let with_speed = (ahead.re - behind.re) / (2.0 * h);
+    if with_speed == 0.0 {
+        return Err(Error::Numerical(
+            "onset sensitivity: the growth rate does not change with wind speed".into(),
+        ));
+    }
+    let here = section.at(speed_m_s)?;
+    let mu = here.matrix_eigenvalue(lambda);
+    let right = eigenvector(here.state_matrix(), mu)?;
+    let left = eigenvector(&here.state_matrix().transpose(), mu)?;
+    // the transposed matrix has the conjugate of the left vector, so no conjugation here
+    let scale = bilinear(
+        &left,
+        &complex(&DMatrix::identity(right.len(), right.len())),
+        &right,
+    );
+    let matrix_at = |p: usize, step: f64| -> Result<DMatrix<f64>> {
+        let mut moved = values.clone();
+        moved[p] += step;
+        let section = section_at(structure, estimate, &moved)?;
+        Ok(section.at(speed_m_s)?.state_matrix().clone())
     };
-    let at = part * last as f64;
-    let low = at.floor() as usize;
-    let rest = at - low as f64;
-    sorted[low] + rest * (sorted[(low + 1).min(last)] - sorted[low])
+    (0..values.len())
+        .map(|p| {
+            let step = STEP * values[p].abs().max(1e-2);
+            let change = (matrix_at(p, step)? - matrix_at(p, -step)?) / (2.0 * step);
+            let slope = bilinear(&left, &complex(&change), &right) / scale;
+            Ok(-rate_change(&here, mu, slope).re / with_speed)
+        })
+        .collect()
+}
+
+/// `xᵀ m y`.
+fn bilinear(
+    x: &DVector<Complex<f64>>,
+    m: &DMatrix<Complex<f64>>,
+    y: &DVector<Complex<f64>>,
+) -> Complex<f64> {
+    x.iter().zip((m * y).iter()).map(|(a, b)| a * b).sum()
+}
+
+/// Change of the continuous-time eigenvalue for a change of that of the state matrix.
+fn rate_change(system: &CoupledSystem, mu: Complex<f64>, change: Complex<f64>) -> Complex<f64> {
+    match system {
+        CoupledSystem::Continuous(_) => change,
+        CoupledSystem::Sampled(s) => change / (mu * s.time.step),
+    }
+}
+
+/// The eigenvalue nearest to `target`, rad/s.
+fn nearest(system: &CoupledSystem, target: Complex<f64>) -> Result<Complex<f64>> {
+    system
+        .eigenvalues()?
+        .into_iter()
+        .min_by(|a, b| (a - target).norm().total_cmp(&(b - target).norm()))
+        .ok_or_else(|| Error::Numerical("onset: no eigenvalues".into()))
+}
+
+/// Onset speed near a known one: the zero of the growth rate of the same eigenvalue, by secants. `None` when it does not
+/// settle or ends up far away.
+pub(super) fn onset_nearby(
+    section: &CoupledSection,
+    (speed_m_s, omega): (f64, f64),
+) -> Result<Option<f64>> {
+    let mut followed = Complex::new(0.0, omega);
+    let (mut v0, mut v1) = (speed_m_s, speed_m_s * 1.001);
+    followed = nearest(&section.at(v0)?, followed)?;
+    let mut f0 = followed.re;
+    for _ in 0..MAX_STEPS {
+        followed = nearest(&section.at(v1)?, followed)?;
+        let f1 = followed.re;
+        if f1 == f0 {
+            return Ok((f1 == 0.0).then_some(v1));
+        }
+        let next = v1 - f1 * (v1 - v0) / (f1 - f0);
+        if !(next.is_finite() && (next / speed_m_s - 1.0).abs() < REACH) {
+            return Ok(None);
+        }
+        if (next - v1).abs() <= TOLERANCE * v1 {
+            return Ok(Some(next));
+        }
+        (v0, f0, v1) = (v1, f1, next);
+    }
+    Ok(None)
 }

@@ -13,12 +13,11 @@ use crate::identification::discrete::discrete_pass;
 use crate::identification::form::Form;
 use crate::identification::options::TimeFit;
 use crate::identification::own::StaticTerm;
-use crate::identification::records::{RecordFit, Rows, removed_means, tested_range};
 use crate::identification::report::FitReport;
+use crate::identification::time::continuous::{RecordFit, Rows};
 use crate::identification::time::pass::{ColumnOrder, OnProgress, Stretch};
-use crate::identification::time::record::{DimensionlessRecord, read_all};
+use crate::identification::time::record::{DimensionlessRecord, Records};
 use crate::identification::time::search::padded;
-
 use crate::trained_model::Model;
 use crate::wind_tunnel::RecordSource;
 use nalgebra::{DMatrix, DVector};
@@ -37,8 +36,7 @@ pub fn record_uncertainty(
     report: &FitReport,
     progress: OnProgress<'_>,
 ) -> Result<CoefficientUncertainty> {
-    let (dofs, mut records) = read_all(records)?;
-    removed_means(fit.static_term, &dofs, &mut records);
+    let records = Records::read(records, fit.static_term)?;
     let together = report.search.iter().any(|s| s.entry.is_none());
     if fit.static_term == StaticTerm::Estimated || (together && !fit.own.is_empty()) {
         return Err(Error::Numerical(
@@ -49,9 +47,7 @@ pub fn record_uncertainty(
     }
     let task = RecordFit {
         fit,
-        dofs: &dofs,
         records: &records,
-        entries: &[],
         progress,
     };
     let poles = free_poles(&fit.form, &fit.poles, report);
@@ -63,14 +59,17 @@ pub fn record_uncertainty(
         stretches: STRETCHES,
     };
     let closed = task.pass(&entries.candidates(), rows, (1, 1))?.stretches;
-    let (design, blocks) = sandwich(entries.blocks(&records, &closed)?, entries.tangent.clone())?;
+    let (design, blocks) = sandwich(
+        entries.blocks(&records.each, &closed)?,
+        entries.tangent.clone(),
+    )?;
     let searched = poles.sentence() + &held_sentence(report);
     CoefficientUncertainty::new(
         (
             format!("{blocks}; motions are exact; {searched}"),
             Some(report.tested_range),
         ),
-        dofs,
+        records.dofs,
         coordinates_of(&fit.form, report, poles.searched),
         parameters,
         design,
@@ -115,14 +114,8 @@ impl Entries {
         for (e, entry) in report.entries.iter().enumerate() {
             let expansion = Expansion::new(form, &entry.poles, searched)?;
             let values: Vec<f64> = entry.coefficients.iter().map(|c| c.value).collect();
-            let free = form.collapse(&entry.poles);
-            let all = expansion.jacobian(form, &free, &values)?;
-            let mut slopes = DMatrix::zeros(all.nrows(), poles.searched.len());
-            for (m, pole) in poles.searched.iter().enumerate() {
-                if pole.entry.is_none_or(|(i, j)| i * inputs + j == e) {
-                    slopes.column_mut(m).copy_from(&all.column(pole.index));
-                }
-            }
+            let (place, chain) = ((e / inputs, e % inputs), (form, &entry.poles[..]));
+            let slopes = expansion.slopes(chain, &values, (place, &poles.searched))?;
             entries.expansions.push(expansion);
             entries.values.push(values);
             entries.slopes.push(slopes);
@@ -227,7 +220,8 @@ pub(crate) fn discrete_uncertainty(
             "covariance: known for discrete models whose filters are shared and whose constant was estimated along".into(),
         ));
     };
-    let (dofs, records) = read_all(records)?;
+    let records = Records::read(records, fit.static_term)?;
+    let dofs = &records.dofs;
     let n = dofs.len();
     let order = ColumnOrder {
         inputs: n,
@@ -235,7 +229,7 @@ pub(crate) fn discrete_uncertainty(
         constant: true,
     };
     let closed = discrete_pass(
-        (&records, model.delta_s),
+        &records,
         (order, &[vec![alpha; n]]),
         (fit.weights, STRETCHES),
         progress,
@@ -270,13 +264,13 @@ pub(crate) fn discrete_uncertainty(
         .flat_map(|stretch| (0..n).map(move |i| (stretch, i)))
         .map(|(stretch, i)| discrete_part(stretch, i, each, filters, &values))
         .collect();
-    let (design, blocks) = sandwich(gather(&records, parts), None)?;
+    let (design, blocks) = sandwich(gather(&records.each, parts), None)?;
     CoefficientUncertainty::new(
         (
             format!("{blocks}; motions are exact; α is given"),
-            Some(tested_range(&records)?),
+            Some(records.tested_range()?),
         ),
-        dofs,
+        dofs.clone(),
         Coordinates::Discrete {
             alpha,
             delta_s: model.delta_s,

@@ -3,11 +3,10 @@
 use crate::aerodynamics::{Transfer, TransferMatrix};
 use crate::error::Result;
 use crate::section::Dof;
+use crate::signal::random_stream;
 use crate::units::ReducedFrequency;
 use crate::wind_tunnel::{Record, TunnelPlan};
 use nalgebra::Complex;
-use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
 /// Stream of the truth's random numbers; the records' noise has the streams from zero.
@@ -67,8 +66,7 @@ impl ScatteredTunnel {
     /// Records of one campaign.
     pub(crate) fn draw(&self, seed: u64) -> Vec<Record> {
         let mut records = self.straight.clone();
-        let mut random = ChaCha8Rng::seed_from_u64(seed);
-        random.set_stream(STREAM);
+        let mut random = random_stream(seed, STREAM);
         let mut factor = |deviation: f64| {
             let mut normal = || -> f64 { StandardNormal.sample(&mut random) };
             Complex::new(deviation * normal(), deviation * normal())

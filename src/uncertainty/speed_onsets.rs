@@ -1,10 +1,8 @@
 //! What the tests at each mean speed say of the onset alone, and whether they contradict each other.
 
-use super::coefficients::CoefficientUncertainty;
-use super::derivatives::spread_over;
-use super::onset::{CONFIDENCE, OnsetError, error_at};
-use super::sensitivity::{onset_gradient, onset_nearby};
-use super::student::two_sided_quantile;
+use super::coefficients::{CoefficientUncertainty, spread_over};
+use super::onset::{CONFIDENCE, OnsetError, error_at, onset_gradient, onset_nearby};
+use super::statistics::two_sided_quantile;
 use crate::aerodynamics::Transfer;
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};

@@ -1,7 +1,6 @@
 //! The two routes to the error of an onset against each other and against re-solved onsets.
 
-use super::onset::{ResamplingPlan, onset_error, resample_onset};
-use super::sensitivity::onset_gradient;
+use super::onset::{ResamplingPlan, onset_error, onset_gradient, resample_onset};
 use super::speed_onsets::speed_onsets;
 use super::*;
 use crate::aerodynamics::derivatives::TransferSample;

@@ -12,9 +12,9 @@ use crate::aerodynamics::derivatives::{
 };
 use crate::error::{Error, Result, positive};
 use crate::section::Dof;
+use crate::signal::random_stream;
 use nalgebra::Complex;
-use rand::{Rng, SeedableRng};
-use rand_chacha::ChaCha8Rng;
+use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};
 use std::f64::consts::TAU;
 
@@ -153,8 +153,7 @@ impl Lines {
         timing: Timing,
         seed: u64,
     ) -> (Self, f64) {
-        let mut random = ChaCha8Rng::seed_from_u64(seed);
-        random.set_stream(MOTION_STREAM);
+        let mut random = random_stream(seed, MOTION_STREAM);
         match motion {
             TrainingMotion::Harmonic => (Self(Vec::new()), timing.segment_s),
             TrainingMotion::MultiSine { duration_s } => {

@@ -23,8 +23,7 @@ use crate::aerodynamics::derivatives::DerivativeTable;
 use crate::error::{Result, positive};
 use crate::files::derivatives::TABLE_3_2_FREQUENCIES_HZ;
 use crate::section::Dof;
-use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
+use crate::signal::random_stream;
 use rand_distr::{Distribution, StandardNormal};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -334,8 +333,7 @@ impl TunnelPlan {
         if self.noise_fraction == 0.0 {
             return;
         }
-        let mut random = ChaCha8Rng::seed_from_u64(self.seed);
-        random.set_stream(index as u64);
+        let mut random = random_stream(self.seed, index as u64);
         // e[k] = a e[k−1] + √(1 − a²) n[k], the samples of noise with an exponential correlation
         let memory = if self.noise_correlation_s > 0.0 {
             (-1.0 / (self.sampling_hz * self.noise_correlation_s)).exp()

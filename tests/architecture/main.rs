@@ -25,7 +25,6 @@ const CIRCLES: &[&str] = &[
     "src/fmu/instance.rs",
     "src/fmu/variables.rs",
     "src/identification/basis.rs",
-    "src/identification/records.rs",
     "src/reference/user_case.rs",
     "src/report/legend.rs",
     "src/response.rs",

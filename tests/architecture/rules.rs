@@ -65,7 +65,7 @@ pub const ARROWS: &[Row] = &[
     row("aeroelastic", &["aerodynamics+"]),
     row("flutter", &["aeroelastic+", "bridge"]),
     row("response", &["aeroelastic+"]),
-    row("buffeting", &["flutter+", "response+"]),
+    row("buffeting", &["flutter+", "response+", "signal"]),
     row("live", &["flutter+", "trained_model+"]),
     row("fmu", &["flutter+", "response+", "trained_model+"]),
     row("fmu::fmi2", &["fmu"]),
@@ -73,11 +73,12 @@ pub const ARROWS: &[Row] = &[
     row("fmu::fmi3", &["fmu", "fmu::fmi2"]),
     row(
         "uncertainty",
-        &["flutter+", "identification+", "wind_tunnel+"],
-    ),
-    row(
-        "reliability",
-        &["flutter+", "trained_model+", "files", "uncertainty"],
+        &[
+            "flutter+",
+            "identification+",
+            "wind_tunnel+",
+            "trained_model",
+        ],
     ),
     row(
         "selection",
@@ -87,10 +88,10 @@ pub const ARROWS: &[Row] = &[
     row("study", BELOW_STUDY),
     Row {
         module: "report",
-        may_use: &["study+", "reference+", "reliability", "bridge"],
+        may_use: &["study+", "reference+", "bridge"],
         types_only: true,
     },
-    row("cli", &["report", "study+", "reference+", "reliability"]),
+    row("cli", &["report", "study+", "reference+"]),
     row(
         "prelude",
         &[

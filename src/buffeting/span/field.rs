@@ -7,9 +7,9 @@
 use super::SpanProblem;
 use crate::buffeting::spectrum::GustComponent;
 use crate::error::{Error, Result, positive};
+use crate::signal::random_stream;
 use nalgebra::Complex;
-use rand::{Rng, SeedableRng};
-use rand_chacha::ChaCha8Rng;
+use rand::Rng;
 use rand_distr::StandardNormal;
 use rustfft::FftPlanner;
 
@@ -104,8 +104,7 @@ fn coefficients(
     let Some(gust) = problem.turbulence.component(component) else {
         return rows;
     };
-    let mut random = ChaCha8Rng::seed_from_u64(seed);
-    random.set_stream(component as u64);
+    let mut random = random_stream(seed, component as u64);
     let width_hz = 1.0 / (samples as f64 * step_s);
     let mut winds: Vec<f64> = factors.to_vec();
     winds.sort_by(f64::total_cmp);

@@ -4,15 +4,15 @@
 //! segment is factored by itself, so that leaving segments out costs no further pass.
 
 use super::basis::{Basis, assemble};
-use super::discrete::{discrete_pass, longest_step};
+use super::discrete::discrete_pass;
 use super::form::Form;
 use super::least_squares::Factor;
 use super::options::{TimeFit, TimeWeights, number_of_filters};
 use super::own::StaticTerm;
-use super::records::{RecordFit, Rows, tested_range, wishes};
-use super::time::joint::Joint;
+use super::time::continuous::{RecordFit, Rows};
+use super::time::fitted::Joint;
 use super::time::pass::{ColumnOrder, OnProgress, Pass, Stretch};
-use super::time::record::{DimensionlessRecord, read_all};
+use super::time::record::Records;
 use super::time::systems::{ForceSystems, Systems};
 use crate::aerodynamics::DiscreteLaguerre;
 use crate::error::{Error, Result};
@@ -84,12 +84,11 @@ impl Grid {
             ));
         }
         number_of_filters("grid.filters", filters_max)?;
-        let (dofs, records) = read_all(records)?;
-        let tested = tested_range(&records)?;
-        let delta_s = longest_step(&records);
-        let pass = axis.pass(&dofs, (&records, delta_s), filters_max, progress)?;
+        let records = Records::read(records, StaticTerm::None)?;
+        let tested = records.tested_range()?;
+        let pass = axis.pass(&records, filters_max, progress)?;
         let label = |s: &Stretch| {
-            let record = &records[s.record];
+            let record = &records.each[s.record];
             StretchLabel {
                 mean_speed_m_s: record.mean_speed_m_s(),
                 frequency_hz: s.segment.map(|i| record.segments()[i].frequency_hz),
@@ -105,10 +104,10 @@ impl Grid {
         Ok(Self {
             labels: pass.stretches.iter().map(label).collect(),
             axis,
-            dofs,
+            delta_s: records.longest_step(),
+            dofs: records.dofs,
             filters_max,
             tested,
-            delta_s,
             pass,
         })
     }
@@ -211,7 +210,7 @@ impl Grid {
         let GridAxis::Continuous(poles, fit) = &self.axis else {
             return Ok(None);
         };
-        let wishes = wishes(fit, &self.dofs, self.tested)?;
+        let wishes = fit.wishes(&self.dofs, self.tested)?;
         if !wishes.any() {
             return Ok(None);
         }
@@ -308,14 +307,8 @@ impl GridAxis {
     }
 
     /// One pass over the records with the filters of all values, every segment factored by itself.
-    fn pass(
-        &self,
-        dofs: &[Dof],
-        (records, delta_s): (&[DimensionlessRecord], f64),
-        filters: usize,
-        progress: OnProgress<'_>,
-    ) -> Result<Pass> {
-        let inputs = dofs.len();
+    fn pass(&self, records: &Records, filters: usize, progress: OnProgress<'_>) -> Result<Pass> {
+        let inputs = records.dofs.len();
         match self {
             Self::Discrete(alphas, weights) => {
                 if let Some(bad) = alphas.iter().find(|a| !(**a > 0.0 && **a < 1.0)) {
@@ -328,7 +321,7 @@ impl GridAxis {
                 };
                 let alphas: Vec<Vec<f64>> = alphas.iter().map(|a| vec![*a; inputs]).collect();
                 let columns = (order, alphas.as_slice());
-                discrete_pass((records, delta_s), columns, (*weights, 1), progress)
+                discrete_pass(records, columns, (*weights, 1), progress)
             }
             Self::Continuous(poles, fit) => {
                 let task = RecordFit {
@@ -337,10 +330,7 @@ impl GridAxis {
                         static_term: StaticTerm::None,
                         ..(**fit).clone()
                     },
-                    dofs,
                     records,
-                    // the grid itself says which filters there are
-                    entries: &[],
                     progress,
                 };
                 let chains = |p: &f64| vec![vec![*p; filters]; inputs];

@@ -1,9 +1,9 @@
 use super::*;
 use crate::aerodynamics::{FlatPlate, RationalModel, Transfer};
-use crate::identification::Progress;
 use crate::identification::form::{FeedThrough, Form};
 use crate::identification::options::PoleSearch;
 use crate::identification::testing::{onset_m_s, records, records_alone, sources};
+use crate::identification::{Progress, TimeWeights};
 use crate::units::ReducedFrequency;
 use crate::wind_tunnel::{Record, RecordBlock, RecordHeader};
 

@@ -1,11 +1,9 @@
 //! Time domain: dimensionless records, passes over them, the systems that a pass yields and the search of poles.
 
-pub(crate) mod discrete_columns;
+pub(crate) mod continuous;
 pub(crate) mod filters;
 pub(crate) mod fitted;
-pub(crate) mod joint;
 pub(crate) mod pass;
 pub(crate) mod record;
 pub(crate) mod search;
-mod spectrum;
 pub(crate) mod systems;

@@ -1,14 +1,18 @@
 //! A record without dimensions, in memory: an hour at 200 Hz of two motions and their forces is 23 MB.
 
-use super::spectrum::band;
 use crate::error::{Error, Result, positive};
 use crate::identification::basis::index_of;
 use crate::identification::least_squares::BLOCK_ROWS;
+use crate::identification::own::StaticTerm;
+use crate::identification::report::StaticReport;
 use crate::section::Dof;
-use crate::signal::resampled;
+use crate::signal::{mean, resampled};
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use crate::wind_tunnel::{RecordBlock, RecordHeader, RecordSource, Segment};
+use nalgebra::Complex;
+use rustfft::FftPlanner;
 use std::borrow::Cow;
+use std::f64::consts::TAU;
 
 /// A motion counts as still while it is closer to its first value than this fraction of its largest departure from it:
 /// the rest of a rig is not perfectly quiet.
@@ -33,25 +37,69 @@ pub(crate) struct Signals {
     pub force: Vec<Vec<f64>>,
 }
 
-/// Reads all records and finds their degrees of freedom.
-///
-/// # Errors
-/// [`Error::Input`] naming the record and the value that cannot be, for records of different degrees of freedom, channels
-/// of different lengths and samples that are not finite.
-pub(crate) fn read_all(
-    records: &[&dyn RecordSource],
-) -> Result<(Vec<Dof>, Vec<DimensionlessRecord>)> {
-    let first = records
-        .first()
-        .ok_or_else(|| Error::input("records", "at least one", "none"))?;
-    let mut dofs = first.header().dofs.clone();
-    dofs.sort();
-    dofs.dedup();
-    let heads = records.iter().map(|r| check_header(r.header(), &dofs));
-    heads.collect::<Result<Vec<_>>>()?;
-    let read = records.iter().map(|r| DimensionlessRecord::read(*r, &dofs));
-    let read = read.collect::<Result<_>>()?;
-    Ok((dofs, read))
+/// The records of one fit.
+pub(crate) struct Records {
+    /// Degrees of freedom, in the order of every matrix.
+    pub dofs: Vec<Dof>,
+    pub each: Vec<DimensionlessRecord>,
+    /// Means of the forces that were taken away.
+    pub removed_means: Vec<StaticReport>,
+}
+
+impl Records {
+    /// Reads all records, and removes the means of their forces where the static term says so.
+    ///
+    /// # Errors
+    /// [`Error::Input`] naming the record and the value that cannot be, for records of different degrees of freedom, channels
+    /// of different lengths and samples that are not finite.
+    pub(crate) fn read(records: &[&dyn RecordSource], static_term: StaticTerm) -> Result<Self> {
+        let first = records
+            .first()
+            .ok_or_else(|| Error::input("records", "at least one", "none"))?;
+        let mut dofs = first.header().dofs.clone();
+        dofs.sort();
+        dofs.dedup();
+        let mut heads = records.iter().map(|r| r.header());
+        heads.try_for_each(|head| check_header(head, &dofs))?;
+        let read = records.iter().map(|r| DimensionlessRecord::read(*r, &dofs));
+        let mut each = read.collect::<Result<Vec<_>>>()?;
+        let mut removed_means = Vec::new();
+        let without_mean = each.iter_mut();
+        for record in without_mean.filter(|_| static_term == StaticTerm::Removed) {
+            for (value, &force) in record.remove_means().into_iter().zip(&dofs) {
+                removed_means.push(StaticReport {
+                    force,
+                    record: Some(record.name().to_owned()),
+                    value,
+                    standard_error: None,
+                });
+            }
+        }
+        Ok(Self {
+            dofs,
+            each,
+            removed_means,
+        })
+    }
+
+    /// Range of all records together.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for records that never move.
+    pub(crate) fn tested_range(&self) -> Result<ReducedFrequencyRange> {
+        let ranges = self
+            .each
+            .iter()
+            .filter_map(DimensionlessRecord::tested_range);
+        ReducedFrequencyRange::spanning(ranges.flat_map(|r| [r.min, r.max]))
+            .ok_or_else(|| Error::input("records", "a motion", "none that moves"))
+    }
+
+    /// The longest dimensionless step, to which the discrete model resamples all records.
+    pub(crate) fn longest_step(&self) -> f64 {
+        let steps = self.each.iter().map(DimensionlessRecord::delta_s);
+        steps.fold(0.0, f64::max)
+    }
 }
 
 fn check_header(header: &RecordHeader, dofs: &[Dof]) -> Result<()> {
@@ -153,19 +201,18 @@ impl DimensionlessRecord {
     }
 
     /// Reduced frequencies of the segments; for other motions the band that holds their power.
-    pub(crate) fn tested_range(&self) -> Option<ReducedFrequencyRange> {
+    fn tested_range(&self) -> Option<ReducedFrequencyRange> {
         let k = |per_sample: f64| ReducedFrequency::from_full_width(per_sample / self.delta_s());
         if self.segments().is_empty() {
             let (low, high) = band(&self.signals.motion)?;
             return ReducedFrequencyRange::spanning([k(low), k(high)]);
         }
-        let of_hertz =
-            |f: f64| ReducedFrequency::from_full_width(std::f64::consts::TAU * f / self.rate);
+        let of_hertz = |f: f64| ReducedFrequency::from_full_width(TAU * f / self.rate);
         ReducedFrequencyRange::spanning(self.segments().iter().map(|s| of_hertz(s.frequency_hz)))
     }
 
     /// Subtracts the mean of each force over the record; returns the means, dimensionless.
-    pub(crate) fn remove_means(&mut self) -> Vec<f64> {
+    fn remove_means(&mut self) -> Vec<f64> {
         let rows = f64::max(self.signals.len() as f64, 1.0);
         let remove = |force: &mut Vec<f64>| {
             let sums = force.chunks(BLOCK_ROWS).map(|c| c.iter().sum::<f64>());
@@ -233,6 +280,63 @@ impl Signals {
     }
 }
 
+/// Samples of a periodogram: 41 s at 200 Hz, a resolution of 0.05 Hz.
+const PERIODOGRAM: usize = 8192;
+/// Part of the power that is left out at either end of the band.
+const LEFT_OUT: f64 = 0.01;
+
+/// Lower and upper end of the band that holds the power of all motions together, radians a sample, from averaged periodograms
+/// (Welch 1967); `None` for motions that never move.
+fn band(motions: &[Vec<f64>]) -> Option<(f64, f64)> {
+    let power = power(motions);
+    let total: f64 = power.iter().sum();
+    if !(total > 0.0 && total.is_finite()) {
+        return None;
+    }
+    let mut sum = 0.0;
+    let cumulative: Vec<f64> = power
+        .iter()
+        .map(|p| {
+            sum += p / total;
+            sum
+        })
+        .collect();
+    let at = |part: f64| {
+        let bin = cumulative.iter().position(|c| *c >= part);
+        TAU * bin.unwrap_or(PERIODOGRAM / 2 - 1).max(1) as f64 / PERIODOGRAM as f64
+    };
+    Some((at(LEFT_OUT), at(1.0 - LEFT_OUT)))
+}
+
+/// Sum of the periodograms of blocks that overlap by half, without their mean, under a Hann window; the last block is
+/// what no whole one has held with its full weight, padded with zeros.
+fn power(motions: &[Vec<f64>]) -> Vec<f64> {
+    let transform = FftPlanner::new().plan_fft_forward(PERIODOGRAM);
+    let mut power = vec![0.0; PERIODOGRAM / 2];
+    let count = motions.first().map_or(0, Vec::len);
+    for start in (0..).step_by(PERIODOGRAM / 2) {
+        for motion in motions {
+            let samples = &motion[start..count.min(start + PERIODOGRAM)];
+            let mean = mean(samples);
+            let step = TAU / samples.len().max(1) as f64;
+            let windowed = samples
+                .iter()
+                .enumerate()
+                .map(|(k, x)| (x - mean) * (0.5 - 0.5 * (step * k as f64).cos()));
+            let mut spectrum: Vec<Complex<f64>> = windowed.map(Complex::from).collect();
+            spectrum.resize(PERIODOGRAM, Complex::default());
+            transform.process(&mut spectrum);
+            for (power, z) in power.iter_mut().zip(&spectrum) {
+                *power += z.norm_sqr();
+            }
+        }
+        if start + PERIODOGRAM > count {
+            break;
+        }
+    }
+    power
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -251,5 +355,21 @@ mod tests {
         assert_eq!(still(vec![(0..2000).map(moving).collect(), idle]), 301);
         assert_eq!(still(vec![vec![0.5; 100]]), 100);
         assert_eq!(still(vec![vec![0.0, 1.0, -1.0]]), 1);
+    }
+
+    /// Two sines of equal size are the ends of the band, to the resolution of the window (two bins); a mean does not count.
+    #[test]
+    fn the_ends_are_where_the_power_is() {
+        let (low, high) = (TAU * 0.3 / 200.0, TAU * 2.5 / 200.0);
+        let bin = TAU / PERIODOGRAM as f64;
+        for (samples, resolution) in [(40_000, 2.0), (3_000, 6.0)] {
+            let sines =
+                (0..samples).map(|k| 7.0 + (low * k as f64).sin() + (high * k as f64).sin());
+            let (a, b) = band(&[sines.collect()]).unwrap();
+            assert!((a - low).abs() < resolution * bin, "{a} {low}");
+            assert!((b - high).abs() < resolution * bin, "{b} {high}");
+        }
+        assert_eq!(band(&[vec![0.0; 20_000]]), None);
+        assert_eq!(band(&[Vec::new()]), None);
     }
 }

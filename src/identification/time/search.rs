@@ -1,16 +1,17 @@
 //! Search of poles over records: every pass evaluates many candidates, the grid shrinks around the best.
 
-use super::joint::Joint;
+use super::continuous::{RecordFit, Rows};
+use super::fitted::Joint;
 use super::systems::{ForceSystems, Systems};
 use crate::error::{Error, Result};
 use crate::identification::basis::Basis;
 use crate::identification::dissipative::Wishes;
 use crate::identification::form::Form;
 use crate::identification::options::PoleSearch;
-use crate::identification::own::{search_for, searched_together};
-use crate::identification::records::{RecordFit, Rows};
+use crate::identification::own::{EntryForm, entry_forms, search_for, searched_together};
 use crate::identification::report::{SearchPoint, SearchReport};
 use crate::identification::search::{Bounds, best_of};
+use crate::section::Dof;
 use crate::units::ReducedFrequencyRange;
 use std::rc::Rc;
 
@@ -35,38 +36,52 @@ struct Group {
     held: Option<Wishes>,
 }
 
-/// Poles of every transfer function, row by row, and how they were found.
+/// Poles of the filters of every transfer function, row by row, and how they were found.
+#[derive(Clone)]
 pub(crate) struct Choice {
-    pub poles: Vec<Vec<f64>>,
+    pub chains: Vec<Vec<f64>>,
     pub search: Vec<SearchReport>,
 }
 
-/// Free poles of every transfer function, by least squares alone and under the constraints of the fit. Both searches
+/// What [`choose_poles`] finds.
+pub(crate) struct ChosenPoles {
+    /// By least squares.
+    pub alone: Choice,
+    /// Under the constraints, where some are asked for.
+    pub held: Option<Choice>,
+    /// The constraints.
+    pub wishes: Wishes,
+}
+
+/// Poles of every transfer function, by least squares alone and under the constraints of the fit. Both searches
 /// share their passes. Poles that only some transfer functions share are those of least squares in either case: under
 /// constraints each of their candidates would have to be tried with all candidates of the others.
 ///
 /// # Errors
-/// [`Error::Input`] for bounds without room, and for poles per transfer function from records that move two degrees of
-/// freedom at once.
+/// [`Error::Input`] for bounds without room, for own filters and limits of degrees of freedom that are not there, and for poles
+/// per transfer function from records that move two degrees of freedom at once.
 pub(crate) fn choose_poles(
     task: &RecordFit<'_>,
     tested: ReducedFrequencyRange,
-    wishes: &Wishes,
-) -> Result<(Choice, Option<Choice>)> {
-    let mut groups = searched_together(task.entries)
+) -> Result<ChosenPoles> {
+    let (fit, dofs) = (task.fit, &task.records.dofs);
+    let entries = entry_forms(dofs, &fit.form, &fit.poles, &fit.own)?;
+    let wishes = fit.wishes(dofs, tested)?;
+    let group = |members| Group::new(&fit.poles, &entries, tested, members);
+    let together = searched_together(&entries);
+    let mut groups = together
         .into_iter()
-        .map(|members| Group::new(task, tested, members))
+        .map(group)
         .collect::<Result<Vec<_>>>()?;
-    let constrained = wishes.any();
     let alone = groups.len();
-    if constrained && alone == 1 && groups[0].members.len() == task.entries.len() {
+    if wishes.any() && alone == 1 && groups[0].members.len() == entries.len() {
         let members = groups[0].members.clone();
         groups.push(Group {
             held: Some(wishes.clone()),
-            ..Group::new(task, tested, members)?
+            ..group(members)?
         });
     }
-    let filters = task.entries.iter().map(|e| e.form.filters());
+    let filters = entries.iter().map(|e| e.form.filters());
     let longest = filters.max().unwrap_or(0);
     for pass in 1..PASSES {
         if groups.is_empty() {
@@ -85,7 +100,7 @@ pub(crate) fn choose_poles(
                 trials.push((g, poles, at));
             }
         }
-        let everywhere = |chain: Vec<f64>| vec![chain; task.dofs.len()];
+        let everywhere = |chain: Vec<f64>| vec![chain; dofs.len()];
         let chains: Vec<_> = candidates.into_iter().map(everywhere).collect();
         let systems = task.pass(&chains, Rows::THINNED, (pass, PASSES))?.systems();
         for (g, poles, at) in trials {
@@ -94,34 +109,37 @@ pub(crate) fn choose_poles(
         }
     }
     let held = groups.split_off(alone);
-    let by_least_squares = choice(task, groups)?;
-    let under_constraints = if !constrained {
-        None
-    } else if held.is_empty() {
-        Some(Choice {
-            poles: by_least_squares.poles.clone(),
-            search: by_least_squares.search.clone(),
-        })
-    } else {
-        Some(choice(task, held)?)
+    let alone = choice(&entries, dofs, groups)?;
+    let held = match (wishes.any(), held.is_empty()) {
+        (false, _) => None,
+        (true, true) => Some(alone.clone()),
+        (true, false) => Some(choice(&entries, dofs, held)?),
     };
-    Ok((by_least_squares, under_constraints))
+    Ok(ChosenPoles {
+        alone,
+        held,
+        wishes,
+    })
 }
 
 /// Fixed poles, and those that the groups found.
-fn choice(task: &RecordFit<'_>, groups: Vec<Group>) -> Result<Choice> {
-    let fixed = task.entries.iter().map(|e| e.fixed.clone());
+fn choice(entries: &[EntryForm], dofs: &[Dof], groups: Vec<Group>) -> Result<Choice> {
+    let fixed = entries.iter().map(|e| e.fixed.clone());
     let mut poles: Vec<Vec<f64>> = fixed.map(Option::unwrap_or_default).collect();
     let mut search = Vec::with_capacity(groups.len());
     for group in groups {
         let members = group.members.clone();
-        let report = group.report(task)?;
+        let report = group.report(dofs)?;
         for e in members {
             poles[e].clone_from(&report.chosen.poles);
         }
         search.push(report);
     }
-    Ok(Choice { poles, search })
+    let chains = poles.iter().zip(entries);
+    Ok(Choice {
+        chains: chains.map(|(p, e)| e.form.expand(p)).collect(),
+        search,
+    })
 }
 
 /// A chain made as long as the longest; its first filters stay what they are.
@@ -134,14 +152,15 @@ pub(crate) fn padded(chain: &[f64], longest: usize) -> Vec<f64> {
 
 impl Group {
     fn new(
-        task: &RecordFit<'_>,
+        poles: &PoleSearch,
+        entries: &[EntryForm],
         tested: ReducedFrequencyRange,
         members: Vec<usize>,
     ) -> Result<Self> {
-        let first = &task.entries[members[0]];
-        let options = search_for(&task.fit.poles, &first.form);
+        let first = &entries[members[0]];
+        let options = search_for(poles, &first.form);
         let bounds = Bounds::resolve(&options, tested, first.form.free_poles())?;
-        let n = task.dofs.len();
+        let n = entries.len().isqrt();
         let range = (bounds.max / bounds.min).ln();
         Ok(Self {
             entry: first.alone.then_some((members[0] / n, members[0] % n)),
@@ -230,14 +249,14 @@ impl Group {
         Ok(sets)
     }
 
-    fn report(self, task: &RecordFit<'_>) -> Result<SearchReport> {
+    fn report(self, dofs: &[Dof]) -> Result<SearchReport> {
         let bounds = self.bounds;
         let mut chosen = best_of(&self.points)?;
         if let Some(vertex) = self.vertex(&chosen) {
             chosen.poles = vec![vertex.clamp(bounds.min, bounds.max)];
         }
         Ok(SearchReport {
-            entry: self.entry.map(|(i, j)| (task.dofs[i], task.dofs[j])),
+            entry: self.entry.map(|(i, j)| (dofs[i], dofs[j])),
             force: None,
             min: bounds.min,
             max: bounds.max,

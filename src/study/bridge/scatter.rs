@@ -8,10 +8,10 @@ use crate::bridge::Bridge;
 use crate::error::{Error, Result, non_negative};
 use crate::flutter::{NearbyOnset, Onset, OnsetSearch, find_onset};
 use crate::section::Dof;
+use crate::signal::random_stream;
 use crate::units::ReducedFrequency;
 use nalgebra::DMatrix;
-use rand::{Rng, SeedableRng};
-use rand_chacha::ChaCha8Rng;
+use rand::Rng;
 use rand_distr::StandardNormal;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -113,8 +113,7 @@ impl BridgeStudy {
     }
 
     fn sample(&self, scatter: &Scatter, index: u64) -> Result<Bridge> {
-        let mut random = ChaCha8Rng::seed_from_u64(scatter.seed);
-        random.set_stream(index);
+        let mut random = random_stream(scatter.seed, index);
         let mut normal = || -> f64 { random.sample(StandardNormal) };
         let mut bridge = self.by_model.clone();
         // a log-normal factor of mean one

@@ -10,10 +10,10 @@ use crate::aerodynamics::derivatives::DerivativeTable;
 use crate::aerodynamics::{Transfer, TransferMatrix};
 use crate::error::Result;
 use crate::section::Dof;
+use crate::signal::random_stream;
 use crate::units::ReducedFrequency;
 use crate::wind_tunnel::virtual_forces::TestPoints;
 use crate::wind_tunnel::{RawCampaign, RawRecording, RawRun, Record};
-use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
@@ -209,9 +209,8 @@ impl<'a> RunInMaking<'a> {
 
     /// Each purpose in each recording of each run draws from a stream of its own.
     fn random(&self, air: Air, purpose: u64) -> ChaCha8Rng {
-        let mut random = ChaCha8Rng::seed_from_u64(self.plan.tunnel.seed);
-        random.set_stream((2 * self.index as u64 + u64::from(air == Air::Still)) * 8 + purpose);
-        random
+        let stream = (2 * self.index as u64 + u64::from(air == Air::Still)) * 8 + purpose;
+        random_stream(self.plan.tunnel.seed, stream)
     }
 
     /// Displacement and rates of the run `delay_s` late, one a sample.

@@ -1,7 +1,7 @@
 //! Distributions of single parameters, as they stand in the file.
 
-use super::probability::{cdf, quantile};
 use crate::error::{Error, Result, finite, positive};
+use crate::uncertainty::statistics::{normal_cdf, normal_quantile};
 use serde::Deserialize;
 
 /// Probability that must be left between the ends of a truncated distribution.
@@ -147,7 +147,7 @@ fn gaussian(
     // in the upper tail the quantiles are taken from the other side, where they hold their digits
     let mirrored = low > 0.0;
     let (a, b) = if mirrored { (-high, -low) } else { (low, high) };
-    let (from, to) = (cdf(a), cdf(b));
+    let (from, to) = (normal_cdf(a), normal_cdf(b));
     let probable = to - from > SMALLEST_PROBABILITY;
     if !probable {
         let end = |e: Option<f64>| e.map_or("open".to_owned(), |e| e.to_string());
@@ -167,7 +167,7 @@ impl Transform {
     /// The parameter for a standard normal `z`.
     pub(super) fn value(&self, z: f64) -> f64 {
         match *self {
-            Self::Uniform { lower, width } => lower + width * cdf(z),
+            Self::Uniform { lower, width } => lower + width * normal_cdf(z),
             Self::Gaussian {
                 mean,
                 deviation,
@@ -185,8 +185,8 @@ impl Ends {
     /// The standard normal variable between the ends for an unbounded one.
     fn inside(self, z: f64) -> f64 {
         let sign = if self.mirrored { -1.0 } else { 1.0 };
-        let u = self.from + (self.to - self.from) * cdf(sign * z);
-        sign * quantile(u.clamp(f64::MIN_POSITIVE, 1.0 - f64::EPSILON))
+        let u = self.from + (self.to - self.from) * normal_cdf(sign * z);
+        sign * normal_quantile(u.clamp(f64::MIN_POSITIVE, 1.0 - f64::EPSILON))
     }
 }
 
@@ -203,7 +203,7 @@ mod tests {
     fn moments(t: Transform) -> (f64, f64) {
         const N: usize = 20_000;
         let values: Vec<f64> = (0..N)
-            .map(|i| t.value(quantile((i as f64 + 0.5) / N as f64)))
+            .map(|i| t.value(normal_quantile((i as f64 + 0.5) / N as f64)))
             .collect();
         let mean = values.iter().sum::<f64>() / N as f64;
         let square = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / N as f64;

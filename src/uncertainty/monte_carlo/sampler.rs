@@ -1,13 +1,13 @@
 //! Samples of section and coefficients: each a function of the seed and its own number.
 
 use super::distribution::Transform;
-use super::parameter::Parameter;
-use super::plan::MonteCarloPlan;
+use super::plan::{MonteCarloPlan, Parameter};
 use super::scatter::CovarianceFactor;
 use crate::error::{Error, Result};
 use crate::section::SectionModel;
+use crate::signal::random_stream;
 use nalgebra::DMatrix;
-use rand::{Rng, SeedableRng};
+use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
 
@@ -81,8 +81,7 @@ impl Sampler {
 
     /// Sample number `index`.
     pub(super) fn draw(&self, index: u64, sample: &mut Sample) {
-        let mut random = ChaCha8Rng::seed_from_u64(self.seed);
-        random.set_stream(index);
+        let mut random = random_stream(self.seed, index);
         fill(&mut sample.normal, self.parameters.len(), &mut random);
         for (i, (parameter, transform)) in self.parameters.iter().enumerate() {
             let z = match &self.correlation {

@@ -1,8 +1,8 @@
 //! What a Monte Carlo analysis gives.
 
 use super::plan::MonteCarloPlan;
-use super::probability::clopper_pearson;
 use crate::flutter::{SweepOutcome, SweptOnset};
+use crate::uncertainty::statistics::{clopper_pearson, moments, sample_quantile};
 use serde::Serialize;
 
 /// Failed samples that are named one by one; of more, their number is given.
@@ -188,8 +188,8 @@ impl Tally {
             speed_max_m_s,
             nominal_m_s,
             nominal_or_below,
-            mean_m_s: mean,
-            standard_deviation_m_s: deviation,
+            mean_m_s: Some(mean).filter(|_| !self.onsets.is_empty()),
+            standard_deviation_m_s: Some(deviation).filter(|_| self.onsets.len() > 1),
             quantiles: plan
                 .quantiles
                 .iter()
@@ -205,35 +205,15 @@ impl Tally {
     }
 }
 
-fn moments(sorted: &[f64]) -> (Option<f64>, Option<f64>) {
-    let n = sorted.len() as f64;
-    if sorted.is_empty() {
-        return (None, None);
-    }
-    let mean = sorted.iter().sum::<f64>() / n;
-    if sorted.len() == 1 {
-        return (Some(mean), None);
-    }
-    let squares: f64 = sorted.iter().map(|v| (v - mean).powi(2)).sum();
-    (Some(mean), Some((squares / (n - 1.0)).sqrt()))
-}
-
-/// Linear between the order statistics, `(n − 1)p` from the first (Hyndman and Fan's type 7); open at the top.
+/// The quantile of speeds of which some are known to be at or below.
 fn quantile(sorted: &[(f64, bool)], answered: usize, probability: f64) -> Quantile {
-    let place = probability * (answered.max(1) - 1) as f64;
-    let (below, share) = (place.floor() as usize, place.fract());
-    let speed_m_s = match (sorted.get(below), sorted.get(below + 1)) {
-        (Some(a), Some(b)) => Some(a.0 + (b.0 - a.0) * share),
-        (Some(a), None) if share == 0.0 => Some(a.0),
-        _ => None,
-    };
+    let speeds: Vec<f64> = sorted.iter().map(|s| s.0).collect();
+    let below = (probability * (answered.max(1) - 1) as f64).floor() as usize;
+    let mut around = sorted.iter().skip(below).take(2);
     Quantile {
         probability,
-        speed_m_s,
-        or_below: sorted[below.min(sorted.len())..]
-            .iter()
-            .take(2)
-            .any(|s| s.1),
+        speed_m_s: sample_quantile(&speeds, answered, probability),
+        or_below: around.any(|s| s.1),
     }
 }
 

@@ -7,22 +7,16 @@
 
 mod coefficients;
 mod distribution;
-mod drawn;
-mod many;
-mod parameter;
 mod plan;
-mod probability;
 mod results;
 mod run;
 mod sampler;
 mod scatter;
 
 pub use distribution::Distribution;
-pub use many::{ManyOnsets, OnsetKind, many_onsets};
-pub use parameter::Parameter;
-pub use plan::{AerodynamicScatter, Correlation, MonteCarloPlan, RandomParameter};
+pub use plan::{AerodynamicScatter, Correlation, MonteCarloPlan, Parameter, RandomParameter};
 pub use results::{DesignCheck, Failure, Histogram, MonteCarloResult, Quantile};
-pub use run::monte_carlo;
+pub use run::{ManyOnsets, OnsetKind, many_onsets, monte_carlo};
 
 #[cfg(test)]
 mod tests;

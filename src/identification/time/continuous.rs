@@ -1,0 +1,115 @@
+//! Passes over records with the columns of continuous filters.
+
+use super::filters::{ContinuousColumns, NOISE_BANDWIDTH};
+use super::pass::{ColumnOrder, OnProgress, Pass, PassPlan, pass};
+use super::record::{DimensionlessRecord, Records};
+use crate::error::Result;
+use crate::identification::basis::Basis;
+use crate::identification::options::TimeFit;
+use crate::identification::own::StaticTerm;
+
+/// Default cut-off of the low-pass over the sampling frequency.
+const CUTOFF_OVER_SAMPLING: f64 = 1.0 / 20.0;
+
+/// What stays the same over all passes of a fit.
+pub(crate) struct RecordFit<'a> {
+    pub fit: &'a TimeFit,
+    pub records: &'a Records,
+    pub progress: OnProgress<'a>,
+}
+
+/// Which rows a pass makes.
+#[derive(Clone, Copy)]
+pub(crate) struct Rows {
+    /// Columns of orthonormal filters in place of those of the model.
+    pub orthonormal: bool,
+    /// Only as many rows as the low-passed signals need.
+    pub thinned: bool,
+    /// As in [`PassPlan`].
+    pub stretches: usize,
+}
+
+impl Rows {
+    /// For a search of poles.
+    pub(crate) const THINNED: Self = Self {
+        orthonormal: true,
+        thinned: true,
+        stretches: 0,
+    };
+    /// For the fit itself.
+    pub(crate) const ALL: Self = Self {
+        orthonormal: false,
+        thinned: false,
+        stretches: 0,
+    };
+}
+
+impl RecordFit<'_> {
+    /// One pass with the given candidates, a chain of filters for each input, all of one length.
+    pub(crate) fn pass(
+        &self,
+        candidates: &[Vec<Vec<f64>>],
+        rows: Rows,
+        number: (usize, usize),
+    ) -> Result<Pass> {
+        let basis = |poles: &Vec<f64>| {
+            if rows.orthonormal {
+                Basis::orthonormal(&self.fit.form, poles)
+            } else {
+                Basis::new(&self.fit.form, poles)
+            }
+        };
+        let bases = candidates
+            .iter()
+            .map(|chains| chains.iter().map(basis).collect())
+            .collect::<Result<Vec<Vec<_>>>>()?;
+        let constant = self.fit.static_term == StaticTerm::Estimated;
+        let plan = PassPlan {
+            order: ColumnOrder {
+                inputs: self.records.dofs.len(),
+                per_input: bases.first().map_or(0, |b| b[0].len()),
+                constant,
+            },
+            weights: self.fit.weights,
+            delta_s: None,
+            discard_s: self.fit.discard_s,
+            stride: if rows.thinned { self.thinning() } else { 1 },
+            stretches: rows.stretches,
+            pass: number,
+        };
+        pass(&self.records.each, &plan, self.progress, |record| {
+            ContinuousColumns::new(record, &bases, self.cutoff_hz(record), constant)
+        })
+    }
+
+    /// Cut-off of the low-pass, Hz.
+    fn cutoff_hz(&self, record: &DimensionlessRecord) -> f64 {
+        let default = CUTOFF_OVER_SAMPLING / record.step_s;
+        self.fit.low_pass_hz.unwrap_or(default)
+    }
+
+    /// Every how many samples a row is enough: four rows a period of the cut-off still hold what the low-pass lets
+    /// through.
+    fn thinning(&self) -> usize {
+        let stride = |r: &DimensionlessRecord| (0.25 / (self.cutoff_hz(r) * r.step_s)) as usize;
+        self.records
+            .each
+            .iter()
+            .map(stride)
+            .min()
+            .unwrap_or(1)
+            .max(1)
+    }
+
+    /// Variance of the noise before the low-pass over that of the residuals behind it.
+    pub(crate) fn noise_ratio(&self) -> f64 {
+        let passed = |r: &DimensionlessRecord| 2.0 * NOISE_BANDWIDTH * self.cutoff_hz(r) * r.step_s;
+        1.0 / self
+            .records
+            .each
+            .iter()
+            .map(passed)
+            .fold(0.0, f64::max)
+            .min(1.0)
+    }
+}
