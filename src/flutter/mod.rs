@@ -12,6 +12,7 @@ mod curves;
 mod determinant;
 mod divergence;
 mod dynamic_stiffness;
+mod elimination;
 mod following;
 mod instability;
 mod missed;

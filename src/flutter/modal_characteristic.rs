@@ -6,6 +6,7 @@
 //! inverse iteration (Neumaier 1985, without the residual form): `D(λ) u = D'(λ) v`, `λ ← λ − (vᴴv)/(vᴴu)`, `v ← u/|u|`, which
 //! converges quadratically and knows by its shape which mode it follows.
 
+use super::elimination::{Parts, solve};
 use crate::aerodynamics::{ContinuousRealization, Realization};
 use crate::aeroelastic::CoupledSection;
 use nalgebra::{Complex, DMatrix, DVector};
@@ -15,8 +16,8 @@ type Shape = DVector<Complex64>;
 
 /// Rounds before a start is given up as too far away.
 const MAX_ROUNDS: usize = 12;
-/// Relative size of the last step; the next would be its square.
-const TOLERANCE: f64 = 1e-10;
+/// Relative size of the last step: the next would be its square, which is rounding.
+const TOLERANCE: f64 = 1e-8;
 /// Part of an eigenvalue by which it is moved where the problem is exactly singular; below the tolerance, so that it settles.
 const NUDGE: f64 = 1e-11;
 
@@ -94,8 +95,10 @@ impl AtSpeed<'_> {
         let mut lambda = start;
         let mut shape = near.normalize();
         for _ in 0..MAX_ROUNDS {
-            let (value, slope) = self.evaluate(lambda, &shape)?;
-            let Some(step) = inverse_step(value, slope, &mut shape) else {
+            let basis = DMatrix::from_columns(std::slice::from_ref(&shape));
+            let better = self.inverse_iteration(lambda, &basis);
+            let better = better.map(|b| b.column(0).into_owned());
+            let Some(step) = better.and_then(|b| improve(b, &mut shape)) else {
                 // an eigenvalue that is met exactly, as those of still air, cannot be solved with
                 lambda *= 1.0 + NUDGE;
                 continue;
@@ -114,37 +117,64 @@ impl AtSpeed<'_> {
         lambda: Complex64,
         basis: &DMatrix<Complex64>,
     ) -> Option<DMatrix<Complex64>> {
-        let mut value = None;
-        let mut slopes = Vec::with_capacity(basis.ncols());
-        for column in basis.column_iter() {
-            let (of, slope) = self.evaluate(lambda, &column.into_owned())?;
-            value = Some(of);
-            slopes.push(slope);
-        }
-        value?.lu().solve(&DMatrix::from_columns(&slopes))
+        let terms = self.terms(lambda)?;
+        let basis = Parts::of(basis);
+        Some(
+            pulp::Arch::new()
+                .dispatch(Iteration { terms, basis })?
+                .to_matrix(),
+        )
     }
 
-    /// `D(λ)` and `D'(λ) v`.
-    fn evaluate(&self, lambda: Complex64, v: &Shape) -> Option<(DMatrix<Complex64>, Shape)> {
+    /// `D(λ)` as a sum.
+    fn terms(&self, lambda: Complex64) -> Option<Vec<Term<'_>>> {
         let p = self.problem;
-        let mut value = DMatrix::zeros(v.len(), v.len());
-        let entries = p.mass.iter().zip(&self.damping).zip(&self.stiffness);
-        for (d, ((m, r), k)) in value.iter_mut().zip(entries) {
-            *d = (lambda * *m + *r) * lambda + *k;
-        }
-        let mut slope = product(&p.mass, v) * (lambda * 2.0) + product(&self.damping, v);
-        let cube = Complex64::from(self.speed.powi(3));
+        let term = |value: Complex64, slope: Complex64, matrix| Term {
+            value,
+            slope,
+            matrix,
+        };
+        let one = Complex64::from(1.0);
+        let mut terms = vec![
+            term(lambda * lambda, lambda * 2.0, &p.mass),
+            term(lambda, one, &self.damping),
+            term(one, Complex64::default(), &self.stiffness),
+        ];
+        let cube = Complex64::from(-self.speed.powi(3));
         for chain in &p.chains {
             let (x, dx) = chain.response(lambda, p.width, self.speed)?;
-            for ((x, dx), output) in x.iter().zip(&dx).zip(&chain.outputs) {
-                let x = x * cube;
-                for (d, c) in value.iter_mut().zip(output) {
-                    *d -= x * *c;
-                }
-                slope -= product(output, v) * (dx * cube);
-            }
+            let filters = x.iter().zip(&dx).zip(&chain.outputs);
+            terms.extend(filters.map(|((x, dx), output)| term(x * cube, dx * cube, output)));
         }
-        Some((value, slope))
+        Some(terms)
+    }
+}
+
+/// A real matrix in `D(λ)`, the number it is multiplied with, and that number's derivative.
+struct Term<'a> {
+    value: Complex64,
+    slope: Complex64,
+    matrix: &'a DMatrix<f64>,
+}
+
+/// `D⁻¹ D' U`, compiled for the vectors of the processor.
+struct Iteration<'a> {
+    terms: Vec<Term<'a>>,
+    basis: Parts,
+}
+
+impl pulp::NullaryFnOnce for Iteration<'_> {
+    type Output = Option<Parts>;
+
+    #[inline(always)]
+    fn call(self) -> Option<Parts> {
+        let n = self.terms.first()?.matrix.nrows();
+        let (mut value, mut slope) = (Parts::zeros(n, n), Parts::zeros(n, n));
+        for term in &self.terms {
+            value.add(term.value, term.matrix.as_slice());
+            slope.add(term.slope, term.matrix.as_slice());
+        }
+        value.solve(slope.times(&self.basis))
     }
 }
 
@@ -155,7 +185,12 @@ pub(super) fn inverse_step(
     slope: Shape,
     shape: &mut Shape,
 ) -> Option<Complex64> {
-    let better = value.lu().solve(&slope)?;
+    let slope = DMatrix::from_columns(&[slope]);
+    improve(solve(&value, &slope)?.column(0).into_owned(), shape)
+}
+
+/// Replaces a shape by a better one, of unit norm; what is to be taken from the eigenvalue, unless it is not finite.
+fn improve(better: Shape, shape: &mut Shape) -> Option<Complex64> {
     let step = shape.dotc(&better).inv();
     let size = better.norm();
     if !(step.re.is_finite() && step.im.is_finite() && size > 0.0) {
@@ -163,16 +198,6 @@ pub(super) fn inverse_step(
     }
     *shape = better.unscale(size);
     Some(step)
-}
-
-fn product(matrix: &DMatrix<f64>, v: &Shape) -> Shape {
-    let mut result = Shape::zeros(v.len());
-    for (column, z) in matrix.column_iter().zip(v) {
-        for (r, m) in result.iter_mut().zip(column.iter()) {
-            *r += z * *m;
-        }
-    }
-    result
 }
 
 impl Chain {
