@@ -3,6 +3,7 @@
 mod onset;
 
 use super::Study;
+use super::plausibility::WIDEST_MODEL_M;
 use crate::aerodynamics::derivatives::notation::Convention;
 use crate::aerodynamics::derivatives::{
     DerivativeTable, Extrapolation, InterpolatedTable, Interpolation, TransferSample,
@@ -18,6 +19,8 @@ use std::path::{Path, PathBuf};
 
 /// Name of the exact flat plate as a source.
 const FLAT_PLATE: &str = "flat plate";
+/// Width of the section model of a plate that is itself too wide for a tunnel, m.
+const PLATE_MODEL_WIDTH_M: f64 = 0.5;
 
 /// Reduced frequencies in which the onset of the flat plate is searched: still air to nearly steady flow.
 const EXACT_RANGE: (f64, f64) = (0.02, 10.0);
@@ -37,6 +40,16 @@ pub struct Deck {
 enum Source {
     Table(DerivativeTable),
     FlatPlate,
+}
+
+/// Width at which the flat plate is tested, m: speeds and frequencies of the tunnel are those of section models.
+fn plate_width_m(study: &Study) -> f64 {
+    let width_m = study.section.width_m;
+    if width_m < WIDEST_MODEL_M {
+        width_m
+    } else {
+        PLATE_MODEL_WIDTH_M
+    }
 }
 
 impl Deck {
@@ -138,7 +151,7 @@ impl Deck {
             Source::FlatPlate => study.tunnel.records_from_model(
                 &FlatPlate::default(),
                 FLAT_PLATE,
-                study.section.width_m,
+                plate_width_m(study),
             ),
         }
     }
@@ -173,7 +186,7 @@ impl Deck {
                     .iter()
                     .flat_map(|i| {
                         study.tunnel.frequencies_hz.iter().map(|f| {
-                            ReducedFrequency::from_hertz(*f, study.section.width_m, speeds[*i])
+                            ReducedFrequency::from_hertz(*f, plate_width_m(study), speeds[*i])
                         })
                     })
                     .collect();

@@ -12,7 +12,7 @@ const DENSITIES: (f64, f64) = (0.7, 1.6);
 /// Highest ratio to critical damping of a structure.
 const MOST_DAMPING: f64 = 0.1;
 /// Decks narrower than this are models, m.
-const MODEL_WIDTH_M: f64 = 2.0;
+pub(super) const WIDEST_MODEL_M: f64 = 2.0;
 /// Fastest suspension of a model and of a bridge, Hz.
 const FASTEST_HZ: (f64, f64) = (20.0, 6.0);
 /// Mass over that of the air in a square of the width, `m/(ρB²)`.
@@ -100,7 +100,7 @@ pub(crate) fn section_warnings(section: &SectionModel) -> Vec<String> {
 
 fn frequency_warning(name: &str, frequency_hz: Option<f64>, width_m: f64) -> Option<String> {
     let hertz = frequency_hz?;
-    let (what, fastest) = if width_m < MODEL_WIDTH_M {
+    let (what, fastest) = if width_m < WIDEST_MODEL_M {
         ("model", FASTEST_HZ.0)
     } else {
         ("bridge", FASTEST_HZ.1)
