@@ -3,6 +3,9 @@
 #[allow(dead_code)]
 #[path = "common/bridges.rs"]
 mod bridges;
+#[path = "common/browser.rs"]
+#[allow(dead_code)] // each test file needs a part of it
+mod browser;
 #[path = "common/command.rs"]
 #[allow(dead_code)] // each test file needs a part of it
 mod command;
@@ -49,12 +52,67 @@ fn flutter_prints_its_card_and_writes_its_figures() {
         "flutter_motion.png",
         "flutter_motion.csv",
         "flutter_animation.csv",
+        "report.html",
+        "summary.json",
     ] {
         assert!(written.iter().any(|w| w == name), "{name}");
     }
     let animation = fs::read_to_string(folder.path().join("flutter_animation.csv")).unwrap();
     // 24 phases of 63 nodes and the heading
     assert_eq!(animation.lines().count(), 24 * 63 + 1);
+}
+
+/// The page says the answer first and loads nothing; written again from the folder it is the same.
+#[test]
+fn the_report_of_a_bridge_stands_alone() {
+    let folder = folder();
+    let at = folder.path();
+    let flutter = ["bridge", "flutter", "bridge.toml"];
+    let run = [&flutter[..], &["--out", "r"]].concat();
+    succeeds(at, &run);
+    let page = fs::read_to_string(at.join("r/report.html")).unwrap();
+    let said = succeeds(at, &[&flutter[..], &["--json", "--out", "r"]].concat());
+    let value: Value = serde_json::from_str(&said).unwrap();
+    let answers = value["flutter"]["answers"].as_array().unwrap();
+    let own = answers.last().unwrap();
+    let speed = own["search"]["onset"]["speed_m_s"].as_f64().unwrap();
+    let largest = own["motion"]["modes"][0]["mode"].as_u64().unwrap();
+    for word in [
+        &format!("Flutter onset {speed:.1} m/s"),
+        &format!("<td>{speed:.2} m/s</td>"),
+        "95 % interval",
+        "What limits trust",
+        "Modes that take part in the flutter",
+        &format!("\"label\":\"mode {largest}\""),
+        "Onset with fewer modes",
+        "Motion at flutter",
+        "Modes in still air",
+        "LN21-5200",
+        "aerodeck bridge flutter bridge.toml --out results",
+    ] {
+        assert!(page.contains(word), "`{word}` is not in the report");
+    }
+    let answer = page.find("class=\"answer\"").unwrap();
+    assert!(answer < page.find("What was asked").unwrap());
+    fs::remove_file(at.join("r/report.html")).unwrap();
+    // a unit of other results says nothing of these
+    fs::write(at.join("r/bridge.fmu"), "another").unwrap();
+    succeeds(at, &["report", "r"]);
+    let again = fs::read_to_string(at.join("r/report.html")).unwrap();
+    assert!(again == page, "another page");
+    browser::stands_alone(&at.join("r/report.html"));
+
+    // what a study left in the folder of the bridge file is not lost
+    fs::write(at.join("summary.json"), "{\"study\": \"mine\"}").unwrap();
+    let said = succeeds(at, &[&flutter[..], &["--no-figures"]].concat());
+    assert!(said.contains("report of a study"), "{said}");
+    let left = fs::read_to_string(at.join("summary.json")).unwrap();
+    assert_eq!(left, "{\"study\": \"mine\"}");
+    assert!(!at.join("report.html").exists());
+    assert!(
+        !at.join("bridge_flutter.svg").exists(),
+        "figures in spite of --no-figures"
+    );
 }
 
 #[test]

@@ -1,5 +1,8 @@
 //! The sliders of a report: the module for WebAssembly in the page answers what the command line does.
 
+#[path = "common/browser.rs"]
+#[allow(dead_code)] // each test file needs a part of it
+mod browser;
 #[path = "common/command.rs"]
 #[allow(dead_code)] // each test file needs a part of it
 mod command;
@@ -179,23 +182,9 @@ fn differences(live: &Value, told: &Value) -> (f64, f64) {
 
 /// Where there is a Chromium, the page shows its sliders and the onset that they start from.
 fn in_a_browser(page: &Path) {
-    let Some(browser) = ["chromium", "chromium-browser", "google-chrome"]
-        .into_iter()
-        .find(|name| Command::new(name).arg("--version").output().is_ok())
-    else {
-        eprintln!("no Chromium here: the sliders are not shown");
+    let Some(dom) = browser::document(page, "1280,1000") else {
         return;
     };
-    let profile = TempDir::new().unwrap();
-    let output = Command::new(browser)
-        .args(["--headless", "--no-sandbox", "--disable-gpu"])
-        .args(["--no-first-run", "--disable-background-networking"])
-        .args(["--virtual-time-budget=20000", "--dump-dom"])
-        .arg(format!("--user-data-dir={}", profile.path().display()))
-        .arg(format!("file://{}", page.display()))
-        .output()
-        .unwrap();
-    let dom = String::from_utf8_lossy(&output.stdout);
     assert_eq!(dom.matches("<canvas").count(), 4, "charts");
     assert_eq!(dom.matches("type=\"range\"").count(), 7, "sliders");
     assert!(dom.contains("Flutter onset 36.88 m/s (+0.0 % against this report)"));

@@ -32,17 +32,13 @@ const AROUND_ONSET: [f64; 3] = [0.95, 1.0, 1.05];
 /// Periods and samples of a period that are shown.
 const PERIODS: (f64, f64) = (30.0, 24.0);
 
-/// Frequencies and damping ratios over wind speed, one row a point.
-pub(super) fn write_curves(
-    study: &Study,
-    curves: &[FlutterCurves],
-    out: &mut OutputDir,
-) -> Result<()> {
+/// Frequencies and damping ratios over wind speed, one row a point, as CSV.
+pub(super) fn curves_csv(name: &str, curves: &[FlutterCurves]) -> String {
     let mut text = format!(
         "# {}: modes over wind speed\n# generator: aerodeck {}\n# units: speed_m_s in m/s; frequency_hz in Hz; \
          damping_ratio of critical damping, negative when the motion grows; growth_rate_per_s in 1/s\n\
          model,branch,speed_m_s,frequency_hz,damping_ratio,growth_rate_per_s,in_tested_range\n",
-        study.name.replace('\n', " "),
+        name.replace('\n', " "),
         env!("CARGO_PKG_VERSION")
     );
     for curve in curves {
@@ -64,7 +60,16 @@ pub(super) fn write_curves(
             }
         }
     }
-    out.write(CURVES, text)?;
+    text
+}
+
+/// Writes the curves and draws the root locus.
+pub(super) fn write_curves(
+    study: &Study,
+    curves: &[FlutterCurves],
+    out: &mut OutputDir,
+) -> Result<()> {
+    out.write(CURVES, curves_csv(&study.name, curves))?;
     if curves.is_empty() {
         return Ok(());
     }

@@ -8,7 +8,7 @@ use crate::aeroelastic::CoupledSection;
 use crate::bridge::Bridge;
 use crate::error::{Error, Result};
 use nalgebra::{Complex, DVector};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
 /// First step of the secant, its longest, and the last, over the speed.
@@ -18,7 +18,7 @@ const SETTLED: f64 = 1e-9;
 const MOST_STEPS: usize = 30;
 
 /// A mode in the motion at an onset.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ModeShare {
     /// Number of the mode.
     pub mode: usize,

@@ -1,5 +1,6 @@
-//! The report of a study as one page that loads nothing from elsewhere.
+//! The report of a study, or of a whole bridge, as one page that loads nothing from elsewhere.
 
+use super::sections_page::PageSection;
 use super::style::{COLOURS, branch_width, dash};
 use crate::error::{Error, Result};
 use askama::Template;
@@ -47,6 +48,12 @@ pub(crate) struct PageCurve {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct StudyPage {
     pub(crate) title: String,
+    /// What the flutter is of.
+    pub(crate) subtitle: &'static str,
+    /// The file that was run: `study`, `bridge file`.
+    pub(crate) kind: &'static str,
+    /// What is no part of the analysis, a sentence.
+    pub(crate) beyond: &'static str,
     pub(crate) generator: String,
     /// `good`, `bad` or nothing: whether a criterion is met.
     pub(crate) verdict: &'static str,
@@ -59,7 +66,11 @@ pub(crate) struct StudyPage {
     pub(crate) asked: Vec<(String, String)>,
     pub(crate) onsets: Vec<Vec<String>>,
     pub(crate) comparisons: Vec<String>,
+    /// Further tables of the answer.
+    pub(crate) sections: Vec<PageSection>,
     pub(crate) figures: Vec<PageFigure>,
+    /// Tables behind the evidence.
+    pub(crate) appendix: Vec<PageSection>,
     pub(crate) fits: Vec<PageFit>,
     pub(crate) fmu: String,
     /// Name, causality, unit, meaning.
@@ -67,7 +78,8 @@ pub(crate) struct StudyPage {
     pub(crate) command: String,
     pub(crate) licence: String,
     pub(crate) hashes: Vec<(String, String)>,
-    pub(crate) study: String,
+    /// Text of the file that was run.
+    pub(crate) text: String,
     /// Wind speeds of the curves, m/s.
     pub(crate) speeds: Vec<f64>,
     pub(crate) curves: Vec<PageCurve>,
@@ -90,25 +102,7 @@ struct Page<'a> {
     axes: String,
     charts: String,
     live: String,
-    title: &'a str,
-    generator: &'a str,
-    verdict: &'static str,
-    headline: &'a str,
-    criterion: Option<&'a str>,
-    card: &'a [(String, String)],
-    whose: &'a str,
-    limits: &'a [String],
-    asked: &'a [(String, String)],
-    onsets: &'a [Vec<String>],
-    comparisons: &'a [String],
-    figures: &'a [PageFigure],
-    fits: &'a [PageFit],
-    fmu: &'a str,
-    variables: &'a [[String; 4]],
-    command: &'a str,
-    licence: &'a str,
-    hashes: &'a [(String, String)],
-    study: &'a str,
+    of: &'a StudyPage,
 }
 
 #[derive(Serialize)]
@@ -147,25 +141,7 @@ pub(crate) fn study_page(of: &StudyPage) -> Result<String> {
         axes: super::axes_sketch().svg().to_owned(),
         charts,
         live: of.live.as_deref().map_or(String::new(), in_script),
-        title: &of.title,
-        generator: &of.generator,
-        verdict: of.verdict,
-        headline: &of.headline,
-        criterion: of.criterion.as_deref(),
-        card: &of.card,
-        whose: &of.whose,
-        limits: &of.limits,
-        asked: &of.asked,
-        onsets: &of.onsets,
-        comparisons: &of.comparisons,
-        figures: &of.figures,
-        fits: &of.fits,
-        fmu: &of.fmu,
-        variables: &of.variables,
-        command: &of.command,
-        licence: &of.licence,
-        hashes: &of.hashes,
-        study: &of.study,
+        of,
     };
     page.render().map_err(|e| failed(e.to_string()))
 }

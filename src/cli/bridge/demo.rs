@@ -4,35 +4,18 @@ use super::super::answer::Answer;
 use super::super::output::{OutputDir, list};
 use super::super::progress::Progress;
 use super::super::stages;
+use super::summary::{self, Ran};
 use super::{BRIDGE_FMU, card, computed, staged};
 use crate::error::{Error, Result};
 use crate::files::bridge::BridgeFile;
-use crate::flutter::Onset;
 use crate::fmu::package::{FmiVersion, Label, Runtime, package_bridge};
-use crate::study::bridge::{BridgeFlutter, BridgeStudy, Wanted, demo_bridge_text};
-use crate::study::{Deck, RecordSet, Study, demo_study_text};
+use crate::study::bridge::{BridgeStudy, Wanted, demo_bridge_text};
+use crate::study::{Deck, RecordSet, StageFailure, Study, demo_study_text};
 use crate::trained_model::TrainedModel;
-use serde::Serialize;
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 const BRIDGE_FILE: &str = "bridge.toml";
-
-/// What `summary.json` holds.
-#[derive(Serialize)]
-struct Summary<'a> {
-    generator: String,
-    bridge: &'a str,
-    deck: String,
-    licence: String,
-    warnings: &'a [String],
-    /// All onsets found, one entry a route.
-    onsets: Vec<Onset>,
-    /// The full answer.
-    flutter: &'a BridgeFlutter,
-    failed: &'a [String],
-    files: Vec<PathBuf>,
-}
 
 /// Runs the chain into the folder `directory`.
 pub(crate) fn run(directory: &Path, force: bool, progress: &Progress) -> Result<Answer> {
@@ -61,25 +44,11 @@ pub(crate) fn run(directory: &Path, force: bool, progress: &Progress) -> Result<
     for failure in &failed {
         let _ = writeln!(text, "failed: {failure}");
     }
-    out.stage("summary.json")?;
-    let onsets = results
-        .answers
-        .iter()
-        .filter_map(|a| a.search.onset().cloned());
-    let summary = Summary {
-        generator: format!("aerodeck {}", env!("CARGO_PKG_VERSION")),
-        bridge: &study.file.name,
-        deck: deck.description(),
-        licence: deck.licence(),
-        warnings: &study.notes,
-        onsets: onsets.collect(),
-        flutter: &results,
-        failed: &failed,
-        files: out.targets(),
+    let ran = Ran {
+        text: demo_bridge_text().to_owned(),
+        command: "aerodeck demo --bridge --out results".to_owned(),
     };
-    let json =
-        serde_json::to_string_pretty(&summary).map_err(|e| Error::Numerical(e.to_string()))?;
-    out.write("summary.json", json + "\n")?;
+    let summary = summary::leave(&ran, (&study, &results), (&[], &failed), &mut out)?;
     let answer_json =
         serde_json::to_value(&summary).map_err(|e| Error::Numerical(e.to_string()))?;
     let passed = failed.is_empty();
@@ -112,7 +81,7 @@ fn trained(
     first.ok_or_else(|| {
         let why = failed
             .first()
-            .map_or("no model in the study".to_owned(), |f| format!("{f:?}"));
+            .map_or("no model in the study".to_owned(), StageFailure::explain);
         Error::Numerical(format!("no model can be trained: {why}"))
     })
 }

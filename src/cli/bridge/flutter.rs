@@ -1,15 +1,26 @@
 //! `aerodeck bridge flutter`: onset, modes that take part, curves, the motion at flutter.
 
 use super::super::answer::Answer;
+use super::super::evidence::curves_csv;
+use super::super::figures;
 use super::super::output::{OutputDir, list};
 use super::super::progress::Progress;
-use super::{BridgeArgs, account, stage_figure};
+use super::super::report::{SUMMARY, is_of_a_study};
+use super::{BridgeArgs, account, summary};
 use crate::error::Result;
-use crate::flutter::BridgeMotion;
+use crate::flutter::{BridgeMotion, ModeShare};
 use crate::report::{bridge_curves_figure, flutter_motion_figure};
 use crate::study::bridge::{BridgeFlutter, BridgeStudy, Scatter, ScatteredOnset, bridge_flutter};
 use std::fmt::Write as _;
 
+/// Stem of the figure of frequencies and damping ratios.
+pub(crate) const FLUTTER_FIGURE: &str = "bridge_flutter";
+/// Stem of the figure of the motion at the onset.
+pub(crate) const MOTION_FIGURE: &str = "flutter_motion";
+/// Frequencies and damping ratios as numbers.
+pub(crate) const CURVES: &str = "bridge_curves.csv";
+/// Modes that are drawn in colour.
+const SHOWN: usize = 6;
 /// Phases of an animation over one period.
 const PHASES: usize = 24;
 
@@ -54,20 +65,24 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
             failed.push(format!("scatter: {e}"));
             None
         });
-    let written = out.commit()?;
     let mut text = account::card(&study, &results);
+    let mut comparisons = Vec::new();
     if let Some(s) = &scattered {
-        let _ = writeln!(
-            text,
-            "Scatter of {} samples: {:.3} m/s, standard deviation {:.3} m/s, 95 % between {:.3} and {:.3} m/s; {} without onset",
-            s.scatter.samples,
-            s.mean_m_s,
-            s.standard_deviation_m_s,
-            s.interval_m_s[0],
-            s.interval_m_s[1],
-            s.without_onset
-        );
+        let line = scatter_line(s);
+        let _ = writeln!(text, "{line}");
+        comparisons.push(line);
     }
+    let ran = summary::Ran {
+        text: args.bridge.text()?,
+        command: args.command(scattered.is_some()),
+    };
+    if is_of_a_study(&out.target(SUMMARY)) {
+        text.push_str("The folder holds the report of a study, which was left; --out elsewhere writes that of the bridge\n");
+    } else {
+        let said = (&comparisons[..], &failed[..]);
+        summary::leave(&ran, (&study, &results), said, &mut out)?;
+    }
+    let written = out.commit()?;
     for failure in &failed {
         let _ = writeln!(text, "failed: {failure}");
     }
@@ -79,6 +94,22 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
 }
 
 impl Args {
+    /// What makes the results again, in the folder of the bridge file.
+    fn command(&self, scattered: bool) -> String {
+        let file = self.bridge.bridge.file_name().unwrap_or_default();
+        let scatter = match self.samples.filter(|_| scattered) {
+            None => String::new(),
+            Some(samples) => format!(
+                " --samples {samples} --scatter-frequency {} --scatter-damping {} --scatter-derivatives {} --seed {}",
+                self.scatter_frequency, self.scatter_damping, self.scatter_derivatives, self.seed
+            ),
+        };
+        format!(
+            "aerodeck bridge flutter {}{scatter} --out results",
+            file.display()
+        )
+    }
+
     fn scattered(
         &self,
         study: &BridgeStudy,
@@ -103,6 +134,18 @@ impl Args {
     }
 }
 
+fn scatter_line(of: &ScatteredOnset) -> String {
+    format!(
+        "Scatter of {} samples: {:.3} m/s, standard deviation {:.3} m/s, 95 % between {:.3} and {:.3} m/s; {} without onset",
+        of.scatter.samples,
+        of.mean_m_s,
+        of.standard_deviation_m_s,
+        of.interval_m_s[0],
+        of.interval_m_s[1],
+        of.without_onset
+    )
+}
+
 /// The results, with progress.
 pub(crate) fn computed(study: &BridgeStudy, progress: &Progress) -> Result<BridgeFlutter> {
     let stage = progress.stage("flutter of the bridge");
@@ -119,41 +162,41 @@ pub(crate) fn staged(
 ) -> Result<()> {
     let answer = results.answers.last();
     let motion = answer.and_then(|a| a.motion.as_ref());
-    let shown: Vec<String> = motion
-        .iter()
-        .flat_map(|m| m.modes.iter().take(6))
-        .map(|m| format!("mode {}", m.mode))
-        .collect();
-    let onset = answer.and_then(|a| a.search.onset()).map(|o| &o.at);
+    let onset = answer.and_then(|a| a.search.onset());
+    let shares = motion.map_or(&[][..], |m| &m.modes);
+    let shown = shown_modes(shares, onset.map(|o| o.branch.as_str()));
+    let onset = onset.map(|o| &o.at);
     let title = format!("{}: modes over wind speed", study.file.name);
     // where no mode can be followed there is nothing to draw; the card says so
     if results.curves.branches.iter().any(|b| !b.points.is_empty()) {
-        let figure = bridge_curves_figure(&results.curves, &shown, onset, &title)?;
-        stage_figure(&figure, "bridge_flutter", out)?;
-        out.write("bridge_curves.csv", curves_csv(results))?;
+        figures::write(FLUTTER_FIGURE, out, || {
+            bridge_curves_figure(&results.curves, &shown, onset, &title)
+        })?;
+        let curves = std::slice::from_ref(&results.curves);
+        out.write(CURVES, curves_csv(&study.file.name, curves))?;
     }
     if let Some(motion) = motion {
         let title = format!("{}: motion at flutter", study.file.name);
-        let figure = flutter_motion_figure(motion, 0.5 * study.by_model.width_m(), &title)?;
-        stage_figure(&figure, "flutter_motion", out)?;
+        figures::write(MOTION_FIGURE, out, || {
+            flutter_motion_figure(motion, 0.5 * study.by_model.width_m(), &title)
+        })?;
         out.write("flutter_motion.csv", motion_csv(motion))?;
         out.write("flutter_animation.csv", animation_csv(motion))?;
     }
     Ok(())
 }
 
-fn curves_csv(results: &BridgeFlutter) -> String {
-    let mut text = "branch,speed_m_s,frequency_hz,damping_ratio\n".to_owned();
-    for branch in &results.curves.branches {
-        for p in &branch.points {
-            let _ = writeln!(
-                text,
-                "{},{},{},{}",
-                branch.name, p.speed_m_s, p.frequency_hz, p.damping_ratio
-            );
-        }
+/// The branches of the modes with the largest shares of the energy, the one that flutters among them.
+pub(crate) fn shown_modes(shares: &[ModeShare], fluttering: Option<&str>) -> Vec<String> {
+    let named = |m: &ModeShare| format!("mode {}", m.mode);
+    let mut shown: Vec<String> = shares.iter().take(SHOWN).map(named).collect();
+    if let (Some(last), Some(branch)) = (shown.last().cloned(), fluttering)
+        && !shown.iter().any(|s| s == branch)
+    {
+        shown.retain(|s| *s != last);
+        shown.push(branch.to_owned());
     }
-    text
+    shown
 }
 
 fn motion_csv(motion: &BridgeMotion) -> String {

@@ -6,18 +6,19 @@ mod convert;
 pub(super) mod demo;
 mod flutter;
 mod show;
+mod summary;
 
 use super::answer::Answer;
 use super::common::warn;
 use super::output::OutputDir;
 use super::progress::Progress;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::files::bridge::BridgeFile;
-use crate::report::{Figure, PNG_SCALE};
 use crate::study::bridge::BridgeStudy;
 use std::path::{Path, PathBuf};
 
 use account::card;
+pub(crate) use flutter::{CURVES, FLUTTER_FIGURE, MOTION_FIGURE, shown_modes};
 use flutter::{computed, staged};
 
 /// The FMU of a bridge.
@@ -53,6 +54,11 @@ pub(crate) struct BridgeArgs {
 }
 
 impl BridgeArgs {
+    /// The file as it stands there.
+    fn text(&self) -> Result<String> {
+        std::fs::read_to_string(&self.bridge).map_err(|e| Error::io(&self.bridge, e))
+    }
+
     fn study(&self, progress: &Progress) -> Result<BridgeStudy> {
         let stage = progress.stage("reading the bridge");
         let study = BridgeStudy::new(BridgeFile::read(&self.bridge)?);
@@ -67,10 +73,4 @@ impl BridgeArgs {
         let beside = parent.unwrap_or(Path::new("."));
         OutputDir::new(self.out.as_deref().unwrap_or(beside))
     }
-}
-
-/// Stages a figure as SVG and PNG.
-fn stage_figure(figure: &Figure, name: &str, out: &mut OutputDir) -> Result<()> {
-    out.write(format!("{name}.svg"), figure.svg())?;
-    out.write(format!("{name}.png"), figure.png(PNG_SCALE)?)
 }

@@ -1,11 +1,13 @@
 //! `aerodeck bridge show`: modes, similarities, what is stated.
 
 use super::super::answer::Answer;
+use super::super::figures;
 use super::super::output::list;
 use super::super::progress::Progress;
-use super::{BridgeArgs, stage_figure};
+use super::BridgeArgs;
 use crate::error::Result;
 use crate::report::modes_figure;
+use crate::section::Dof;
 use std::fmt::Write as _;
 
 /// Pairs of modes whose similarity is stated.
@@ -30,7 +32,7 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
         "{}: modes without wind, the largest displacement of each is 1",
         study.file.name
     );
-    stage_figure(&modes_figure(bridge, &title)?, "modes", &mut out)?;
+    figures::write("modes", &mut out, || modes_figure(bridge, &title))?;
     let written = out.commit()?;
     let length: f64 = bridge.nodes.iter().map(|n| n.length_m).sum();
     let mut text = format!(
@@ -45,7 +47,7 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
         "ζ %"
     );
     for (i, m) in bridge.modes.iter().enumerate() {
-        let motion = ["vertical", "lateral", "torsion"][bridge.main_motion(i)];
+        let motion = Dof::THREE[bridge.main_motion(i)].name();
         let _ = writeln!(
             text,
             "{:>5} {:>10.4} {:>14.6e} {:>8.3}  {motion}",

@@ -1,9 +1,11 @@
 //! `aerodeck report`: one self-contained page from a folder of results; `study` and `demo` end with it.
 
+mod bridge;
 mod curves;
 mod live;
 mod view;
 
+pub(crate) use bridge::{BridgeFacts, ModeFacts, SectionFacts};
 pub(crate) use view::AnswerView;
 
 use super::answer::Answer;
@@ -18,6 +20,8 @@ use crate::fmu::standard::Causality;
 use crate::report::{PageFigure, PageFit, StudyPage, study_page};
 use crate::study::Study;
 use curves::curves_of;
+use serde::Deserialize;
+use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};
 use view::{EntryView, FitView, OnsetView, SummaryView};
 
@@ -26,7 +30,7 @@ pub(super) const REPORT: &str = "report.html";
 /// What the page is made from.
 pub(super) const SUMMARY: &str = "summary.json";
 
-/// Write report.html, one self-contained page, from a folder of results of `study` or `demo`
+/// Write report.html, one self-contained page, from a folder of results of `study`, `demo` or `bridge flutter`
 ///
 /// Example: aerodeck report aerodeck-out
 #[derive(clap::Args)]
@@ -52,11 +56,11 @@ pub fn run(args: &Args) -> Result<Answer> {
 pub(super) fn page(folder: &Path, study_folder: &Path) -> Result<String> {
     let path = folder.join(SUMMARY);
     let text = std::fs::read_to_string(&path).map_err(|e| Error::io(&path, e))?;
-    let summary: SummaryView = serde_json::from_str(&text).map_err(|e| {
-        let place = format!("line {}, column {}", e.line(), e.column());
-        let expected = "the summary of `aerodeck study` or `aerodeck demo` of this version";
-        Error::input(place, expected, e.to_string()).in_file(&path)
-    })?;
+    let kind: Kind = parsed(&path, &text)?;
+    if kind.bridge.is_some() {
+        return bridge::page(folder, &text);
+    }
+    let summary: SummaryView = parsed(&path, &text)?;
     let staged = folder.join(&summary.study_file);
     let study_path = if staged.exists() {
         staged
@@ -77,15 +81,39 @@ pub(super) fn page(folder: &Path, study_folder: &Path) -> Result<String> {
         (page.speeds, page.curves) = curves_of(&curves)?;
     }
     page.live = live::sliders(&study, read(MODEL_FILE))?;
-    let digest = |bytes: &[u8]| sha1_smol::Sha1::from(bytes).digest().to_string();
     let own = (summary.study_file.clone(), digest(study_text.as_bytes()));
     page.hashes.push(own);
     for name in [MODEL_FILE, FMU_FILE, CURVES] {
         let hash = read(name).map(|bytes| (name.to_owned(), digest(&bytes)));
         page.hashes.extend(hash);
     }
-    page.study = study_text;
+    page.text = study_text;
     study_page(&page)
+}
+
+/// Whether a study, and no bridge, has left its summary at `path`.
+pub(super) fn is_of_a_study(path: &Path) -> bool {
+    let text = std::fs::read_to_string(path).ok();
+    let kind = text.and_then(|text| serde_json::from_str::<Kind>(&text).ok());
+    kind.is_some_and(|kind| kind.bridge.is_none())
+}
+
+/// Whose summary it is.
+#[derive(Deserialize)]
+struct Kind {
+    bridge: Option<String>,
+}
+
+fn parsed<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T> {
+    serde_json::from_str(text).map_err(|e| {
+        let place = format!("line {}, column {}", e.line(), e.column());
+        let expected = "the summary of `study`, `demo` or `bridge flutter` of this version";
+        Error::input(place, expected, e.to_string()).in_file(path)
+    })
+}
+
+fn digest(bytes: &[u8]) -> String {
+    sha1_smol::Sha1::from(bytes).digest().to_string()
 }
 
 fn of_summary(summary: &SummaryView, study: &Study) -> StudyPage {
@@ -97,6 +125,9 @@ fn of_summary(summary: &SummaryView, study: &Study) -> StudyPage {
     let all = summary.onsets.iter().chain(&summary.undetermined);
     StudyPage {
         title: summary.study.clone(),
+        subtitle: "Flutter of a bridge deck section",
+        kind: "study",
+        beyond: "Amplitudes beyond the tests, turbulence and the third dimension are not part of this analysis.",
         generator: summary.generator.clone(),
         verdict: match answer.required_speed_met {
             Some(true) => "good",
@@ -118,12 +149,7 @@ fn of_summary(summary: &SummaryView, study: &Study) -> StudyPage {
         command: format!("aerodeck study {} --out results", summary.study_file),
         licence: summary.licence.lines().next().unwrap_or("").to_owned(),
         onset: answer.speed_m_s,
-        interval: own.and_then(|o| match o.interval {
-            OnsetInterval::Known {
-                low_m_s, high_m_s, ..
-            } => Some((low_m_s, high_m_s)),
-            _ => None,
-        }),
+        interval: own.and_then(|o| known(&o.interval)),
         required: answer.required_speed_m_s,
         ..StudyPage::default()
     }
@@ -133,6 +159,15 @@ fn capital(text: &str) -> String {
     let mut characters = text.chars();
     let first = characters.next().map(|c| c.to_uppercase().to_string());
     first.unwrap_or_default() + characters.as_str()
+}
+
+fn known(interval: &OnsetInterval) -> Option<(f64, f64)> {
+    match interval {
+        OnsetInterval::Known {
+            low_m_s, high_m_s, ..
+        } => Some((*low_m_s, *high_m_s)),
+        _ => None,
+    }
 }
 
 fn criterion(answer: &AnswerView) -> Option<String> {
@@ -317,18 +352,18 @@ fn figures(read: &dyn Fn(&str) -> Option<String>) -> Vec<PageFigure> {
             "The exported model, released and left alone.",
         ),
     ];
-    all.into_iter()
-        .filter_map(|(stem, title, caption)| {
-            let svg = read(&format!("{stem}.svg"))?;
-            // the page says what a file of its own has to
-            let start = svg.find("<svg")?;
-            Some(PageFigure {
-                title,
-                caption,
-                svg: svg[start..].to_owned(),
-            })
-        })
-        .collect()
+    let drawn = |(stem, title, caption)| of_svg(&read(&format!("{stem}.svg"))?, title, caption);
+    all.into_iter().filter_map(drawn).collect()
+}
+
+/// The figure in a file, without what only a file of its own needs.
+fn of_svg(text: &str, title: &'static str, caption: &'static str) -> Option<PageFigure> {
+    let svg = text[text.find("<svg")?..].to_owned();
+    Some(PageFigure {
+        title,
+        caption,
+        svg,
+    })
 }
 
 fn variables(model: &[u8]) -> Result<Vec<[String; 4]>> {

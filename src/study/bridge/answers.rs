@@ -10,7 +10,7 @@ use crate::flutter::{
     motion_at_onset, pk_onset, static_deflection, trace_modes,
 };
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Modes below this share of the energy are left out together, in turn for each number.
 const SHARES: [f64; 4] = [0.1, 0.01, 1e-3, 1e-4];
@@ -27,7 +27,7 @@ pub struct BridgeAnswer {
 }
 
 /// The onset with fewer modes.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LeftOut {
     /// Numbers of the modes that are left.
     pub modes: Vec<usize>,

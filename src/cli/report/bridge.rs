@@ -1,0 +1,354 @@
+//! The page of a whole bridge, from the folder that `bridge flutter` or `demo --bridge` left.
+
+use super::view::{AnswerView, OnsetView};
+use super::{SUMMARY, capital, card, curves::curves_of, digest, known, of_svg, parsed, row};
+use crate::cli::bridge::{BRIDGE_FMU, CURVES, FLUTTER_FIGURE, MOTION_FIGURE, shown_modes};
+use crate::error::Result;
+use crate::files::bridge::{BridgeFile, DampingRatios};
+use crate::flutter::ModeShare;
+use crate::report::{PageCurve, PageFigure, PageSection, StudyPage, study_page};
+use crate::study::bridge::LeftOut;
+use crate::units::ReducedFrequencyRange;
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+
+/// Modes with less of the kinetic energy are not in the table of those that take part.
+const NAMED_SHARE: f64 = 1e-4;
+
+/// What `summary.json` says of a bridge beside its results.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct BridgeFacts {
+    /// Program and version.
+    pub(crate) generator: String,
+    /// Name of the bridge.
+    pub(crate) bridge: String,
+    /// Text of the bridge file.
+    pub(crate) bridge_file: String,
+    /// The command that made the results.
+    pub(crate) command: String,
+    /// The answer in words.
+    pub(crate) answer: AnswerView,
+    /// What limits trust in it.
+    pub(crate) limits: Vec<String>,
+    /// What else was found, in words.
+    pub(crate) comparisons: Vec<String>,
+    /// Number of nodes of the girder.
+    pub(crate) nodes: usize,
+    /// Length of the girder, m.
+    pub(crate) length_m: f64,
+    /// Width to which reduced frequencies refer, m.
+    pub(crate) width_m: f64,
+    /// Where the forces of each section come from.
+    pub(crate) sections: Vec<SectionFacts>,
+    /// The modes without wind.
+    pub(crate) modes: Vec<ModeFacts>,
+    /// Files written.
+    pub(crate) files: Vec<PathBuf>,
+}
+
+/// Where the forces of a section come from.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct SectionFacts {
+    pub(crate) name: String,
+    pub(crate) width_m: f64,
+    pub(crate) source: String,
+    pub(crate) licence: String,
+    /// Reduced frequencies of the tests.
+    pub(crate) tested_range: Option<ReducedFrequencyRange>,
+}
+
+/// A mode without wind.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct ModeFacts {
+    pub(crate) mode: usize,
+    pub(crate) frequency_hz: f64,
+    pub(crate) generalised_mass: f64,
+    pub(crate) damping_ratio: f64,
+    pub(crate) main_motion: String,
+}
+
+/// What is read of `summary.json`.
+#[derive(Deserialize)]
+struct BridgeView {
+    #[serde(flatten)]
+    facts: BridgeFacts,
+    onsets: Vec<OnsetView>,
+    flutter: FlutterView,
+}
+
+#[derive(Deserialize)]
+struct FlutterView {
+    answers: Vec<RouteView>,
+    left_out: Vec<LeftOut>,
+}
+
+#[derive(Deserialize)]
+struct RouteView {
+    motion: Option<MotionView>,
+}
+
+#[derive(Deserialize)]
+struct MotionView {
+    modes: Vec<ModeShare>,
+}
+
+/// The page of the results in `folder`, whose summary is `text`.
+pub(super) fn page(folder: &Path, text: &str) -> Result<String> {
+    let view: BridgeView = parsed(&folder.join(SUMMARY), text)?;
+    let facts = &view.facts;
+    let file = BridgeFile::from_toml(&facts.bridge_file, folder.to_path_buf())?;
+    // what stands there from other runs is not of these results
+    let read = |name: &str| {
+        let own = facts
+            .files
+            .iter()
+            .any(|f| f.file_name().is_some_and(|n| n == name));
+        own.then(|| std::fs::read(folder.join(name)).ok()).flatten()
+    };
+    let text_of = |name: &str| read(name).and_then(|bytes| String::from_utf8(bytes).ok());
+    let route = view.flutter.answers.last();
+    let shares = route.and_then(|r| r.motion.as_ref());
+    let shares = shares.map_or(&[][..], |m| &m.modes);
+    // found in the order of the routes, the model last
+    let own = view
+        .onsets
+        .iter()
+        .rfind(|_| facts.answer.speed_m_s.is_some());
+    let mut page = StudyPage {
+        title: facts.bridge.clone(),
+        subtitle: "Flutter of a whole bridge",
+        kind: "bridge file",
+        beyond: "Amplitudes beyond the tests, turbulence, towers and cables in the wind are not part of this analysis.",
+        generator: facts.generator.clone(),
+        headline: capital(&facts.answer.headline),
+        card: own.map_or(vec![], card),
+        whose: "The answer is that of the models of the sections, by the eigenvalues of all modes in the wind; tables read between their \
+                points stand below for comparison, where there are some. The motion is that of the node that turns most."
+            .to_owned(),
+        limits: facts.limits.clone(),
+        asked: asked(facts, &file),
+        onsets: view.onsets.iter().map(row).collect(),
+        comparisons: facts.comparisons.clone(),
+        sections: vec![
+            taking_part(shares),
+            fewer(&view.flutter.left_out, facts),
+        ],
+        appendix: vec![data(facts), modes(facts)],
+        figures: figures(&text_of),
+        command: facts.command.clone(),
+        licence: licences(facts),
+        onset: facts.answer.speed_m_s,
+        interval: own.and_then(|o| known(&o.interval)),
+        text: facts.bridge_file.clone(),
+        ..StudyPage::default()
+    };
+    page.sections.retain(|s| !s.rows.is_empty());
+    if let Some(curves) = text_of(CURVES) {
+        let (speeds, curves) = curves_of(&curves)?;
+        (page.speeds, page.curves) = (
+            speeds,
+            chosen(curves, &shown_modes(shares, own.map(|o| o.branch.as_str()))),
+        );
+    }
+    page.hashes.push((
+        "bridge file".to_owned(),
+        digest(facts.bridge_file.as_bytes()),
+    ));
+    for name in [BRIDGE_FMU, CURVES] {
+        page.hashes
+            .extend(read(name).map(|bytes| (name.to_owned(), digest(&bytes))));
+    }
+    study_page(&page)
+}
+
+/// The curves of the modes that are drawn in colour, in the same colours.
+fn chosen(curves: Vec<PageCurve>, shown: &[String]) -> Vec<PageCurve> {
+    let place = |curve: &PageCurve| {
+        let own = |name: &String| {
+            curve
+                .label
+                .strip_suffix(name.as_str())
+                .is_some_and(|rest| rest.ends_with(", "))
+        };
+        shown.iter().position(own)
+    };
+    let mut all: Vec<PageCurve> = curves
+        .into_iter()
+        .filter_map(|curve| {
+            let model = place(&curve)?;
+            Some(PageCurve {
+                model,
+                branch: 0,
+                label: shown[model].clone(),
+                ..curve
+            })
+        })
+        .collect();
+    all.sort_by_key(|c| c.model);
+    all
+}
+
+fn asked(facts: &BridgeFacts, file: &BridgeFile) -> Vec<(String, String)> {
+    let damping = match &file.modes.damping_ratio {
+        DampingRatios::Same(ratio) => {
+            format!("damping ratio {} % each", super::round(100.0 * ratio))
+        }
+        DampingRatios::Each(_) => "damping ratios of their own".to_owned(),
+    };
+    let wind = match file.wind.profile.is_empty() {
+        true => "the same along the girder, square to it".to_owned(),
+        false => format!(
+            "a profile along the girder of {} points, square to it",
+            file.wind.profile.len()
+        ),
+    };
+    let search = &file.flutter;
+    let rows = [
+        (
+            "girder",
+            format!("{:.1} m in {} nodes", facts.length_m, facts.nodes),
+        ),
+        (
+            "modes",
+            format!(
+                "{} of {}, {damping}",
+                facts.modes.len(),
+                file.modes.path.display()
+            ),
+        ),
+        ("air density ρ", format!("{} kg/m³", file.air_density_kg_m3)),
+        (
+            "reduced frequency K",
+            format!("ωB/V with B = {} m", facts.width_m),
+        ),
+        ("wind", wind),
+        (
+            "wind speeds",
+            format!(
+                "up to {} m/s, {} looked at",
+                search.speed_max_m_s, search.speeds
+            ),
+        ),
+    ];
+    rows.map(|(name, value)| (name.to_owned(), value)).into()
+}
+
+fn licences(facts: &BridgeFacts) -> String {
+    let mut all: Vec<&str> = facts
+        .sections
+        .iter()
+        .map(|s| s.licence.lines().next().unwrap_or(""))
+        .collect();
+    all.dedup();
+    all.join("; ")
+}
+
+fn taking_part(shares: &[ModeShare]) -> PageSection {
+    let named = shares.iter().filter(|m| m.energy_share >= NAMED_SHARE);
+    PageSection {
+        title: "Modes that take part in the flutter".to_owned(),
+        text: vec![
+            "Shares of the kinetic energy at the onset; phases to the mode with the largest share."
+                .to_owned(),
+        ],
+        header: vec!["mode", "f in still air, Hz", "share %", "phase °"],
+        rows: named
+            .map(|m| {
+                vec![
+                    m.mode.to_string(),
+                    format!("{:.4}", m.frequency_hz),
+                    format!("{:.2}", 100.0 * m.energy_share),
+                    format!("{:.1}", m.phase_deg),
+                ]
+            })
+            .collect(),
+        ..PageSection::default()
+    }
+}
+
+fn fewer(left_out: &[LeftOut], facts: &BridgeFacts) -> PageSection {
+    let full = facts.answer.speed_m_s;
+    let row = |l: &LeftOut| {
+        let numbers: Vec<String> = l.modes.iter().map(usize::to_string).collect();
+        let change = l
+            .onset_m_s
+            .zip(full)
+            .map(|(v, full)| format!("{:+.2}", 100.0 * (v / full - 1.0)));
+        vec![
+            format!("{}", 100.0 * l.below_share),
+            numbers.join(", "),
+            l.onset_m_s
+                .map_or("no flutter".to_owned(), |v| format!("{v:.3}")),
+            change.unwrap_or("–".to_owned()),
+        ]
+    };
+    PageSection {
+        title: "Onset with fewer modes".to_owned(),
+        header: vec!["share from, %", "modes", "V m/s", "change %"],
+        rows: left_out.iter().map(row).collect(),
+        ..PageSection::default()
+    }
+}
+
+fn data(facts: &BridgeFacts) -> PageSection {
+    let row = |s: &SectionFacts| {
+        let tested = s.tested_range.map_or("–".to_owned(), |r| {
+            format!("{:.3} to {:.3}", r.min.full_width(), r.max.full_width())
+        });
+        vec![
+            s.name.clone(),
+            s.width_m.to_string(),
+            tested,
+            s.source.clone(),
+            s.licence.lines().next().unwrap_or("").to_owned(),
+        ]
+    };
+    PageSection {
+        title: "Sections and their data".to_owned(),
+        header: vec![
+            "section",
+            "B m",
+            "tested K = ωB/V",
+            "forces from",
+            "licence",
+        ],
+        rows: facts.sections.iter().map(row).collect(),
+        ..PageSection::default()
+    }
+}
+
+fn modes(facts: &BridgeFacts) -> PageSection {
+    let row = |m: &ModeFacts| {
+        vec![
+            m.mode.to_string(),
+            format!("{:.4}", m.frequency_hz),
+            format!("{:.4e}", m.generalised_mass),
+            format!("{:.3}", 100.0 * m.damping_ratio),
+            m.main_motion.clone(),
+        ]
+    };
+    PageSection {
+        title: "Modes in still air".to_owned(),
+        text: vec!["Generalised masses belong to the shapes as they were read.".to_owned()],
+        header: vec!["mode", "f Hz", "generalised mass kg", "ζ %", "main motion"],
+        rows: facts.modes.iter().map(row).collect(),
+        ..PageSection::default()
+    }
+}
+
+fn figures(read: &dyn Fn(&str) -> Option<String>) -> Vec<PageFigure> {
+    let all = [
+        (
+            FLUTTER_FIGURE,
+            "Frequency and damping over wind speed",
+            "In colour the modes with the largest shares of the kinetic energy at the onset, pale the others.",
+        ),
+        (
+            MOTION_FIGURE,
+            "Motion at flutter",
+            "Displacements along the girder at two moments a quarter of a period apart; rotations count with half the width.",
+        ),
+    ];
+    let drawn = |(stem, title, caption)| of_svg(&read(&format!("{stem}.svg"))?, title, caption);
+    all.into_iter().filter_map(drawn).collect()
+}
