@@ -5,7 +5,7 @@ use super::interrupt::Temporary;
 use super::output::{OutputDir, list};
 use super::progress::Progress;
 use super::thesis_page::thesis_page;
-use super::{account, stages};
+use super::{account, evidence, headline, stages};
 use crate::error::{Error, Result};
 use crate::report::sections_page;
 use crate::study::{Deck, RecordSet, Study, thesis_study_text};
@@ -60,6 +60,14 @@ pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     let _ = writeln!(text, "thesis: {PRINTED_M_S} m/s for both models");
     if let Some(folder) = &args.out {
         stages::flutter_figure(&study, &results, &[], &mut out)?;
+        evidence::write_curves(&study, &results.curves, &mut out)?;
+        let own = models
+            .first()
+            .and_then(|m| Some((m, headline::own_onset(&results, &m.name)?)));
+        if let Some((model, onset)) = own {
+            let at = (onset.at.speed_m_s, onset.at.frequency_hz);
+            evidence::write_response(model, at, &mut out)?;
+        }
         let page = thesis_page(&results, PRINTED_M_S, &out, progress)?;
         let mut left = OutputDir::new(folder)?;
         left.write("thesis.html", sections_page(&page)?)?;

@@ -1,9 +1,11 @@
 //! The figures and tables of the thesis that can be computed, its numbers beside ours.
 
 use super::compare::thesis_comparisons;
+use super::evidence::{RESPONSE, ROOTS};
 use super::laboratory::svg;
 use super::output::OutputDir;
 use super::progress::Progress;
+use super::stages::FIGURE;
 use crate::error::Result;
 use crate::reference::FirstOrderExample;
 use crate::report::{PageSection, SectionsPage, first_order_figures};
@@ -90,14 +92,35 @@ fn onsets(results: &FlutterStudy, printed_m_s: f64, out: &OutputDir) -> PageSect
             format!("{:.4}", o.at.frequency_hz),
         ]
     };
+    let deviations = results.deviations.iter().map(|d| d.explain());
+    let figures = [
+        (
+            RESPONSE,
+            "Figure 4.2: the discrete Laguerre model, released below, at and above the onset",
+        ),
+        (
+            ROOTS,
+            "Figure 4.3: eigenvalues as the wind rises, discrete ones converted to continuous time",
+        ),
+        (
+            FIGURE,
+            "Figures 4.4 and 4.5: frequency and damping over wind speed",
+        ),
+    ];
     PageSection {
         title: "4 Onset of a section with two degrees of freedom".to_owned(),
-        text: results.deviations.iter().map(|d| d.explain()).collect(),
+        text: deviations
+            .chain([
+                "Table 4.1's wind speeds are 17 to 40 m/s; the curves here begin at the lowest speed that can be judged. The thesis prints \
+                 no number of its Figures 4.2 to 4.5 but the onset."
+                    .to_owned(),
+            ])
+            .collect(),
         header: vec!["model", "thesis, V m/s", "here, V m/s", "here, f Hz"],
         rows: results.onsets.iter().map(row).collect(),
-        figures: svg(out, "flutter")
-            .map(|svg| ("Figures 4.2 and 4.3".to_owned(), svg))
+        figures: figures
             .into_iter()
+            .filter_map(|(stem, caption)| Some((caption.to_owned(), svg(out, stem)?)))
             .collect(),
     }
 }

@@ -175,10 +175,17 @@ pub(super) fn section(common: &Common, progress: &Progress) -> Result<PageSectio
         ("Derivatives (Figures 3.23 to 3.26)".into(), second),
     ];
     for (stem, figure) in histories(&results)? {
-        figures.push((format!("Forces (Figures 3.29 to 3.32): {stem}"), figure));
+        let caption = format!("Forces (Figures 3.14 to 3.17, 3.29 to 3.32): {stem}");
+        figures.push((caption, figure));
     }
-    let title = "3.5.5, 3.5.6 Models of one girder, on rebuilt records";
-    Ok(common::section(title, &results.statements, figures))
+    let title = "3.5.2, 3.5.5, 3.5.6 Models of one girder, on rebuilt records";
+    let mut section = common::section(title, &results.statements, figures);
+    section.text.push(
+        "The laboratory's records are not published, so records are rebuilt from the published derivatives: spikes, noise and \
+         resonances of the rig, which the thesis sees in Figures 3.12, 3.13, 3.16 and 3.17, are not in them and cannot be repeated."
+            .to_owned(),
+    );
+    Ok(section)
 }
 
 fn account(results: &ModelsComparison) -> String {
