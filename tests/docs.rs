@@ -1,7 +1,9 @@
 //! Keeps the documentation true: every key of every file format has its line, every link leads somewhere, every page is in the
-//! table of contents, and the tutorial runs.
+//! table of contents, every formula can be shown, and the tutorial runs.
 #![cfg(feature = "cli")]
 
+#[path = "../examples/book_formulas.rs"]
+mod book_formulas;
 #[path = "common/command.rs"]
 #[allow(dead_code)] // each test file needs a part of it
 mod command;
@@ -10,7 +12,7 @@ mod python;
 
 use aerodeck::study::Study;
 use aerodeck::trained_model::TrainedModel;
-use command::{aerodeck, succeeds};
+use command::{aerodeck, listing, succeeds};
 use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -235,6 +237,75 @@ fn links_lead_somewhere_and_every_page_is_in_the_contents() {
             path.display()
         );
     }
+}
+
+#[test]
+fn every_formula_is_latex() {
+    let mut formulas = 0;
+    for path in pages() {
+        let text = fs::read_to_string(&path).unwrap();
+        let book = book_formulas::converted(&text);
+        let book = book.unwrap_or_else(|why| panic!("{}: {why}", path.display()));
+        let here = text.matches("```math").count();
+        assert_eq!(book.matches("<math").count(), here, "{}", path.display());
+        formulas += here;
+    }
+    assert!(formulas > 15, "{formulas}");
+    let wrong = book_formulas::converted("```math\n\\frac{1\n```\n");
+    assert!(wrong.is_err(), "{wrong:?}");
+}
+
+/// Where there is an mdBook, the book is built; every link and every file that a page loads stands in it.
+#[test]
+fn the_book_is_whole() {
+    let folder = TempDir::new().unwrap();
+    let built = Command::new("mdbook")
+        .current_dir(root())
+        .args(["build", "docs", "--dest-dir"])
+        .arg(folder.path())
+        .output();
+    let Ok(output) = built else {
+        eprintln!("no mdBook here: the book is not built");
+        return;
+    };
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{said}");
+    let mut formulas = 0;
+    for name in listing(folder.path())
+        .iter()
+        .filter(|n| n.ends_with(".html"))
+    {
+        let path = folder.path().join(name);
+        let text = fs::read_to_string(&path).unwrap();
+        formulas += text.matches("<math").count();
+        let quoted = |attribute: &str| -> Vec<String> {
+            let parts = text.split(attribute).skip(1);
+            parts
+                .map(|t| t.split('"').next().unwrap().to_owned())
+                .collect()
+        };
+        let loaded = [
+            quoted(" src=\""),
+            quoted("<link rel=\"stylesheet\" href=\""),
+        ]
+        .concat();
+        assert!(
+            loaded.iter().all(|l| !l.contains("://")),
+            "{name}: {loaded:?}"
+        );
+        for target in [quoted("<a href=\""), loaded].concat() {
+            let file = target.split('#').next().unwrap();
+            // the page of a missing address is served from anywhere
+            if file.is_empty() || target.contains("://") || name == "404.html" {
+                continue;
+            }
+            assert!(
+                path.parent().unwrap().join(file).exists(),
+                "{name}: {target}"
+            );
+        }
+    }
+    assert!(formulas > 15, "{formulas}");
 }
 
 #[test]
