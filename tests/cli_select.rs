@@ -35,6 +35,7 @@ fn a_written_study_trains_the_recommended_model_first() {
     succeeds(at, &["tunnel", "study.toml"]);
     let said = succeeds(at, &SELECT);
     assert!(said.contains("wrote ./selected.toml"), "{said}");
+    assert!(said.lines().all(|l| l.chars().count() <= 80), "{said}");
     let study = Study::read(&at.join("selected.toml")).unwrap();
     assert_eq!(study.models[0].name, "selected");
     let before = Study::read(&at.join("study.toml")).unwrap();

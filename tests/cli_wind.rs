@@ -4,7 +4,7 @@
 #[allow(dead_code)] // each test file needs a part of it
 mod command;
 
-use command::{listing, refused, succeeds};
+use command::{flowing, listing, refused, succeeds};
 use serde_json::Value;
 use std::fs;
 use tempfile::TempDir;
@@ -236,13 +236,12 @@ fn buffeting_answers_stable_speeds_and_names_the_others() {
         .collect();
     assert!(answered.len() > 5, "{text}");
     assert!(answered.iter().all(|speed| *speed < 76.68), "{text}");
-    let named: Vec<f64> = text
-        .lines()
-        .filter_map(|line| {
-            line.strip_prefix("at ")?
-                .split_once(" m/s: the section is unstable")
-        })
-        .flat_map(|(speeds, _)| speeds.split(", "))
+    let said = flowing(&text);
+    let mut before: Vec<&str> = said.split(" m/s: the section is unstable").collect();
+    before.pop();
+    let named: Vec<f64> = before
+        .iter()
+        .flat_map(|words| words.rsplit("at ").next().unwrap().split(", "))
         .map(|speed| speed.parse().unwrap())
         .collect();
     assert!(

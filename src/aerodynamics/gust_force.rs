@@ -100,8 +100,15 @@ impl GustForce {
         if self.dofs != dofs || self.coefficients.len() != dofs.len() {
             return Err(Error::input(
                 "gust forces",
-                format!("a row for each degree of freedom of the model, {dofs:?}"),
-                format!("{} rows for {:?}", self.coefficients.len(), self.dofs),
+                format!(
+                    "a row for each degree of freedom of the model, {}",
+                    Dof::names(dofs)
+                ),
+                format!(
+                    "{} rows for {}",
+                    self.coefficients.len(),
+                    Dof::names(&self.dofs)
+                ),
             ));
         }
         for (row, dof) in self.coefficients.iter().zip(dofs) {

@@ -61,7 +61,6 @@ pub(crate) fn chain(
         let _ = writeln!(text, "{}", stepped.explain());
     }
     text.push_str(&failures(&summary.failed));
-    text = wrapped(&text);
     let _ = writeln!(text, "\nFiles");
     text.push_str(files);
     text
@@ -83,57 +82,6 @@ fn without_remarks(fit: &str) -> String {
         let _ = writeln!(short, "          {count} remark(s) more with --verbose");
     }
     short
-}
-
-/// Columns of a terminal that nobody has widened.
-const COLUMNS: usize = 80;
-/// Width of the words that begin an entry.
-const HANGING: usize = 10;
-
-/// Long lines cut at spaces; what follows stands under the text of its entry.
-pub(super) fn wrapped(text: &str) -> String {
-    let mut all = String::with_capacity(text.len());
-    for line in text.lines() {
-        if line.chars().count() <= COLUMNS {
-            all.push_str(line);
-            all.push('\n');
-            continue;
-        }
-        let entry = line.chars().take(HANGING).count() == HANGING
-            && line.chars().nth(HANGING - 1) == Some(' ')
-            && line.chars().nth(HANGING).is_some_and(|c| c != ' ');
-        let indent = if entry { HANGING } else { 2 };
-        let start: String = line.chars().take_while(|c| *c == ' ').collect();
-        let (mut row, mut length) = (start.clone(), start.len());
-        // the words that begin an entry keep their distance
-        let head: String = line.chars().take(HANGING).collect();
-        let body = if entry && start.is_empty() {
-            (row, length) = (head.clone(), HANGING);
-            &line[head.len()..]
-        } else {
-            line
-        };
-        let mut first = true;
-        for word in body.split_whitespace() {
-            let width = word.chars().count();
-            if !first && length + 1 + width > COLUMNS {
-                all.push_str(&row);
-                all.push('\n');
-                (row, length) = (" ".repeat(indent), indent);
-                first = true;
-            }
-            if !first {
-                row.push(' ');
-                length += 1;
-            }
-            row.push_str(word);
-            length += width;
-            first = false;
-        }
-        all.push_str(&row);
-        all.push('\n');
-    }
-    all
 }
 
 /// One fit.
@@ -368,22 +316,4 @@ pub(crate) fn deviations(all: &[Deviation]) -> String {
 /// A length without the digits that its computation left behind, m.
 pub(crate) fn to_tenths_of_mm(length_m: f64) -> f64 {
     (length_m * 1e4).round() / 1e4
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{COLUMNS, wrapped};
-
-    #[test]
-    fn long_lines_hang_under_their_entry_and_lose_no_word() {
-        let long = "word ".repeat(40);
-        let text =
-            format!("Deck      {long}\n          note: {long}\nwarning: {long}\nshort  as it is\n");
-        let cut = wrapped(&text);
-        assert!(cut.lines().all(|l| l.chars().count() <= COLUMNS), "{cut}");
-        let words = |t: &str| t.split_whitespace().map(str::to_owned).collect::<Vec<_>>();
-        assert_eq!(words(&cut), words(&text));
-        assert!(cut.starts_with("Deck      word") && cut.contains("\n          word"));
-        assert!(cut.ends_with("short  as it is\n"));
-    }
 }

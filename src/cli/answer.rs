@@ -1,5 +1,6 @@
 //! What a command has to say, for people and for machines.
 
+use super::wrapping::wrapped;
 use crate::error::{Error, Result};
 use serde::Serialize;
 
@@ -9,6 +10,7 @@ pub struct Answer {
     text: String,
     json: serde_json::Value,
     passed: bool,
+    verbatim: bool,
 }
 
 impl Answer {
@@ -22,6 +24,7 @@ impl Answer {
             text,
             json,
             passed: true,
+            verbatim: false,
         })
     }
 
@@ -32,9 +35,19 @@ impl Answer {
         self
     }
 
-    /// Readable account, ending in a new line.
-    pub(crate) fn text(&self) -> &str {
-        &self.text
+    /// The same answer with lines that are not to be cut: another program reads them.
+    #[must_use]
+    pub(crate) fn verbatim(mut self) -> Self {
+        self.verbatim = true;
+        self
+    }
+
+    /// Readable account, ending in a new line, for a terminal of 80 columns.
+    pub(crate) fn shown(&self) -> String {
+        match self.verbatim {
+            true => self.text.clone(),
+            false => wrapped(&self.text),
+        }
     }
 
     /// The same as indented JSON.

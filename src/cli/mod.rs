@@ -40,6 +40,7 @@ mod train;
 mod tunnel;
 mod validate;
 mod wind;
+mod wrapping;
 
 pub use answer::Answer;
 
@@ -157,7 +158,7 @@ fn print(answer: &Answer, json: bool) -> u8 {
     let said = if json {
         say(&format!("{}\n", answer.json()))
     } else {
-        say(answer.text())
+        say(&answer.shown())
     };
     match said {
         Err(error) => {
@@ -216,7 +217,7 @@ fn completions(shell: Shell) -> Result<Answer> {
     clap_complete::generate(shell, &mut Cli::command(), "aerodeck", &mut script);
     let script = String::from_utf8_lossy(&script).into_owned();
     let value = serde_json::json!({ "shell": shell.to_string(), "script": script });
-    Answer::new(script, &value)
+    Ok(Answer::new(script, &value)?.verbatim())
 }
 
 fn report(error: &Error, json: bool) -> u8 {

@@ -3,9 +3,9 @@
 use super::answer::Answer;
 use super::interrupt::{Temporary, uninterrupted};
 use super::lock::{FolderLock, LOCK_FILE};
+use super::wrapping::COLUMNS;
 use crate::error::{Error, Result};
 use crate::wind_tunnel::{Record, write_record};
-use std::fmt::Write as _;
 use std::fs;
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
@@ -304,21 +304,27 @@ fn put_all(from: &Path, to: &Path) -> Result<()> {
     Ok(())
 }
 
-/// The files as lines of text.
+/// The files as lines of text; the folder of all of them once where lines would be longer than a terminal.
 pub(crate) fn list(written: &[Written]) -> String {
-    let mut text = String::new();
-    for file in written {
-        let path = file.path.display();
-        let _ = match (file.kept, file.replaced) {
-            (true, _) => writeln!(
-                text,
-                "  kept {path}: it differs from what this command writes (--force replaces it)"
-            ),
-            (false, true) => writeln!(text, "  replaced {path}"),
-            (false, false) => writeln!(text, "  wrote {path}"),
-        };
+    let line = |file: &Written, path: &Path| {
+        let path = path.display();
+        match (file.kept, file.replaced) {
+            (true, _) => format!("  kept {path}: it differs (--force replaces it)\n"),
+            (false, true) => format!("  replaced {path}\n"),
+            (false, false) => format!("  wrote {path}\n"),
+        }
+    };
+    let lines: Vec<String> = written.iter().map(|w| line(w, &w.path)).collect();
+    if lines.iter().all(|l| l.chars().count() <= COLUMNS) {
+        return lines.concat();
     }
-    text
+    let folders = written.iter().filter_map(|w| w.path.parent());
+    let Some(folder) = folders.min_by_key(|folder| folder.components().count()) else {
+        return lines.concat();
+    };
+    let inside = |w: &Written| line(w, w.path.strip_prefix(folder).unwrap_or(&w.path));
+    let inside: String = written.iter().map(inside).collect();
+    format!("  in {}\n{inside}", folder.display())
 }
 
 #[cfg(test)]

@@ -1,6 +1,5 @@
 //! `aerodeck process`: from the raw runs of a campaign to records, derivatives and a study.
 
-use super::account::wrapped;
 use super::answer::Answer;
 use super::figures;
 use super::laboratory::{file_name, laboratory_page, line};
@@ -147,7 +146,7 @@ pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     let page = laboratory_page(&raw, &processed.report, derivatives.as_ref(), known);
     out.write(super::report::REPORT, sections_page(&page)?)?;
     let remarks: String = notes.iter().map(|n| format!("  note: {n}\n")).collect();
-    let text = wrapped(&(account(&raw, &processed, derivatives.as_ref()) + &remarks));
+    let text = account(&raw, &processed, derivatives.as_ref()) + &remarks;
     let value = serde_json::json!({
         "report": processed.report,
         "derivatives": derivatives,

@@ -2,7 +2,6 @@
 
 mod account;
 
-use super::account::wrapped;
 use super::answer::Answer;
 use super::common::StudyArgs;
 use super::output::{OutputDir, Written, list};
@@ -103,7 +102,7 @@ pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     }
     let mut written = out.commit()?;
     let head = format!("{}\n{}\n\n", study.name, deck.description());
-    let mut text = wrapped(&head) + &account(&selection);
+    let mut text = head + &account(&selection);
     if let Some(name) = &args.write {
         match recommended(&args.choice, &study, &selection) {
             Ok(block) => written.extend(write_study(args, &study, block, name)?),

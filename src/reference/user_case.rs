@@ -298,7 +298,7 @@ impl UserFigure {
             (false, _) => Err(Error::input(
                 place,
                 "`speed_m_s` and `dof` with `mode_frequency` and `mode_damping_ratio` only",
-                format!("them with `{:?}`", self.quantity),
+                format!("them with the {}", self.quantity.words().0),
             )),
         }
     }

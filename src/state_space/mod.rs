@@ -56,12 +56,13 @@ impl<T> StateSpace<T> {
         let n = a.nrows();
         if a.ncols() != n || b.nrows() != n || c.ncols() != n || d.shape() != (c.nrows(), b.ncols())
         {
+            let shape = |m: &DMatrix<f64>| format!("{}x{}", m.nrows(), m.ncols());
             return Err(Error::Numerical(format!(
-                "state space: A is {:?}, B {:?}, C {:?}, D {:?}; A must be square and B, C, D fit it",
-                a.shape(),
-                b.shape(),
-                c.shape(),
-                d.shape()
+                "state space: A is {}, B {}, C {}, D {}; A must be square and B, C, D fit it",
+                shape(&a),
+                shape(&b),
+                shape(&c),
+                shape(&d)
             )));
         }
         if ![&a, &b, &c, &d]

@@ -4,6 +4,7 @@ use super::records::Record;
 use super::virtual_forces::response;
 use crate::aerodynamics::Transfer;
 use crate::error::{Error, Result, positive};
+use crate::section::Dof;
 
 /// Self-excited forces (N/m, N·m/m; one vector a force, one number a sample) that `model` predicts for the motion of
 /// `record`: the exact linear response, summed over the motions, by Fourier transform of the motion padded with zeros.
@@ -20,8 +21,8 @@ pub(crate) fn predicted_forces(model: &dyn Transfer, record: &Record) -> Result<
     if model.dofs() != h.dofs {
         return Err(Error::input(
             place("dofs"),
-            format!("those of the model, {:?}", model.dofs()),
-            format!("{:?}", h.dofs),
+            format!("those of the model, {}", Dof::names(model.dofs())),
+            Dof::names(&h.dofs),
         ));
     }
     let width = positive(&place("width_m"), h.width_m)?;
@@ -36,7 +37,7 @@ pub(crate) fn predicted_forces(model: &dyn Transfer, record: &Record) -> Result<
             other.len().to_string(),
         ));
     }
-    let dimensionless = |(d, m): (&crate::section::Dof, &Vec<f64>)| -> Vec<f64> {
+    let dimensionless = |(d, m): (&Dof, &Vec<f64>)| -> Vec<f64> {
         m.iter().map(|x| d.motion_scale(width) * x).collect()
     };
     let motion: Vec<_> = h

@@ -60,7 +60,11 @@ impl LaguerreModel {
                 return Err(Error::input(
                     format!("Laguerre model: {name}"),
                     format!("a finite {n}x{n} matrix"),
-                    format!("{m:?}"),
+                    format!(
+                        "{}x{}, or a number that is not finite",
+                        m.nrows(),
+                        m.ncols()
+                    ),
                 ));
             }
         }
@@ -78,9 +82,10 @@ impl LaguerreModel {
                         term.poles.len()
                     ),
                     format!(
-                        "input {}, coefficients {:?}",
+                        "input {}, {}x{} coefficients, or one that is not finite",
                         term.input,
-                        term.coefficients.shape()
+                        term.coefficients.nrows(),
+                        term.coefficients.ncols()
                     ),
                 ));
             }

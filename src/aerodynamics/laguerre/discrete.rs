@@ -167,7 +167,12 @@ impl DiscreteLaguerre {
                     format!(
                         "an input below {n} and {n} rows of finite numbers, at least one filter"
                     ),
-                    format!("input {}, shape {:?}", term.input, c.shape()),
+                    format!(
+                        "input {}, {}x{} coefficients, or one that is not finite",
+                        term.input,
+                        c.nrows(),
+                        c.ncols()
+                    ),
                 ));
             }
         }

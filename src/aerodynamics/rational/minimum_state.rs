@@ -55,7 +55,11 @@ impl MinimumStateModel {
                 return Err(Error::input(
                     format!("{PLACE}: {name}"),
                     format!("a finite {}x{} matrix", shape.0, shape.1),
-                    format!("shape {:?} or a number that is not finite", matrix.shape()),
+                    format!(
+                        "{}x{}, or a number that is not finite",
+                        matrix.nrows(),
+                        matrix.ncols()
+                    ),
                 ));
             }
         }
@@ -161,7 +165,7 @@ mod tests {
         model.e = DMatrix::zeros(3, 2);
         assert_eq!(
             model.validate().unwrap_err().to_string(),
-            "minimum-state model: e: expected a finite 2x2 matrix, found shape (3, 2) or a number that is not finite"
+            "minimum-state model: e: expected a finite 2x2 matrix, found 3x2, or a number that is not finite"
         );
     }
 }

@@ -1,6 +1,5 @@
 //! A selection in words and figures.
 
-use crate::cli::account::wrapped;
 use crate::error::Result;
 use crate::report::{Figure, HeatMap, heat_map_figure};
 use crate::selection::{Cell, CellMetrics, MetricGrid, Selection};
@@ -19,13 +18,13 @@ pub(crate) fn account(selection: &Selection) -> String {
     );
     let _ = writeln!(
         text,
-        "{:>3} {:>7} {:>9} {:>9} {:>11} {:>11}  verdict",
+        "{:>3} {:>7} {:>9} {:>9} {:>9} {:>9}  verdict",
         "L", selection.symbol, "residual", "left out", "speed out", "freq. out",
     );
     for at in selection.free.iter().flatten() {
         text.push_str(&line(&selection.cells[*at]));
     }
-    let _ = write!(text, "\nRecommended\n{}", wrapped(&selection.reason));
+    let _ = write!(text, "\nRecommended\n{}\n", selection.reason);
     if let Some(recommended) = &selection.recommended {
         text.push_str(&line(&selection.cells[recommended.cell]));
     }
@@ -38,13 +37,16 @@ fn line(cell: &Cell) -> String {
     let onset = cell
         .onset_m_s
         .map_or("no onset".to_owned(), |v| format!("onset {v:.3} m/s"));
-    let verdict = if cell.rejected.is_empty() {
-        onset
-    } else {
-        format!("REFUSED: {} ({onset})", cell.rejected.join("; "))
+    // reasons stand below the row
+    let (verdict, reasons) = match cell.rejected.is_empty() {
+        true => (onset, String::new()),
+        false => (
+            format!("REFUSED ({onset})"),
+            format!("          {}\n", cell.rejected.join("; ")),
+        ),
     };
     format!(
-        "{:>3} {:>7.3} {:>9} {:>9} {:>11} {:>11}  {verdict}\n",
+        "{:>3} {:>7.3} {:>9} {:>9} {:>9} {:>9}  {verdict}\n{reasons}",
         cell.filters,
         cell.value,
         percent(cell.residual),

@@ -68,9 +68,9 @@ fn masses(path: &Path, modes: usize) -> Result<Vec<f64>> {
         return Ok(masses);
     }
     let found = format!(
-        "{} numbers, the least {:?}",
+        "{} numbers, the least {}",
         masses.len(),
-        masses.iter().copied().reduce(f64::min)
+        masses.iter().copied().fold(f64::INFINITY, f64::min)
     );
     Err(Error::input(
         "",

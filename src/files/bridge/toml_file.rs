@@ -351,7 +351,7 @@ impl SectionBlock {
             return Err(Error::input(
                 format!("{place}.motions"),
                 expected,
-                format!("{:?}", self.motions),
+                Dof::names(&self.motions),
             ));
         }
         Ok(())

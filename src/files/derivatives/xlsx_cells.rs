@@ -110,7 +110,7 @@ impl Book {
                 DataRef::Int(x) => Cell::Number(*x as f64),
                 DataRef::String(text) => Cell::Text(text.clone()),
                 DataRef::SharedString(text) => Cell::Text((*text).to_owned()),
-                other => Cell::Text(format!("{other:?}")),
+                other => Cell::Text(calamine::Data::from(other.clone()).to_string()),
             };
             if matches!(&content, Cell::Text(text) if text.trim().is_empty()) {
                 continue;

@@ -94,7 +94,13 @@ pub(in crate::fmu) fn instantiate(
     let utf8 = |place: &str, text: Option<&CStr>| {
         text.and_then(|t| t.to_str().ok())
             .map(str::to_owned)
-            .ok_or_else(|| wrong(place, "a UTF-8 text", format!("{text:?}")))
+            .ok_or_else(|| {
+                wrong(
+                    place,
+                    "a UTF-8 text",
+                    text.map_or("NULL".into(), |t| t.to_string_lossy().into_owned()),
+                )
+            })
     };
     let guid = utf8("GUID", guid)?;
     // NULL as an empty text: the archive is looked for around the library itself
@@ -147,8 +153,9 @@ pub unsafe extern "C" fn fmi2SetDebugLogging(
             // SAFETY: as above
             let name = unsafe { text(*name) };
             let category = name.and_then(Category::named).ok_or_else(|| {
+                let name = name.map_or("NULL".to_owned(), |n| format!("`{}`", n.to_string_lossy()));
                 Refusal::call(format!(
-                    "log category: expected one of the description, found {name:?}"
+                    "log category: expected one of the description, found {name}"
                 ))
             })?;
             selected.push(category);

@@ -85,8 +85,8 @@ fn check(header: &RecordHeader, first: &RecordHeader) -> Result<()> {
         positive(&place(key), value)?;
     }
     if header.dofs != first.dofs {
-        let expected = format!("{:?}, as in the first record", first.dofs);
-        let found = format!("{:?}", header.dofs);
+        let expected = format!("{}, as in the first record", Dof::names(&first.dofs));
+        let found = Dof::names(&header.dofs);
         return Err(Error::input(place("dofs"), expected, found));
     }
     if (header.width_m / first.width_m - 1.0).abs() > 1e-6 {

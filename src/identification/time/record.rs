@@ -117,8 +117,8 @@ fn check_header(header: &RecordHeader, dofs: &[Dof]) -> Result<()> {
     if header.dofs.len() != dofs.len() || dofs.is_empty() {
         return Err(Error::input(
             place("dofs"),
-            format!("{dofs:?}, each once, as in the first record"),
-            format!("{:?}", header.dofs),
+            format!("{}, each once, as in the first record", Dof::names(dofs)),
+            Dof::names(&header.dofs),
         ));
     }
     Ok(())

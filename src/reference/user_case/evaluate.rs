@@ -70,8 +70,11 @@ impl Loaded {
         if model.dofs() != structure.dofs {
             return Err(Error::input(
                 "section",
-                format!("the degrees of freedom of the forces, {:?}", model.dofs()),
-                format!("{:?}", structure.dofs),
+                format!(
+                    "the degrees of freedom of the forces, {}",
+                    Dof::names(model.dofs())
+                ),
+                Dof::names(&structure.dofs),
             ));
         }
         Ok(Self {
@@ -131,8 +134,8 @@ impl Loaded {
             .iter()
             .position(|d| Some(*d) == figure.dof);
         let dof = place.ok_or_else(|| {
-            let expected = format!("one of {:?}", self.structure.dofs);
-            Error::input("dof", expected, format!("{:?}", figure.dof))
+            let expected = format!("one of {}", Dof::names(&self.structure.dofs));
+            Error::input("dof", expected, figure.dof.map_or("none", Dof::name))
         })?;
         let mode = quasi_pk_mode(&self.structure, self.model.as_ref(), speed, dof)?;
         let k = ReducedFrequency::from_circular(mode.im, self.structure.width_m, speed);

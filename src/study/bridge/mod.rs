@@ -199,7 +199,7 @@ fn ends(block: &SectionBlock, modes: &Modes, section: usize) -> Result<(usize, u
         return Err(Error::input(
             format!("section[{section}].to"),
             expected,
-            format!("{:?}", block.to),
+            block.to.clone().unwrap_or_default(),
         ));
     }
     Ok(ends)

@@ -139,7 +139,10 @@ impl ProcessingOptions {
                 return wrong(
                     "dofs",
                     "each at most once, at least one",
-                    format!("{dofs:?}"),
+                    match dofs.is_empty() {
+                        true => "none".to_owned(),
+                        false => Dof::names(dofs),
+                    },
                 );
             }
         }

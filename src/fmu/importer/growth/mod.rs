@@ -297,9 +297,9 @@ impl Run {
             periods *= 2.0;
         }
         Err(Error::Numerical(format!(
-            "growth at {speed} m/s: no steady rate after {:.0} s; last estimate {:?} 1/s",
+            "growth at {speed} m/s: no steady rate after {:.0} s; last estimate {}",
             samples.len() as f64 / self.references.len() as f64 * self.step,
-            last.map(|g| g.rate_per_s)
+            last.map_or("none".to_owned(), |g| format!("{:.6} 1/s", g.rate_per_s))
         )))
     }
 

@@ -296,7 +296,7 @@ impl Slave {
             _ => Err(Error::input(
                 format!("variable `{name}`"),
                 format!("a value of type {kind:?}"),
-                format!("{value:?}"),
+                format!("`{value}`"),
             )),
         }
     }
