@@ -18,6 +18,9 @@
     c.shown = document.createElement("output");
     c.input = Object.assign(document.createElement("input"),
       { type: "range", min: c.damping ? 0 : 50, max: c.damping ? 1000 : 200, step: c.damping ? 5 : 1 });
+    // a label names the first field in it, which is the output
+    label.htmlFor = c.input.id = `live-${c.part ?? "wind"}-${c.key ?? "speed"}`;
+    c.input.ariaLabel = c.name;
     c.base = c.own || 0.003;
     c.start = c.own ? 100 : 0;
     c.input.value = c.start;

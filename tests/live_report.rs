@@ -187,5 +187,13 @@ fn in_a_browser(page: &Path) {
     };
     assert_eq!(dom.matches("<canvas").count(), 4, "charts");
     assert_eq!(dom.matches("type=\"range\"").count(), 7, "sliders");
+    // each is named for those who do not see it, and by its label
+    for (id, name) in [
+        ("vertical-mass_kg_m", "mass m"),
+        ("wind-speed", "highest wind speed"),
+    ] {
+        assert!(dom.contains(&format!("for=\"live-{id}\"")), "{id}");
+        assert!(dom.contains(&format!("aria-label=\"{name}\"")), "{name}");
+    }
     assert!(dom.contains("Flutter onset 36.88 m/s (+0.0 % against this report)"));
 }
