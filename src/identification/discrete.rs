@@ -1,7 +1,8 @@
 //! The thesis's discrete Laguerre model fitted to records (2.30–2.33, 3.2–3.6).
 
+use super::form::{PoleSearch, number_of_filters};
 use super::least_squares::BLOCK_ROWS;
-use super::options::{PoleSearch, TimeWeights, number_of_filters};
+use super::options::TimeWeights;
 use super::own::{OwnDecay, StaticTerm, describe_own, each_once, place_of};
 use super::report::{AlphaGuideline, FitReport, MemoryReport};
 use super::time::fitted::Fitted;

@@ -1,7 +1,6 @@
 //! The forms that a continuous model may have.
 
-use super::options::number_of_filters;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, positive};
 use serde::{Deserialize, Serialize};
 
 /// Feed-through of the motion (`e0`), its rate (`e1`) and its acceleration (`e2`), each on or off.
@@ -274,4 +273,115 @@ impl Form {
         }
         self.validate()
     }
+}
+
+/// Where the poles (lags) come from: fixed, or searched for within bounds.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct PoleSearch {
+    /// Poles to be used as they are; one for Laguerre filters, else one a filter. For lags of each force either one list
+    /// for all of them, or the lists of the forces one after the other.
+    pub fixed: Option<Vec<f64>>,
+    /// Where the nonlinear step starts; left out, the best point of a grid.
+    pub start: Option<Vec<f64>>,
+    /// Lower bound; left out, half the lowest tested `K`.
+    pub min: Option<f64>,
+    /// Upper bound; left out, twice the highest tested `K`.
+    pub max: Option<f64>,
+    /// Least ratio of neighbouring poles when there are several: closer ones have nearly equal columns, whose
+    /// coefficients grow and cancel.
+    pub min_ratio: f64,
+    /// Points of the first, logarithmic grid (one pole; fewer an axis for several).
+    pub grid_points: usize,
+}
+
+impl Default for PoleSearch {
+    fn default() -> Self {
+        Self {
+            fixed: None,
+            start: None,
+            min: None,
+            max: None,
+            min_ratio: 1.5,
+            grid_points: 41,
+        }
+    }
+}
+
+impl PoleSearch {
+    /// No search: these poles.
+    pub fn fixed(poles: &[f64]) -> Self {
+        Self {
+            fixed: Some(poles.to_vec()),
+            ..Self::default()
+        }
+    }
+
+    pub(crate) fn validate(&self, form: &Form) -> Result<()> {
+        for (key, list) in [("fixed", &self.fixed), ("start", &self.start)] {
+            let Some(list) = list else { continue };
+            let place = format!("poles.{key}");
+            let several = key == "fixed" && form.poles_per_force();
+            let fits = if several {
+                !list.is_empty() && list.len().is_multiple_of(form.free_poles())
+            } else {
+                list.len() == form.free_poles()
+            };
+            if !fits {
+                let expected = format!("{} number(s) for {}", form.free_poles(), form.describe());
+                return Err(Error::input(place, expected, list.len().to_string()));
+            }
+            for p in list {
+                positive(&place, *p)?;
+            }
+        }
+        for (key, bound) in [("poles.min", self.min), ("poles.max", self.max)] {
+            if let Some(bound) = bound {
+                positive(key, bound)?;
+            }
+        }
+        if let (Some(min), Some(max)) = (self.min, self.max)
+            && min >= max
+        {
+            return Err(Error::input(
+                "poles.max",
+                "more than poles.min",
+                max.to_string(),
+            ));
+        }
+        if !(self.min_ratio > 1.0 && self.min_ratio.is_finite()) {
+            return Err(Error::input(
+                "poles.min_ratio",
+                "more than 1",
+                self.min_ratio.to_string(),
+            ));
+        }
+        if self.grid_points < 5 {
+            return Err(Error::input(
+                "poles.grid_points",
+                "at least 5",
+                self.grid_points.to_string(),
+            ));
+        }
+        Ok(())
+    }
+}
+
+/// Filters or lags of one chain at most: ten times what any measured deck supports, and still fitted in seconds.
+const MOST_FILTERS: usize = 100;
+
+/// Checks a number of filters or lags.
+///
+/// # Errors
+/// [`Error::Input`] naming `place` for none, and for more than any data could support.
+pub(crate) fn number_of_filters(place: &str, count: usize) -> Result<()> {
+    if (1..=MOST_FILTERS).contains(&count) {
+        return Ok(());
+    }
+    let expected = if count == 0 {
+        "at least 1".into()
+    } else {
+        format!("at most {MOST_FILTERS}")
+    };
+    Err(Error::input(place, expected, count.to_string()))
 }

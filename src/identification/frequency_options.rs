@@ -3,7 +3,7 @@
 use super::basis::index_of;
 use super::dissipative::Constraints;
 use super::form::Form;
-use super::options::PoleSearch;
+use super::form::PoleSearch;
 use super::own::{OwnFilters, validate_own};
 use crate::error::{Error, Result, non_negative};
 use crate::section::Dof;

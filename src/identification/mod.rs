@@ -10,6 +10,7 @@ mod degenerate;
 pub mod derivatives;
 pub(crate) mod discrete;
 pub(crate) mod dissipative;
+mod entry_report;
 pub(crate) mod form;
 mod frequency;
 pub(crate) mod frequency_options;
@@ -33,17 +34,17 @@ pub(crate) use discrete::fit_discrete;
 pub use dissipative::{
     ActiveConstraint, ConstraintCost, ConstraintKind, ConstraintReport, Constraints, OnsetEffect,
 };
-pub use form::{FeedThrough, Form};
+pub use entry_report::{Coefficient, EntryReport};
+pub use form::{FeedThrough, Form, PoleSearch};
 pub use frequency::fit_table;
 pub use frequency_options::{FrequencyFit, FrequencyWeights, QuasiSteadyLimit};
 pub use grid::{CellFit, Grid, GridAxis, StretchLabel};
-pub use options::{PoleSearch, TimeFit, TimeWeights};
+pub use options::{TimeFit, TimeWeights};
 pub use own::{OwnDecay, OwnFilters, StaticTerm};
 pub use records::fit_records;
 pub(crate) use report::CANCELLATION_LIMIT;
 pub use report::{
-    AlphaGuideline, Coefficient, EntryReport, FitReport, MemoryReport, OrderReport, SearchPoint,
-    SearchReport, StaticReport,
+    AlphaGuideline, FitReport, MemoryReport, OrderReport, SearchPoint, SearchReport, StaticReport,
 };
 pub use samples::sample_model;
 pub(crate) use time::pass::OnProgress;

@@ -5,7 +5,7 @@
 
 use super::basis::index_of;
 use super::form::Form;
-use super::options::PoleSearch;
+use super::form::PoleSearch;
 use crate::error::{Error, Result};
 use crate::section::Dof;
 use serde::{Deserialize, Serialize};

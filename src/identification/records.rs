@@ -3,10 +3,11 @@
 use super::basis::{Basis, assemble};
 use super::degenerate::note_lags;
 use super::dissipative::ConstraintReport;
+use super::entry_report::EntryReport;
 use super::form::Form;
 use super::options::TimeFit;
 use super::own::describe_own;
-use super::report::{EntryReport, FitReport, MemoryReport, OrderReport, SearchReport};
+use super::report::{FitReport, MemoryReport, OrderReport, SearchReport};
 use super::time::continuous::{RecordFit, Rows};
 use super::time::fitted::Fitted;
 use super::time::pass::OnProgress;

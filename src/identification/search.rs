@@ -5,7 +5,7 @@
 //! legal — the logarithmic gaps between lower bound, poles and upper bound are shares of what the least ratio of
 //! neighbours leaves, and the shares are a softmax of free numbers — from the best points of a grid.
 
-use super::options::PoleSearch;
+use super::form::PoleSearch;
 use super::report::{SearchPoint, SearchReport};
 use crate::error::{Error, Result};
 use crate::section::Dof;

@@ -23,7 +23,6 @@ const CIRCLES: &[&str] = &[
     "src/fmu/importer/mod.rs",
     "src/fmu/instance.rs",
     "src/fmu/variables.rs",
-    "src/identification/basis.rs",
     "src/reference/user_case.rs",
     "src/report/legend.rs",
     "src/response.rs",

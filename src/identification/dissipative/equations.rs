@@ -1,16 +1,47 @@
 //! Equations that coefficients have to satisfy besides: symmetric added mass, limits at K → 0.
 
-use super::tangent::take_away;
-use super::{ActiveConstraint, ConstraintKind, LinearEntry, Wishes};
+use super::report::{ActiveConstraint, ConstraintKind};
+use super::tangent::{LinearEntry, take_away};
 use crate::error::{Error, Result};
 use crate::identification::basis::Basis;
-use crate::identification::dissipative::Constraints;
+use crate::section::Dof;
 use nalgebra::DVector;
+use serde::{Deserialize, Serialize};
 
 /// Part of an equation outside the others below which it repeats them.
 const RANK_TOLERANCE: f64 = 1e-10;
 /// Relative difference to which a repeated equation has to agree with the others.
 const AGREEMENT: f64 = 1e-8;
+
+/// What a fitted model has to be besides close to the data.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Constraints {
+    /// It takes energy out of every real mode shape above the tested range, and its added mass is a mass.
+    #[default]
+    Dissipative,
+    /// Nothing: least squares alone.
+    None,
+}
+
+/// What is asked of a fit besides.
+#[derive(Debug, Clone)]
+pub(crate) struct Wishes {
+    /// Degrees of freedom, in the order of rows and columns.
+    pub dofs: Vec<Dof>,
+    /// Highest tested reduced frequency.
+    pub k_max: f64,
+    pub constraints: Constraints,
+    /// Value and slope at K → 0 of every transfer function, row by row; empty for none.
+    pub limits: Vec<[Option<f64>; 2]>,
+}
+
+impl Wishes {
+    /// Whether anything is asked.
+    pub(crate) fn any(&self) -> bool {
+        self.constraints == Constraints::Dissipative || !self.limits.is_empty()
+    }
+}
 
 /// One equation: the sum of rows over the coefficients of transfer functions is `target`.
 #[derive(Debug, Clone)]

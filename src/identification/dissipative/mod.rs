@@ -27,14 +27,15 @@ use super::basis::Basis;
 use crate::error::{Error, Result};
 use crate::section::Dof;
 use edge::Edge;
+pub use equations::Constraints;
+pub(crate) use equations::Wishes;
 use equations::{Equation, equations, satisfy};
 use least_distance::{Inequality, shortest};
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
-use serde::{Deserialize, Serialize};
 
 pub use report::{ActiveConstraint, ConstraintCost, ConstraintKind, ConstraintReport, OnsetEffect};
-pub(crate) use tangent::Tangent;
 use tangent::take_away;
+pub(crate) use tangent::{LinearEntry, Tangent};
 
 /// Reduced frequencies at which condition 3 is stated.
 const SAMPLES: usize = 40;
@@ -50,56 +51,6 @@ const TOLERANCE: f64 = 1e-9;
 const ACTIVE: f64 = 1e-7;
 /// Rounds of cutting planes; a few are the rule.
 const ROUNDS: usize = 200;
-/// What a fitted model has to be besides close to the data.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Constraints {
-    /// It takes energy out of every real mode shape above the tested range, and its added mass is a mass.
-    #[default]
-    Dissipative,
-    /// Nothing: least squares alone.
-    None,
-}
-
-/// What is asked of a fit besides.
-#[derive(Debug, Clone)]
-pub(crate) struct Wishes {
-    /// Degrees of freedom, in the order of rows and columns.
-    pub dofs: Vec<Dof>,
-    /// Highest tested reduced frequency.
-    pub k_max: f64,
-    pub constraints: Constraints,
-    /// Value and slope at K → 0 of every transfer function, row by row; empty for none.
-    pub limits: Vec<[Option<f64>; 2]>,
-}
-
-impl Wishes {
-    /// Whether anything is asked.
-    pub(crate) fn any(&self) -> bool {
-        self.constraints == Constraints::Dissipative || !self.limits.is_empty()
-    }
-}
-
-/// One transfer function of a linear fit without constraints: its coefficients are `values + spread · u` with the free
-/// numbers `u` from `at` on, in units in which the joint objective grows by `‖u‖²`.
-#[derive(Debug, Clone)]
-pub(crate) struct LinearEntry {
-    pub values: Vec<f64>,
-    pub spread: DMatrix<f64>,
-    pub at: usize,
-}
-
-impl LinearEntry {
-    /// Coefficients at given free numbers.
-    pub(crate) fn coefficients(&self, u: &DVector<f64>) -> Vec<f64> {
-        let moved = &self.spread * u.rows(self.at, self.spread.ncols());
-        self.values.iter().zip(&moved).map(|(v, d)| v + d).collect()
-    }
-
-    fn end(&self) -> usize {
-        self.at + self.spread.ncols()
-    }
-}
 
 /// One matrix `M`, linear in the coefficients, with `−sym M ⪰ margin · I`.
 #[derive(Debug, Clone, Copy)]

@@ -1,7 +1,7 @@
 //! What active constraints are called, what they cost and what they change.
 
 use crate::identification::basis::Basis;
-use crate::identification::report::EntryReport;
+use crate::identification::entry_report::EntryReport;
 use crate::section::Dof;
 use crate::trained_model::Model;
 use nalgebra::Complex;

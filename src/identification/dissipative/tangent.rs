@@ -1,10 +1,30 @@
 //! The directions that active constraints leave free.
 
-use super::LinearEntry;
 use nalgebra::{DMatrix, DVector};
 
 /// Part of a gradient outside the others below which it adds no direction.
 const RANK_TOLERANCE: f64 = 1e-8;
+
+/// One transfer function of a linear fit without constraints: its coefficients are `values + spread · u` with the free
+/// numbers `u` from `at` on, in units in which the joint objective grows by `‖u‖²`.
+#[derive(Debug, Clone)]
+pub(crate) struct LinearEntry {
+    pub values: Vec<f64>,
+    pub spread: DMatrix<f64>,
+    pub at: usize,
+}
+
+impl LinearEntry {
+    /// Coefficients at given free numbers.
+    pub(crate) fn coefficients(&self, u: &DVector<f64>) -> Vec<f64> {
+        let moved = &self.spread * u.rows(self.at, self.spread.ncols());
+        self.values.iter().zip(&moved).map(|(v, d)| v + d).collect()
+    }
+
+    pub(super) fn end(&self) -> usize {
+        self.at + self.spread.ncols()
+    }
+}
 
 /// Takes away from a vector what lies along orthonormal directions. Twice is enough (Kahan): the first time leaves rounding
 /// errors of the cancelled part.

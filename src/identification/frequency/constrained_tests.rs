@@ -3,7 +3,7 @@
 use super::*;
 use crate::aerodynamics::{FlatPlate, Transfer};
 use crate::identification::form::FeedThrough;
-use crate::identification::options::PoleSearch;
+use crate::identification::form::PoleSearch;
 use crate::identification::testing::{eight_k, table_alone};
 use crate::identification::{QuasiSteadyLimit, sample_model};
 use crate::units::ReducedFrequency;

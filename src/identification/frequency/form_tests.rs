@@ -5,7 +5,7 @@ use crate::aerodynamics::{
     FlatPlate, Lags, MinimumStateModel, RationalModel, Realizable, Transfer,
 };
 use crate::files::derivatives::embedded;
-use crate::identification::options::PoleSearch;
+use crate::identification::form::PoleSearch;
 use crate::identification::testing::{eight_k, onset_m_s, records_alone, table_alone};
 use crate::identification::{TimeFit, sample_model};
 use crate::units::ReducedFrequency;

@@ -2,7 +2,7 @@ use super::*;
 use crate::aerodynamics::{FlatPlate, RationalModel, Realizable, Transfer};
 use crate::aeroelastic::CoupledSection;
 use crate::identification::form::FeedThrough;
-use crate::identification::options::PoleSearch;
+use crate::identification::form::PoleSearch;
 use crate::identification::sample_model;
 use crate::identification::testing::{eight_k, onset_m_s, table_alone};
 use crate::section::SectionModel;

@@ -5,9 +5,9 @@
 
 use super::basis::{Basis, assemble};
 use super::discrete::discrete_pass;
-use super::form::Form;
+use super::form::{Form, number_of_filters};
 use super::least_squares::Factor;
-use super::options::{TimeFit, TimeWeights, number_of_filters};
+use super::options::{TimeFit, TimeWeights};
 use super::own::StaticTerm;
 use super::time::continuous::{RecordFit, Rows};
 use super::time::fitted::Joint;

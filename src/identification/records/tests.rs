@@ -1,7 +1,7 @@
 use super::*;
 use crate::aerodynamics::{FlatPlate, RationalModel, Transfer};
+use crate::identification::form::PoleSearch;
 use crate::identification::form::{FeedThrough, Form};
-use crate::identification::options::PoleSearch;
 use crate::identification::testing::{onset_m_s, records, records_alone, sources};
 use crate::identification::{Progress, TimeWeights};
 use crate::units::ReducedFrequency;

@@ -7,10 +7,9 @@ use crate::identification::basis::Basis;
 use crate::identification::dissipative::{
     ActiveConstraint, Dissipation, LinearEntry, Solution, Wishes,
 };
+use crate::identification::entry_report::EntryReport;
 use crate::identification::least_squares::Factor;
-use crate::identification::report::{
-    EntryReport, OrderReport, StaticReport, enough_rows, variance,
-};
+use crate::identification::report::{OrderReport, StaticReport, enough_rows, variance};
 use crate::section::Dof;
 use nalgebra::{DMatrix, DVector};
 

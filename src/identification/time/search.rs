@@ -7,7 +7,7 @@ use crate::error::{Error, Result};
 use crate::identification::basis::Basis;
 use crate::identification::dissipative::Wishes;
 use crate::identification::form::Form;
-use crate::identification::options::PoleSearch;
+use crate::identification::form::PoleSearch;
 use crate::identification::own::{EntryForm, entry_forms, search_for, searched_together};
 use crate::identification::report::{SearchPoint, SearchReport};
 use crate::identification::search::{Bounds, best_of};
