@@ -21,6 +21,8 @@ pub struct UnwantedGrowth {
     pub scanned_to_m_s: f64,
     /// Bands below it in which the section grows by extrapolation alone.
     pub bands: Vec<GrowthBand>,
+    /// Lowest speed of growth that goes on into the tested range, where that begins below, m/s.
+    pub instability_from_m_s: Option<f64>,
 }
 
 /// Looks for growth below the onset of `section` that rests on no test: all of it at reduced frequencies outside
@@ -44,10 +46,12 @@ pub fn unwanted_growth(
         _ => (highest, highest),
     };
     let mut bands = growth_scan(section, 0.0, limit * BEYOND, tested)?;
-    bands.retain(|band| band.extrapolated() && band.from_m_s < below);
+    bands.retain(|band| band.from_m_s < below);
+    let (bands, own): (Vec<_>, Vec<_>) = bands.into_iter().partition(GrowthBand::extrapolated);
     Ok(UnwantedGrowth {
         scanned_to_m_s: limit,
         bands,
+        instability_from_m_s: own.iter().map(|band| band.from_m_s).reduce(f64::min),
     })
 }
 
@@ -60,10 +64,14 @@ impl UnwantedGrowth {
     /// At which speeds, and why; without the full stop.
     pub fn explain(&self) -> String {
         if self.is_none() {
-            return format!(
-                "no growth from nearly still air to {:.3} m/s",
-                self.scanned_to_m_s
-            );
+            let to = self.scanned_to_m_s;
+            return match self.instability_from_m_s {
+                None => format!("no growth from nearly still air to {to:.3} m/s"),
+                Some(from) => format!(
+                    "no growth from nearly still air to {to:.3} m/s but that of the instability itself, which the model \
+                     carries down to {from:.3} m/s"
+                ),
+            };
         }
         let each: Vec<String> = self.bands.iter().map(GrowthBand::explain).collect();
         format!(
@@ -116,6 +124,7 @@ mod tests {
         let tested = range(0.1, 1.5);
         let plate = found(&RationalModel::jones_flat_plate(), tested);
         assert!(plate.is_none(), "{}", plate.explain());
+        assert_eq!(plate.instability_from_m_s, None);
         let text = plate.explain();
         assert!(
             text.starts_with("no growth from nearly still air to 3"),
@@ -152,6 +161,16 @@ mod tests {
         assert!(!bad.is_none(), "{}", bad.explain());
         assert!((bad.scanned_to_m_s - 10.0).abs() < 1e-12);
         assert!(bad.bands[0].from_m_s <= onset.speed_m_s * (1.0 + BELOW));
+    }
+
+    /// Growth that comes into the tested range growing is the deck's; where the model starts it is said.
+    #[test]
+    fn an_instability_says_from_where_the_model_carries_it() {
+        let own = found(&feeds_fast_heave(), range(0.1, 4.0));
+        assert!(own.is_none(), "{}", own.explain());
+        let from = own.instability_from_m_s.expect("growth below the answer");
+        assert!(from < own.scanned_to_m_s, "{own:?}");
+        assert!(own.explain().contains("but that of the instability itself"));
     }
 
     #[test]

@@ -50,7 +50,7 @@ impl SteppedOnset {
             .iter()
             .map(|r| {
                 format!(
-                    "{:.4} m/s with a step of {} s ({} steps)",
+                    "{:.4} m/s with a step of {:.4} s ({} steps)",
                     r.speed_m_s, r.communication_step_s, r.steps
                 )
             })

@@ -135,6 +135,7 @@ impl SectionUnit {
         {
             return Ok(UnwantedGrowth {
                 scanned_to_m_s: onset.speed_m_s,
+                instability_from_m_s: None,
                 bands: Vec::new(),
             });
         }
