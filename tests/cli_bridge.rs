@@ -159,6 +159,44 @@ fn converted_modes_give_the_same_bridge() {
     assert_eq!(show("bridge.toml"), show("again.toml"));
 }
 
+/// From the records to the onset with its interval and the unit; the folder gives the same answer again, by the model and the
+/// covariance that were saved.
+#[test]
+fn the_demo_says_how_far_its_records_leave_the_onset_open() {
+    let folder = TempDir::new().unwrap();
+    succeeds(
+        folder.path(),
+        &["demo", "--bridge", "--no-figures", "--out", "r"],
+    );
+    let at = folder.path().join("r");
+    assert!(at.join("bridge.fmu").exists());
+    let own = || {
+        let text = fs::read_to_string(at.join("summary.json")).unwrap();
+        let value: Value = serde_json::from_str(&text).unwrap();
+        let onsets = value["onsets"].as_array().unwrap();
+        let own = onsets.iter().find(|o| o["model"] == "model").unwrap();
+        let number = |of: &Value, key: &str| of[key].as_f64().unwrap();
+        let interval = &own["interval"];
+        ["low_m_s", "high_m_s", "standard_error_m_s"]
+            .map(|key| number(interval, key))
+            .into_iter()
+            .chain([number(own, "speed_m_s")])
+            .collect::<Vec<_>>()
+    };
+    let first = own();
+    let [low, high, _, speed] = first[..] else {
+        panic!("{first:?}");
+    };
+    assert!(low < speed && speed < high, "{first:?}");
+    succeeds(&at, &["bridge", "flutter", "bridge.toml", "--no-figures"]);
+    let again = own();
+    // the ends of the interval differ: the covariance on file no longer knows the degrees of freedom of its tests
+    for (a, b) in first.iter().zip(&again).skip(2) {
+        assert!((a - b).abs() < 1e-6 * a, "{first:?}, {again:?}");
+    }
+    assert!(again[0] < speed && speed < again[1], "{again:?}");
+}
+
 #[test]
 fn an_exported_bridge_passes_the_check() {
     let folder = folder();

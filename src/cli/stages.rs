@@ -11,23 +11,18 @@ use crate::fmu::package::{Export, Growing, Label, Runtime, package};
 use crate::identification;
 use crate::report::{VfVgOptions, vf_vg_figure};
 use crate::study::{
-    Deck, FlutterStudy, KnownUncertainty, ModelBlock, RecordSet, StageFailure, Study,
-    TrainedWithReport, flutter_study, interval_of, is_of_a_file, slug, state_intervals, train_one,
+    Deck, FITS, FlutterStudy, KnownUncertainty, ModelBlock, RecordSet, StageFailure, Study,
+    TrainedWithReport, UNCERTAINTY, flutter_study, interval_of, is_of_a_file, saved_uncertainty,
+    state_intervals, train_one,
 };
 use crate::trained_model::TrainedModel;
-use crate::uncertainty::ModelUncertainty;
 use crate::wind_tunnel::Record;
-use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Folder of the records in the output directory.
 pub(crate) const RECORDS: &str = "records";
 /// Folder of the trained models.
 pub(crate) const MODELS: &str = "models";
-/// Folder of the fit reports.
-pub(crate) const FITS: &str = "fits";
-/// Ending of the uncertainties, in the folder of the fit reports.
-pub(crate) const UNCERTAINTY: &str = "uncertainty.json";
 /// The model that goes into the FMU.
 pub(crate) const MODEL_FILE: &str = "model.json";
 /// The FMU.
@@ -182,18 +177,8 @@ pub(crate) fn read_uncertainties(
     models: &[TrainedModel],
     directory: &Path,
 ) -> Result<Vec<KnownUncertainty>> {
-    models
-        .iter()
-        .map(|model| {
-            let file = format!("{}.{UNCERTAINTY}", slug(&model.name));
-            let path = directory.join(FITS).join(file);
-            if !path.exists() {
-                return Ok(Err("no covariance was saved with the model".to_owned()));
-            }
-            let text = fs::read_to_string(&path).map_err(|e| Error::io(&path, e))?;
-            let known = ModelUncertainty::from_json(&text).map_err(|e| e.in_file(&path))?;
-            Ok(Ok(Box::new(known)))
-        })
+    let each = models.iter();
+    each.map(|model| saved_uncertainty(model, directory))
         .collect()
 }
 

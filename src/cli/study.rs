@@ -12,7 +12,7 @@ use crate::flutter::{Onset, UnstableStart};
 use crate::fmu::package::Growing;
 use crate::identification::FitReport;
 use crate::study::{
-    Deck, Deviation, Divergence, KnownUncertainty, ModelGrowth, OnsetSummary, RecordSet,
+    Deck, Deviation, Divergence, FITS, KnownUncertainty, ModelGrowth, OnsetSummary, RecordSet,
     SpeedRange, StageFailure, SteppedOnset, Study, TrainedWithReport, attempt, interval_of,
     stepped_onset, study_warnings,
 };
@@ -282,7 +282,7 @@ fn shown(written: &[Written]) -> String {
         .iter()
         .filter(|w| {
             !w.path.parent().is_some_and(|p| {
-                [stages::RECORDS, stages::MODELS, stages::FITS]
+                [stages::RECORDS, stages::MODELS, FITS]
                     .iter()
                     .any(|folder| p.ends_with(folder))
             })

@@ -1,14 +1,41 @@
 //! Intervals of the onsets of a study.
 
-use super::{FlutterStudy, RouteTable, Study};
-use crate::error::Result;
+use super::{FlutterStudy, RouteTable, Study, slug};
+use crate::error::{Error, Result};
 use crate::flutter::{FlutterSearch, Onset, OnsetInterval, OnsetMethod};
 use crate::section::Structure;
 use crate::trained_model::TrainedModel;
 use crate::uncertainty::ModelUncertainty;
+use std::path::Path;
 
 /// Uncertainty of one model, or why it is not known.
 pub(crate) type KnownUncertainty = std::result::Result<Box<ModelUncertainty>, String>;
+
+/// Folder of the fit reports in a folder of results.
+pub(crate) const FITS: &str = "fits";
+/// Ending of the uncertainties, in the folder of the fit reports.
+pub(crate) const UNCERTAINTY: &str = "uncertainty.json";
+
+/// The uncertainty that training left in a folder of results.
+pub(crate) fn saved_uncertainty(model: &TrainedModel, folder: &Path) -> Result<KnownUncertainty> {
+    let file = format!("{}.{UNCERTAINTY}", slug(&model.name));
+    let path = folder.join(FITS).join(file);
+    if !path.exists() {
+        return Ok(Err("no covariance was saved with the model".to_owned()));
+    }
+    let text = std::fs::read_to_string(&path).map_err(|e| Error::io(&path, e))?;
+    let known = ModelUncertainty::from_json(&text).map_err(|e| e.in_file(&path))?;
+    Ok(Ok(Box::new(known)))
+}
+
+/// The same for the file of a model: beside it, or beside the folder it is in.
+pub(crate) fn uncertainty_beside(file: &Path, model: &TrainedModel) -> Result<KnownUncertainty> {
+    let folder = file.parent().unwrap_or(Path::new(""));
+    match saved_uncertainty(model, folder)? {
+        Err(_) => saved_uncertainty(model, &folder.join("..")),
+        known => Ok(known),
+    }
+}
 
 /// Gives every onset of a trained model its interval, in the order of `models`; onsets that the data do not determine are
 /// no onsets any more (see [`FlutterStudy::undetermined`]).

@@ -23,7 +23,10 @@ pub use defaults::demo_study_text;
 pub(crate) use defaults::{new_study_text, thesis_study_text};
 pub use failures::StageFailure;
 pub(crate) use failures::{attempt, is_of_a_file};
-pub(crate) use intervals::{KnownUncertainty, interval_of, state_intervals, state_route_intervals};
+pub(crate) use intervals::{
+    FITS, KnownUncertainty, UNCERTAINTY, interval_of, saved_uncertainty, state_intervals,
+    state_route_intervals, uncertainty_beside,
+};
 pub use models::{TrainedWithReport, train_one};
 pub use onsets::{Deviation, Divergence, FlutterStudy, ModelGrowth, OnsetSummary, flutter_study};
 pub(crate) use plausibility::{section_warnings, study_warnings};

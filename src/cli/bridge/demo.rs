@@ -10,7 +10,7 @@ use crate::error::{Error, Result};
 use crate::files::bridge::BridgeFile;
 use crate::fmu::package::{FmiVersion, Label, Runtime, package_bridge};
 use crate::study::bridge::{BridgeStudy, Wanted, demo_bridge_text};
-use crate::study::{Deck, RecordSet, StageFailure, Study, demo_study_text};
+use crate::study::{Deck, KnownUncertainty, RecordSet, StageFailure, Study, demo_study_text};
 use crate::trained_model::TrainedModel;
 use std::fmt::Write as _;
 use std::path::Path;
@@ -27,9 +27,9 @@ pub(crate) fn run(directory: &Path, force: bool, progress: &Progress) -> Result<
     // the model of the records; the others compare forms of models, which the demo of the section does
     section.models.truncate(1);
     let deck = Deck::load(&section)?;
-    let model = trained(&section, &deck, &mut out, progress)?;
+    let at_hand = trained(&section, &deck, &mut out, progress)?;
     let file = BridgeFile::from_toml(demo_bridge_text(), directory.to_path_buf())?;
-    let study = BridgeStudy::with_trained(file, |_| Some(model.clone()))?;
+    let study = BridgeStudy::with_trained(file, |_| Some(at_hand.clone()))?;
     let results = computed(&study, progress)?;
     let mut failed = results.failed.clone();
     if let Err(e) = staged(&study, &results, &mut out) {
@@ -71,13 +71,14 @@ fn trained(
     deck: &Deck,
     out: &mut OutputDir,
     progress: &Progress,
-) -> Result<TrainedModel> {
+) -> Result<(TrainedModel, KnownUncertainty)> {
     let records = RecordSet::staged(stages::tunnel(study, deck, out, progress)?)?;
     let mut failed = Vec::new();
     let models = stages::train(study, deck, Some(&records), (out, &mut failed), progress)?;
     // the model of the section alone is not what is exported here
     out.discard(stages::MODEL_FILE);
-    let first = models.into_iter().next().map(|t| t.model);
+    let first = models.into_iter().next();
+    let first = first.map(|t| (t.model, t.uncertainty));
     first.ok_or_else(|| {
         let why = failed
             .first()

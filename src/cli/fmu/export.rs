@@ -18,6 +18,7 @@ use crate::fmu::package::{
 };
 use crate::fmu::variables::Listing;
 use crate::study::bridge::{BridgeStudy, Wanted};
+use crate::study::uncertainty_beside;
 use crate::trained_model::TrainedModel;
 use std::path::{Path, PathBuf};
 
@@ -238,14 +239,10 @@ impl Args {
 
 /// The interval of the onset by the covariance that was saved with the model: beside it, or beside the folder it is in.
 fn saved_bounds(file: &Path, model: &TrainedModel) -> Result<Option<OnsetBounds>> {
-    let folder = file.parent().unwrap_or(Path::new(""));
-    for folder in [folder, &folder.join("..")] {
-        let known = stages::read_uncertainties(std::slice::from_ref(model), folder)?;
-        if let [known @ Ok(_)] = &known[..] {
-            return stages::onset_bounds(model, known);
-        }
+    match uncertainty_beside(file, model)? {
+        known @ Ok(_) => stages::onset_bounds(model, &known),
+        Err(_) => Ok(None),
     }
-    Ok(None)
 }
 
 /// Runs the command.

@@ -1,5 +1,6 @@
 //! The self-excited forces of one section of a bridge file.
 
+use super::super::{KnownUncertainty, uncertainty_beside};
 use crate::aerodynamics::derivatives::{Extrapolation, InterpolatedTable};
 use crate::aerodynamics::quasi_steady::LinearQuasiSteady;
 use crate::aerodynamics::{Lags, RationalModel, Transfer};
@@ -33,6 +34,9 @@ pub struct SectionForces {
     pub notes: Vec<String>,
     /// How far the data leave the coefficients of the model open, or why that is not known; `None` for stated coefficients.
     pub uncertainty: std::result::Result<Option<CoefficientUncertainty>, String>,
+    /// Degrees of freedom of the onset of the section that a model was trained for: they stand for those of the bridge's where
+    /// a covariance on file no longer knows its data.
+    pub degrees_of_freedom: Option<f64>,
 }
 
 impl std::fmt::Debug for SectionForces {
@@ -46,12 +50,17 @@ impl std::fmt::Debug for SectionForces {
 impl SectionForces {
     pub(super) fn of(
         block: &SectionBlock,
-        trained: Option<TrainedModel>,
+        trained: Option<(TrainedModel, KnownUncertainty)>,
         directory: &Path,
     ) -> Result<Self> {
         let trained = match (&block.model, trained) {
             (_, Some(trained)) => Some(trained),
-            (Some(path), None) => Some(TrainedModel::read(&directory.join(path))?),
+            (Some(path), None) => {
+                let path = directory.join(path);
+                let model = TrainedModel::read(&path)?;
+                let known = uncertainty_beside(&path, &model)?;
+                Some((model, known))
+            }
             (None, None) => None,
         };
         let of_table = block
@@ -60,7 +69,7 @@ impl SectionForces {
             .map(|name| by_table(block, name, directory, trained.is_none()));
         let (table, fitted) = of_table.transpose()?.unzip();
         let table = table.map(|t: InterpolatedTable| Arc::new(t) as Arc<dyn Transfer>);
-        if let Some(trained) = trained {
+        if let Some((trained, known)) = trained {
             let model = Arc::new(trained.model.clone());
             return Ok(Self {
                 table,
@@ -70,7 +79,11 @@ impl SectionForces {
                 licence: trained.provenance.licence,
                 tested: Some(trained.tested_range),
                 notes: Vec::new(),
-                uncertainty: Err("the data behind its model are not known here".to_owned()),
+                degrees_of_freedom: known
+                    .as_ref()
+                    .ok()
+                    .and_then(|known| Some(known.onset.as_ref()?.degrees_of_freedom)),
+                uncertainty: known.map(|known| Some(known.coefficients)),
             });
         }
         if let Some(Some(fitted)) = fitted {
@@ -104,6 +117,7 @@ impl SectionForces {
             tested: None,
             notes: Vec::new(),
             uncertainty: Ok(None),
+            degrees_of_freedom: None,
         })
     }
 
@@ -166,6 +180,7 @@ fn by_table(
             .map(|n| format!("section {}: {n}", block.name))
             .collect(),
         uncertainty: uncertainty.map(Some).map_err(|e| e.to_string()),
+        degrees_of_freedom: None,
     };
     Ok((between, Some(forces)))
 }

@@ -30,7 +30,8 @@ impl BridgeStudy {
             };
             let gradient = self.onset_slopes(&nearby, section, estimate)?;
             let part = estimate.standard_error(&gradient)?.powi(2);
-            let freedom = estimate.degrees_of_freedom(&gradient).unwrap_or(1.0);
+            let freedom = estimate.degrees_of_freedom(&gradient);
+            let freedom = freedom.or(forces.degrees_of_freedom).unwrap_or(1.0);
             variance += part;
             // as Satterthwaite adds them
             of_each += part * part / freedom;

@@ -14,6 +14,7 @@ pub use export::Wanted;
 pub use forces::SectionForces;
 pub use scatter::{Scatter, ScatteredOnset};
 
+use super::KnownUncertainty;
 use crate::bridge::{Bridge, Similarity, StripGroup, similarities};
 use crate::error::{Error, Result};
 use crate::files::bridge::{BridgeFile, Modes, SectionBlock};
@@ -61,9 +62,9 @@ impl BridgeStudy {
     ///
     /// # Errors
     /// As [`BridgeStudy::new`].
-    pub fn with_trained(
+    pub(crate) fn with_trained(
         file: BridgeFile,
-        trained: impl Fn(&SectionBlock) -> Option<TrainedModel>,
+        trained: impl Fn(&SectionBlock) -> Option<(TrainedModel, KnownUncertainty)>,
     ) -> Result<Self> {
         let modes = file.read_modes()?;
         let mut notes = modes.hints();
