@@ -22,6 +22,11 @@ pub(super) fn growing(lambda: &Complex<f64>) -> bool {
     lambda.re > ROUNDING * lambda.norm()
 }
 
+/// Whether an eigenvalue has an imaginary part above rounding; of a pair the one in the upper half plane.
+pub(super) fn oscillates(lambda: &Complex<f64>) -> bool {
+    lambda.im > 1e-6 * lambda.norm()
+}
+
 /// One mode at one wind speed.
 #[derive(Debug, Clone)]
 pub(super) struct Mode {

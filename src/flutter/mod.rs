@@ -25,6 +25,7 @@ mod quasi_steady;
 mod sanity;
 mod scan;
 mod search;
+mod still_air;
 mod sweep;
 mod tracking;
 mod unwanted;

@@ -6,9 +6,8 @@
 //! eigenvalues of a realisation mean.
 
 use super::determinant::self_excited;
-use super::following::Mode;
+use super::following::{Mode, oscillates};
 use super::modal_characteristic::inverse_step;
-use super::tracking::oscillates;
 use crate::aerodynamics::Transfer;
 use crate::error::{Error, Result};
 use crate::section::Structure;

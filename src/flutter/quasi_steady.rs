@@ -4,11 +4,11 @@
 use super::answer::{FlutterSearch, StableRange, UnstableStart};
 use super::critical_point::OnsetMethod;
 use super::curves::{FlutterCurves, empty_branches, trace_modes};
-use super::following::Mode;
+use super::following::{Mode, oscillates};
 use super::instability::{ModeAtOnset, classify};
 use super::onset::Onset;
 use super::search::OnsetSearch;
-use super::tracking::{SLOPE_STEP, Tracker, oscillates};
+use super::tracking::{SLOPE_STEP, Tracker};
 use crate::aerodynamics::quasi_steady::{LinearQuasiSteady, QuasiSteady};
 use crate::aeroelastic::{CoupledSection, EquilibriumEnd, EquilibriumPath, static_equilibria};
 use crate::error::{Error, Result};

@@ -1,8 +1,9 @@
 //! All eigenvalues over wind speed: the speeds at which any oscillation grows, found without following modes.
 
 use super::answer::StableRange;
-use super::following::{dimensionless, growing};
-use super::tracking::{Tracker, lowest_speed, mode_shape, oscillates};
+use super::following::{dimensionless, growing, oscillates};
+use super::still_air::lowest_speed;
+use super::tracking::{Tracker, mode_shape};
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, non_negative, positive};
 use crate::state_space::{boundary, golden_section};

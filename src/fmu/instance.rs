@@ -11,6 +11,7 @@ mod bridge_places;
 mod bridge_search;
 mod bridge_unit;
 mod derivatives;
+mod force_derivatives;
 mod force_unit;
 mod integration;
 mod layout;

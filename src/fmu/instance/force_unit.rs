@@ -3,7 +3,6 @@
 //! The forces put out are those at the instant at which they will act, `prediction` communication steps after the
 //! motion that was set for the last step. When the importer has set newer motion since, they follow from that as well.
 
-use super::derivatives::central_difference;
 use super::layout::{Source, place};
 use super::saving::Memory;
 use super::trust::{LINEAR_ROTATION_RAD, beyond_linear};
@@ -20,12 +19,9 @@ use crate::response::{
 };
 use std::borrow::Cow;
 
-/// Relative step of the differences with respect to wind and parameters.
-const RELATIVE_STEP: f64 = 1e-5;
-
 /// How a number of the motion has been set since the last step.
 const NOT_SET: f64 = 0.0;
-const SET: f64 = 1.0;
+pub(super) const SET: f64 = 1.0;
 /// A rate by the derivative of the input below it.
 const SET_AS_DERIVATIVE: f64 = 2.0;
 
@@ -33,11 +29,11 @@ const SET_AS_DERIVATIVE: f64 = 2.0;
 /// the motion has been set since, then the state of the forces.
 #[derive(Debug)]
 pub(super) struct ForceUnit {
-    forces: PrescribedForces,
+    pub forces: PrescribedForces,
     /// Wind, then the motion: strip by strip, displacement, rate and acceleration of each degree of freedom.
-    inputs: Vec<usize>,
+    pub inputs: Vec<usize>,
     /// Index of the motion among the inputs, by place; zero for what is none.
-    input_at: Vec<usize>,
+    pub input_at: Vec<usize>,
     /// Force and total force, in the order of the motion.
     outputs: Vec<[usize; 2]>,
     /// Width, length, wind factor of each strip.
@@ -112,7 +108,7 @@ impl ForceUnit {
     }
 
     /// Where the state of the forces begins.
-    fn first(&self) -> usize {
+    pub fn first(&self) -> usize {
         1 + self.motions()
     }
 
@@ -150,7 +146,7 @@ impl ForceUnit {
     }
 
     /// Forces of all strips in the order of the motion. `renewed` says that there is motion of the present time.
-    fn ahead(&mut self, memory: &Memory, renewed: bool) -> Result<Vec<ForceAhead>> {
+    pub fn ahead(&mut self, memory: &Memory, renewed: bool) -> Result<Vec<ForceAhead>> {
         let Conditions { flows, density } = self.conditions(&memory.values);
         let mut state = Cow::Borrowed(&memory.system.values[self.first()..]);
         let mut ahead_s = memory.system.values[0];
@@ -210,7 +206,7 @@ impl ForceUnit {
     }
 
     /// Whether there is motion of the present time that no step has taken yet.
-    fn renewed(&self, memory: &Memory) -> bool {
+    pub fn renewed(&self, memory: &Memory) -> bool {
         let [flags, state] = [
             &memory.system.values[1..self.first()],
             &memory.system.values[self.first()..],
@@ -219,7 +215,7 @@ impl ForceUnit {
         newest.is_none_or(|t| t < memory.time && flags.iter().any(|f| *f != NOT_SET))
     }
 
-    fn entry(&self, memory: &Memory, forces: &[ForceAhead], role: Role) -> ForceAhead {
+    pub fn entry(&self, memory: &Memory, forces: &[ForceAhead], role: Role) -> ForceAhead {
         let Role::Force(s, kind, dof) = role else {
             return ForceAhead::default();
         };
@@ -234,23 +230,6 @@ impl ForceUnit {
             force: factor * force,
             rate: factor * rate,
         }
-    }
-
-    /// Forces follow the motion linearly: those of a unit of one number of it, in a flow at rest.
-    fn by_motion(&mut self, memory: &Memory, index: usize) -> Result<Vec<ForceAhead>> {
-        let mut unit = memory.clone();
-        for place in &self.inputs[1..] {
-            unit.values[*place] = 0.0;
-        }
-        unit.system.gusts.fill(0.0);
-        unit.input_rates.fill(0.0);
-        unit.values[self.inputs[index]] = 1.0;
-        if (index - 1) % 3 == 1 {
-            unit.system.values[index] = SET;
-        }
-        let first = self.first();
-        self.forces.forget(&mut unit.system.values[first..]);
-        self.ahead(&unit, true)
     }
 }
 
@@ -376,23 +355,7 @@ impl Unit for ForceUnit {
         known: usize,
         unknowns: &[Role],
     ) -> Answer<Vec<f64>> {
-        let index = self.input_at[known];
-        if index > 0 {
-            let forces = self.by_motion(memory, index)?;
-            let entry = |role: &Role| self.entry(memory, &forces, *role).force;
-            return Ok(unknowns.iter().map(entry).collect());
-        }
-        let step = match resources.table.variables()[known].role {
-            // forces are linear in gusts
-            Role::Gust(..) => 1.0,
-            _ => RELATIVE_STEP * memory.values[known].abs().max(RELATIVE_STEP),
-        };
-        let renewed = self.renewed(memory);
-        central_difference(resources, memory, (known, step), |other| {
-            let forces = self.ahead(other, renewed)?;
-            let entry = |role: &Role| self.entry(other, &forces, *role).force;
-            Ok(unknowns.iter().map(entry).collect())
-        })
+        self.column(resources, memory, known, unknowns)
     }
 }
 

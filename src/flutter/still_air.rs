@@ -1,0 +1,106 @@
+//! Modes of a structure in still air, where following them over wind speed begins.
+
+use super::following::{Mode, dimensionless, oscillates};
+use crate::aerodynamics::Realization;
+use crate::aeroelastic::CoupledSection;
+use crate::error::{Error, Result};
+use crate::state_space::{eigenvalues, eigenvector};
+use nalgebra::{Complex, DMatrix, DVector, SymmetricEigen};
+
+/// Sampled systems start where this many samples fall into one period, below which frequencies would alias.
+const SAMPLES_PER_PERIOD: f64 = 5.0;
+
+/// The modes of the mass-normalised coordinates of a bridge, by the symmetric problem of the undamped structure: modes of one
+/// frequency, of which bridges have some, keep shapes of their own. The damping is that of each mode by itself; the first step
+/// corrects it. `None` for a section and for sampled models.
+pub(super) fn modes_of_many(section: &CoupledSection) -> Option<Vec<Mode>> {
+    let s = section.structure();
+    let sampled = matches!(section.aerodynamics(), Realization::Discrete(_));
+    if !s.is_modal() || sampled || s.stiffness.diagonal().min() <= 0.0 {
+        return None;
+    }
+    let n = s.dofs.len();
+    let root: Vec<f64> = s.stiffness.diagonal().iter().map(|k| k.sqrt()).collect();
+    let inverse = section.inverse_mass();
+    let symmetric = DMatrix::from_fn(n, n, |i, j| {
+        0.5 * (inverse[(i, j)] + inverse[(j, i)]) * root[i] * root[j]
+    });
+    let natural = SymmetricEigen::new(symmetric);
+    let mut modes = Vec::with_capacity(n);
+    for (square, vector) in natural
+        .eigenvalues
+        .iter()
+        .zip(natural.eigenvectors.column_iter())
+    {
+        let shape = DVector::from_fn(n, |i, _| vector[i] / root[i]);
+        let decay = 0.5 * square * shape.dot(&(&s.damping * &shape));
+        let lambda = Complex::new(-decay, (square - decay * decay).max(0.0).sqrt());
+        if !oscillates(&lambda) {
+            return None;
+        }
+        modes.push(Mode {
+            branch: 0,
+            lambda,
+            shape: shape.normalize().map(Complex::from),
+            slope: Complex::new(0.0, 0.0),
+        });
+    }
+    order_by_dof(section, &mut modes);
+    Some(modes)
+}
+
+/// Modes of the structure with its added mass in still air, in the order of the degrees of freedom they move most.
+pub(super) fn natural_modes(section: &CoupledSection) -> Result<Vec<Mode>> {
+    let s = section.structure();
+    let n = s.dofs.len();
+    let (a, _) = section.structure_alone();
+    let mut modes = Vec::with_capacity(n);
+    for lambda in eigenvalues(&a)?.into_iter().filter(|z| z.im > 0.0) {
+        let vector = eigenvector(&a, lambda)?;
+        let shape = vector.rows(0, n).into_owned();
+        let size = dimensionless(section.structure(), &shape).norm();
+        modes.push(Mode {
+            branch: 0,
+            lambda,
+            shape: shape.unscale(size),
+            slope: Complex::new(0.0, 0.0),
+        });
+    }
+    if modes.len() != n {
+        return Err(Error::Numerical(
+            "mode tracking: a degree of freedom does not oscillate in still air".into(),
+        ));
+    }
+    order_by_dof(section, &mut modes);
+    Ok(modes)
+}
+
+/// Puts the modes into the order of the degrees of freedom they move most.
+fn order_by_dof(section: &CoupledSection, modes: &mut [Mode]) {
+    let n = modes.len();
+    for dof in 0..n {
+        let strongest = (dof..n)
+            .max_by(|i, j| {
+                let share =
+                    |m: usize| dimensionless(section.structure(), &modes[m].shape)[dof].norm();
+                share(*i).total_cmp(&share(*j))
+            })
+            .unwrap_or(dof);
+        modes.swap(dof, strongest);
+        modes[dof].branch = dof;
+    }
+}
+
+/// Lowest speed at which the system can be judged: still air, or for the sampled system the speed with enough samples a
+/// period.
+pub(super) fn lowest_speed(section: &CoupledSection) -> Result<f64> {
+    Ok(start_speed(section, &natural_modes(section)?))
+}
+
+pub(super) fn start_speed(section: &CoupledSection, modes: &[Mode]) -> f64 {
+    let Realization::Discrete(d) = section.aerodynamics() else {
+        return 0.0;
+    };
+    let highest_hz = modes.iter().map(|m| m.lambda.im).fold(0.0, f64::max) / std::f64::consts::TAU;
+    SAMPLES_PER_PERIOD * highest_hz * d.delta_s * section.structure().width_m
+}
