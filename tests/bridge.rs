@@ -7,10 +7,10 @@ mod bridges;
 use aerodeck::aerodynamics::Transfer;
 use aerodeck::bridge::Bridge;
 use aerodeck::flutter::{
-    FlutterSearch, NearbyOnset, OnsetSearch, find_onset, impedance, motion_at_onset, pk_onset,
-    trace_modes,
+    FlutterSearch, NearbyOnset, OnsetInterval, OnsetSearch, find_onset, impedance, motion_at_onset,
+    pk_onset, trace_modes,
 };
-use aerodeck::study::bridge::Scatter;
+use aerodeck::study::bridge::{DerivativeScatter, Scatter};
 use bridges::{DECKS, SEARCH, THREE, TWO, coupled, langenuen, near, onset, read};
 use std::f64::consts::PI;
 
@@ -241,7 +241,7 @@ fn scatter_follows_the_onset() {
     let none = Scatter {
         frequency: 0.0,
         damping: 0.0,
-        derivatives: 0.0,
+        derivatives: DerivativeScatter::Relative(0.0),
         samples: 3,
         seed: 1,
     };
@@ -251,7 +251,7 @@ fn scatter_follows_the_onset() {
     let some = Scatter {
         frequency: 0.01,
         damping: 0.2,
-        derivatives: 0.03,
+        derivatives: DerivativeScatter::Relative(0.03),
         samples: 60,
         seed: 5,
     };
@@ -271,4 +271,36 @@ fn scatter_follows_the_onset() {
     let (speed, hertz) = nearby.find(&other).unwrap();
     near(speed / searched.at.speed_m_s, 1.0, 1e-7);
     near(hertz / searched.at.frequency_hz, 1.0, 1e-6);
+}
+
+/// Drawn from the covariance of the fit, the onset scatters as its interval says, which takes slopes instead of samples.
+#[test]
+fn scatter_as_measured_is_the_interval() {
+    let study = langenuen("LN21-5200", TWO);
+    let coupled = coupled(&study.by_model);
+    let found = onset(find_onset("model", &coupled, &SEARCH, study.tested_range()).unwrap());
+    let measured = Scatter {
+        frequency: 0.0,
+        damping: 0.0,
+        derivatives: DerivativeScatter::Measured,
+        samples: 400,
+        seed: 3,
+    };
+    let scattered = study.scattered_onset(&found, &measured).unwrap();
+    let OnsetInterval::Known {
+        standard_error_m_s, ..
+    } = study.onset_interval(&found).unwrap()
+    else {
+        panic!("no interval");
+    };
+    println!("{scattered:?} beside a standard error of {standard_error_m_s} m/s");
+    assert_eq!(scattered.without_onset, 0);
+    // 400 samples know a standard deviation to 3.5 %, a mean to a twentieth of it; the rest is the curvature
+    near(
+        scattered.standard_deviation_m_s / standard_error_m_s,
+        1.0,
+        0.12,
+    );
+    let shift = (scattered.mean_m_s - found.at.speed_m_s) / standard_error_m_s;
+    near(shift, 0.0, 0.2);
 }

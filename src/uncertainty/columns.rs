@@ -172,7 +172,7 @@ impl LinearModel {
     ///
     /// # Errors
     /// Coefficients that are not finite.
-    pub(crate) fn model_at(&self, values: &[f64]) -> Result<Model> {
+    pub(super) fn model_at(&self, values: &[f64]) -> Result<Model> {
         let poles = self.estimate.len() - self.searched;
         let moved = DVector::from_fn(self.searched, |m, _| {
             values[poles + m] - self.estimate[poles + m]

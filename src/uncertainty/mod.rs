@@ -20,6 +20,7 @@ mod coefficients;
 mod columns;
 mod coverage;
 mod design;
+mod draws;
 mod model;
 pub mod monte_carlo;
 mod onset;
@@ -34,6 +35,7 @@ mod table_covariance;
 
 pub use coefficients::CoefficientUncertainty;
 pub use coverage::{CoveragePlan, CoverageReport, Share, Truth, coverage};
+pub(crate) use draws::ModelDraws;
 pub use model::{DerivativeInterval, ModelUncertainty};
 pub use onset::{OnsetError, ResampledOnset, Resampling};
 pub use parameters::{Coordinates, Parameter, SearchedPole};
@@ -41,6 +43,7 @@ pub(crate) use record_covariance::discrete_uncertainty;
 pub use record_covariance::record_uncertainty;
 pub use speed_onsets::{Contradiction, SpeedOnset, SpeedOnsets};
 pub use speed_scatter::{ForceScatter, SpeedScatter};
+pub(crate) use statistics::{moments, sample_quantile};
 pub use table_covariance::table_uncertainty;
 
 #[cfg(test)]

@@ -5,7 +5,8 @@
 //! IJNME 26, 1988). At the onset `Re λ = 0`, so `dV_F/dθ = −Re(∂λ/∂θ)/Re(∂λ/∂V)`.
 
 use super::coefficients::CoefficientUncertainty;
-use super::statistics::{covariance_root, moments, sample_quantile, two_sided_quantile};
+use super::draws::ModelDraws;
+use super::statistics::{moments, sample_quantile, two_sided_quantile};
 use crate::aerodynamics::Realizable;
 use crate::aeroelastic::{CoupledSection, CoupledSystem};
 use crate::error::{Error, Result};
@@ -173,28 +174,22 @@ pub(crate) fn resample_onset(
     onset: &Onset,
     plan: &ResamplingPlan,
 ) -> Result<Option<ResampledOnset>> {
-    let draw = Draw::new(estimate, plan)?;
-    let linear = estimate.linear()?;
+    let draws = ModelDraws::of(estimate)?;
     let at = (onset.at.speed_m_s, TAU * onset.at.frequency_hz);
-    let drawn: Vec<Option<Option<f64>>> = (0..plan.replicates)
+    let found: Vec<Option<Option<f64>>> = (0..plan.replicates)
         .into_par_iter()
         .map(|r| {
-            let Some(values) = draw.parameters(estimate, plan, r)? else {
+            let Some(values) = drawn((estimate, &draws), plan, r)? else {
                 return Ok(None);
             };
-            let model = match &linear {
-                Some(linear) => linear.model_at(&values),
-                None => estimate.model_at(&values),
-            };
-            Ok(Some(
-                model.ok().and_then(|m| solve(&m, structure, at, plan)),
-            ))
+            let model = draws.model_at(&values).ok();
+            Ok(Some(model.and_then(|m| solve(&m, structure, at, plan))))
         })
         .collect::<Result<_>>()?;
-    if drawn.iter().any(Option::is_none) {
+    if found.iter().any(Option::is_none) {
         return Ok(None);
     }
-    let mut speeds: Vec<f64> = drawn.iter().filter_map(|d| d.flatten()).collect();
+    let mut speeds: Vec<f64> = found.iter().filter_map(|d| d.flatten()).collect();
     speeds.sort_by(f64::total_cmp);
     let (mean_m_s, standard_deviation_m_s) = moments(&speeds);
     let quantile = |part| sample_quantile(&speeds, speeds.len(), part).unwrap_or(f64::NAN);
@@ -226,46 +221,23 @@ fn solve(
     }
 }
 
-/// What all draws share.
-enum Draw {
-    Blocks(usize),
-    /// Square root of the covariance.
-    Normal(DMatrix<f64>),
-}
-
-impl Draw {
-    fn new(estimate: &CoefficientUncertainty, plan: &ResamplingPlan) -> Result<Self> {
-        if plan.resampling == Resampling::Blocks {
-            return Ok(Self::Blocks(estimate.blocks.len()));
-        }
-        let (root, _) = covariance_root(estimate.covariance.clone())
-            .ok_or_else(|| Error::Numerical("resampling: the covariance has no root".into()))?;
-        Ok(Self::Normal(root))
+/// Parameters of one replicate; `None` for blocks of an estimate that no longer knows its data.
+fn drawn(
+    (estimate, draws): (&CoefficientUncertainty, &ModelDraws<'_>),
+    plan: &ResamplingPlan,
+    replicate: usize,
+) -> Result<Option<Vec<f64>>> {
+    let mut random = random_stream(plan.seed, replicate as u64);
+    if plan.resampling == Resampling::Normal {
+        return Ok(Some(draws.parameters(&mut random)));
     }
-
-    fn parameters(
-        &self,
-        estimate: &CoefficientUncertainty,
-        plan: &ResamplingPlan,
-        replicate: usize,
-    ) -> Result<Option<Vec<f64>>> {
-        let mut random = random_stream(plan.seed, replicate as u64);
-        match self {
-            Self::Blocks(count) => {
-                let weights: Vec<f64> = (0..*count).map(|_| Exp1.sample(&mut random)).collect();
-                let mut drawn = estimate.reweighted(&weights)?;
-                if let Some(values) = &mut drawn {
-                    estimate.scatter_speeds(values, &mut || StandardNormal.sample(&mut random));
-                }
-                Ok(drawn)
-            }
-            Self::Normal(root) => {
-                let normal = |_, _| StandardNormal.sample(&mut random);
-                let step: DVector<f64> = root * DVector::from_fn(root.ncols(), normal);
-                Ok(Some(estimate.moved_by(&step)))
-            }
-        }
+    let exponential = (0..estimate.blocks.len()).map(|_| Exp1.sample(&mut random));
+    let weights: Vec<f64> = exponential.collect();
+    let mut drawn = estimate.reweighted(&weights)?;
+    if let Some(values) = &mut drawn {
+        estimate.scatter_speeds(values, &mut || StandardNormal.sample(&mut random));
     }
+    Ok(drawn)
 }
 
 /// The section with the model that the parameters make.

@@ -148,7 +148,7 @@ fn beta_quantile(probability: f64, a: f64, b: f64) -> f64 {
 }
 
 /// Mean and standard deviation with n − 1; no numbers where there are too few.
-pub(super) fn moments(values: &[f64]) -> (f64, f64) {
+pub(crate) fn moments(values: &[f64]) -> (f64, f64) {
     let count = values.len() as f64;
     let mean = values.iter().sum::<f64>() / count;
     let squares: f64 = values.iter().map(|v| (v - mean).powi(2)).sum();
@@ -157,7 +157,7 @@ pub(super) fn moments(values: &[f64]) -> (f64, f64) {
 
 /// Quantile of `count` values of which the lowest are `sorted`: linear between the order statistics, `(n − 1)p` from the first
 /// (Hyndman and Fan's type 7). `None` beyond the sorted ones.
-pub(super) fn sample_quantile(sorted: &[f64], count: usize, probability: f64) -> Option<f64> {
+pub(crate) fn sample_quantile(sorted: &[f64], count: usize, probability: f64) -> Option<f64> {
     let place = probability * (count.max(1) - 1) as f64;
     let (below, share) = (place.floor() as usize, place.fract());
     match (sorted.get(below), sorted.get(below + 1)) {

@@ -10,7 +10,9 @@ use super::{BridgeArgs, account, summary};
 use crate::error::Result;
 use crate::flutter::{BridgeMotion, ModeShare};
 use crate::report::{bridge_curves_figure, flutter_motion_figure};
-use crate::study::bridge::{BridgeFlutter, BridgeStudy, Scatter, ScatteredOnset, bridge_flutter};
+use crate::study::bridge::{
+    BridgeFlutter, BridgeStudy, DerivativeScatter, Scatter, ScatteredOnset, bridge_flutter,
+};
 use std::fmt::Write as _;
 
 /// Stem of the figure of frequencies and damping ratios.
@@ -28,6 +30,7 @@ const PHASES: usize = 24;
 ///
 /// Example: aerodeck bridge flutter bridge.toml --out results
 /// Example: aerodeck bridge flutter bridge.toml --samples 1000 --scatter-frequency 0.02
+/// Example: aerodeck bridge flutter bridge.toml --samples 1000 --scatter-derivatives measured
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
 pub(crate) struct Args {
@@ -42,9 +45,10 @@ pub(crate) struct Args {
     /// Standard deviation of each damping ratio over its mean.
     #[arg(long, default_value_t = 0.3)]
     scatter_damping: f64,
-    /// Standard deviation of the derivatives of each force by each motion over their mean.
-    #[arg(long, default_value_t = 0.05)]
-    scatter_derivatives: f64,
+    /// Standard deviation of the derivatives of each force by each motion over their mean; `measured` for the covariance of the
+    /// models' fits.
+    #[arg(long, default_value = "0.05")]
+    scatter_derivatives: DerivativeScatter,
     /// Seed of the samples.
     #[arg(long, default_value_t = 1)]
     seed: u64,

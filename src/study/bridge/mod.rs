@@ -12,7 +12,7 @@ pub use answers::{BridgeAnswer, BridgeFlutter, LeftOut, bridge_flutter};
 pub use buffeting::{BridgeBuffeting, BridgeRecord, BuffetingBlock};
 pub use export::Wanted;
 pub use forces::SectionForces;
-pub use scatter::{Scatter, ScatteredOnset};
+pub use scatter::{DerivativeScatter, Scatter, ScatteredOnset};
 
 use super::KnownUncertainty;
 use crate::bridge::{Bridge, Similarity, StripGroup, similarities};

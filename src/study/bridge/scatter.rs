@@ -1,14 +1,16 @@
 //! The onset of a bridge whose frequencies, damping and derivatives scatter (Monte Carlo).
 
-use super::{BridgeStudy, coupled};
+use super::{BridgeStudy, SectionForces, coupled};
 use crate::aerodynamics::{
     ContinuousRealization, Realizable, Realization, Transfer, TransferMatrix,
 };
 use crate::bridge::Bridge;
 use crate::error::{Error, Result, non_negative};
+use crate::files::bridge::SectionBlock;
 use crate::flutter::{NearbyOnset, Onset, OnsetSearch, find_onset};
 use crate::section::Dof;
 use crate::signal::random_stream;
+use crate::uncertainty::{ModelDraws, moments, sample_quantile};
 use crate::units::ReducedFrequency;
 use nalgebra::DMatrix;
 use rand::Rng;
@@ -27,12 +29,47 @@ pub struct Scatter {
     pub frequency: f64,
     /// Of the damping ratios, log-normal.
     pub damping: f64,
-    /// Of each entry of the matrix of self-excited forces, normal: the derivatives of one force by one motion together.
-    pub derivatives: f64,
+    /// Of the self-excited forces.
+    pub derivatives: DerivativeScatter,
     /// Number of samples.
     pub samples: usize,
     /// Seed.
     pub seed: u64,
+}
+
+/// How the self-excited forces scatter.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum DerivativeScatter {
+    /// As far as the tests leave the coefficients of the models open: normal, by the covariance of each section's fit.
+    Measured,
+    /// Standard deviation over the mean of each entry of the matrix of self-excited forces, normal: the derivatives of one
+    /// force by one motion together.
+    #[serde(untagged)]
+    Relative(f64),
+}
+
+impl std::str::FromStr for DerivativeScatter {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self> {
+        if text == "measured" {
+            return Ok(Self::Measured);
+        }
+        text.parse().map(Self::Relative).map_err(|_| {
+            let expected = "a standard deviation over the mean, or `measured`";
+            Error::input("scatter of the derivatives", expected, text)
+        })
+    }
+}
+
+impl std::fmt::Display for DerivativeScatter {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Relative(part) => write!(f, "{part}"),
+            Self::Measured => f.write_str("measured"),
+        }
+    }
 }
 
 /// Distribution of the onset.
@@ -60,7 +97,9 @@ impl BridgeStudy {
     pub fn scattered_onset(&self, onset: &Onset, scatter: &Scatter) -> Result<ScatteredOnset> {
         non_negative("scatter of the frequencies", scatter.frequency)?;
         non_negative("scatter of the damping", scatter.damping)?;
-        non_negative("scatter of the derivatives", scatter.derivatives)?;
+        if let DerivativeScatter::Relative(part) = scatter.derivatives {
+            non_negative("scatter of the derivatives", part)?;
+        }
         if !(2..=MOST_SAMPLES).contains(&scatter.samples) {
             return Err(Error::input(
                 "samples",
@@ -68,10 +107,15 @@ impl BridgeStudy {
                 scatter.samples.to_string(),
             ));
         }
-        let nearby = NearbyOnset::of(&self.by_model, &onset.at)?;
+        let sampler = Sampler {
+            study: self,
+            scatter,
+            forces: self.drawn_forces(scatter.derivatives)?,
+            nearby: NearbyOnset::of(&self.by_model, &onset.at)?,
+        };
         let found = (0..scatter.samples)
             .into_par_iter()
-            .map(|i| self.onset_of_sample(&nearby, scatter, i as u64))
+            .map(|i| sampler.onset(i as u64))
             .collect::<Result<Vec<_>>>()?;
         let mut speeds: Vec<f64> = found.iter().copied().flatten().collect();
         if speeds.len() < 2 {
@@ -80,57 +124,120 @@ impl BridgeStudy {
             ));
         }
         speeds.sort_by(f64::total_cmp);
-        let count = speeds.len() as f64;
-        let mean = speeds.iter().sum::<f64>() / count;
-        let square = speeds.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (count - 1.0);
-        let quantile = |p: f64| speeds[((count - 1.0) * p).round() as usize];
+        let (mean_m_s, standard_deviation_m_s) = moments(&speeds);
+        let quantile = |p| sample_quantile(&speeds, speeds.len(), p).unwrap_or(f64::NAN);
         Ok(ScatteredOnset {
             scatter: *scatter,
-            mean_m_s: mean,
-            standard_deviation_m_s: square.sqrt(),
+            mean_m_s,
+            standard_deviation_m_s,
             interval_m_s: [quantile(0.025), quantile(0.975)],
             without_onset: found.len() - speeds.len(),
         })
     }
 
+    /// What the forces of every section are drawn from.
+    fn drawn_forces(&self, scatter: DerivativeScatter) -> Result<Vec<Drawn<'_>>> {
+        let sections = self.file.sections.iter().zip(&self.sections);
+        sections
+            .map(|(block, forces)| Drawn::of(block, forces, scatter))
+            .collect()
+    }
+}
+
+/// Where the forces of one section are drawn from.
+enum Drawn<'a> {
+    /// Entries of the mean times factors with this standard deviation.
+    Scaled(f64),
+    /// The covariance of the fit.
+    Models(ModelDraws<'a>),
+}
+
+impl<'a> Drawn<'a> {
+    fn of(
+        block: &SectionBlock,
+        forces: &'a SectionForces,
+        scatter: DerivativeScatter,
+    ) -> Result<Self> {
+        let DerivativeScatter::Relative(part) = scatter else {
+            return match &forces.uncertainty {
+                // static coefficients are stated without errors
+                Ok(None) => Ok(Self::Scaled(0.0)),
+                Ok(Some(estimate)) => ModelDraws::of(estimate).map(Self::Models),
+                Err(why) => Err(Error::input(
+                    format!("section {}: scatter of the derivatives", block.name),
+                    "a model whose fit left a covariance, or a standard deviation over the mean",
+                    why.clone(),
+                )),
+            };
+        };
+        Ok(Self::Scaled(part))
+    }
+
+    fn forces(&self, mean: &Arc<dyn Transfer>, random: &mut impl Rng) -> Result<Arc<dyn Transfer>> {
+        Ok(match self {
+            Self::Scaled(0.0) => mean.clone(),
+            Self::Scaled(part) => {
+                let n = mean.dofs().len();
+                let mut normal = || -> f64 { random.sample(StandardNormal) };
+                let factors = DMatrix::from_fn(n, n, |_, _| 1.0 + part * normal());
+                Arc::new(Scaled::of(mean.as_ref(), &factors)?)
+            }
+            Self::Models(draws) => Arc::new(draws.model(random)?),
+        })
+    }
+}
+
+/// What all samples share.
+struct Sampler<'a> {
+    study: &'a BridgeStudy,
+    scatter: &'a Scatter,
+    /// In the order of the sections.
+    forces: Vec<Drawn<'a>>,
+    nearby: NearbyOnset,
+}
+
+impl Sampler<'_> {
     /// The onset of one sample, m/s: from nearby, else by a search.
-    fn onset_of_sample(
-        &self,
-        nearby: &NearbyOnset,
-        scatter: &Scatter,
-        index: u64,
-    ) -> Result<Option<f64>> {
-        let other = coupled(&self.sample(scatter, index)?)?;
-        if let Some((speed, _)) = nearby.find(&other) {
+    fn onset(&self, index: u64) -> Result<Option<f64>> {
+        let other = coupled(&self.sample(index)?)?;
+        if let Some((speed, _)) = self.nearby.find(&other) {
             return Ok(Some(speed));
         }
         let search = OnsetSearch {
-            speed_max_m_s: self.file.flutter.speed_max_m_s,
-            speeds: self.file.flutter.speeds,
+            speed_max_m_s: self.study.file.flutter.speed_max_m_s,
+            speeds: self.study.file.flutter.speeds,
         };
-        let found = find_onset("sample", &other, &search, self.tested_range())?;
+        let found = find_onset("sample", &other, &search, self.study.tested_range())?;
         Ok(found.critical_speed_m_s())
     }
 
-    fn sample(&self, scatter: &Scatter, index: u64) -> Result<Bridge> {
-        let mut random = random_stream(scatter.seed, index);
+    fn sample(&self, index: u64) -> Result<Bridge> {
+        let mut random = random_stream(self.scatter.seed, index);
         let mut normal = || -> f64 { random.sample(StandardNormal) };
-        let mut bridge = self.by_model.clone();
+        let mut bridge = self.study.by_model.clone();
         // a log-normal factor of mean one
-        let spread = (1.0 + scatter.damping * scatter.damping).ln();
+        let damping = self.scatter.damping;
+        let spread = (1.0 + damping * damping).ln();
         for mode in &mut bridge.modes {
-            mode.frequency_hz *= 1.0 + scatter.frequency * normal();
+            mode.frequency_hz *= 1.0 + self.scatter.frequency * normal();
             mode.damping_ratio *= (spread.sqrt() * normal() - 0.5 * spread).exp();
             crate::error::positive("scattered frequency", mode.frequency_hz)?;
         }
-        if scatter.derivatives > 0.0 {
-            for group in &mut bridge.groups {
-                let n = group.forces.dofs().len();
-                let factors = DMatrix::from_fn(n, n, |_, _| 1.0 + scatter.derivatives * normal());
-                group.forces = Arc::new(Scaled::of(group.forces.as_ref(), &factors)?);
-            }
-        }
+        self.scatter_forces(&mut bridge, &mut random)?;
         Ok(bridge)
+    }
+
+    /// Groups of one section share what was measured on it; given factors are drawn for each group by itself.
+    fn scatter_forces(&self, bridge: &mut Bridge, random: &mut impl Rng) -> Result<()> {
+        let mut models = vec![None; self.forces.len()];
+        for (group, &section) in bridge.groups.iter_mut().zip(&self.study.section_of_group) {
+            group.forces = match (&self.forces[section], &models[section]) {
+                (Drawn::Models(_), Some(drawn)) => Arc::clone(drawn),
+                (of, _) => of.forces(&group.forces, random)?,
+            };
+            models[section] = Some(group.forces.clone());
+        }
+        Ok(())
     }
 }
 
