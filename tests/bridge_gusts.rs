@@ -287,9 +287,10 @@ fn turbulence_of_the_archive_is_buffeting() {
     let field = FieldTable {
         step_s: field.step_s,
         along_m: field.along_m,
+        from_middle: false,
         gusts: field.gusts,
     };
-    let expected = study.buffeting_by(&block, WIND, field.clone()).unwrap();
+    let expected = study.buffeting_by(&block, WIND, &field).unwrap();
     let export = study
         .export(&Wanted {
             nodes: block.nodes.clone(),

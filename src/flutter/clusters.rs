@@ -5,11 +5,15 @@ use super::following::{MIN_ASSURANCE, Mode, assurance};
 use super::modal_characteristic::AtSpeed;
 use nalgebra::linalg::Schur;
 use nalgebra::{Complex, DMatrix, DVector};
+#[cfg(feature = "cli")]
+use rayon::prelude::*;
 
 type Complex64 = Complex<f64>;
 type Shape = DVector<Complex64>;
 type Root = (Complex64, Shape);
 
+/// Modal assurance above which a mode is the one before, whatever lies near.
+const SAME_SHAPE: f64 = 0.99;
 /// Modes closer than this, relatively, are one cluster.
 const CLOSE: f64 = 3e-3;
 /// Rounds of the correction of a cluster before each mode is corrected by itself, which then converges quadratically.
@@ -25,24 +29,42 @@ pub(super) fn by_shapes(
     predicted: &[Complex64],
     before: &[Mode],
 ) -> Vec<Option<Root>> {
-    let mut roots: Vec<Option<Root>> = vec![None; before.len()];
+    let mut roots = each_alone(problem, predicted, before);
     for cluster in clusters(predicted) {
-        if let [alone] = cluster[..] {
-            let old = &before[alone].shape;
-            let root = problem.solve(predicted[alone], old);
-            roots[alone] = root.filter(|(_, shape)| assurance(shape, old) >= MIN_ASSURANCE);
+        if cluster.len() == 1 || cluster.iter().all(|i| surely(&roots[*i], &before[*i])) {
             continue;
         }
         let near: Vec<_> = cluster.iter().map(|i| predicted[*i]).collect();
         let old: Vec<_> = cluster.iter().map(|i| &before[*i]).collect();
-        for (i, root) in cluster
-            .iter()
-            .zip(corrected(problem, &near, &old).into_iter().flatten())
-        {
-            roots[*i] = Some(root);
+        let mut found = corrected(problem, &near, &old).into_iter().flatten();
+        for i in cluster {
+            roots[i] = found.next();
         }
     }
     roots
+}
+
+/// Every mode corrected by itself, unless it has become another.
+fn each_alone(
+    problem: &AtSpeed<'_>,
+    predicted: &[Complex64],
+    before: &[Mode],
+) -> Vec<Option<Root>> {
+    let alone = |i: usize| {
+        let old = &before[i].shape;
+        let root = problem.solve(predicted[i], old);
+        root.filter(|(_, shape)| assurance(shape, old) >= MIN_ASSURANCE)
+    };
+    #[cfg(feature = "cli")]
+    return (0..before.len()).into_par_iter().map(alone).collect();
+    #[cfg(not(feature = "cli"))]
+    (0..before.len()).map(alone).collect()
+}
+
+/// Whether a mode that has neighbours has hardly changed its shape, so that it needs no look at them.
+fn surely(root: &Option<Root>, before: &Mode) -> bool {
+    let kept = |(_, shape): &Root| assurance(shape, &before.shape) >= SAME_SHAPE;
+    root.as_ref().is_some_and(kept)
 }
 
 /// Places of modes by clusters, from their eigenvalues; most are alone.

@@ -36,8 +36,48 @@ pub(super) struct Mode {
     pub(super) lambda: Complex<f64>,
     /// Displacements (n): m, rad.
     pub(super) shape: DVector<Complex<f64>>,
-    /// `dλ/dV` from the last step, where the next is predicted by it.
-    pub(super) slope: Complex<f64>,
+    /// How the eigenvalue came here, where the next is predicted by it.
+    pub(super) course: Course,
+}
+
+/// How an eigenvalue went over the last wind speeds: the divided differences of Newton's interpolation.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Course {
+    /// The speed before, m/s.
+    before: Option<f64>,
+    /// First difference, rad/s per m/s.
+    slope: Complex<f64>,
+    /// Second difference.
+    bend: Complex<f64>,
+}
+
+impl Course {
+    /// What an eigenvalue at `speed` is going to change by up to `next`, on a straight line.
+    pub(super) fn straight(&self, speed: f64, next: f64) -> Complex<f64> {
+        self.slope * (next - speed)
+    }
+
+    /// The same on a parabola.
+    pub(super) fn curved(&self, speed: f64, next: f64) -> Complex<f64> {
+        let further = self.before.map_or(0.0, |before| next - before);
+        self.straight(speed, next) + self.bend * ((next - speed) * further)
+    }
+
+    /// The course at `next`, to where the eigenvalue has changed from `speed`.
+    pub(super) fn to(&self, speed: f64, next: f64, change: Complex<f64>) -> Self {
+        if next == speed {
+            return *self;
+        }
+        let slope = change / (next - speed);
+        let bend = self.before.filter(|before| *before != next);
+        Self {
+            before: Some(speed),
+            slope,
+            bend: bend.map_or(Complex::default(), |before| {
+                (slope - self.slope) / (next - before)
+            }),
+        }
+    }
 }
 
 /// The modes that oscillate at one wind speed, in the order of the degrees of freedom.

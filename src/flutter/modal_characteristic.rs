@@ -2,11 +2,13 @@
 //!
 //! The same `D(λ)` as that of a section, as many rows as there are modes. The filters of a bridge come in chains that are
 //! alike for every mode, so one response of a chain, `x = (λB I − V A)⁻¹ b`, serves all of them and
-//! `D(λ) = λ²M + λR + K − Σ_l x_l(λ) C_l` costs modes² for each filter of a chain. A mode is corrected by nonlinear
-//! inverse iteration (Neumaier 1985, without the residual form): `D(λ) u = D'(λ) v`, `λ ← λ − (vᴴv)/(vᴴu)`, `v ← u/|u|`, which
-//! converges quadratically and knows by its shape which mode it follows.
+//! `D(λ) = λ²M + λR + K − Σ_l x_l(λ) C_l` costs modes² for each filter of a chain. A mode is corrected by two-sided inverse
+//! iteration (Ostrowski's, for a nonlinear problem: Schreiber, "Nonlinear eigenvalue problems: Newton-type methods and nonlinear
+//! Rayleigh functionals", 2008): `D(λ) u = D'(λ) v` and `D(λ)ᵀ w = D'(λ)ᵀ v` by one elimination, `λ ← λ − (wᵀDu)/(wᵀD'u)`,
+//! `v ← u/|u|`, which converges cubically and knows by its shape which mode it follows. The left shape starts from the right
+//! one, which it is where the matrix is symmetric, as that of a structure alone.
 
-use super::elimination::{Parts, solve};
+use super::elimination::{Columns, RealColumns, Term, solve};
 use crate::aerodynamics::{ContinuousRealization, Realization};
 use crate::aeroelastic::CoupledSection;
 use nalgebra::{Complex, DMatrix, DVector};
@@ -16,8 +18,8 @@ type Shape = DVector<Complex64>;
 
 /// Rounds before a start is given up as too far away.
 const MAX_ROUNDS: usize = 12;
-/// Relative size of the last step: the next would be its square, which is rounding.
-const TOLERANCE: f64 = 1e-8;
+/// Relative size of the last step; the next would be its cube over the square of the distance to other modes.
+const TOLERANCE: f64 = 1e-5;
 /// Part of an eigenvalue by which it is moved where the problem is exactly singular; below the tolerance, so that it settles.
 const NUDGE: f64 = 1e-11;
 
@@ -29,14 +31,14 @@ struct Chain {
     /// L.
     b: DVector<f64>,
     /// What each filter does, n×n: column `j` for the chain that coordinate `j` drives, times `½ρB²`.
-    outputs: Vec<DMatrix<f64>>,
+    outputs: Vec<RealColumns>,
 }
 
 /// Matrices of the problem, scaled to physical motion and force once.
 #[derive(Debug)]
 pub(super) struct ModalCharacteristic {
     width: f64,
-    mass: DMatrix<f64>,
+    mass: RealColumns,
     damping: DMatrix<f64>,
     stiffness: DMatrix<f64>,
     /// `½ρ P(e₀)`, `½ρB P(e₁)`; the added mass is in `mass`.
@@ -54,18 +56,16 @@ impl ModalCharacteristic {
         let s = section.structure();
         let half_rho = 0.5 * s.air_density_kg_m3;
         let width = s.width_m;
-        let mut chains = chains(aero);
-        for output in chains.iter_mut().flat_map(|c| &mut c.outputs) {
-            *output = s.scaled(output) * half_rho;
-        }
+        let mass = &s.mass - s.scaled(&aero.e2) * (half_rho * width * width);
+        let force = |output: &DMatrix<f64>| RealColumns::of(&(s.scaled(output) * half_rho));
         Some(Self {
             width,
-            mass: &s.mass - s.scaled(&aero.e2) * (half_rho * width * width),
+            mass: RealColumns::of(&mass),
             damping: s.damping.clone(),
             stiffness: s.stiffness.clone(),
             on_motion: s.scaled(&aero.e0) * half_rho,
             on_rate: s.scaled(&aero.e1) * (half_rho * width),
-            chains,
+            chains: chains(aero, force),
         })
     }
 
@@ -74,8 +74,8 @@ impl ModalCharacteristic {
         AtSpeed {
             problem: self,
             speed,
-            damping: &self.damping - &self.on_rate * speed,
-            stiffness: &self.stiffness - &self.on_motion * (speed * speed),
+            damping: RealColumns::of(&(&self.damping - &self.on_rate * speed)),
+            stiffness: RealColumns::of(&(&self.stiffness - &self.on_motion * (speed * speed))),
         }
     }
 }
@@ -84,8 +84,8 @@ impl ModalCharacteristic {
 pub(super) struct AtSpeed<'a> {
     problem: &'a ModalCharacteristic,
     speed: f64,
-    damping: DMatrix<f64>,
-    stiffness: DMatrix<f64>,
+    damping: RealColumns,
+    stiffness: RealColumns,
 }
 
 impl AtSpeed<'_> {
@@ -95,14 +95,16 @@ impl AtSpeed<'_> {
         let mut lambda = start;
         let mut shape = near.normalize();
         for _ in 0..MAX_ROUNDS {
-            let basis = DMatrix::from_columns(std::slice::from_ref(&shape));
-            let better = self.inverse_iteration(lambda, &basis);
-            let better = better.map(|b| b.column(0).into_owned());
-            let Some(step) = better.and_then(|b| improve(b, &mut shape)) else {
+            let round = TwoSided {
+                terms: self.terms(lambda)?,
+                shape: Columns::of(&DMatrix::from_columns(std::slice::from_ref(&shape))),
+            };
+            let Some((step, better)) = pulp::Arch::new().dispatch(round) else {
                 // an eigenvalue that is met exactly, as those of still air, cannot be solved with
                 lambda *= 1.0 + NUDGE;
                 continue;
             };
+            shape = better;
             lambda -= step;
             if step.norm() <= TOLERANCE * lambda.norm() {
                 return Some((lambda, shape));
@@ -118,7 +120,7 @@ impl AtSpeed<'_> {
         basis: &DMatrix<Complex64>,
     ) -> Option<DMatrix<Complex64>> {
         let terms = self.terms(lambda)?;
-        let basis = Parts::of(basis);
+        let basis = Columns::of(basis);
         Some(
             pulp::Arch::new()
                 .dispatch(Iteration { terms, basis })?
@@ -150,47 +152,58 @@ impl AtSpeed<'_> {
     }
 }
 
-/// A real matrix in `D(λ)`, the number it is multiplied with, and that number's derivative.
-struct Term<'a> {
-    value: Complex64,
-    slope: Complex64,
-    matrix: &'a DMatrix<f64>,
-}
-
 /// `D⁻¹ D' U`, compiled for the vectors of the processor.
 struct Iteration<'a> {
     terms: Vec<Term<'a>>,
-    basis: Parts,
+    basis: Columns,
 }
 
 impl pulp::NullaryFnOnce for Iteration<'_> {
-    type Output = Option<Parts>;
+    type Output = Option<Columns>;
 
     #[inline(always)]
-    fn call(self) -> Option<Parts> {
-        let n = self.terms.first()?.matrix.nrows();
-        let (mut value, mut slope) = (Parts::zeros(n, n), Parts::zeros(n, n));
-        for term in &self.terms {
-            value.add(term.value, term.matrix.as_slice());
-            slope.add(term.slope, term.matrix.as_slice());
-        }
-        value.solve(slope.times(&self.basis))
+    fn call(self) -> Option<Columns> {
+        let (value, slope) = Columns::sum(&self.terms);
+        Some(value.factors()?.solve(slope.times(&self.basis)))
+    }
+}
+
+/// A round of two-sided inverse iteration: what is to be taken from the eigenvalue, and the better shape, of unit norm; `None`
+/// where it is not finite.
+struct TwoSided<'a> {
+    terms: Vec<Term<'a>>,
+    shape: Columns,
+}
+
+impl pulp::NullaryFnOnce for TwoSided<'_> {
+    type Output = Option<(Complex64, Shape)>;
+
+    #[inline(always)]
+    fn call(self) -> Option<(Complex64, Shape)> {
+        let (value, slope) = Columns::sum(&self.terms);
+        let factors = value.factors()?;
+        let side = slope.times(&self.shape);
+        let left = factors.solve_transposed(&slope.transposed_times(&self.shape));
+        // `D u` is the right-hand side
+        let applied = left.dot(&side);
+        let better = factors.solve(side);
+        let step = applied / left.dot(&slope.times(&better));
+        let better = better.to_matrix().column(0).into_owned();
+        let size = better.norm();
+        let finite = step.re.is_finite() && step.im.is_finite() && size > 0.0;
+        finite.then(|| (step, better.unscale(size)))
     }
 }
 
 /// One step of inverse iteration with `D`, `D' v` and the shape `v`, which it improves: what is to be taken from the
-/// eigenvalue. `None` when the step is not finite.
+/// eigenvalue, `(vᴴv)/(vᴴu)`. `None` when the step is not finite.
 pub(super) fn inverse_step(
-    value: DMatrix<Complex64>,
+    value: &DMatrix<Complex64>,
     slope: Shape,
     shape: &mut Shape,
 ) -> Option<Complex64> {
     let slope = DMatrix::from_columns(&[slope]);
-    improve(solve(&value, &slope)?.column(0).into_owned(), shape)
-}
-
-/// Replaces a shape by a better one, of unit norm; what is to be taken from the eigenvalue, unless it is not finite.
-fn improve(better: Shape, shape: &mut Shape) -> Option<Complex64> {
+    let better = solve(value, &slope)?.column(0).into_owned();
     let step = shape.dotc(&better).inv();
     let size = better.norm();
     if !(step.re.is_finite() && step.im.is_finite() && size > 0.0) {
@@ -219,28 +232,37 @@ impl Chain {
     }
 }
 
-/// The chains of a realisation: for every coordinate the filters it drives, those that are alike together.
-fn chains(aero: &ContinuousRealization) -> Vec<Chain> {
+/// The chains of a realisation: for every coordinate the filters it drives, those that are alike together; `force` makes the
+/// force of what a filter does.
+fn chains(
+    aero: &ContinuousRealization,
+    force: impl Fn(&DMatrix<f64>) -> RealColumns,
+) -> Vec<Chain> {
     let n = aero.b.ncols();
-    let mut chains: Vec<Chain> = Vec::new();
+    let mut chains: Vec<(DMatrix<f64>, DVector<f64>, Vec<DMatrix<f64>>)> = Vec::new();
     for input in 0..n {
         for states in driven(aero, input) {
             let a = aero.a.select_rows(&states).select_columns(&states);
             let b =
                 DVector::from_iterator(states.len(), states.iter().map(|s| aero.b[(*s, input)]));
-            let alike = chains.iter().position(|c| c.a == a && c.b == b);
+            let alike = chains.iter().position(|c| c.0 == a && c.1 == b);
             let at = alike.unwrap_or_else(|| {
                 let outputs = vec![DMatrix::zeros(n, n); states.len()];
-                chains.push(Chain { a, b, outputs });
+                chains.push((a, b, outputs));
                 chains.len() - 1
             });
-            for (output, state) in chains[at].outputs.iter_mut().zip(&states) {
+            for (output, state) in chains[at].2.iter_mut().zip(&states) {
                 let mut column = output.column_mut(input);
                 column += aero.c.column(*state);
             }
         }
     }
-    chains
+    let chain = |(a, b, outputs): (_, _, Vec<DMatrix<f64>>)| Chain {
+        a,
+        b,
+        outputs: outputs.iter().map(&force).collect(),
+    };
+    chains.into_iter().map(chain).collect()
 }
 
 /// The filters that one coordinate drives, those that feed one another together.

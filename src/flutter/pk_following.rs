@@ -4,7 +4,7 @@ use super::answer::Reach;
 use super::critical_point::OnsetMethod;
 use super::determinant::damping_slope;
 use super::following::{
-    Follower, MIN_ASSURANCE, Mode, Modes, SEPARATION, assurance, dimensionless,
+    Course, Follower, MIN_ASSURANCE, Mode, Modes, SEPARATION, assurance, dimensionless,
 };
 use super::onset::Onset;
 use super::quasi_pk::{pk_mode, pk_mode_at};
@@ -316,6 +316,6 @@ fn still_mode(branch: usize, lambda: Complex<f64>, shape: DVector<Complex<f64>>)
         branch,
         lambda: Complex::new(lambda.re.min(-f64::MIN_POSITIVE), lambda.im),
         shape,
-        slope: Complex::default(),
+        course: Course::default(),
     }
 }

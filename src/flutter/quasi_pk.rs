@@ -96,7 +96,7 @@ fn settle_by_shape(
         let slope = DMatrix::from_fn(shape.len(), shape.len(), |i, j| {
             lambda * (2.0 * s.mass[(i, j)]) + on_rate[(i, j)]
         });
-        let Some(step) = inverse_step(stiffness, slope * &shape, &mut shape) else {
+        let Some(step) = inverse_step(&stiffness, slope * &shape, &mut shape) else {
             return Ok(None);
         };
         lambda -= step;

@@ -7,7 +7,7 @@ use super::characteristic::Characteristic;
 use super::clusters::by_shapes;
 use super::critical_point::OnsetMethod;
 use super::following::{
-    Follower, MIN_ASSURANCE, Mode, Modes, SEPARATION, assurance, dimensionless, oscillates,
+    Course, Follower, MIN_ASSURANCE, Mode, Modes, SEPARATION, assurance, dimensionless, oscillates,
 };
 use super::modal_characteristic::ModalCharacteristic;
 use super::onset::Onset;
@@ -89,10 +89,16 @@ impl<'a> Tracker<'a> {
 
     /// Modes at `speed` if each is clearly the continuation of one before.
     fn matched(&self, before: &Modes, speed: f64) -> Result<Option<Modes>> {
+        // shapes take a round less from a better start; a root of the small problem costs next to nothing
+        let curved = matches!(self.correction, Correction::Shapes(_));
+        let change = |course: &Course| match curved {
+            true => course.curved(before.speed, speed),
+            false => course.straight(before.speed, speed),
+        };
         let predicted: Vec<_> = before
             .all
             .iter()
-            .map(|mode| mode.lambda + mode.slope * (speed - before.speed))
+            .map(|mode| mode.lambda + change(&mode.course))
             .collect();
         let corrected = match &self.correction {
             Correction::Determinant(problem) => {
@@ -118,16 +124,11 @@ impl<'a> Tracker<'a> {
             if !seen && assurance(&shape, &old.shape) < MIN_ASSURANCE {
                 return Ok(None);
             }
-            let slope = if speed == before.speed {
-                old.slope
-            } else {
-                (lambda - old.lambda) / (speed - before.speed)
-            };
             all.push(Mode {
                 branch: old.branch,
                 lambda,
                 shape,
-                slope,
+                course: old.course.to(before.speed, speed, lambda - old.lambda),
             });
         }
         Ok(Some(Modes { speed, all }))

@@ -1,6 +1,7 @@
 //! What makes an exported unit a whole bridge: its modes, its strips, the nodes that an importer sees.
 
 use super::bridge_gusts::BridgeGusts;
+use super::onset_bounds::OnsetBounds;
 use crate::bridge::{Bridge, BridgeMode, Node, StripGroup};
 use crate::error::{Error, Result, positive};
 use crate::trained_model::Model;
@@ -56,6 +57,9 @@ pub struct BridgeOptions {
     /// Gusts as inputs of strips; none without.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gusts: Option<BridgeGusts>,
+    /// 95 % interval of the onset, where it is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub onset_interval: Option<OnsetBounds>,
 }
 
 impl BridgeOptions {
@@ -140,6 +144,9 @@ impl BridgeOptions {
                 expected,
                 format!("{:?}", self.initial),
             ));
+        }
+        if let Some(interval) = &self.onset_interval {
+            interval.check().map_err(|e| e.at("onset_interval"))?;
         }
         let bridge = self.bridge()?;
         self.gusts.iter().try_for_each(|g| g.validate(&bridge))

@@ -39,9 +39,15 @@ impl OnsetBounds {
             let place = format!("line {}, column {}", e.line(), e.column());
             Error::input(place, "an interval of the onset speed", e.to_string())
         })?;
-        let Self { low_m_s, high_m_s } = bounds;
-        if low_m_s > 0.0 && low_m_s <= high_m_s && high_m_s.is_finite() {
-            return Ok(bounds);
+        bounds.check()?;
+        Ok(bounds)
+    }
+
+    /// Whether the ends are an interval of speeds.
+    pub(super) fn check(&self) -> Result<()> {
+        let Self { low_m_s, high_m_s } = self;
+        if *low_m_s > 0.0 && low_m_s <= high_m_s && high_m_s.is_finite() {
+            return Ok(());
         }
         Err(Error::input(
             "low_m_s, high_m_s",

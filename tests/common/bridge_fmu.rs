@@ -47,6 +47,7 @@ pub fn export(folder: &Path, runtimes: &[Runtime]) {
         growing: Growing::Refuse,
         force: Some(options),
         gusts: None,
+        onset_interval: None,
         bounds: None,
         listing: Listing::All,
         label: Label::default(),
@@ -105,6 +106,7 @@ fn gusts(folder: &Path, runtimes: &[Runtime]) {
         turbulence: Some(FieldTable {
             step_s: field.step_s,
             along_m: field.along_m,
+            from_middle: false,
             gusts: field.gusts,
         }),
         ..Wanted::default()

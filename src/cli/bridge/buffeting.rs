@@ -25,7 +25,7 @@ pub(crate) struct Args {
     /// Write the turbulence of the first record as turbulence.csv: time, then u and w of every node.
     #[arg(long)]
     field: bool,
-    /// Take the turbulence of this file, written as by --field, instead of making records.
+    /// Take the turbulence of this file instead of making records: written as by --field, or by TurbSim (`.bts`).
     #[arg(long, conflicts_with = "field")]
     turbulence: Option<PathBuf>,
 }
@@ -74,7 +74,7 @@ fn by_file(
     path: &Path,
 ) -> Result<Answer> {
     let found = study
-        .buffeting_by(block, args.speed, read_field(path)?)
+        .buffeting_by(block, args.speed, &read_field(path)?)
         .map_err(|e| e.in_file(path))?;
     let mut text = format!(
         "{} at {} m/s in the turbulence of {}\n{:<8} {:<14} {:>12} {:>8}\n",

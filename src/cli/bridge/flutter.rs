@@ -92,7 +92,7 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     }
     text.push_str(&list(&written));
     let json = serde_json::json!({
-        "bridge": study.file.name, "flutter": results, "scatter": scattered, "notes": study.notes, "failed": failed, "files": written
+        "bridge": study.file.name, "onsets": results.onsets().collect::<Vec<_>>(), "flutter": results, "scatter": scattered, "notes": study.notes, "failed": failed, "files": written
     });
     Ok(Answer::new(text, &json)?.with_verdict(failed.is_empty()))
 }

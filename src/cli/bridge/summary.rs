@@ -40,7 +40,6 @@ pub(super) fn leave<'a>(
 ) -> Result<Summary<'a>> {
     out.stage(REPORT)?;
     out.stage(SUMMARY)?;
-    let onsets = results.answers.iter().filter_map(|a| a.search.onset());
     let summary = Summary {
         facts: BridgeFacts {
             generator: format!("aerodeck {}", env!("CARGO_PKG_VERSION")),
@@ -58,7 +57,7 @@ pub(super) fn leave<'a>(
             files: out.targets(),
         },
         warnings: &study.notes,
-        onsets: onsets.collect(),
+        onsets: results.onsets().collect(),
         flutter: results,
         failed,
     };

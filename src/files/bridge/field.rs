@@ -1,9 +1,13 @@
-//! Turbulence along the span as a file: `time_s,u[x1],u[x2],…,w[x1],…`, m/s, the places along the girder in metres.
+//! Turbulence along the span as a file: `time_s,u[x1],u[x2],…,w[x1],…`, m/s, the places along the girder in metres; or a
+//! binary file of TurbSim.
 
 use super::table::Table;
+use super::turbsim;
 use crate::error::{Error, Result};
 use std::path::Path;
 
+/// Nodes and columns this close are at one place, m: places are written with a few digits.
+const SAME_PLACE: f64 = 1e-3;
 /// Steps may differ by this part: times are written with a few digits.
 const SAME_STEP: f64 = 1e-6;
 
@@ -14,6 +18,8 @@ pub struct FieldTable {
     pub step_s: f64,
     /// Places of the columns, m.
     pub along_m: Vec<f64>,
+    /// Whether places count from the middle of the bridge; else they are those of the girder.
+    pub from_middle: bool,
     /// `u` then `w`: a row of samples a place.
     pub gusts: [Vec<Vec<f64>>; 2],
 }
@@ -23,7 +29,65 @@ pub struct FieldTable {
 /// # Errors
 /// [`Error::Io`] when it cannot be read; [`Error::Input`] with file and place for columns or times that are wrong.
 pub fn read_field(path: &Path) -> Result<FieldTable> {
+    if path.extension().is_some_and(|e| e == turbsim::ENDING) {
+        return turbsim::read(path);
+    }
     parse(&Table::read(path)?).map_err(|e| e.in_file(path))
+}
+
+impl FieldTable {
+    /// The field at other places, m: its own where a place is one of them, else on the straight line between its neighbours.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for places of the file that do not rise, and for wanted ones beyond them.
+    pub(crate) fn at(&self, wanted: &[f64]) -> Result<Self> {
+        let ends = (wanted.first().copied(), wanted.last().copied());
+        let (Some(first), Some(last)) = ends else {
+            return Err(Error::input("places", "one or more", "none"));
+        };
+        let shift = if self.from_middle {
+            0.5 * (first + last)
+        } else {
+            0.0
+        };
+        let own: Vec<f64> = self.along_m.iter().map(|x| x + shift).collect();
+        if let Some(i) = own.windows(2).position(|x| x[1] <= x[0]) {
+            let place = format!("heading, u[{}]", self.along_m[i + 1]);
+            return Err(Error::input(
+                place,
+                "places that rise",
+                format!("after {}", self.along_m[i]),
+            ));
+        }
+        let covered = (own[0] - SAME_PLACE)..=(own[own.len() - 1] + SAME_PLACE);
+        if !wanted.iter().all(|x| covered.contains(x)) {
+            return Err(Error::input(
+                "places of the turbulence",
+                format!("{first} to {last} m, where the nodes of the bridge are"),
+                format!("{} to {} m", own[0], own[own.len() - 1]),
+            ));
+        }
+        let of = |rows: &Vec<Vec<f64>>| wanted.iter().map(|x| between(&own, rows, *x)).collect();
+        Ok(Self {
+            step_s: self.step_s,
+            along_m: wanted.to_vec(),
+            from_middle: false,
+            gusts: [of(&self.gusts[0]), of(&self.gusts[1])],
+        })
+    }
+}
+
+/// A row at `x` among those at rising `places`.
+fn between(places: &[f64], rows: &[Vec<f64>], x: f64) -> Vec<f64> {
+    if let Some(same) = places.iter().position(|p| (p - x).abs() < SAME_PLACE) {
+        return rows[same].clone();
+    }
+    let above = places
+        .partition_point(|p| *p < x)
+        .clamp(1, places.len() - 1);
+    let share = (x - places[above - 1]) / (places[above] - places[above - 1]);
+    let both = rows[above - 1].iter().zip(&rows[above]);
+    both.map(|(a, b)| a + share * (b - a)).collect()
 }
 
 fn parse(table: &Table) -> Result<FieldTable> {
@@ -66,6 +130,7 @@ fn parse(table: &Table) -> Result<FieldTable> {
     Ok(FieldTable {
         step_s,
         along_m: places(&u),
+        from_middle: false,
         gusts: [samples(&u)?, samples(&w)?],
     })
 }
@@ -118,5 +183,32 @@ mod tests {
                 .to_string();
             assert!(message.contains(expected), "{message}");
         }
+    }
+
+    #[test]
+    fn fields_are_taken_to_other_places() {
+        let field = FieldTable {
+            step_s: 0.1,
+            along_m: vec![-10.0, 0.0, 20.0],
+            from_middle: true,
+            gusts: [
+                vec![vec![1.0, 2.0], vec![3.0, 4.0], vec![7.0, 9.0]],
+                vec![vec![0.0, 0.0]; 3],
+            ],
+        };
+        let moved = field.at(&[90.0, 100.0, 105.0, 110.0]).unwrap();
+        let u = &moved.gusts[0];
+        assert_eq!(u[0], [1.0, 2.0]);
+        assert_eq!(u[1], [3.0, 4.0]);
+        assert_eq!(u[2], [4.0, 5.25]);
+        let message = field.at(&[-30.0, 30.0]).unwrap_err().to_string();
+        assert!(message.contains("expected -30 to 30 m"), "{message}");
+        assert!(message.contains("found -10 to 20 m"), "{message}");
+        let falling = FieldTable {
+            along_m: vec![0.0, -10.0, 20.0],
+            ..field
+        };
+        let message = falling.at(&[0.0]).unwrap_err().to_string();
+        assert!(message.contains("places that rise"), "{message}");
     }
 }

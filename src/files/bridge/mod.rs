@@ -14,6 +14,7 @@ mod single_file;
 mod table;
 mod tables;
 mod toml_file;
+mod turbsim;
 mod wawi;
 mod wind_block;
 

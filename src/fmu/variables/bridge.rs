@@ -2,7 +2,7 @@
 
 use super::real::{FIXED, INPUT, OUTPUT, SMALLEST, TUNABLE, constants, real};
 use super::section::{
-    calculated_parameters, capitalized, gust_inputs, search_limit, status, wind_speed,
+    calculated_parameters, capitalized, gust_inputs, onset_bounds, search_limit, status, wind_speed,
 };
 use super::words::words;
 use super::{
@@ -43,6 +43,8 @@ pub(super) fn variables(
     table.extend((0..options.modes.len()).map(|m| initial(options, m)));
     table.extend(calculated_parameters());
     table.extend(constants(model)?);
+    let interval = options.onset_interval.into_iter();
+    table.extend(interval.flat_map(|b| onset_bounds(b, "bridge")));
     table.extend(status());
     fill_dependencies(&mut table);
     Ok(table)

@@ -42,7 +42,7 @@ pub(super) fn variables(
     table.push(search_limit(model));
     table.extend(calculated_parameters());
     table.extend(constants(model)?);
-    table.extend(bounds.into_iter().flat_map(onset_bounds));
+    table.extend(bounds.into_iter().flat_map(|b| onset_bounds(b, "section")));
     table.extend(status());
     if let Realization::Continuous(c) = model.model.realize() {
         let (filters, lags) = (c.a.nrows(), gusts.map_or(0, GustForce::states));
@@ -58,11 +58,11 @@ pub(super) fn variables(
     Ok(table)
 }
 
-/// The interval that the data leave of the onset.
-fn onset_bounds(bounds: OnsetBounds) -> [Variable; 2] {
+/// The interval that the data leave of the onset of a section or bridge.
+pub(super) fn onset_bounds(bounds: OnsetBounds, of: &str) -> [Variable; 2] {
     let end = |name, end, value| {
         let text = format!(
-            "{end} end of the 95 % interval of the flutter onset by the scatter of the data, for the section as exported"
+            "{end} end of the 95 % interval of the flutter onset by the scatter of the data, for the {of} as exported"
         );
         Variable {
             initial: Some(Initial::Exact),

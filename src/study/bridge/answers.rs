@@ -6,7 +6,7 @@ use crate::aeroelastic::CoupledSection;
 use crate::bridge::Bridge;
 use crate::error::Result;
 use crate::flutter::{
-    BridgeMotion, FlutterCurves, FlutterSearch, OnsetSearch, divergence_speed, find_onset,
+    BridgeMotion, FlutterCurves, FlutterSearch, Onset, OnsetSearch, divergence_speed, find_onset,
     motion_at_onset, pk_onset, static_deflection, trace_modes,
 };
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
@@ -52,6 +52,13 @@ pub struct BridgeFlutter {
     pub mean_rotation_deg: Option<f64>,
     /// What could not be computed, and why.
     pub failed: Vec<String>,
+}
+
+impl BridgeFlutter {
+    /// All onsets found, one a route at most.
+    pub fn onsets(&self) -> impl Iterator<Item = &Onset> {
+        self.answers.iter().filter_map(|a| a.search.onset())
+    }
 }
 
 /// Searches the onset by every route and says what takes part.

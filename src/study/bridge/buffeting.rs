@@ -2,7 +2,7 @@
 
 use super::BridgeStudy;
 use crate::aerodynamics::quasi_steady::LinearQuasiSteady;
-use crate::bridge::{Node, motion_index};
+use crate::bridge::motion_index;
 use crate::buffeting::{
     Coherence, Gust, SpanEnsemble, SpanPlan, SpanProblem, SpanRecord, SpanResponse, SpanSpectra,
     Turbulence, TurbulenceField, span_ensemble, span_record, span_response, span_spectra,
@@ -59,9 +59,6 @@ pub struct BridgeRecord {
     #[serde(flatten)]
     pub record: SpanRecord,
 }
-
-/// Places closer than this are one, m.
-const SAME_PLACE: f64 = 1e-3;
 
 impl BridgeStudy {
     /// The block, read and checked.
@@ -122,19 +119,10 @@ impl BridgeStudy {
         })
     }
 
-    /// Whether a field blows at the nodes of the bridge.
-    pub(super) fn check_field(&self, field: &FieldTable) -> Result<()> {
-        let nodes = &self.by_model.nodes;
-        let same = |(a, n): (&f64, &Node)| (a - n.along_m).abs() < SAME_PLACE;
-        if field.along_m.len() == nodes.len() && field.along_m.iter().zip(nodes).all(same) {
-            return Ok(());
-        }
-        let count = nodes.len();
-        Err(Error::input(
-            "heading",
-            format!("columns at the places of the {count} nodes of the bridge"),
-            format!("{} places", field.along_m.len()),
-        ))
+    /// A field at the nodes of the bridge.
+    pub(super) fn at_nodes(&self, field: &FieldTable) -> Result<FieldTable> {
+        let nodes = self.by_model.nodes.iter();
+        field.at(&nodes.map(|n| n.along_m).collect::<Vec<_>>())
     }
 
     /// Response at the nodes of the block at a wind speed, in both domains.
@@ -163,17 +151,17 @@ impl BridgeStudy {
         })
     }
 
-    /// Response to the turbulence of a file; its columns are those of the nodes of the bridge.
+    /// Response to the turbulence of a file, at the nodes of the bridge.
     ///
     /// # Errors
-    /// [`Error::Input`] for other nodes; those of the block.
+    /// [`Error::Input`] for a field that does not reach over the bridge; those of the block.
     pub fn buffeting_by(
         &self,
         block: &BuffetingBlock,
         speed_m_s: f64,
-        field: FieldTable,
+        field: &FieldTable,
     ) -> Result<BridgeRecord> {
-        self.check_field(&field)?;
+        let field = self.at_nodes(field)?;
         let field = TurbulenceField {
             step_s: field.step_s,
             along_m: field.along_m,

@@ -7,6 +7,7 @@ use crate::files::bridge::FieldTable;
 use crate::flutter::{BridgeMotion, FlutterSearch, OnsetSearch, find_onset};
 use crate::fmu::bridge_gusts::{BridgeGusts, TurbulenceOptions};
 use crate::fmu::bridge_options::{BridgeOptions, GroupOptions};
+use crate::fmu::onset_bounds::OnsetBounds;
 use crate::fmu::package::BridgeExport;
 use crate::trained_model::{Experiment, Provenance, TrainedModel};
 
@@ -106,6 +107,11 @@ impl BridgeStudy {
                 tested_range: self.tested_range(),
                 initial: self.release(motion.transpose()?.as_ref()),
                 gusts,
+                onset_interval: found.onset().and_then(|onset| {
+                    // a unit without an interval is better than none
+                    let interval = self.onset_interval(onset).ok()?;
+                    OnsetBounds::of(&interval)
+                }),
             },
             turbulence: wanted
                 .turbulence
@@ -145,8 +151,8 @@ impl BridgeStudy {
 
     /// A field of a file, one gust a node.
     fn turbulence(&self, field: &FieldTable) -> Result<TurbulenceOptions> {
-        self.check_field(field)?;
-        let [u, w] = field.gusts.clone();
+        let field = self.at_nodes(field)?;
+        let [u, w] = field.gusts;
         Ok(TurbulenceOptions {
             step_s: field.step_s,
             u,

@@ -1,0 +1,299 @@
+//! Turbulence from TurbSim: binary full-field files (`.bts`), as its user's guide lays them out in Annex D (Jonkman, TurbSim User's
+//! Guide 2.00, NREL, 2016): a head of counts, steps, heights, and for each component a slope and an intercept; then for every
+//! time the points of the grid, row after row from the lowest, each with its three components as integers of 16 bits.
+//!
+//! The grid stands across the wind, so that the girder is taken along its width, at the height of the hub.
+
+use super::field::FieldTable;
+use crate::error::{Error, Result};
+use std::path::Path;
+
+/// The ending of such files.
+pub(super) const ENDING: &str = "bts";
+/// First number of a file: not periodic, periodic.
+const KINDS: [i16; 2] = [7, 8];
+/// Components of the wind in a file.
+const COMPONENTS: usize = 3;
+/// The components that act on a girder: along the mean wind, and up.
+const ALONG_AND_UP: [usize; 2] = [0, 2];
+
+/// Bytes that are read in turn.
+struct Bytes<'a> {
+    all: &'a [u8],
+    at: usize,
+}
+
+impl Bytes<'_> {
+    fn take<const N: usize>(&mut self, what: &str) -> Result<[u8; N]> {
+        let found = self.all.get(self.at..).and_then(|rest| rest.first_chunk());
+        let found = found.ok_or_else(|| {
+            let place = format!("byte {}", self.at);
+            Error::input(place, what, format!("the end at {}", self.all.len()))
+        })?;
+        self.at += N;
+        Ok(*found)
+    }
+
+    fn short(&mut self, what: &str) -> Result<i16> {
+        Ok(i16::from_le_bytes(self.take(what)?))
+    }
+
+    /// A number of `lowest` or more.
+    fn count(&mut self, what: &str, lowest: i32) -> Result<usize> {
+        let place = self.at;
+        let count = i32::from_le_bytes(self.take(what)?);
+        match usize::try_from(count) {
+            Ok(fits) if count >= lowest => Ok(fits),
+            _ => Err(Error::input(
+                format!("byte {place}, {what}"),
+                format!("{lowest} or more"),
+                count.to_string(),
+            )),
+        }
+    }
+
+    fn number(&mut self, what: &str) -> Result<f64> {
+        let place = self.at;
+        let number = f64::from(f32::from_le_bytes(self.take(what)?));
+        if number.is_finite() {
+            return Ok(number);
+        }
+        Err(Error::input(
+            format!("byte {place}, {what}"),
+            "a finite number",
+            number.to_string(),
+        ))
+    }
+}
+
+/// The head of a file.
+struct Head {
+    /// Points upwards, across, on the tower below, and in time.
+    counts: [usize; 4],
+    /// Distances upwards and across, m, and the time step, s.
+    steps: [f64; 3],
+    hub_height_m: f64,
+    lowest_m: f64,
+    /// Slope and intercept of each component: `(integer − intercept)/slope` is in m/s.
+    scales: [[f64; 2]; COMPONENTS],
+    /// Where the samples begin.
+    end: usize,
+}
+
+impl Head {
+    fn of(all: &[u8]) -> Result<Self> {
+        let mut bytes = Bytes { all, at: 0 };
+        let kind = bytes.short("the kind of file")?;
+        if !KINDS.contains(&kind) {
+            let expected = "7 or 8, a full-field file of TurbSim";
+            return Err(Error::input("byte 0", expected, kind.to_string()));
+        }
+        let counts = [
+            bytes.count("points upwards", 1)?,
+            bytes.count("points across", 2)?,
+            bytes.count("points of the tower", 0)?,
+            bytes.count("time steps", 3)?,
+        ];
+        let steps = [
+            bytes.number("distance upwards")?,
+            bytes.number("distance across")?,
+            bytes.number("time step")?,
+        ];
+        bytes.number("mean wind")?;
+        let (hub_height_m, lowest_m) = (
+            bytes.number("height of the hub")?,
+            bytes.number("lowest height")?,
+        );
+        let mut scales = [[0.0; 2]; COMPONENTS];
+        for scale in &mut scales {
+            *scale = [bytes.number("slope")?, bytes.number("intercept")?];
+        }
+        let text = bytes.count("characters of the description", 0)?;
+        let head = Self {
+            counts,
+            steps,
+            hub_height_m,
+            lowest_m,
+            scales,
+            end: bytes.at.saturating_add(text),
+        };
+        head.check(all.len())?;
+        Ok(head)
+    }
+
+    fn check(&self, length: usize) -> Result<()> {
+        let positive = |what: &str, x: f64| match x > 0.0 {
+            true => Ok(()),
+            false => Err(Error::input(what, "a number above 0", x.to_string())),
+        };
+        positive("distance across", self.steps[1])?;
+        positive("time step", self.steps[2])?;
+        for c in ALONG_AND_UP {
+            if self.scales[c][0] == 0.0 {
+                let place = format!("slope of component {}", c + 1);
+                return Err(Error::input(place, "a number other than 0", "0"));
+            }
+        }
+        let samples = self.record().saturating_mul(self.counts[3]);
+        let expected = self.end.saturating_add(samples);
+        if length == expected {
+            return Ok(());
+        }
+        Err(Error::input(
+            "",
+            format!("{expected} bytes, as the head of the file says"),
+            length.to_string(),
+        ))
+    }
+
+    /// Bytes of one time.
+    fn record(&self) -> usize {
+        let [up, across, tower, _] = self.counts;
+        let points = up.saturating_mul(across).saturating_add(tower);
+        points.saturating_mul(2 * COMPONENTS)
+    }
+
+    /// The row below the hub, and the share of the row above it.
+    fn row(&self) -> (usize, f64) {
+        let up = self.counts[0];
+        if up == 1 || self.steps[0] <= 0.0 {
+            return (0, 0.0);
+        }
+        let place = (self.hub_height_m - self.lowest_m) / self.steps[0];
+        let place = place.clamp(0.0, (up - 1) as f64);
+        let below = (place.floor() as usize).min(up - 2);
+        (below, place - below as f64)
+    }
+}
+
+/// Reads a file: `u` without its mean at each point, and `w`, at the height of the hub.
+pub(super) fn read(path: &Path) -> Result<FieldTable> {
+    let bytes = std::fs::read(path).map_err(|e| Error::io(path, e))?;
+    parse(&bytes).map_err(|e| e.in_file(path))
+}
+
+fn parse(bytes: &[u8]) -> Result<FieldTable> {
+    let head = Head::of(bytes)?;
+    let [_, across, _, times] = head.counts;
+    let (below, share) = head.row();
+    let sample = |time: usize, row: usize, point: usize, component: usize| -> f64 {
+        let place = (row * across + point) * COMPONENTS + component;
+        let at = head.end + time * head.record() + 2 * place;
+        let [slope, intercept] = head.scales[component];
+        (f64::from(i16::from_le_bytes([bytes[at], bytes[at + 1]])) - intercept) / slope
+    };
+    let at_hub = |point: usize, component: usize| -> Vec<f64> {
+        (0..times)
+            .map(|t| {
+                let low = sample(t, below, point, component);
+                match share {
+                    0.0 => low,
+                    share => low + share * (sample(t, below + 1, point, component) - low),
+                }
+            })
+            .collect()
+    };
+    let middle = 0.5 * (across - 1) as f64;
+    let gusts = ALONG_AND_UP.map(|component| {
+        let rows = (0..across).map(|p| without_mean(at_hub(p, component)));
+        rows.collect::<Vec<_>>()
+    });
+    Ok(FieldTable {
+        step_s: head.steps[2],
+        along_m: (0..across)
+            .map(|p| (p as f64 - middle) * head.steps[1])
+            .collect(),
+        from_middle: true,
+        gusts,
+    })
+}
+
+fn without_mean(mut samples: Vec<f64>) -> Vec<f64> {
+    let mean = crate::signal::mean(&samples);
+    samples.iter_mut().for_each(|x| *x -= mean);
+    samples
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A field of 2 rows of 3 points and one of the tower, 4 times: `u = 20 + t + 10 p + 100 r`, `w = −u/2`.
+    fn file() -> Vec<u8> {
+        let mut bytes = Vec::new();
+        bytes.extend(7_i16.to_le_bytes());
+        for count in [2_i32, 3, 1, 4] {
+            bytes.extend(count.to_le_bytes());
+        }
+        for number in [10.0_f32, 50.0, 0.25, 20.0, 62.5, 60.0] {
+            bytes.extend(number.to_le_bytes());
+        }
+        for scale in [100.0_f32, -5000.0, 1.0, 0.0, 200.0, 7.0] {
+            bytes.extend(scale.to_le_bytes());
+        }
+        bytes.extend(2_i32.to_le_bytes());
+        bytes.extend(b"ab");
+        let mut put = |x: f32, slope: f32, intercept: f32| {
+            bytes.extend(((x * slope + intercept) as i16).to_le_bytes());
+        };
+        for t in 0..4 {
+            for point in 0..7 {
+                let u = 20.0 + t as f32 + 10.0 * (point % 3) as f32 + 100.0 * (point / 3) as f32;
+                put(u, 100.0, -5000.0);
+                put(0.0, 1.0, 0.0);
+                put(-0.5 * u, 200.0, 7.0);
+            }
+        }
+        bytes
+    }
+
+    #[test]
+    fn a_field_is_read_at_the_height_of_the_hub() {
+        let field = parse(&file()).unwrap();
+        assert_eq!(field.along_m, [-50.0, 0.0, 50.0]);
+        assert!((field.step_s - 0.25).abs() < 1e-7);
+        assert!(field.from_middle);
+        for point in 0..3 {
+            for t in 0..4 {
+                // the mean over the times is taken off; what remains is the same in every row
+                let expected = t as f64 - 1.5;
+                assert!((field.gusts[0][point][t] - expected).abs() < 1e-9);
+                assert!((field.gusts[1][point][t] + 0.5 * expected).abs() < 1e-9);
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_no_such_file_is_refused_with_its_place() {
+        let changed = |at: usize, to: &[u8]| {
+            let mut bytes = file();
+            bytes[at..at + to.len()].copy_from_slice(to);
+            bytes
+        };
+        for (bytes, expected) in [
+            (changed(0, &[1, 0]), "byte 0: expected 7 or 8"),
+            (
+                changed(6, &(-1_i32).to_le_bytes()),
+                "byte 6, points across: expected 2 or more, found -1",
+            ),
+            (
+                changed(26, &0.0_f32.to_le_bytes()),
+                "time step: expected a number above 0",
+            ),
+            (
+                changed(26, &f32::NAN.to_le_bytes()),
+                "byte 26, time step: expected a finite number",
+            ),
+            (
+                changed(42, &0.0_f32.to_le_bytes()),
+                "slope of component 1: expected a number other than 0",
+            ),
+            (file()[..40].to_vec(), "byte 38: expected lowest height"),
+            (file()[..100].to_vec(), "as the head of the file says"),
+            (Vec::new(), "byte 0: expected the kind of file"),
+        ] {
+            let message = parse(&bytes).unwrap_err().to_string();
+            assert!(message.contains(expected), "{message}");
+        }
+    }
+}
