@@ -1,6 +1,6 @@
 //! Results in words and tables, for people.
 
-use super::study::Summary;
+use super::summary::Summary;
 use crate::flutter::{Onset, OnsetInterval, UnstableStart, UnwantedGrowth};
 use crate::identification::{ConstraintReport, FitReport};
 use crate::study::{

@@ -3,7 +3,7 @@
 use super::super::answer::Answer;
 use super::super::output::list;
 use super::super::progress::Progress;
-use super::BridgeArgs;
+use super::args::BridgeArgs;
 use crate::buffeting::TurbulenceField;
 use crate::error::Result;
 use crate::files::bridge::read_field;

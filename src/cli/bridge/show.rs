@@ -4,7 +4,7 @@ use super::super::answer::Answer;
 use super::super::figures;
 use super::super::output::list;
 use super::super::progress::Progress;
-use super::BridgeArgs;
+use super::args::BridgeArgs;
 use crate::error::Result;
 use crate::report::modes_figure;
 use crate::section::Dof;

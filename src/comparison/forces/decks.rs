@@ -1,8 +1,9 @@
 //! One model on several girders (section 3.5.4 of the thesis).
 
+use super::options::{CompareOptions, OnRecords};
 use super::score::{Score, ScoreSummary, Trial, run_all, summaries};
 use super::statements::{Statement, on_decks};
-use super::{CompareOptions, OnRecords, TestedDeck};
+use super::tested_deck::TestedDeck;
 use crate::error::{Error, Result};
 use crate::identification::{FitReport, fit_discrete};
 use crate::trained_model::Model;

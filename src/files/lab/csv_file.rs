@@ -4,7 +4,7 @@
 //! unless all of it is numbers. A row of units may follow, or units may stand behind the names: `y [mm]`, `Fx (N)`.
 //! An empty cell or `NaN` is a missing sample. A column whose first cell is text is left out.
 
-use super::{Attribute, ChannelSet, check_count, no_group};
+use super::channels::{Attribute, ChannelSet, check_count, no_group};
 use crate::error::{Error, Result};
 use std::borrow::Cow;
 

@@ -1,6 +1,6 @@
 //! Numbers, texts, samples and properties out of the bytes of a TDMS file, in either byte order.
 
-use super::Attribute;
+use super::channels::Attribute;
 use crate::error::{Error, Result};
 
 /// Type codes.

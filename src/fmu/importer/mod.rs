@@ -9,6 +9,7 @@
 mod archive;
 mod checks;
 mod description;
+mod examination;
 mod findings;
 mod growth;
 mod library;
@@ -16,6 +17,7 @@ mod log;
 mod reading;
 mod simulation;
 mod slave;
+mod status;
 mod trials;
 
 pub use description::{
@@ -29,20 +31,19 @@ pub use growth::{
 };
 pub use log::LogMessage;
 pub use simulation::{Simulation, Table, simulate};
-pub use slave::{FmuState, Slave, Status};
+pub use slave::{FmuState, Slave};
+pub use status::Status;
 
 use crate::error::{Error, Result};
 use crate::fmu::location::location_of;
 use crate::fmu::xml::Element;
+use description::FILE;
 use findings::Findings;
 use library::Binary;
 use slave::Loaded;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 use tempfile::TempDir;
-
-/// Name of the description in the archive.
-const DESCRIPTION_FILE: &str = "modelDescription.xml";
 
 /// Folders below `binaries/` that may serve this machine, the one of FMI 2.0 first; and the ending of libraries.
 const fn native() -> (&'static [&'static str], &'static str) {
@@ -89,19 +90,19 @@ impl Fmu {
 
     fn read(path: &Path) -> Result<Self> {
         let (folder, entries, mut findings) = archive::unpack(path)?;
-        let file = folder.path().join(DESCRIPTION_FILE);
+        let file = folder.path().join(FILE);
         if !file.is_file() {
             let found = entries.iter().take(5).cloned().collect::<Vec<_>>();
             return Err(Error::input(
                 "archive",
-                format!("{DESCRIPTION_FILE} at its root"),
+                format!("{FILE} at its root"),
                 found.join(", "),
             ));
         }
         let bytes = std::fs::read(&file).map_err(|e| Error::io(&file, e))?;
         let root = decoded(bytes)
             .and_then(|text| Element::parse(&text))
-            .map_err(|e| e.in_file(DESCRIPTION_FILE))
+            .map_err(|e| e.in_file(FILE))
             .map_err(|e| Error::input("archive", "a readable description", e.to_string()))?;
         let (description, reading) = reading::read(&root);
         findings.0.extend(reading.0);
@@ -238,66 +239,6 @@ impl Fmu {
         });
         *slot = Some(Arc::clone(&loaded));
         Ok(loaded)
-    }
-
-    /// Checks archive, description and binary, then runs the FMU if nothing stands against it.
-    pub fn check(&self) -> CheckReport {
-        let mut findings = self.findings.clone();
-        findings.0.extend(checks::check(&self.description).0);
-        self.check_files(&mut findings);
-        let mut trials = Vec::new();
-        let mut messages = Vec::new();
-        match self.binary() {
-            Err(e) => findings.error("archive", "a binary for this machine", e.to_string()),
-            Ok(binary) => {
-                let place = binary
-                    .strip_prefix(self.folder.path())
-                    .unwrap_or(&binary)
-                    .display()
-                    .to_string();
-                let before = findings.0.len();
-                library::check_symbols(&binary, &place, &mut findings);
-                if findings.0.len() == before {
-                    (trials, messages) = trials::run(self, &mut findings);
-                }
-            }
-        }
-        CheckReport {
-            file: self.path.display().to_string(),
-            model_name: self.description.model_name.clone(),
-            generation_tool: self.description.generation_tool.clone().unwrap_or_default(),
-            platforms: self.platforms(),
-            variables: self.description.variables.len(),
-            findings: findings.0,
-            trials,
-            messages,
-        }
-    }
-
-    fn check_files(&self, findings: &mut Findings) {
-        let mut seen = std::collections::HashSet::new();
-        for entry in &self.entries {
-            if !seen.insert(entry.to_lowercase()) {
-                findings.warning(
-                    format!("archive, entry `{entry}`"),
-                    "names that differ in more than case",
-                    "the same twice",
-                );
-            }
-        }
-        for (file, what) in [
-            ("documentation/index.html", "documentation"),
-            ("model.png", "an icon"),
-        ] {
-            if !self.entries.iter().any(|e| e == file) {
-                findings.add(
-                    Severity::Note,
-                    "archive",
-                    format!("{what} ({file})"),
-                    "none",
-                );
-            }
-        }
     }
 }
 

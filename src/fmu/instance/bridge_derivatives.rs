@@ -3,10 +3,10 @@
 
 use super::bridge_built::Built;
 use super::bridge_unit::BridgeUnit;
-use super::derivatives::central_difference;
 use super::layout::Source;
-use super::saving::Memory;
+use super::memory::Memory;
 use super::section::OnsetCard;
+use super::sensitivity::central_difference;
 use super::trust::{Present, is_of_onset, smallest_damping, without_motion};
 use super::unit::Unit;
 use crate::error::Result;

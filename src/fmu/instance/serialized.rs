@@ -7,7 +7,7 @@
 //! digest of all bytes before, 16 bytes
 //! ```
 
-use super::saving::{Experiment, Memory};
+use super::memory::{Experiment, Memory};
 use crate::error::{Error, Result};
 use crate::fmu::lifecycle::State;
 use uuid::Uuid;

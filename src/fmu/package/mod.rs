@@ -9,6 +9,7 @@ mod growth;
 mod label;
 mod runtime;
 
+pub use super::standard::FmiVersion;
 pub use documentation::documentation;
 pub use growth::{Growing, growth_of};
 pub use label::Label;
@@ -71,16 +72,6 @@ pub struct Export {
     pub label: Label,
     /// Of the standard.
     pub version: FmiVersion,
-}
-
-/// Version of the standard; the runtime speaks all of them.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum FmiVersion {
-    /// FMI 2.0.
-    #[default]
-    Two,
-    /// FMI 3.0.
-    Three,
 }
 
 impl From<Growing> for Export {

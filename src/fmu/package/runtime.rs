@@ -1,8 +1,8 @@
 //! Runtime binaries: the one embedded in this program, and others from a folder.
 
-use super::FmiVersion;
 use crate::error::{Error, Result};
 use crate::fmu::identity::MODEL_IDENTIFIER;
+use crate::fmu::standard::FmiVersion;
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 

@@ -1,6 +1,7 @@
 //! How far the data behind the models of the sections leave the onset of a bridge open.
 
-use super::{BridgeStudy, coupled};
+use super::BridgeStudy;
+use super::answers::coupled;
 use crate::error::{Error, Result};
 use crate::flutter::{NearbyOnset, Onset, OnsetInterval};
 use crate::uncertainty::{CoefficientUncertainty, OnsetError};

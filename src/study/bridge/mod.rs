@@ -7,7 +7,6 @@ mod forces;
 mod interval;
 mod scatter;
 
-use answers::coupled;
 pub use answers::{BridgeAnswer, BridgeFlutter, LeftOut, bridge_flutter};
 pub use buffeting::{BridgeBuffeting, BridgeRecord, BuffetingBlock};
 pub use export::Wanted;

@@ -1,6 +1,7 @@
 //! The onset of a bridge whose frequencies, damping and derivatives scatter (Monte Carlo).
 
-use super::{BridgeStudy, SectionForces, coupled};
+use super::answers::coupled;
+use super::{BridgeStudy, SectionForces};
 use crate::aerodynamics::{
     ContinuousRealization, Realizable, Realization, Transfer, TransferMatrix,
 };

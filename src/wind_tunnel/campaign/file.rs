@@ -1,7 +1,8 @@
 //! The campaign file itself.
 
 use super::air::Air;
-use super::channel_map::{ChannelMap, ChannelRef};
+use super::channel::ChannelRef;
+use super::channel_map::ChannelMap;
 use super::ntnu;
 use super::section_forces::{self, SectionForces};
 use crate::error::{Error, Result, at_most, positive};

@@ -1,7 +1,8 @@
 //! Writing a virtual campaign to files that [`Campaign::read`] reads back.
 
 use super::air::Air;
-use super::channel_map::{CellChannel, ChannelMap, ChannelRef, cell_quantity};
+use super::channel::{CellChannel, ChannelRef};
+use super::channel_map::{ChannelMap, cell_quantity};
 use super::file::{
     CAMPAIGN_SCHEMA, Campaign, FileRef, RecordingBlock, RecordingLayout, RunBlock, SectionBlock,
 };

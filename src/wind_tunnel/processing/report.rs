@@ -1,9 +1,9 @@
 //! What processing did, in numbers, and what the user should know of a run that could be processed.
 
+use super::body::StillAirInertia;
 use super::cells::CellShare;
 use super::check::ClippedStretch;
 use super::drift::CellDrift;
-use super::lag::StillAirInertia;
 use super::low_pass::AppliedLowPass;
 use super::options::ProcessingOptions;
 use super::rest::{CrossTalk, RemovedMeans};

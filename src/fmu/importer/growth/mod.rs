@@ -12,7 +12,8 @@ pub use search::{GrowthPoint, SteppedOnset, SteppedSearch, SteppingSearch};
 use super::Fmu;
 use super::description::{Kind, Value};
 use super::simulation::{Times, start};
-use super::slave::{Slave, Status, find};
+use super::slave::{Slave, find};
+use super::status::Status;
 use crate::error::{Error, Result, positive};
 use crate::flutter::StableRange;
 
