@@ -35,9 +35,6 @@ pub struct BuffetingResponse {
 }
 
 /// One-sided spectra of the displacements at a frequency (n): m²/Hz, rad²/Hz.
-///
-/// # Errors
-/// Those of the model; [`Error::Numerical`] where the impedance is singular.
 pub(crate) fn response_spectrum(
     problem: &BuffetingProblem<'_>,
     frequency_hz: f64,
@@ -77,8 +74,7 @@ fn spectra_by_gust(
 /// `tested` is the range of reduced frequencies in which the model was tested.
 ///
 /// # Errors
-/// [`Error::Input`] for parts that do not fit together; those of the model; [`Error::Unstable`] when the section is
-/// unstable at this speed.
+/// [`Error::Input`] for parts that do not fit together; [`Error::Unstable`] when the section is unstable at this speed.
 pub(crate) fn buffeting_response(
     problem: &BuffetingProblem<'_>,
     speed_m_s: f64,

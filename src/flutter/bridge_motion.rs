@@ -70,7 +70,8 @@ impl BridgeMotion {
 /// The motion that the impedance of `forces` (of [`Bridge::forces`]) at an onset resists least.
 ///
 /// # Errors
-/// Those of the forces at its reduced frequency; [`Error::Numerical`] when there is no such motion.
+/// [`Error::Input`] for forces that say nothing at its reduced frequency; [`Error::Numerical`] when there is no such
+/// motion.
 pub fn motion_at_onset(
     bridge: &Bridge,
     forces: &dyn Transfer,
@@ -109,7 +110,8 @@ impl NearbyOnset {
     /// Starts from the onset `at` of `bridge`.
     ///
     /// # Errors
-    /// As [`motion_at_onset`].
+    /// [`Error::Input`] for forces that say nothing at its reduced frequency; [`Error::Numerical`] when there is no such
+    /// motion.
     pub fn of(bridge: &Bridge, at: &CriticalPoint) -> Result<Self> {
         let omega = at
             .reduced_frequency

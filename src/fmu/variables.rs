@@ -67,7 +67,7 @@ impl VariableTable {
     /// The table of a whole bridge, with or without turbulence of its own.
     ///
     /// # Errors
-    /// As [`VariableTable::new`].
+    /// [`Error::Input`] when a start value is not finite or outside the limits of its variable.
     pub fn of_bridge(
         model: &TrainedModel,
         options: &BridgeOptions,

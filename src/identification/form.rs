@@ -257,9 +257,6 @@ impl Form {
     }
 
     /// Checks the form for a fit to records.
-    ///
-    /// # Errors
-    /// [`Error::Input`] for forms that are fitted to tables only, and those of every form.
     pub(super) fn validate_for_records(&self) -> Result<()> {
         if matches!(
             self,

@@ -175,9 +175,6 @@ impl UserCase {
     }
 
     /// Reads and checks the text of a case file; paths in it are read against `directory`.
-    ///
-    /// # Errors
-    /// [`Error::Input`] with line and key.
     pub(crate) fn from_toml(text: &str, directory: PathBuf) -> Result<Self> {
         toml_lines::parse("a case file", text, |case: &mut Self| {
             case.directory = directory;

@@ -95,7 +95,7 @@ pub fn read_record(path: impl AsRef<Path>) -> Result<Record> {
 /// Writes a record; [`read_record`] gives the same numbers back, bit for bit.
 ///
 /// # Errors
-/// Those of reading `record`; [`Error::Io`] naming the record when `out` fails.
+/// [`Error::Input`] naming a record that cannot be read; [`Error::Io`] naming the record when `out` fails.
 pub fn write_record(record: &dyn RecordSource, out: &mut dyn Write) -> Result<()> {
     let header = record.header();
     let io = |e| Error::io(&header.name, e);

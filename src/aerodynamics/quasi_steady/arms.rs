@@ -33,9 +33,6 @@ impl Arms {
     }
 
     /// Checks that all are finite.
-    ///
-    /// # Errors
-    /// [`Error::Input`] naming the arm.
     pub(crate) fn validate(&self) -> Result<()> {
         for dof in Dof::THREE {
             finite(&format!("arms.{}", dof.name()), self.of(dof))?;
@@ -46,9 +43,6 @@ impl Arms {
     /// Arms from a model with derivatives, `B₁x = B P₂*/P₅*`, `B₁y = B H₂*/H₁*`, `B₁θ = B A₂*/A₁*` (1.18), at a reduced
     /// frequency low enough for quasi-steady flow; each is a ratio of imaginary parts of `G`. A model without the
     /// lateral degree of freedom gives a lateral arm of zero.
-    ///
-    /// # Errors
-    /// Those of the model at `k`; [`Error::Numerical`] when a force does not depend on the vertical velocity.
     pub(crate) fn from_model(model: &dyn Transfer, k: ReducedFrequency) -> Result<Self> {
         let g = model.transfer(k)?;
         let place = |dof: Dof| model.dofs().iter().position(|d| *d == dof);

@@ -76,9 +76,6 @@ impl QuasiSteady {
     }
 
     /// Forces `F/(½ρB)` and `M/(½ρB²)` (m²/s²) into the first n places, at the rotation `θ` (rad).
-    ///
-    /// # Errors
-    /// [`Error::Input`] naming the angle of attack when it lies outside the table.
     pub(crate) fn specific_forces(
         &self,
         rotation_rad: f64,
@@ -102,18 +99,12 @@ impl QuasiSteady {
 
     /// Static coefficients of the force components at a rotation in smooth wind, and their slopes per rad (1.9): in
     /// the order of the degrees of freedom, n each.
-    ///
-    /// # Errors
-    /// [`Error::Input`] naming the angle when it lies outside the table.
     pub(crate) fn static_forces(&self, rotation_rad: f64) -> Result<(Vec<f64>, Vec<f64>)> {
         let c = self.coefficients.at(rotation_rad)?;
         Ok(self.dofs.iter().map(|dof| c.of(*dof)).unzip())
     }
 
     /// The linear theory about the rotation `θ₀` (rad) in smooth wind (1.11)–(1.13).
-    ///
-    /// # Errors
-    /// [`Error::Input`] naming the angle when it lies outside the table.
     pub(crate) fn linearised(&self, rotation_rad: f64) -> Result<LinearQuasiSteady> {
         let at = self.coefficients.at(rotation_rad)?;
         Ok(LinearQuasiSteady::new(

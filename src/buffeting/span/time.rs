@@ -162,9 +162,6 @@ pub fn span_ensemble(
 }
 
 /// Forces on the mass-normalised modes by a field, one row a mode; the admittance is exact at every frequency of the record.
-///
-/// # Errors
-/// [`Error::Input`] for a field of other nodes.
 pub(crate) fn modal_forces(
     problem: &SpanProblem<'_>,
     field: &TurbulenceField,

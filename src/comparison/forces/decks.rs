@@ -44,9 +44,6 @@ pub(crate) struct DecksComparison {
 
 /// Trains the discrete Laguerre model on the records of one speed, predicts the forces of every record of every deck, and
 /// compares them frequency by frequency. `progress` hears how many of how many records are done.
-///
-/// # Errors
-/// [`Error::Input`] for unknown decks and impossible options; those of fits and metrics.
 pub(crate) fn compare_decks(
     options: &CompareOptions,
     progress: OnRecords<'_>,

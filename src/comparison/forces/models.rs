@@ -79,9 +79,6 @@ pub(crate) struct ModelsComparison {
 
 /// Fits the thesis's discrete Laguerre model, its rational functions and the continuous Laguerre model of this program to
 /// one deck at one speed, and compares them with what was measured. `progress` hears how many of how many records are done.
-///
-/// # Errors
-/// [`Error::Input`] for anything but one deck; those of fits and metrics.
 pub(crate) fn compare_models(
     options: &CompareOptions,
     progress: OnRecords<'_>,

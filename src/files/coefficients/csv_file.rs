@@ -40,9 +40,6 @@ const KEYS: [&str; 6] = [
 ];
 
 /// Reads a table of static coefficients.
-///
-/// # Errors
-/// [`Error::Io`] when the file cannot be read, else those of [`parse_coefficients`] with the file named.
 pub(crate) fn read_coefficients(path: impl AsRef<Path>) -> Result<StaticCoefficients> {
     let path = path.as_ref();
     let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, e))?;

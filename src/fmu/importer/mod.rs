@@ -191,17 +191,11 @@ impl Fmu {
     }
 
     /// A new instance that logs all it has to say.
-    ///
-    /// # Errors
-    /// As [`Fmu::instantiate`].
     pub fn instantiate_logging(&self, name: &str) -> Result<Slave> {
         Slave::new(&self.load()?, name, &self.description.guid, true)
     }
 
     /// A new instance with another fingerprint than the one in the description, which a careful FMU refuses.
-    ///
-    /// # Errors
-    /// As [`Fmu::instantiate`].
     pub fn instantiate_with_guid(&self, name: &str, guid: &str) -> Result<Slave> {
         Slave::new(&self.load()?, name, guid, false)
     }
@@ -209,7 +203,7 @@ impl Fmu {
     /// What the binary says of itself: types platform and version.
     ///
     /// # Errors
-    /// As [`Fmu::instantiate`], as far as loading goes.
+    /// [`Error::Input`] when there is no binary for this machine or it does not load.
     pub fn versions(&self) -> Result<(String, String)> {
         let loaded = self.load()?;
         let functions = &loaded.binary.functions;

@@ -74,9 +74,6 @@ pub(super) fn write(memory: &Memory, guid: &Uuid) -> Vec<u8> {
 
 /// Reads a saved state that fits `like`, an instance of the same export. Bytes come from files: everything is checked
 /// but the limits of single variables.
-///
-/// # Errors
-/// [`Error::Input`] naming what does not fit.
 pub(super) fn read(bytes: &[u8], guid: &Uuid, like: &Memory) -> Result<Memory> {
     let mut reader = Reader { bytes };
     reader.demand("magic", MAGIC)?;

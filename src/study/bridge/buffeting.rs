@@ -140,7 +140,8 @@ impl BridgeStudy {
     /// Response at the nodes of the block at a wind speed, in both domains.
     ///
     /// # Errors
-    /// Those of the block; [`Error::Unstable`] when the bridge is unstable at this speed.
+    /// [`Error::Input`] with the key of the block that cannot be; [`Error::Unstable`] when the bridge is unstable at this
+    /// speed.
     pub fn buffeting(
         &self,
         block: &BuffetingBlock,
@@ -166,7 +167,7 @@ impl BridgeStudy {
     /// Response to the turbulence of a file; its columns are those of the nodes of the bridge.
     ///
     /// # Errors
-    /// [`Error::Input`] for other nodes; those of the block.
+    /// [`Error::Input`] for a field of other nodes, and with the key of the block that cannot be.
     pub fn buffeting_by(
         &self,
         block: &BuffetingBlock,
@@ -192,7 +193,7 @@ impl BridgeStudy {
     /// The turbulence of the first record.
     ///
     /// # Errors
-    /// Those of the block.
+    /// [`Error::Input`] with the key of the block that cannot be.
     pub fn first_field(&self, block: &BuffetingBlock, speed_m_s: f64) -> Result<TurbulenceField> {
         let plan = &block.time;
         let samples = 2 * (0.5 * plan.duration_s / plan.step_s).round() as usize;

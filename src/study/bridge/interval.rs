@@ -17,7 +17,7 @@ impl BridgeStudy {
     /// mode that flutters.
     ///
     /// # Errors
-    /// Those of the forces; [`Error::Numerical`] when the mode cannot be followed to nearby coefficients.
+    /// [`Error::Numerical`] when the mode cannot be followed to nearby coefficients.
     pub fn onset_interval(&self, onset: &Onset) -> Result<OnsetInterval> {
         let nearby = NearbyOnset::of(&self.by_model, &onset.at)?;
         let (mut variance, mut of_each) = (0.0, 0.0);

@@ -93,8 +93,7 @@ impl BridgeStudy {
     /// sample from the onset of the mean; where it cannot be followed the onset is searched.
     ///
     /// # Errors
-    /// [`Error::Input`] for scatter that cannot be; those of the forces; [`Error::Numerical`] when fewer than two samples have an
-    /// onset.
+    /// [`Error::Input`] for scatter that cannot be; [`Error::Numerical`] when fewer than two samples have an onset.
     pub fn scattered_onset(&self, onset: &Onset, scatter: &Scatter) -> Result<ScatteredOnset> {
         non_negative("scatter of the frequencies", scatter.frequency)?;
         non_negative("scatter of the damping", scatter.damping)?;

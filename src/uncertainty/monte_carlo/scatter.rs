@@ -42,9 +42,6 @@ struct Stated {
 }
 
 /// The model in the form in which its draws are linear, and the factor of the covariance that the plan names.
-///
-/// # Errors
-/// [`Error::Input`] naming the file that does not fit the model.
 pub(super) fn drawn_model(
     plan: &MonteCarloPlan,
     trained: &TrainedModel,

@@ -171,9 +171,6 @@ pub(super) fn cell_quantity(key: &str) -> Quantity {
 }
 
 /// The time channel as a sampling frequency, Hz.
-///
-/// # Errors
-/// [`Error::Input`] with the sample at which a step is uneven or time does not advance.
 pub(super) fn sampling_of(place: &str, time_s: &[f64]) -> Result<f64> {
     let n = time_s.len();
     if n < 2 {

@@ -152,9 +152,6 @@ impl Campaign {
     }
 
     /// Reads and checks the text of a campaign file; paths in it are read against `directory`.
-    ///
-    /// # Errors
-    /// [`Error::Input`] with line and key for everything that is wrong in it.
     pub(crate) fn from_toml(text: &str, directory: PathBuf) -> Result<Self> {
         toml_lines::parse("a campaign file", text, |campaign: &mut Self| {
             campaign.directory = directory;

@@ -53,9 +53,6 @@ impl StillAirInertia {
 }
 
 /// Refuses inertia in another force than a motion of `dof` can have: then rotation and a displacement are exchanged.
-///
-/// # Errors
-/// [`Error::Input`] naming `run` with the figures.
 pub(super) fn check_motion(
     run: &str,
     rig: &Rig,
@@ -97,9 +94,6 @@ pub(super) fn check_motion(
 }
 
 /// Compares the inertia with that of the rig, if it states one: a warning with the figures, or nothing.
-///
-/// # Errors
-/// [`Error::Input`] naming `run` when it is that of another body.
 pub(super) fn compare(
     run: &str,
     rig: &Rig,

@@ -61,7 +61,8 @@ pub struct Processed {
 /// Processes every run of a campaign; `progress` is called with the number of runs done.
 ///
 /// # Errors
-/// [`Error::Input`] naming run, recording, channel and sample for what cannot be processed; those of all runs in their order.
+/// [`Error::Input`] naming run, recording, channel and sample for what cannot be processed; of several runs all, in their
+/// order.
 pub fn process(
     campaign: &RawCampaign,
     options: &ProcessingOptions,

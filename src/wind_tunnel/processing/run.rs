@@ -49,9 +49,6 @@ struct InStep {
 }
 
 /// Takes a prepared run through all stages.
-///
-/// # Errors
-/// [`crate::Error::Input`] naming the run.
 pub(super) fn process_run(
     prepared: &Prepared<'_>,
     campaign: &RawCampaign,
