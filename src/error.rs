@@ -203,3 +203,20 @@ pub(crate) fn non_negative(place: &str, value: f64) -> Result<f64> {
         ))
     }
 }
+
+/// So many of something in words: `1 mode`, `3 modes`.
+pub(crate) fn counted(count: usize, noun: &str) -> String {
+    let plural = if count == 1 { "" } else { "s" };
+    format!("{count} {noun}{plural}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::counted;
+
+    #[test]
+    fn one_thing_is_no_plural() {
+        let in_words = [0, 1, 2].map(|n| counted(n, "mode"));
+        assert_eq!(in_words, ["0 modes", "1 mode", "2 modes"]);
+    }
+}

@@ -19,7 +19,7 @@ mod words;
 
 pub use super::standard::{Causality, Initial, Variability};
 #[cfg(feature = "cli")]
-pub use listing::Listing;
+pub use listing::{Listed, Listing};
 pub use parameters::{ModeParameter, SectionParameter};
 pub use variable::{
     Calculated, ForceOutput, Gust, InitialDependency, ModeOutput, Response, Role, Status,

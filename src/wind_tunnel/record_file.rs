@@ -6,7 +6,7 @@
 
 use super::record_format::{RecordColumns, read_head, text, write_head};
 use super::records::{Record, RecordBlock, RecordHeader, RecordSource};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, counted};
 use std::fmt::Write as _;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Seek, SeekFrom, Write};
@@ -227,7 +227,7 @@ impl<'a> Rows<'a> {
     fn unequal(&self, line: &str) -> Error {
         Error::input(
             format!("line {}", self.line),
-            format!("{} columns", self.columns.channels.len()),
+            counted(self.columns.channels.len(), "column"),
             line.split(',').count().to_string(),
         )
     }

@@ -44,6 +44,13 @@ pub(crate) struct RelativeWind {
     pub rotation_m_s: f64,
 }
 
+/// Static coefficients in the order of the degrees of freedom, n each.
+pub(crate) struct StaticForces {
+    pub values: Vec<f64>,
+    /// Per rad.
+    pub slopes: Vec<f64>,
+}
+
 impl QuasiSteady {
     /// The theory for a deck of these degrees of freedom.
     ///
@@ -97,11 +104,11 @@ impl QuasiSteady {
         Ok(forces)
     }
 
-    /// Static coefficients of the force components at a rotation in smooth wind, and their slopes per rad (1.9): in
-    /// the order of the degrees of freedom, n each.
-    pub(crate) fn static_forces(&self, rotation_rad: f64) -> Result<(Vec<f64>, Vec<f64>)> {
+    /// Static coefficients of the force components at a rotation in smooth wind (1.9).
+    pub(crate) fn static_forces(&self, rotation_rad: f64) -> Result<StaticForces> {
         let c = self.coefficients.at(rotation_rad)?;
-        Ok(self.dofs.iter().map(|dof| c.of(*dof)).unzip())
+        let (values, slopes) = self.dofs.iter().map(|dof| c.of(*dof)).unzip();
+        Ok(StaticForces { values, slopes })
     }
 
     /// The linear theory about the rotation `θ₀` (rad) in smooth wind (1.11)–(1.13).

@@ -31,7 +31,12 @@ pub(super) fn card(onset: &OnsetView) -> Vec<(String, String)> {
             standard_error_m_s,
             degrees_of_freedom,
         } => format!(
-            "{low_m_s:.2} to {high_m_s:.2} m/s (standard error {standard_error_m_s:.2} m/s, {degrees_of_freedom:.0} degrees of freedom)"
+            "{low_m_s:.2} to {high_m_s:.2} m/s (standard error {standard_error_m_s:.2} m/s, {degrees_of_freedom:.0} {} of freedom)",
+            if degrees_of_freedom.round_ties_even() == 1.0 {
+                "degree"
+            } else {
+                "degrees"
+            }
         ),
         OnsetInterval::None { reason } | OnsetInterval::Undetermined { reason, .. } => {
             reason.clone()

@@ -5,7 +5,7 @@
 //! An empty cell or `NaN` is a missing sample. A column whose first cell is text is left out.
 
 use super::channels::{Attribute, ChannelSet, check_count, no_group};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, counted};
 use std::borrow::Cow;
 
 /// A row of a thousand channels has 20 kB.
@@ -175,7 +175,7 @@ impl Table {
         if row.len() < self.names.len() || surplus.into_iter().any(|c| !c.trim_ascii().is_empty()) {
             return Err(Error::input(
                 format!("line {line}"),
-                format!("{} columns as in the header", self.names.len()),
+                format!("{} as in the header", counted(self.names.len(), "column")),
                 row.len().to_string(),
             ));
         }

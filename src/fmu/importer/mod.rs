@@ -66,6 +66,15 @@ const fn native() -> (&'static [&'static str], &'static str) {
     }
 }
 
+/// What a binary says of itself.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Versions {
+    /// Platform of its types, `default`.
+    pub types_platform: String,
+    /// Version of the standard, `2.0`.
+    pub standard: String,
+}
+
 /// An unpacked FMU.
 pub struct Fmu {
     path: PathBuf,
@@ -200,19 +209,19 @@ impl Fmu {
         Slave::new(&self.load()?, name, guid, false)
     }
 
-    /// What the binary says of itself: types platform and version.
+    /// What the binary says of itself.
     ///
     /// # Errors
     /// [`Error::Input`] when there is no binary for this machine or it does not load.
-    pub fn versions(&self) -> Result<(String, String)> {
+    pub fn versions(&self) -> Result<Versions> {
         let loaded = self.load()?;
         let functions = &loaded.binary.functions;
         // SAFETY: both take nothing and answer with a constant C string
         Ok(unsafe {
-            (
-                log::text((functions.get_types_platform)()),
-                log::text((functions.get_version)()),
-            )
+            Versions {
+                types_platform: log::text((functions.get_types_platform)()),
+                standard: log::text((functions.get_version)()),
+            }
         })
     }
 

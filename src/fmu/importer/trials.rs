@@ -5,7 +5,7 @@ use super::findings::{Findings, Trial};
 use super::simulation::{Simulation, Table, Times, recorded, run as step_through, start};
 use super::slave::Slave;
 use super::status::Status;
-use super::{Fmu, LogMessage};
+use super::{Fmu, LogMessage, Versions};
 use crate::error::{Error, Result};
 
 /// Most communication steps of a trial.
@@ -92,7 +92,10 @@ fn wrong_guid(fmu: &Fmu, findings: &mut Findings) {
 }
 
 fn versions(fmu: &Fmu) -> Result<String> {
-    let (platform, version) = fmu.versions()?;
+    let Versions {
+        types_platform: platform,
+        standard: version,
+    } = fmu.versions()?;
     if platform == "default" && version == "2.0" {
         Ok(format!("platform {platform}, version {version}"))
     } else {

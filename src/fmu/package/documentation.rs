@@ -40,7 +40,7 @@ pub fn documentation(
             .iter()
             .map(|r| (r.path_in_archive(FmiVersion::Two), r.platform_words()))
             .collect(),
-        groups: groups(resources.table.listed(listing).0.variables()),
+        groups: groups(resources.table.listed(listing).table.variables()),
         range: Range::of(model),
         speeds: speeds(model),
         stability: match &resources.force {

@@ -155,7 +155,8 @@ fn answer(
     let motion = motion.transpose()?;
     if let (FlutterSearch::Onset(onset), Some(motion)) = (&mut search, &motion) {
         // of the node that turns most, as a section there would see it
-        (onset.mode_ratio, onset.phase_deg) = motion.mode_ratio(bridge.width_m());
+        let of_node = motion.mode_ratio(bridge.width_m());
+        (onset.mode_ratio, onset.phase_deg) = (of_node.ratio, of_node.phase_deg);
     }
     Ok(BridgeAnswer {
         forces: name.to_owned(),

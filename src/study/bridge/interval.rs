@@ -67,7 +67,7 @@ impl BridgeStudy {
                 group.forces = forces.clone();
             }
             let found = nearby.find(&coupled(&bridge)?);
-            found.map(|(speed, _)| speed).ok_or_else(|| {
+            found.map(|found| found.speed_m_s).ok_or_else(|| {
                 Error::Numerical("interval: the mode that flutters cannot be followed".into())
             })
         };

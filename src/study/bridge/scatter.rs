@@ -200,8 +200,8 @@ impl Sampler<'_> {
     /// The onset of one sample, m/s: from nearby, else by a search.
     fn onset(&self, index: u64) -> Result<Option<f64>> {
         let other = coupled(&self.sample(index)?)?;
-        if let Some((speed, _)) = self.nearby.find(&other) {
-            return Ok(Some(speed));
+        if let Some(found) = self.nearby.find(&other) {
+            return Ok(Some(found.speed_m_s));
         }
         let search = OnsetSearch {
             speed_max_m_s: self.study.file.flutter.speed_max_m_s,

@@ -198,11 +198,20 @@ fn weighted_fit(
         .then_some(([result[0], result[1]], variance))
 }
 
-/// One lag for a campaign: the mean of its runs by inverse variance, with its standard error; `None` when no run tells it.
-pub(crate) fn common_lag(runs: &[StillAirInertia], sampling_hz: f64) -> Option<(f64, f64)> {
+/// Lag of the force channels of a campaign behind its motion.
+pub(crate) struct CommonLag {
+    pub lag_s: f64,
+    pub standard_error_s: f64,
+}
+
+/// One lag for a campaign: the mean of its runs by inverse variance; `None` when no run tells it.
+pub(crate) fn common_lag(runs: &[StillAirInertia], sampling_hz: f64) -> Option<CommonLag> {
     let telling = || runs.iter().filter(|r| r.tells_lag(sampling_hz));
     let weight = |r: &StillAirInertia| r.lag_standard_error_s.max(1e-12).powi(-2);
     let sum: f64 = telling().map(weight).sum();
     let mean = telling().map(|r| weight(r) * r.lag_s).sum::<f64>() / sum;
-    (sum > 0.0).then(|| (mean, sum.sqrt().recip()))
+    (sum > 0.0).then(|| CommonLag {
+        lag_s: mean,
+        standard_error_s: sum.sqrt().recip(),
+    })
 }
