@@ -59,7 +59,7 @@ fn account(r: &MonteCarloResult) -> String {
     let mut text = format!(
         "{}: {}, seed {}: {} with an onset up to {:.3} m/s, {} without, {} failed\n",
         r.model,
-        counted(r.samples as usize, "sample"),
+        counted(r.samples, "sample"),
         r.seed,
         r.onsets,
         r.speed_max_m_s,

@@ -160,7 +160,7 @@ fn run_in_words(run: &SimulatedMotion) -> String {
         run.speed_m_s,
         counted(run.nonlinear.len(), "row"),
         run.step_s,
-        counted(run.substeps as usize, "Runge-Kutta step"),
+        counted(run.substeps, "Runge-Kutta step"),
         run.step_error
     );
     let spread = |rows: &[Vec<f64>], i: usize| {

@@ -53,7 +53,7 @@ impl SteppedOnset {
                     "{:.4} m/s with a step of {:.4} s ({})",
                     r.speed_m_s,
                     r.communication_step_s,
-                    counted(r.steps as usize, "step")
+                    counted(r.steps, "step")
                 )
             })
             .collect();

@@ -5,7 +5,9 @@
 use super::layout::Source;
 use super::memory::Memory;
 use super::section_unit::SectionUnit;
-use super::sensitivity::{add, central_difference, check_finite, pick, speed_sensitivity};
+use super::sensitivity::{
+    add, central_difference, check_finite, parameter_step, pick, speed_sensitivity,
+};
 use super::trust::{Present, is_of_onset, smallest_damping, without_motion};
 use crate::aerodynamics::Realization;
 use crate::error::Result;
@@ -13,11 +15,6 @@ use crate::fmu::refusal::Answer;
 use crate::fmu::resources::Resources;
 use crate::fmu::variables::{Role, Status};
 use crate::response::{Inputs, Outputs, SectionState, Stepper};
-
-/// Relative step of the central differences: truncation about 1e-8, rounding of an onset search about 1e-9.
-const RELATIVE_STEP: f64 = 1e-4;
-/// Step of a parameter that is zero.
-const STEP_FROM_ZERO: f64 = 1e-6;
 
 /// All that a section has at an instant, or its derivative with respect to one known.
 #[derive(Debug, Default)]
@@ -94,12 +91,7 @@ impl SectionUnit {
             Source::Release => self.by_release(memory, known)?,
             Source::Response | Source::State => self.by_state(memory, known)?,
             _ => {
-                let value = memory.values[known];
-                let step = if value == 0.0 {
-                    STEP_FROM_ZERO
-                } else {
-                    RELATIVE_STEP * value.abs()
-                };
+                let step = parameter_step(memory.values[known]);
                 return central_difference(resources, memory, (known, step), |other| {
                     self.unknowns(resources, other, unknowns)
                 });

@@ -9,6 +9,11 @@ use crate::response::{Inputs, Outputs, SectionState, Stepper};
 use crate::section::Dof;
 use nalgebra::{DMatrix, DVector};
 
+/// Relative step of the central differences: truncation about 1e-8, rounding of an onset search about 1e-9.
+const RELATIVE_STEP: f64 = 1e-4;
+/// Step of a parameter that is zero.
+const STEP_FROM_ZERO: f64 = 1e-6;
+
 /// The entry of `outputs` that a role stands for; zero for what inputs and release do not act on.
 pub(super) fn pick(outputs: &Outputs, role: Role) -> f64 {
     let Role::Response(response, dof) = role else {
@@ -70,6 +75,15 @@ pub(super) fn speed_sensitivity(
         rate: vec![0.0; n],
         acceleration: acceleration.as_slice().to_vec(),
         self_excited_force: force.as_slice().to_vec(),
+    }
+}
+
+/// The step of a central difference over a parameter of this value.
+pub(super) fn parameter_step(value: f64) -> f64 {
+    if value == 0.0 {
+        STEP_FROM_ZERO
+    } else {
+        RELATIVE_STEP * value.abs()
     }
 }
 

@@ -44,6 +44,9 @@ pub enum Response {
 }
 
 impl Response {
+    /// Those of the motion.
+    pub const MOTION: [Response; 3] = [Self::Displacement, Self::Rate, Self::Acceleration];
+
     /// All four, in the order of the outputs of a coupled system.
     pub const ALL: [Response; 4] = [
         Self::Displacement,

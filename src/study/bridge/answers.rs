@@ -57,8 +57,8 @@ pub struct BridgeFlutter {
 /// Searches the onset by every route and says what takes part.
 ///
 /// # Errors
-/// [`Error::Input`] for forces that cannot be coupled, [`Error::Numerical`] when eigenvalues cannot be computed; what
-/// fails beside that is stated in the result.
+/// [`crate::Error::Input`] for forces that cannot be coupled, [`crate::Error::Numerical`] when eigenvalues cannot be
+/// computed; what fails beside that is stated in the result.
 pub fn bridge_flutter(study: &BridgeStudy) -> Result<BridgeFlutter> {
     let mut failed = Vec::new();
     let mut answers = Vec::new();
