@@ -165,9 +165,6 @@ impl CoupledSection {
     }
 
     /// The coupled system of a continuous model at the wind speed `V` (m/s).
-    ///
-    /// # Errors
-    /// [`Error::Numerical`] for a sampled model; those of [`CoupledSection::at`].
     pub(crate) fn continuous_at(&self, speed_m_s: f64) -> Result<StateSpace<Continuous>> {
         match self.at(speed_m_s)? {
             CoupledSystem::Continuous(s) => Ok(s),

@@ -131,9 +131,6 @@ fn quoted(text: String) -> String {
 }
 
 /// All values, or all errors in their order: what is computed in parallel must not report whichever failed first.
-///
-/// # Errors
-/// The one error there is, or [`Error::Several`].
 pub(crate) fn all_or_errors<T>(results: Vec<Result<T>>) -> Result<Vec<T>> {
     let (mut values, mut errors) = (Vec::with_capacity(results.len()), Vec::new());
     for result in results {
@@ -173,9 +170,6 @@ pub fn finite(place: &str, value: f64) -> Result<f64> {
 }
 
 /// Nothing if `values` are `count` finite numbers.
-///
-/// # Errors
-/// [`Error::Input`] naming `place` otherwise.
 pub(crate) fn finite_numbers(place: &str, values: &[f64], count: usize) -> Result<()> {
     if values.len() == count && values.iter().all(|x| x.is_finite()) {
         return Ok(());
@@ -185,9 +179,6 @@ pub(crate) fn finite_numbers(place: &str, values: &[f64], count: usize) -> Resul
 }
 
 /// Nothing if `value` is at most `bound`: one that no real study reaches.
-///
-/// # Errors
-/// [`Error::Input`] naming `place` otherwise.
 pub(crate) fn at_most(place: &str, value: f64, bound: f64) -> Result<()> {
     if value <= bound {
         Ok(())
@@ -201,9 +192,6 @@ pub(crate) fn at_most(place: &str, value: f64, bound: f64) -> Result<()> {
 }
 
 /// `value` if it is finite and not negative.
-///
-/// # Errors
-/// [`Error::Input`] naming `place` otherwise.
 pub(crate) fn non_negative(place: &str, value: f64) -> Result<f64> {
     if value.is_finite() && value >= 0.0 {
         Ok(value)
@@ -213,5 +201,22 @@ pub(crate) fn non_negative(place: &str, value: f64) -> Result<f64> {
             "zero or a positive number",
             value.to_string(),
         ))
+    }
+}
+
+/// So many of something in words: `1 mode`, `3 modes`.
+pub(crate) fn counted(count: usize, noun: &str) -> String {
+    let plural = if count == 1 { "" } else { "s" };
+    format!("{count} {noun}{plural}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::counted;
+
+    #[test]
+    fn one_thing_is_no_plural() {
+        let in_words = [0, 1, 2].map(|n| counted(n, "mode"));
+        assert_eq!(in_words, ["0 modes", "1 mode", "2 modes"]);
     }
 }

@@ -12,6 +12,7 @@ mod prescribed;
 mod quasi_steady;
 mod rates;
 mod sampled;
+mod sampling;
 mod series;
 mod step_cache;
 mod strip_gusts;
@@ -25,17 +26,14 @@ pub use values::{Inputs, Outputs, SectionState, wind_at_rest};
 use crate::aerodynamics::{GustForce, RationalAdmittance, Realization};
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, finite_numbers, non_negative, positive};
-use crate::section::Dof;
 use gusts::Gusts;
 use nalgebra::{DMatrix, DVector};
 use packed::{advanced, apply, settled};
-use sampled::Sampling;
+use sampling::Sampling;
 use series::{Drive, Moving, Series};
 use step_cache::StepCache;
 use values::{active_columns, load};
 
-/// Degrees of freedom of a sampled model at most: heave, sway, rotation.
-const MAX_DOFS: usize = Dof::THREE.len();
 /// Samples of the force, or parts of a changing wind, that one step may take: beyond, it is refused at once. Each costs
 /// about a microsecond.
 const MAX_SUBSTEPS: f64 = 1e4;

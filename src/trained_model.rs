@@ -182,7 +182,7 @@ impl TrainedModel {
     /// Reads and checks the file of a model.
     ///
     /// # Errors
-    /// [`Error::Io`] when it cannot be read; those of [`TrainedModel::from_json`], naming the file.
+    /// [`Error::Io`] when it cannot be read; [`Error::Input`] with file, line and column.
     pub fn read(path: &Path) -> Result<Self> {
         let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, e))?;
         Self::from_json(&text).map_err(|e| e.in_file(path))
@@ -219,9 +219,6 @@ impl TrainedModel {
     }
 
     /// Checks every value.
-    ///
-    /// # Errors
-    /// [`Error::Input`] naming the key.
     pub(crate) fn validate(&self) -> Result<()> {
         self.section.structure()?;
         self.model.validate()?;

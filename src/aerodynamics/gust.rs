@@ -43,9 +43,6 @@ impl GustSeries {
     }
 
     /// No gusts for at least `duration_s` seconds.
-    ///
-    /// # Errors
-    /// [`Error::Input`] for a duration that is not positive.
     pub(crate) fn calm(duration_s: f64) -> Result<Self> {
         Self::new(
             positive("duration", duration_s)?,

@@ -177,14 +177,14 @@ impl<'a> Branch<'a> {
 
     /// Compliance and stiffness left at a pressure and rotation.
     fn place(&self, pressure: f64, rotation: f64) -> Result<Place> {
-        let (forces, slopes) = self.theory.static_forces(rotation)?;
+        let forces = self.theory.static_forces(rotation)?;
         let row = self.flexibility.row(self.torsion);
         let by = |v: &[f64]| row.iter().zip(v).map(|(f, c)| f * c).sum::<f64>();
         Ok(Place {
             pressure,
             rotation,
-            left: 1.0 - pressure * by(&slopes),
-            compliance: by(&forces),
+            left: 1.0 - pressure * by(&forces.slopes),
+            compliance: by(&forces.values),
         })
     }
 
@@ -239,8 +239,8 @@ impl<'a> Branch<'a> {
     }
 
     fn point(&self, at: Place, speed_m_s: f64) -> Result<StaticEquilibrium> {
-        let (forces, _) = self.theory.static_forces(at.rotation)?;
-        let displacement = &self.flexibility * DVector::from_vec(forces) * at.pressure;
+        let forces = self.theory.static_forces(at.rotation)?;
+        let displacement = &self.flexibility * DVector::from_vec(forces.values) * at.pressure;
         Ok(StaticEquilibrium {
             speed_m_s,
             displacement: displacement.as_slice().to_vec(),

@@ -5,7 +5,7 @@
 //! the width of their strip: strips of one `p/B` share the lags of each mode, and their forces per 1 m/s of wind are a channel.
 
 use super::Bridge;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, counted};
 use crate::section::Dof;
 
 /// What the gusts of strips do to the mass-normalised modes, per 1 m/s of wind.
@@ -27,7 +27,7 @@ impl GustChannels {
         if matrices.len() != bridge.groups.len() {
             return Err(Error::input(
                 "gust forces",
-                format!("coefficients of {} groups", bridge.groups.len()),
+                format!("coefficients of {}", counted(bridge.groups.len(), "group")),
                 matrices.len().to_string(),
             ));
         }

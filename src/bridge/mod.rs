@@ -23,7 +23,7 @@ pub use modal::ModalForces;
 pub use similarity::{Similarity, similarities};
 
 use crate::aerodynamics::Transfer;
-use crate::error::{Error, Result, finite, non_negative, positive};
+use crate::error::{Error, Result, counted, finite, non_negative, positive};
 use crate::section::{Dof, SectionModel, Translation};
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
@@ -332,8 +332,8 @@ fn check_mode(mode: &BridgeMode, nodes: usize) -> Result<()> {
     if mode.shape.len() != nodes {
         return Err(Error::input(
             place,
-            format!("a shape at {nodes} nodes"),
-            format!("{} nodes", mode.shape.len()),
+            format!("a shape at {}", counted(nodes, "node")),
+            counted(mode.shape.len(), "node"),
         ));
     }
     if mode.shape.iter().flatten().all(|x| x.is_finite()) {

@@ -36,9 +36,6 @@ fn benchmark_decay() -> f64 {
 
 impl Admittance {
     /// Checks the decay factor.
-    ///
-    /// # Errors
-    /// [`crate::Error::Input`] naming the key below `place`.
     pub(crate) fn validate(&self, place: &str) -> Result<()> {
         if let Self::Davenport { decay } = self {
             positive(&format!("{place}.decay"), *decay)?;

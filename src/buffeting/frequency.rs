@@ -5,6 +5,7 @@ use super::quadrature::integrate;
 use super::spectrum::GustComponent;
 use super::stability::unstable_roots;
 use crate::error::{Error, Result};
+use crate::state_space::golden_section;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use nalgebra::Complex;
 use serde::Serialize;
@@ -35,9 +36,6 @@ pub struct BuffetingResponse {
 }
 
 /// One-sided spectra of the displacements at a frequency (n): m²/Hz, rad²/Hz.
-///
-/// # Errors
-/// Those of the model; [`Error::Numerical`] where the impedance is singular.
 pub(crate) fn response_spectrum(
     problem: &BuffetingProblem<'_>,
     frequency_hz: f64,
@@ -77,8 +75,7 @@ fn spectra_by_gust(
 /// `tested` is the range of reduced frequencies in which the model was tested.
 ///
 /// # Errors
-/// [`Error::Input`] for parts that do not fit together; those of the model; [`Error::Unstable`] when the section is
-/// unstable at this speed.
+/// [`Error::Input`] for parts that do not fit together; [`Error::Unstable`] when the section is unstable at this speed.
 pub(crate) fn buffeting_response(
     problem: &BuffetingProblem<'_>,
     speed_m_s: f64,
@@ -178,22 +175,16 @@ fn resonances(problem: &BuffetingProblem<'_>, speed: f64) -> Result<Vec<f64>> {
     let mut found = Vec::new();
     for i in 1..GRID {
         if values[i] < values[i - 1] && values[i] <= values[i + 1] {
-            found.push(golden(&at, frequency(i - 1), frequency(i + 1))?);
+            found.push(minimum(&at, (frequency(i - 1), frequency(i + 1)))?);
         }
     }
     Ok(found)
 }
 
-/// Minimum between two frequencies by the golden section.
-fn golden(at: &impl Fn(f64) -> Result<f64>, mut low: f64, mut high: f64) -> Result<f64> {
-    let ratio = 0.5 * (5f64.sqrt() - 1.0);
-    for _ in 0..GOLDEN_STEPS {
-        let (a, b) = (high - ratio * (high - low), low + ratio * (high - low));
-        if at(a)? < at(b)? {
-            high = b;
-        } else {
-            low = a;
-        }
-    }
+/// Minimum between two frequencies.
+fn minimum(at: &impl Fn(f64) -> Result<f64>, ends: (f64, f64)) -> Result<f64> {
+    let mut steps = 0..GOLDEN_STEPS;
+    let done = |_, _: &f64, _: &f64| steps.next().is_none();
+    let ((low, high), _) = golden_section(ends, at, f64::lt, done)?;
     Ok(0.5 * (low + high))
 }

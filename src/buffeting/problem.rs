@@ -114,9 +114,6 @@ pub(crate) struct BuffetingProblem<'a> {
 
 impl BuffetingProblem<'_> {
     /// Checks that all parts have the same degrees of freedom.
-    ///
-    /// # Errors
-    /// [`Error::Input`] when they have not, and those of [`Turbulence::validate`].
     pub(crate) fn validate(&self) -> Result<()> {
         let dofs = &self.structure.dofs;
         for (place, found) in [
@@ -170,9 +167,6 @@ impl BuffetingProblem<'_> {
 
     /// Displacements by a gust of 1 m/s of each component (n×2), `H` times the gust forces; the column of a component that
     /// is left out is zero.
-    ///
-    /// # Errors
-    /// Those of the model; [`Error::Numerical`] when the impedance is singular.
     pub(crate) fn gust_to_motion(
         &self,
         frequency_hz: f64,

@@ -41,9 +41,6 @@ struct Piece {
 /// `∫ f` over the polygon of `breaks`, each component to the relative `tolerance`; the values and their estimated errors.
 ///
 /// `f` must give the same number of components everywhere; peaks are found when they stand near a break.
-///
-/// # Errors
-/// Those of `f`; [`Error::Numerical`] when the tolerance is not reached.
 pub(super) fn integrate(
     f: impl Fn(f64) -> Result<Vec<f64>>,
     breaks: &[f64],

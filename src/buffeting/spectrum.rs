@@ -137,9 +137,6 @@ impl SpectrumShape {
 
 impl GustSpectrum {
     /// Checks scales and constants.
-    ///
-    /// # Errors
-    /// [`Error::Input`] naming the key below `place`.
     pub(crate) fn validate(&self, place: &str) -> Result<()> {
         positive(&format!("{place}.length_m"), self.length_m)?;
         positive(&format!("{place}.intensity"), self.intensity)?;

@@ -40,8 +40,8 @@ impl BuffetingProblem<'_> {
 /// Number of eigenvalues with positive real part at a wind speed.
 ///
 /// # Errors
-/// [`Error::Input`] for a speed that is not positive; those of the model; [`Error::Numerical`] at an onset itself, where
-/// the impedance is singular.
+/// [`Error::Input`] for a speed that is not positive; [`Error::Numerical`] at an onset itself, where the impedance is
+/// singular.
 pub(crate) fn unstable_roots(problem: &BuffetingProblem<'_>, speed_m_s: f64) -> Result<usize> {
     positive("wind speed", speed_m_s)?;
     let (low, high) = problem.natural_range_hz();

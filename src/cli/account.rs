@@ -1,6 +1,7 @@
 //! Results in words and tables, for people.
 
-use super::study::Summary;
+use super::summary::Summary;
+use crate::error::counted;
 use crate::flutter::{Onset, OnsetInterval, UnstableStart, UnwantedGrowth};
 use crate::identification::{ConstraintReport, FitReport};
 use crate::study::{
@@ -79,7 +80,11 @@ fn without_remarks(fit: &str) -> String {
         .flat_map(|line| [line, "\n"])
         .collect();
     if count > 0 {
-        let _ = writeln!(short, "          {count} remark(s) more with --verbose");
+        let _ = writeln!(
+            short,
+            "          {} more with --verbose",
+            counted(count, "remark")
+        );
     }
     short
 }

@@ -5,7 +5,7 @@ use super::common::shown_in;
 use super::figures;
 use super::progress::Progress;
 use super::wind::WindArgs;
-use crate::error::Result;
+use crate::error::{Result, counted};
 use crate::report::{buffeting_rms_figure, buffeting_spectra_figure};
 use crate::study::{BuffetingStudy, WindStudy, buffeting_study};
 use std::fmt::Write as _;
@@ -110,9 +110,9 @@ fn time_domain(results: &BuffetingStudy) -> String {
         let e = &domain.ensemble;
         let _ = writeln!(
             text,
-            "\ntime domain at {} m/s: {} records of {:.0} s, step {:.4} s, warm-up {:.0} s",
+            "\ntime domain at {} m/s: {} of {:.0} s, step {:.4} s, warm-up {:.0} s",
             e.speed_m_s,
-            e.rms_of_records.len(),
+            counted(e.rms_of_records.len(), "record"),
             e.duration_s,
             e.step_s,
             e.warm_up_s

@@ -14,9 +14,6 @@ pub(super) fn leave_out() {
 }
 
 /// Draws and writes `stem.svg` and `stem.png`.
-///
-/// # Errors
-/// Those of drawing and writing.
 pub(super) fn write(
     stem: &str,
     out: &mut OutputDir,

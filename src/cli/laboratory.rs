@@ -1,6 +1,7 @@
 //! The laboratory's report of `process`: what was found odd, every run, the derivatives with their errors, the stages of each run.
 
 use super::output::OutputDir;
+use crate::error::counted;
 use crate::identification::derivatives::{DerivativeEstimate, IdentifiedDerivatives};
 use crate::report::{PageSection, SectionsPage};
 use crate::section::Dof;
@@ -33,10 +34,10 @@ pub(super) fn laboratory_page(
             raw.licence.lines().next().unwrap_or("")
         ),
         answer: format!(
-            "{} runs, {} values of derivatives, {} remarks",
-            report.runs.len(),
-            estimates.len(),
-            notes.len()
+            "{}, {} of derivatives, {}",
+            counted(report.runs.len(), "run"),
+            counted(estimates.len(), "value"),
+            counted(notes.len(), "remark")
         ),
         sections: vec![
             PageSection {
@@ -134,11 +135,12 @@ pub(super) fn line(run: &RunReport) -> String {
         |a| format!("still air {:+.2} samples", a.offset_samples),
     );
     format!(
-        "{}: {} at {:.2} m/s, {} test points, {still_air}, {inertia}, {:.0} dB, {replaced} samples replaced",
+        "{}: {} at {:.2} m/s, {}, {still_air}, {inertia}, {:.0} dB, {} replaced",
         run.run,
         run.dof.name(),
         run.dimensionless.speed_m_s,
-        run.segments.len(),
+        counted(run.segments.len(), "test point"),
         run.signal_to_noise.after_low_pass_db[at],
+        counted(replaced, "sample"),
     )
 }

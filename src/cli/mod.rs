@@ -34,6 +34,7 @@ mod select;
 mod simulate;
 mod stages;
 mod study;
+mod summary;
 mod thesis;
 mod thesis_page;
 mod train;

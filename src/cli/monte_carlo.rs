@@ -5,7 +5,7 @@ use super::common::folder_of;
 use super::output::OutputDir;
 use super::progress::Progress;
 use super::{figures, stages};
-use crate::error::Result;
+use crate::error::{Result, counted};
 use crate::report::onset_distribution_figure;
 use crate::uncertainty::monte_carlo::{MonteCarloPlan, MonteCarloResult, monte_carlo};
 use std::fmt::Write as _;
@@ -57,8 +57,14 @@ pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
 
 fn account(r: &MonteCarloResult) -> String {
     let mut text = format!(
-        "{}: {} samples, seed {}: {} with an onset up to {:.3} m/s, {} without, {} failed\n",
-        r.model, r.samples, r.seed, r.onsets, r.speed_max_m_s, r.stable, r.failed
+        "{}: {}, seed {}: {} with an onset up to {:.3} m/s, {} without, {} failed\n",
+        r.model,
+        counted(r.samples, "sample"),
+        r.seed,
+        r.onsets,
+        r.speed_max_m_s,
+        r.stable,
+        r.failed
     );
     if let Some(speed) = r.unstable_up_to_m_s {
         let _ = writeln!(
@@ -99,13 +105,13 @@ fn account(r: &MonteCarloResult) -> String {
     if let Some(d) = &r.design {
         let _ = writeln!(
             text,
-            "Design    onset below {:.3} m/s: probability {:.3e}, {} % confidence {:.3e} to {:.3e} ({} samples)",
+            "Design    onset below {:.3} m/s: probability {:.3e}, {} % confidence {:.3e} to {:.3e} ({})",
             d.speed_m_s,
             d.probability,
             100.0 * d.confidence,
             d.lower,
             d.upper,
-            d.below
+            counted(d.below as usize, "sample")
         );
     }
     if let Some(d) = r.design.filter(|d| d.undecided > 0) {

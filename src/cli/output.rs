@@ -100,18 +100,12 @@ impl OutputDir {
     }
 
     /// Writes `bytes` as the file `name`.
-    ///
-    /// # Errors
-    /// [`Error::Io`].
     pub(crate) fn write(&mut self, name: impl AsRef<Path>, bytes: impl AsRef<[u8]>) -> Result<()> {
         let path = self.stage(name)?;
         fs::write(&path, bytes).map_err(|e| Error::io(path, e))
     }
 
     /// Writes a result as indented JSON.
-    ///
-    /// # Errors
-    /// [`Error::Numerical`] when it has no form in JSON; [`Error::Io`].
     pub(crate) fn write_json(
         &mut self,
         name: impl AsRef<Path>,
@@ -123,9 +117,6 @@ impl OutputDir {
     }
 
     /// Writes a record as the file `name`; where it stands for now.
-    ///
-    /// # Errors
-    /// [`Error::Io`]; a record that has no form in CSV.
     pub(crate) fn write_record(&mut self, name: &Path, record: &Record) -> Result<PathBuf> {
         let path = self.stage(name)?;
         let file = fs::File::create(&path).map_err(|e| Error::io(&path, e))?;
@@ -147,9 +138,6 @@ impl OutputDir {
 
     /// Leaves a file that users edit as it is when it differs from the staged `name`, unless `force`; says whether it
     /// was left.
-    ///
-    /// # Errors
-    /// [`Error::Io`] when a file cannot be read.
     pub(crate) fn keep_edited(&mut self, name: impl AsRef<Path>, force: bool) -> Result<bool> {
         let name = name.as_ref();
         let keep = !force && self.differs(name)?;
@@ -196,9 +184,6 @@ impl OutputDir {
     }
 
     /// Puts all files in place.
-    ///
-    /// # Errors
-    /// [`Error::Io`] when a file cannot be moved.
     pub(crate) fn commit(mut self) -> Result<Vec<Written>> {
         let _busy = uninterrupted();
         self.mark_complete()?;
@@ -230,9 +215,6 @@ impl OutputDir {
     }
 
     /// Puts all files in place: they end the text, and are `files` of the object `value`.
-    ///
-    /// # Errors
-    /// [`Error::Io`] when a file cannot be moved.
     pub(crate) fn answer(self, text: String, mut value: serde_json::Value) -> Result<Answer> {
         let written = self.commit()?;
         value["files"] = serde_json::json!(written);

@@ -8,7 +8,7 @@ use super::wind::WindArgs;
 use super::{account, figures};
 use crate::aerodynamics::GustSeries;
 use crate::aerodynamics::quasi_steady::{CoefficientRow, CoefficientsAt};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, counted};
 use crate::files::gusts::write_gusts;
 use crate::flutter::FlutterSearch;
 use crate::report::{
@@ -156,11 +156,11 @@ fn in_words(study: &WindStudy, results: &QuasiSteadyStudy) -> String {
 fn run_in_words(run: &SimulatedMotion) -> String {
     let n = run.dofs.len();
     let mut text = format!(
-        "\nNonlinear run at {} m/s: {} rows of {} s, {} Runge-Kutta steps each, halving changes {:.1e}\n",
+        "\nNonlinear run at {} m/s: {} of {} s, {} each, halving changes {:.1e}\n",
         run.speed_m_s,
-        run.nonlinear.len(),
+        counted(run.nonlinear.len(), "row"),
         run.step_s,
-        run.substeps,
+        counted(run.substeps, "Runge-Kutta step"),
         run.step_error
     );
     let spread = |rows: &[Vec<f64>], i: usize| {

@@ -5,7 +5,7 @@ use super::common::{folder_of, motion_columns};
 use super::output::{OutputDir, list};
 use super::{figures, stages};
 use crate::aeroelastic::CoupledSection;
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result, counted, positive};
 
 use crate::report::{PlottedSeries, TimePanel, time_history_figure};
 use crate::response::{Inputs, Outputs, Stepper};
@@ -121,8 +121,8 @@ pub(crate) fn run(args: &Args) -> Result<Answer> {
     })?;
     let written = out.commit()?;
     let text = format!(
-        "{title}: {} steps of {step} s\n{}{}",
-        trajectory.rows.len() - 1,
+        "{title}: {} of {step} s\n{}{}",
+        counted(trajectory.rows.len() - 1, "step"),
         verdict(&trajectory.modes),
         list(&written)
     );

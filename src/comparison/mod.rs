@@ -44,7 +44,7 @@ pub use stationarity::{
 };
 pub use wavelet::{NormalisedWaveletDetails, WaveletDetails, wavelet, wavelet_normalised};
 
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result, counted, positive};
 use serde::Serialize;
 
 /// A reference signal and the signal compared with it, sampled together.
@@ -68,15 +68,18 @@ impl<'a> SignalPair<'a> {
         if reference.len() != compared.len() {
             return Err(Error::input(
                 "compared signal",
-                format!("{} samples, as in the reference", reference.len()),
-                format!("{} samples", compared.len()),
+                format!(
+                    "{}, as in the reference",
+                    counted(reference.len(), "sample")
+                ),
+                counted(compared.len(), "sample"),
             ));
         }
         if reference.len() < 2 {
             return Err(Error::input(
                 "reference signal",
                 "at least 2 samples",
-                format!("{} samples", reference.len()),
+                counted(reference.len(), "sample"),
             ));
         }
         check_finite("reference signal", reference)?;

@@ -59,7 +59,7 @@ pub fn wavelet(
 /// Samples at which the reference has no content at all are left out of the mean.
 ///
 /// # Errors
-/// As [`wavelet`].
+/// [`crate::Error::Input`] for unusable parameters, a record too short for the cone, or a zero reference.
 pub fn wavelet_normalised(
     pair: &SignalPair<'_>,
     parameters: &WaveletParameters,

@@ -33,7 +33,7 @@ pub(crate) const GUST_COLUMNS: [&str; 3] = ["time_s", "u_m_s", "w_m_s"];
 /// Reads a series of gusts.
 ///
 /// # Errors
-/// [`Error::Io`] when the file cannot be read, else those of `parse_gusts` with the file named.
+/// [`Error::Io`] when the file cannot be read; [`Error::Input`] with file and line, what was expected and what was found.
 pub fn read_gusts(path: impl AsRef<Path>) -> Result<GustSeries> {
     let path = path.as_ref();
     let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, e))?;

@@ -1,6 +1,6 @@
 //! What all CSV files of this project share: `# key: value` lines at the head, columns by name, numbers with their place.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, counted};
 use std::io::Write;
 
 /// One header line.
@@ -191,7 +191,11 @@ pub(crate) fn csv_error(error: csv::Error) -> Error {
     match error.kind() {
         csv::ErrorKind::UnequalLengths {
             expected_len, len, ..
-        } => Error::input(place, format!("{expected_len} columns"), len.to_string()),
+        } => Error::input(
+            place,
+            counted(*expected_len as usize, "column"),
+            len.to_string(),
+        ),
         _ => Error::input(place, "a CSV row", error.to_string()),
     }
 }

@@ -13,9 +13,6 @@ fn line_of(text: &str, offset: usize) -> usize {
 }
 
 /// The file at `path` by `parse`, which is given its text and its directory.
-///
-/// # Errors
-/// [`Error::Io`] when it cannot be read; those of `parse`, naming the file.
 pub(crate) fn read<T>(path: &Path, parse: impl FnOnce(&str, PathBuf) -> Result<T>) -> Result<T> {
     let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, e))?;
     let directory = path.parent().unwrap_or(Path::new("")).to_path_buf();

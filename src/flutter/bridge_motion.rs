@@ -51,26 +51,39 @@ pub struct BridgeMotion {
     pub nodes: Vec<NodeMotion>,
 }
 
+/// Heave over rotation of one motion.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ModeRatio {
+    /// `|y|/(B|θ|)`.
+    pub ratio: f64,
+    /// Phase of `y` to `θ`, degrees.
+    pub phase_deg: f64,
+}
+
 impl BridgeMotion {
-    /// `|y|/(B|θ|)` and the phase of `y` to `θ` in degrees, where the girder turns most.
-    pub fn mode_ratio(&self, width_m: f64) -> (f64, f64) {
+    /// Heave over rotation where the girder turns most.
+    pub fn mode_ratio(&self, width_m: f64) -> ModeRatio {
         let complex = |z: [f64; 2]| Complex::new(z[0], z[1]);
         let turning = |n: &&NodeMotion| complex(n.motion[2]).norm();
         let most = self
             .nodes
             .iter()
             .max_by(|a, b| turning(a).total_cmp(&turning(b)));
-        most.map_or((f64::NAN, f64::NAN), |n| {
-            let ratio = complex(n.motion[0]) / (complex(n.motion[2]) * width_m);
-            (ratio.norm(), ratio.arg().to_degrees())
-        })
+        let ratio = most.map_or(Complex::new(f64::NAN, f64::NAN), |n| {
+            complex(n.motion[0]) / (complex(n.motion[2]) * width_m)
+        });
+        ModeRatio {
+            ratio: ratio.norm(),
+            phase_deg: ratio.arg().to_degrees(),
+        }
     }
 }
 
 /// The motion that the impedance of `forces` (of [`Bridge::forces`]) at an onset resists least.
 ///
 /// # Errors
-/// Those of the forces at its reduced frequency; [`Error::Numerical`] when there is no such motion.
+/// [`Error::Input`] for forces that say nothing at its reduced frequency; [`Error::Numerical`] when there is no such
+/// motion.
 pub fn motion_at_onset(
     bridge: &Bridge,
     forces: &dyn Transfer,
@@ -97,6 +110,15 @@ fn modal_shape(
     null_vector(&structure, &resistance, omega)
 }
 
+/// Where a mode loses its damping.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FoundOnset {
+    /// Wind speed, m/s.
+    pub speed_m_s: f64,
+    /// Frequency, Hz.
+    pub frequency_hz: f64,
+}
+
 /// An onset from which those of bridges nearby are found without a search: by the mode that flutters, followed by its shape.
 #[derive(Debug, Clone)]
 pub struct NearbyOnset {
@@ -109,7 +131,8 @@ impl NearbyOnset {
     /// Starts from the onset `at` of `bridge`.
     ///
     /// # Errors
-    /// As [`motion_at_onset`].
+    /// [`Error::Input`] for forces that say nothing at its reduced frequency; [`Error::Numerical`] when there is no such
+    /// motion.
     pub fn of(bridge: &Bridge, at: &CriticalPoint) -> Result<Self> {
         let omega = at
             .reduced_frequency
@@ -121,9 +144,9 @@ impl NearbyOnset {
         })
     }
 
-    /// Speed (m/s) and frequency (Hz) at which the same mode of another bridge loses its damping, by the secant; `None`
-    /// where the mode cannot be followed that far.
-    pub fn find(&self, other: &CoupledSection) -> Option<(f64, f64)> {
+    /// Where the same mode of another bridge loses its damping, by the secant; `None` where the mode cannot be followed
+    /// that far.
+    pub fn find(&self, other: &CoupledSection) -> Option<FoundOnset> {
         let problem = ModalCharacteristic::new(other)?;
         let mut known = (self.lambda, self.shape.clone());
         let mut at = |speed: f64| {
@@ -142,7 +165,10 @@ impl NearbyOnset {
                 return None;
             }
             if step.abs() <= SETTLED * speed {
-                return Some((speed + step, next.im / TAU));
+                return Some(FoundOnset {
+                    speed_m_s: speed + step,
+                    frequency_hz: next.im / TAU,
+                });
             }
             (before, value) = (speed, next);
             speed += step;

@@ -57,7 +57,8 @@ pub(super) fn self_excited(
 /// highest `K` of the range is unstable at and below the speed that belongs to it.
 ///
 /// # Errors
-/// [`Error::Input`] for an empty range; those of the model; [`Error::Numerical`] when the roots cannot be computed.
+/// [`Error::Input`] for an empty range and forces that say nothing in it; [`Error::Numerical`] when the roots cannot be
+/// computed.
 pub fn determinant_onset(
     name: &str,
     structure: &Structure,

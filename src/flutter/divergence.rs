@@ -47,7 +47,7 @@ pub(crate) fn static_part(dofs: &[Dof], g: &TransferMatrix) -> TransferMatrix {
 /// of sign of `det A` (of `det(A − I)` for the sampled system).
 ///
 /// # Errors
-/// [`Error::Input`] for a highest speed that is not positive; those of the coupling.
+/// [`Error::Input`] for a highest speed that is not positive.
 pub fn divergence_by_eigenvalues(
     section: &CoupledSection,
     speed_max_m_s: f64,

@@ -32,7 +32,8 @@ mod unwanted;
 
 pub use answer::{FlutterSearch, StableRange, UnstableStart};
 pub use bridge_motion::{
-    BridgeMotion, ModeShare, NearbyOnset, NodeMotion, motion_at_onset, static_deflection,
+    BridgeMotion, FoundOnset, ModeRatio, ModeShare, NearbyOnset, NodeMotion, motion_at_onset,
+    static_deflection,
 };
 pub use critical_point::{CriticalPoint, OnsetMethod};
 pub use curves::{FlutterCurves, ModeBranch, ModePoint, trace_modes};

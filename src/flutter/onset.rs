@@ -120,9 +120,6 @@ impl OnsetInterval {
 
 impl Onset {
     /// The speed, unless the data do not determine it: what may be printed as a result, m/s.
-    ///
-    /// # Errors
-    /// Why it may not.
     pub(crate) fn headline_m_s(&self) -> std::result::Result<f64, &str> {
         match &self.interval {
             OnsetInterval::Undetermined { reason, .. } => Err(reason),

@@ -24,7 +24,7 @@ const STEPS_TO_MODE: usize = 100;
 /// ([`Transfer::known_range`]).
 ///
 /// # Errors
-/// [`Error::Input`] for speeds that do not increase from above zero; those of the model.
+/// [`Error::Input`] for speeds that do not increase from above zero.
 pub fn pk_curves(
     name: &str,
     structure: &Structure,
@@ -64,8 +64,8 @@ pub fn pk_curves(
 /// followed over the wind speed from there; of a table from where that begins.
 ///
 /// # Errors
-/// [`Error::Input`] for a speed that is not positive or a `dof` that there is not; those of the model;
-/// [`Error::Numerical`] when the branch has ended before that speed or is outside the range of a table.
+/// [`Error::Input`] for a speed that is not positive or a `dof` that there is not; [`Error::Numerical`] when the branch
+/// has ended before that speed or is outside the range of a table.
 pub fn quasi_pk_mode(
     structure: &Structure,
     model: &dyn Transfer,
@@ -107,7 +107,7 @@ pub fn quasi_pk_mode(
 /// [`find_onset`](super::find_onset).
 ///
 /// # Errors
-/// Those of [`pk_curves`]; [`Error::Input`] for a search range that is none.
+/// [`Error::Input`] for a search range that is none.
 pub fn pk_onset(
     name: &str,
     structure: &Structure,

@@ -41,9 +41,6 @@ pub(crate) struct QuasiSteadyOnset {
 }
 
 /// First wind speed at which an oscillation about the static equilibrium of that speed loses its damping.
-///
-/// # Errors
-/// [`Error::Input`] for a search range that is none; those of [`static_equilibria`] and of the eigenvalues.
 pub(crate) fn quasi_steady_onset(
     name: &str,
     structure: &Structure,

@@ -82,7 +82,7 @@ impl GrowthBand {
 /// between them too, and halves down to the ends of each band. `tested` as in [`find_onset`](super::find_onset).
 ///
 /// # Errors
-/// [`Error::Input`] for speeds that are no interval; those of the eigenvalues.
+/// [`Error::Input`] for speeds that are no interval; [`Error::Numerical`] when eigenvalues cannot be computed.
 pub fn growth_scan(
     section: &CoupledSection,
     from_m_s: f64,

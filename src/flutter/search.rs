@@ -67,7 +67,7 @@ pub(crate) fn curve_speeds_m_s(lowest_m_s: f64, highest_m_s: f64, count: usize) 
 /// enters it is unstable at and below that speed, whatever the model says outside.
 ///
 /// # Errors
-/// [`Error::Input`] for a search range that is none; those of the eigenvalues.
+/// [`Error::Input`] for a search range that is none; [`Error::Numerical`] when eigenvalues cannot be computed.
 pub fn find_onset(
     model: &str,
     section: &CoupledSection,

@@ -24,9 +24,6 @@ pub struct BridgeGusts {
 
 impl BridgeGusts {
     /// Checks numbers and strips.
-    ///
-    /// # Errors
-    /// [`Error::Input`] with the place.
     pub(super) fn validate(&self, bridge: &Bridge) -> Result<()> {
         for (group, matrix) in self.coefficients.iter().enumerate() {
             for x in matrix.iter().flatten() {
@@ -87,9 +84,6 @@ impl TurbulenceOptions {
     }
 
     /// What it does to the channels of a bridge, sample by sample.
-    ///
-    /// # Errors
-    /// Those of [`GustChannels::new`].
     pub(super) fn channels(&self, bridge: &Bridge, gusts: &BridgeGusts) -> Result<GustRecord> {
         let strips: Vec<Vec<usize>> = (0..bridge.nodes.len()).map(|n| vec![n]).collect();
         let all = GustChannels::new(bridge, &gusts.coefficients, &strips)?;

@@ -9,7 +9,7 @@ use super::package::Label;
 use super::resources::Resources;
 use super::si::Unit;
 use super::standard::Word;
-use super::variables::{Causality, Listing, Value, Variable, VariableTable};
+use super::variables::{Causality, Listed, Listing, Value, Variable, VariableTable};
 use super::xml::Element;
 use crate::error::{Error, Result};
 use crate::trained_model::Experiment;
@@ -23,7 +23,7 @@ const MAX_DEFAULT_STEPS: f64 = 1000.0;
 /// [`Error::Input`] when a number cannot stand in a description (not finite).
 pub fn model_description(resources: &Resources, listing: Listing, label: &Label) -> Result<String> {
     let Resources { model, table, .. } = resources;
-    let (table, references) = &table.listed(listing);
+    let Listed { table, references } = &table.listed(listing);
     let variables = references.iter().zip(table.variables());
     let variables = variables
         .map(|(reference, v)| scalar(*reference, v))

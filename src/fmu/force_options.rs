@@ -83,7 +83,7 @@ impl ForceOptions {
     /// Reads and checks the options.
     ///
     /// # Errors
-    /// [`Error::Input`] for text that is not such a file, and as [`ForceOptions::validate`].
+    /// [`Error::Input`] for text that is not such a file, and for strips or a prediction that cannot be.
     pub fn from_json(text: &str) -> Result<Self> {
         let options: Self = serde_json::from_str(text).map_err(|e| {
             let place = format!("line {}, column {}", e.line(), e.column());
@@ -96,7 +96,7 @@ impl ForceOptions {
     /// The options as JSON.
     ///
     /// # Errors
-    /// As [`ForceOptions::validate`].
+    /// [`Error::Input`] for strips or a prediction that cannot be.
     pub fn to_json(&self) -> Result<String> {
         self.validate()?;
         serde_json::to_string_pretty(self).map_err(|e| Error::Numerical(e.to_string()))

@@ -5,6 +5,7 @@
 //! and run on with the rates that were set for them (zero unless set); at its end they stand where those rates have
 //! taken them. Outputs are computed once per step when first asked for.
 
+mod access;
 mod bridge_built;
 mod bridge_derivatives;
 mod bridge_places;
@@ -15,11 +16,14 @@ mod force_derivatives;
 mod force_unit;
 mod integration;
 mod layout;
+mod memory;
 mod saving;
 mod section;
 mod section_derivatives;
 mod section_places;
+mod section_trust;
 mod section_unit;
+mod sensitivity;
 mod serialized;
 mod stepping;
 mod trust;
@@ -37,7 +41,7 @@ use crate::error::Result;
 use bridge_unit::BridgeUnit;
 use force_unit::ForceUnit;
 use layout::Layout;
-use saving::{Experiment, Memory};
+use memory::{Experiment, Memory};
 use section_unit::SectionUnit;
 use unit::Unit;
 
@@ -67,7 +71,7 @@ impl Instance {
             (None, None) => Box::new(SectionUnit::new(&resources)?),
         };
         let layout = Layout::new(&resources.table, |place| unit.held_output(place))?;
-        let fresh = Memory::new(&resources.table, unit.as_ref());
+        let fresh = Memory::new(&resources.table, unit.inputs().len(), unit.at_rest());
         let mut memory = fresh.clone();
         // a section that cannot be coupled is no model to run: say so now
         unit.prepare(&resources, &mut memory)?;

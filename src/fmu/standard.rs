@@ -1,6 +1,16 @@
-//! Words of the FMI 2.0 standard that describe a variable, as both the exported description and the importer use them.
+//! Versions of the FMI standard, and its words that describe a variable, as both the exported description and the importer use them.
 
 use serde::Serialize;
+
+/// Version of the standard; the runtime speaks all of them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum FmiVersion {
+    /// FMI 2.0.
+    #[default]
+    Two,
+    /// FMI 3.0.
+    Three,
+}
 
 /// Role of a variable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]

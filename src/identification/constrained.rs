@@ -239,9 +239,6 @@ impl LinearSolution {
 
     /// What the coefficients become when the free unknowns leave their best values by one unit of the weighted residual,
     /// along each of them, n×unknowns: `N R⁻¹`.
-    ///
-    /// # Errors
-    /// [`Error::Numerical`] for a singular factor.
     pub(crate) fn spread(&self) -> Result<DMatrix<f64>> {
         let inverse = self.factor.inverse_upper(self.unknowns)?;
         Ok(match &self.spread {

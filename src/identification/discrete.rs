@@ -52,9 +52,6 @@ impl Default for DiscreteFit {
 
 impl DiscreteFit {
     /// Checks every value.
-    ///
-    /// # Errors
-    /// [`Error::Input`] naming the key.
     pub(crate) fn validate(&self) -> Result<()> {
         each_once(self.own.iter().map(|o| (o.force, o.motion)))?;
         let own = self.own.iter().map(|o| ("own.", o.filters, o.alpha));

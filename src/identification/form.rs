@@ -1,6 +1,6 @@
 //! The forms that a continuous model may have.
 
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result, counted, positive};
 use serde::{Deserialize, Serialize};
 
 /// Feed-through of the motion (`e0`), its rate (`e1`) and its acceleration (`e2`), each on or off.
@@ -247,19 +247,18 @@ impl Form {
             _ => ("rational functions", ""),
         };
         let count = self.filters();
-        let plural = if count == 1 { "" } else { "s" };
         let with = if self.feed_through().e2 {
             "with"
         } else {
             "without"
         };
-        format!("{kind}, {count} lag{plural}{whose}, {with} added mass")
+        format!(
+            "{kind}, {}{whose}, {with} added mass",
+            counted(count, "lag")
+        )
     }
 
     /// Checks the form for a fit to records.
-    ///
-    /// # Errors
-    /// [`Error::Input`] for forms that are fitted to tables only, and those of every form.
     pub(super) fn validate_for_records(&self) -> Result<()> {
         if matches!(
             self,

@@ -24,9 +24,6 @@ pub struct QuasiSteadyLimit {
 }
 
 /// Checks what can be checked without the data.
-///
-/// # Errors
-/// [`Error::Input`] naming the limit.
 pub(super) fn validate_limits(limits: &[QuasiSteadyLimit]) -> Result<()> {
     for (i, limit) in limits.iter().enumerate() {
         let place = format!("limits[{i}]");
@@ -108,9 +105,6 @@ pub struct FrequencyFit {
 
 impl FrequencyFit {
     /// Checks every value.
-    ///
-    /// # Errors
-    /// [`Error::Input`] naming the key.
     pub(crate) fn validate(&self) -> Result<()> {
         self.form.validate()?;
         self.poles.validate(&self.form)?;
@@ -135,9 +129,6 @@ impl FrequencyFit {
     }
 
     /// The weight of entry `(i, j)` of an n×n matrix.
-    ///
-    /// # Errors
-    /// [`Error::Input`] when the weights are of another shape.
     pub(super) fn entry_weight(&self, n: usize, i: usize, j: usize) -> Result<f64> {
         let Some(rows) = &self.entry_weights else {
             return Ok(1.0);

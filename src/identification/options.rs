@@ -53,9 +53,6 @@ pub struct TimeFit {
 
 impl TimeFit {
     /// Checks every value.
-    ///
-    /// # Errors
-    /// [`crate::Error::Input`] naming the key.
     pub(crate) fn validate(&self) -> Result<()> {
         self.form.validate_for_records()?;
         self.poles.validate(&self.form)?;

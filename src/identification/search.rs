@@ -32,9 +32,6 @@ pub(crate) struct Bounds {
 
 impl Bounds {
     /// Stated bounds, or half the lowest to twice the highest tested `K`.
-    ///
-    /// # Errors
-    /// Bounds without room for `count` poles.
     pub(crate) fn resolve(
         options: &PoleSearch,
         tested: ReducedFrequencyRange,

@@ -117,7 +117,7 @@ impl FirstOrderExample {
     /// Trains all models and samples what the figures show.
     ///
     /// # Errors
-    /// [`Error::Input`] for numbers that are not positive; those of the fits.
+    /// [`Error::Input`] for numbers that are not positive.
     pub fn run(&self) -> Result<FirstOrderResults> {
         positive("time_constant_s", self.time_constant_s)?;
         positive("step_s", self.step_s)?;

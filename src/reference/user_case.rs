@@ -2,13 +2,11 @@
 
 mod evaluate;
 
-use super::{CaseResult, Citation};
 use crate::aerodynamics::derivatives::Interpolation;
 use crate::error::{Error, Result, non_negative, positive};
 use crate::files::toml_lines;
 use crate::flutter::OnsetMethod;
 use crate::section::{Dof, SectionModel};
-use evaluate::Loaded;
 use nalgebra::DMatrix;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
@@ -177,9 +175,6 @@ impl UserCase {
     }
 
     /// Reads and checks the text of a case file; paths in it are read against `directory`.
-    ///
-    /// # Errors
-    /// [`Error::Input`] with line and key.
     pub(crate) fn from_toml(text: &str, directory: PathBuf) -> Result<Self> {
         toml_lines::parse("a case file", text, |case: &mut Self| {
             case.directory = directory;
@@ -216,52 +211,6 @@ impl UserCase {
             figure.validate(&format!("figure[{i}]"))?;
         }
         Ok(())
-    }
-
-    /// Computes every figure. A computation that fails is a result that has not passed.
-    pub(crate) fn run(&self) -> Vec<CaseResult> {
-        let loaded = Loaded::new(self);
-        let judge = |figure: &UserFigure| {
-            let found = match &loaded {
-                Ok(loaded) => loaded.figure(figure).map_err(|e| e.to_string()),
-                Err(error) => Err(error.to_string()),
-            };
-            self.result(figure, found)
-        };
-        self.figures.iter().map(judge).collect()
-    }
-
-    fn result(&self, figure: &UserFigure, found: std::result::Result<f64, String>) -> CaseResult {
-        let (name, unit) = figure.quantity.words();
-        let mut quantity = name.to_owned();
-        if let (Some(dof), Some(speed)) = (figure.dof, figure.speed_m_s) {
-            quantity = format!("{} at {speed} m/s: {name}", dof.name());
-        } else if let Some(route) = figure.route {
-            quantity = format!("{name} ({})", route.name());
-        }
-        let (found, problem) = match found {
-            Ok(found) => (Some(found), None),
-            Err(problem) => (None, Some(problem)),
-        };
-        let deviation = found.map(|found| found - figure.expected);
-        // as many digits as the tolerance makes sense of
-        let decimals = (-figure.tolerance.log10().floor()).clamp(0.0, 12.0) as usize;
-        CaseResult {
-            name: self.name.clone(),
-            what: self.what.clone(),
-            quantity,
-            unit: unit.into(),
-            expected: figure.expected,
-            decimals,
-            found,
-            deviation,
-            tolerance: figure.tolerance,
-            reason: figure.reason.clone(),
-            passed: deviation.is_some_and(|d| d.abs() <= figure.tolerance),
-            source: Citation::Stated(figure.source.clone()),
-            headline: true,
-            problem,
-        }
     }
 }
 

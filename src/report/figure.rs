@@ -54,7 +54,7 @@ impl Figure {
     /// Writes `stem.svg` and `stem.png` into the existing directory `dir`; returns their paths.
     ///
     /// # Errors
-    /// [`Error::Io`] naming the file; those of [`Self::png`].
+    /// [`Error::Io`] naming the file; [`Error::Numerical`] when the picture cannot be drawn.
     pub fn write(&self, dir: impl AsRef<Path>, stem: &str) -> Result<[PathBuf; 2]> {
         let path = |extension: &str| dir.as_ref().join(format!("{stem}.{extension}"));
         let paths = [path("svg"), path("png")];

@@ -339,9 +339,6 @@ fn statement(onset: &Onset) -> String {
 
 /// The eigenvalues of all modes as the wind speed rises: growth rate (1/s) against frequency (Hz). Right of the zero line
 /// motions grow.
-///
-/// # Errors
-/// As [`vf_vg_figure`].
 pub(crate) fn root_locus_figure(curves: &[FlutterCurves], title: &str) -> Result<Figure> {
     let branches = branch_names(curves)?;
     let mut panel = Panel::new(

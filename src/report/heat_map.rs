@@ -2,8 +2,9 @@
 
 use super::figure::Figure;
 use super::font::FAMILIES;
-use super::sheet::{finished, text};
+use super::sheet::finished;
 use super::style::{BLACK, GREY};
+use super::text::text;
 use crate::error::{Error, Result};
 use kuva::render::color::Color;
 use kuva::render::render::{Primitive, Scene, TextAnchor};

@@ -2,6 +2,7 @@
 
 use super::font::text_width;
 use super::style::{BLACK, Ink, SHADE, SHADE_OPACITY, draw_marker};
+use super::text::text;
 use kuva::render::color::Color;
 use kuva::render::render::{Primitive, Scene};
 
@@ -79,7 +80,7 @@ impl LegendLayout<'_> {
         for (entry, x, y) in &self.placed {
             let (x, y) = (left + x, top + y + 0.5 * ROW);
             draw_sample(scene, (x, y), entry.ink);
-            scene.add(super::sheet::text(
+            scene.add(text(
                 (x + SAMPLE + 8.0, y + 0.36 * f64::from(SIZE)),
                 &entry.label,
                 SIZE,

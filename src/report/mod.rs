@@ -26,6 +26,7 @@ mod sheet;
 
 mod study_page;
 mod style;
+mod text;
 mod transfer_figure;
 mod wind_figures;
 

@@ -3,8 +3,8 @@
 use super::axis::{Axis, Scale};
 use super::font::text_width;
 use super::labels::{Area, Labels};
-use super::sheet::text;
 use super::style::{BLACK, GRID, Ink, SHADE, SHADE_OPACITY, draw_marker};
+use super::text::text;
 use crate::error::{Error, Result};
 use kuva::TickFormat;
 use kuva::plot::annotations::{ReferenceLine, ShadedRegion};

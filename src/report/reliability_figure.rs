@@ -13,9 +13,6 @@ const PLACE: &str = "distribution of the onset";
 
 /// Histogram of the onset speed (part of all answered samples in each bin) and its distribution function with the
 /// quantiles, over wind speed (m/s); the onset of the model itself and the design speed are upright lines.
-///
-/// # Errors
-/// [`Error::Input`] when there is no onset to draw.
 pub(crate) fn onset_distribution_figure(result: &MonteCarloResult) -> Result<Figure> {
     let h = &result.histogram;
     if h.counts.is_empty() {

@@ -32,9 +32,6 @@ struct Page<'a> {
 }
 
 /// The page as HTML text; the same content always gives the same bytes.
-///
-/// # Errors
-/// [`Error::Numerical`] when it cannot be put together.
 pub(crate) fn sections_page(page: &SectionsPage) -> Result<String> {
     let generator = concat!("aerodeck ", env!("CARGO_PKG_VERSION"));
     Page { page, generator }

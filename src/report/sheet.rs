@@ -5,10 +5,10 @@ use super::font::{FAMILIES, text_width};
 use super::legend::{Entry, LegendLayout, lay_out};
 use super::panel::{Frame, LABEL_SIZE, Margins, Panel};
 use super::style::BLACK;
+use super::text::text;
 use crate::error::{Error, Result};
 use kuva::backend::svg::SvgBackend;
-use kuva::render::color::Color;
-use kuva::render::render::{Primitive, Scene, TextAnchor};
+use kuva::render::render::{Primitive, Scene};
 use uuid::Uuid;
 
 const TITLE_SIZE: u32 = 14;
@@ -216,29 +216,6 @@ fn subscripted(content: &str) -> String {
         }
     }
     text + rest
-}
-
-/// A text that starts at a point.
-pub(super) fn text((x, y): (f64, f64), content: &str, size: u32, colour: &str) -> Primitive {
-    Primitive::Text {
-        x,
-        y,
-        content: literal(content),
-        size,
-        anchor: TextAnchor::Start,
-        rotate: None,
-        bold: false,
-        color: Some(Color::from(colour)),
-    }
-}
-
-/// `content` as it stands: dollars are no mathematics, and what XML cannot hold becomes a space.
-fn literal(content: &str) -> String {
-    content
-        .chars()
-        .map(|c| if c.is_control() { ' ' } else { c })
-        .collect::<String>()
-        .replace('$', "\\$")
 }
 
 #[cfg(test)]

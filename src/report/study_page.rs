@@ -125,9 +125,6 @@ struct ChartSeries<'a> {
 }
 
 /// The page as HTML text; the same content always gives the same bytes.
-///
-/// # Errors
-/// [`Error::Numerical`] when it cannot be put together.
 pub(crate) fn study_page(of: &StudyPage) -> Result<String> {
     let failed = |e: String| Error::Numerical(format!("report: {e}"));
     let charts = match of.curves.is_empty() {

@@ -65,15 +65,7 @@ pub(crate) fn equilibrium_figure(
         };
         legend.push(Entry::new(end.explain(), upright));
     }
-    Sheet {
-        name: PLACE,
-        title: titled(title),
-        panels,
-        columns: 1,
-        axes: (640.0, 150.0),
-        legend: vec![legend],
-    }
-    .draw()
+    stacked(PLACE, title, panels, 150.0, legend)
 }
 
 /// Root mean squares over wind speed, one panel a degree of freedom: in all, by each component of the turbulence, and in
@@ -129,15 +121,7 @@ pub(crate) fn buffeting_rms_figure(title: &str, study: &BuffetingStudy) -> Resul
     if !study.time.is_empty() {
         legend.push(Entry::new("time domain, ±2 standard errors", stepped));
     }
-    Sheet {
-        name: PLACE,
-        title: titled(title),
-        panels,
-        columns: 1,
-        axes: (640.0, 170.0),
-        legend: vec![legend],
-    }
-    .draw()
+    stacked(PLACE, title, panels, 170.0, legend)
 }
 
 fn has_gust(study: &BuffetingStudy, j: usize) -> bool {
@@ -195,12 +179,23 @@ pub(crate) fn buffeting_spectra_figure(
         panels.push(panel);
     }
     legend.push(Entry::new("motion", line));
+    stacked(PLACE, title, panels, 150.0, legend)
+}
+
+/// Panels of this height above each other, with one legend.
+fn stacked(
+    place: &'static str,
+    title: &str,
+    panels: Vec<Panel>,
+    height: f64,
+    legend: Vec<Entry>,
+) -> Result<Figure> {
     Sheet {
-        name: PLACE,
+        name: place,
         title: titled(title),
         panels,
         columns: 1,
-        axes: (640.0, 150.0),
+        axes: (640.0, height),
         legend: vec![legend],
     }
     .draw()

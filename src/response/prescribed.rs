@@ -184,7 +184,8 @@ impl PrescribedForces {
     /// wind and in air of this density (kg/m³). Before any motion was given they are zero.
     ///
     /// # Errors
-    /// Those of [`Self::take`].
+    /// [`Error::Input`] for a step of more than ten thousand parts over all strips; [`Error::Numerical`] beyond the range
+    /// of numbers.
     pub fn ahead(
         &mut self,
         state: &[f64],

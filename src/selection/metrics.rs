@@ -55,9 +55,6 @@ pub(crate) struct MetricGrid {
 
 /// Metrics of the force in the direction of the motion, for each motion, in the segment whose frequency is nearest to
 /// `frequency_hz` at the highest mean speed. Parallel over the values of the axis.
-///
-/// # Errors
-/// [`Error::Input`] when no record has segments; those of reading and of the metrics.
 pub(crate) fn metric_grid(
     grid: &Grid,
     records: &[&dyn RecordSource],

@@ -5,7 +5,7 @@
 //! Each section has unit gain for a constant, and its `1 − z_k` is computed as `−2s_k/(4 − s_k)`, without the
 //! cancellation that ruins the polynomial form at low cut-offs.
 
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result, counted, positive};
 use nalgebra::Complex;
 use std::f64::consts::PI;
 
@@ -132,7 +132,7 @@ impl ButterworthLowPass {
         if n <= pad {
             return Err(Error::input(
                 "signal to be filtered",
-                format!("more than {pad} samples"),
+                format!("more than {}", counted(pad, "sample")),
                 n.to_string(),
             ));
         }

@@ -157,9 +157,6 @@ impl Deck {
     }
 
     /// What the deck says about `G`, at the chosen groups of speeds (from 1; all when `None`).
-    ///
-    /// # Errors
-    /// [`Error::Input`] for a group that does not exist.
     pub(crate) fn samples(
         &self,
         study: &Study,
@@ -275,9 +272,6 @@ impl RecordSet {
     }
 
     /// All records of a folder, as `tunnel` writes them; none when no model of the study needs any.
-    ///
-    /// # Errors
-    /// [`Error::Input`] when there are none although a model needs them; those of reading.
     pub(crate) fn in_folder(study: &Study, folder: &Path) -> Result<Self> {
         let needed = study.models.iter().any(|m| m.table.is_none());
         let mut paths = Vec::new();
@@ -324,9 +318,6 @@ impl RecordSet {
     }
 
     /// The records of the chosen groups (from 1; all when `None`).
-    ///
-    /// # Errors
-    /// [`Error::Input`] for a group that does not exist.
     pub(crate) fn select(&self, groups: Option<&[usize]>) -> Result<Vec<&dyn RecordSource>> {
         let chosen = chosen(groups, self.groups_m_s.len())?;
         let inside = |record: &&RecordFile| {

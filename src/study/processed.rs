@@ -16,9 +16,6 @@ const HEAD: &str =
 /// Text of a study of `records` and `table` (paths from the folder of the study): section, models and search of `base`, or
 /// the default models. `section` goes before that of `base`; with neither the text has a marked place, and
 /// [`Study::from_toml`] refuses it until the section is stated there.
-///
-/// # Errors
-/// [`Error::Numerical`] when the study cannot be written.
 pub(crate) fn processed_study_text(
     raw: &RawCampaign,
     (base, section): (Option<&Study>, Option<&SectionModel>),

@@ -5,14 +5,14 @@
 //! structure, and handbook formulas. Two routes on one force model must agree to rounding; between force models the
 //! table shows what the choice of the model does.
 
+mod limit;
 mod steady;
 
-use crate::aeroelastic::CoupledSection;
-pub use steady::low_frequency_limit;
-use steady::{limit_onset, steady_flat_plate};
+pub use limit::low_frequency_limit;
 
 use super::{Deck, Study};
 use crate::aerodynamics::{FlatPlate, RationalModel, Realizable, Realization, Transfer};
+use crate::aeroelastic::CoupledSection;
 use crate::error::Result;
 use crate::flutter::{
     FlutterCurves, FlutterSearch, ModeAtOnset, OnsetMethod, SanityLines, classify,
@@ -22,6 +22,7 @@ use crate::flutter::{
 use crate::section::{Dof, Structure};
 use crate::trained_model::TrainedModel;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
+use limit::{limit_onset, steady_flat_plate};
 use serde::Serialize;
 
 /// Reduced frequencies from still air to nearly steady flow.
@@ -34,6 +35,8 @@ const NEARLY_ALONE: f64 = 0.8;
 const ALONE_SOON: f64 = 1.5;
 /// Name of the flat plate with the section's structure.
 const FLAT_PLATE: &str = "flat plate, same structure";
+/// Name of quasi-steady theory with static coefficients.
+const THEORY: &str = "quasi-steady theory";
 
 /// All routes of one study.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -126,7 +129,7 @@ pub(crate) fn route_table(
     if let Some(block) = &study.coefficients {
         let theory = block.theory(&study.directory, &study.section.dofs())?;
         let added = table.add_static_coefficients(study, &structure, &theory);
-        table.note_failure(steady::THEORY, None, added);
+        table.note_failure(THEORY, None, added);
     }
     if table.sanity.is_none() {
         table.left_out.push(

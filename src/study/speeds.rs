@@ -1,6 +1,6 @@
 //! Wind speeds of curves and searches: stated in the file, else from the section.
 
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result, counted, positive};
 use crate::flutter::{OnsetSearch, curve_speeds_m_s};
 use crate::section::{Dof, SectionModel};
 use serde::{Deserialize, Serialize};
@@ -126,10 +126,10 @@ impl SpeedRange {
             ""
         };
         format!(
-            "{} to {} m/s in {} steps{why}",
+            "{} to {} m/s in {}{why}",
             (1e3 * self.speed_min_m_s).round() / 1e3,
             self.speed_max_m_s,
-            self.speeds
+            counted(self.speeds, "step")
         )
     }
 

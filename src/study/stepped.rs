@@ -1,6 +1,6 @@
 //! Onset of an exported FMU, found by stepping it through its C interface: the third route.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, counted};
 use crate::flutter::{
     CriticalPoint, Onset, OnsetInterval, OnsetMethod, StableRange, UnstableStart,
 };
@@ -50,8 +50,10 @@ impl SteppedOnset {
             .iter()
             .map(|r| {
                 format!(
-                    "{:.4} m/s with a step of {:.4} s ({} steps)",
-                    r.speed_m_s, r.communication_step_s, r.steps
+                    "{:.4} m/s with a step of {:.4} s ({})",
+                    r.speed_m_s,
+                    r.communication_step_s,
+                    counted(r.steps, "step")
                 )
             })
             .collect();

@@ -169,9 +169,6 @@ impl LinearModel {
     }
 
     /// The linear model at other parameters.
-    ///
-    /// # Errors
-    /// Coefficients that are not finite.
     pub(super) fn model_at(&self, values: &[f64]) -> Result<Model> {
         let poles = self.estimate.len() - self.searched;
         let moved = DVector::from_fn(self.searched, |m, _| {

@@ -175,7 +175,7 @@ impl CoverageReport {
 /// `done` is called after each repetition with the number of those that are through.
 ///
 /// # Errors
-/// [`Error::Input`] for impossible plans; those of fit and search.
+/// [`Error::Input`] for impossible plans; [`Error::Numerical`] when no fit or no search gives an onset.
 pub fn coverage(plan: &CoveragePlan, done: &(dyn Fn(usize) + Sync)) -> Result<CoverageReport> {
     let campaign = Campaign::new(plan)?;
     let finished = AtomicUsize::new(0);

@@ -142,9 +142,6 @@ impl Design {
     }
 
     /// The same fit with its rows put together in other blocks.
-    ///
-    /// # Errors
-    /// Rows that are not finite.
     pub(crate) fn with_blocks(&self, blocks: Vec<Block>) -> Result<Self> {
         let p = self.inverse.nrows();
         let working = blocks.iter().fold(DMatrix::zeros(p, p), |sum, b| {

@@ -105,9 +105,6 @@ impl ModelUncertainty {
     }
 
     /// Reads what was saved.
-    ///
-    /// # Errors
-    /// [`Error::Input`] with line and column for text that is not such a file.
     pub(crate) fn from_json(text: &str) -> Result<Self> {
         serde_json::from_str(text).map_err(|e| {
             Error::input(
@@ -119,9 +116,6 @@ impl ModelUncertainty {
     }
 
     /// Indented JSON.
-    ///
-    /// # Errors
-    /// [`Error::Numerical`] when a number cannot be written.
     pub(crate) fn to_json(&self) -> Result<String> {
         let text =
             serde_json::to_string_pretty(self).map_err(|e| Error::Numerical(e.to_string()))?;

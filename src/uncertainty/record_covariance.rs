@@ -29,7 +29,8 @@ const STRETCHES: usize = 4;
 /// records with the same options, from one more pass over them.
 ///
 /// # Errors
-/// [`Error::Numerical`] when there are too few segments to judge the scatter; those of reading.
+/// [`Error::Input`] naming a record that cannot be read; [`Error::Numerical`] when there are too few segments to judge
+/// the scatter.
 pub fn record_uncertainty(
     records: &[&dyn RecordSource],
     fit: &TimeFit,
@@ -196,9 +197,6 @@ impl Entries {
 
 /// Covariance of the coefficients of the discrete model that [`crate::identification::fit_discrete`] fitted to the same
 /// records with the same options, from one more pass over them.
-///
-/// # Errors
-/// As [`record_uncertainty`].
 pub(crate) fn discrete_uncertainty(
     records: &[&dyn RecordSource],
     fit: &DiscreteFit,

@@ -138,9 +138,6 @@ fn shared_range(blocks: &[Block], groups: &[usize]) -> Option<(f64, f64)> {
 /// The random effects of mean speeds; `None` for tests at one speed.
 ///
 /// `own` lists the coefficients of every transfer function, row by row; `at` are points over all tested `K`.
-///
-/// # Errors
-/// Speeds whose residuals cannot be judged.
 pub(super) fn between_speeds(
     design: &Design,
     dofs: &[Dof],

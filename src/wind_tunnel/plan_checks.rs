@@ -13,9 +13,6 @@ const MOST_TESTS: usize = 1000;
 
 impl TunnelPlan {
     /// Checks that the plan can be carried out.
-    ///
-    /// # Errors
-    /// [`Error::Input`] naming the key.
     pub(crate) fn validate(&self) -> Result<()> {
         for (key, list) in [
             ("frequencies_hz", &self.frequencies_hz),

@@ -6,7 +6,7 @@
 
 use super::record_format::{RecordColumns, read_head, text, write_head};
 use super::records::{Record, RecordBlock, RecordHeader, RecordSource};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, counted};
 use std::fmt::Write as _;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Seek, SeekFrom, Write};
@@ -95,7 +95,7 @@ pub fn read_record(path: impl AsRef<Path>) -> Result<Record> {
 /// Writes a record; [`read_record`] gives the same numbers back, bit for bit.
 ///
 /// # Errors
-/// Those of reading `record`; [`Error::Io`] naming the record when `out` fails.
+/// [`Error::Input`] naming a record that cannot be read; [`Error::Io`] naming the record when `out` fails.
 pub fn write_record(record: &dyn RecordSource, out: &mut dyn Write) -> Result<()> {
     let header = record.header();
     let io = |e| Error::io(&header.name, e);
@@ -227,7 +227,7 @@ impl<'a> Rows<'a> {
     fn unequal(&self, line: &str) -> Error {
         Error::input(
             format!("line {}", self.line),
-            format!("{} columns", self.columns.channels.len()),
+            counted(self.columns.channels.len(), "column"),
             line.split(',').count().to_string(),
         )
     }

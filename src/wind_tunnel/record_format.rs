@@ -104,9 +104,6 @@ fn column_names(dofs: &[Dof]) -> Vec<&'static str> {
 }
 
 /// Reads everything above the samples.
-///
-/// # Errors
-/// [`Error::Input`] with the line that is wrong; [`Error::Io`].
 pub(super) fn read_head(
     path: &Path,
     reader: &mut dyn BufRead,

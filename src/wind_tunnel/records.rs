@@ -72,9 +72,6 @@ pub struct Record {
 
 impl Record {
     /// All of a source, in memory.
-    ///
-    /// # Errors
-    /// What the source cannot give.
     pub(crate) fn whole(source: &dyn RecordSource) -> Result<Self> {
         let header = source.header().clone();
         let mut motion = vec![Vec::new(); header.dofs.len()];

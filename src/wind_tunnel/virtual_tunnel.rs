@@ -128,7 +128,7 @@ impl TunnelPlan {
     /// One record a motion and speed of the plan, forces from the transfer matrix of `model` for a deck of `width_m`.
     ///
     /// # Errors
-    /// [`crate::Error::Input`] for an impossible plan or width; those of the model, which is asked at every `K` from zero to
+    /// [`crate::Error::Input`] for an impossible plan or width, and a model that says nothing at a `K` from zero to
     /// that of half the sampling frequency.
     pub(crate) fn records_from_model(
         &self,

@@ -1,4 +1,4 @@
-//! Keeps the design true of the tree: direction of imports, no new circles between files, `unsafe` in three places, no
+//! Keeps the design true of the tree: direction of imports, no circles between files, `unsafe` in three places, no
 //! abrupt ends, no printing, short files. The table is in `rules.rs`.
 
 mod circles;
@@ -12,24 +12,6 @@ use std::path::{Path, PathBuf};
 
 /// Files longer than [`LINES_AT_MOST`], each with its reason. Empty, and meant to stay so.
 const LONG_FILES: &[(&str, &str)] = &[];
-
-/// Files with which the circles start that are still there, in order of their paths; meant to become empty.
-const CIRCLES: &[&str] = &[
-    "src/cli/account.rs",
-    "src/files/coefficients/embedded.rs",
-    "src/files/lab/columns.rs",
-    "src/fmu/importer/checks/mod.rs",
-    "src/fmu/importer/log.rs",
-    "src/fmu/importer/mod.rs",
-    "src/fmu/instance.rs",
-    "src/fmu/variables.rs",
-    "src/reference/user_case.rs",
-    "src/report/legend.rs",
-    "src/response.rs",
-    "src/study/bridge/answers.rs",
-    "src/study/routes.rs",
-    "src/wind_tunnel/campaign/channel_map.rs",
-];
 
 /// Rust files below `directory` as (path relative to the package with `/`, text), in order.
 fn rust_files(directory: &str) -> Vec<(String, String)> {
@@ -91,16 +73,9 @@ fn the_tree_keeps_the_rules() {
     let mut found: Vec<String> = own()
         .flat_map(|(path, source)| breaches(path, source))
         .collect();
-    let circles = circles::circles(own().map(|(path, source)| (path.as_str(), source)));
-    let is_known = |circle: &&String| CIRCLES.iter().any(|start| circle.starts_with(start));
-    found.extend(circles.iter().filter(|c| !is_known(c)).cloned());
-    let is_gone = |start: &&&str| !circles.iter().any(|c| c.starts_with(**start));
-    found.extend(
-        CIRCLES
-            .iter()
-            .filter(is_gone)
-            .map(|c| format!("{c}: no circle any more")),
-    );
+    found.extend(circles::circles(
+        own().map(|(path, source)| (path.as_str(), source)),
+    ));
     report(&found);
 }
 

@@ -239,7 +239,9 @@ fn permits(own: &Row, theirs: &Row, path: &str) -> bool {
             return path.starts_with(start);
         }
         let Some(module) = entry.strip_suffix('+') else {
-            return *entry == theirs.module || *entry == path;
+            let inside = path.strip_prefix(entry);
+            let inside = inside.is_some_and(|rest| rest.is_empty() || rest.starts_with("::"));
+            return *entry == theirs.module || inside && entry.contains("::");
         };
         let row = ARROWS.iter().find(|row| row.module == module);
         module == theirs.module || row.is_some_and(|row| permits(row, theirs, path))

@@ -1,6 +1,7 @@
 //! A source file as tokens: comments and test code left out, use trees spread out, paths to our modules found.
 
 use proc_macro2::{Delimiter, Spacing, TokenStream, TokenTree};
+use std::collections::BTreeMap;
 
 /// A source file.
 #[derive(Default)]
@@ -151,7 +152,7 @@ impl Source {
         .collect()
     }
 
-    /// Every path that starts with `crate`, `aerodeck`, `super`, `self` or a module declared here.
+    /// Every path that starts with `crate`, `aerodeck`, `super`, `self`, a module declared here or an imported name.
     pub fn mentions(&self, module: &[String]) -> Vec<Mention> {
         self.sections
             .iter()
@@ -166,6 +167,41 @@ impl Section {
     }
 
     fn mentions(&self, module: &[String], children: &[String]) -> Vec<Mention> {
+        let mut found = self.paths(module, children);
+        found.extend(self.through_imports(&found));
+        found
+    }
+
+    /// Paths that start with an imported name: `use super::roots;`, then `roots::bisect(…)`.
+    fn through_imports(&self, imports: &[Mention]) -> Vec<Mention> {
+        let imports: BTreeMap<&str, &Mention> = imports
+            .iter()
+            .filter_map(|import| Some((import.name.as_deref()?, import)))
+            .collect();
+        let mut found = Vec::new();
+        let mut in_use = false;
+        for at in 0..self.tokens.len() {
+            in_use = self.text(at) == "use" || in_use && self.text(at) != ";";
+            let starts = self.text(at + 1) == "::" && !self.continues(at);
+            let import = imports.get(self.text(at)).filter(|_| starts && !in_use);
+            let Some(import) = import else { continue };
+            let from = found.len();
+            self.spread(at + 2, import.path.clone(), &mut found);
+            for mention in &mut found[from..] {
+                mention.line = self.tokens[at].line;
+                mention.name = None;
+            }
+        }
+        found
+    }
+
+    /// Whether a path or a call goes on at this token.
+    fn continues(&self, at: usize) -> bool {
+        at > 0 && matches!(self.text(at - 1), "::" | ".")
+    }
+
+    /// Paths that start with `crate`, `aerodeck`, `super`, `self` or a module declared here.
+    fn paths(&self, module: &[String], children: &[String]) -> Vec<Mention> {
         let mut found = Vec::new();
         let mut of_use = None;
         for at in 0..self.tokens.len() {
@@ -174,7 +210,7 @@ impl Section {
                 ";" => of_use = None,
                 _ => {}
             }
-            if self.text(at + 1) != "::" || at > 0 && matches!(self.text(at - 1), "::" | ".") {
+            if self.text(at + 1) != "::" || self.continues(at) {
                 continue;
             }
             let mut base = [module, &self.inside].concat();

@@ -47,7 +47,6 @@ pub fn export(folder: &Path, runtimes: &[Runtime]) {
         growing: Growing::Refuse,
         force: Some(options),
         gusts: None,
-        onset_interval: None,
         bounds: None,
         listing: Listing::All,
         label: Label::default(),

@@ -49,9 +49,6 @@ pub struct LaguerreModel {
 
 impl LaguerreModel {
     /// Checks that shapes agree.
-    ///
-    /// # Errors
-    /// [`Error::Input`] naming the field that does not fit.
     pub(crate) fn validate(&self) -> Result<()> {
         let n = self.dofs.len();
         let finite = |m: &DMatrix<f64>| m.iter().all(|x| x.is_finite());

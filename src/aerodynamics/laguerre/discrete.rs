@@ -143,9 +143,6 @@ impl DiscreteLaguerre {
     }
 
     /// Checks ranges and shapes.
-    ///
-    /// # Errors
-    /// [`Error::Input`] naming the field that does not fit.
     pub(crate) fn validate(&self) -> Result<()> {
         let place = |field: &str| format!("discrete Laguerre model: {field}");
         positive(&place("delta_s"), self.delta_s)?;

@@ -90,9 +90,6 @@ pub(crate) struct RowProblem {
 
 impl StaticCoefficients {
     /// A table after checking it: at least four rows, finite numbers, angles that rise strictly and lie within ±180°.
-    ///
-    /// # Errors
-    /// [`Error::Input`] naming the row, from 1.
     pub(crate) fn new(
         name: impl Into<String>,
         header: CoefficientsHeader,
@@ -144,9 +141,6 @@ impl StaticCoefficients {
     }
 
     /// Coefficients and slopes at an angle of attack (rad).
-    ///
-    /// # Errors
-    /// [`Error::Input`] naming the angle when it lies outside the table.
     pub(crate) fn at(&self, angle_rad: f64) -> Result<CoefficientsAt> {
         let (low, high) = self.range_rad();
         if !(low - ROUNDING_RAD..=high + ROUNDING_RAD).contains(&angle_rad) {

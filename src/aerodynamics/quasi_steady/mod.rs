@@ -4,95 +4,17 @@
 //! The flow that a force component sees is that at a reference point at the distance `B₁` upwind of the axis; with
 //! `B₁ᵢ` of its own for each component the theory is the corrected quasi-steady one.
 
+mod arms;
 pub(crate) mod coefficients;
 mod linear;
 
+pub use arms::Arms;
 pub use coefficients::{CoefficientRow, CoefficientsAt, CoefficientsHeader, StaticCoefficients};
 pub(crate) use coefficients::{TABLE_SIGN_CONVENTION, TABLE_UNITS};
 pub(crate) use linear::LinearQuasiSteady;
 
-use crate::aerodynamics::Transfer;
-use crate::error::{Error, Result, finite};
+use crate::error::{Error, Result};
 use crate::section::Dof;
-use crate::units::ReducedFrequency;
-use serde::{Deserialize, Serialize};
-
-/// An entry of `G` below this part of the largest in its row gives no arm: it is noise.
-const SMALLEST_DIVISOR: f64 = 1e-6;
-
-/// `B₁ᵢ/B` of each force component: the reference point stands this part of the width upwind of the axis (downwind when
-/// negative). All zero: quasi-steady theory without correction.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct Arms {
-    /// `B₁x/B`, of the drag.
-    pub lateral: f64,
-    /// `B₁y/B`, of the lift.
-    pub vertical: f64,
-    /// `B₁θ/B`, of the moment.
-    pub torsion: f64,
-}
-
-impl Arms {
-    /// The arm of one force component.
-    pub(crate) fn of(&self, dof: Dof) -> f64 {
-        match dof {
-            Dof::Vertical => self.vertical,
-            Dof::Lateral => self.lateral,
-            Dof::Torsion => self.torsion,
-        }
-    }
-
-    /// Checks that all are finite.
-    ///
-    /// # Errors
-    /// [`Error::Input`] naming the arm.
-    pub(crate) fn validate(&self) -> Result<()> {
-        for dof in Dof::THREE {
-            finite(&format!("arms.{}", dof.name()), self.of(dof))?;
-        }
-        Ok(())
-    }
-
-    /// Arms from a model with derivatives, `B₁x = B P₂*/P₅*`, `B₁y = B H₂*/H₁*`, `B₁θ = B A₂*/A₁*` (1.18), at a reduced
-    /// frequency low enough for quasi-steady flow; each is a ratio of imaginary parts of `G`. A model without the
-    /// lateral degree of freedom gives a lateral arm of zero.
-    ///
-    /// # Errors
-    /// Those of the model at `k`; [`Error::Numerical`] when a force does not depend on the vertical velocity.
-    pub(crate) fn from_model(model: &dyn Transfer, k: ReducedFrequency) -> Result<Self> {
-        let g = model.transfer(k)?;
-        let place = |dof: Dof| model.dofs().iter().position(|d| *d == dof);
-        let (Some(y), Some(theta)) = (place(Dof::Vertical), place(Dof::Torsion)) else {
-            return Err(Error::input(
-                "arms of quasi-steady theory",
-                "a model with the vertical and the torsional degree of freedom",
-                Dof::names(model.dofs()),
-            ));
-        };
-        let arm = |dof: Dof| -> Result<f64> {
-            let Some(row) = place(dof) else {
-                return Ok(0.0);
-            };
-            let (by_heave, by_rotation) = (g[(row, y)].im, g[(row, theta)].im);
-            let largest = g.row(row).iter().map(|z| z.norm()).fold(0.0, f64::max);
-            if by_heave.abs() <= SMALLEST_DIVISOR * largest {
-                return Err(Error::Numerical(format!(
-                    "arms of quasi-steady theory: the force of the {} degree of freedom does not depend on the vertical \
-                     velocity at K = {}",
-                    dof.name(),
-                    k.full_width()
-                )));
-            }
-            Ok(by_rotation / by_heave)
-        };
-        Ok(Self {
-            lateral: arm(Dof::Lateral)?,
-            vertical: arm(Dof::Vertical)?,
-            torsion: arm(Dof::Torsion)?,
-        })
-    }
-}
 
 /// Quasi-steady theory of one deck.
 ///
@@ -120,6 +42,13 @@ pub(crate) struct RelativeWind {
     pub vertical_m_s: f64,
     /// `B θ̇`, m/s.
     pub rotation_m_s: f64,
+}
+
+/// Static coefficients in the order of the degrees of freedom, n each.
+pub(crate) struct StaticForces {
+    pub values: Vec<f64>,
+    /// Per rad.
+    pub slopes: Vec<f64>,
 }
 
 impl QuasiSteady {
@@ -154,9 +83,6 @@ impl QuasiSteady {
     }
 
     /// Forces `F/(½ρB)` and `M/(½ρB²)` (m²/s²) into the first n places, at the rotation `θ` (rad).
-    ///
-    /// # Errors
-    /// [`Error::Input`] naming the angle of attack when it lies outside the table.
     pub(crate) fn specific_forces(
         &self,
         rotation_rad: f64,
@@ -178,20 +104,14 @@ impl QuasiSteady {
         Ok(forces)
     }
 
-    /// Static coefficients of the force components at a rotation in smooth wind, and their slopes per rad (1.9): in
-    /// the order of the degrees of freedom, n each.
-    ///
-    /// # Errors
-    /// [`Error::Input`] naming the angle when it lies outside the table.
-    pub(crate) fn static_forces(&self, rotation_rad: f64) -> Result<(Vec<f64>, Vec<f64>)> {
+    /// Static coefficients of the force components at a rotation in smooth wind (1.9).
+    pub(crate) fn static_forces(&self, rotation_rad: f64) -> Result<StaticForces> {
         let c = self.coefficients.at(rotation_rad)?;
-        Ok(self.dofs.iter().map(|dof| c.of(*dof)).unzip())
+        let (values, slopes) = self.dofs.iter().map(|dof| c.of(*dof)).unzip();
+        Ok(StaticForces { values, slopes })
     }
 
     /// The linear theory about the rotation `θ₀` (rad) in smooth wind (1.11)–(1.13).
-    ///
-    /// # Errors
-    /// [`Error::Input`] naming the angle when it lies outside the table.
     pub(crate) fn linearised(&self, rotation_rad: f64) -> Result<LinearQuasiSteady> {
         let at = self.coefficients.at(rotation_rad)?;
         Ok(LinearQuasiSteady::new(
@@ -207,6 +127,7 @@ impl QuasiSteady {
 mod tests {
     use super::*;
     use crate::aerodynamics::RationalModel;
+    use crate::units::ReducedFrequency;
     use std::f64::consts::PI;
 
     #[test]

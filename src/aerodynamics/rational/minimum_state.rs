@@ -42,9 +42,6 @@ pub struct MinimumStateModel {
 
 impl MinimumStateModel {
     /// Checks that shapes agree and lags are positive.
-    ///
-    /// # Errors
-    /// [`Error::Input`] naming the field that does not fit.
     pub(crate) fn validate(&self) -> Result<()> {
         const PLACE: &str = "minimum-state model";
         let (n, m) = (self.dofs.len(), self.lags.len());

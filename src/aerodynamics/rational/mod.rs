@@ -42,9 +42,6 @@ impl Lags {
     }
 
     /// Checks that there is a list for each of `n` forces, and that lags are positive.
-    ///
-    /// # Errors
-    /// [`Error::Input`] saying what does not fit.
     pub(crate) fn validate(&self, n: usize) -> Result<()> {
         const PLACE: &str = "rational model: lags";
         let lists = match self {
@@ -112,9 +109,6 @@ fn check_square(place: &str, n: usize, terms: &[&DMatrix<f64>]) -> Result<()> {
 
 impl RationalModel {
     /// Checks that shapes agree and lags are positive.
-    ///
-    /// # Errors
-    /// [`Error::Input`] naming the field that does not fit.
     pub(crate) fn validate(&self) -> Result<()> {
         let n = self.dofs.len();
         let mut terms = vec![&self.a1, &self.a2, &self.a3];

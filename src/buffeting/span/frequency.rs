@@ -48,8 +48,8 @@ impl SpanResponse {
 /// Root mean squares of the displacements of `nodes` about their mean.
 ///
 /// # Errors
-/// [`Error::Input`] for parts that do not fit together; [`Error::Unstable`] when the bridge is unstable at this speed; those of
-/// the forces.
+/// [`Error::Input`] for parts that do not fit together and forces that say nothing at a `K`; [`Error::Unstable`] when the
+/// bridge is unstable at this speed.
 pub fn span_response(
     problem: &SpanProblem<'_>,
     nodes: &[usize],
@@ -111,7 +111,8 @@ pub struct SpanSpectra {
 /// Spectra of the displacements of `nodes`, from a hundredth of the slowest resonance to four times the highest frequency.
 ///
 /// # Errors
-/// As [`span_response`].
+/// [`Error::Input`] for parts that do not fit together and forces that say nothing at a `K`; [`Error::Unstable`] when the
+/// bridge is unstable at this speed.
 pub fn span_spectra(
     problem: &SpanProblem<'_>,
     nodes: &[usize],

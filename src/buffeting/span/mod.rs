@@ -17,7 +17,7 @@ use super::problem::Turbulence;
 use super::spectrum::GustComponent;
 use crate::aeroelastic::CoupledSection;
 use crate::bridge::{Bridge, motion_index};
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result, counted, positive};
 use crate::section::Dof;
 use crate::units::ReducedFrequency;
 use nalgebra::{Complex, DMatrix};
@@ -109,7 +109,7 @@ impl SpanProblem<'_> {
         if found == groups {
             return Ok(());
         }
-        let expected = format!("gust forces of {groups} groups");
+        let expected = format!("gust forces of {}", counted(groups, "group"));
         Err(Error::input("buffeting", expected, found.to_string()))
     }
 

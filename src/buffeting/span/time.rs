@@ -3,7 +3,7 @@
 use super::{SpanProblem, TurbulenceField, turbulence_field};
 use crate::aeroelastic::CoupledSection;
 use crate::buffeting::spectrum::GustComponent;
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result, counted, positive};
 use crate::response::{Inputs, SectionState, Stepper};
 use nalgebra::{Complex, DMatrix, DVector, Dyn, LU};
 use rustfft::FftPlanner;
@@ -162,9 +162,6 @@ pub fn span_ensemble(
 }
 
 /// Forces on the mass-normalised modes by a field, one row a mode; the admittance is exact at every frequency of the record.
-///
-/// # Errors
-/// [`Error::Input`] for a field of other nodes.
 pub(crate) fn modal_forces(
     problem: &SpanProblem<'_>,
     field: &TurbulenceField,
@@ -174,11 +171,14 @@ pub(crate) fn modal_forces(
     let fits =
         |rows: &Vec<Vec<f64>>| rows.len() == nodes && rows.iter().all(|r| r.len() == samples);
     if samples < 2 || !field.gusts.iter().all(fits) {
-        let expected = format!("gusts at {nodes} nodes, as many samples at each");
+        let expected = format!(
+            "gusts at {}, as many samples at each",
+            counted(nodes, "node")
+        );
         return Err(Error::input(
             "turbulence field",
             expected,
-            format!("{} nodes", field.gusts[0].len()),
+            counted(field.gusts[0].len(), "node"),
         ));
     }
     let mut planner = FftPlanner::new();

@@ -1,5 +1,6 @@
 //! The onset card of a bridge, in words.
 
+use crate::error::counted;
 use crate::flutter::{FlutterSearch, OnsetInterval};
 use crate::study::bridge::{BridgeAnswer, BridgeFlutter, BridgeStudy};
 use std::fmt::Write as _;
@@ -11,11 +12,11 @@ const NAMED_SHARE: f64 = 1e-3;
 pub(crate) fn card(study: &BridgeStudy, results: &BridgeFlutter) -> String {
     let bridge = &study.by_model;
     let mut text = format!(
-        "{}: {} nodes, {} modes, {} groups of strips; K refers to B = {} m\n",
+        "{}: {}, {}, {} of strips; K refers to B = {} m\n",
         study.file.name,
-        bridge.nodes.len(),
-        bridge.modes.len(),
-        bridge.groups.len(),
+        counted(bridge.nodes.len(), "node"),
+        counted(bridge.modes.len(), "mode"),
+        counted(bridge.groups.len(), "group"),
         bridge.width_m()
     );
     for answer in &results.answers {

@@ -3,9 +3,9 @@
 use super::super::answer::Answer;
 use super::super::output::list;
 use super::super::progress::Progress;
-use super::BridgeArgs;
+use super::args::BridgeArgs;
 use crate::buffeting::TurbulenceField;
-use crate::error::Result;
+use crate::error::{Result, counted};
 use crate::files::bridge::read_field;
 use crate::study::bridge::{BridgeBuffeting, BridgeStudy, BuffetingBlock};
 use std::fmt::Write as _;
@@ -103,8 +103,8 @@ const MOTIONS: [&str; 3] = ["vertical m", "lateral m", "rotation rad"];
 fn table(results: &BridgeBuffeting) -> String {
     let time = &results.time;
     let mut text = format!(
-        "{} records of {} s, every {} s, seed {}\n{:<8} {:<14} {:>12} {:>12} {:>11} {:>11} {:>8} {:>8}\n",
-        time.plan.records,
+        "{} of {} s, every {} s, seed {}\n{:<8} {:<14} {:>12} {:>12} {:>11} {:>11} {:>8} {:>8}\n",
+        counted(time.plan.records, "record"),
         time.plan.duration_s,
         time.plan.step_s,
         time.plan.seed,

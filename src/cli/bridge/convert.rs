@@ -2,7 +2,7 @@
 
 use super::super::answer::Answer;
 use super::super::common::warn;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, counted};
 use crate::files::bridge::{BridgeFile, write_modes};
 use std::path::PathBuf;
 
@@ -45,7 +45,12 @@ pub fn run(args: &Args) -> Result<Answer> {
         .and_then(|()| std::fs::write(&args.output, &bytes))
         .map_err(|e| Error::io(&args.output, e))?;
     let (nodes, count) = (modes.nodes.len(), modes.modes.len());
-    let text = format!("{}: {nodes} nodes, {count} modes\n", args.output.display());
+    let text = format!(
+        "{}: {}, {}\n",
+        args.output.display(),
+        counted(nodes, "node"),
+        counted(count, "mode")
+    );
     Answer::new(
         text,
         &serde_json::json!({ "file": args.output, "nodes": nodes, "modes": count }),

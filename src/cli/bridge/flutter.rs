@@ -6,23 +6,17 @@ use super::super::figures;
 use super::super::output::{OutputDir, list};
 use super::super::progress::Progress;
 use super::super::report::{SUMMARY, is_of_a_study};
-use super::{BridgeArgs, account, summary};
+use super::args::BridgeArgs;
+use super::files::{CURVES, FLUTTER_FIGURE, MOTION_FIGURE, shown_modes};
+use super::{account, summary};
 use crate::error::Result;
-use crate::flutter::{BridgeMotion, ModeShare};
+use crate::flutter::BridgeMotion;
 use crate::report::{bridge_curves_figure, flutter_motion_figure};
 use crate::study::bridge::{
     BridgeFlutter, BridgeStudy, DerivativeScatter, Scatter, ScatteredOnset, bridge_flutter,
 };
 use std::fmt::Write as _;
 
-/// Stem of the figure of frequencies and damping ratios.
-pub(crate) const FLUTTER_FIGURE: &str = "bridge_flutter";
-/// Stem of the figure of the motion at the onset.
-pub(crate) const MOTION_FIGURE: &str = "flutter_motion";
-/// Frequencies and damping ratios as numbers.
-pub(crate) const CURVES: &str = "bridge_curves.csv";
-/// Modes that are drawn in colour.
-const SHOWN: usize = 6;
 /// Phases of an animation over one period.
 const PHASES: usize = 24;
 
@@ -188,19 +182,6 @@ pub(crate) fn staged(
         out.write("flutter_animation.csv", animation_csv(motion))?;
     }
     Ok(())
-}
-
-/// The branches of the modes with the largest shares of the energy, the one that flutters among them.
-pub(crate) fn shown_modes(shares: &[ModeShare], fluttering: Option<&str>) -> Vec<String> {
-    let named = |m: &ModeShare| format!("mode {}", m.mode);
-    let mut shown: Vec<String> = shares.iter().take(SHOWN).map(named).collect();
-    if let (Some(last), Some(branch)) = (shown.last().cloned(), fluttering)
-        && !shown.iter().any(|s| s == branch)
-    {
-        shown.retain(|s| *s != last);
-        shown.push(branch.to_owned());
-    }
-    shown
 }
 
 fn motion_csv(motion: &BridgeMotion) -> String {

@@ -4,8 +4,8 @@ use super::super::answer::Answer;
 use super::super::figures;
 use super::super::output::list;
 use super::super::progress::Progress;
-use super::BridgeArgs;
-use crate::error::Result;
+use super::args::BridgeArgs;
+use crate::error::{Result, counted};
 use crate::report::modes_figure;
 use crate::section::Dof;
 use std::fmt::Write as _;
@@ -36,11 +36,11 @@ pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     let written = out.commit()?;
     let length: f64 = bridge.nodes.iter().map(|n| n.length_m).sum();
     let mut text = format!(
-        "{}: {} nodes over {length:.1} m, {} modes, {} groups of strips\n\n{:>5} {:>10} {:>14} {:>8}  main motion\n",
+        "{}: {} over {length:.1} m, {}, {} of strips\n\n{:>5} {:>10} {:>14} {:>8}  main motion\n",
         study.file.name,
-        bridge.nodes.len(),
-        bridge.modes.len(),
-        bridge.groups.len(),
+        counted(bridge.nodes.len(), "node"),
+        counted(bridge.modes.len(), "mode"),
+        counted(bridge.groups.len(), "group"),
         "mode",
         "f Hz",
         "mass kg",

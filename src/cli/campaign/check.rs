@@ -3,7 +3,7 @@
 use crate::cli::account::to_tenths_of_mm;
 use crate::cli::answer::Answer;
 use crate::cli::progress::Progress;
-use crate::error::Result;
+use crate::error::{Result, counted};
 use crate::wind_tunnel::campaign::{Campaign, CampaignReading, RecordingSummary};
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -66,7 +66,7 @@ fn account(reading: &CampaignReading) -> String {
     match reading.findings.len() {
         0 => text.push_str("nothing odd found\n"),
         n => {
-            let _ = writeln!(text, "{n} findings:");
+            let _ = writeln!(text, "{}:", counted(n, "finding"));
             for finding in &reading.findings {
                 let _ = writeln!(text, "  {finding}");
             }

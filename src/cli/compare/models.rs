@@ -7,8 +7,10 @@ use crate::cli::answer::Answer;
 use crate::cli::figures;
 use crate::cli::output::OutputDir;
 use crate::cli::progress::Progress;
-use crate::comparison::forces::{History, ModelsComparison, compare_models, inside, score_table};
-use crate::error::Result;
+use crate::comparison::forces::{
+    History, Inside, ModelsComparison, compare_models, inside, score_table,
+};
+use crate::error::{Result, counted};
 use crate::report::{
     DerivativePlot, DerivativesPlot, Figure, PageSection, PlottedSeries, TimePanel, TransferCurve,
     TransferPlot, derivatives_figure, time_history_figure, transfer_figure,
@@ -197,10 +199,10 @@ fn account(results: &ModelsComparison) -> String {
         let poles: Vec<String> = model.poles.iter().map(|p| format!("{p:.3}")).collect();
         let _ = writeln!(
             text,
-            "{}: {}; {} coefficients a transfer function{}",
+            "{}: {}; {} a transfer function{}",
             model.name,
             model.method,
-            model.coefficients,
+            counted(model.coefficients, "coefficient"),
             if poles.is_empty() {
                 String::new()
             } else {
@@ -237,7 +239,7 @@ fn transfer_table(results: &ModelsComparison) -> String {
     for entry in &results.entries {
         for model in &entry.models {
             for (point, off) in entry.points.iter().zip(&model.points) {
-                let (magnitude, phase) = inside(off);
+                let Inside { magnitude, phase } = inside(off);
                 let _ = writeln!(
                     text,
                     "{},{},{:.4},{:.5},{:.6},{:.3},\"{}\",{:.3},{:.3},{magnitude},{phase}",

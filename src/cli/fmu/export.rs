@@ -7,7 +7,7 @@ use crate::cli::bridge::BRIDGE_FMU;
 use crate::cli::common::warn;
 use crate::cli::progress::Progress;
 use crate::cli::stages;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, counted};
 use crate::files::bridge::{BridgeFile, read_field};
 use crate::files::coefficients::gust_force;
 use crate::fmu::force_options::{ForceOptions, MAX_STRIPS};
@@ -225,10 +225,11 @@ impl Args {
             .map(|n| export.bridge.node_name(n))
             .collect();
         let text = format!(
-            "wrote {}: {} with {} modes; inputs and outputs at the nodes {}\n",
+            "wrote {}: {} with {}; inputs and outputs at the {} {}\n",
             path.display(),
             export.bridge.name,
-            export.bridge.modes.len(),
+            counted(export.bridge.modes.len(), "mode"),
+            if named.len() == 1 { "node" } else { "nodes" },
             named.join(", ")
         );
         let json =

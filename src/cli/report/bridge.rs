@@ -1,7 +1,9 @@
 //! The page of a whole bridge, from the folder that `bridge flutter` or `demo --bridge` left.
 
+use super::curves::curves_of;
+use super::folder::{SUMMARY, digest, parsed};
+use super::parts::{capital, card, known, of_svg, round, row};
 use super::view::{AnswerView, OnsetView};
-use super::{SUMMARY, capital, card, curves::curves_of, digest, known, of_svg, parsed, row};
 use crate::cli::bridge::{BRIDGE_FMU, CURVES, FLUTTER_FIGURE, MOTION_FIGURE, shown_modes};
 use crate::error::Result;
 use crate::files::bridge::{BridgeFile, DampingRatios};
@@ -191,7 +193,7 @@ fn chosen(curves: Vec<PageCurve>, shown: &[String]) -> Vec<PageCurve> {
 fn asked(facts: &BridgeFacts, file: &BridgeFile) -> Vec<(String, String)> {
     let damping = match &file.modes.damping_ratio {
         DampingRatios::Same(ratio) => {
-            format!("damping ratio {} % each", super::round(100.0 * ratio))
+            format!("damping ratio {} % each", round(100.0 * ratio))
         }
         DampingRatios::Each(_) => "damping ratios of their own".to_owned(),
     };

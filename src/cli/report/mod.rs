@@ -2,10 +2,13 @@
 
 mod bridge;
 mod curves;
+mod folder;
 mod live;
+mod parts;
 mod view;
 
 pub(crate) use bridge::{BridgeFacts, ModeFacts, SectionFacts};
+pub(super) use folder::{REPORT, SUMMARY, is_of_a_study};
 pub(crate) use view::AnswerView;
 
 use super::answer::Answer;
@@ -14,21 +17,15 @@ use super::measured_forces::FORCES;
 use super::output::{OutputDir, list};
 use super::stages::{FIGURE, FMU_FILE, MODEL_FILE};
 use crate::error::{Error, Result};
-use crate::flutter::OnsetInterval;
 use crate::fmu::resources::{OptionFiles, Resources};
 use crate::fmu::standard::Causality;
 use crate::report::{PageFigure, PageFit, StudyPage, study_page};
 use crate::study::Study;
 use curves::curves_of;
-use serde::Deserialize;
-use serde::de::DeserializeOwned;
+use folder::{Kind, digest, parsed};
+use parts::{capital, card, known, of_svg, round, row};
 use std::path::{Path, PathBuf};
-use view::{EntryView, FitView, OnsetView, SummaryView};
-
-/// The page.
-pub(super) const REPORT: &str = "report.html";
-/// What the page is made from.
-pub(super) const SUMMARY: &str = "summary.json";
+use view::{EntryView, FitView, SummaryView};
 
 /// Write report.html, one self-contained page, from a folder of results of `study`, `demo` or `bridge flutter`
 ///
@@ -91,31 +88,6 @@ pub(super) fn page(folder: &Path, study_folder: &Path) -> Result<String> {
     study_page(&page)
 }
 
-/// Whether a study, and no bridge, has left its summary at `path`.
-pub(super) fn is_of_a_study(path: &Path) -> bool {
-    let text = std::fs::read_to_string(path).ok();
-    let kind = text.and_then(|text| serde_json::from_str::<Kind>(&text).ok());
-    kind.is_some_and(|kind| kind.bridge.is_none())
-}
-
-/// Whose summary it is.
-#[derive(Deserialize)]
-struct Kind {
-    bridge: Option<String>,
-}
-
-fn parsed<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T> {
-    serde_json::from_str(text).map_err(|e| {
-        let place = format!("line {}, column {}", e.line(), e.column());
-        let expected = "the summary of `study`, `demo` or `bridge flutter` of this version";
-        Error::input(place, expected, e.to_string()).in_file(path)
-    })
-}
-
-fn digest(bytes: &[u8]) -> String {
-    sha1_smol::Sha1::from(bytes).digest().to_string()
-}
-
 fn of_summary(summary: &SummaryView, study: &Study) -> StudyPage {
     let answer = &summary.answer;
     let own = summary
@@ -155,21 +127,6 @@ fn of_summary(summary: &SummaryView, study: &Study) -> StudyPage {
     }
 }
 
-fn capital(text: &str) -> String {
-    let mut characters = text.chars();
-    let first = characters.next().map(|c| c.to_uppercase().to_string());
-    first.unwrap_or_default() + characters.as_str()
-}
-
-fn known(interval: &OnsetInterval) -> Option<(f64, f64)> {
-    match interval {
-        OnsetInterval::Known {
-            low_m_s, high_m_s, ..
-        } => Some((*low_m_s, *high_m_s)),
-        _ => None,
-    }
-}
-
 fn criterion(answer: &AnswerView) -> Option<String> {
     let required = answer.required_speed_m_s?;
     Some(match answer.required_speed_met? {
@@ -178,69 +135,6 @@ fn criterion(answer: &AnswerView) -> Option<String> {
             format!("Required: above {required} m/s. NOT met with the lower end of the interval.")
         }
     })
-}
-
-fn card(onset: &OnsetView) -> Vec<(String, String)> {
-    let interval = match &onset.interval {
-        OnsetInterval::Known {
-            low_m_s,
-            high_m_s,
-            standard_error_m_s,
-            degrees_of_freedom,
-        } => format!(
-            "{low_m_s:.2} to {high_m_s:.2} m/s (standard error {standard_error_m_s:.2} m/s, {degrees_of_freedom:.0} degrees of freedom)"
-        ),
-        OnsetInterval::None { reason } | OnsetInterval::Undetermined { reason, .. } => {
-            reason.clone()
-        }
-        OnsetInterval::Spread {
-            low_m_s,
-            high_m_s,
-            of,
-        } => {
-            format!("{low_m_s:.2} to {high_m_s:.2} m/s: {of}")
-        }
-    };
-    [
-        ("onset speed V", format!("{:.2} m/s", onset.speed_m_s)),
-        ("95 % interval", interval),
-        ("frequency f", format!("{:.4} Hz", onset.frequency_hz)),
-        (
-            "reduced velocity V/(fB)",
-            format!("{:.3}", onset.reduced_velocity),
-        ),
-        (
-            "motion",
-            format!(
-                "{} branch; |y|/(B|θ|) {:.3}, phase of y to θ {:.1}°",
-                onset.branch, onset.mode_ratio, onset.phase_deg
-            ),
-        ),
-        ("tested range", tested(onset.in_tested_range).to_owned()),
-    ]
-    .map(|(name, value)| (name.to_owned(), value))
-    .into()
-}
-
-fn tested(inside: Option<bool>) -> &'static str {
-    match inside {
-        Some(true) => "inside",
-        Some(false) => "OUTSIDE",
-        None => "exact",
-    }
-}
-
-fn row(onset: &OnsetView) -> Vec<String> {
-    vec![
-        onset.model.clone(),
-        onset.method.name().to_owned(),
-        format!("{:.3}", onset.speed_m_s),
-        super::account::interval(&onset.interval),
-        format!("{:.4}", onset.frequency_hz),
-        format!("{:.3}", onset.reduced_velocity),
-        onset.branch.clone(),
-        tested(onset.in_tested_range).to_owned(),
-    ]
 }
 
 fn asked(summary: &SummaryView, study: &Study) -> Vec<(String, String)> {
@@ -290,11 +184,6 @@ fn asked(summary: &SummaryView, study: &Study) -> Vec<(String, String)> {
     asked.push(("models", models.join(", ")));
     let owned = |(name, value): (&str, String)| (name.to_owned(), value);
     asked.into_iter().map(owned).collect()
-}
-
-/// Without the digits that a product left behind.
-fn round(x: f64) -> f64 {
-    (1e9 * x).round() / 1e9
 }
 
 fn fit(fit: &FitView) -> PageFit {
@@ -354,16 +243,6 @@ fn figures(read: &dyn Fn(&str) -> Option<String>) -> Vec<PageFigure> {
     ];
     let drawn = |(stem, title, caption)| of_svg(&read(&format!("{stem}.svg"))?, title, caption);
     all.into_iter().filter_map(drawn).collect()
-}
-
-/// The figure in a file, without what only a file of its own needs.
-fn of_svg(text: &str, title: &'static str, caption: &'static str) -> Option<PageFigure> {
-    let svg = text[text.find("<svg")?..].to_owned();
-    Some(PageFigure {
-        title,
-        caption,
-        svg,
-    })
 }
 
 fn variables(model: &[u8]) -> Result<Vec<[String; 4]>> {

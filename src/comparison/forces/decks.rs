@@ -1,8 +1,9 @@
 //! One model on several girders (section 3.5.4 of the thesis).
 
+use super::options::{CompareOptions, OnRecords};
 use super::score::{Score, ScoreSummary, Trial, run_all, summaries};
 use super::statements::{Statement, on_decks};
-use super::{CompareOptions, OnRecords, TestedDeck};
+use super::tested_deck::TestedDeck;
 use crate::error::{Error, Result};
 use crate::identification::{FitReport, fit_discrete};
 use crate::trained_model::Model;
@@ -43,9 +44,6 @@ pub(crate) struct DecksComparison {
 
 /// Trains the discrete Laguerre model on the records of one speed, predicts the forces of every record of every deck, and
 /// compares them frequency by frequency. `progress` hears how many of how many records are done.
-///
-/// # Errors
-/// [`Error::Input`] for unknown decks and impossible options; those of fits and metrics.
 pub(crate) fn compare_decks(
     options: &CompareOptions,
     progress: OnRecords<'_>,
@@ -92,8 +90,8 @@ pub(crate) fn compare_decks(
 /// A model and where it comes from.
 #[derive(Clone)]
 struct Trained {
-    /// Deck and speed, m/s.
-    on: (String, f64),
+    deck: String,
+    speed_m_s: f64,
     model: Model,
     report: FitReport,
 }
@@ -102,14 +100,15 @@ impl Trained {
     fn new(deck: &TestedDeck, options: &CompareOptions) -> Result<Self> {
         let (model, report) = fit_discrete(&deck.training(), &options.laguerre, &|_| ())?;
         Ok(Self {
-            on: (deck.table.name.clone(), deck.training_speed_m_s()),
+            deck: deck.table.name.clone(),
+            speed_m_s: deck.training_speed_m_s(),
             model,
             report,
         })
     }
 
     fn held_out(&self, deck: &TestedDeck, record: &Record) -> bool {
-        self.on.0 != deck.table.name || self.on.1 != record.header.mean_speed_m_s
+        self.deck != deck.table.name || self.speed_m_s != record.header.mean_speed_m_s
     }
 
     fn account(self, deck: TestedDeck) -> DeckAccount {
@@ -117,7 +116,7 @@ impl Trained {
             deck: deck.table.name,
             width_m: deck.table.width_m,
             speeds_m_s: deck.speeds_m_s,
-            trained_on: self.on,
+            trained_on: (self.deck, self.speed_m_s),
             method: self.report.method,
             notes: self.report.notes,
         }

@@ -64,12 +64,17 @@ pub(crate) struct DerivativeComparison {
     pub models: Vec<(String, Vec<(f64, f64)>)>,
 }
 
-/// Whether a model is inside the bands of magnitude and phase.
-pub fn inside((percent, degrees): &(f64, f64)) -> (bool, bool) {
-    (
-        percent.abs() <= MAGNITUDE_BAND_PERCENT,
-        degrees.abs() <= PHASE_BAND_DEG,
-    )
+/// Which bands a deviation is inside.
+pub(crate) struct Inside {
+    pub magnitude: bool,
+    pub phase: bool,
+}
+
+pub(crate) fn inside((percent, degrees): &(f64, f64)) -> Inside {
+    Inside {
+        magnitude: percent.abs() <= MAGNITUDE_BAND_PERCENT,
+        phase: degrees.abs() <= PHASE_BAND_DEG,
+    }
 }
 
 impl EntryComparison {
@@ -85,10 +90,10 @@ impl EntryComparison {
         };
         format!(
             "magnitude within ±15 % at {} of {} (worst {:+.0} %), phase within ±5° at {} (worst {:+.1}°)",
-            count(|p| inside(p).0),
+            count(|p| inside(p).magnitude),
             points.len(),
             worst(|p| p.0),
-            count(|p| inside(p).1),
+            count(|p| inside(p).phase),
             worst(|p| p.1),
         )
     }

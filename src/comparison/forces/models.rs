@@ -1,12 +1,16 @@
 //! Several models on one girder, in the time and the frequency domain (sections 3.5.5 and 3.5.6 of the thesis).
 
 use super::entries::{DerivativeComparison, EntryComparison, compare_derivatives, compare_entries};
+use super::options::{CompareOptions, OnRecords};
 use super::score::{Score, ScoreSummary, Trial, run_all, summaries};
 use super::statements::{Statement, on_models};
-use super::{CompareOptions, OnRecords, TestedDeck, thesis_rational_functions};
+use super::tested_deck::TestedDeck;
 use crate::aerodynamics::Transfer;
 use crate::error::{Error, Result};
-use crate::identification::{FitReport, TimeFit, fit_discrete, fit_records, fit_table};
+use crate::identification::{
+    Constraints, FitReport, Form, FrequencyFit, FrequencyWeights, TimeFit, fit_discrete,
+    fit_records, fit_table,
+};
 use crate::section::Dof;
 use crate::wind_tunnel::Record;
 use serde::Serialize;
@@ -75,9 +79,6 @@ pub(crate) struct ModelsComparison {
 
 /// Fits the thesis's discrete Laguerre model, its rational functions and the continuous Laguerre model of this program to
 /// one deck at one speed, and compares them with what was measured. `progress` hears how many of how many records are done.
-///
-/// # Errors
-/// [`Error::Input`] for anything but one deck; those of fits and metrics.
 pub(crate) fn compare_models(
     options: &CompareOptions,
     progress: OnRecords<'_>,
@@ -159,6 +160,19 @@ fn rival(name: &str, report: &FitReport) -> Rival {
         coefficients: entry.map_or(0, |e| e.coefficients.len()),
         poles: entry.map_or_else(Vec::new, |e| e.poles.clone()),
         notes: report.notes.clone(),
+    }
+}
+
+/// The thesis's fit of rational functions: one lag, no added mass, least squares on the derivatives, the lag searched.
+fn thesis_rational_functions() -> FrequencyFit {
+    FrequencyFit {
+        form: Form::Rational {
+            lags: 1,
+            added_mass: false,
+        },
+        weights: FrequencyWeights::Derivatives,
+        constraints: Constraints::None,
+        ..FrequencyFit::default()
     }
 }
 

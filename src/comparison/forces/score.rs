@@ -1,6 +1,7 @@
 //! Models asked for the forces of records, and the metrics of these against what was measured, one set a frequency of the motion.
 
-use super::{CompareOptions, OnRecords, TestedDeck};
+use super::options::{CompareOptions, OnRecords, Scoring};
+use super::tested_deck::TestedDeck;
 use crate::comparison::{
     DensityParameters, PhaseParameters, SignalPair, WarpingParameters, WaveletParameters,
     magnitude, magnitude_warped, peak, phase, probability_density, rms, wavelet,
@@ -10,30 +11,10 @@ use crate::section::Dof;
 use crate::trained_model::Model;
 use crate::wind_tunnel::{Record, Segment, predicted_forces};
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use std::fmt::Write as _;
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
-
-/// How the metrics are taken.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub(crate) struct Scoring {
-    /// Phase lag that brings the phase metric to 1/e, degrees of the frequency of the motion.
-    pub significant_phase_deg: f64,
-    /// The metrics see at most this much of the steady motion of a frequency, s: as many whole periods as fit.
-    pub window_s: f64,
-}
-
-impl Default for Scoring {
-    /// The 5° of the thesis; 12 s hold three periods of its lowest frequency.
-    fn default() -> Self {
-        Self {
-            significant_phase_deg: 5.0,
-            window_s: 12.0,
-        }
-    }
-}
 
 /// How alike two forces are: 1 for equal ones.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]

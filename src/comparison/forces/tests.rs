@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::comparison::LagEstimate;
+use crate::section::Dof;
 use std::f64::consts::TAU;
 
 fn quick() -> CompareOptions {

@@ -1,8 +1,6 @@
-//! Turbulence along the span as a file: `time_s,u[x1],u[x2],…,w[x1],…`, m/s, the places along the girder in metres; or a
-//! binary file of TurbSim.
+//! Turbulence along the span as a file: `time_s,u[x1],u[x2],…,w[x1],…`, m/s, the places along the girder in metres.
 
 use super::table::Table;
-use super::turbsim;
 use crate::error::{Error, Result};
 use std::path::Path;
 
@@ -24,14 +22,8 @@ pub struct FieldTable {
     pub gusts: [Vec<Vec<f64>>; 2],
 }
 
-/// Reads a file.
-///
-/// # Errors
-/// [`Error::Io`] when it cannot be read; [`Error::Input`] with file and place for columns or times that are wrong.
-pub fn read_field(path: &Path) -> Result<FieldTable> {
-    if path.extension().is_some_and(|e| e == turbsim::ENDING) {
-        return turbsim::read(path);
-    }
+/// Reads a table of columns.
+pub(super) fn read(path: &Path) -> Result<FieldTable> {
     parse(&Table::read(path)?).map_err(|e| e.in_file(path))
 }
 

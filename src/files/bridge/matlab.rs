@@ -4,12 +4,24 @@
 //! Such a file knows neither the span nor the masses; both are stated beside it and the generalised masses are `m ∫φ²`.
 
 use super::modal_data::Modes;
-use super::toml_file::SpanBlock;
 use crate::bridge::{BridgeMode, Node, tributary_lengths};
 use crate::error::{Error, Result};
 use crate::files::lab::matlab_array;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 use std::path::Path;
+
+/// A single span with uniform masses.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SpanBlock {
+    /// Length, m.
+    pub span_m: f64,
+    /// Mass per length that moves with the girder, kg/m.
+    pub mass_kg_m: f64,
+    /// Mass moment of inertia per length, kg·m²/m.
+    pub inertia_kg_m2_m: f64,
+}
 
 /// Motions in the order of the rows, as places in a shape.
 const ROWS: [usize; 3] = [1, 0, 2];

@@ -19,13 +19,28 @@ mod wawi;
 mod wind_block;
 
 pub use axes::{Axes, Direction};
-pub use field::{FieldTable, read_field};
+pub use field::FieldTable;
 pub use modal_data::{Modes, RawMode};
 pub use single_file::write_modes;
 pub use toml_file::{
     BridgeFile, DampingRatios, ModesBlock, ModesFormat, SearchBlock, SectionBlock, StaticBlock,
 };
 pub use wind_block::{ProfilePoint, WindBlock};
+
+use crate::error::Result;
+use std::path::Path;
+
+/// Reads turbulence along the span: a table of columns, or a binary file of TurbSim (`.bts`).
+///
+/// # Errors
+/// [`Error::Io`](crate::Error::Io) when it cannot be read; [`Error::Input`](crate::Error::Input) with file and place for what is
+/// wrong in it.
+pub fn read_field(path: &Path) -> Result<FieldTable> {
+    match path.extension() {
+        Some(ending) if ending == turbsim::ENDING => turbsim::read(path),
+        _ => field::read(path),
+    }
+}
 
 /// Modes of bridges that come with the program.
 pub mod embedded {

@@ -103,7 +103,7 @@ fn mode_line(value: &str) -> Option<(usize, f64, f64)> {
 /// Writes modes as a single file.
 ///
 /// # Errors
-/// Those of `out`.
+/// When `out` takes no more.
 pub fn write_modes(
     modes: &Modes,
     licence: &str,

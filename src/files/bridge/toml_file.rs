@@ -1,5 +1,6 @@
 //! `bridge.toml`: where the modes are, sections along the span, wind profile, damping.
 
+use super::matlab::SpanBlock;
 use super::modal_data::Modes;
 use super::wind_block::WindBlock;
 use super::{Axes, abaqus, embedded, matlab, opensees, single_file, tables, wawi};
@@ -90,18 +91,6 @@ pub enum DampingRatios {
     Same(f64),
     /// One a mode, in the order of the file of modes.
     Each(Vec<f64>),
-}
-
-/// A single span with uniform masses.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct SpanBlock {
-    /// Length, m.
-    pub span_m: f64,
-    /// Mass per length that moves with the girder, kg/m.
-    pub mass_kg_m: f64,
-    /// Mass moment of inertia per length, kg·m²/m.
-    pub inertia_kg_m2_m: f64,
 }
 
 /// One section along the span: `derivatives` for the table, `model` for a model trained already (without one it is fitted to the

@@ -3,7 +3,7 @@
 //! `phi.full` has six rows a node, in the order of `node_matrix`, and one column a mode; axes are those of the nodes.
 
 use super::modal_data::{ModalData, RawMode};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, counted};
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use std::f64::consts::TAU;
@@ -75,14 +75,14 @@ fn data(element: Element, modal: Modal) -> Result<ModalData> {
                 6 * nodes.len(),
                 nodes.len()
             ),
-            format!("{} rows", rows.len()),
+            counted(rows.len(), "row"),
         ));
     }
     if let Some(i) = rows.iter().position(|r| r.len() != modal.m.len()) {
         return Err(Error::input(
             format!("phi.full[{i}]"),
-            format!("{} columns, one a mode of `m`", modal.m.len()),
-            format!("{} columns", rows[i].len()),
+            format!("{}, one per mode of `m`", counted(modal.m.len(), "column")),
+            counted(rows[i].len(), "column"),
         ));
     }
     let mode = |(m, omega): (usize, f64)| RawMode {

@@ -51,7 +51,7 @@ type Rows = BTreeMap<Derivative, (Vec<DerivativePoint>, Vec<u64>)>;
 /// Reads a table in this project's CSV, in whatever convention its header states.
 ///
 /// # Errors
-/// [`Error::Io`] when the file cannot be read, else those of `parse_csv` with the file named.
+/// [`Error::Io`] when the file cannot be read; [`Error::Input`] with file and line, what was expected and what was found.
 pub fn read_csv(path: impl AsRef<Path>) -> Result<DerivativeTable> {
     read_csv_in(path, StatedConvention::default()).map(|(table, _)| table)
 }

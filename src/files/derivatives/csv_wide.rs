@@ -16,7 +16,7 @@ use crate::aerodynamics::derivatives::missing::fill_in;
 use crate::aerodynamics::derivatives::notation::{Argument, Convention, ExpressedPoint};
 use crate::aerodynamics::derivatives::table::{check_point_count, check_points};
 use crate::aerodynamics::derivatives::{Derivative, DerivativePoint, DerivativeTable};
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result, counted, positive};
 use crate::files::derivatives::csv_header::{Head, ReadOptions};
 use crate::files::derivatives::workbook::WIDTH_ASSUMED;
 use crate::files::header_csv::number;
@@ -131,7 +131,7 @@ impl Row<'_> {
     /// Adds the points of this line.
     fn enter(&self, columns: &Columns, convention: &Convention, rows: &mut Rows) -> Result<()> {
         if self.cells.len() != self.names.len() {
-            let expected = format!("{} columns", self.names.len());
+            let expected = counted(self.names.len(), "column");
             let found = self.cells.len().to_string();
             return Err(Error::input(format!("line {}", self.line), expected, found));
         }

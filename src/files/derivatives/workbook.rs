@@ -64,8 +64,8 @@ pub struct WorkbookOptions {
 /// Reads an NTNU workbook of derivatives.
 ///
 /// # Errors
-/// [`Error::Input`] with file, sheet and cell: not a workbook, a missing sheet or column, an empty cell or text in
-/// place of a number, sheets of unequal length, no common width, and those of [`DerivativeTable::new`].
+/// [`Error::Input`] with file, sheet and cell: not a workbook, a missing sheet or column, an empty cell or text in place
+/// of a number, sheets of unequal length, no common width, points out of order or twice.
 pub fn read_workbook(path: impl AsRef<Path>, options: &WorkbookOptions) -> Result<DerivativeTable> {
     read_workbook_in(path, options).map(|(table, _)| table)
 }

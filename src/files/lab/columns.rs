@@ -1,6 +1,6 @@
 //! Arrays as channels: one a column, time along the longer side.
 
-use super::{Attribute, ChannelSet};
+use super::channels::{Attribute, ChannelSet};
 
 /// More channels than this in one array are taken for an image or a table, not for channels.
 const CHANNELS_AT_MOST: usize = 512;

@@ -4,8 +4,8 @@
 //! unless all of it is numbers. A row of units may follow, or units may stand behind the names: `y [mm]`, `Fx (N)`.
 //! An empty cell or `NaN` is a missing sample. A column whose first cell is text is left out.
 
-use super::{Attribute, ChannelSet, check_count, no_group};
-use crate::error::{Error, Result};
+use super::channels::{Attribute, ChannelSet, check_count, no_group};
+use crate::error::{Error, Result, counted};
 use std::borrow::Cow;
 
 /// A row of a thousand channels has 20 kB.
@@ -175,7 +175,7 @@ impl Table {
         if row.len() < self.names.len() || surplus.into_iter().any(|c| !c.trim_ascii().is_empty()) {
             return Err(Error::input(
                 format!("line {line}"),
-                format!("{} columns as in the header", self.names.len()),
+                format!("{} as in the header", counted(self.names.len(), "column")),
                 row.len().to_string(),
             ));
         }

@@ -1,8 +1,8 @@
 //! HDF5, and MATLAB v7.3, which is HDF5 with MATLAB's dimensions reversed, by `hdf5-pure`.
 
+use super::channels::{Attribute, ChannelSet, check_count, no_group};
 use super::columns::{Order, push_array};
 use super::guarded::guarded;
-use super::{Attribute, ChannelSet, check_count, no_group};
 use crate::error::{Error, Result};
 use hdf5_pure::{AttrValue, DType, Dataset, File, Group};
 

@@ -3,9 +3,9 @@
 //! `matrw` wants the header text that MATLAB writes and refuses that of others, panics on corrupt files, and converts
 //! no integers; all three are seen to here.
 
+use super::channels::{Attribute, ChannelSet, NUMBERS_AT_MOST, check_count, no_group};
 use super::columns::{Order, push_array};
 use super::guarded::guarded;
-use super::{Attribute, ChannelSet, NUMBERS_AT_MOST, check_count, no_group};
 use crate::error::{Error, Result};
 use matrw::{MatFile, MatVariable, MatlabType};
 use std::io::Read;

@@ -6,8 +6,8 @@
 //! samples: as many blocks of that layout as fit. What a segment does not state is as in the one before. Not read:
 //! DAQmx raw data, strings, time stamps, and channels whose samples still have to be scaled.
 
+use super::channels::{Attribute, ChannelSet, check_count, no_group};
 use super::tdms_bytes::{Bytes, STRING, TIME_STAMP, property, sample, size_of};
-use super::{Attribute, ChannelSet, check_count, no_group};
 use crate::error::{Error, Result};
 use std::collections::{BTreeMap, HashMap};
 

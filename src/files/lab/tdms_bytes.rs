@@ -1,6 +1,6 @@
 //! Numbers, texts, samples and properties out of the bytes of a TDMS file, in either byte order.
 
-use super::Attribute;
+use super::channels::Attribute;
 use crate::error::{Error, Result};
 
 /// Type codes.
@@ -18,9 +18,6 @@ pub(super) struct Bytes<'a> {
 
 impl<'a> Bytes<'a> {
     /// The next `count` bytes.
-    ///
-    /// # Errors
-    /// [`Error::Input`] with the byte at which the file ends too early.
     pub(crate) fn take(&mut self, count: usize) -> Result<&'a [u8]> {
         let end = self.at.checked_add(count);
         let taken = end.and_then(|end| self.data.get(self.at..end));

@@ -4,6 +4,7 @@
 
 mod bounds;
 
+use super::channels::Attribute;
 use super::*;
 use std::f64::consts::PI;
 use std::path::PathBuf;

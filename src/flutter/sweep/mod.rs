@@ -134,7 +134,7 @@ impl OnsetSweep {
     /// The onset of `section` with these coefficients (as many as [`LinearForces::coefficients`]).
     ///
     /// # Errors
-    /// Those of [`SectionModel::structure`]; [`Error::Input`] for coefficients of another number.
+    /// [`Error::Input`] for a section that cannot be and coefficients of another number.
     pub fn onset(&self, section: &SectionModel, coefficients: &[f64]) -> Result<SweepOutcome> {
         let (expected, found) = (self.forces.coefficients().len(), coefficients.len());
         if found != expected {

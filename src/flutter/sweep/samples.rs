@@ -20,7 +20,7 @@ const ROUNDING: f64 = 1e-9;
 /// section vanishes. `None` when it is not found close by, or another mode grows there.
 ///
 /// # Errors
-/// Those of the eigenvalues.
+/// [`crate::Error::Numerical`] when eigenvalues cannot be computed.
 pub fn at_samples(section: &CoupledSection, onset: SweptOnset) -> Result<Option<SweptOnset>> {
     let begin = onset.speed_m_s;
     let mode = |speed_m_s, omega| Mode::near(section, speed_m_s, omega);

@@ -4,6 +4,9 @@ pub use crate::fmu::standard::{Causality, Initial, Variability};
 use serde::Serialize;
 use std::collections::HashMap;
 
+/// Name of the description in the archive.
+pub(super) const FILE: &str = "modelDescription.xml";
+
 /// Type of a variable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
 pub enum Kind {

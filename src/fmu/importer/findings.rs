@@ -1,6 +1,7 @@
 //! What a check has found: a list that can be printed, counted and saved.
 
 use serde::Serialize;
+use std::collections::HashSet;
 
 /// How much a finding matters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
@@ -87,6 +88,21 @@ impl Findings {
         found: impl Into<String>,
     ) {
         self.add(Severity::Warning, place, expected, found);
+    }
+
+    /// An error for every text that comes more than once.
+    pub fn each_once<'a>(
+        &mut self,
+        place: &str,
+        expected: &str,
+        all: impl Iterator<Item = &'a str>,
+    ) {
+        let (mut seen, mut reported) = (HashSet::new(), HashSet::new());
+        for one in all {
+            if !seen.insert(one) && reported.insert(one) {
+                self.error(place, expected, format!("`{one}` twice"));
+            }
+        }
     }
 }
 

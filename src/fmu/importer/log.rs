@@ -1,7 +1,7 @@
 //! Messages of a running FMU, collected.
 
 use super::library::{Int, LoggerPointer, Text};
-use super::slave::Status;
+use super::status::Status;
 use std::ffi::{CStr, c_void};
 use std::sync::Mutex;
 

@@ -9,6 +9,7 @@
 mod archive;
 mod checks;
 mod description;
+mod examination;
 mod findings;
 mod growth;
 mod library;
@@ -16,6 +17,7 @@ mod log;
 mod reading;
 mod simulation;
 mod slave;
+mod status;
 mod trials;
 
 pub use description::{
@@ -29,20 +31,19 @@ pub use growth::{
 };
 pub use log::LogMessage;
 pub use simulation::{Simulation, Table, simulate};
-pub use slave::{FmuState, Slave, Status};
+pub use slave::{FmuState, Slave};
+pub use status::Status;
 
 use crate::error::{Error, Result};
 use crate::fmu::location::location_of;
 use crate::fmu::xml::Element;
+use description::FILE;
 use findings::Findings;
 use library::Binary;
 use slave::Loaded;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 use tempfile::TempDir;
-
-/// Name of the description in the archive.
-const DESCRIPTION_FILE: &str = "modelDescription.xml";
 
 /// Folders below `binaries/` that may serve this machine, the one of FMI 2.0 first; and the ending of libraries.
 const fn native() -> (&'static [&'static str], &'static str) {
@@ -63,6 +64,15 @@ const fn native() -> (&'static [&'static str], &'static str) {
     } else {
         (&[], "so")
     }
+}
+
+/// What a binary says of itself.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Versions {
+    /// Platform of its types, `default`.
+    pub types_platform: String,
+    /// Version of the standard, `2.0`.
+    pub standard: String,
 }
 
 /// An unpacked FMU.
@@ -89,19 +99,19 @@ impl Fmu {
 
     fn read(path: &Path) -> Result<Self> {
         let (folder, entries, mut findings) = archive::unpack(path)?;
-        let file = folder.path().join(DESCRIPTION_FILE);
+        let file = folder.path().join(FILE);
         if !file.is_file() {
             let found = entries.iter().take(5).cloned().collect::<Vec<_>>();
             return Err(Error::input(
                 "archive",
-                format!("{DESCRIPTION_FILE} at its root"),
+                format!("{FILE} at its root"),
                 found.join(", "),
             ));
         }
         let bytes = std::fs::read(&file).map_err(|e| Error::io(&file, e))?;
         let root = decoded(bytes)
             .and_then(|text| Element::parse(&text))
-            .map_err(|e| e.in_file(DESCRIPTION_FILE))
+            .map_err(|e| e.in_file(FILE))
             .map_err(|e| Error::input("archive", "a readable description", e.to_string()))?;
         let (description, reading) = reading::read(&root);
         findings.0.extend(reading.0);
@@ -190,34 +200,28 @@ impl Fmu {
     }
 
     /// A new instance that logs all it has to say.
-    ///
-    /// # Errors
-    /// As [`Fmu::instantiate`].
     pub fn instantiate_logging(&self, name: &str) -> Result<Slave> {
         Slave::new(&self.load()?, name, &self.description.guid, true)
     }
 
     /// A new instance with another fingerprint than the one in the description, which a careful FMU refuses.
-    ///
-    /// # Errors
-    /// As [`Fmu::instantiate`].
     pub fn instantiate_with_guid(&self, name: &str, guid: &str) -> Result<Slave> {
         Slave::new(&self.load()?, name, guid, false)
     }
 
-    /// What the binary says of itself: types platform and version.
+    /// What the binary says of itself.
     ///
     /// # Errors
-    /// As [`Fmu::instantiate`], as far as loading goes.
-    pub fn versions(&self) -> Result<(String, String)> {
+    /// [`Error::Input`] when there is no binary for this machine or it does not load.
+    pub fn versions(&self) -> Result<Versions> {
         let loaded = self.load()?;
         let functions = &loaded.binary.functions;
         // SAFETY: both take nothing and answer with a constant C string
         Ok(unsafe {
-            (
-                log::text((functions.get_types_platform)()),
-                log::text((functions.get_version)()),
-            )
+            Versions {
+                types_platform: log::text((functions.get_types_platform)()),
+                standard: log::text((functions.get_version)()),
+            }
         })
     }
 
@@ -238,66 +242,6 @@ impl Fmu {
         });
         *slot = Some(Arc::clone(&loaded));
         Ok(loaded)
-    }
-
-    /// Checks archive, description and binary, then runs the FMU if nothing stands against it.
-    pub fn check(&self) -> CheckReport {
-        let mut findings = self.findings.clone();
-        findings.0.extend(checks::check(&self.description).0);
-        self.check_files(&mut findings);
-        let mut trials = Vec::new();
-        let mut messages = Vec::new();
-        match self.binary() {
-            Err(e) => findings.error("archive", "a binary for this machine", e.to_string()),
-            Ok(binary) => {
-                let place = binary
-                    .strip_prefix(self.folder.path())
-                    .unwrap_or(&binary)
-                    .display()
-                    .to_string();
-                let before = findings.0.len();
-                library::check_symbols(&binary, &place, &mut findings);
-                if findings.0.len() == before {
-                    (trials, messages) = trials::run(self, &mut findings);
-                }
-            }
-        }
-        CheckReport {
-            file: self.path.display().to_string(),
-            model_name: self.description.model_name.clone(),
-            generation_tool: self.description.generation_tool.clone().unwrap_or_default(),
-            platforms: self.platforms(),
-            variables: self.description.variables.len(),
-            findings: findings.0,
-            trials,
-            messages,
-        }
-    }
-
-    fn check_files(&self, findings: &mut Findings) {
-        let mut seen = std::collections::HashSet::new();
-        for entry in &self.entries {
-            if !seen.insert(entry.to_lowercase()) {
-                findings.warning(
-                    format!("archive, entry `{entry}`"),
-                    "names that differ in more than case",
-                    "the same twice",
-                );
-            }
-        }
-        for (file, what) in [
-            ("documentation/index.html", "documentation"),
-            ("model.png", "an icon"),
-        ] {
-            if !self.entries.iter().any(|e| e == file) {
-                findings.add(
-                    Severity::Note,
-                    "archive",
-                    format!("{what} ({file})"),
-                    "none",
-                );
-            }
-        }
     }
 }
 

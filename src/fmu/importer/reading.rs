@@ -1,15 +1,13 @@
 //! From the XML tree to a [`ModelDescription`]. What is legal is taken; what is not becomes a finding and a default.
 
 use super::description::{
-    Causality, CoSimulation, DefaultExperiment, DisplayUnit, Kind, ModelDescription,
+    Causality, CoSimulation, DefaultExperiment, DisplayUnit, FILE, Kind, ModelDescription,
     ScalarVariable, SimpleType, TypeAttributes, Unit, Unknown, Value, Variability,
 };
 use super::findings::Findings;
 use crate::fmu::standard::Word;
 use crate::fmu::xml::Element;
 use std::str::FromStr;
-
-const FILE: &str = "modelDescription.xml";
 
 /// Children of the root in the order of the schema.
 const ROOT_CHILDREN: [&str; 9] = [

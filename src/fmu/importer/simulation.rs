@@ -2,7 +2,8 @@
 
 use super::Fmu;
 use super::description::{Causality, Kind, ModelDescription, Value};
-use super::slave::{Slave, Status, find};
+use super::slave::{Slave, find};
+use super::status::Status;
 use crate::error::{Error, Result};
 use serde::Serialize;
 

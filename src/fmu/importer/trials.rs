@@ -1,10 +1,11 @@
 //! Running an FMU to see whether it keeps what it promises.
 
-use super::description::{Causality, CoSimulation, Initial, Kind, Value};
+use super::description::{Causality, CoSimulation, FILE, Initial, Kind, Value};
 use super::findings::{Findings, Trial};
 use super::simulation::{Simulation, Table, Times, recorded, run as step_through, start};
-use super::slave::{Slave, Status};
-use super::{Fmu, LogMessage};
+use super::slave::Slave;
+use super::status::Status;
+use super::{Fmu, LogMessage, Versions};
 use crate::error::{Error, Result};
 
 /// Most communication steps of a trial.
@@ -20,7 +21,7 @@ pub(super) fn run(fmu: &Fmu, findings: &mut Findings) -> (Vec<Trial>, Vec<String
     let plan = match Plan::new(fmu, &capabilities) {
         Ok(plan) => plan,
         Err(e) => {
-            findings.error("modelDescription.xml", "something to run", e.to_string());
+            findings.error(FILE, "something to run", e.to_string());
             return (Vec::new(), Vec::new());
         }
     };
@@ -91,7 +92,10 @@ fn wrong_guid(fmu: &Fmu, findings: &mut Findings) {
 }
 
 fn versions(fmu: &Fmu) -> Result<String> {
-    let (platform, version) = fmu.versions()?;
+    let Versions {
+        types_platform: platform,
+        standard: version,
+    } = fmu.versions()?;
     if platform == "default" && version == "2.0" {
         Ok(format!("platform {platform}, version {version}"))
     } else {

@@ -3,10 +3,10 @@
 
 use super::bridge_built::Built;
 use super::bridge_unit::BridgeUnit;
-use super::derivatives::central_difference;
 use super::layout::Source;
-use super::saving::Memory;
+use super::memory::Memory;
 use super::section::OnsetCard;
+use super::sensitivity::{central_difference, parameter_step};
 use super::trust::{Present, is_of_onset, smallest_damping, without_motion};
 use super::unit::Unit;
 use crate::error::Result;
@@ -15,11 +15,6 @@ use crate::fmu::refusal::Answer;
 use crate::fmu::resources::Resources;
 use crate::fmu::variables::{Calculated, Role, Status};
 use crate::response::Outputs;
-
-/// Relative step of the central differences.
-const RELATIVE_STEP: f64 = 1e-4;
-/// Step of a parameter that is zero.
-const STEP_FROM_ZERO: f64 = 1e-6;
 
 impl BridgeUnit {
     /// Derivatives of all unknowns with respect to one known.
@@ -105,12 +100,7 @@ impl BridgeUnit {
         let Some(options) = &resources.bridge else {
             return Ok(vec![0.0; unknowns.len()]);
         };
-        let value = memory.values[known];
-        let step = if value == 0.0 {
-            STEP_FROM_ZERO
-        } else {
-            RELATIVE_STEP * value.abs()
-        };
+        let step = parameter_step(memory.values[known]);
         central_difference(resources, memory, (known, step), |other| {
             let changed = Built::new(resources, options, &other.values)?;
             let present = std::mem::replace(&mut self.built, changed);

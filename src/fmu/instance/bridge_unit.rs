@@ -6,10 +6,9 @@
 use super::bridge_built::Built;
 use super::bridge_places::Places;
 use super::layout::Source;
-use super::saving::{Memory, starts};
+use super::memory::{Memory, starts};
 use super::section::OnsetCard;
-use super::section_derivatives::{add, speed_sensitivity};
-use super::section_unit::check_finite;
+use super::sensitivity::{add, check_finite, speed_sensitivity};
 use super::trust::{LINEAR_ROTATION_RAD, Present, beyond_linear};
 use super::unit::Unit;
 use crate::aeroelastic::CoupledSection;

@@ -2,11 +2,9 @@
 
 use super::Instance;
 use super::layout::{DataType, Source};
-use super::saving::Memory;
 use super::values::check_order;
 use crate::fmu::lifecycle::State;
 use crate::fmu::refusal::{Answer, Refusal};
-use crate::fmu::resources::Resources;
 use crate::fmu::variables::{Causality, Role};
 
 impl Instance {
@@ -126,25 +124,4 @@ impl Instance {
             self.memory.state.name()
         ))
     }
-}
-
-/// Derivatives with respect to the value at `known` by central differences over `step`, one-sided where the variable
-/// would leave its limits; `at` gives the unknowns for a memory.
-pub(super) fn central_difference(
-    resources: &Resources,
-    memory: &Memory,
-    (known, step): (usize, f64),
-    mut at: impl FnMut(&Memory) -> Answer<Vec<f64>>,
-) -> Answer<Vec<f64>> {
-    let variable = &resources.table.variables()[known];
-    let mut other = memory.clone();
-    let value = memory.values[known];
-    let low = (value - step).max(variable.min.unwrap_or(f64::NEG_INFINITY));
-    let high = (value + step).min(variable.max.unwrap_or(f64::INFINITY));
-    other.values[known] = low;
-    let below = at(&other)?;
-    other.values[known] = high;
-    let above = at(&other)?;
-    let difference = |(a, b): (&f64, &f64)| (b - a) / (high - low);
-    Ok(below.iter().zip(&above).map(difference).collect())
 }

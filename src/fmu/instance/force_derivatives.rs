@@ -1,8 +1,8 @@
 //! Derivatives of forces alone: they are linear in motion and gusts; wind and parameters are differenced.
 
-use super::derivatives::central_difference;
 use super::force_unit::{ForceUnit, SET};
-use super::saving::Memory;
+use super::memory::Memory;
+use super::sensitivity::central_difference;
 use crate::error::Result;
 use crate::fmu::refusal::Answer;
 use crate::fmu::resources::Resources;

@@ -4,7 +4,7 @@
 //! motion that was set for the last step. When the importer has set newer motion since, they follow from that as well.
 
 use super::layout::{Source, place};
-use super::saving::Memory;
+use super::memory::Memory;
 use super::trust::{LINEAR_ROTATION_RAD, beyond_linear};
 use super::unit::Unit;
 use crate::aerodynamics::Realizable;

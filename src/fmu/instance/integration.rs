@@ -66,7 +66,7 @@ impl Instance {
     /// The continuous states.
     ///
     /// # Errors
-    /// Room for another number of them; those of the preparation.
+    /// Room for another number of them; parameters that give nothing that can be simulated.
     pub fn continuous_states(&mut self, states: &mut [f64]) -> Answer<()> {
         self.check_states("states", states.len())?;
         self.unit.prepare(&self.resources, &mut self.memory)?;

@@ -2,10 +2,12 @@
 //! `ż = A(V) z + E w`, so their derivatives are products with the same matrices; those with respect to the wind speed are
 //! closed too. Only section properties are differenced.
 
-use super::derivatives::central_difference;
 use super::layout::Source;
-use super::saving::Memory;
-use super::section_unit::{SectionUnit, check_finite};
+use super::memory::Memory;
+use super::section_unit::SectionUnit;
+use super::sensitivity::{
+    add, central_difference, check_finite, parameter_step, pick, speed_sensitivity,
+};
 use super::trust::{Present, is_of_onset, smallest_damping, without_motion};
 use crate::aerodynamics::Realization;
 use crate::error::Result;
@@ -13,13 +15,6 @@ use crate::fmu::refusal::Answer;
 use crate::fmu::resources::Resources;
 use crate::fmu::variables::{Role, Status};
 use crate::response::{Inputs, Outputs, SectionState, Stepper};
-use crate::section::Dof;
-use nalgebra::{DMatrix, DVector};
-
-/// Relative step of the central differences: truncation about 1e-8, rounding of an onset search about 1e-9.
-const RELATIVE_STEP: f64 = 1e-4;
-/// Step of a parameter that is zero.
-const STEP_FROM_ZERO: f64 = 1e-6;
 
 /// All that a section has at an instant, or its derivative with respect to one known.
 #[derive(Debug, Default)]
@@ -96,12 +91,7 @@ impl SectionUnit {
             Source::Release => self.by_release(memory, known)?,
             Source::Response | Source::State => self.by_state(memory, known)?,
             _ => {
-                let value = memory.values[known];
-                let step = if value == 0.0 {
-                    STEP_FROM_ZERO
-                } else {
-                    RELATIVE_STEP * value.abs()
-                };
+                let step = parameter_step(memory.values[known]);
                 return central_difference(resources, memory, (known, step), |other| {
                     self.unknowns(resources, other, unknowns)
                 });
@@ -215,34 +205,6 @@ impl SectionUnit {
     }
 }
 
-/// The entry of `outputs` that a role stands for; zero for what inputs and release do not act on.
-pub(super) fn pick(outputs: &Outputs, role: Role) -> f64 {
-    let Role::Response(response, dof) = role else {
-        return 0.0;
-    };
-    let list = outputs.lists()[response as usize];
-    let index = match dof {
-        Dof::Vertical => 0,
-        Dof::Lateral => 1,
-        Dof::Torsion => list.len().saturating_sub(1),
-    };
-    list.get(index).copied().unwrap_or(0.0)
-}
-
-pub(super) fn add(outputs: &mut Outputs, other: &Outputs, factor: f64) {
-    let lists = [
-        (&mut outputs.displacement, &other.displacement),
-        (&mut outputs.rate, &other.rate),
-        (&mut outputs.acceleration, &other.acceleration),
-        (&mut outputs.self_excited_force, &other.self_excited_force),
-    ];
-    for (list, terms) in lists {
-        for (sum, term) in list.iter_mut().zip(terms) {
-            *sum += factor * term;
-        }
-    }
-}
-
 /// `∂ż/∂V` of the filters and of the lagging gusts; zero for the motion, which [`speed_sensitivity`] gives.
 fn rate_by_speed(stepper: &Stepper, state: &SectionState, inputs: &Inputs) -> Vec<f64> {
     let section = stepper.section();
@@ -250,40 +212,4 @@ fn rate_by_speed(stepper: &Stepper, state: &SectionState, inputs: &Inputs) -> Ve
     let filters = section.filter_rates_per_wind(&state.values);
     let (_, lagging) = stepper.gusts_per_wind(state, inputs);
     [&motion, filters.as_slice(), &lagging].concat()
-}
-
-/// `∂y/∂V` at a given state and external force. With `P(e)` the physical scaling, the aerodynamic part of the equation
-/// of motion is `½ρV² P(e₀) q + ½ρVB P(e₁) q̇ + ½ρV² diag(B, B, B²) C x`; the acceleration follows through
-/// `(M − ½ρB² P(e₂))⁻¹`, the force as `M` times the acceleration. Forces of gusts, `V Q g`, accelerate as external ones.
-pub(super) fn speed_sensitivity(
-    stepper: &Stepper,
-    state: &SectionState,
-    inputs: &Inputs,
-) -> Outputs {
-    let (section, speed) = (stepper.section(), inputs.wind_speed_m_s);
-    let s = section.structure();
-    let n = s.dofs.len();
-    let part =
-        |from: usize, count: usize| DVector::from_column_slice(&state.values[from..from + count]);
-    let filters = part(2 * n, state.values.len() - 2 * n);
-    let (rho, width) = (s.air_density_kg_m3, s.width_m);
-    let scale = DMatrix::from_diagonal(&DVector::from_fn(n, |i, _| s.dofs[i].force_scale(width)));
-    let direct = match section.aerodynamics() {
-        Realization::Continuous(c) => {
-            s.scaled(&c.e0) * part(0, n) * (rho * speed)
-                + s.scaled(&c.e1) * part(n, n) * (0.5 * rho * width)
-                + scale * (&c.c * filters) * (rho * speed)
-        }
-        Realization::Discrete(d) => scale * (&d.c * filters) * (rho * speed),
-    };
-    let gusts = DVector::from_vec(stepper.gusts_per_wind(state, inputs).0);
-    let acceleration = section.inverse_mass() * (direct + &gusts);
-    // gusts are no self-excited force
-    let force = &s.mass * &acceleration - gusts;
-    Outputs {
-        displacement: vec![0.0; n],
-        rate: vec![0.0; n],
-        acceleration: acceleration.as_slice().to_vec(),
-        self_excited_force: force.as_slice().to_vec(),
-    }
 }

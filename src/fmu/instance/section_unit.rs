@@ -2,17 +2,17 @@
 //! for after a change of parameters.
 
 use super::layout::Source;
-use super::saving::Memory;
+use super::memory::Memory;
 use super::section::{self, OnsetCard};
-use super::section_derivatives::pick;
 use super::section_places::Places;
+use super::sensitivity::{check_finite, overgrown, pick};
 use super::trust::{Present, Told, tested_winds};
 use super::unit::Unit;
 use crate::aerodynamics::{GustForce, Realizable, Realization};
 use crate::error::Result;
 use crate::flutter::UnwantedGrowth;
 use crate::fmu::lifecycle::State;
-use crate::fmu::refusal::{Answer, Refusal};
+use crate::fmu::refusal::Answer;
 use crate::fmu::resources::Resources;
 use crate::fmu::variables::Role;
 use crate::response::{Inputs, Outputs, SectionState, Stepper};
@@ -359,16 +359,4 @@ impl Unit for SectionUnit {
     ) -> Answer<Vec<f64>> {
         self.column(resources, memory, known, unknowns)
     }
-}
-
-/// Refuses outputs that no number holds any more.
-pub(super) fn check_finite(outputs: &Outputs) -> Answer<()> {
-    if outputs.lists().into_iter().flatten().all(|x| x.is_finite()) {
-        return Ok(());
-    }
-    Err(overgrown())
-}
-
-fn overgrown() -> Refusal {
-    Refusal::discard("outputs: the motion has grown beyond the range of numbers")
 }

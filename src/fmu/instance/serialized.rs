@@ -7,7 +7,7 @@
 //! digest of all bytes before, 16 bytes
 //! ```
 
-use super::saving::{Experiment, Memory};
+use super::memory::{Experiment, Memory};
 use crate::error::{Error, Result};
 use crate::fmu::lifecycle::State;
 use uuid::Uuid;
@@ -74,9 +74,6 @@ pub(super) fn write(memory: &Memory, guid: &Uuid) -> Vec<u8> {
 
 /// Reads a saved state that fits `like`, an instance of the same export. Bytes come from files: everything is checked
 /// but the limits of single variables.
-///
-/// # Errors
-/// [`Error::Input`] naming what does not fit.
 pub(super) fn read(bytes: &[u8], guid: &Uuid, like: &Memory) -> Result<Memory> {
     let mut reader = Reader { bytes };
     reader.demand("magic", MAGIC)?;

@@ -1,7 +1,7 @@
 //! Communication steps.
 
 use super::Instance;
-use super::saving::Experiment;
+use super::memory::Experiment;
 use crate::fmu::lifecycle::State;
 use crate::fmu::refusal::{Answer, Refusal};
 use crate::response::wind_at_rest;

@@ -1,7 +1,7 @@
 //! What an exported unit simulates, behind its variables and its life cycle.
 
 use super::layout::Source;
-use super::saving::Memory;
+use super::memory::Memory;
 use crate::error::Result;
 use crate::fmu::refusal::Answer;
 use crate::fmu::resources::Resources;

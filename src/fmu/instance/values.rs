@@ -25,25 +25,16 @@ impl Instance {
     }
 
     /// Value of an integer variable.
-    ///
-    /// # Errors
-    /// As [`Instance::reals`].
     pub fn integer(&mut self, reference: u32) -> Answer<i32> {
         Ok(self.number(reference, DataType::Integer)? as i32)
     }
 
     /// Value of a truth variable.
-    ///
-    /// # Errors
-    /// As [`Instance::reals`].
     pub fn boolean(&mut self, reference: u32) -> Answer<bool> {
         Ok(self.number(reference, DataType::Boolean)? != 0.0)
     }
 
     /// Place in the table of a text that may be read now.
-    ///
-    /// # Errors
-    /// As [`Instance::reals`].
     pub fn text_place(&self, reference: u32) -> Answer<usize> {
         Ok(self.readable(reference, DataType::String)?.0)
     }

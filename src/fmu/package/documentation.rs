@@ -1,6 +1,5 @@
 //! `documentation/index.html` of an exported section, made from the variable table and the trained model.
 
-use super::FmiVersion;
 use super::runtime::Runtime;
 use crate::aerodynamics::{Realizable, Transfer};
 use crate::aeroelastic::CoupledSection;
@@ -10,6 +9,7 @@ use crate::flutter::{
 };
 use crate::fmu::force_options::ForceOptions;
 use crate::fmu::resources::Resources;
+use crate::fmu::standard::FmiVersion;
 use crate::fmu::variables::{
     Causality, Listing, Role, SectionParameter, Value, Variability, Variable,
 };
@@ -40,7 +40,7 @@ pub fn documentation(
             .iter()
             .map(|r| (r.path_in_archive(FmiVersion::Two), r.platform_words()))
             .collect(),
-        groups: groups(resources.table.listed(listing).0.variables()),
+        groups: groups(resources.table.listed(listing).table.variables()),
         range: Range::of(model),
         speeds: speeds(model),
         stability: match &resources.force {

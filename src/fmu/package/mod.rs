@@ -9,6 +9,7 @@ mod growth;
 mod label;
 mod runtime;
 
+pub use super::standard::FmiVersion;
 pub use documentation::documentation;
 pub use growth::{Growing, growth_of};
 pub use label::Label;
@@ -71,16 +72,6 @@ pub struct Export {
     pub label: Label,
     /// Of the standard.
     pub version: FmiVersion,
-}
-
-/// Version of the standard; the runtime speaks all of them.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum FmiVersion {
-    /// FMI 2.0.
-    #[default]
-    Two,
-    /// FMI 3.0.
-    Three,
 }
 
 impl From<Growing> for Export {
@@ -170,7 +161,8 @@ pub struct BridgeExport {
 /// The FMU of a whole bridge as the bytes of its archive, with these runtimes in it.
 ///
 /// # Errors
-/// As [`package`]; what a bridge does below its onset is for the caller to judge.
+/// [`Error::Input`] for numbers that make no bridge, for no runtime at all, and for two of one platform. What a bridge
+/// does below its onset is for the caller to judge.
 pub fn package_bridge(
     export: &BridgeExport,
     runtimes: &[Runtime],
@@ -253,7 +245,8 @@ fn assembled(
 /// seen.
 ///
 /// # Errors
-/// Those of [`package`]; [`Error::Input`] when the file is there and is not to be replaced; [`Error::Io`].
+/// [`Error::Input`] for a model that cannot be exported, and when the file is there and is not to be replaced;
+/// [`Error::Numerical`] for a model that grows where it should not; [`Error::Io`].
 pub fn write_fmu(
     path: &Path,
     model: &TrainedModel,

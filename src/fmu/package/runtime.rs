@@ -1,8 +1,8 @@
 //! Runtime binaries: the one embedded in this program, and others from a folder.
 
-use super::FmiVersion;
 use crate::error::{Error, Result};
 use crate::fmu::identity::MODEL_IDENTIFIER;
+use crate::fmu::standard::FmiVersion;
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
@@ -65,7 +65,8 @@ impl Runtime {
     /// that this program carries.
     ///
     /// # Errors
-    /// As [`Runtime::in_folder`]; [`Error::Input`] for a runtime that is no library of its platform.
+    /// [`Error::Io`] for a folder or file that cannot be read, [`Error::Input`] for a folder without any runtime and for
+    /// files that are no library of their platform.
     pub fn available() -> Result<Vec<Self>> {
         let mut all = match std::env::var_os(RUNTIME_DIR_VARIABLE) {
             Some(folder) => Self::in_folder(Path::new(&folder))?,
@@ -84,7 +85,7 @@ impl Runtime {
     /// folder `linux64` where importers on such a machine look, and in its own.
     ///
     /// # Errors
-    /// As [`Runtime::available`]; [`Error::Input`] for a platform without a runtime.
+    /// [`Error::Io`] for a folder or file that cannot be read, [`Error::Input`] for a platform without a runtime.
     pub fn chosen(platforms: &[String]) -> Result<Vec<Self>> {
         let available = Self::available()?;
         let find = |wanted: &str| {

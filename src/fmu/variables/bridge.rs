@@ -15,13 +15,6 @@ use crate::fmu::si;
 use crate::section::Dof;
 use crate::trained_model::TrainedModel;
 
-/// Motions that are put out.
-const MOTION: [Response; 3] = [
-    Response::Displacement,
-    Response::Rate,
-    Response::Acceleration,
-];
-
 /// All variables with their dependencies.
 pub(super) fn variables(
     model: &TrainedModel,
@@ -139,7 +132,7 @@ fn force(options: &BridgeOptions, named: usize, dof: Dof) -> Variable {
 fn motions(options: &BridgeOptions, named: usize) -> impl Iterator<Item = Variable> + '_ {
     let each = Dof::THREE
         .into_iter()
-        .flat_map(|dof| MOTION.map(|response| (dof, response)));
+        .flat_map(|dof| Response::MOTION.map(|response| (dof, response)));
     each.map(move |(dof, response)| {
         let (w, i) = (words(dof), response as usize);
         let what = match response {

@@ -1,8 +1,7 @@
 //! What depends on what: the structure of outputs while stepping, and of all unknowns while initialising.
 
-use super::{
-    Causality, InitialDependency, Response, Role, SectionParameter, Status, Variable, find,
-};
+use super::variable::find;
+use super::{Causality, InitialDependency, Response, Role, SectionParameter, Status, Variable};
 use crate::aerodynamics::{GustForce, Realizable, Realization};
 use crate::section::Dof;
 use crate::trained_model::TrainedModel;

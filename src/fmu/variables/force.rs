@@ -13,13 +13,6 @@ use crate::fmu::si::{self, Unit};
 use crate::section::Dof;
 use crate::trained_model::TrainedModel;
 
-/// Motion that an importer may set.
-const MOTION: [Response; 3] = [
-    Response::Displacement,
-    Response::Rate,
-    Response::Acceleration,
-];
-
 /// All variables with their dependencies.
 pub(super) fn variables(
     model: &TrainedModel,
@@ -76,7 +69,7 @@ fn motion<'a>(
 ) -> impl Iterator<Item = Variable> + 'a {
     let each = dofs
         .iter()
-        .flat_map(|&dof| MOTION.map(|response| (dof, response)));
+        .flat_map(|&dof| Response::MOTION.map(|response| (dof, response)));
     each.map(move |(dof, response)| {
         let (w, i) = (words(dof), response as usize);
         let text = match response {

@@ -12,10 +12,18 @@ pub enum Listing {
     Reals,
 }
 
+/// The variables that a description lists.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Listed {
+    /// As a table of their own, whose dependencies are places in it.
+    pub table: VariableTable,
+    /// Their value references: the places in the full table, so that one runtime serves both.
+    pub references: Vec<usize>,
+}
+
 impl VariableTable {
-    /// The listed variables as a table of their own, whose dependencies are places in it, and their value references:
-    /// the places in the full table, so that one runtime serves both.
-    pub fn listed(&self, listing: Listing) -> (VariableTable, Vec<usize>) {
+    /// The variables that are listed.
+    pub fn listed(&self, listing: Listing) -> Listed {
         let real = |v: &Variable| matches!(v.value, Value::Real(_));
         let references: Vec<usize> = (0..self.variables.len())
             .filter(|&i| listing == Listing::All || real(&self.variables[i]))
@@ -34,6 +42,9 @@ impl VariableTable {
             variable
         });
         let variables = variables.collect();
-        (VariableTable { variables }, references)
+        Listed {
+            table: VariableTable { variables },
+            references,
+        }
     }
 }

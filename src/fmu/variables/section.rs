@@ -5,8 +5,9 @@ use super::real::{
     CALCULATED, DISCRETE, FIXED, INNER, INPUT, LOCAL, OUTPUT, SMALLEST, SPEED, TUNABLE, constants,
     force_scale, nominal, real,
 };
+use super::variable::find;
 use super::words::{Words, motion, words};
-use super::{Calculated, Gust, Initial, Response, Role, Status, Value, Variable, find};
+use super::{Calculated, Gust, Initial, Response, Role, Status, Value, Variable};
 use crate::aerodynamics::{GustForce, Realizable, Realization};
 use crate::error::Result;
 use crate::fmu::onset_bounds::OnsetBounds;

@@ -19,9 +19,6 @@ pub(super) struct Inequality {
 }
 
 /// The shortest `w` with `gradient · w ≤ bound` for all inequalities, and which of them hold it.
-///
-/// # Errors
-/// [`Error::Numerical`] when no vector satisfies them.
 pub(super) fn shortest(
     inequalities: &[Inequality],
     size: usize,

@@ -172,9 +172,6 @@ impl Dissipation {
     }
 
     /// The least of the joint objective under the conditions; `None` when least squares alone satisfy them.
-    ///
-    /// # Errors
-    /// [`Error::Numerical`] when no coefficients satisfy them.
     pub(crate) fn solve(&self, entries: &[LinearEntry]) -> Result<Option<Solution>> {
         let width = entries.iter().map(LinearEntry::end).max().unwrap_or(0);
         let alone: Vec<Vec<f64>> = entries.iter().map(|e| e.values.clone()).collect();

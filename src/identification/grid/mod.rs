@@ -68,8 +68,8 @@ impl Grid {
     /// One pass over the records.
     ///
     /// # Errors
-    /// [`Error::Input`] for an axis without values, no filters, records that do not fit together or move several
-    /// degrees of freedom at once; those of reading.
+    /// [`Error::Input`] for an axis without values, no filters, records that cannot be read, do not fit together or move
+    /// several degrees of freedom at once.
     pub fn new(
         records: &[&dyn RecordSource],
         axis: GridAxis,

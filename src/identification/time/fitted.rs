@@ -105,9 +105,6 @@ impl<'a> Fitted<'a> {
     }
 
     /// The estimated constants with their standard errors.
-    ///
-    /// # Errors
-    /// [`Error::Numerical`] for systems without a solution.
     pub(crate) fn constants(&self) -> Result<Vec<StaticReport>> {
         let mut reports = Vec::new();
         for (i, &force) in self.dofs.iter().enumerate() {
@@ -158,9 +155,6 @@ impl<'a> Fitted<'a> {
     }
 
     /// Reports of all transfer functions, row by row; `named` gives the names of the coefficients and the poles of one.
-    ///
-    /// # Errors
-    /// [`Error::Numerical`] for systems without a solution; those of `named`.
     pub(crate) fn reports(
         &self,
         named: impl Fn(usize) -> Result<(Vec<String>, Vec<f64>)>,

@@ -158,9 +158,6 @@ pub(crate) struct Pass {
 }
 
 /// One pass over all records, in parallel. `make` builds the columns of a record.
-///
-/// # Errors
-/// [`Error::Input`] for records with too few samples; those of `make`.
 pub(crate) fn pass<C: Columns>(
     records: &[DimensionlessRecord],
     plan: &PassPlan,

@@ -83,9 +83,6 @@ impl Records {
     }
 
     /// Range of all records together.
-    ///
-    /// # Errors
-    /// [`Error::Input`] for records that never move.
     pub(crate) fn tested_range(&self) -> Result<ReducedFrequencyRange> {
         let ranges = self
             .each

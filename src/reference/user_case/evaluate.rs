@@ -1,4 +1,4 @@
-//! Loads the forces of a case and computes its figures.
+//! Loads the forces of a case, computes its figures and judges them.
 
 use super::{Quantity, UserCase, UserFigure};
 use crate::aerodynamics::derivatives::{Extrapolation, InterpolatedTable};
@@ -10,6 +10,7 @@ use crate::flutter::{
     FlutterSearch, Onset, OnsetMethod, OnsetSearch, determinant_onset, divergence_speed,
     find_onset, pk_onset, quasi_pk_mode, sanity_lines, static_part,
 };
+use crate::reference::{CaseResult, Citation};
 use crate::section::{Dof, SectionModel, Structure};
 use crate::trained_model::TrainedModel;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
@@ -21,8 +22,56 @@ const WIDE: ReducedFrequencyRange = ReducedFrequencyRange {
     max: ReducedFrequency::from_full_width(10.0),
 };
 
+impl UserCase {
+    /// Computes every figure. A computation that fails is a result that has not passed.
+    pub(crate) fn run(&self) -> Vec<CaseResult> {
+        let loaded = Loaded::new(self);
+        let judge = |figure: &UserFigure| {
+            let found = match &loaded {
+                Ok(loaded) => loaded.figure(figure).map_err(|e| e.to_string()),
+                Err(error) => Err(error.to_string()),
+            };
+            self.result(figure, found)
+        };
+        self.figures.iter().map(judge).collect()
+    }
+
+    fn result(&self, figure: &UserFigure, found: std::result::Result<f64, String>) -> CaseResult {
+        let (name, unit) = figure.quantity.words();
+        let mut quantity = name.to_owned();
+        if let (Some(dof), Some(speed)) = (figure.dof, figure.speed_m_s) {
+            quantity = format!("{} at {speed} m/s: {name}", dof.name());
+        } else if let Some(route) = figure.route {
+            quantity = format!("{name} ({})", route.name());
+        }
+        let (found, problem) = match found {
+            Ok(found) => (Some(found), None),
+            Err(problem) => (None, Some(problem)),
+        };
+        let deviation = found.map(|found| found - figure.expected);
+        // as many digits as the tolerance makes sense of
+        let decimals = (-figure.tolerance.log10().floor()).clamp(0.0, 12.0) as usize;
+        CaseResult {
+            name: self.name.clone(),
+            what: self.what.clone(),
+            quantity,
+            unit: unit.into(),
+            expected: figure.expected,
+            decimals,
+            found,
+            deviation,
+            tolerance: figure.tolerance,
+            reason: figure.reason.clone(),
+            passed: deviation.is_some_and(|d| d.abs() <= figure.tolerance),
+            source: Citation::Stated(figure.source.clone()),
+            headline: true,
+            problem,
+        }
+    }
+}
+
 /// A case with its forces loaded.
-pub(super) struct Loaded {
+struct Loaded {
     structure: Structure,
     model: Box<dyn Transfer>,
     tested: Option<ReducedFrequencyRange>,
@@ -31,7 +80,7 @@ pub(super) struct Loaded {
 
 impl Loaded {
     /// Reads what the case names.
-    pub(super) fn new(case: &UserCase) -> Result<Self> {
+    fn new(case: &UserCase) -> Result<Self> {
         let a = &case.aerodynamics;
         let mut section = case.section.clone();
         let (model, tested): (Box<dyn Transfer>, _) = if let Some(path) = &a.model {
@@ -86,7 +135,7 @@ impl Loaded {
     }
 
     /// One figure.
-    pub(super) fn figure(&self, figure: &UserFigure) -> Result<f64> {
+    fn figure(&self, figure: &UserFigure) -> Result<f64> {
         let nothing = |what: &str| Error::Numerical(format!("no {what}"));
         Ok(match figure.quantity {
             Quantity::DivergenceSpeed => {

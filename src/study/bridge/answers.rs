@@ -64,7 +64,8 @@ impl BridgeFlutter {
 /// Searches the onset by every route and says what takes part.
 ///
 /// # Errors
-/// Those of the coupling and of the search by eigenvalues; what fails beside that is stated in the result.
+/// [`crate::Error::Input`] for forces that cannot be coupled, [`crate::Error::Numerical`] when eigenvalues cannot be
+/// computed; what fails beside that is stated in the result.
 pub fn bridge_flutter(study: &BridgeStudy) -> Result<BridgeFlutter> {
     let mut failed = Vec::new();
     let mut answers = Vec::new();
@@ -161,7 +162,8 @@ fn answer(
     let motion = motion.transpose()?;
     if let (FlutterSearch::Onset(onset), Some(motion)) = (&mut search, &motion) {
         // of the node that turns most, as a section there would see it
-        (onset.mode_ratio, onset.phase_deg) = motion.mode_ratio(bridge.width_m());
+        let of_node = motion.mode_ratio(bridge.width_m());
+        (onset.mode_ratio, onset.phase_deg) = (of_node.ratio, of_node.phase_deg);
     }
     Ok(BridgeAnswer {
         forces: name.to_owned(),

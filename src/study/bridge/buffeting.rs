@@ -128,7 +128,8 @@ impl BridgeStudy {
     /// Response at the nodes of the block at a wind speed, in both domains.
     ///
     /// # Errors
-    /// Those of the block; [`Error::Unstable`] when the bridge is unstable at this speed.
+    /// [`Error::Input`] with the key of the block that cannot be; [`Error::Unstable`] when the bridge is unstable at this
+    /// speed.
     pub fn buffeting(
         &self,
         block: &BuffetingBlock,
@@ -154,7 +155,7 @@ impl BridgeStudy {
     /// Response to the turbulence of a file, at the nodes of the bridge.
     ///
     /// # Errors
-    /// [`Error::Input`] for a field that does not reach over the bridge; those of the block.
+    /// [`Error::Input`] for a field that does not reach over the bridge, and with the key of the block that cannot be.
     pub fn buffeting_by(
         &self,
         block: &BuffetingBlock,
@@ -180,7 +181,7 @@ impl BridgeStudy {
     /// The turbulence of the first record.
     ///
     /// # Errors
-    /// Those of the block.
+    /// [`Error::Input`] with the key of the block that cannot be.
     pub fn first_field(&self, block: &BuffetingBlock, speed_m_s: f64) -> Result<TurbulenceField> {
         let plan = &block.time;
         let samples = 2 * (0.5 * plan.duration_s / plan.step_s).round() as usize;

@@ -1,6 +1,7 @@
 //! A bridge study as what goes into an FMU.
 
-use super::{BridgeStudy, coupled};
+use super::BridgeStudy;
+use super::answers::coupled;
 use crate::aerodynamics::RationalAdmittance;
 use crate::error::{Error, Result};
 use crate::files::bridge::FieldTable;

@@ -1,6 +1,7 @@
 //! How far the data behind the models of the sections leave the onset of a bridge open.
 
-use super::{BridgeStudy, coupled};
+use super::BridgeStudy;
+use super::answers::coupled;
 use crate::error::{Error, Result};
 use crate::flutter::{NearbyOnset, Onset, OnsetInterval};
 use crate::uncertainty::{CoefficientUncertainty, OnsetError};
@@ -16,7 +17,7 @@ impl BridgeStudy {
     /// mode that flutters.
     ///
     /// # Errors
-    /// Those of the forces; [`Error::Numerical`] when the mode cannot be followed to nearby coefficients.
+    /// [`Error::Numerical`] when the mode cannot be followed to nearby coefficients.
     pub fn onset_interval(&self, onset: &Onset) -> Result<OnsetInterval> {
         let nearby = NearbyOnset::of(&self.by_model, &onset.at)?;
         let (mut variance, mut of_each) = (0.0, 0.0);
@@ -66,7 +67,7 @@ impl BridgeStudy {
                 group.forces = forces.clone();
             }
             let found = nearby.find(&coupled(&bridge)?);
-            found.map(|(speed, _)| speed).ok_or_else(|| {
+            found.map(|found| found.speed_m_s).ok_or_else(|| {
                 Error::Numerical("interval: the mode that flutters cannot be followed".into())
             })
         };

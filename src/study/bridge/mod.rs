@@ -7,7 +7,6 @@ mod forces;
 mod interval;
 mod scatter;
 
-use answers::coupled;
 pub use answers::{BridgeAnswer, BridgeFlutter, LeftOut, bridge_flutter};
 pub use buffeting::{BridgeBuffeting, BridgeRecord, BuffetingBlock};
 pub use export::Wanted;
@@ -53,15 +52,12 @@ impl BridgeStudy {
     /// Reads modes and sections and fits models to tables.
     ///
     /// # Errors
-    /// [`Error::Io`] and [`Error::Input`] with file and place; those of the fits.
+    /// [`Error::Io`] and [`Error::Input`] with file and place; [`Error::Numerical`] when a fit has no answer.
     pub fn new(file: BridgeFile) -> Result<Self> {
         Self::with_trained(file, |_| None)
     }
 
     /// The same, with models at hand for some sections.
-    ///
-    /// # Errors
-    /// As [`BridgeStudy::new`].
     pub(crate) fn with_trained(
         file: BridgeFile,
         trained: impl Fn(&SectionBlock) -> Option<(TrainedModel, KnownUncertainty)>,

@@ -1,6 +1,7 @@
 //! The onset of a bridge whose frequencies, damping and derivatives scatter (Monte Carlo).
 
-use super::{BridgeStudy, SectionForces, coupled};
+use super::answers::coupled;
+use super::{BridgeStudy, SectionForces};
 use crate::aerodynamics::{
     ContinuousRealization, Realizable, Realization, Transfer, TransferMatrix,
 };
@@ -92,8 +93,7 @@ impl BridgeStudy {
     /// sample from the onset of the mean; where it cannot be followed the onset is searched.
     ///
     /// # Errors
-    /// [`Error::Input`] for scatter that cannot be; those of the forces; [`Error::Numerical`] when fewer than two samples have an
-    /// onset.
+    /// [`Error::Input`] for scatter that cannot be; [`Error::Numerical`] when fewer than two samples have an onset.
     pub fn scattered_onset(&self, onset: &Onset, scatter: &Scatter) -> Result<ScatteredOnset> {
         non_negative("scatter of the frequencies", scatter.frequency)?;
         non_negative("scatter of the damping", scatter.damping)?;
@@ -200,8 +200,8 @@ impl Sampler<'_> {
     /// The onset of one sample, m/s: from nearby, else by a search.
     fn onset(&self, index: u64) -> Result<Option<f64>> {
         let other = coupled(&self.sample(index)?)?;
-        if let Some((speed, _)) = self.nearby.find(&other) {
-            return Ok(Some(speed));
+        if let Some(found) = self.nearby.find(&other) {
+            return Ok(Some(found.speed_m_s));
         }
         let search = OnsetSearch {
             speed_max_m_s: self.study.file.flutter.speed_max_m_s,

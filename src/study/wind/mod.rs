@@ -124,9 +124,6 @@ impl WindStudy {
     }
 
     /// Reads and checks the text of a wind file; paths in it are read against `directory`.
-    ///
-    /// # Errors
-    /// [`Error::Input`] with line and key for everything that is wrong in it.
     pub(crate) fn from_toml(text: &str, directory: PathBuf) -> Result<Self> {
         toml_lines::parse("a wind file", text, |study: &mut Self| {
             study.directory = directory;
@@ -173,9 +170,6 @@ impl WindStudy {
     }
 
     /// The trained model of `aerodynamics`, when it names one.
-    ///
-    /// # Errors
-    /// [`Error::Io`] and those of the file.
     pub(crate) fn trained_model(&self) -> Result<Option<TrainedModel>> {
         if !self.aerodynamics.ends_with(".json") {
             return Ok(None);
@@ -184,9 +178,6 @@ impl WindStudy {
     }
 
     /// The section: that of the file, else that of the trained model.
-    ///
-    /// # Errors
-    /// [`Error::Input`] when there is neither.
     pub(crate) fn section(&self) -> Result<SectionModel> {
         if let Some(section) = &self.section {
             return Ok(section.clone());
@@ -207,9 +198,6 @@ impl WindStudy {
     }
 
     /// The table of static coefficients.
-    ///
-    /// # Errors
-    /// [`Error::Input`] when the file names none; those of reading.
     pub(crate) fn static_coefficients(&self) -> Result<StaticCoefficients> {
         named_coefficients(&self.coefficients_block()?.source, &self.directory)
     }

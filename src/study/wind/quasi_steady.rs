@@ -97,9 +97,6 @@ pub(crate) struct SimulatedMotion {
 }
 
 /// The run that the wind file asks for; `None` when it asks for none.
-///
-/// # Errors
-/// Those of the file's parts; [`Error::Numerical`] without an equilibrium at its wind speed.
 pub(crate) fn simulated_motion(study: &WindStudy) -> Result<Option<SimulatedMotion>> {
     let Some(run) = &study.simulation else {
         return Ok(None);

@@ -107,9 +107,6 @@ impl MonteCarloPlan {
     }
 
     /// Checks every value that does not need the model.
-    ///
-    /// # Errors
-    /// [`Error::Input`] naming the key.
     pub(crate) fn validate(&self) -> Result<()> {
         let wrong =
             |key: &str, expected: &str, found: String| Err(Error::input(key, expected, found));
@@ -315,9 +312,6 @@ impl Parameter {
     }
 
     /// The value in `section`.
-    ///
-    /// # Errors
-    /// [`Error::Input`] at `key` when the section does not state it.
     pub(super) fn nominal(self, key: &str, section: &SectionModel) -> Result<f64> {
         let mut copy = section.clone();
         self.place(&mut copy).copied().ok_or_else(|| {

@@ -186,7 +186,7 @@ pub struct ManyOnsets {
 /// that of the model. Continuous models go through [`OnsetSweep`].
 ///
 /// # Errors
-/// [`Error::Input`] naming the number of the first section that cannot be, those of the searches.
+/// [`Error::Input`] naming the number of the first section that cannot be.
 pub fn many_onsets(
     model: &TrainedModel,
     count: usize,

@@ -40,9 +40,6 @@ pub(super) struct Sample {
 
 impl Sampler {
     /// The sampler of a plan for a section and the coefficients of its force model, with the factor of their covariance.
-    ///
-    /// # Errors
-    /// [`Error::Input`] naming the key of the plan.
     pub(super) fn new(
         plan: &MonteCarloPlan,
         section: &SectionModel,

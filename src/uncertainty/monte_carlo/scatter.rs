@@ -7,7 +7,7 @@
 
 use super::coefficients;
 use super::plan::MonteCarloPlan;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, counted};
 use crate::section::Dof;
 use crate::trained_model::{Model, TrainedModel};
 use crate::uncertainty::CoefficientUncertainty;
@@ -42,9 +42,6 @@ struct Stated {
 }
 
 /// The model in the form in which its draws are linear, and the factor of the covariance that the plan names.
-///
-/// # Errors
-/// [`Error::Input`] naming the file that does not fit the model.
 pub(super) fn drawn_model(
     plan: &MonteCarloPlan,
     trained: &TrainedModel,
@@ -185,7 +182,7 @@ fn from_report(text: &str) -> Result<(Vec<String>, DMatrix<f64>)> {
             return Err(Error::input(
                 format!("covariance of {place}"),
                 format!("a {n}x{n} matrix"),
-                format!("{} rows", entry.covariance.len()),
+                counted(entry.covariance.len(), "row"),
             ));
         }
         names.extend(
@@ -238,7 +235,7 @@ fn from_csv(text: &str) -> Result<(Vec<String>, DMatrix<f64>)> {
         rows += 1;
     }
     if rows != names.len() {
-        let expected = format!("{} rows", names.len());
+        let expected = counted(names.len(), "row");
         return Err(Error::input("covariance", expected, rows.to_string()));
     }
     let matrix = DMatrix::from_row_slice(rows, rows, &values);

@@ -1,7 +1,8 @@
 //! The campaign file itself.
 
 use super::air::Air;
-use super::channel_map::{ChannelMap, ChannelRef};
+use super::channel::ChannelRef;
+use super::channel_map::ChannelMap;
 use super::ntnu;
 use super::section_forces::{self, SectionForces};
 use crate::error::{Error, Result, at_most, positive};
@@ -151,9 +152,6 @@ impl Campaign {
     }
 
     /// Reads and checks the text of a campaign file; paths in it are read against `directory`.
-    ///
-    /// # Errors
-    /// [`Error::Input`] with line and key for everything that is wrong in it.
     pub(crate) fn from_toml(text: &str, directory: PathBuf) -> Result<Self> {
         toml_lines::parse("a campaign file", text, |campaign: &mut Self| {
             campaign.directory = directory;

@@ -4,6 +4,7 @@
 //! `Campaign::load` the recordings it names; what does not stop reading is a list of findings.
 
 mod air;
+mod channel;
 mod channel_map;
 mod file;
 mod findings;

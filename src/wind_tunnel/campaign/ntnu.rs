@@ -8,7 +8,8 @@
 //! frequency` and the datasets `temperature`, `air_density`, `wind_velocity`, `motion`, `forces_global_coord` and
 //! `forces_global_coord_center` of a group; units and descriptions are those that its import of TDMS files writes.
 
-use super::channel_map::{CellChannel, ChannelMap, ChannelRef, cell_quantity};
+use super::channel::{CellChannel, ChannelRef};
+use super::channel_map::{ChannelMap, cell_quantity};
 use super::quantity::Quantity;
 use crate::section::Dof;
 use crate::wind_tunnel::virtual_campaign::VirtualCampaign;

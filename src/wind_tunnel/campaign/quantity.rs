@@ -73,9 +73,6 @@ impl Quantity {
     }
 
     /// Factor from `unit` to SI (°C for temperatures).
-    ///
-    /// # Errors
-    /// [`Error::Input`] at `place` listing the units that this quantity may have.
     pub(crate) fn factor(self, place: &str, unit: &str) -> Result<f64> {
         self.factor_of(unit).ok_or_else(|| {
             let own: Vec<&str> = UNITS

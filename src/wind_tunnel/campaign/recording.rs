@@ -1,8 +1,7 @@
 //! One recording: channels taken out of a file by the map, in SI units, of one length, all of it numbers.
 
-use super::channel_map::{
-    CellChannel, ChannelMap, ChannelRef, cell_quantity, described, sampling_of,
-};
+use super::channel::{CellChannel, ChannelRef};
+use super::channel_map::{ChannelMap, cell_quantity, described, sampling_of};
 use super::file::{Campaign, FileRef, RunBlock};
 use super::findings::{Finding, channel_findings, first_gap};
 use super::quantity::Quantity;

@@ -1,6 +1,6 @@
 //! Forces on the whole section in place of load cells, as a computation has them.
 
-use super::channel_map::{CellChannel, ChannelRef, NotMeasured};
+use super::channel::{CellChannel, ChannelRef, NotMeasured};
 use crate::section::Dof;
 use crate::wind_tunnel::{CELL_CHANNELS, LoadCell};
 use serde::{Deserialize, Serialize};

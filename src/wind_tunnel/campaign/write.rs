@@ -1,7 +1,8 @@
 //! Writing a virtual campaign to files that [`Campaign::read`] reads back.
 
 use super::air::Air;
-use super::channel_map::{CellChannel, ChannelMap, ChannelRef, cell_quantity};
+use super::channel::{CellChannel, ChannelRef};
+use super::channel_map::{ChannelMap, cell_quantity};
 use super::file::{
     CAMPAIGN_SCHEMA, Campaign, FileRef, RecordingBlock, RecordingLayout, RunBlock, SectionBlock,
 };
@@ -32,9 +33,6 @@ const TRUTH_COLUMNS: &str = "run,motion,force,frequency_hz,k,g_real,g_imaginary"
 /// Writes `campaign.toml`, the recordings, and the truth: `truth.csv` with `G` at the test points, `truth/RUN.csv`
 /// with the clean records, `disturbances.json`. `place` says at which path to write each file, given its path below
 /// the folder of the campaign.
-///
-/// # Errors
-/// [`Error::Io`]; those of `place`.
 pub(crate) fn write_virtual_campaign(
     made: &VirtualCampaign,
     format: FileFormat,

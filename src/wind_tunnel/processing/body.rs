@@ -4,10 +4,10 @@
 //! rotation `I = m (r² + e²)` in the moment and `m e` in the lift. So `|e| < B` bounds the one, and `e/(r² + e²) ≤ 1/(2r)` with a
 //! radius of gyration r of no less than `B/20` the other, whatever the model: beyond them the motion is not the one that its channel says.
 
-use super::lag::StillAirInertia;
 use crate::error::{Error, Result};
 use crate::section::Dof;
 use crate::wind_tunnel::Rig;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
 /// A stated mass may be off by this part, for screws and clamps, before it is said …
@@ -18,11 +18,41 @@ const ANOTHER_BODY: f64 = 0.2;
 const AIR_OVER_PLATE: f64 = 1.5;
 /// `1/(2r)` with `r = B/20`, times B.
 const LEVER_OF_ROTATION: f64 = 10.0;
+/// A sign is certain when the figure is this many standard errors from zero.
+const CERTAIN: f64 = 5.0;
+
+/// Inertia of the model and lag of the force channels, from one still-air recording.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct StillAirInertia {
+    /// Degree of freedom that moved.
+    pub dof: Dof,
+    /// Lag of the force channels behind the motion, s.
+    pub lag_s: f64,
+    /// Standard error of the lag, s.
+    pub lag_standard_error_s: f64,
+    /// Inertia μ of the whole model in that degree of freedom: kg, kg·m².
+    pub inertia: f64,
+    /// Standard error of the inertia.
+    pub inertia_standard_error: f64,
+    /// Stiffness κ of gravity: N/m, N·m/rad.
+    pub stiffness: f64,
+    /// Damping c in still air: N·s/m, N·m·s/rad.
+    pub damping: f64,
+}
+
+impl StillAirInertia {
+    /// Whether the inertia is no chance.
+    pub(crate) fn is_certain(&self) -> bool {
+        self.inertia.abs() > CERTAIN * self.inertia_standard_error
+    }
+
+    /// Whether there is inertia enough to tell the lag to a fifth of a sample.
+    pub(crate) fn tells_lag(&self, sampling_hz: f64) -> bool {
+        self.lag_standard_error_s * sampling_hz < 0.2 && self.inertia > 0.0
+    }
+}
 
 /// Refuses inertia in another force than a motion of `dof` can have: then rotation and a displacement are exchanged.
-///
-/// # Errors
-/// [`Error::Input`] naming `run` with the figures.
 pub(super) fn check_motion(
     run: &str,
     rig: &Rig,
@@ -64,9 +94,6 @@ pub(super) fn check_motion(
 }
 
 /// Compares the inertia with that of the rig, if it states one: a warning with the figures, or nothing.
-///
-/// # Errors
-/// [`Error::Input`] naming `run` when it is that of another body.
 pub(super) fn compare(
     run: &str,
     rig: &Rig,

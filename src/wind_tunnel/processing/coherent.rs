@@ -69,9 +69,6 @@ impl Regressors {
     }
 
     /// Least squares over the samples that are not `wild`.
-    ///
-    /// # Errors
-    /// [`Error::Numerical`] when too few samples are left.
     pub(crate) fn fit(&self, force: &[f64], wild: &[bool]) -> Result<Parts> {
         let smooth = self.degree + 1;
         let unknowns = smooth + 2 * self.stretches.len();

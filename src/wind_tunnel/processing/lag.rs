@@ -5,7 +5,7 @@
 //! frequencies weighted least squares of `Im(F/X)/ω` on `Re(F/X)` and a constant gives τ and c, repeated until the turned-back
 //! ratio gives none; of one or two frequencies c is left out. μ and κ then follow from the real part.
 
-use super::body;
+use super::body::{self, StillAirInertia};
 use super::cells::sum_about_centre;
 use super::signals::HarmonicSegment;
 use crate::error::{Error, Result};
@@ -13,42 +13,7 @@ use crate::section::Dof;
 use crate::signal::fit_sine;
 use crate::wind_tunnel::{RawRecording, Rig};
 use nalgebra::{Complex, Matrix2, Vector2};
-use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
-
-/// A sign is certain when the figure is this many standard errors from zero.
-const CERTAIN: f64 = 5.0;
-
-/// Inertia of the model and lag of the force channels, from one still-air recording.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct StillAirInertia {
-    /// Degree of freedom that moved.
-    pub dof: Dof,
-    /// Lag of the force channels behind the motion, s.
-    pub lag_s: f64,
-    /// Standard error of the lag, s.
-    pub lag_standard_error_s: f64,
-    /// Inertia μ of the whole model in that degree of freedom: kg, kg·m².
-    pub inertia: f64,
-    /// Standard error of the inertia.
-    pub inertia_standard_error: f64,
-    /// Stiffness κ of gravity: N/m, N·m/rad.
-    pub stiffness: f64,
-    /// Damping c in still air: N·s/m, N·m·s/rad.
-    pub damping: f64,
-}
-
-impl StillAirInertia {
-    /// Whether the inertia is no chance.
-    pub(crate) fn is_certain(&self) -> bool {
-        self.inertia.abs() > CERTAIN * self.inertia_standard_error
-    }
-
-    /// Whether there is inertia enough to tell the lag to a fifth of a sample.
-    pub(crate) fn tells_lag(&self, sampling_hz: f64) -> bool {
-        self.lag_standard_error_s * sampling_hz < 0.2 && self.inertia > 0.0
-    }
-}
 
 /// `F/X` at one frequency with the variance of either part.
 struct Ratio {
@@ -233,11 +198,20 @@ fn weighted_fit(
         .then_some(([result[0], result[1]], variance))
 }
 
-/// One lag for a campaign: the mean of its runs by inverse variance, with its standard error; `None` when no run tells it.
-pub(crate) fn common_lag(runs: &[StillAirInertia], sampling_hz: f64) -> Option<(f64, f64)> {
+/// Lag of the force channels of a campaign behind its motion.
+pub(crate) struct CommonLag {
+    pub lag_s: f64,
+    pub standard_error_s: f64,
+}
+
+/// One lag for a campaign: the mean of its runs by inverse variance; `None` when no run tells it.
+pub(crate) fn common_lag(runs: &[StillAirInertia], sampling_hz: f64) -> Option<CommonLag> {
     let telling = || runs.iter().filter(|r| r.tells_lag(sampling_hz));
     let weight = |r: &StillAirInertia| r.lag_standard_error_s.max(1e-12).powi(-2);
     let sum: f64 = telling().map(weight).sum();
     let mean = telling().map(|r| weight(r) * r.lag_s).sum::<f64>() / sum;
-    (sum > 0.0).then(|| (mean, sum.sqrt().recip()))
+    (sum > 0.0).then(|| CommonLag {
+        lag_s: mean,
+        standard_error_s: sum.sqrt().recip(),
+    })
 }

@@ -61,7 +61,8 @@ pub struct Processed {
 /// Processes every run of a campaign; `progress` is called with the number of runs done.
 ///
 /// # Errors
-/// [`Error::Input`] naming run, recording, channel and sample for what cannot be processed; those of all runs in their order.
+/// [`Error::Input`] naming run, recording, channel and sample for what cannot be processed; of several runs all, in their
+/// order.
 pub fn process(
     campaign: &RawCampaign,
     options: &ProcessingOptions,
@@ -90,7 +91,7 @@ pub fn process(
     let estimated = lag::common_lag(&estimates, sampling_hz);
     let lag_s = options
         .lag_s
-        .unwrap_or_else(|| estimated.map_or(0.0, |(lag, _)| lag));
+        .unwrap_or_else(|| estimated.as_ref().map_or(0.0, |of| of.lag_s));
     let done = AtomicUsize::new(0);
     let runs = prepared
         .into_par_iter()
@@ -108,7 +109,7 @@ pub fn process(
         lag_s,
         lag_standard_error_s: match options.lag_s {
             Some(_) => None,
-            None => estimated.map(|(_, error)| error),
+            None => estimated.map(|of| of.standard_error_s),
         },
         common_delta_s: runs.iter().map(delta_s).fold(0.0, f64::max),
         runs: runs.iter().map(|r| r.report.clone()).collect(),

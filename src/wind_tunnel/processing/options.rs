@@ -126,9 +126,6 @@ const DRIFT_DEGREE_AT_MOST: usize = 12;
 
 impl ProcessingOptions {
     /// Checks every number.
-    ///
-    /// # Errors
-    /// [`Error::Input`] naming the key.
     pub(crate) fn validate(&self) -> Result<()> {
         let wrong = |key: &str, expected: &str, found: String| {
             Err(Error::input(format!("processing.{key}"), expected, found))

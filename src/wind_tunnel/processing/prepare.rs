@@ -1,7 +1,8 @@
 //! A run before any stage: checked, its test points found, its inertia asked for the lag.
 
+use super::body::StillAirInertia;
 use super::check::{Findings, check_run};
-use super::lag::{StillAirInertia, still_air_inertia};
+use super::lag::still_air_inertia;
 use super::options::ProcessingOptions;
 use super::segmentation::{find_segments, moving_dof, whole_periods};
 use super::signals::HarmonicSegment;

@@ -1,13 +1,13 @@
 //! What processing did, in numbers, and what the user should know of a run that could be processed.
 
+use super::body::StillAirInertia;
 use super::cells::CellShare;
 use super::check::ClippedStretch;
 use super::drift::CellDrift;
-use super::lag::StillAirInertia;
 use super::low_pass::AppliedLowPass;
 use super::options::ProcessingOptions;
 use super::rest::{CrossTalk, RemovedMeans};
-use super::signals::{HarmonicSegment, SectionSignals, peak_and_rms};
+use super::signals::{HarmonicSegment, Level, SectionSignals, level};
 use super::spikes::Replaced;
 use super::still_air::{Alignment, RemovedInertia};
 use crate::section::Dof;
@@ -26,11 +26,11 @@ pub struct StageLevels {
 
 impl StageLevels {
     pub(super) fn of(stage: &str, signals: &SectionSignals) -> Self {
-        let levels: [(f64, f64); 3] = std::array::from_fn(|d| peak_and_rms(&signals.force[d]));
+        let levels: [Level; 3] = std::array::from_fn(|d| level(&signals.force[d]));
         Self {
             stage: stage.to_owned(),
-            peak: levels.map(|l| l.0),
-            rms: levels.map(|l| l.1),
+            peak: levels.map(|l| l.peak),
+            rms: levels.map(|l| l.rms),
         }
     }
 }

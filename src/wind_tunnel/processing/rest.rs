@@ -9,7 +9,7 @@
 //! Noise of a sensor, or the foot of a filter, is not that first motion. So before the first and after the last segment the motion
 //! is zero, and a channel that moves by less than a part of the driven one is zero throughout.
 
-use super::signals::{HarmonicSegment, SectionSignals, index, peak_and_rms};
+use super::signals::{HarmonicSegment, SectionSignals, index, level};
 use crate::section::Dof;
 use crate::signal::mean;
 use serde::{Deserialize, Serialize};
@@ -34,7 +34,7 @@ pub(crate) fn still_the_rest(
 ) -> CrossTalk {
     let count = signals.len();
     let size = |d: Dof| {
-        let (_, rms) = peak_and_rms(&signals.motion[index(d)]);
+        let rms = level(&signals.motion[index(d)]).rms;
         rms * d.motion_scale(width_m)
     };
     let own = size(driven).max(f64::MIN_POSITIVE);
@@ -78,13 +78,25 @@ pub struct RemovedMeans {
     pub at_rest: bool,
 }
 
+/// The samples that means are taken of.
+pub(crate) struct Rest {
+    pub samples: Range<usize>,
+    /// Whether nothing moves there.
+    pub at_rest: bool,
+}
+
 /// The samples before the first segment if they are long enough, or all.
-pub fn rest(segments: &[HarmonicSegment], signals: &SectionSignals) -> (Range<usize>, bool) {
+pub(crate) fn rest(segments: &[HarmonicSegment], signals: &SectionSignals) -> Rest {
     let first = segments.first().map_or(0.0, |s| s.segment.start_s);
-    if first >= REST_AT_LEAST_S {
-        (0..(first * signals.sampling_hz) as usize, true)
+    let at_rest = first >= REST_AT_LEAST_S;
+    let end = if at_rest {
+        (first * signals.sampling_hz) as usize
     } else {
-        (0..signals.len(), false)
+        signals.len()
+    };
+    Rest {
+        samples: 0..end,
+        at_rest,
     }
 }
 

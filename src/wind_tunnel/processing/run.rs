@@ -7,8 +7,8 @@ use super::low_pass::AppliedLowPass;
 use super::options::ProcessingOptions;
 use super::prepare::Prepared;
 use super::report::{DimensionlessFactors, RemovedDrift, RunReport, SignalToNoise, StageLevels};
-use super::rest::{RemovedMeans, remove_means, rest, still_the_rest};
-use super::signals::{HarmonicSegment, SectionSignals, peak_and_rms};
+use super::rest::{RemovedMeans, Rest, remove_means, rest, still_the_rest};
+use super::signals::{HarmonicSegment, SectionSignals, level};
 use super::still_air::Alignment;
 use super::{cells, drift, index, low_pass, report, signals, spikes, still_air};
 use crate::error::Result;
@@ -49,9 +49,6 @@ struct InStep {
 }
 
 /// Takes a prepared run through all stages.
-///
-/// # Errors
-/// [`crate::Error::Input`] naming the run.
 pub(super) fn process_run(
     prepared: &Prepared<'_>,
     campaign: &RawCampaign,
@@ -71,7 +68,10 @@ pub(super) fn process_run(
     let segments = prepared.covered_segments(&covered)?;
     let mut stages = Stages::default();
     stages.add("sum of the cells", &signals);
-    let (range, at_rest) = rest(&segments, &signals);
+    let Rest {
+        samples: range,
+        at_rest,
+    } = rest(&segments, &signals);
     let in_wind = remove_means(&mut signals, &range);
     let still_air = remove_means(&mut still, &range);
     stages.add("means removed", &signals);
@@ -330,7 +330,7 @@ fn noise_ratio(
         let rest: Vec<f64> = steady()
             .map(|k| signals.force[d][k] - parts[d].coherent[k])
             .collect();
-        let (signal, noise) = (peak_and_rms(&coherent).1, peak_and_rms(&rest).1);
+        let (signal, noise) = (level(&coherent).rms, level(&rest).rms);
         if signal > 0.0 && noise > 0.0 {
             20.0 * (signal / noise).log10()
         } else {

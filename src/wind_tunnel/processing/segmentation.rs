@@ -87,9 +87,6 @@ pub(crate) fn find_segments(
 
 /// Refuses a motion that ends before it has gone through the periods that one test point takes: of such a record nothing can be
 /// said, whatever moves.
-///
-/// # Errors
-/// [`Error::Input`] at `place` with the periods there are.
 pub(crate) fn whole_periods(place: &str, recording: &RawRecording, dof: Dof) -> Result<()> {
     let motion = super::still_air::from_rest(&recording.motion[super::index(dof)]);
     let amplitude = motion.iter().fold(0.0_f64, |m, x| m.max(x.abs()));

@@ -9,7 +9,7 @@
 //! after both are in global axes, about the centre of rotation and in step. The mass of the air that moves with the model in
 //! still air leaves with it: the derivatives are those of wind against still air, as in every such test.
 
-use super::signals::{SectionSignals, peak_and_rms};
+use super::signals::{SectionSignals, level};
 use crate::error::{Error, Result};
 use crate::section::Dof;
 use crate::signal::{delay, delayed};
@@ -133,7 +133,7 @@ pub(crate) fn subtract(in_wind: &mut SectionSignals, still_air: &SectionSignals)
     for (wind, still) in in_wind.force.iter_mut().zip(&still_air.force) {
         wind.iter_mut().zip(still).for_each(|(w, s)| *w -= s);
     }
-    let rms = |s: &SectionSignals| std::array::from_fn(|d| peak_and_rms(&s.force[d]).1);
+    let rms = |s: &SectionSignals| std::array::from_fn(|d| level(&s.force[d]).rms);
     RemovedInertia {
         removed_rms: rms(still_air),
         left_rms: rms(in_wind),

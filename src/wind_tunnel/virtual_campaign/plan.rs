@@ -216,9 +216,6 @@ impl VirtualCampaignPlan {
     }
 
     /// Checks that the plan can be carried out.
-    ///
-    /// # Errors
-    /// [`Error::Input`] naming the key.
     pub(crate) fn validate(&self) -> Result<()> {
         self.tunnel.validate()?;
         self.support.validate()?;
@@ -275,9 +272,6 @@ impl VirtualCampaignPlan {
     }
 
     /// Reads and checks the text of a plan.
-    ///
-    /// # Errors
-    /// [`Error::Input`] with line and key for everything that is wrong in it.
     pub(crate) fn from_toml(text: &str) -> Result<Self> {
         crate::files::toml_lines::parse("a plan of a virtual campaign", text, |plan: &mut Self| {
             plan.validate()
@@ -285,9 +279,6 @@ impl VirtualCampaignPlan {
     }
 
     /// The plan as the text of a file.
-    ///
-    /// # Errors
-    /// [`Error::Numerical`] when it cannot be written as TOML.
     pub(crate) fn to_toml(&self) -> Result<String> {
         toml::to_string(self).map_err(|e| Error::Numerical(e.to_string()))
     }

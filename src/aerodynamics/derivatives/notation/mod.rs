@@ -12,12 +12,14 @@
 //! | Küssner/Starossek | `ω²πρb² · i c″_hh h`, h down | 2/π, 4/π, 8/π and signs |
 
 mod argument;
+mod axes;
 mod convention;
 mod expressed;
 mod names;
 
 pub use argument::Argument;
-pub use convention::{Axes, Convention, StatedConvention};
+pub use axes::Axes;
+pub use convention::{Convention, StatedConvention};
 pub use expressed::ExpressedPoint;
 pub(crate) use expressed::{ExpressedDerivative, ExpressedTable};
 

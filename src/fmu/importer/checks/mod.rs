@@ -2,15 +2,13 @@
 //!
 //! Rules are those of FMI 2.0.5, sections 2.2 and 4.3, with the strictest reading that some importer or checker takes.
 
+mod head;
 mod structure;
 mod units;
 mod variables;
 
 use super::description::ModelDescription;
 use super::findings::Findings;
-use std::collections::HashSet;
-
-const FILE: &str = "modelDescription.xml";
 
 /// Applies every rule.
 pub(super) fn check(description: &ModelDescription) -> Findings {
@@ -24,10 +22,10 @@ pub(super) fn check(description: &ModelDescription) -> Findings {
 type Rule = fn(&ModelDescription, &mut Findings);
 
 const RULES: [Rule; 20] = [
-    head,
-    co_simulation,
-    log_categories,
-    default_experiment,
+    head::head,
+    head::co_simulation,
+    head::log_categories,
+    head::default_experiment,
     units::definitions,
     units::uses,
     variables::names,
@@ -45,107 +43,6 @@ const RULES: [Rule; 20] = [
     structure::order,
     structure::dependencies,
 ];
-
-fn head(d: &ModelDescription, f: &mut Findings) {
-    if !d.fmi_version.is_empty() && d.fmi_version != "2.0" {
-        f.error(
-            format!("{FILE}, fmiVersion"),
-            "2.0 (also for 2.0.1 to 2.0.5)",
-            format!("`{}`", d.fmi_version),
-        );
-    }
-    if d.guid.trim().is_empty() {
-        f.error(
-            format!("{FILE}, guid"),
-            "a fingerprint that ties description and binary together",
-            "an empty string",
-        );
-    }
-    if d.model_name.trim().is_empty() {
-        f.error(format!("{FILE}, modelName"), "a name", "an empty string");
-    }
-    if !["flat", "structured"].contains(&d.variable_naming_convention.as_str()) {
-        f.error(
-            format!("{FILE}, variableNamingConvention"),
-            "flat or structured",
-            format!("`{}`", d.variable_naming_convention),
-        );
-    }
-}
-
-fn co_simulation(d: &ModelDescription, f: &mut Findings) {
-    let Some(slave) = &d.co_simulation else {
-        f.error(FILE, "an FMU for co-simulation", "no <CoSimulation>");
-        return;
-    };
-    let id = &slave.model_identifier;
-    let legal = id
-        .chars()
-        .next()
-        .is_some_and(|c| c.is_ascii_alphabetic() || c == '_')
-        && id.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
-    if !legal {
-        f.error(
-            format!("{FILE}, modelIdentifier"),
-            "a valid C identifier",
-            format!("`{id}`"),
-        );
-    }
-    if slave.needs_execution_tool {
-        f.warning(
-            format!("{FILE}, needsExecutionTool"),
-            "an FMU that runs by itself",
-            "one that needs another program",
-        );
-    }
-    if slave.can_serialize_fmu_state && !slave.can_get_and_set_fmu_state {
-        f.error(
-            format!("{FILE}, canSerializeFMUstate"),
-            "canGetAndSetFMUstate along with it",
-            "false",
-        );
-    }
-}
-
-fn log_categories(d: &ModelDescription, f: &mut Findings) {
-    for name in duplicates(d.log_categories.iter().map(String::as_str)) {
-        f.error(
-            format!("{FILE}, LogCategories"),
-            "each category once",
-            format!("`{name}` twice"),
-        );
-    }
-}
-
-fn default_experiment(d: &ModelDescription, f: &mut Findings) {
-    let e = &d.default_experiment;
-    let place = |what: &str| format!("{FILE}, DefaultExperiment, {what}");
-    let start = e.start_time.unwrap_or(0.0);
-    if let Some(stop) = e.stop_time.filter(|stop| *stop <= start) {
-        f.error(
-            place("stopTime"),
-            format!("a time after the start, {start} s"),
-            format!("{stop}"),
-        );
-    }
-    for (name, value) in [("stepSize", e.step_size), ("tolerance", e.tolerance)] {
-        if let Some(value) = value.filter(|v| *v <= 0.0) {
-            f.error(place(name), "a positive number", value.to_string());
-        }
-    }
-}
-
-/// Every text that comes more than once, once.
-fn duplicates<'a>(all: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
-    let (mut seen, mut reported) = (HashSet::new(), HashSet::new());
-    let mut twice = Vec::new();
-    for one in all {
-        if !seen.insert(one) && reported.insert(one) {
-            twice.push(one);
-        }
-    }
-    twice
-}
 
 #[cfg(test)]
 mod tests;

@@ -1,8 +1,9 @@
 //! `ModelStructure`: what is listed, in which order, and on what it depends.
 
-use super::super::description::{Causality, Initial, ModelDescription, ScalarVariable, Unknown};
+use super::super::description::{
+    Causality, FILE, Initial, ModelDescription, ScalarVariable, Unknown,
+};
 use super::super::findings::Findings;
-use super::FILE;
 use std::collections::BTreeSet;
 
 type Lists<'a> = [(&'static str, &'a [Unknown]); 3];

@@ -1,18 +1,12 @@
 //! Units: defined once, with a meaning, and every one that is used is defined.
 
-use super::super::description::{ModelDescription, Unit};
+use super::super::description::{FILE, ModelDescription, Unit};
 use super::super::findings::Findings;
-use super::{FILE, duplicates};
 use std::collections::HashMap;
 
 pub(super) fn definitions(d: &ModelDescription, f: &mut Findings) {
-    for name in duplicates(d.units.iter().map(|u| u.name.as_str())) {
-        f.error(
-            format!("{FILE}, UnitDefinitions"),
-            "each unit once",
-            format!("`{name}` twice"),
-        );
-    }
+    let names = d.units.iter().map(|u| u.name.as_str());
+    f.each_once(&format!("{FILE}, UnitDefinitions"), "each unit once", names);
     for unit in &d.units {
         let place = format!("{FILE}, line {}, unit `{}`", unit.line, unit.name);
         if let Some((_, factor, _)) = unit.base
@@ -20,9 +14,8 @@ pub(super) fn definitions(d: &ModelDescription, f: &mut Findings) {
         {
             f.error(&place, "a factor to the base unit other than 0", "0");
         }
-        for name in duplicates(unit.display_units.iter().map(|u| u.name.as_str())) {
-            f.error(&place, "each display unit once", format!("`{name}` twice"));
-        }
+        let names = unit.display_units.iter().map(|u| u.name.as_str());
+        f.each_once(&place, "each display unit once", names);
         for display in unit.display_units.iter().filter(|u| u.factor == 0.0) {
             f.error(
                 format!("{place}, display unit `{}`", display.name),

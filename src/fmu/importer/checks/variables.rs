@@ -1,23 +1,18 @@
 //! Rules about single variables and about variables that share a value reference.
 
 use super::super::description::{
-    Causality, Initial, Kind, ModelDescription, ScalarVariable, Value, Variability, initial_choices,
+    Causality, FILE, Initial, Kind, ModelDescription, ScalarVariable, Value, Variability,
+    initial_choices,
 };
 use super::super::findings::Findings;
-use super::{FILE, duplicates};
 use std::collections::BTreeMap;
 
 /// Names that one finding lists.
 const MAX_NAMES: usize = 5;
 
 pub(super) fn names(d: &ModelDescription, f: &mut Findings) {
-    for name in duplicates(d.variables.iter().map(|v| v.name.as_str())) {
-        f.error(
-            format!("{FILE}, ModelVariables"),
-            "unique names",
-            format!("`{name}` twice"),
-        );
-    }
+    let names = d.variables.iter().map(|v| v.name.as_str());
+    f.each_once(&format!("{FILE}, ModelVariables"), "unique names", names);
     for v in &d.variables {
         if v.name.is_empty() || v.name.contains(['\r', '\n', '\t']) {
             f.error(

@@ -12,7 +12,8 @@ pub use search::{GrowthPoint, SteppedOnset, SteppedSearch, SteppingSearch};
 use super::Fmu;
 use super::description::{Kind, Value};
 use super::simulation::{Times, start};
-use super::slave::{Slave, Status, find};
+use super::slave::{Slave, find};
+use super::status::Status;
 use crate::error::{Error, Result, positive};
 use crate::flutter::StableRange;
 
@@ -44,7 +45,7 @@ const MAX_STEPS: usize = 2_000_000;
 ///
 /// # Errors
 /// [`Error::Input`] for a search that makes no sense or an FMU without these variables; [`Error::Numerical`] when no growth
-/// rate can be told at the lowest speed; the errors of [`Slave`].
+/// rate can be told at the lowest speed, and when the FMU refuses a call.
 pub fn onset_by_stepping(fmu: &Fmu, search: &SteppingSearch) -> Result<SteppedSearch> {
     search.check()?;
     let mut run = Run::new(fmu, search.communication_step_s)?;
@@ -97,7 +98,8 @@ pub fn onset_by_stepping(fmu: &Fmu, search: &SteppingSearch) -> Result<SteppedSe
 /// Growth of the released section of the FMU at one wind speed (m/s).
 ///
 /// # Errors
-/// As [`onset_by_stepping`].
+/// [`Error::Input`] for a search that makes no sense or an FMU without these variables; [`Error::Numerical`] when the FMU
+/// refuses a call.
 pub fn growth_by_stepping(
     fmu: &Fmu,
     speed_m_s: f64,

@@ -8,50 +8,13 @@ pub use states::FmuState;
 use super::description::{Kind, ModelDescription, ScalarVariable, Value};
 use super::library::{Binary, CallbackFunctions, Component, Functions, Int};
 use super::log::{LogBook, LogMessage, logger};
+use super::status::Status;
 use crate::error::{Error, Result};
 use std::cell::Cell;
 use std::ffi::{CString, c_void};
 use std::rc::Rc;
 use std::sync::Arc;
 use tempfile::TempDir;
-
-/// Answer of a function of FMI.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Status {
-    /// Done.
-    Ok,
-    /// Done, with a remark in the log.
-    Warning,
-    /// Not done; the instance is as before.
-    Discard,
-    /// Not done; the instance is of no further use.
-    Error,
-    /// As error, for all instances.
-    Fatal,
-    /// Not finished yet.
-    Pending,
-    /// A number that is no status.
-    Unknown(i32),
-}
-
-impl Status {
-    pub(super) fn from_code(code: Int) -> Self {
-        match code {
-            0 => Self::Ok,
-            1 => Self::Warning,
-            2 => Self::Discard,
-            3 => Self::Error,
-            4 => Self::Fatal,
-            5 => Self::Pending,
-            other => Self::Unknown(other),
-        }
-    }
-
-    /// Whether the call did what it should.
-    pub fn is_good(self) -> bool {
-        matches!(self, Self::Ok | Self::Warning)
-    }
-}
 
 /// What an instance needs for as long as it lives.
 pub(super) struct Loaded {
@@ -87,7 +50,7 @@ impl Drop for Core {
     }
 }
 
-/// A running instance.
+/// A running instance. A call that it answers with neither OK nor a warning returns [`Error::Numerical`] with status and log.
 pub struct Slave {
     core: Rc<Core>,
 }
@@ -187,7 +150,7 @@ impl Slave {
     /// `fmi2SetupExperiment`: times in s.
     ///
     /// # Errors
-    /// [`Error::Numerical`] with status and log when the answer is neither OK nor a warning; so for all functions here.
+    /// [`Error::Numerical`] with status and log when the answer is neither OK nor a warning.
     pub fn setup(
         &mut self,
         start_s: f64,
@@ -208,9 +171,6 @@ impl Slave {
     }
 
     /// `fmi2EnterInitializationMode`.
-    ///
-    /// # Errors
-    /// As [`Slave::setup`].
     pub fn enter_initialization(&mut self) -> Result<()> {
         self.good("fmi2EnterInitializationMode", |f, c| unsafe {
             (f.enter_initialization_mode)(c)
@@ -218,9 +178,6 @@ impl Slave {
     }
 
     /// `fmi2ExitInitializationMode`.
-    ///
-    /// # Errors
-    /// As [`Slave::setup`].
     pub fn exit_initialization(&mut self) -> Result<()> {
         self.good("fmi2ExitInitializationMode", |f, c| unsafe {
             (f.exit_initialization_mode)(c)
@@ -230,7 +187,7 @@ impl Slave {
     /// `fmi2DoStep` from `time_s` over `step_s`; a discarded step is an answer, not an error.
     ///
     /// # Errors
-    /// As [`Slave::setup`], for error and fatal.
+    /// [`Error::Numerical`] with status and log when the answer is an error.
     pub fn do_step(&mut self, time_s: f64, step_s: f64) -> Result<Status> {
         let status = self.try_step(time_s, step_s);
         if status.is_good() || status == Status::Discard {
@@ -246,17 +203,11 @@ impl Slave {
     }
 
     /// `fmi2Terminate`.
-    ///
-    /// # Errors
-    /// As [`Slave::setup`].
     pub fn terminate(&mut self) -> Result<()> {
         self.good("fmi2Terminate", |f, c| unsafe { (f.terminate)(c) })
     }
 
     /// `fmi2Reset`.
-    ///
-    /// # Errors
-    /// As [`Slave::setup`].
     pub fn reset(&mut self) -> Result<()> {
         self.good("fmi2Reset", |f, c| unsafe { (f.reset)(c) })
     }
@@ -264,7 +215,7 @@ impl Slave {
     /// Value of the variable of that name, whatever its type.
     ///
     /// # Errors
-    /// [`Error::Input`] for a name that is not there; as [`Slave::setup`].
+    /// [`Error::Input`] for a name that is not there.
     pub fn get(&self, name: &str) -> Result<Value> {
         let (kind, reference) = self.lookup(name)?;
         self.get_by_reference(kind, reference)
@@ -283,7 +234,7 @@ impl Slave {
     /// Sets the variable of that name; a whole number also sets a Real.
     ///
     /// # Errors
-    /// [`Error::Input`] for a name that is not there or a value of another type; as [`Slave::setup`].
+    /// [`Error::Input`] for a name that is not there or a value of another type.
     pub fn set(&mut self, name: &str, value: &Value) -> Result<()> {
         let (kind, reference) = self.lookup(name)?;
         let one = &[reference];
@@ -307,9 +258,6 @@ impl Slave {
 }
 
 /// The variable of that name.
-///
-/// # Errors
-/// [`Error::Input`] naming a few that are there.
 pub(super) fn find<'a>(d: &'a ModelDescription, name: &str) -> Result<&'a ScalarVariable> {
     d.variable(name).ok_or_else(|| {
         let some: Vec<_> = d

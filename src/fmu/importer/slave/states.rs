@@ -25,9 +25,6 @@ impl Drop for FmuState {
 // SAFETY of every call below: the component lives, and states are its own
 impl Slave {
     /// `fmi2GetFMUstate`.
-    ///
-    /// # Errors
-    /// As [`Slave::setup`].
     pub fn get_state(&self) -> Result<FmuState> {
         let mut pointer: StatePointer = std::ptr::null_mut();
         self.good("fmi2GetFMUstate", |f, c| unsafe {
@@ -46,7 +43,7 @@ impl Slave {
     /// `fmi2SetFMUstate`, for a state of this instance.
     ///
     /// # Errors
-    /// [`Error::Input`] for a state of another instance; as [`Slave::setup`].
+    /// [`Error::Input`] for a state of another instance.
     pub fn set_state(&mut self, state: &FmuState) -> Result<()> {
         self.own(state)?;
         self.good("fmi2SetFMUstate", |f, c| unsafe {
@@ -69,7 +66,7 @@ impl Slave {
     /// `fmi2SerializeFMUstate`: the state as bytes.
     ///
     /// # Errors
-    /// As [`Slave::set_state`].
+    /// [`Error::Input`] for a state of another instance.
     pub fn serialize_state(&self, state: &FmuState) -> Result<Vec<u8>> {
         self.own(state)?;
         let mut size = 0;
@@ -84,9 +81,6 @@ impl Slave {
     }
 
     /// `fmi2DeSerializeFMUstate`: bytes of an instance of the same FMU as a state of this one.
-    ///
-    /// # Errors
-    /// As [`Slave::setup`].
     pub fn deserialize_state(&self, bytes: &[u8]) -> Result<FmuState> {
         let mut pointer: StatePointer = std::ptr::null_mut();
         self.good("fmi2DeSerializeFMUstate", |f, c| unsafe {

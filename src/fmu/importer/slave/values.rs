@@ -9,9 +9,6 @@ use std::ffi::CString;
 // SAFETY of every call below: the component lives, and the slices have the length that is passed
 impl Slave {
     /// `fmi2GetReal`.
-    ///
-    /// # Errors
-    /// As [`Slave::setup`].
     pub fn get_real(&self, references: &[u32]) -> Result<Vec<f64>> {
         let mut values = vec![0.0; references.len()];
         self.read_real(references, &mut values)?;
@@ -21,7 +18,7 @@ impl Slave {
     /// As [`Slave::get_real`] into a slice of the same length.
     ///
     /// # Errors
-    /// As [`Slave::setup`]; [`Error::Input`] when the lengths differ.
+    /// [`Error::Input`] when the lengths differ.
     pub fn read_real(&self, references: &[u32], values: &mut [f64]) -> Result<()> {
         same_length(references, values.len())?;
         self.good("fmi2GetReal", |f, c| unsafe {
@@ -35,9 +32,6 @@ impl Slave {
     }
 
     /// `fmi2GetInteger`.
-    ///
-    /// # Errors
-    /// As [`Slave::setup`].
     pub fn get_integer(&self, references: &[u32]) -> Result<Vec<i32>> {
         let mut values = vec![0; references.len()];
         self.good("fmi2GetInteger", |f, c| unsafe {
@@ -52,9 +46,6 @@ impl Slave {
     }
 
     /// `fmi2GetBoolean`.
-    ///
-    /// # Errors
-    /// As [`Slave::setup`].
     pub fn get_boolean(&self, references: &[u32]) -> Result<Vec<bool>> {
         let mut values: Vec<Int> = vec![0; references.len()];
         self.good("fmi2GetBoolean", |f, c| unsafe {
@@ -69,9 +60,6 @@ impl Slave {
     }
 
     /// `fmi2GetString`.
-    ///
-    /// # Errors
-    /// As [`Slave::setup`].
     pub fn get_string(&self, references: &[u32]) -> Result<Vec<String>> {
         let mut values: Vec<Text> = vec![std::ptr::null(); references.len()];
         self.good("fmi2GetString", |f, c| unsafe {
@@ -89,7 +77,7 @@ impl Slave {
     /// `fmi2SetReal`.
     ///
     /// # Errors
-    /// As [`Slave::setup`]; [`Error::Input`] when the lengths differ.
+    /// [`Error::Input`] when the lengths differ.
     pub fn set_real(&mut self, references: &[u32], values: &[f64]) -> Result<()> {
         same_length(references, values.len())?;
         self.good("fmi2SetReal", |f, c| unsafe {
@@ -98,9 +86,6 @@ impl Slave {
     }
 
     /// `fmi2SetInteger`.
-    ///
-    /// # Errors
-    /// As [`Slave::set_real`].
     pub fn set_integer(&mut self, references: &[u32], values: &[i32]) -> Result<()> {
         same_length(references, values.len())?;
         self.good("fmi2SetInteger", |f, c| unsafe {
@@ -109,9 +94,6 @@ impl Slave {
     }
 
     /// `fmi2SetBoolean`.
-    ///
-    /// # Errors
-    /// As [`Slave::set_real`].
     pub fn set_boolean(&mut self, references: &[u32], values: &[bool]) -> Result<()> {
         same_length(references, values.len())?;
         let values: Vec<Int> = values.iter().map(|v| Int::from(*v)).collect();
@@ -123,7 +105,7 @@ impl Slave {
     /// `fmi2SetString`.
     ///
     /// # Errors
-    /// As [`Slave::set_real`]; [`Error::Input`] for a text with a zero byte.
+    /// [`Error::Input`] when the lengths differ, and for a text with a zero byte.
     pub fn set_string(&mut self, references: &[u32], values: &[&str]) -> Result<()> {
         same_length(references, values.len())?;
         let owned: Vec<CString> = values
@@ -140,9 +122,6 @@ impl Slave {
     }
 
     /// `fmi2GetDirectionalDerivative`: change of the unknowns along `seed`, the changes of the knowns.
-    ///
-    /// # Errors
-    /// As [`Slave::set_real`].
     pub fn directional_derivative(
         &self,
         unknowns: &[u32],
@@ -166,9 +145,6 @@ impl Slave {
     }
 
     /// `fmi2SetRealInputDerivatives` of the given orders (1 is the first derivative).
-    ///
-    /// # Errors
-    /// As [`Slave::set_real`].
     pub fn set_input_derivatives(
         &mut self,
         references: &[u32],
@@ -189,9 +165,6 @@ impl Slave {
     }
 
     /// `fmi2GetRealOutputDerivatives` of the given orders.
-    ///
-    /// # Errors
-    /// As [`Slave::set_real`].
     pub fn output_derivatives(&self, references: &[u32], orders: &[i32]) -> Result<Vec<f64>> {
         same_length(references, orders.len())?;
         let mut values = vec![0.0; references.len()];

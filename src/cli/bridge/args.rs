@@ -1,0 +1,43 @@
+//! A bridge file on the command line.
+
+use crate::cli::common::warn;
+use crate::cli::output::OutputDir;
+use crate::cli::progress::Progress;
+use crate::error::{Error, Result};
+use crate::files::bridge::BridgeFile;
+use crate::study::bridge::BridgeStudy;
+use std::path::{Path, PathBuf};
+
+/// A bridge file and the folder of its results.
+#[derive(clap::Args)]
+pub(crate) struct BridgeArgs {
+    /// The bridge file (bridge.toml; see docs/bridge.md).
+    pub bridge: PathBuf,
+    /// Folder of the results; by default the folder of the bridge file.
+    #[arg(long)]
+    pub out: Option<PathBuf>,
+}
+
+impl BridgeArgs {
+    /// The file as it stands there.
+    pub(super) fn text(&self) -> Result<String> {
+        std::fs::read_to_string(&self.bridge).map_err(|e| Error::io(&self.bridge, e))
+    }
+
+    /// The bridge, with what a reader should know of it on the terminal.
+    pub(super) fn study(&self, progress: &Progress) -> Result<BridgeStudy> {
+        let stage = progress.stage("reading the bridge");
+        let study = BridgeStudy::new(BridgeFile::read(&self.bridge)?);
+        drop(stage);
+        let study = study?;
+        warn(&self.bridge, &study.notes);
+        Ok(study)
+    }
+
+    /// Where its results go.
+    pub(super) fn out(&self) -> Result<OutputDir> {
+        let parent = self.bridge.parent().filter(|p| !p.as_os_str().is_empty());
+        let beside = parent.unwrap_or(Path::new("."));
+        OutputDir::new(self.out.as_deref().unwrap_or(beside))
+    }
+}

@@ -1,0 +1,38 @@
+//! What a folder of results holds, and whose results they are.
+
+use crate::error::{Error, Result};
+use serde::Deserialize;
+use serde::de::DeserializeOwned;
+use std::path::Path;
+
+/// The page.
+pub(in crate::cli) const REPORT: &str = "report.html";
+/// What the page is made from.
+pub(in crate::cli) const SUMMARY: &str = "summary.json";
+
+/// Whether a study, and no bridge, has left its summary at `path`.
+pub(in crate::cli) fn is_of_a_study(path: &Path) -> bool {
+    let text = std::fs::read_to_string(path).ok();
+    let kind = text.and_then(|text| serde_json::from_str::<Kind>(&text).ok());
+    kind.is_some_and(|kind| kind.bridge.is_none())
+}
+
+/// Whose summary it is.
+#[derive(Deserialize)]
+pub(super) struct Kind {
+    pub bridge: Option<String>,
+}
+
+/// The summary in `text`, which was read from `path`, as far as it is asked for.
+pub(super) fn parsed<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T> {
+    serde_json::from_str(text).map_err(|e| {
+        let place = format!("line {}, column {}", e.line(), e.column());
+        let expected = "the summary of `study`, `demo` or `bridge flutter` of this version";
+        Error::input(place, expected, e.to_string()).in_file(path)
+    })
+}
+
+/// A fingerprint of the bytes of a file.
+pub(super) fn digest(bytes: &[u8]) -> String {
+    sha1_smol::Sha1::from(bytes).digest().to_string()
+}

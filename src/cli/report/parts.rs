@@ -1,0 +1,108 @@
+//! Parts that the pages of a section and of a bridge share.
+
+use super::view::OnsetView;
+use crate::cli::account::interval;
+use crate::flutter::OnsetInterval;
+use crate::report::PageFigure;
+
+/// `text` with a capital first letter.
+pub(super) fn capital(text: &str) -> String {
+    let mut characters = text.chars();
+    let first = characters.next().map(|c| c.to_uppercase().to_string());
+    first.unwrap_or_default() + characters.as_str()
+}
+
+/// The ends of an interval that is known.
+pub(super) fn known(interval: &OnsetInterval) -> Option<(f64, f64)> {
+    match interval {
+        OnsetInterval::Known {
+            low_m_s, high_m_s, ..
+        } => Some((*low_m_s, *high_m_s)),
+        _ => None,
+    }
+}
+
+/// The onset in words, line by line.
+pub(super) fn card(onset: &OnsetView) -> Vec<(String, String)> {
+    let interval = match &onset.interval {
+        OnsetInterval::Known {
+            low_m_s,
+            high_m_s,
+            standard_error_m_s,
+            degrees_of_freedom,
+        } => format!(
+            "{low_m_s:.2} to {high_m_s:.2} m/s (standard error {standard_error_m_s:.2} m/s, {degrees_of_freedom:.0} {} of freedom)",
+            if degrees_of_freedom.round_ties_even() == 1.0 {
+                "degree"
+            } else {
+                "degrees"
+            }
+        ),
+        OnsetInterval::None { reason } | OnsetInterval::Undetermined { reason, .. } => {
+            reason.clone()
+        }
+        OnsetInterval::Spread {
+            low_m_s,
+            high_m_s,
+            of,
+        } => {
+            format!("{low_m_s:.2} to {high_m_s:.2} m/s: {of}")
+        }
+    };
+    [
+        ("onset speed V", format!("{:.2} m/s", onset.speed_m_s)),
+        ("95 % interval", interval),
+        ("frequency f", format!("{:.4} Hz", onset.frequency_hz)),
+        (
+            "reduced velocity V/(fB)",
+            format!("{:.3}", onset.reduced_velocity),
+        ),
+        (
+            "motion",
+            format!(
+                "{} branch; |y|/(B|θ|) {:.3}, phase of y to θ {:.1}°",
+                onset.branch, onset.mode_ratio, onset.phase_deg
+            ),
+        ),
+        ("tested range", tested(onset.in_tested_range).to_owned()),
+    ]
+    .map(|(name, value)| (name.to_owned(), value))
+    .into()
+}
+
+fn tested(inside: Option<bool>) -> &'static str {
+    match inside {
+        Some(true) => "inside",
+        Some(false) => "OUTSIDE",
+        None => "exact",
+    }
+}
+
+/// The onset as a row of the table of onsets.
+pub(super) fn row(onset: &OnsetView) -> Vec<String> {
+    vec![
+        onset.model.clone(),
+        onset.method.name().to_owned(),
+        format!("{:.3}", onset.speed_m_s),
+        interval(&onset.interval),
+        format!("{:.4}", onset.frequency_hz),
+        format!("{:.3}", onset.reduced_velocity),
+        onset.branch.clone(),
+        tested(onset.in_tested_range).to_owned(),
+    ]
+}
+
+/// Without the digits that a product left behind.
+pub(super) fn round(x: f64) -> f64 {
+    (1e9 * x).round() / 1e9
+}
+
+/// The figure in a file, without what only a file of its own needs.
+pub(super) fn of_svg(text: &str, title: &'static str, caption: &'static str) -> Option<PageFigure> {
+    let svg = text[text.find("<svg")?..].to_owned();
+    Some(PageFigure {
+        title,
+        caption,
+        svg,
+    })
+}

@@ -1,0 +1,80 @@
+//! `summary.json` of a study.
+
+use super::report::AnswerView;
+use crate::flutter::{Onset, UnstableStart};
+use crate::identification::FitReport;
+use crate::study::{
+    Deviation, Divergence, KnownUncertainty, ModelGrowth, OnsetSummary, SpeedRange, StageFailure,
+    SteppedOnset, TrainedWithReport,
+};
+use serde::Serialize;
+use std::path::PathBuf;
+
+/// What `summary.json` holds.
+#[derive(Serialize)]
+pub(crate) struct Summary {
+    /// Program and version.
+    pub generator: String,
+    /// Name of the study.
+    pub study: String,
+    /// File of the study in this folder.
+    pub study_file: String,
+    /// The answer in words.
+    pub answer: AnswerView,
+    /// What limits trust in it.
+    pub limits: Vec<String>,
+    /// How models and routes compare.
+    pub comparisons: Vec<String>,
+    /// What the aerodynamics come from.
+    pub deck: String,
+    /// Licence of the data.
+    pub licence: String,
+    /// What was assumed in reading the deck, what looks wrong in it, and values of the study that are hardly meant.
+    pub warnings: Vec<String>,
+    /// Wind speeds of curves and searches.
+    pub speeds: SpeedRange,
+    /// All onsets found, one entry a model and method.
+    pub onsets: Vec<Onset>,
+    /// Onsets that the data leave so far open that they are no results.
+    pub undetermined: Vec<Onset>,
+    /// Growth at the lowest speed that could be judged.
+    pub unstable: Vec<UnstableStart>,
+    /// Searches that found none.
+    pub stable: Vec<OnsetSummary>,
+    /// Growth of each model below its onset, where nothing was tested.
+    pub growth: Vec<ModelGrowth>,
+    /// Static divergence.
+    pub divergence: Vec<Divergence>,
+    /// Onsets against the deck's own.
+    pub deviations: Vec<Deviation>,
+    /// The fits in short.
+    pub fits: Vec<FitSummary>,
+    /// The FMU stepped through its C interface.
+    pub stepped: Option<SteppedOnset>,
+    /// Stages that failed, and why; the others are complete.
+    pub failed: Vec<StageFailure>,
+    /// Files written.
+    pub files: Vec<PathBuf>,
+}
+
+/// A fit in short.
+#[derive(Serialize)]
+pub(crate) struct FitSummary {
+    /// Name of the model.
+    pub model: String,
+    /// Full account.
+    #[serde(flatten)]
+    pub report: FitReport,
+    /// Uncertainty, or why it is not known.
+    pub uncertainty: KnownUncertainty,
+}
+
+impl From<TrainedWithReport> for FitSummary {
+    fn from(trained: TrainedWithReport) -> Self {
+        Self {
+            model: trained.model.name,
+            report: trained.report,
+            uncertainty: trained.uncertainty,
+        }
+    }
+}

@@ -1,0 +1,66 @@
+//! The whole check of an FMU: archive, description and binary, then running it.
+
+use super::findings::{CheckReport, Findings, Severity};
+use super::{Fmu, checks, library, trials};
+
+impl Fmu {
+    /// Checks archive, description and binary, then runs the FMU if nothing stands against it.
+    pub fn check(&self) -> CheckReport {
+        let mut findings = self.findings.clone();
+        findings.0.extend(checks::check(&self.description).0);
+        self.check_files(&mut findings);
+        let mut trials = Vec::new();
+        let mut messages = Vec::new();
+        match self.binary() {
+            Err(e) => findings.error("archive", "a binary for this machine", e.to_string()),
+            Ok(binary) => {
+                let place = binary
+                    .strip_prefix(self.folder.path())
+                    .unwrap_or(&binary)
+                    .display()
+                    .to_string();
+                let before = findings.0.len();
+                library::check_symbols(&binary, &place, &mut findings);
+                if findings.0.len() == before {
+                    (trials, messages) = trials::run(self, &mut findings);
+                }
+            }
+        }
+        CheckReport {
+            file: self.path.display().to_string(),
+            model_name: self.description.model_name.clone(),
+            generation_tool: self.description.generation_tool.clone().unwrap_or_default(),
+            platforms: self.platforms(),
+            variables: self.description.variables.len(),
+            findings: findings.0,
+            trials,
+            messages,
+        }
+    }
+
+    pub(super) fn check_files(&self, findings: &mut Findings) {
+        let mut seen = std::collections::HashSet::new();
+        for entry in &self.entries {
+            if !seen.insert(entry.to_lowercase()) {
+                findings.warning(
+                    format!("archive, entry `{entry}`"),
+                    "names that differ in more than case",
+                    "the same twice",
+                );
+            }
+        }
+        for (file, what) in [
+            ("documentation/index.html", "documentation"),
+            ("model.png", "an icon"),
+        ] {
+            if !self.entries.iter().any(|e| e == file) {
+                findings.add(
+                    Severity::Note,
+                    "archive",
+                    format!("{what} ({file})"),
+                    "none",
+                );
+            }
+        }
+    }
+}
