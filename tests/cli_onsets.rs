@@ -26,6 +26,35 @@ fn the_thesis_command_repeats_the_headline() {
     assert!((laguerre / rational - 1.0).abs() < 0.005);
 }
 
+/// The rows of the page that stand beside numbers of the thesis: filters of section 2.5, forces in time of Figures 3.14 to 3.17,
+/// onsets of Figures 4.2 and 4.3.
+#[test]
+fn the_page_of_the_thesis_stands_beside_it() {
+    let folder = TempDir::new().unwrap();
+    succeeds(folder.path(), &["thesis", "--out", "here", "--no-figures"]);
+    let page = fs::read_to_string(folder.path().join("here/thesis.html")).unwrap();
+    let row = |name: &str| {
+        let cell = format!("<td>{name}</td>");
+        let rows = page.split("<tr>").filter(|row| row.contains(&cell));
+        rows.collect::<String>()
+    };
+    for (name, here) in [
+        ("lower bound of α, (2.36)", "<td>0.8283</td>"),
+        ("third impulse response at the end of the memory", "0.0096"),
+        (
+            "3.5.2, Figure 3.14",
+            "lift +2.0 % in magnitude, +0.0007 s late",
+        ),
+        ("3.5.2, Figure 3.15", "moment +0.0 % in magnitude"),
+        ("3.5.2, Figure 3.17", "lift -15.1 % in magnitude"),
+        ("Laguerre, discrete (eigenvalues)", "37.856"),
+        ("rational functions (eigenvalues)", "38.046"),
+        ("interpolated table (determinant)", "36.789"),
+    ] {
+        assert!(row(name).contains(here), "{name}: {}", row(name));
+    }
+}
+
 /// On the flat plate at 8.17 m/s the thesis's formulation is 4.5 % low, and the program says so and why.
 #[test]
 fn the_thesis_formulation_is_told_its_bias() {

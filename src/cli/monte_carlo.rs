@@ -124,8 +124,8 @@ fn account(r: &MonteCarloResult) -> String {
     if r.outside_tested_range > 0 {
         let _ = writeln!(
             text,
-            "warning: {} onsets lie outside the tested range of the model",
-            r.outside_tested_range
+            "warning: outside the tested range of the model: {}",
+            counted(r.outside_tested_range, "onset")
         );
     }
     if r.with_spurious_crossings > 0 {

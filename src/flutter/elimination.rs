@@ -119,22 +119,27 @@ impl Columns {
     /// The sum of the terms and its derivative.
     #[inline(always)]
     pub fn sum(terms: &[Term<'_>]) -> (Self, Self) {
-        let n = terms.first().map_or(0, |t| t.matrix.rows);
-        let (mut value, mut slope) = (Self::zeros(n, n), Self::zeros(n, n));
-        for (i, (value, slope)) in value.all.iter_mut().zip(&mut slope.all).enumerate() {
-            let (mut v, mut s) = (Rows::ZERO, Rows::ZERO);
+        let (rows, eights) = terms.first().map_or((0, 0), |t| {
+            let matrix = t.matrix;
+            (matrix.rows, matrix.all.len())
+        });
+        let both = (0..eights).map(|i| {
+            let (mut value, mut slope) = (Rows::ZERO, Rows::ZERO);
             for term in terms {
                 let m = &term.matrix.all[i].0;
                 for e in 0..WIDTH {
-                    v.re[e] += term.value.re * m[e];
-                    v.im[e] += term.value.im * m[e];
-                    s.re[e] += term.slope.re * m[e];
-                    s.im[e] += term.slope.im * m[e];
+                    value.re[e] += term.value.re * m[e];
+                    value.im[e] += term.value.im * m[e];
+                    slope.re[e] += term.slope.re * m[e];
+                    slope.im[e] += term.slope.im * m[e];
                 }
             }
-            (*value, *slope) = (v, s);
-        }
-        (value, slope)
+            (value, slope)
+        });
+        let (value, slope) = both.unzip();
+        let stride = rows.div_ceil(WIDTH);
+        let of = |all| Self { rows, stride, all };
+        (of(value), of(slope))
     }
 
     fn columns(&self) -> usize {

@@ -118,7 +118,7 @@ impl RationalModel {
         if self.lag_terms.len() != self.lags.count() {
             return Err(Error::input(
                 "rational model: lag_terms",
-                format!("one matrix for each of the {} lags", self.lags.count()),
+                format!("one matrix a lag, {} in all", self.lags.count()),
                 self.lag_terms.len().to_string(),
             ));
         }
@@ -286,7 +286,7 @@ mod tests {
         model.lags = Lags::Shared(vec![0.1, -0.5]);
         assert!(message(&model).contains("expected a positive number, found -0.5"));
         model.lags = Lags::Shared(vec![0.1]);
-        assert!(message(&model).contains("one matrix for each of the 1 lags"));
+        assert!(message(&model).contains("one matrix a lag, 1 in all"));
         let text = serde_json::to_string(&RationalModel::jones_flat_plate()).unwrap();
         assert!(text.contains("\"lags\":[0.091,0.6]"), "{text}");
         let word = text.replace("[0.091,0.6]", "\"two\"");
