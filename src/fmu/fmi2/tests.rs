@@ -1,6 +1,7 @@
 //! The C functions, driven as an importer drives them.
 
 mod derivatives;
+mod force_exchange;
 mod gusts;
 mod leniency;
 mod logging;
