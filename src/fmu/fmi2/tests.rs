@@ -10,6 +10,7 @@ mod offsets;
 mod refusals;
 mod run;
 mod state;
+mod structure_outside;
 mod torture;
 
 use super::types::*;

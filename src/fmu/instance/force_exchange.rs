@@ -27,15 +27,16 @@ impl ForceUnit {
         }
     }
 
-    /// Displacement, rate and acceleration of each coordinate as they count now.
-    fn motion_now(&self, memory: &Memory) -> Vec<[f64; 3]> {
+    /// Displacement, rate and acceleration of each coordinate of strip `s` as they count now.
+    fn motion_now(&self, memory: &Memory, s: usize) -> Vec<[f64; 3]> {
         let stated = memory.values[self.derivatives];
         let counts = |order: usize| stated < 0.0 || order as f64 <= stated;
         let number = |i: usize, order: usize| {
             let value = memory.values[self.inputs[1 + 3 * i + order]];
             if counts(order) { value } else { 0.0 }
         };
-        (0..self.coordinates())
+        let n = self.forces.dofs().len();
+        (s * n..(s + 1) * n)
             .map(|i| [0, 1, 2].map(|order| number(i, order)))
             .collect()
     }
@@ -54,17 +55,16 @@ impl ForceUnit {
     /// Forces of the instant, of all strips in the order of the motion.
     pub(super) fn at_instant(&mut self, memory: &Memory) -> Result<Vec<ForceAhead>> {
         let conditions = self.conditions(&memory.values);
-        let motion = self.motion_now(memory);
         let n = self.forces.dofs().len();
         let wind = memory.values[self.inputs[0]];
-        let mut found = vec![ForceAhead::default(); motion.len()];
+        let mut found = vec![ForceAhead::default(); self.coordinates()];
         for (s, forces) in found.chunks_mut(n).enumerate() {
             let flow = &conditions.flows[s];
             let air = (wind * flow.wind_factor, flow.width_m, conditions.density);
             let state = &memory.system.values[self.first()..];
             let filters = &state[self.forces.filters(s)];
-            let of_strip = &motion[s * n..(s + 1) * n];
-            self.forces.at_instant(filters, of_strip, air, forces);
+            let motion = self.motion_now(memory, s);
+            self.forces.at_instant(filters, &motion, air, forces);
             if let (Some((gusts, _)), Some(strip)) = (&self.gusts, self.gusts_now(memory, s)) {
                 gusts.add_ahead(&strip, [0.0; 2], 0.0, air, forces);
             }
@@ -74,27 +74,30 @@ impl ForceUnit {
 
     /// Rates of filters and lagging gusts, per second, in the order of [`Role::Filter`].
     pub(super) fn rates_now(&self, memory: &Memory) -> Vec<f64> {
-        let flows = self.conditions(&memory.values).flows;
-        let motion = self.motion_now(memory);
-        let wind = memory.values[self.inputs[0]];
-        let n = self.forces.dofs().len();
-        let mut of_strip = vec![0.0; self.forces.filters(0).len()];
+        let strips = self.strips();
         let mut rates = vec![0.0; self.entries.len()];
-        for (s, flow) in flows.iter().enumerate() {
-            let displacement: Vec<f64> = motion[s * n..(s + 1) * n].iter().map(|m| m[0]).collect();
-            let state = &memory.system.values[self.first()..];
-            let filters = &state[self.forces.filters(s)];
-            let air = (wind * flow.wind_factor, flow.width_m);
-            self.forces
-                .filter_rates(filters, &displacement, air, &mut of_strip);
-            let strip = self.gusts_now(memory, s);
-            let passing = air.0 / air.1;
-            let lags = self.gusts.iter().zip(&strip);
-            let lags = lags.flat_map(|((gusts, _), strip)| gusts.rates(strip, passing));
-            let all = of_strip.iter().copied().chain(lags);
-            for (slot, rate) in rates[s..].iter_mut().step_by(flows.len()).zip(all) {
+        for s in 0..strips {
+            let of_strip = self.rates_of(memory, s);
+            for (slot, rate) in rates[s..].iter_mut().step_by(strips).zip(of_strip) {
                 *slot = rate;
             }
+        }
+        rates
+    }
+
+    /// Those of strip `s`.
+    pub(super) fn rates_of(&self, memory: &Memory, s: usize) -> Vec<f64> {
+        let flow = self.flow(&memory.values, s);
+        let wind = memory.values[self.inputs[0]] * flow.wind_factor;
+        let motion = self.motion_now(memory, s);
+        let displacement: Vec<f64> = motion.iter().map(|m| m[0]).collect();
+        let state = &memory.system.values[self.first()..];
+        let filters = &state[self.forces.filters(s)];
+        let mut rates = vec![0.0; filters.len()];
+        self.forces
+            .filter_rates(filters, &displacement, (wind, flow.width_m), &mut rates);
+        if let (Some((gusts, _)), Some(strip)) = (&self.gusts, self.gusts_now(memory, s)) {
+            rates.extend(gusts.rates(&strip, wind / flow.width_m));
         }
         rates
     }

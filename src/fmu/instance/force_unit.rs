@@ -151,13 +151,24 @@ impl ForceUnit {
         1 + self.motions()
     }
 
+    /// How many strips there are.
+    pub fn strips(&self) -> usize {
+        self.strips.len()
+    }
+
+    /// The air around strip `s`.
+    pub fn flow(&self, values: &[f64], s: usize) -> StripFlow {
+        let [width, _, factor] = self.strips[s];
+        StripFlow {
+            width_m: values[width],
+            wind_factor: values[factor],
+        }
+    }
+
     pub fn conditions(&self, values: &[f64]) -> Conditions {
-        let flow = |[width, _, factor]: &[usize; 3]| StripFlow {
-            width_m: values[*width],
-            wind_factor: values[*factor],
-        };
+        let each = 0..self.strips.len();
         Conditions {
-            flows: self.strips.iter().map(flow).collect(),
+            flows: each.map(|s| self.flow(values, s)).collect(),
             density: values[self.density],
         }
     }
@@ -275,6 +286,11 @@ impl Unit for ForceUnit {
         Err(Refusal::discard(
             "derivatives: the filters have grown beyond the range of numbers",
         ))
+    }
+
+    fn filter_rate(&mut self, memory: &Memory, i: usize) -> Option<f64> {
+        let strips = self.strips();
+        self.rates_of(memory, i % strips).get(i / strips).copied()
     }
 
     fn held_output(&self, place: usize) -> Option<usize> {

@@ -3,6 +3,7 @@
 use super::Instance;
 use crate::fmu::lifecycle::{Interface, State};
 use crate::fmu::refusal::{Answer, Refusal};
+use crate::fmu::variables::Role;
 
 impl Instance {
     /// Makes an instance whose importer integrates.
@@ -116,6 +117,13 @@ impl Instance {
 
     /// Rate of the state to which the variable at `place` belongs.
     pub(super) fn rate_at(&mut self, place: usize) -> Answer<f64> {
+        self.unit.prepare(&self.resources, &mut self.memory)?;
+        if let Role::FilterRate(i) = self.table().variables()[place].role
+            && let Some(rate) = self.unit.filter_rate(&self.memory, i)
+            && rate.is_finite()
+        {
+            return Ok(rate);
+        }
         let mut rates = vec![0.0; self.layout.state_rates.len()];
         self.state_rates(&mut rates)?;
         let entry = self.layout.state_rates.iter().position(|p| *p == place);

@@ -82,6 +82,11 @@ pub(super) trait Unit: Debug + Send {
         Ok(Vec::new())
     }
 
+    /// Rate of one state that is nothing else, by its index in [`Role::Filter`], where that needs less than all.
+    fn filter_rate(&mut self, _memory: &Memory, _i: usize) -> Option<f64> {
+        None
+    }
+
     /// Entry of the state of what is simulated that the output at `place` is, if it is one.
     fn held_output(&self, _place: usize) -> Option<usize> {
         None
