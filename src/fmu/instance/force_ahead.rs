@@ -1,7 +1,7 @@
 //! Forces alone in co-simulation: where the motion goes on until the instant at which they act.
 
 use super::force_unit::{Conditions, ForceUnit, NOT_SET, SET_AS_DERIVATIVE, check_forces};
-use super::saving::Memory;
+use super::memory::Memory;
 use crate::error::Result;
 use crate::response::{ForceAhead, Given, KnownMotion, PrescribedForces, StripFlow};
 use std::borrow::Cow;

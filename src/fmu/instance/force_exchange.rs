@@ -4,7 +4,7 @@
 //! that moves while its rate has never been set is a motion that was not connected: it ends the run.
 
 use super::force_unit::{ForceUnit, NOT_SET, SET};
-use super::saving::Memory;
+use super::memory::Memory;
 use crate::error::{Error, Result};
 use crate::fmu::lifecycle::State;
 use crate::fmu::refusal::{Answer, Refusal};
