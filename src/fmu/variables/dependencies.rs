@@ -15,8 +15,8 @@ pub(super) fn fill(variables: &mut [Variable], model: &TrainedModel, gusts: Opti
     };
     let filters = model.model.realize().states();
     let known = &Known::of(variables);
-    for i in 0..variables.len() {
-        let (mut direct, mut initial) = match variables[i].role {
+    for variable in variables.iter_mut() {
+        let (mut direct, mut initial) = match variable.role {
             Role::Filter(i) if i >= filters => (Vec::new(), dependent(gust(known))),
             Role::FilterRate(i) if i >= filters => {
                 let initial = places(known, |role| {
@@ -59,12 +59,11 @@ pub(super) fn fill(variables: &mut [Variable], model: &TrainedModel, gusts: Opti
             }
             _ => continue,
         };
-        let role = variables[i].role;
-        direct.extend(states_behind(known, role, filters));
+        direct.extend(states_behind(known, variable.role, filters));
         direct.sort_unstable();
         initial.sort_unstable_by_key(|d| d.on);
-        variables[i].direct_inputs = direct;
-        variables[i].initial_dependencies = initial;
+        variable.direct_inputs = direct;
+        variable.initial_dependencies = initial;
     }
 }
 
