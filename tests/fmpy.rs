@@ -167,7 +167,7 @@ fn export_gusts(folder: &Path, runtimes: &[Runtime]) {
     }
 }
 
-/// Every kind in FMI 3.0, and the forces on three strips.
+/// Every kind in FMI 3.0, and the forces on three strips in both versions.
 fn export_fmi3(folder: &Path, runtimes: &[Runtime]) {
     for kind in models::KINDS {
         let text = fs::read_to_string(models::model_file(kind)).unwrap();
@@ -178,13 +178,17 @@ fn export_fmi3(folder: &Path, runtimes: &[Runtime]) {
             named_strips: true,
             ..single
         };
-        for (unit, force) in [("section", None), ("force", Some(strips))] {
+        for (unit, force, version) in [
+            ("fmi3_section", None, FmiVersion::Three),
+            ("fmi3_force", Some(strips.clone()), FmiVersion::Three),
+            ("fmi2_force", Some(strips), FmiVersion::Two),
+        ] {
             let export = Export {
                 force,
-                version: FmiVersion::Three,
+                version,
                 ..Growing::Allow.into()
             };
-            let fmu = folder.join(format!("fmi3_{unit}_{kind}.fmu"));
+            let fmu = folder.join(format!("{unit}_{kind}.fmu"));
             write_fmu(&fmu, &model, runtimes, Overwrite::Refuse, export).unwrap();
         }
     }

@@ -147,10 +147,13 @@ impl Listed<'_> {
         let outputs = all()
             .filter(|(_, places)| self.at(places[0]).causality == Causality::Output)
             .map(|(reference, places)| direct("Output", reference, places));
-        let rates = self.table.state_rates().into_iter().filter_map(|place| {
+        let rates = self.table.state_rates().into_iter();
+        let rates = rates.filter_map(|place| {
             let reference = self.groups.reference_of(place)?;
             let places = &self.groups.all()[reference];
-            Some(direct("ContinuousStateDerivative", reference, places))
+            // an array once: its numbers follow one another among the states
+            let first = places.first().is_some_and(|p| *p as usize == place);
+            first.then(|| direct("ContinuousStateDerivative", reference, places))
         });
         let initial = all()
             .filter(|(_, places)| self.at(places[0]).is_initial_unknown())

@@ -82,10 +82,17 @@ impl Groups {
 
 /// The name of the array to which a variable of named strips, modes or nodes belongs: `heave` of strips, `mode.coordinate`.
 pub fn array_of(role: Role, name: &str) -> Option<Cow<'_, str>> {
+    if let Some(state) = name
+        .strip_prefix("der(")
+        .filter(|n| n.starts_with("strip["))
+    {
+        let (_, rest) = state.split_once("].")?;
+        return Some(format!("der({rest}").into());
+    }
     let (of, rest) = name.split_once("].")?;
     let (kind, _) = of.split_once('[')?;
     match role {
-        Role::Motion(..) | Role::Gust(..) | Role::Force(..) | Role::Strip(..) => {
+        Role::Motion(..) | Role::Gust(..) | Role::Force(..) | Role::Strip(..) | Role::Filter(_) => {
             (kind == "strip").then_some(rest.into())
         }
         Role::Mode(..)

@@ -10,6 +10,7 @@
 
 mod course;
 mod filters;
+mod instant;
 #[cfg(test)]
 mod tests;
 
@@ -269,9 +270,8 @@ impl PrescribedForces {
         if matrix.is_empty() {
             return Ok(());
         }
-        let settled = matrix.lu().solve(&(drive * motion)).ok_or_else(|| {
-            Error::Numerical("prescribed motion: a filter does not settle".into())
-        })?;
+        let settled = matrix.lu().solve(&(drive * motion));
+        let settled = settled.ok_or_else(unsettled)?;
         let first = self.strip(s).start + 1;
         state[first..first + settled.len()].copy_from_slice(settled.as_slice());
         Ok(())
@@ -318,6 +318,10 @@ impl PrescribedForces {
             };
         }
     }
+}
+
+fn unsettled() -> Error {
+    Error::Numerical("prescribed motion: a filter does not settle".into())
 }
 
 fn advance(

@@ -74,6 +74,19 @@ impl StripGusts {
         }
     }
 
+    /// Rates of the gusts behind the lags, per second, where the mean wind passes so many widths in a second.
+    pub fn rates(&self, strip: &[f64], passing: f64) -> impl Iterator<Item = f64> {
+        let (now, lagging) = strip.split_at(2);
+        lagging
+            .iter()
+            .zip(self.components())
+            .enumerate()
+            .map(move |(i, (g, j))| {
+                let [pole, _] = self.lags[i % self.lags.len()];
+                pole * passing * (now[j] - g)
+            })
+    }
+
     /// The component of each lag.
     fn components(&self) -> impl Iterator<Item = usize> + use<> {
         let count = self.lags.len();

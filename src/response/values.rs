@@ -46,6 +46,15 @@ impl SectionState {
         behind.map_or_else(|| self.values[i], |behind| self.gusts[behind])
     }
 
+    /// Replaces number `i` of [`SectionState::all`].
+    pub fn set_number(&mut self, i: usize, number: f64) {
+        let behind = i.checked_sub(self.values.len());
+        match behind {
+            Some(behind) => self.gusts[behind] = number,
+            None => self.values[i] = number,
+        }
+    }
+
     /// Replaces the numbers of [`SectionState::all`].
     pub fn set_all(&mut self, numbers: &[f64]) {
         let (values, gusts) = numbers.split_at(self.values.len());

@@ -5,6 +5,7 @@ use aerodeck::aerodynamics::derivatives::DerivativeTable;
 use aerodeck::aerodynamics::{GustForce, RationalAdmittance};
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::flutter::{FlutterSearch, OnsetSearch, find_onset};
+use aerodeck::fmu::force_options::ForceOptions;
 use aerodeck::fmu::package::{Export, FmiVersion, Growing, Overwrite, Runtime, write_fmu};
 use aerodeck::identification::{Form, FrequencyFit, fit_table};
 use aerodeck::trained_model::{Experiment, Provenance, SCHEMA_VERSION, TrainedModel};
@@ -67,6 +68,13 @@ fn cell(
         let fmu = folder.join(format!("{name}_{shell}.fmu"));
         write_fmu(&fmu, &model, runtimes, Overwrite::Refuse, export).unwrap();
     }
+    let forces = Export {
+        gusts: Some(plate_gusts(&model)),
+        force: Some(ForceOptions::single(model.section.width_m)),
+        ..Growing::Allow.into()
+    };
+    let fmu = folder.join(format!("{name}_force.fmu"));
+    write_fmu(&fmu, &model, runtimes, Overwrite::Refuse, forces).unwrap();
     json!({
         "fmu": name, "what": format!("{}, {}", model.name, section.name), "answered": answered,
         "speed_m_s": at.speed_m_s, "frequency_hz": at.frequency_hz, "motions": model.section.dofs().len(),

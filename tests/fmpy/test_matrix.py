@@ -3,6 +3,7 @@
 import fmpy
 import numpy as np
 import pytest
+from driven import Motion, integrated, stepped
 from exported import EXPECTED, FOLDER
 from fmpy.validation import validate_fmu
 
@@ -43,7 +44,7 @@ def blown(cell):
 
 
 def test_fmpy_finds_no_problem(cell):
-    for shell in ("fmi2", "fmi3"):
+    for shell in ("fmi2", "fmi3", "force"):
         assert validate_fmu(archive(cell, shell)) == []
 
 
@@ -92,3 +93,19 @@ def test_an_importer_that_integrates_moves_as_the_steps_do(cell, of_onset):
         size = np.abs(own[name]).max()
         # as in test_model_exchange.py
         assert np.abs(own[name] - foreign[name]).max() <= 1e-5 * size, name
+
+
+@pytest.mark.parametrize("of_onset", [0.0, 1e-3, 1.0])
+def test_forces_of_an_instant_are_those_of_the_steps(cell, of_onset, tmp_path):
+    outputs = {2: ["lift", "moment"], 3: ["lift", "drag", "moment"]}[cell["motions"]]
+    speed = of_onset * cell["speed_m_s"]
+    motion = Motion(
+        dict.fromkeys(MOTIONS[cell["motions"]], 0.02),
+        1.0 / cell["frequency_hz"],
+        {"gust_u": 0.1 * speed, "gust_w": 0.05 * speed},
+    )
+    fmu = archive(cell, "force")
+    own = stepped(fmu, tmp_path, motion, outputs, wind_speed=speed)
+    foreign = integrated(fmu, tmp_path, motion, outputs, wind_speed=speed)
+    # as in test_model_exchange.py
+    assert (np.abs(own - foreign) <= 1e-5 * np.abs(own).max(axis=0)).all()

@@ -59,8 +59,7 @@ pub unsafe extern "C" fn fmi2CompletedIntegratorStep(
         guarded(c, Call::CompletedIntegratorStep, |component| {
             *place(enterEventMode, "enterEventMode")? = 0;
             *place(terminateSimulation, "terminateSimulation")? = 0;
-            component.instance.step_taken();
-            Ok(())
+            component.instance.step_taken()
         })
     }
 }

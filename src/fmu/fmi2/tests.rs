@@ -1,6 +1,7 @@
 //! The C functions, driven as an importer drives them.
 
 mod derivatives;
+mod force_exchange;
 mod gusts;
 mod leniency;
 mod logging;
@@ -9,6 +10,7 @@ mod offsets;
 mod refusals;
 mod run;
 mod state;
+mod structure_outside;
 mod torture;
 
 use super::types::*;

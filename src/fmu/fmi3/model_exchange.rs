@@ -73,8 +73,7 @@ pub unsafe extern "C" fn fmi3CompletedIntegratorStep(
             |component| {
                 *place(enterEventMode.cast::<u8>(), "enterEventMode")? = 0;
                 *place(terminateSimulation.cast::<u8>(), "terminateSimulation")? = 0;
-                component.instance.step_taken();
-                Ok(())
+                component.instance.step_taken()
             },
         )
     }

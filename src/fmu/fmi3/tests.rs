@@ -294,6 +294,34 @@ fn an_importer_may_integrate() {
     assert!(!event && !end);
 }
 
+/// States of strips are arrays, which follow one another as the importer's list does.
+#[test]
+fn states_of_strips_are_arrays() {
+    let unit = Unit::of("rational", Some(3), true);
+    unit.start();
+    unit.ok(unsafe { fmi3EnterContinuousTimeMode(unit.handle) });
+    unit.set("wind_speed", &[20.0]);
+    unit.set("heave", &[0.01, 0.0, -0.02]);
+    let count = unit.resources.table.state_rates().len();
+    let x: Vec<f64> = (0..count).map(|i| 0.01 * (i + 1) as f64).collect();
+    unit.ok(unsafe { fmi3SetContinuousStates(unit.handle, x.as_ptr(), count) });
+    let mut rates = vec![f64::NAN; count];
+    unit.ok(unsafe { fmi3GetContinuousStateDerivatives(unit.handle, rates.as_mut_ptr(), count) });
+    for (i, (x, rates)) in x.chunks(3).zip(rates.chunks(3)).enumerate() {
+        assert_eq!(unit.get(&format!("filter[{}]", i + 1), 3), x);
+        let rate = unit
+            .resources
+            .table
+            .find_name(&format!("der(strip[1].filter[{}])", i + 1));
+        let group = unit.groups.reference_of(rate.unwrap()).unwrap() as u32;
+        let mut values = [f64::NAN; 3];
+        unit.ok(unsafe {
+            fmi3GetFloat64(unit.handle, [group].as_ptr(), 1, values.as_mut_ptr(), 3)
+        });
+        assert_eq!(values, rates);
+    }
+}
+
 #[test]
 fn what_there_is_not_is_refused_and_the_run_goes_on() {
     let unit = Unit::of("rational", None, false);
@@ -309,7 +337,7 @@ fn what_there_is_not_is_refused_and_the_run_goes_on() {
     unit.refused(status, "no variables of this type");
     // a resource path, a token and a kind that do not fit
     assert!(
-        Unit::of("rational", Some(2), false)
+        Unit::of("discrete_laguerre", Some(2), false)
             .instantiate(true)
             .is_null()
     );

@@ -209,7 +209,7 @@ impl Unit for BridgeUnit {
         }
     }
 
-    fn input_set(&mut self, memory: &mut Memory, place: usize) -> bool {
+    fn input_set(&mut self, memory: &mut Memory, place: usize, _: bool) -> bool {
         let gusts = &self.places.inputs[self.places.first_gust..];
         if memory.state == State::Initialization && gusts.contains(&place) {
             self.release_pending = true;

@@ -1,13 +1,13 @@
-//! Derivatives of forces alone: they are linear in motion and gusts; wind and parameters are differenced.
+//! Derivatives of forces alone: they are linear in motion, states and gusts; wind and parameters are differenced.
 
 use super::force_unit::{ForceUnit, SET};
 use super::memory::Memory;
 use super::sensitivity::central_difference;
 use crate::error::Result;
+use crate::fmu::lifecycle::State;
 use crate::fmu::refusal::Answer;
 use crate::fmu::resources::Resources;
 use crate::fmu::variables::Role;
-use crate::response::ForceAhead;
 
 /// Relative step of the differences with respect to wind and parameters.
 const RELATIVE_STEP: f64 = 1e-5;
@@ -21,39 +21,80 @@ impl ForceUnit {
         known: usize,
         unknowns: &[Role],
     ) -> Answer<Vec<f64>> {
-        let index = self.input_at[known];
-        if index > 0 {
-            let forces = self.by_motion(memory, index)?;
-            let entry = |role: &Role| self.entry(memory, &forces, *role).force;
-            return Ok(unknowns.iter().map(entry).collect());
+        let role = resources.table.variables()[known].role;
+        let (index, state) = (self.input_at[known], self.entry_of(role));
+        if index > 0 || state.is_some() {
+            let mut unit = self.in_still_flow(memory);
+            match state {
+                Some(entry) => unit.system.set_number(entry, 1.0),
+                None => self.set_unit(&mut unit, index),
+            }
+            // a state stands apart from the motion, which otherwise counts as that of the present
+            let renewed = state.is_none() || self.renewed(memory);
+            return Ok(self.unknowns(&mut unit, renewed, unknowns)?);
         }
-        let step = match resources.table.variables()[known].role {
+        let value = memory.values[known].abs();
+        let step = match role {
             // forces are linear in gusts
             Role::Gust(..) => 1.0,
-            _ => RELATIVE_STEP * memory.values[known].abs().max(RELATIVE_STEP),
+            // of an instant they are of second degree in the wind: a difference of any step is exact
+            Role::WindSpeed if self.integrated && value > 0.0 => 0.5 * value,
+            _ => RELATIVE_STEP * value.max(RELATIVE_STEP),
         };
         let renewed = self.renewed(memory);
         central_difference(resources, memory, (known, step), |other| {
-            let forces = self.ahead(other, renewed)?;
-            let entry = |role: &Role| self.entry(other, &forces, *role).force;
-            Ok(unknowns.iter().map(entry).collect())
+            Ok(self.unknowns(&mut other.clone(), renewed, unknowns)?)
         })
     }
 
-    /// Forces follow the motion linearly: those of a unit of one number of it, in a flow at rest.
-    fn by_motion(&mut self, memory: &Memory, index: usize) -> Result<Vec<ForceAhead>> {
-        let mut unit = memory.clone();
+    /// The unknowns for a memory.
+    fn unknowns(
+        &mut self,
+        memory: &mut Memory,
+        renewed: bool,
+        unknowns: &[Role],
+    ) -> Result<Vec<f64>> {
+        if memory.state == State::Initialization {
+            self.settle(memory)?;
+        }
+        let wants = |wanted: fn(&Role) -> bool| unknowns.iter().any(wanted);
+        let forces = match wants(|role| matches!(role, Role::Force(..))) {
+            true => self.present(memory, renewed)?,
+            false => Vec::new(),
+        };
+        let rates = match wants(|role| matches!(role, Role::FilterRate(_))) {
+            true => self.rates_now(memory),
+            false => Vec::new(),
+        };
+        let value = |role: &Role| match role {
+            Role::Force(..) => self.entry(memory, &forces, *role).force,
+            Role::FilterRate(i) => rates.get(*i).copied().unwrap_or(0.0),
+            other => {
+                let entry = self.entry_of(*other);
+                entry.map_or(0.0, |entry| memory.system.number(entry))
+            }
+        };
+        Ok(unknowns.iter().map(value).collect())
+    }
+
+    /// Nothing moves, no gust blows, no force acts, and none has.
+    fn in_still_flow(&self, memory: &Memory) -> Memory {
+        let mut still = memory.clone();
         for place in &self.inputs[1..] {
-            unit.values[*place] = 0.0;
+            still.values[*place] = 0.0;
         }
-        unit.system.gusts.fill(0.0);
-        unit.input_rates.fill(0.0);
-        unit.values[self.inputs[index]] = 1.0;
-        if (index - 1) % 3 == 1 {
-            unit.system.values[index] = SET;
-        }
+        still.system.gusts.fill(0.0);
+        still.input_rates.fill(0.0);
         let first = self.first();
-        self.forces.forget(&mut unit.system.values[first..]);
-        self.ahead(&unit, true)
+        self.forces.forget(&mut still.system.values[first..]);
+        still
+    }
+
+    /// One number of the motion is one.
+    fn set_unit(&self, still: &mut Memory, index: usize) {
+        still.values[self.inputs[index]] = 1.0;
+        if (index - 1) % 3 == 1 {
+            still.system.values[index] = SET;
+        }
     }
 }

@@ -1,7 +1,8 @@
 //! Forces alone: strips of deck whose structure is the importer's.
 //!
 //! The forces put out are those at the instant at which they will act, `prediction` communication steps after the
-//! motion that was set for the last step. When the importer has set newer motion since, they follow from that as well.
+//! motion that was set for the last step. When the importer has set newer motion since, they follow from that as well. Where
+//! the importer integrates, they are those of its instant.
 
 use super::layout::{Source, place};
 use super::memory::Memory;
@@ -10,20 +11,19 @@ use super::unit::Unit;
 use crate::aerodynamics::Realizable;
 use crate::error::{Error, Result};
 use crate::fmu::force_options::ForceOptions;
+use crate::fmu::lifecycle::State;
 use crate::fmu::refusal::{Answer, Refusal};
 use crate::fmu::resources::Resources;
-use crate::fmu::variables::{ForceOutput, Role, SectionParameter};
+use crate::fmu::variables::{ForceOutput, Role, SectionParameter, VariableTable};
 use crate::response::{
-    ForceAhead, Given, KnownMotion, PrescribedForces, SectionState, StripFlow, StripGusts,
-    wind_at_rest,
+    ForceAhead, Given, PrescribedForces, SectionState, StripFlow, StripGusts, wind_at_rest,
 };
-use std::borrow::Cow;
 
 /// How a number of the motion has been set since the last step.
-const NOT_SET: f64 = 0.0;
+pub(super) const NOT_SET: f64 = 0.0;
 pub(super) const SET: f64 = 1.0;
 /// A rate by the derivative of the input below it.
-const SET_AS_DERIVATIVE: f64 = 2.0;
+pub(super) const SET_AS_DERIVATIVE: f64 = 2.0;
 
 /// See the module. The state is the time from the newest motion to the instant of the forces (s), how each number of
 /// the motion has been set since, then the state of the forces.
@@ -39,18 +39,28 @@ pub(super) struct ForceUnit {
     /// Width, length, wind factor of each strip.
     strips: Vec<[usize; 3]>,
     /// Forces of gusts, and the gusts of each strip; none where the unit takes none.
-    gusts: Option<(StripGusts, Vec<[usize; 2]>)>,
+    pub gusts: Option<(StripGusts, Vec<[usize; 2]>)>,
     density: usize,
     prediction: usize,
-    derivatives: usize,
+    pub derivatives: usize,
+    /// Entry of the system's state that each filter is, then each lagging gust; all of one kind strip by strip.
+    pub entries: Vec<usize>,
+    /// The same by place in the table.
+    held: Vec<Option<usize>>,
+    /// Whether the importer integrates.
+    pub integrated: bool,
+    /// While initialising: the flow has to settle around other motion.
+    settle_pending: bool,
     /// Whether it has been said that a rotation is beyond linear theory.
     told: bool,
+    /// Whether it has been said that the added mass is missing.
+    pub told_mass: bool,
 }
 
 /// What acts on the strips.
-struct Conditions {
-    flows: Vec<StripFlow>,
-    density: f64,
+pub(super) struct Conditions {
+    pub flows: Vec<StripFlow>,
+    pub density: f64,
 }
 
 impl ForceUnit {
@@ -88,7 +98,7 @@ impl ForceUnit {
             // behind the motion, which is what has an index
             inputs.extend(gusts.iter().flatten());
         }
-        Ok(Self {
+        let mut unit = Self {
             input_at,
             gusts: gust_force.map(|force| (StripGusts::new(force), gusts)),
             forces: PrescribedForces::new(resources.model.model.realize(), dofs),
@@ -98,12 +108,41 @@ impl ForceUnit {
             density: place(table, Role::Section(SectionParameter::AirDensity))?,
             prediction: place(table, Role::Prediction)?,
             derivatives: place(table, Role::MotionDerivatives)?,
+            entries: Vec::new(),
+            held: Vec::new(),
+            integrated: false,
+            settle_pending: true,
             told: false,
-        })
+            told_mass: false,
+        };
+        unit.find_states(table);
+        Ok(unit)
+    }
+
+    /// Where the states stand.
+    fn find_states(&mut self, table: &VariableTable) {
+        let (strips, first) = (self.strips.len(), self.first());
+        let behind = self.at_rest().values.len();
+        for k in 0..self.forces.filters(0).len() {
+            let of = |s: usize| first + self.forces.filters(s).start + k;
+            self.entries.extend((0..strips).map(of));
+        }
+        let of_strip = self.gusts.as_ref().map_or(0, |(g, _)| g.per_strip());
+        for lag in 2..of_strip {
+            let of = |s: usize| behind + s * of_strip + lag;
+            self.entries.extend((0..strips).map(of));
+        }
+        let states = table.variables().iter().map(|v| self.entry_of(v.role));
+        self.held = states.collect();
+    }
+
+    /// Coordinates of all strips.
+    pub fn coordinates(&self) -> usize {
+        self.outputs.len()
     }
 
     /// Numbers of the motion.
-    fn motions(&self) -> usize {
+    pub fn motions(&self) -> usize {
         3 * self.outputs.len()
     }
 
@@ -112,107 +151,26 @@ impl ForceUnit {
         1 + self.motions()
     }
 
-    fn conditions(&self, values: &[f64]) -> Conditions {
-        let flow = |[width, _, factor]: &[usize; 3]| StripFlow {
-            width_m: values[*width],
-            wind_factor: values[*factor],
-        };
+    /// How many strips there are.
+    pub fn strips(&self) -> usize {
+        self.strips.len()
+    }
+
+    /// The air around strip `s`.
+    pub fn flow(&self, values: &[f64], s: usize) -> StripFlow {
+        let [width, _, factor] = self.strips[s];
+        StripFlow {
+            width_m: values[width],
+            wind_factor: values[factor],
+        }
+    }
+
+    pub fn conditions(&self, values: &[f64]) -> Conditions {
+        let each = 0..self.strips.len();
         Conditions {
-            flows: self.strips.iter().map(flow).collect(),
+            flows: each.map(|s| self.flow(values, s)).collect(),
             density: values[self.density],
         }
-    }
-
-    /// The motion as it has been set.
-    fn motion(&self, memory: &Memory) -> Vec<KnownMotion> {
-        let set = &memory.system.values[1..self.first()];
-        let stated = memory.values[self.derivatives];
-        let coordinate = |i: usize| {
-            let at = |order: usize| memory.values[self.inputs[1 + 3 * i + order]];
-            let mut values = [at(0), at(1), at(2)];
-            let by_derivative = set[3 * i + 1] == SET_AS_DERIVATIVE;
-            if by_derivative {
-                values[1] = memory.input_rates[1 + 3 * i];
-            }
-            let known = if stated >= 0.0 {
-                1 + stated as usize
-            } else {
-                let order = |o: usize| set[3 * i + o] != NOT_SET;
-                1 + usize::from(order(1)) + usize::from(order(1) && order(2) && !by_derivative)
-            };
-            KnownMotion { values, known }
-        };
-        (0..self.motions() / 3).map(coordinate).collect()
-    }
-
-    /// Forces of all strips in the order of the motion. `renewed` says that there is motion of the present time.
-    pub fn ahead(&mut self, memory: &Memory, renewed: bool) -> Result<Vec<ForceAhead>> {
-        let Conditions { flows, density } = self.conditions(&memory.values);
-        let mut state = Cow::Borrowed(&memory.system.values[self.first()..]);
-        let mut ahead_s = memory.system.values[0];
-        if renewed {
-            let motion = self.motion(memory);
-            if let Some(newest) = PrescribedForces::newest_s(&state) {
-                ahead_s = (newest + ahead_s - memory.time).max(0.0);
-            }
-            let given = Given {
-                time_s: memory.time,
-                wind_speed_m_s: memory.values[self.inputs[0]],
-                motion: &motion,
-            };
-            self.forces.take(state.to_mut(), &given, &flows)?;
-        }
-        let n = self.forces.dofs().len();
-        let mut gusts = Cow::Borrowed(memory.system.gusts.as_slice());
-        if renewed {
-            let before = &memory.system.values[self.first()..];
-            self.take_gusts(gusts.to_mut(), before, memory, &flows);
-        }
-        let wind = PrescribedForces::newest_wind_m_s(&state);
-        let mut found = vec![ForceAhead::default(); self.outputs.len()];
-        for (s, (flow, forces)) in flows.iter().zip(found.chunks_mut(n)).enumerate() {
-            self.forces
-                .ahead(&state, (s, flow), ahead_s, density, forces)?;
-            if let Some((strips, _)) = &self.gusts {
-                let of = strips.per_strip();
-                let strip = &gusts[s * of..(s + 1) * of];
-                let rates = &memory.input_rates[1 + self.motions() + 2 * s..];
-                let air = (wind * flow.wind_factor, flow.width_m, density);
-                strips.add_ahead(strip, [rates[0], rates[1]], ahead_s, air, forces);
-            }
-        }
-        if found.iter().all(|f| f.force.is_finite()) {
-            return Ok(found);
-        }
-        Err(Error::Numerical(
-            "the forces have grown beyond the range of numbers".into(),
-        ))
-    }
-
-    /// The gusts go to the present time, from the state of the forces before.
-    fn take_gusts(&self, gusts: &mut [f64], before: &[f64], memory: &Memory, flows: &[StripFlow]) {
-        let Some((strips, places)) = &self.gusts else {
-            return;
-        };
-        let seconds = PrescribedForces::newest_s(before).map(|t| memory.time - t);
-        let now = memory.values[self.inputs[0]];
-        // to second order in the change of the wind, as the filters of the motion
-        let wind = 0.5 * (PrescribedForces::newest_wind_m_s(before) + now);
-        let each = gusts.chunks_mut(strips.per_strip()).zip(flows).zip(places);
-        for ((strip, flow), places) in each {
-            let widths = seconds.map(|s| s * wind * flow.wind_factor / flow.width_m);
-            strips.take(strip, places.map(|place| memory.values[place]), widths);
-        }
-    }
-
-    /// Whether there is motion of the present time that no step has taken yet.
-    pub fn renewed(&self, memory: &Memory) -> bool {
-        let [flags, state] = [
-            &memory.system.values[1..self.first()],
-            &memory.system.values[self.first()..],
-        ];
-        let newest = PrescribedForces::newest_s(state);
-        newest.is_none_or(|t| t < memory.time && flags.iter().any(|f| *f != NOT_SET))
     }
 
     pub fn entry(&self, memory: &Memory, forces: &[ForceAhead], role: Role) -> ForceAhead {
@@ -249,10 +207,26 @@ impl Unit for ForceUnit {
         }
     }
 
-    fn changed(&mut self, _: Source) {}
+    fn changed(&mut self, _: Source) {
+        self.settle_pending = true;
+    }
 
     fn begin_initialization(&mut self) {
-        self.told = false;
+        (self.told, self.told_mass) = (false, false);
+        self.settle_pending = true;
+    }
+
+    fn will_be_integrated(&mut self) {
+        self.integrated = true;
+    }
+
+    fn step_taken(
+        &mut self,
+        table: &VariableTable,
+        memory: &Memory,
+        notices: &mut Vec<String>,
+    ) -> Answer<()> {
+        self.check_moving(table, memory, notices)
     }
 
     fn watch(&mut self, _: &Resources, memory: &Memory, notices: &mut Vec<String>) {
@@ -269,9 +243,11 @@ impl Unit for ForceUnit {
         }
     }
 
-    fn input_set(&mut self, memory: &mut Memory, place: usize) -> bool {
+    fn input_set(&mut self, memory: &mut Memory, place: usize, changed: bool) -> bool {
         let index = self.input_at[place];
-        if index > 0 {
+        if index > 0 && self.integrated {
+            self.note_motion(memory, index, changed);
+        } else if index > 0 {
             memory.system.values[index] = SET;
         }
         index > 0
@@ -286,10 +262,39 @@ impl Unit for ForceUnit {
         }
     }
 
-    fn replace(&mut self, _: &mut Memory, _: &Memory, _: &dyn Fn(Source) -> bool) {}
+    fn replace(&mut self, _: &mut Memory, _: &Memory, _: &dyn Fn(Source) -> bool) {
+        self.settle_pending = true;
+    }
 
-    fn prepare(&mut self, _: &Resources, _: &mut Memory) -> Result<()> {
+    fn prepare(&mut self, _: &Resources, memory: &mut Memory) -> Result<()> {
+        if memory.state == State::Initialization && self.settle_pending {
+            if self.integrated {
+                self.check_stated(memory)?;
+            }
+            // in co-simulation what is read of the filters: the first step settles them itself
+            self.settle(memory)?;
+            self.settle_pending = false;
+        }
         Ok(())
+    }
+
+    fn state_rates(&mut self, _: &Resources, memory: &Memory) -> Answer<Vec<f64>> {
+        let rates = self.rates_now(memory);
+        if rates.iter().all(|x| x.is_finite()) {
+            return Ok(rates);
+        }
+        Err(Refusal::discard(
+            "derivatives: the filters have grown beyond the range of numbers",
+        ))
+    }
+
+    fn filter_rate(&mut self, memory: &Memory, i: usize) -> Option<f64> {
+        let strips = self.strips();
+        self.rates_of(memory, i % strips).get(i / strips).copied()
+    }
+
+    fn held_output(&self, place: usize) -> Option<usize> {
+        self.held[place]
     }
 
     fn advance(&mut self, _: &Resources, memory: &mut Memory, step: f64) -> Answer<bool> {
@@ -331,7 +336,7 @@ impl Unit for ForceUnit {
 
     fn outputs(&mut self, _: &Resources, memory: &mut Memory) -> Answer<()> {
         let renewed = self.renewed(memory);
-        let forces = self.ahead(memory, renewed);
+        let forces = self.present(memory, renewed);
         let forces = forces.map_err(|why| Refusal::discard(format!("outputs: {why}")))?;
         self.put_out(memory, &forces);
         Ok(())
@@ -359,7 +364,25 @@ impl Unit for ForceUnit {
     }
 }
 
+/// Refuses forces that no number holds any more.
+pub(super) fn check_forces(found: Vec<ForceAhead>) -> Result<Vec<ForceAhead>> {
+    if found.iter().all(|f| f.force.is_finite()) {
+        return Ok(found);
+    }
+    Err(Error::Numerical(
+        "the forces have grown beyond the range of numbers".into(),
+    ))
+}
+
 impl ForceUnit {
+    /// Forces of all strips as they are put out, see the module.
+    pub(super) fn present(&mut self, memory: &Memory, renewed: bool) -> Result<Vec<ForceAhead>> {
+        if self.integrated {
+            return self.at_instant(memory);
+        }
+        self.ahead(memory, renewed)
+    }
+
     fn put_out(&self, memory: &mut Memory, forces: &[ForceAhead]) {
         let n = self.forces.dofs().len();
         for (i, ([per_length, total], force)) in self.outputs.iter().zip(forces).enumerate() {

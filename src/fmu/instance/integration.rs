@@ -3,19 +3,21 @@
 use super::Instance;
 use crate::fmu::lifecycle::{Interface, State};
 use crate::fmu::refusal::{Answer, Refusal};
+use crate::fmu::variables::Role;
 
 impl Instance {
     /// Makes an instance whose importer integrates.
     ///
     /// # Errors
-    /// A unit without continuous states: forces alone, and sampled models.
+    /// A unit without continuous states: sampled models, and whole bridges.
     pub fn for_model_exchange(mut self) -> Answer<Self> {
         if !self.offers_model_exchange() {
             return Err(Refusal::error(
-                "type of the unit: expected co-simulation (1), because forces alone and sampled models have no continuous \
+                "type of the unit: expected co-simulation (1), because sampled models and whole bridges have no continuous \
                  states, found model exchange (0)",
             ));
         }
+        self.unit.will_be_integrated();
         self.interface = Interface::ModelExchange;
         Ok(self)
     }
@@ -58,7 +60,9 @@ impl Instance {
         if !states.iter().all(|x| x.is_finite()) {
             return Err(Refusal::discard("states: expected finite numbers"));
         }
-        self.memory.system.set_all(states);
+        for (entry, state) in self.layout.state_entries.iter().zip(states) {
+            self.memory.system.set_number(*entry, *state);
+        }
         self.outputs_current = false;
         Ok(())
     }
@@ -70,7 +74,9 @@ impl Instance {
     pub fn continuous_states(&mut self, states: &mut [f64]) -> Answer<()> {
         self.check_states("states", states.len())?;
         self.unit.prepare(&self.resources, &mut self.memory)?;
-        states.copy_from_slice(&self.memory.system.all());
+        for (state, entry) in states.iter_mut().zip(&self.layout.state_entries) {
+            *state = self.memory.system.number(*entry);
+        }
         Ok(())
     }
 
@@ -100,12 +106,24 @@ impl Instance {
     }
 
     /// The importer has taken a step: says what must be known of it.
-    pub fn step_taken(&mut self) {
+    ///
+    /// # Errors
+    /// A step that the inputs do not allow.
+    pub fn step_taken(&mut self) -> Answer<()> {
         self.watch();
+        let (table, notices) = (&self.resources.table, &mut self.notices);
+        self.unit.step_taken(table, &self.memory, notices)
     }
 
     /// Rate of the state to which the variable at `place` belongs.
     pub(super) fn rate_at(&mut self, place: usize) -> Answer<f64> {
+        self.unit.prepare(&self.resources, &mut self.memory)?;
+        if let Role::FilterRate(i) = self.table().variables()[place].role
+            && let Some(rate) = self.unit.filter_rate(&self.memory, i)
+            && rate.is_finite()
+        {
+            return Ok(rate);
+        }
         let mut rates = vec![0.0; self.layout.state_rates.len()];
         self.state_rates(&mut rates)?;
         let entry = self.layout.state_rates.iter().position(|p| *p == place);

@@ -155,6 +155,8 @@ pub(super) struct Layout {
     wind_speed: usize,
     /// Rates of the continuous states, in their order.
     pub state_rates: Vec<usize>,
+    /// Entries of the system's state that the continuous states are, in the same order.
+    pub state_entries: Vec<usize>,
 }
 
 /// Place of the variable with this role.
@@ -169,11 +171,19 @@ impl Layout {
     pub fn new(table: &VariableTable, held: impl Fn(usize) -> Option<usize>) -> Result<Self> {
         let access: Vec<_> = table.variables().iter().map(Access::of).collect();
         let each = access.iter().enumerate();
+        let state_rates = table.state_rates();
+        let of = |rate: &usize| table.variables()[*rate].derivative_of.and_then(&held);
+        let state_entries = state_rates.iter().map(of).collect::<Option<_>>();
         Ok(Self {
+            state_entries: state_entries.ok_or_else(|| {
+                Error::Numerical(
+                    "variable table: a continuous state is no part of the state".into(),
+                )
+            })?,
             glances: each.map(|(i, a)| Glance::of(a, i, held(i))).collect(),
             access,
             wind_speed: place(table, Role::WindSpeed)?,
-            state_rates: table.state_rates(),
+            state_rates,
         })
     }
 

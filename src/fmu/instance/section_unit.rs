@@ -206,7 +206,7 @@ impl Unit for SectionUnit {
         }
     }
 
-    fn input_set(&mut self, memory: &mut Memory, place: usize) -> bool {
+    fn input_set(&mut self, memory: &mut Memory, place: usize, _: bool) -> bool {
         if memory.state == State::Initialization && self.places.gusts.contains(&place) {
             self.release_pending = true;
         }

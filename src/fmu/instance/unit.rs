@@ -5,7 +5,7 @@ use super::memory::Memory;
 use crate::error::Result;
 use crate::fmu::refusal::Answer;
 use crate::fmu::resources::Resources;
-use crate::fmu::variables::Role;
+use crate::fmu::variables::{Role, VariableTable};
 use crate::response::SectionState;
 use std::fmt::Debug;
 
@@ -21,9 +21,25 @@ pub(super) trait Unit: Debug + Send {
     /// A stored value of this kind has changed.
     fn changed(&mut self, source: Source);
 
-    /// An input has been set, whatever its value was; returns whether outputs change with it.
-    fn input_set(&mut self, _memory: &mut Memory, _place: usize) -> bool {
+    /// An input has been set, whether it changed or not; returns whether outputs change with it.
+    fn input_set(&mut self, _memory: &mut Memory, _place: usize, _changed: bool) -> bool {
         false
+    }
+
+    /// The importer will integrate it.
+    fn will_be_integrated(&mut self) {}
+
+    /// The importer has taken a step of its integration.
+    ///
+    /// # Errors
+    /// A step that the inputs do not allow.
+    fn step_taken(
+        &mut self,
+        _table: &VariableTable,
+        _memory: &Memory,
+        _notices: &mut Vec<String>,
+    ) -> Answer<()> {
+        Ok(())
     }
 
     /// The rate of the input with this index has been set.
@@ -64,6 +80,11 @@ pub(super) trait Unit: Debug + Send {
     /// When they cannot be computed.
     fn state_rates(&mut self, _resources: &Resources, _memory: &Memory) -> Answer<Vec<f64>> {
         Ok(Vec::new())
+    }
+
+    /// Rate of one state that is nothing else, by its index in [`Role::Filter`], where that needs less than all.
+    fn filter_rate(&mut self, _memory: &Memory, _i: usize) -> Option<f64> {
+        None
     }
 
     /// Entry of the state of what is simulated that the output at `place` is, if it is one.

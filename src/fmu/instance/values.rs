@@ -84,9 +84,9 @@ impl Instance {
         }
         for (reference, value) in references.iter().zip(values) {
             let place = *reference as usize;
-            self.store(place, self.layout.settled(place, *value));
+            let changed = self.store(place, self.layout.settled(place, *value));
             let input = self.layout.source(place) == Source::Input;
-            if input && self.unit.input_set(&mut self.memory, place) {
+            if input && self.unit.input_set(&mut self.memory, place, changed) {
                 self.outputs_current = false;
             }
         }
@@ -104,13 +104,15 @@ impl Instance {
         Ok(())
     }
 
-    pub(super) fn store(&mut self, place: usize, value: f64) {
+    /// Returns whether the value has changed.
+    fn store(&mut self, place: usize, value: f64) -> bool {
         if self.memory.values[place].to_bits() == value.to_bits() {
-            return;
+            return false;
         }
         self.memory.values[place] = value;
         self.outputs_current = false;
         self.unit.changed(self.layout.source(place));
+        true
     }
 
     /// Sets first rates of inputs, per second: all of them or none.

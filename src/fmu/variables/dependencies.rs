@@ -1,6 +1,5 @@
 //! What depends on what: the structure of outputs while stepping, and of all unknowns while initialising.
 
-use super::variable::find;
 use super::{Causality, InitialDependency, Response, Role, SectionParameter, Status, Variable};
 use crate::aerodynamics::{GustForce, Realizable, Realization};
 use crate::section::Dof;
@@ -15,65 +14,87 @@ pub(super) fn fill(variables: &mut [Variable], model: &TrainedModel, gusts: Opti
         gusts_at_once: gusts.is_some_and(|g| g.states() == 0),
     };
     let filters = model.model.realize().states();
-    let seen = variables.iter().any(|v| v.derivative_of.is_some());
-    for i in 0..variables.len() {
-        let (mut direct, mut initial) = match variables[i].role {
-            Role::Filter(i) if i >= filters => (Vec::new(), dependent(gust(variables))),
+    let known = &Known::of(variables);
+    for variable in variables.iter_mut() {
+        let (mut direct, mut initial) = match variable.role {
+            Role::Filter(i) if i >= filters => (Vec::new(), dependent(gust(known))),
             Role::FilterRate(i) if i >= filters => {
-                let known = places(variables, |role| {
+                let initial = places(known, |role| {
                     matches!(
                         role,
                         Role::WindSpeed | Role::Gust(..) | Role::Section(SectionParameter::Width)
                     )
                 });
-                let inputs = places(variables, |role| {
+                let inputs = places(known, |role| {
                     matches!(role, Role::WindSpeed | Role::Gust(..))
                 });
-                (inputs, dependent(known))
+                (inputs, dependent(initial))
             }
-            Role::Filter(_) => (Vec::new(), settled_flow(variables)),
+            Role::Filter(_) => (Vec::new(), settled_flow(known)),
             Role::FilterRate(_) => {
-                let wind = places(variables, |role| role == Role::WindSpeed);
-                let known = settled_flow(variables).into_iter();
-                (wind.clone(), known.chain(dependent(wind)).collect())
+                let wind = places(known, |role| role == Role::WindSpeed);
+                let settled = settled_flow(known).into_iter();
+                (wind.clone(), settled.chain(dependent(wind)).collect())
             }
             Role::Response(response, dof) => (
-                direct_inputs(variables, response, dof, coupling),
-                initial_knowns(variables, response, dof, coupling),
+                direct_inputs(known, response, dof, coupling),
+                initial_knowns(known, response, dof, coupling),
             ),
-            Role::Calculated(_) => (Vec::new(), parameters(variables)),
+            Role::Calculated(_) => (Vec::new(), parameters(known)),
             Role::Status(status) => {
                 let windless = [Status::AmplitudeInLinearRange, Status::FlutterSpeed];
-                let wind = places(variables, |role| {
+                let wind = places(known, |role| {
                     role == Role::WindSpeed && !windless.contains(&status)
                 });
-                let known = dependent(wind.iter().copied());
-                let stated = parameters(variables).into_iter();
-                let release = dependent(places(variables, |role| {
+                let by_wind = dependent(wind.iter().copied());
+                let stated = parameters(known).into_iter();
+                let release = dependent(places(known, |role| {
                     role == Role::InitialDisplacement(Dof::Torsion)
                 }));
-                let known = match status {
+                let initial = match status {
                     Status::AmplitudeInLinearRange => release,
-                    _ => stated.chain(known).collect(),
+                    _ => stated.chain(by_wind).collect(),
                 };
-                (wind, known)
+                (wind, initial)
             }
             _ => continue,
         };
-        if seen {
-            direct.extend(states_behind(variables, i, filters));
-            direct.sort_unstable();
+        direct.extend(states_behind(known, variable.role, filters));
+        direct.sort_unstable();
+        initial.sort_unstable_by_key(|d| d.on);
+        variable.direct_inputs = direct;
+        variable.initial_dependencies = initial;
+    }
+}
+
+/// What unknowns depend on, by place in the table, with what each stands for.
+struct Known {
+    /// Inputs and parameters.
+    stated: Vec<(usize, Role)>,
+    /// States, where importers see them.
+    states: Vec<(usize, Role)>,
+}
+
+impl Known {
+    fn of(variables: &[Variable]) -> Self {
+        let seen = variables.iter().any(|v| v.derivative_of.is_some());
+        let stated = |v: &Variable| matches!(v.causality, Causality::Input | Causality::Parameter);
+        let all = |wanted: &dyn Fn(&Variable) -> bool| {
+            let all = variables.iter().enumerate();
+            let wanted = all.filter(|(_, v)| wanted(v));
+            wanted.map(|(i, v)| (i, v.role)).collect()
+        };
+        Self {
+            stated: all(&stated),
+            states: all(&|v| seen && v.is_state()),
         }
-        initial.sort_by_key(|d| d.on);
-        variables[i].direct_inputs = direct;
-        variables[i].initial_dependencies = initial;
     }
 }
 
 /// States on which a variable depends: a state on itself, forces and accelerations on all, a filter's rate on displacements and
 /// filters.
-fn states_behind(variables: &[Variable], of: usize, filters: usize) -> Vec<usize> {
-    let depends = |on: Role| match variables[of].role {
+fn states_behind(known: &Known, of: Role, filters: usize) -> impl Iterator<Item = usize> {
+    let depends = move |on: Role| match of {
         Role::Status(Status::AmplitudeInLinearRange) => {
             on == Role::Response(Response::Displacement, Dof::Torsion)
         }
@@ -85,14 +106,15 @@ fn states_behind(variables: &[Variable], of: usize, filters: usize) -> Vec<usize
         own @ (Role::Response(..) | Role::Filter(_)) => on == own,
         _ => false,
     };
-    (0..variables.len())
-        .filter(|&i| variables[i].is_state() && depends(variables[i].role))
-        .collect()
+    let states = known.states.iter();
+    states
+        .filter(move |(_, role)| depends(*role))
+        .map(|(i, _)| *i)
 }
 
 /// What the filters of a section held still depend on.
-fn settled_flow(variables: &[Variable]) -> Vec<InitialDependency> {
-    dependent(places(variables, |role| {
+fn settled_flow(known: &Known) -> Vec<InitialDependency> {
+    dependent(places(known, |role| {
         matches!(
             role,
             Role::InitialDisplacement(_)
@@ -101,8 +123,8 @@ fn settled_flow(variables: &[Variable]) -> Vec<InitialDependency> {
     }))
 }
 
-fn gust(variables: &[Variable]) -> Vec<usize> {
-    places(variables, |role| matches!(role, Role::Gust(..)))
+fn gust(known: &Known) -> Vec<usize> {
+    places(known, |role| matches!(role, Role::Gust(..)))
 }
 
 /// What makes the accelerations depend on one another.
@@ -131,12 +153,7 @@ fn has_added_mass(model: &TrainedModel) -> bool {
 }
 
 /// Inputs that act at once: displacements and rates are states and none acts on them.
-fn direct_inputs(
-    variables: &[Variable],
-    response: Response,
-    dof: Dof,
-    coupling: Coupling,
-) -> Vec<usize> {
+fn direct_inputs(known: &Known, response: Response, dof: Dof, coupling: Coupling) -> Vec<usize> {
     let coupled = coupling.of(response);
     let acts = |role: Role| match (response, role) {
         (Response::Acceleration | Response::SelfExcitedForce, Role::WindSpeed) => true,
@@ -146,11 +163,11 @@ fn direct_inputs(
         (Response::SelfExcitedForce, Role::Gust(..)) => coupling.gusts_at_once && coupled,
         _ => false,
     };
-    places(variables, acts)
+    places(known, acts)
 }
 
 fn initial_knowns(
-    variables: &[Variable],
+    known: &Known,
     response: Response,
     dof: Dof,
     coupling: Coupling,
@@ -161,10 +178,9 @@ fn initial_knowns(
         _ => None,
     };
     if let Some(role) = release {
-        return find(variables, role)
-            .map(|on| InitialDependency { on, constant: true })
-            .into_iter()
-            .collect();
+        let constant = |on| InitialDependency { on, constant: true };
+        let released = places(known, |known| known == role).into_iter();
+        return released.map(constant).collect();
     }
     let (coupled, accelerates) = (coupling.of(response), response == Response::Acceleration);
     let acts = |role: Role| match role {
@@ -182,13 +198,13 @@ fn initial_knowns(
         ) => coupled || (accelerates && of == dof),
         _ => false,
     };
-    let inputs = direct_inputs(variables, response, dof, coupling);
-    dependent(inputs.into_iter().chain(places(variables, acts)))
+    let inputs = direct_inputs(known, response, dof, coupling);
+    dependent(inputs.into_iter().chain(places(known, acts)))
 }
 
 /// Everything that onset and divergence depend on.
-fn parameters(variables: &[Variable]) -> Vec<InitialDependency> {
-    dependent(places(variables, |role| {
+fn parameters(known: &Known) -> Vec<InitialDependency> {
+    dependent(places(known, |role| {
         matches!(role, Role::Section(_) | Role::OnsetSearchLimit)
     }))
 }
@@ -203,14 +219,9 @@ fn dependent(places: impl IntoIterator<Item = usize>) -> Vec<InitialDependency> 
         .collect()
 }
 
-fn places(variables: &[Variable], wanted: impl Fn(Role) -> bool) -> Vec<usize> {
-    (0..variables.len())
-        .filter(|&i| wanted(variables[i].role))
-        .filter(|&i| {
-            matches!(
-                variables[i].causality,
-                Causality::Input | Causality::Parameter
-            )
-        })
-        .collect()
+fn places(known: &Known, wanted: impl Fn(Role) -> bool) -> Vec<usize> {
+    let mut places = Vec::with_capacity(known.stated.len());
+    let wanted = known.stated.iter().filter(|(_, role)| wanted(*role));
+    places.extend(wanted.map(|(i, _)| *i));
+    places
 }

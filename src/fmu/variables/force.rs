@@ -1,12 +1,12 @@
 //! The variables of a unit of forces, in the order of the table.
 
 use super::real::{FIXED, INPUT, OUTPUT, SMALLEST, TUNABLE, constants, force_scale, nominal, real};
-use super::section::{capitalized, gust_inputs, wind_speed};
+use super::section::{capitalized, filter, gust_filter, gust_inputs, wind_speed};
 use super::words::words;
 use super::{
     ForceOutput, InitialDependency, Response, Role, SectionParameter, StripParameter, Variable,
 };
-use crate::aerodynamics::GustForce;
+use crate::aerodynamics::{GustForce, Realizable, Realization};
 use crate::error::Result;
 use crate::fmu::force_options::{ForceOptions, MAX_PREDICTION};
 use crate::fmu::si::{self, Unit};
@@ -48,8 +48,30 @@ pub(super) fn variables(
     }
     table.extend(coupling(options));
     table.extend(constants(model)?);
+    if let Realization::Continuous(c) = model.model.realize() {
+        let lags = gusts.map_or(0, GustForce::states);
+        add_states(&mut table, options, (c.a.nrows(), lags));
+    }
     fill_dependencies(&mut table, options.strips.len());
     Ok(table)
+}
+
+/// Filters and lagging gusts with their rates, for importers that integrate: each of all strips before the next, as arrays
+/// stand.
+fn add_states(table: &mut Vec<Variable>, options: &ForceOptions, (filters, lags): (usize, usize)) {
+    let strips = options.strips.len();
+    for k in 0..filters + lags {
+        for s in 0..strips {
+            let (i, lag) = (k * strips + s, (k + 1).checked_sub(filters + 1));
+            let pair = match lag {
+                None => filter(i, &name(options, s, &format!("filter[{}]", k + 1))),
+                Some(j) => gust_filter(i, &name(options, s, &format!("gust_filter[{}]", j + 1))),
+            };
+            let state = table.len();
+            table.extend(pair);
+            table[state + 1].derivative_of = Some(state);
+        }
+    }
 }
 
 /// Name of a variable of a strip.
@@ -79,8 +101,14 @@ fn motion<'a>(
                     capitalized(w.motion)
                 )
             }
-            Response::Rate => format!("Rate of the {}; need not be connected", w.motion),
-            _ => format!("Second rate of the {}; need not be connected", w.motion),
+            Response::Rate => format!(
+                "Rate of the {}; need not be connected in co-simulation",
+                w.motion
+            ),
+            _ => format!(
+                "Second rate of the {}; need not be connected in co-simulation",
+                w.motion
+            ),
         };
         let role = Role::Motion(s, response, dof);
         real(name(options, s, w.responses[i]), role, INPUT, text)
@@ -161,7 +189,7 @@ fn coupling(options: &ForceOptions) -> [Variable; 2] {
             "The forces put out are those of this many communication steps after the motion that was set for the last \
              step: 1.5 for an explicit importer that holds them over its next step (the default), 1 for one that \
              extrapolates them from the end of the step, 0.5 for one that steps the structure first and sets the motion of \
-             the end of the step, 0 for iterations within a step",
+             the end of the step, 0 for iterations within a step; without effect in model exchange",
         )
         .min(0.0)
         .max(MAX_PREDICTION)
@@ -179,26 +207,42 @@ fn coupling(options: &ForceOptions) -> [Variable; 2] {
     ]
 }
 
-/// Forces follow the wind and the motion of their strip, and everything that is stated of it.
+/// What the forces and states of a strip depend on.
+#[derive(Clone, Default)]
+struct OfStrip {
+    /// Inputs and parameters.
+    known: Vec<usize>,
+    filters: Vec<usize>,
+    lags: Vec<usize>,
+}
+
+/// Forces follow the wind and the motion of their strip, its states, and everything that is stated of it; a filter's rate
+/// the displacements and all filters, that of a lagging gust the gusts and itself.
 fn fill_dependencies(table: &mut [Variable], strips: usize) {
-    let (mut shared, mut of_strip) = (Vec::new(), vec![Vec::new(); strips]);
+    let (mut shared, mut of_strip) = (Vec::new(), vec![OfStrip::default(); strips]);
     for (place, variable) in table.iter().enumerate() {
         match variable.role {
             Role::WindSpeed | Role::Section(_) | Role::MotionDerivatives => shared.push(place),
-            Role::Motion(s, ..) | Role::Gust(s, _) | Role::Strip(s, _) => of_strip[s].push(place),
+            Role::Motion(s, ..) | Role::Gust(s, _) | Role::Strip(s, _) => {
+                of_strip[s].known.push(place);
+            }
+            Role::Filter(i) if is_lag(variable) => of_strip[i % strips].lags.push(place),
+            Role::Filter(i) => of_strip[i % strips].filters.push(place),
             _ => {}
         }
     }
     let roles: Vec<Role> = table.iter().map(|v| v.role).collect();
-    for variable in table.iter_mut() {
-        let Role::Force(strip, kind, _) = variable.role else {
-            continue;
+    for (place, variable) in table.iter_mut().enumerate() {
+        let (strip, states) = match variable.role {
+            Role::Force(s, ..) => (s, [&of_strip[s].filters[..], &of_strip[s].lags].concat()),
+            Role::Filter(i) => (i % strips, vec![place]),
+            // behind its state
+            Role::FilterRate(i) if is_lag(variable) => (i % strips, vec![place - 1]),
+            Role::FilterRate(i) => (i % strips, of_strip[i % strips].filters.clone()),
+            _ => continue,
         };
-        let known = shared.iter().chain(&of_strip[strip]).copied();
-        let length = Role::Strip(strip, StripParameter::Length);
-        let mut known: Vec<usize> = known
-            .filter(|place| kind == ForceOutput::Total || roles[*place] != length)
-            .collect();
+        let known = shared.iter().chain(&of_strip[strip].known).copied();
+        let mut known: Vec<usize> = known.filter(|on| follows(variable, roles[*on])).collect();
         known.sort_unstable();
         let input = |place: &usize| {
             matches!(
@@ -206,11 +250,37 @@ fn fill_dependencies(table: &mut [Variable], strips: usize) {
                 Role::WindSpeed | Role::Motion(..) | Role::Gust(..)
             )
         };
-        variable.direct_inputs = known.iter().copied().filter(input).collect();
+        if !matches!(variable.role, Role::Filter(_)) {
+            variable.direct_inputs = known.iter().copied().filter(input).collect();
+        }
+        variable.direct_inputs.extend(states);
         let dependency = |on| InitialDependency {
             on,
             constant: false,
         };
         variable.initial_dependencies = known.into_iter().map(dependency).collect();
+    }
+}
+
+/// Whether a state, or the state of a rate, is a lagging gust.
+fn is_lag(variable: &Variable) -> bool {
+    matches!(variable.quantity, Some("Velocity" | "Acceleration"))
+}
+
+/// Whether a force, a state or its rate depends on an input or parameter of its strip, or of all.
+fn follows(variable: &Variable, on: Role) -> bool {
+    let displacement = matches!(on, Role::Motion(_, Response::Displacement, _));
+    let width = matches!(on, Role::Strip(_, StripParameter::Width));
+    let wind = on == Role::WindSpeed || matches!(on, Role::Strip(_, StripParameter::WindFactor));
+    let gust = matches!(on, Role::Gust(..));
+    match variable.role {
+        Role::Force(_, ForceOutput::PerLength, _) => {
+            !matches!(on, Role::Strip(_, StripParameter::Length))
+        }
+        Role::Force(..) => true,
+        Role::Filter(_) if is_lag(variable) => gust,
+        Role::Filter(_) => displacement || width,
+        _ if is_lag(variable) => gust || width || wind,
+        _ => displacement || width || wind,
     }
 }

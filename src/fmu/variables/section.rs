@@ -47,12 +47,8 @@ pub(super) fn variables(
     table.extend(status());
     if let Realization::Continuous(c) = model.model.realize() {
         let (filters, lags) = (c.a.nrows(), gusts.map_or(0, GustForce::states));
-        let text = "Filter state of the aerodynamic model";
-        table.extend((0..filters).flat_map(|i| inner_state(i, "filter", i + 1, text)));
-        let lag = |i| {
-            let text = "Gust behind a lag of its admittance, in m/s";
-            inner_state(filters + i, "gust_filter", i + 1, text)
-        };
+        table.extend((0..filters).flat_map(|i| filter(i, &format!("filter[{}]", i + 1))));
+        let lag = |i| gust_filter(filters + i, &format!("gust_filter[{}]", i + 1));
         table.extend((0..lags).flat_map(lag));
         name_rates(&mut table, &dofs);
     }
@@ -96,29 +92,35 @@ pub(super) fn gust_inputs(strip: usize, name: impl Fn(&str) -> String) -> [Varia
     ]
 }
 
-/// A state that is no motion, and its rate: for importers that integrate, and for linear state spaces.
-fn inner_state(i: usize, name: &str, number: usize, text: &str) -> [Variable; 2] {
-    let gust = name == "gust_filter";
-    let (state, rate) = if gust {
-        (
-            ("Velocity", SPEED),
-            ("Acceleration", Some(&si::METRE_PER_SECOND2)),
-        )
-    } else {
-        (("FilterState", None), ("FilterRate", Some(&si::PER_SECOND)))
-    };
-    let named = format!("{name}[{number}]");
+/// A filter state and its rate: for importers that integrate, and for linear state spaces.
+pub(super) fn filter(i: usize, name: &str) -> [Variable; 2] {
+    let text = "Filter state of the aerodynamic model";
+    let [state, rate] = inner_state(i, name, text);
     [
-        real(named.clone(), Role::Filter(i), INNER, text)
-            .quantity(state.0, state.1)
-            .nominal(if gust { 1.0 } else { FILTER_SIZE }),
+        state.quantity("FilterState", None).nominal(FILTER_SIZE),
+        rate.quantity("FilterRate", Some(&si::PER_SECOND)),
+    ]
+}
+
+/// The same of a gust that acts through a lag.
+pub(super) fn gust_filter(i: usize, name: &str) -> [Variable; 2] {
+    let text = "Gust behind a lag of its admittance, in m/s";
+    let [state, rate] = inner_state(i, name, text);
+    [
+        state.quantity("Velocity", SPEED).nominal(1.0),
+        rate.quantity("Acceleration", Some(&si::METRE_PER_SECOND2)),
+    ]
+}
+
+fn inner_state(i: usize, name: &str, text: &str) -> [Variable; 2] {
+    [
+        real(name, Role::Filter(i), INNER, text),
         real(
-            format!("der({named})"),
+            format!("der({name})"),
             Role::FilterRate(i),
             INNER,
             "Rate of that state",
-        )
-        .quantity(rate.0, rate.1),
+        ),
     ]
 }
 

@@ -50,6 +50,11 @@ impl Course {
         Self(course)
     }
 
+    /// With this value, rate and acceleration at `t` = 0, and no more.
+    pub fn now([value, rate, acceleration]: [f64; 3]) -> Self {
+        Self([value, rate, 0.5 * acceleration, 0.0])
+    }
+
     /// The same with `t` from `by` seconds later on.
     pub fn from(mut self, by: f64) -> Self {
         for first in 0..COEFFICIENTS {

@@ -30,17 +30,17 @@ impl Unit {
         self.ok(unsafe { fmi2EnterContinuousTimeMode(self.handle) });
     }
 
-    fn size(&self) -> usize {
+    pub(super) fn size(&self) -> usize {
         self.archive.resources.table.state_rates().len()
     }
 
-    fn states(&self) -> Vec<f64> {
+    pub(super) fn states(&self) -> Vec<f64> {
         let mut x = vec![f64::NAN; self.size()];
         self.ok(unsafe { fmi2GetContinuousStates(self.handle, x.as_mut_ptr(), x.len()) });
         x
     }
 
-    fn rates_at(&self, time: f64, x: &[f64]) -> Vec<f64> {
+    pub(super) fn rates_at(&self, time: f64, x: &[f64]) -> Vec<f64> {
         self.ok(unsafe { fmi2SetTime(self.handle, time) });
         self.ok(unsafe { fmi2SetContinuousStates(self.handle, x.as_ptr(), x.len()) });
         let mut rates = vec![f64::NAN; x.len()];

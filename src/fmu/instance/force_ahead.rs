@@ -1,0 +1,102 @@
+//! Forces alone in co-simulation: where the motion goes on until the instant at which they act.
+
+use super::force_unit::{Conditions, ForceUnit, NOT_SET, SET_AS_DERIVATIVE, check_forces};
+use super::memory::Memory;
+use crate::error::Result;
+use crate::response::{ForceAhead, Given, KnownMotion, PrescribedForces, StripFlow};
+use std::borrow::Cow;
+
+impl ForceUnit {
+    /// The motion as it has been set.
+    pub(super) fn motion(&self, memory: &Memory) -> Vec<KnownMotion> {
+        let set = &memory.system.values[1..self.first()];
+        let stated = memory.values[self.derivatives];
+        let coordinate = |i: usize| {
+            let at = |order: usize| memory.values[self.inputs[1 + 3 * i + order]];
+            let mut values = [at(0), at(1), at(2)];
+            let by_derivative = set[3 * i + 1] == SET_AS_DERIVATIVE;
+            if by_derivative {
+                values[1] = memory.input_rates[1 + 3 * i];
+            }
+            let known = if stated >= 0.0 {
+                1 + stated as usize
+            } else {
+                let order = |o: usize| set[3 * i + o] != NOT_SET;
+                1 + usize::from(order(1)) + usize::from(order(1) && order(2) && !by_derivative)
+            };
+            KnownMotion { values, known }
+        };
+        (0..self.motions() / 3).map(coordinate).collect()
+    }
+
+    /// Forces of all strips in the order of the motion. `renewed` says that there is motion of the present time.
+    pub fn ahead(&mut self, memory: &Memory, renewed: bool) -> Result<Vec<ForceAhead>> {
+        let Conditions { flows, density } = self.conditions(&memory.values);
+        let mut state = Cow::Borrowed(&memory.system.values[self.first()..]);
+        let mut ahead_s = memory.system.values[0];
+        if renewed {
+            let motion = self.motion(memory);
+            if let Some(newest) = PrescribedForces::newest_s(&state) {
+                ahead_s = (newest + ahead_s - memory.time).max(0.0);
+            }
+            let given = Given {
+                time_s: memory.time,
+                wind_speed_m_s: memory.values[self.inputs[0]],
+                motion: &motion,
+            };
+            self.forces.take(state.to_mut(), &given, &flows)?;
+        }
+        let n = self.forces.dofs().len();
+        let mut gusts = Cow::Borrowed(memory.system.gusts.as_slice());
+        if renewed {
+            let before = &memory.system.values[self.first()..];
+            self.take_gusts(gusts.to_mut(), before, memory, &flows);
+        }
+        let wind = PrescribedForces::newest_wind_m_s(&state);
+        let mut found = vec![ForceAhead::default(); self.coordinates()];
+        for (s, (flow, forces)) in flows.iter().zip(found.chunks_mut(n)).enumerate() {
+            self.forces
+                .ahead(&state, (s, flow), ahead_s, density, forces)?;
+            if let Some((strips, _)) = &self.gusts {
+                let of = strips.per_strip();
+                let strip = &gusts[s * of..(s + 1) * of];
+                let rates = &memory.input_rates[1 + self.motions() + 2 * s..];
+                let air = (wind * flow.wind_factor, flow.width_m, density);
+                strips.add_ahead(strip, [rates[0], rates[1]], ahead_s, air, forces);
+            }
+        }
+        check_forces(found)
+    }
+
+    /// The gusts go to the present time, from the state of the forces before.
+    pub(super) fn take_gusts(
+        &self,
+        gusts: &mut [f64],
+        before: &[f64],
+        memory: &Memory,
+        flows: &[StripFlow],
+    ) {
+        let Some((strips, places)) = &self.gusts else {
+            return;
+        };
+        let seconds = PrescribedForces::newest_s(before).map(|t| memory.time - t);
+        let now = memory.values[self.inputs[0]];
+        // to second order in the change of the wind, as the filters of the motion
+        let wind = 0.5 * (PrescribedForces::newest_wind_m_s(before) + now);
+        let each = gusts.chunks_mut(strips.per_strip()).zip(flows).zip(places);
+        for ((strip, flow), places) in each {
+            let widths = seconds.map(|s| s * wind * flow.wind_factor / flow.width_m);
+            strips.take(strip, places.map(|place| memory.values[place]), widths);
+        }
+    }
+
+    /// Whether there is motion of the present time that no step has taken yet.
+    pub fn renewed(&self, memory: &Memory) -> bool {
+        let [flags, state] = [
+            &memory.system.values[1..self.first()],
+            &memory.system.values[self.first()..],
+        ];
+        let newest = PrescribedForces::newest_s(state);
+        newest.is_none_or(|t| t < memory.time && flags.iter().any(|f| *f != NOT_SET))
+    }
+}
