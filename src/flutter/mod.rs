@@ -7,6 +7,7 @@ mod answer;
 mod bridge_motion;
 mod characteristic;
 mod clusters;
+mod columns;
 mod critical_point;
 mod curves;
 mod determinant;

@@ -8,7 +8,8 @@
 //! `v ← u/|u|`, which converges cubically and knows by its shape which mode it follows. The left shape starts from the right
 //! one, which it is where the matrix is symmetric, as that of a structure alone.
 
-use super::elimination::{Columns, RealColumns, Term, solve};
+use super::columns::{Columns, RealColumns, Term};
+use super::elimination::solve;
 use crate::aerodynamics::{ContinuousRealization, Realization};
 use crate::aeroelastic::CoupledSection;
 use nalgebra::{Complex, DMatrix, DVector};
@@ -25,13 +26,13 @@ const NUDGE: f64 = 1e-11;
 
 /// Filters that are driven by one coordinate each, alike for all coordinates of the chain.
 #[derive(Debug, Clone)]
-struct Chain {
+struct Chain<Output = RealColumns> {
     /// L×L.
     a: DMatrix<f64>,
     /// L.
     b: DVector<f64>,
     /// What each filter does, n×n: column `j` for the chain that coordinate `j` drives, times `½ρB²`.
-    outputs: Vec<RealColumns>,
+    outputs: Vec<Output>,
 }
 
 /// Matrices of the problem, scaled to physical motion and force once.
@@ -239,28 +240,28 @@ fn chains(
     force: impl Fn(&DMatrix<f64>) -> RealColumns,
 ) -> Vec<Chain> {
     let n = aero.b.ncols();
-    let mut chains: Vec<(DMatrix<f64>, DVector<f64>, Vec<DMatrix<f64>>)> = Vec::new();
+    let mut chains: Vec<Chain<DMatrix<f64>>> = Vec::new();
     for input in 0..n {
         for states in driven(aero, input) {
             let a = aero.a.select_rows(&states).select_columns(&states);
             let b =
                 DVector::from_iterator(states.len(), states.iter().map(|s| aero.b[(*s, input)]));
-            let alike = chains.iter().position(|c| c.0 == a && c.1 == b);
+            let alike = chains.iter().position(|c| c.a == a && c.b == b);
             let at = alike.unwrap_or_else(|| {
                 let outputs = vec![DMatrix::zeros(n, n); states.len()];
-                chains.push((a, b, outputs));
+                chains.push(Chain { a, b, outputs });
                 chains.len() - 1
             });
-            for (output, state) in chains[at].2.iter_mut().zip(&states) {
+            for (output, state) in chains[at].outputs.iter_mut().zip(&states) {
                 let mut column = output.column_mut(input);
                 column += aero.c.column(*state);
             }
         }
     }
-    let chain = |(a, b, outputs): (_, _, Vec<DMatrix<f64>>)| Chain {
-        a,
-        b,
-        outputs: outputs.iter().map(&force).collect(),
+    let chain = |c: Chain<DMatrix<f64>>| Chain {
+        a: c.a,
+        b: c.b,
+        outputs: c.outputs.iter().map(&force).collect(),
     };
     chains.into_iter().map(chain).collect()
 }

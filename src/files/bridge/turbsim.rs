@@ -209,7 +209,7 @@ fn parse(bytes: &[u8]) -> Result<FieldTable> {
 }
 
 fn without_mean(mut samples: Vec<f64>) -> Vec<f64> {
-    let mean = crate::signal::mean(&samples);
+    let mean = samples.iter().sum::<f64>() / samples.len() as f64;
     samples.iter_mut().for_each(|x| *x -= mean);
     samples
 }

@@ -1,0 +1,232 @@
+//! Complex matrices for the vectors of the processor: real and imaginary parts of eight rows lie together, each column padded to
+//! whole eights, so that every step works on full vectors; the order of the sums, and so the bits, are the same on every processor.
+
+use nalgebra::{Complex, DMatrix};
+
+type Complex64 = Complex<f64>;
+
+/// Rows that lie together.
+pub(super) const WIDTH: usize = 8;
+
+/// Eight rows of one column.
+#[derive(Debug, Clone, Copy)]
+#[repr(C, align(64))]
+pub(super) struct Rows {
+    re: [f64; WIDTH],
+    im: [f64; WIDTH],
+}
+
+impl Rows {
+    pub(super) const ZERO: Self = Self {
+        re: [0.0; WIDTH],
+        im: [0.0; WIDTH],
+    };
+
+    /// Of these rows, of which the first is row `first`, the ones that are named; zero in place of the others.
+    #[inline(always)]
+    pub(super) fn kept(&self, first: usize, keep: impl Fn(usize) -> bool) -> Self {
+        let mut kept = Self::ZERO;
+        for e in 0..WIDTH {
+            let here = keep(first + e);
+            kept.re[e] = if here { self.re[e] } else { 0.0 };
+            kept.im[e] = if here { self.im[e] } else { 0.0 };
+        }
+        kept
+    }
+
+    /// Adds real rows times a complex number.
+    #[inline(always)]
+    fn add(&mut self, real: &Eight, factor: Complex64) {
+        for (re, x) in self.re.iter_mut().zip(&real.0) {
+            *re += factor.re * x;
+        }
+        for (im, x) in self.im.iter_mut().zip(&real.0) {
+            *im += factor.im * x;
+        }
+    }
+
+    /// Subtracts other rows times a complex number.
+    #[inline(always)]
+    pub(super) fn subtract(&mut self, other: &Self, factor: Complex64) {
+        for e in 0..WIDTH {
+            self.re[e] -= factor.re * other.re[e] - factor.im * other.im[e];
+        }
+        for e in 0..WIDTH {
+            self.im[e] -= factor.re * other.im[e] + factor.im * other.re[e];
+        }
+    }
+}
+
+/// A real matrix, column by column, in whole eights.
+#[derive(Debug, Clone)]
+pub(super) struct RealColumns {
+    rows: usize,
+    all: Vec<Eight>,
+}
+
+/// Eight rows of one column.
+#[derive(Debug, Clone, Copy)]
+#[repr(C, align(64))]
+struct Eight([f64; WIDTH]);
+
+impl RealColumns {
+    pub fn of(matrix: &DMatrix<f64>) -> Self {
+        let stride = matrix.nrows().div_ceil(WIDTH);
+        let mut all = vec![Eight([0.0; WIDTH]); stride * matrix.ncols()];
+        for (j, column) in matrix.column_iter().enumerate() {
+            for (i, x) in column.iter().enumerate() {
+                all[j * stride + i / WIDTH].0[i % WIDTH] = *x;
+            }
+        }
+        Self {
+            rows: matrix.nrows(),
+            all,
+        }
+    }
+}
+
+/// A real matrix in a sum, the number it is multiplied with, and that number's derivative.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Term<'a> {
+    pub value: Complex64,
+    pub slope: Complex64,
+    pub matrix: &'a RealColumns,
+}
+
+/// A complex matrix, column by column.
+#[derive(Debug, Clone)]
+pub(super) struct Columns {
+    pub(super) rows: usize,
+    /// Eights of one column.
+    pub(super) stride: usize,
+    pub(super) all: Vec<Rows>,
+}
+
+impl Columns {
+    pub fn zeros(rows: usize, columns: usize) -> Self {
+        let stride = rows.div_ceil(WIDTH);
+        Self {
+            rows,
+            stride,
+            all: vec![Rows::ZERO; stride * columns],
+        }
+    }
+
+    pub fn of(matrix: &DMatrix<Complex64>) -> Self {
+        let mut all = Self::zeros(matrix.nrows(), matrix.ncols());
+        for (j, column) in matrix.column_iter().enumerate() {
+            for (i, z) in column.iter().enumerate() {
+                all.set(i, j, *z);
+            }
+        }
+        all
+    }
+
+    pub fn to_matrix(&self) -> DMatrix<Complex64> {
+        DMatrix::from_fn(self.rows, self.columns(), |i, j| self.at(i, j))
+    }
+
+    /// The sum of the terms and its derivative.
+    #[inline(always)]
+    pub fn sum(terms: &[Term<'_>]) -> (Self, Self) {
+        let (rows, eights) = terms.first().map_or((0, 0), |t| {
+            let matrix = t.matrix;
+            (matrix.rows, matrix.all.len())
+        });
+        let both = (0..eights).map(|i| {
+            let (mut value, mut slope) = (Rows::ZERO, Rows::ZERO);
+            for term in terms {
+                value.add(&term.matrix.all[i], term.value);
+                slope.add(&term.matrix.all[i], term.slope);
+            }
+            (value, slope)
+        });
+        let (value, slope) = both.unzip();
+        let stride = rows.div_ceil(WIDTH);
+        let of = |all| Self { rows, stride, all };
+        (of(value), of(slope))
+    }
+
+    pub fn columns(&self) -> usize {
+        self.all.len() / self.stride.max(1)
+    }
+
+    #[inline(always)]
+    pub fn at(&self, i: usize, j: usize) -> Complex64 {
+        let rows = &self.all[j * self.stride + i / WIDTH];
+        Complex64::new(rows.re[i % WIDTH], rows.im[i % WIDTH])
+    }
+
+    #[inline(always)]
+    pub fn set(&mut self, i: usize, j: usize, z: Complex64) {
+        let rows = &mut self.all[j * self.stride + i / WIDTH];
+        (rows.re[i % WIDTH], rows.im[i % WIDTH]) = (z.re, z.im);
+    }
+
+    #[inline(always)]
+    pub fn column(&self, j: usize) -> &[Rows] {
+        &self.all[j * self.stride..][..self.stride]
+    }
+
+    /// `self · v` for a matrix `v`.
+    #[inline(always)]
+    pub fn times(&self, v: &Self) -> Self {
+        let mut product = Self::zeros(self.rows, v.columns());
+        for j in 0..v.columns() {
+            let to = &mut product.all[j * self.stride..][..self.stride];
+            for k in 0..v.rows {
+                let factor = -v.at(k, j);
+                for (to, from) in to.iter_mut().zip(self.column(k)) {
+                    to.subtract(from, factor);
+                }
+            }
+        }
+        product
+    }
+
+    /// `uᵀ self` for a column `u`, as a column.
+    #[inline(always)]
+    pub fn transposed_times(&self, u: &Self) -> Self {
+        let mut product = Self::zeros(self.columns(), 1);
+        for k in 0..self.columns() {
+            product.set(k, 0, dot(self.column(k), u.column(0)));
+        }
+        product
+    }
+
+    /// `uᵀ v` of two columns.
+    #[inline(always)]
+    pub fn dot(&self, v: &Self) -> Complex64 {
+        dot(self.column(0), v.column(0))
+    }
+
+    #[inline(always)]
+    pub fn swap(&mut self, a: usize, b: usize) {
+        if a != b {
+            for j in 0..self.columns() {
+                let (x, y) = (self.at(a, j), self.at(b, j));
+                self.set(a, j, y);
+                self.set(b, j, x);
+            }
+        }
+    }
+}
+
+#[inline(always)]
+pub(super) fn entry(column: &[Rows], i: usize) -> Complex64 {
+    let rows = &column[i / WIDTH];
+    Complex64::new(rows.re[i % WIDTH], rows.im[i % WIDTH])
+}
+
+/// `aᵀ b` in eight sums that are added at the end.
+#[inline(always)]
+pub(super) fn dot(a: &[Rows], b: &[Rows]) -> Complex64 {
+    let mut sums = Rows::ZERO;
+    for (a, b) in a.iter().zip(b) {
+        for e in 0..WIDTH {
+            sums.re[e] += a.re[e] * b.re[e] - a.im[e] * b.im[e];
+            sums.im[e] += a.re[e] * b.im[e] + a.im[e] * b.re[e];
+        }
+    }
+    Complex64::new(sums.re.iter().sum(), sums.im.iter().sum())
+}
