@@ -1,10 +1,14 @@
 """FMI 3.0: the same units through the other shell."""
 
+import zipfile
+from pathlib import Path
+
 import fmpy
 import numpy as np
 import pytest
 from exported import FOLDER, MODELS
 from fmpy.validation import validate_fmu
+from lxml import etree
 from section import OUTPUTS
 
 KINDS = ["continuous_laguerre", "rational", "discrete_laguerre"]
@@ -47,6 +51,30 @@ def test_cvode_moves_as_the_steps_do(kind):
     for name in OUTPUTS:
         # as in FMI 2.0, see test_model_exchange.py
         assert np.abs(own[name] - foreign[name]).max() <= 1e-5 * np.abs(own[name]).max(), name
+
+
+@pytest.mark.parametrize(
+    "unit, terminals",
+    [
+        ("fmi3_section_rational", {"wind", "vertical", "torsion"}),
+        ("fmi3_force_rational", {"wind", "vertical", "torsion"}),
+        ("bridge_fmi3", {"wind", "vertical", "lateral", "torsion"}),
+    ],
+)
+def test_terminals_name_variables(unit, terminals):
+    """The file is as the schema of the standard has it, and its members are variables of the unit."""
+    fmu = FOLDER / f"{unit}.fmu"
+    with zipfile.ZipFile(fmu) as archive:
+        text = archive.read("terminalsAndIcons/terminalsAndIcons.xml")
+    schema = Path(fmpy.__file__).parent / "schema/fmi3/fmi3TerminalsAndIcons.xsd"
+    tree = etree.fromstring(text)
+    etree.XMLSchema(etree.parse(str(schema))).assertValid(tree)
+    names = {v.name for v in fmpy.read_model_description(str(fmu)).modelVariables}
+    assert {t.get("name") for t in tree.iter("Terminal")} == terminals
+    for terminal in tree.iter("Terminal"):
+        members = [(m.get("memberName"), m.get("variableName")) for m in terminal]
+        assert len({member for member, _ in members}) == len(members) > 0
+        assert names.issuperset(name for _, name in members)
 
 
 def test_strips_are_arrays():

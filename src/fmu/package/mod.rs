@@ -8,6 +8,7 @@ mod documentation;
 mod growth;
 mod label;
 mod runtime;
+mod terminals;
 
 pub use super::standard::FmiVersion;
 pub use documentation::documentation;
@@ -214,6 +215,10 @@ fn assembled(
         FmiVersion::Three => "terminalsAndIcons/icon.png",
     };
     files.insert(icon.into(), ICON.to_vec());
+    if version == FmiVersion::Three {
+        let text = terminals::document(&resources.table);
+        files.insert(terminals::FILE.into(), text.into_bytes());
+    }
     for (name, text) in options {
         files.insert(format!("resources/{name}"), text.into_bytes());
     }
