@@ -245,7 +245,7 @@ fn scatter_follows_the_onset() {
         samples: 3,
         seed: 1,
     };
-    let still = study.scattered_onset(&found, &none).unwrap();
+    let still = study.scattered_onset(&found, &none, &|_, _| ()).unwrap();
     near(still.mean_m_s / found.at.speed_m_s, 1.0, 1e-8);
     assert!(still.standard_deviation_m_s < 1e-6 * still.mean_m_s);
     let some = Scatter {
@@ -255,8 +255,11 @@ fn scatter_follows_the_onset() {
         samples: 60,
         seed: 5,
     };
-    let scattered = study.scattered_onset(&found, &some).unwrap();
-    assert_eq!(scattered, study.scattered_onset(&found, &some).unwrap());
+    let scattered = study.scattered_onset(&found, &some, &|_, _| ()).unwrap();
+    assert_eq!(
+        scattered,
+        study.scattered_onset(&found, &some, &|_, _| ()).unwrap()
+    );
     println!("{scattered:?}");
     assert_eq!(scattered.without_onset, 0);
     near(scattered.mean_m_s / found.at.speed_m_s, 1.0, 0.03);
@@ -286,7 +289,9 @@ fn scatter_as_measured_is_the_interval() {
         samples: 400,
         seed: 3,
     };
-    let scattered = study.scattered_onset(&found, &measured).unwrap();
+    let scattered = study
+        .scattered_onset(&found, &measured, &|_, _| ())
+        .unwrap();
     let OnsetInterval::Known {
         standard_error_m_s, ..
     } = study.onset_interval(&found).unwrap()

@@ -18,6 +18,7 @@ lateral (if present), torsion. Names with a unit end in it (`speed_m_s`).
 
 from ._aerodeck import (
     Bridge,
+    BridgeScatter,
     Buffeting,
     Derivatives,
     Model,
@@ -46,6 +47,7 @@ from ._errors import AerodeckError, FileError, InputError, NumericalError, Unsta
 __all__ = [
     "AerodeckError",
     "Bridge",
+    "BridgeScatter",
     "Buffeting",
     "Derivatives",
     "FileError",

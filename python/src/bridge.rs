@@ -1,5 +1,6 @@
 //! `Bridge`: modes and strips of a whole bridge.
 
+use crate::bridge_scatter::{BridgeScatter, Derivatives};
 use crate::convert::{rows, shown, to_python};
 use crate::error::{raised, wrong};
 use crate::export::existing;
@@ -8,9 +9,9 @@ use crate::sweep::Sweep;
 use crate::work::Work;
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::files::bridge::BridgeFile;
-use aerodeck::flutter::trace_modes;
+use aerodeck::flutter::{OnsetSearch, find_onset, trace_modes};
 use aerodeck::fmu::package::{FmiVersion, Label, Runtime, package_bridge, write_archive};
-use aerodeck::study::bridge::{BridgeBuffeting, BridgeStudy, Wanted, bridge_flutter};
+use aerodeck::study::bridge::{BridgeBuffeting, BridgeStudy, Scatter, Wanted, bridge_flutter};
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -163,14 +164,68 @@ impl Bridge {
             }
         };
         let curves = Work::new(None).run(py, || {
-            let bridge = &study.by_model;
-            let coupled = CoupledSection::new(bridge.structure(), bridge.forces().realize()?)?;
-            let curves = trace_modes("model", &coupled, &speeds)?;
-            aerodeck::Result::Ok(curves.marked(bridge.width_m(), study.tested_range()))
+            let curves = trace_modes("model", &self.coupled()?, &speeds)?;
+            aerodeck::Result::Ok(curves.marked(study.by_model.width_m(), study.tested_range()))
         })?;
         let curves = curves.map_err(raised)?;
         let names = curves.branches.iter().map(|b| b.name.clone()).collect();
         Sweep::new(py, &curves, speeds, names)
+    }
+
+    /// Find the onset of many bridges whose modes and forces scatter, with the force models: that of the mode which flutters in
+    /// the mean, followed in every sample.
+    ///
+    /// Parameters
+    /// ----------
+    /// samples : int
+    /// frequency : float
+    ///     Standard deviation of each natural frequency over its mean (normal).
+    /// damping : float
+    ///     Standard deviation of each damping ratio over its mean (log-normal).
+    /// derivatives : float or {"measured"}
+    ///     Standard deviation of the derivatives of each force by each motion over their mean (normal); "measured" draws the models
+    ///     of the sections from the covariance of their fits.
+    /// seed : int
+    /// progress : callable, optional
+    ///     Called with (samples done, samples), from any thread.
+    ///
+    /// Returns
+    /// -------
+    /// BridgeScatter
+    #[pyo3(signature = (samples = 1000, *, frequency = 0.02, damping = 0.3, derivatives = Derivatives::Relative(0.05), seed = 1,
+        progress = None), text_signature = "($self, samples=1000, *, frequency=0.02, damping=0.3, derivatives=0.05, seed=1, progress=None)")]
+    #[allow(clippy::too_many_arguments)] // keywords of Python, not positions
+    fn scatter(
+        &self,
+        py: Python<'_>,
+        samples: usize,
+        frequency: f64,
+        damping: f64,
+        derivatives: Derivatives,
+        seed: u64,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<BridgeScatter> {
+        let scatter = Scatter {
+            frequency,
+            damping,
+            derivatives: derivatives.scatter()?,
+            samples,
+            seed,
+        };
+        let work = Work::new(progress);
+        let found = work.run(py, || {
+            let search = OnsetSearch {
+                speed_max_m_s: self.0.file.flutter.speed_max_m_s,
+                speeds: self.0.file.flutter.speeds,
+            };
+            let mean = find_onset("model", &self.coupled()?, &search, self.0.tested_range())?;
+            let onset = mean.onset().ok_or_else(|| {
+                aerodeck::Error::Numerical(format!("scatter: the bridge {}", mean.explain()))
+            })?;
+            self.0
+                .scattered_onset(onset, &scatter, &|done, all| work.tell(done, all))
+        })?;
+        Ok(BridgeScatter::new(py, &found.map_err(raised)?))
     }
 
     /// Compute the response to the turbulence of the bridge file's `[buffeting]`.
@@ -268,6 +323,14 @@ impl Bridge {
         keywords: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         shown(slf.as_any(), "bridge_plot", keywords)
+    }
+}
+
+impl Bridge {
+    /// Its modes in the forces of its models.
+    fn coupled(&self) -> aerodeck::Result<CoupledSection> {
+        let bridge = &self.0.by_model;
+        CoupledSection::new(bridge.structure(), bridge.forces().realize()?)
     }
 }
 

@@ -4,6 +4,7 @@
 //! library and puts arrays together. Plots and pages for notebooks are Python (`aerodeck/_show.py`).
 
 mod bridge;
+mod bridge_scatter;
 mod convert;
 mod derivatives;
 mod error;
@@ -36,6 +37,7 @@ fn _aerodeck(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<onsets::Onsets>()?;
     m.add_class::<bridge::Bridge>()?;
     m.add_class::<bridge::Buffeting>()?;
+    m.add_class::<bridge_scatter::BridgeScatter>()?;
     m.add_class::<response::Motion>()?;
     m.add_class::<response::Stepper>()?;
     m.add_class::<monte_carlo::MonteCarlo>()?;

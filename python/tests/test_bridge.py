@@ -64,6 +64,20 @@ def test_damping_of_the_sweep_crosses_zero_at_the_onset(bridge, onset):
     assert list(np.nanmin(curves.damping_ratio, axis=1) > 0) == [True] * 4 + [False]
 
 
+def test_onsets_scatter_with_what_scatters(bridge, onset):
+    told = []
+    found = bridge.scatter(50, derivatives="measured", progress=lambda *at: told.append(at))
+    assert found.speeds_m_s.shape == (50 - found.without_onset,) and max(told) == (50, 50)
+    assert np.all(np.diff(found.speeds_m_s) >= 0) and abs(found.mean_m_s / onset.speed_m_s - 1) < 0.05
+    assert abs(np.std(found.speeds_m_s, ddof=1) / found.standard_deviation_m_s - 1) < 1e-12
+    low, high = found.interval_m_s
+    assert low < found.mean_m_s < high and f"{low:.3f} and {high:.3f}" in repr(found)
+    fixed = bridge.scatter(2, frequency=0, damping=0, derivatives=0.0)
+    assert abs(fixed.mean_m_s / onset.speed_m_s - 1) < 1e-8
+    with pytest.raises(aerodeck.InputError, match="derivatives: expected a standard deviation over the mean, or measured"):
+        bridge.scatter(2, derivatives="much")
+
+
 def test_buffeting_by_spectra_and_by_records(bridge):
     told = []
     found = bridge.buffeting(30.0, progress=lambda *at: told.append(at))

@@ -125,8 +125,10 @@ impl Args {
             samples,
             seed: self.seed,
         };
-        let stage = progress.stage("scatter of the onset");
-        let found = study.scattered_onset(onset, &scatter);
+        let stage = progress.steps("samples of the bridge");
+        let found = study.scattered_onset(onset, &scatter, &|done, all| {
+            stage.at(done as u64, all as u64);
+        });
         drop(stage);
         found.map(Some)
     }

@@ -19,6 +19,7 @@ use rand_distr::StandardNormal;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Samples at most.
 const MOST_SAMPLES: usize = 1_000_000;
@@ -86,15 +87,24 @@ pub struct ScatteredOnset {
     pub interval_m_s: [f64; 2],
     /// Samples without an onset up to the highest wind speed; they are not in the numbers above.
     pub without_onset: usize,
+    /// The onset of each sample that has one, m/s, rising.
+    #[serde(skip)]
+    pub speeds_m_s: Vec<f64>,
 }
 
 impl BridgeStudy {
     /// The onset when frequencies, damping and forces scatter: that of the mode which flutters in the mean, followed in every
-    /// sample from the onset of the mean; where it cannot be followed the onset is searched.
+    /// sample from the onset of the mean; where it cannot be followed the onset is searched. `progress` is called with the samples
+    /// done and all of them, from any thread.
     ///
     /// # Errors
     /// [`Error::Input`] for scatter that cannot be; [`Error::Numerical`] when fewer than two samples have an onset.
-    pub fn scattered_onset(&self, onset: &Onset, scatter: &Scatter) -> Result<ScatteredOnset> {
+    pub fn scattered_onset(
+        &self,
+        onset: &Onset,
+        scatter: &Scatter,
+        progress: &(dyn Fn(usize, usize) + Sync),
+    ) -> Result<ScatteredOnset> {
         non_negative("scatter of the frequencies", scatter.frequency)?;
         non_negative("scatter of the damping", scatter.damping)?;
         if let DerivativeScatter::Relative(part) = scatter.derivatives {
@@ -113,9 +123,16 @@ impl BridgeStudy {
             forces: self.drawn_forces(scatter.derivatives)?,
             nearby: NearbyOnset::of(&self.by_model, &onset.at)?,
         };
+        let done = AtomicUsize::new(0);
         let found = (0..scatter.samples)
             .into_par_iter()
-            .map(|i| sampler.onset(i as u64))
+            .map(|i| {
+                // who wants no more need not wait for what has not begun
+                progress(done.load(Ordering::Relaxed), scatter.samples);
+                let found = sampler.onset(i as u64);
+                progress(1 + done.fetch_add(1, Ordering::Relaxed), scatter.samples);
+                found
+            })
             .collect::<Result<Vec<_>>>()?;
         let mut speeds: Vec<f64> = found.iter().copied().flatten().collect();
         if speeds.len() < 2 {
@@ -132,6 +149,7 @@ impl BridgeStudy {
             standard_deviation_m_s,
             interval_m_s: [quantile(0.025), quantile(0.975)],
             without_onset: found.len() - speeds.len(),
+            speeds_m_s: speeds,
         })
     }
 

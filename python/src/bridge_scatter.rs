@@ -1,0 +1,75 @@
+//! `BridgeScatter`: the onset of a bridge whose modes and forces scatter.
+
+use crate::error::wrong;
+use aerodeck::study::bridge::{DerivativeScatter, ScatteredOnset};
+use numpy::PyArray1;
+use pyo3::prelude::*;
+
+/// Standard deviation over the mean, or the word for the covariance of the fits.
+#[derive(FromPyObject)]
+pub enum Derivatives {
+    Relative(f64),
+    Word(String),
+}
+
+impl Derivatives {
+    /// What the library takes.
+    ///
+    /// # Errors
+    /// A word that is none.
+    pub fn scatter(&self) -> PyResult<DerivativeScatter> {
+        match self {
+            Self::Relative(part) => Ok(DerivativeScatter::Relative(*part)),
+            Self::Word(word) => word.parse().map_err(|_| {
+                let expected = "a standard deviation over the mean, or measured";
+                wrong("derivatives", expected, format!("`{word}`"))
+            }),
+        }
+    }
+}
+
+/// Onsets of a bridge whose frequencies, damping and self-excited forces scatter.
+#[pyclass(frozen, module = "aerodeck")]
+pub struct BridgeScatter {
+    /// Onset of each sample that has one, m/s, rising; shape (k,).
+    #[pyo3(get)]
+    speeds_m_s: Py<PyArray1<f64>>,
+    /// Mean, m/s.
+    #[pyo3(get)]
+    mean_m_s: f64,
+    /// Standard deviation, m/s.
+    #[pyo3(get)]
+    standard_deviation_m_s: f64,
+    /// 95 % of the samples lie between these, m/s.
+    #[pyo3(get)]
+    interval_m_s: (f64, f64),
+    /// Samples without an onset up to the highest wind speed; they are not in the numbers above.
+    #[pyo3(get)]
+    without_onset: usize,
+}
+
+impl BridgeScatter {
+    pub fn new(py: Python<'_>, found: &ScatteredOnset) -> Self {
+        Self {
+            speeds_m_s: PyArray1::from_slice(py, &found.speeds_m_s).unbind(),
+            mean_m_s: found.mean_m_s,
+            standard_deviation_m_s: found.standard_deviation_m_s,
+            interval_m_s: (found.interval_m_s[0], found.interval_m_s[1]),
+            without_onset: found.without_onset,
+        }
+    }
+}
+
+#[pymethods]
+impl BridgeScatter {
+    fn __repr__(&self) -> String {
+        format!(
+            "BridgeScatter({:.3} m/s, standard deviation {:.3} m/s, 95 % between {:.3} and {:.3} m/s, {} without onset)",
+            self.mean_m_s,
+            self.standard_deviation_m_s,
+            self.interval_m_s.0,
+            self.interval_m_s.1,
+            self.without_onset
+        )
+    }
+}
