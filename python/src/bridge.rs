@@ -9,7 +9,7 @@ use crate::sweep::Sweep;
 use crate::work::Work;
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::files::bridge::BridgeFile;
-use aerodeck::flutter::{OnsetSearch, find_onset, trace_modes};
+use aerodeck::flutter::{find_onset, trace_modes};
 use aerodeck::fmu::package::{FmiVersion, Label, Runtime, package_bridge, write_archive};
 use aerodeck::study::bridge::{BridgeBuffeting, BridgeStudy, Scatter, Wanted, bridge_flutter};
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1};
@@ -214,11 +214,12 @@ impl Bridge {
         };
         let work = Work::new(progress);
         let found = work.run(py, || {
-            let search = OnsetSearch {
-                speed_max_m_s: self.0.file.flutter.speed_max_m_s,
-                speeds: self.0.file.flutter.speeds,
-            };
-            let mean = find_onset("model", &self.coupled()?, &search, self.0.tested_range())?;
+            let mean = find_onset(
+                "model",
+                &self.coupled()?,
+                &self.0.search(),
+                self.0.tested_range(),
+            )?;
             let onset = mean.onset().ok_or_else(|| {
                 aerodeck::Error::Numerical(format!("scatter: the bridge {}", mean.explain()))
             })?;

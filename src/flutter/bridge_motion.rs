@@ -2,6 +2,7 @@
 
 use super::critical_point::CriticalPoint;
 use super::determinant::{impedance, null_vector};
+use super::following::{MIN_ASSURANCE, assurance};
 use super::modal_characteristic::ModalCharacteristic;
 use crate::aerodynamics::Transfer;
 use crate::aeroelastic::CoupledSection;
@@ -144,19 +145,36 @@ impl NearbyOnset {
         })
     }
 
-    /// Where the same mode of another bridge loses its damping, by the secant; `None` where the mode cannot be followed
-    /// that far.
+    /// Where the same mode of another bridge loses its damping; `None` where the mode cannot be followed that far.
     pub fn find(&self, other: &CoupledSection) -> Option<FoundOnset> {
+        self.follow(other).map(|found| found.found())
+    }
+
+    /// The onset itself.
+    pub(crate) fn found(&self) -> FoundOnset {
+        FoundOnset {
+            speed_m_s: self.speed_m_s,
+            frequency_hz: self.lambda.im / TAU,
+        }
+    }
+
+    /// Whether this is the motion of `other`, hardly changed.
+    pub(crate) fn resembles(&self, other: &Self) -> bool {
+        assurance(&self.shape, &other.shape) >= MIN_ASSURANCE
+    }
+
+    /// The onset of the same mode of another bridge, by the secant, from which it goes on.
+    pub(crate) fn follow(&self, other: &CoupledSection) -> Option<Self> {
         let problem = ModalCharacteristic::new(other)?;
         let mut known = (self.lambda, self.shape.clone());
         let mut at = |speed: f64| {
             known = problem.at(speed).solve(known.0, &known.1)?;
-            Some(known.0)
+            Some(known.clone())
         };
         let (mut before, mut speed) = (self.speed_m_s, self.speed_m_s * (1.0 + FIRST_STEP));
-        let mut value = at(before)?;
+        let mut value = at(before)?.0;
         for _ in 0..MOST_STEPS {
-            let next = at(speed)?;
+            let (next, shape) = at(speed)?;
             let slope = (next.re - value.re) / (speed - before);
             // no further than a tenth at once: beyond, it may be another mode
             let most = LONGEST_STEP * speed;
@@ -165,9 +183,10 @@ impl NearbyOnset {
                 return None;
             }
             if step.abs() <= SETTLED * speed {
-                return Some(FoundOnset {
+                return Some(Self {
                     speed_m_s: speed + step,
-                    frequency_hz: next.im / TAU,
+                    lambda: next,
+                    shape,
                 });
             }
             (before, value) = (speed, next);

@@ -36,17 +36,21 @@ impl<'a> ModelDraws<'a> {
 
     /// Parameters of one draw.
     pub(super) fn parameters(&self, random: &mut impl Rng) -> Vec<f64> {
-        let normal = |_, _| StandardNormal.sample(random);
-        let step: DVector<f64> = &self.root * DVector::from_fn(self.root.ncols(), normal);
-        self.estimate.moved_by(&step)
+        self.estimate.moved_by(&self.step(random))
     }
 
-    /// The model of one draw.
+    /// From the estimates to one draw.
+    fn step(&self, random: &mut impl Rng) -> DVector<f64> {
+        let normal = |_, _| StandardNormal.sample(random);
+        &self.root * DVector::from_fn(self.root.ncols(), normal)
+    }
+
+    /// The model that is `part` of the way from the estimates to one draw.
     ///
     /// # Errors
     /// Parameters that make no model.
-    pub(crate) fn model(&self, random: &mut impl Rng) -> Result<Model> {
-        self.model_at(&self.parameters(random))
+    pub(crate) fn model(&self, random: &mut impl Rng, part: f64) -> Result<Model> {
+        self.model_at(&self.estimate.moved_by(&(self.step(random) * part)))
     }
 
     /// The model of given parameters.

@@ -69,10 +69,7 @@ impl BridgeFlutter {
 pub fn bridge_flutter(study: &BridgeStudy) -> Result<BridgeFlutter> {
     let mut failed = Vec::new();
     let mut answers = Vec::new();
-    let search = OnsetSearch {
-        speed_max_m_s: study.file.flutter.speed_max_m_s,
-        speeds: study.file.flutter.speeds,
-    };
+    let search = study.search();
     if let Some(bridge) = &study.by_table {
         match by_table(bridge, &search) {
             Ok(answer) => answers.push(answer),

@@ -5,7 +5,7 @@ use super::answers::coupled;
 use crate::aerodynamics::RationalAdmittance;
 use crate::error::{Error, Result};
 use crate::files::bridge::FieldTable;
-use crate::flutter::{BridgeMotion, FlutterSearch, OnsetSearch, find_onset};
+use crate::flutter::{BridgeMotion, FlutterSearch, find_onset};
 use crate::fmu::bridge_gusts::{BridgeGusts, TurbulenceOptions};
 use crate::fmu::bridge_options::{BridgeOptions, GroupOptions};
 use crate::fmu::onset_bounds::OnsetBounds;
@@ -45,10 +45,7 @@ impl BridgeStudy {
         let bridge = &self.by_model;
         let named = self.named(&wanted.nodes)?;
         let gusts = self.gusts(wanted)?;
-        let search = OnsetSearch {
-            speed_max_m_s: self.file.flutter.speed_max_m_s,
-            speeds: self.file.flutter.speeds,
-        };
+        let search = self.search();
         // as the unit itself judges: whatever grows counts, tested or not
         let found = find_onset("bridge", &coupled(bridge)?, &search, None)?;
         if let (FlutterSearch::UnstableAtOrBelow(_), false) = (&found, wanted.allow_unstable) {

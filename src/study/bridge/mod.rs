@@ -17,6 +17,7 @@ use super::KnownUncertainty;
 use crate::bridge::{Bridge, Similarity, StripGroup, similarities};
 use crate::error::{Error, Result};
 use crate::files::bridge::{BridgeFile, Modes, SectionBlock};
+use crate::flutter::OnsetSearch;
 use crate::trained_model::TrainedModel;
 use crate::units::ReducedFrequencyRange;
 use std::collections::BTreeMap;
@@ -97,6 +98,14 @@ impl BridgeStudy {
             notes,
             file,
         })
+    }
+
+    /// Where an onset is searched.
+    pub fn search(&self) -> OnsetSearch {
+        OnsetSearch {
+            speed_max_m_s: self.file.flutter.speed_max_m_s,
+            speeds: self.file.flutter.speeds,
+        }
     }
 
     /// Reduced frequencies, of the bridge, in which the forces of every section were tested.

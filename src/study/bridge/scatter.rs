@@ -8,7 +8,7 @@ use crate::aerodynamics::{
 use crate::bridge::Bridge;
 use crate::error::{Error, Result, non_negative};
 use crate::files::bridge::SectionBlock;
-use crate::flutter::{NearbyOnset, Onset, OnsetSearch, find_onset};
+use crate::flutter::{NearbyOnset, Onset, find_onset};
 use crate::section::Dof;
 use crate::signal::random_stream;
 use crate::uncertainty::{ModelDraws, moments, sample_quantile};
@@ -21,6 +21,8 @@ use serde::Serialize;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+/// Shortest step from the mean to a sample, as a part of the way: where the motion changes faster, the onset is searched.
+const SHORTEST_STEP: f64 = 1.0 / 32.0;
 /// Samples at most.
 const MOST_SAMPLES: usize = 1_000_000;
 
@@ -191,16 +193,22 @@ impl<'a> Drawn<'a> {
         Ok(Self::Scaled(part))
     }
 
-    fn forces(&self, mean: &Arc<dyn Transfer>, random: &mut impl Rng) -> Result<Arc<dyn Transfer>> {
+    /// The forces that are `part` of the way from the mean to a draw.
+    fn forces(
+        &self,
+        mean: &Arc<dyn Transfer>,
+        random: &mut impl Rng,
+        part: f64,
+    ) -> Result<Arc<dyn Transfer>> {
         Ok(match self {
             Self::Scaled(0.0) => mean.clone(),
-            Self::Scaled(part) => {
+            Self::Scaled(deviation) => {
                 let n = mean.dofs().len();
                 let mut normal = || -> f64 { random.sample(StandardNormal) };
-                let factors = DMatrix::from_fn(n, n, |_, _| 1.0 + part * normal());
+                let factors = DMatrix::from_fn(n, n, |_, _| 1.0 + part * deviation * normal());
                 Arc::new(Scaled::of(mean.as_ref(), &factors)?)
             }
-            Self::Models(draws) => Arc::new(draws.model(random)?),
+            Self::Models(draws) => Arc::new(draws.model(random, part)?),
         })
     }
 }
@@ -215,43 +223,64 @@ struct Sampler<'a> {
 }
 
 impl Sampler<'_> {
-    /// The onset of one sample, m/s: from nearby, else by a search.
+    /// The onset of one sample, m/s: that of the mean followed, else by a search.
     fn onset(&self, index: u64) -> Result<Option<f64>> {
-        let other = coupled(&self.sample(index)?)?;
-        if let Some(found) = self.nearby.find(&other) {
-            return Ok(Some(found.speed_m_s));
+        if let Some(speed) = self.followed(index)? {
+            return Ok(Some(speed));
         }
-        let search = OnsetSearch {
-            speed_max_m_s: self.study.file.flutter.speed_max_m_s,
-            speeds: self.study.file.flutter.speeds,
-        };
-        let found = find_onset("sample", &other, &search, self.study.tested_range())?;
+        let other = coupled(&self.sample(index, 1.0)?)?;
+        let found = find_onset(
+            "sample",
+            &other,
+            &self.study.search(),
+            self.study.tested_range(),
+        )?;
         Ok(found.critical_speed_m_s())
     }
 
-    fn sample(&self, index: u64) -> Result<Bridge> {
+    /// The same motion from the mean to the sample, by as many bridges between them as it takes to know it again.
+    fn followed(&self, index: u64) -> Result<Option<f64>> {
+        let mut at = self.nearby.clone();
+        let (mut done, mut step) = (0.0, 1.0);
+        while done < 1.0 {
+            let other = coupled(&self.sample(index, done + step)?)?;
+            match at.follow(&other).filter(|next| next.resembles(&at)) {
+                Some(next) => {
+                    at = next;
+                    done += step;
+                    step = (2.0 * step).min(1.0 - done);
+                }
+                None if step > SHORTEST_STEP => step *= 0.5,
+                None => return Ok(None),
+            }
+        }
+        Ok(Some(at.found().speed_m_s))
+    }
+
+    /// A sample, or the bridge that is `part` of the way from the mean to it.
+    fn sample(&self, index: u64, part: f64) -> Result<Bridge> {
         let mut random = random_stream(self.scatter.seed, index);
-        let mut normal = || -> f64 { random.sample(StandardNormal) };
+        let mut normal = || -> f64 { part * random.sample::<f64, _>(StandardNormal) };
         let mut bridge = self.study.by_model.clone();
         // a log-normal factor of mean one
         let damping = self.scatter.damping;
         let spread = (1.0 + damping * damping).ln();
         for mode in &mut bridge.modes {
             mode.frequency_hz *= 1.0 + self.scatter.frequency * normal();
-            mode.damping_ratio *= (spread.sqrt() * normal() - 0.5 * spread).exp();
+            mode.damping_ratio *= (spread.sqrt() * normal() - 0.5 * part * spread).exp();
             crate::error::positive("scattered frequency", mode.frequency_hz)?;
         }
-        self.scatter_forces(&mut bridge, &mut random)?;
+        self.scatter_forces(&mut bridge, &mut random, part)?;
         Ok(bridge)
     }
 
     /// Groups of one section share what was measured on it; given factors are drawn for each group by itself.
-    fn scatter_forces(&self, bridge: &mut Bridge, random: &mut impl Rng) -> Result<()> {
+    fn scatter_forces(&self, bridge: &mut Bridge, random: &mut impl Rng, part: f64) -> Result<()> {
         let mut models = vec![None; self.forces.len()];
         for (group, &section) in bridge.groups.iter_mut().zip(&self.study.section_of_group) {
             group.forces = match (&self.forces[section], &models[section]) {
                 (Drawn::Models(_), Some(drawn)) => Arc::clone(drawn),
-                (of, _) => of.forces(&group.forces, random)?,
+                (of, _) => of.forces(&group.forces, random, part)?,
             };
             models[section] = Some(group.forces.clone());
         }
@@ -318,5 +347,55 @@ impl Transfer for Scaled {
 impl Realizable for Scaled {
     fn realize(&self) -> Realization {
         self.realization.clone()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::files::bridge::BridgeFile;
+
+    /// Frequencies that scatter change the motion at flutter; what is followed is what a search finds.
+    #[test]
+    fn what_is_followed_is_what_a_search_finds() {
+        let text = super::super::demo_bridge_text().replace("model = ", "# model = ");
+        let file = BridgeFile::from_toml(&text, std::path::PathBuf::new()).unwrap();
+        let study = BridgeStudy::new(file).unwrap();
+        let search = study.search();
+        let mean = coupled(&study.by_model).unwrap();
+        let mean = find_onset("mean", &mean, &search, study.tested_range()).unwrap();
+        let scatter = Scatter {
+            frequency: 0.02,
+            damping: 0.3,
+            derivatives: DerivativeScatter::Measured,
+            samples: 4,
+            seed: 1,
+        };
+        let sampler = Sampler {
+            study: &study,
+            scatter: &scatter,
+            forces: study.drawn_forces(scatter.derivatives).unwrap(),
+            nearby: NearbyOnset::of(&study.by_model, &mean.onset().unwrap().at).unwrap(),
+        };
+        let mut searched = 0;
+        for index in 0..scatter.samples as u64 {
+            let speed = sampler
+                .followed(index)
+                .unwrap()
+                .expect("a motion that is known again");
+            let other = coupled(&sampler.sample(index, 1.0).unwrap()).unwrap();
+            let all = other.at(speed).unwrap().eigenvalues().unwrap();
+            assert!(
+                all.iter().any(|l| l.im > 1.0 && l.re.abs() < 1e-9),
+                "{index}"
+            );
+            let found = find_onset("sample", &other, &search, study.tested_range()).unwrap();
+            // where the onset lies outside the tested range the search names the end of that instead
+            if let Some(onset) = found.onset() {
+                assert!((speed / onset.at.speed_m_s - 1.0).abs() < 1e-8, "{index}");
+                searched += 1;
+            }
+        }
+        assert!(searched >= 3, "{searched}");
     }
 }

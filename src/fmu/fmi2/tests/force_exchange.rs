@@ -1,7 +1,7 @@
 //! Forces alone beside an importer that integrates: a linear system that closes on itself, strip by strip, and motion that is
 //! not connected.
 
-use super::model_exchange::exchanged;
+use super::model_exchange::{cannot_be_integrated, exchanged};
 use super::*;
 use crate::aerodynamics::{GustForce, RationalAdmittance};
 use crate::fmu::force_options::{FORCE_FILE, ForceOptions};
@@ -282,11 +282,5 @@ fn has_added_mass(unit: &Unit) -> bool {
 fn sampled_forces_are_refused() {
     let archive = archive("discrete_laguerre", alone());
     assert!(archive.resources.table.state_rates().is_empty());
-    let messages = Box::<Messages>::default();
-    let functions = callbacks(&messages);
-    let mut creation = Creation::right(&archive);
-    creation.kind = fmi2ModelExchange;
-    assert!(creation.call(&functions, false).is_null());
-    let (.., message) = messages.lock().unwrap().last().cloned().unwrap();
-    assert!(message.contains("no continuous states"), "{message}");
+    cannot_be_integrated(&archive);
 }

@@ -203,16 +203,20 @@ fn rates_follow_the_wind() {
     }
 }
 
-#[test]
-fn what_does_not_belong_to_it_is_refused() {
-    let archive = Archive::fixture("discrete_laguerre");
+/// A sampled model has nothing to integrate.
+pub(super) fn cannot_be_integrated(archive: &Archive) {
     let messages = Box::<Messages>::default();
     let functions = callbacks(&messages);
-    let mut creation = Creation::right(&archive);
+    let mut creation = Creation::right(archive);
     creation.kind = fmi2ModelExchange;
     assert!(creation.call(&functions, false).is_null());
     let (.., message) = messages.lock().unwrap().last().cloned().unwrap();
     assert!(message.contains("no continuous states"), "{message}");
+}
+
+#[test]
+fn what_does_not_belong_to_it_is_refused() {
+    cannot_be_integrated(&Archive::fixture("discrete_laguerre"));
 
     let unit = exchanged(Archive::fixture(KINDS[1]));
     unit.start();
