@@ -8,7 +8,7 @@ use aerodeck::aerodynamics::Transfer;
 use aerodeck::bridge::Bridge;
 use aerodeck::flutter::{
     FlutterSearch, NearbyOnset, OnsetInterval, OnsetSearch, find_onset, impedance, motion_at_onset,
-    pk_onset, trace_modes,
+    pk_curves, pk_onset, trace_modes,
 };
 use aerodeck::study::bridge::{DerivativeScatter, Scatter};
 use bridges::{DECKS, SEARCH, THREE, TWO, coupled, langenuen, near, onset, read};
@@ -92,6 +92,27 @@ fn langenuen_with_negative_sway_damping_says_so() {
     .unwrap();
     let singular = z.singular_values();
     assert!(singular.min() < 1e-8 * singular.max(), "{}", singular.min());
+}
+
+/// The crossing that the reference names for that table lies above all this: mode 16, followed from where it comes into the table.
+#[test]
+fn langenuen_with_sway_crosses_again_where_the_reference_does() {
+    let bridge = langenuen("LN21-5500", THREE).by_table.unwrap();
+    let below = (1..=246).map(|i| 0.33 * f64::from(i));
+    let around = (1..=15).map(|i| 81.18 + 0.02 * f64::from(i));
+    let speeds: Vec<f64> = below.chain(around).collect();
+    let curves = pk_curves("table", &bridge.structure(), &bridge.forces(), &speeds).unwrap();
+    assert_eq!(curves.ended, None);
+    let mode = curves.branches.iter().find(|b| b.name == "mode 16");
+    let pairs = mode.unwrap().points.windows(2);
+    let mut zeros = pairs.filter(|w| w[0].damping_ratio > 0.0 && w[1].damping_ratio <= 0.0);
+    let [low, high] = zeros.next().expect("a crossing") else {
+        panic!("not a pair")
+    };
+    assert!(zeros.next().is_none(), "two crossings");
+    let part = low.damping_ratio / (low.damping_ratio - high.damping_ratio);
+    let speed = low.speed_m_s + part * (high.speed_m_s - low.speed_m_s);
+    near(speed, 81.298, PRINTED);
 }
 
 /// A dissipative model of three filters, eigenvalues of 195 states: within a hundredth of the table's.

@@ -1,7 +1,8 @@
 //! Complex matrices for the vectors of the processor: real and imaginary parts of eight rows lie together, each column padded to
 //! whole eights, so that every step works on full vectors; the order of the sums, and so the bits, are the same on every processor.
+//! Loops count, where iterators would read better: those stay functions of their own, compiled for the plainest of processors.
 
-use nalgebra::{Complex, DMatrix};
+use nalgebra::{Complex, DMatrix, DVector};
 
 type Complex64 = Complex<f64>;
 
@@ -37,11 +38,11 @@ impl Rows {
     /// Adds real rows times a complex number.
     #[inline(always)]
     fn add(&mut self, real: &Eight, factor: Complex64) {
-        for (re, x) in self.re.iter_mut().zip(&real.0) {
-            *re += factor.re * x;
+        for e in 0..WIDTH {
+            self.re[e] += factor.re * real.0[e];
         }
-        for (im, x) in self.im.iter_mut().zip(&real.0) {
-            *im += factor.im * x;
+        for e in 0..WIDTH {
+            self.im[e] += factor.im * real.0[e];
         }
     }
 
@@ -122,29 +123,64 @@ impl Columns {
         all
     }
 
+    /// One column.
+    pub fn of_column(column: &DVector<Complex64>) -> Self {
+        let mut all = Self::zeros(column.len(), 1);
+        for (i, z) in column.iter().enumerate() {
+            all.set(i, 0, *z);
+        }
+        all
+    }
+
+    /// The first column.
+    pub fn to_column(&self) -> DVector<Complex64> {
+        DVector::from_fn(self.rows, |i, _| self.at(i, 0))
+    }
+
     pub fn to_matrix(&self) -> DMatrix<Complex64> {
         DMatrix::from_fn(self.rows, self.columns(), |i, j| self.at(i, j))
+    }
+
+    /// The sum of the terms.
+    #[inline(always)]
+    pub fn value(terms: &[Term<'_>]) -> Self {
+        let mut value = Self::like(terms);
+        for i in 0..value.all.len() {
+            let mut sum = Rows::ZERO;
+            for term in terms {
+                sum.add(&term.matrix.all[i], term.value);
+            }
+            value.all[i] = sum;
+        }
+        value
     }
 
     /// The sum of the terms and its derivative.
     #[inline(always)]
     pub fn sum(terms: &[Term<'_>]) -> (Self, Self) {
+        let (mut value, mut slope) = (Self::like(terms), Self::like(terms));
+        for i in 0..value.all.len() {
+            let (mut sum, mut slopes) = (Rows::ZERO, Rows::ZERO);
+            for term in terms {
+                sum.add(&term.matrix.all[i], term.value);
+                slopes.add(&term.matrix.all[i], term.slope);
+            }
+            (value.all[i], slope.all[i]) = (sum, slopes);
+        }
+        (value, slope)
+    }
+
+    /// Zeros of the size of the terms.
+    fn like(terms: &[Term<'_>]) -> Self {
         let (rows, eights) = terms.first().map_or((0, 0), |t| {
             let matrix = t.matrix;
             (matrix.rows, matrix.all.len())
         });
-        let both = (0..eights).map(|i| {
-            let (mut value, mut slope) = (Rows::ZERO, Rows::ZERO);
-            for term in terms {
-                value.add(&term.matrix.all[i], term.value);
-                slope.add(&term.matrix.all[i], term.slope);
-            }
-            (value, slope)
-        });
-        let (value, slope) = both.unzip();
-        let stride = rows.div_ceil(WIDTH);
-        let of = |all| Self { rows, stride, all };
-        (of(value), of(slope))
+        Self {
+            rows,
+            stride: rows.div_ceil(WIDTH),
+            all: vec![Rows::ZERO; eights],
+        }
     }
 
     pub fn columns(&self) -> usize {
@@ -194,6 +230,36 @@ impl Columns {
         product
     }
 
+    /// Subtracts another matrix of the same size.
+    #[inline(always)]
+    pub fn subtract(&mut self, other: &Self) {
+        for (to, from) in self.all.iter_mut().zip(&other.all) {
+            to.subtract(from, Complex64::from(1.0));
+        }
+    }
+
+    /// Scales to unit norm; the norm before.
+    #[inline(always)]
+    pub fn normalise(&mut self) -> f64 {
+        let squares: f64 = self
+            .all
+            .iter()
+            .map(|r| {
+                (0..WIDTH)
+                    .map(|e| r.re[e] * r.re[e] + r.im[e] * r.im[e])
+                    .sum::<f64>()
+            })
+            .sum();
+        let size = squares.sqrt();
+        for rows in &mut self.all {
+            for e in 0..WIDTH {
+                rows.re[e] /= size;
+                rows.im[e] /= size;
+            }
+        }
+        size
+    }
+
     /// `uᵀ v` of two columns.
     #[inline(always)]
     pub fn dot(&self, v: &Self) -> Complex64 {
@@ -225,8 +291,16 @@ pub(super) fn dot(a: &[Rows], b: &[Rows]) -> Complex64 {
     for (a, b) in a.iter().zip(b) {
         for e in 0..WIDTH {
             sums.re[e] += a.re[e] * b.re[e] - a.im[e] * b.im[e];
+        }
+        for e in 0..WIDTH {
             sums.im[e] += a.re[e] * b.im[e] + a.im[e] * b.re[e];
         }
     }
-    Complex64::new(sums.re.iter().sum(), sums.im.iter().sum())
+    Complex64::new(total(&sums.re), total(&sums.im))
+}
+
+/// The sum of eight numbers, by halves.
+#[inline(always)]
+fn total(x: &[f64; WIDTH]) -> f64 {
+    ((x[0] + x[4]) + (x[2] + x[6])) + ((x[1] + x[5]) + (x[3] + x[7]))
 }

@@ -3,6 +3,7 @@
 
 use super::columns::{Columns, Rows, WIDTH, dot, entry};
 use nalgebra::{Complex, DMatrix};
+use std::ops::Range;
 
 type Complex64 = Complex<f64>;
 
@@ -68,27 +69,28 @@ impl Factors {
             sides.swap(k, *row);
         }
         for k in 0..n {
-            self.take(k, |row| row > k, &mut sides);
+            self.take(k, k + 1..n, &mut sides);
         }
         for k in (0..n).rev() {
             let inverse = self.lu.at(k, k).inv();
             for j in 0..sides.columns() {
                 sides.set(k, j, sides.at(k, j) * inverse);
             }
-            self.take(k, |row| row < k, &mut sides);
+            self.take(k, 0..k, &mut sides);
         }
         sides
     }
 
-    /// Subtracts row `k` of `sides` times those entries of column `k` whose rows are named.
+    /// Subtracts row `k` of `sides` times those entries of column `k` that stand in `rows`.
     #[inline(always)]
-    fn take(&self, k: usize, rows: impl Fn(usize) -> bool, sides: &mut Columns) {
-        let stride = self.lu.stride;
+    fn take(&self, k: usize, rows: Range<usize>, sides: &mut Columns) {
+        let (stride, from) = (self.lu.stride, self.lu.column(k));
         for j in 0..sides.columns() {
             let factor = sides.at(k, j);
             let column = &mut sides.all[j * stride..][..stride];
-            for (i, (to, from)) in column.iter_mut().zip(self.lu.column(k)).enumerate() {
-                to.subtract(&from.kept(i * WIDTH, &rows), factor);
+            for i in rows.start / WIDTH..rows.end.div_ceil(WIDTH) {
+                let kept = from[i].kept(i * WIDTH, |row| rows.contains(&row));
+                column[i].subtract(&kept, factor);
             }
         }
     }
@@ -100,11 +102,13 @@ impl Factors {
         // what is not found yet is zero, so that a product with a whole column takes what is found
         let (mut y, mut x) = (Columns::zeros(n, 1), Columns::zeros(n, 1));
         for k in 0..n {
-            let known = dot(self.lu.column(k), y.column(0));
+            let to = k.div_ceil(WIDTH);
+            let known = dot(&self.lu.column(k)[..to], &y.column(0)[..to]);
             y.set(k, 0, (side.at(k, 0) - known) / self.lu.at(k, k));
         }
         for k in (0..n).rev() {
-            let known = dot(self.lu.column(k), x.column(0));
+            let from = (k + 1) / WIDTH;
+            let known = dot(&self.lu.column(k)[from..], &x.column(0)[from..]);
             x.set(k, 0, y.at(k, 0) - known);
         }
         for (k, row) in self.swaps.iter().enumerate().rev() {
