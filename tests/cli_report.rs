@@ -158,6 +158,17 @@ fn a_new_study_runs_and_edited_ones_are_kept() {
         "# mine\n"
     );
     assert_eq!(summary(&at.join("busy"))["study_file"], "study_as_run.toml");
+    // unless it is to be replaced
+    let again = [
+        "study",
+        "mine.toml",
+        "--out",
+        "busy",
+        "--no-figures",
+        "--force",
+    ];
+    succeeds(at, &again);
+    assert_eq!(summary(&at.join("busy"))["study_file"], "study.toml");
 }
 
 #[test]

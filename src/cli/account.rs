@@ -1,8 +1,9 @@
 //! Results in words and tables, for people.
 
 use super::summary::Summary;
+use super::wrapping::beside;
 use crate::error::counted;
-use crate::flutter::{Onset, OnsetInterval, UnstableStart, UnwantedGrowth};
+use crate::flutter::{Onset, OnsetInterval, OnsetMethod, UnstableStart, UnwantedGrowth};
 use crate::identification::{ConstraintReport, FitReport};
 use crate::study::{
     Deck, Deviation, Divergence, KnownUncertainty, ModelGrowth, OnsetSummary, StageFailure, Study,
@@ -24,8 +25,8 @@ pub(crate) fn chain(
         super::report::REPORT
     );
     // what was assumed in reading the deck stands beside the deck
-    let beside = deck.warnings();
-    for limit in summary.limits.iter().filter(|l| !beside.contains(l)) {
+    let with_deck = deck.warnings();
+    for limit in summary.limits.iter().filter(|l| !with_deck.contains(l)) {
         let _ = writeln!(text, "          but: {limit}");
     }
     let s = &study.section;
@@ -217,22 +218,19 @@ pub(crate) fn onsets(
             }
         );
     }
+    let mut without = |model: &str, method: OnsetMethod, why: &str| {
+        let head = format!("{model:<18} {:<13}", method.name());
+        text.push_str(&beside(&head, why));
+    };
     for o in undetermined {
         let reason = o.headline_m_s().err().unwrap_or_default();
-        let _ = writeln!(
-            text,
-            "{:<18} {:<13} {reason}",
-            o.at.model,
-            o.at.method.name()
-        );
+        without(&o.at.model, o.at.method, reason);
     }
     for s in unstable {
-        let method = s.at.method.name();
-        let _ = writeln!(text, "{:<18} {method:<13} {}", s.at.model, s.explain());
+        without(&s.at.model, s.at.method, &s.explain());
     }
     for s in stable {
-        let method = s.method.name();
-        let _ = writeln!(text, "{:<18} {method:<13} {}", s.model, s.explain());
+        without(&s.model, s.method, &s.explain());
     }
     for o in onsets {
         let place = format!("{} ({})", o.at.model, o.at.method.name());

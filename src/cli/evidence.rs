@@ -6,7 +6,7 @@ use super::output::OutputDir;
 use super::simulate::simulated;
 use super::stages::MAX_CURVES;
 use crate::aerodynamics::Transfer;
-use crate::aerodynamics::derivatives::Derivative;
+use crate::aerodynamics::derivatives::{Derivative, DerivativeTable};
 use crate::error::Result;
 use crate::flutter::FlutterCurves;
 use crate::report::{
@@ -16,7 +16,9 @@ use crate::report::{
 use crate::section::Dof;
 use crate::study::{Deck, Study, TrainedWithReport, derivative_lines};
 use crate::trained_model::TrainedModel;
+use crate::uncertainty::DerivativeInterval;
 use crate::units::{SAME_SPEED, group_of, near_groups};
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 /// Stem of the figure of derivatives.
@@ -87,6 +89,60 @@ fn quoted(text: &str) -> String {
     }
 }
 
+/// Lines of all derivatives: `V̂` and value.
+type Lines = BTreeMap<Derivative, Vec<(f64, f64)>>;
+
+/// Measured derivatives and the models that were fitted to them.
+pub(super) struct DerivativesShown<'a> {
+    pub(super) title: String,
+    pub(super) table: Option<&'a DerivativeTable>,
+    pub(super) dofs: &'a [Dof],
+    /// Models with their names.
+    pub(super) fitted: Vec<(String, Lines)>,
+    /// Those that the deck has by theory.
+    pub(super) exact: Option<Lines>,
+    /// The model that the intervals are of, and they.
+    pub(super) intervals: (&'a str, &'a [DerivativeInterval]),
+}
+
+impl DerivativesShown<'_> {
+    /// What is drawn.
+    pub(super) fn plot(&self) -> DerivativesPlot {
+        let all = Derivative::ALL.into_iter().map(|d| self.one(d));
+        DerivativesPlot {
+            title: self.title.clone(),
+            velocity_label: "V̂ = V/(ωB)".to_owned(),
+            bars_label: format!("95 % interval of {}", self.intervals.0),
+            derivatives: all
+                .filter(|d| !(d.measured.is_empty() && d.fitted.is_empty()))
+                .collect(),
+        }
+    }
+
+    fn one(&self, d: Derivative) -> DerivativePlot {
+        let own = self.intervals.1.iter().filter(|i| i.derivative == d);
+        let line =
+            |name: &str, lines: &Lines| Some(PlottedSeries::new(name, lines.get(&d)?.clone()));
+        let inside = self.dofs.contains(&d.force()) && self.dofs.contains(&d.motion());
+        let table = self.table.filter(|_| inside);
+        DerivativePlot {
+            name: d.name().to_owned(),
+            measured: table.map_or(vec![], |table| measured(table, d)),
+            bars: own.map(|i| (1.0 / i.k, i.low, i.high)).collect(),
+            fitted: self
+                .fitted
+                .iter()
+                .filter_map(|(name, lines)| line(name, lines))
+                .collect(),
+            reference: self
+                .exact
+                .iter()
+                .filter_map(|lines| line("exact", lines))
+                .collect(),
+        }
+    }
+}
+
 /// The models beside the derivatives they were fitted to, with the intervals of the exported one.
 pub(super) fn write_derivatives(
     study: &Study,
@@ -94,8 +150,6 @@ pub(super) fn write_derivatives(
     trained: &[TrainedWithReport],
     out: &mut OutputDir,
 ) -> Result<()> {
-    let dofs = study.section.dofs();
-    let measured = measured(deck, &dofs);
     let mut fitted = Vec::new();
     for one in &trained[..trained.len().min(MAX_CURVES)] {
         let v_hat = one.model.tested_range.min.v_hat();
@@ -115,60 +169,37 @@ pub(super) fn write_derivatives(
     let exported = &study.exported()?.name;
     let known = trained.iter().find(|t| t.model.name == *exported);
     let known = known.and_then(|t| t.uncertainty.as_ref().ok());
-    let plot = |d: Derivative| DerivativePlot {
-        name: d.name().to_owned(),
-        measured: measured(d),
-        bars: known.map_or(vec![], |known| {
-            let own = known.derivatives.iter().filter(|i| i.derivative == d);
-            own.map(|i| (1.0 / i.k, i.low, i.high)).collect()
-        }),
-        fitted: fitted
-            .iter()
-            .filter_map(|(name, lines)| Some(PlottedSeries::new(name, lines.get(&d)?.clone())))
-            .collect(),
-        reference: exact
-            .iter()
-            .filter_map(|lines| Some(PlottedSeries::new("exact", lines.get(&d)?.clone())))
-            .collect(),
-    };
-    let all = Derivative::ALL.into_iter().map(plot);
-    let plot = DerivativesPlot {
+    let shown = DerivativesShown {
         title: format!("{}: measured derivatives and models", study.name),
-        velocity_label: "V̂ = V/(ωB)".to_owned(),
-        bars_label: format!("95 % interval of {exported}"),
-        derivatives: all
-            .filter(|d| !(d.measured.is_empty() && d.fitted.is_empty()))
-            .collect(),
+        table: deck.table(),
+        dofs: &study.section.dofs(),
+        fitted,
+        exact,
+        intervals: (exported, known.map_or(&[], |known| &known.derivatives)),
     };
-    figures::write(DERIVATIVES, out, || derivatives_figure(&plot))
+    figures::write(DERIVATIVES, out, || derivatives_figure(&shown.plot()))
 }
 
-/// The test points of a derivative among `dofs`, one series a mean speed; none for a deck without a table.
-fn measured<'a>(deck: &'a Deck, dofs: &'a [Dof]) -> impl Fn(Derivative) -> Vec<PlottedSeries> + 'a {
-    move |d| {
-        let inside = dofs.contains(&d.force()) && dofs.contains(&d.motion());
-        let Some(table) = deck.table().filter(|_| inside) else {
-            return Vec::new();
-        };
-        let points = table.points(d);
-        let groups = near_groups(points.iter().filter_map(|p| p.mean_speed_m_s), SAME_SPEED);
-        let mut series: Vec<PlottedSeries> = groups
-            .iter()
-            .map(|g| {
-                let mean = g.iter().sum::<f64>() / g.len() as f64;
-                PlottedSeries::new(format!("measured, {mean:.1} m/s"), Vec::new())
-            })
-            .collect();
-        if series.is_empty() {
-            series.push(PlottedSeries::new("measured", Vec::new()));
-        }
-        for p in points {
-            let group = p.mean_speed_m_s.map_or(0, |v| group_of(&groups, v));
-            series[group].points.push((p.v_hat, p.value));
-        }
-        series.retain(|s| !s.points.is_empty());
-        series
+/// The test points of a derivative, one series a mean speed.
+fn measured(table: &DerivativeTable, d: Derivative) -> Vec<PlottedSeries> {
+    let points = table.points(d);
+    let groups = near_groups(points.iter().filter_map(|p| p.mean_speed_m_s), SAME_SPEED);
+    let mut series: Vec<PlottedSeries> = groups
+        .iter()
+        .map(|g| {
+            let mean = g.iter().sum::<f64>() / g.len() as f64;
+            PlottedSeries::new(format!("measured, {mean:.1} m/s"), Vec::new())
+        })
+        .collect();
+    if series.is_empty() {
+        series.push(PlottedSeries::new("measured", Vec::new()));
     }
+    for p in points {
+        let group = p.mean_speed_m_s.map_or(0, |v| group_of(&groups, v));
+        series[group].points.push((p.v_hat, p.value));
+    }
+    series.retain(|s| !s.points.is_empty());
+    series
 }
 
 /// The released section of the exported model below, at and above its onset.

@@ -7,7 +7,7 @@ use crate::study::Study;
 use std::path::{Path, PathBuf};
 
 /// Its usual name.
-const STUDY: &str = "study.toml";
+pub(super) const STUDY: &str = "study.toml";
 /// Its name where another study stands.
 const BESIDE: &str = "study_as_run.toml";
 /// Folder of the files that it reads.

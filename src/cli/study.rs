@@ -29,12 +29,18 @@ pub(crate) struct Args {
     /// Export a model that grows below its onset, at reduced frequencies that were not tested.
     #[arg(long)]
     allow_unstable: bool,
+    /// Replace a study.toml in the folder of results that differs; without, this study stands beside it as study_as_run.toml.
+    #[arg(long)]
+    force: bool,
 }
 
 /// Runs the command.
 pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     let (study, text) = args.study.read_with_text()?;
-    let out = OutputDir::new(&args.study.directory())?;
+    let mut out = OutputDir::new(&args.study.directory())?;
+    if args.force {
+        out.replace(ran::STUDY);
+    }
     let ran = Ran {
         study: &study,
         text: &text,

@@ -51,6 +51,25 @@ pub(super) fn wrapped(text: &str) -> String {
     all
 }
 
+/// `head`, and `text` cut at spaces in a column of its own beside it: a row of a table whose last cell is a sentence.
+pub(super) fn beside(head: &str, text: &str) -> String {
+    let indent = head.chars().count() + 1;
+    let (mut all, mut length) = (head.to_owned(), head.chars().count());
+    for (i, word) in text.split_whitespace().enumerate() {
+        let width = word.chars().count();
+        if i > 0 && length + 1 + width > COLUMNS {
+            all.push('\n');
+            all.push_str(&" ".repeat(indent - 1));
+            length = indent - 1;
+        }
+        all.push(' ');
+        all.push_str(word);
+        length += 1 + width;
+    }
+    all.push('\n');
+    all
+}
+
 /// Whether a line is a row of a table: cells with two spaces or more between them, and not merely words that begin an entry.
 fn is_row(line: &str) -> bool {
     let gaps = line.trim().split("  ").filter(|cell| !cell.is_empty());
@@ -59,7 +78,7 @@ fn is_row(line: &str) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::{COLUMNS, wrapped};
+    use super::{COLUMNS, beside, wrapped};
 
     #[test]
     fn long_lines_hang_under_their_entry_and_lose_no_word() {
@@ -74,5 +93,19 @@ mod tests {
         assert_eq!(words(&cut), words(&text));
         assert!(cut.starts_with("Deck      word") && cut.contains("\n          word"));
         assert!(cut.ends_with("short  as it is\n"));
+    }
+
+    #[test]
+    fn a_sentence_stands_in_its_column() {
+        let head = format!("{:<18} {:<13}", "Laguerre", "eigenvalues");
+        let row = beside(&head, &"word ".repeat(30));
+        assert!(row.lines().all(|l| l.chars().count() <= COLUMNS), "{row}");
+        assert!(
+            row.lines()
+                .skip(1)
+                .all(|l| l.starts_with(&format!("{:33}word", "")))
+        );
+        assert_eq!(row.split_whitespace().count(), 32);
+        assert_eq!(wrapped(&row), row);
     }
 }

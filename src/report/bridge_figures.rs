@@ -5,10 +5,10 @@ use super::figure::Figure;
 use super::legend::Entry;
 use super::panel::Panel;
 use super::sheet::Sheet;
-use super::style::{COLOURS, GREY, Ink, PALE_GREY, Shape, dash};
+use super::style::{BLACK, COLOURS, GREY, Ink, PALE_GREY, Shape, dash};
 use crate::bridge::Bridge;
 use crate::error::Result;
-use crate::flutter::{BridgeMotion, CriticalPoint, FlutterCurves};
+use crate::flutter::{BridgeMotion, CriticalPoint, FlutterCurves, ModeBranch, ModePoint};
 
 /// The motions of a shape, as the legends name them; rotations count with half the width.
 const MOTIONS: [&str; 3] = [
@@ -67,7 +67,43 @@ pub fn modes_figure(bridge: &Bridge, title: &str) -> Result<Figure> {
     .draw()
 }
 
-/// Frequencies and damping ratios of all modes over wind speed: those of `shown`, by number of the branch, in colour, the others
+/// A mode as it is drawn.
+struct Drawn<'a> {
+    branch: &'a ModeBranch,
+    ink: Ink,
+}
+
+impl Drawn<'_> {
+    fn line(&self, place: impl Fn(&ModePoint) -> (f64, f64)) -> Vec<(f64, f64)> {
+        self.branch.points.iter().map(place).collect()
+    }
+}
+
+/// The modes with their inks and what the legend says of them: those of `shown`, by name of the branch, in colour and on top, the
+/// others grey.
+fn drawn<'a>(curves: &'a FlutterCurves, shown: &[String]) -> (Vec<Drawn<'a>>, Vec<Entry>) {
+    let place = |name: &str| shown.iter().take(COLOURED).position(|s| s == name);
+    let others = Ink::Line {
+        colour: PALE_GREY,
+        dash: None,
+        width: 1.0,
+    };
+    let ink = |i: usize| Ink::line(COLOURS[i], dash(i));
+    let branches = curves.branches.iter().filter(|b| !b.points.is_empty());
+    let mut all: Vec<_> = branches.map(|b| (place(&b.name), b)).collect();
+    all.sort_by_key(|(place, _)| *place);
+    let legend = all
+        .iter()
+        .filter_map(|(place, b)| Some(Entry::new(&b.name, ink((*place)?))));
+    let legend = legend.collect();
+    let all = all.into_iter().map(|(place, branch)| Drawn {
+        branch,
+        ink: place.map_or(others, ink),
+    });
+    (all.collect(), legend)
+}
+
+/// Frequencies and damping ratios of all modes over wind speed: those of `shown`, by name of the branch, in colour, the others
 /// grey; the onset is marked.
 ///
 /// # Errors
@@ -83,40 +119,14 @@ pub fn bridge_curves_figure(
     let mut damping = Panel::new(speed(), Axis::new("Damping ratio ζ (%)"));
     damping.level = Some(0.0);
     damping.y.within = Some((-5.0, 15.0));
-    let mut legend = Vec::new();
-    let colour = |name: &str| shown.iter().take(COLOURED).position(|s| s == name);
-    let mut branches: Vec<_> = curves
-        .branches
-        .iter()
-        .filter(|b| !b.points.is_empty())
-        .collect();
-    // those in colour lie on top
-    branches.sort_by_key(|b| colour(&b.name).is_some());
-    for branch in branches {
-        let ink = match colour(&branch.name) {
-            Some(i) => {
-                let ink = Ink::line(COLOURS[i], dash(i));
-                legend.push((i, Entry::new(&branch.name, ink)));
-                ink
-            }
-            None => Ink::Line {
-                colour: PALE_GREY,
-                dash: None,
-                width: 1.0,
-            },
-        };
-        let points = |value: &dyn Fn(&crate::flutter::ModePoint) -> f64| {
-            branch
-                .points
-                .iter()
-                .map(|p| (p.speed_m_s, value(p)))
-                .collect()
-        };
-        frequency.add(&branch.name, points(&|p| p.frequency_hz), ink);
-        damping.add(&branch.name, points(&|p| 100.0 * p.damping_ratio), ink);
+    let (modes, legend) = drawn(curves, shown);
+    for mode in modes {
+        let name = &mode.branch.name;
+        frequency.add(name, mode.line(|p| (p.speed_m_s, p.frequency_hz)), mode.ink);
+        let percent = mode.line(|p| (p.speed_m_s, 100.0 * p.damping_ratio));
+        damping.add(name, percent, mode.ink);
     }
-    legend.sort_by_key(|(i, _)| *i);
-    let mut stated = vec![Entry::new("other modes", Ink::line(PALE_GREY, None))];
+    let mut stated = vec![other_modes()];
     if let Some(at) = onset {
         let ink = Ink::dots(GREY, Shape::Circle);
         frequency.add("onset", vec![(at.speed_m_s, at.frequency_hz)], ink);
@@ -130,7 +140,42 @@ pub fn bridge_curves_figure(
         panels: vec![frequency, damping],
         columns: 1,
         axes: (640.0, 250.0),
-        legend: vec![legend.into_iter().map(|(_, e)| e).collect(), stated],
+        legend: vec![legend, stated],
+    }
+    .draw()
+}
+
+fn other_modes() -> Entry {
+    Entry::new("other modes", Ink::line(PALE_GREY, None))
+}
+
+/// The eigenvalues of all modes as the wind rises, coloured as the curves over wind speed are: growth rate (1/s) against frequency
+/// (Hz). Right of the zero line motions grow.
+///
+/// # Errors
+/// [`crate::Error::Input`] for curves that cannot be drawn.
+pub fn bridge_roots_figure(
+    curves: &FlutterCurves,
+    shown: &[String],
+    title: &str,
+) -> Result<Figure> {
+    let mut panel = Panel::new(
+        Axis::new("Growth rate (1/s)"),
+        Axis::new("Frequency (Hz)").zero_based(),
+    );
+    panel.uprights.push((0.0, BLACK));
+    let (modes, legend) = drawn(curves, shown);
+    for mode in modes {
+        let line = mode.line(|p| (p.eigenvalue.re, p.frequency_hz));
+        panel.add(&mode.branch.name, line, mode.ink);
+    }
+    Sheet {
+        name: "root locus of the bridge",
+        title: Some(title.to_owned()),
+        panels: vec![panel],
+        columns: 1,
+        axes: (640.0, 300.0),
+        legend: vec![legend, vec![other_modes()]],
     }
     .draw()
 }

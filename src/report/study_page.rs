@@ -14,7 +14,7 @@ const UPLOT_CSS: &str = include_str!("../../templates/uplot/uPlot.min.css");
 /// A figure with what a reader has to know.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct PageFigure {
-    pub(crate) title: &'static str,
+    pub(crate) title: String,
     pub(crate) caption: &'static str,
     pub(crate) svg: String,
 }

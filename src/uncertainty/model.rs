@@ -50,10 +50,7 @@ impl ModelUncertainty {
         tested: ReducedFrequencyRange,
     ) -> Result<Self> {
         let mut uncertainty = Self {
-            derivatives: derivative_intervals(
-                &coefficients,
-                &spread_over(tested, DERIVATIVE_POINTS),
-            )?,
+            derivatives: coefficients.derivatives(tested)?,
             coefficients,
             onset: None,
             block_bootstrap: None,
@@ -160,6 +157,16 @@ impl ModelUncertainty {
             other(&self.block_bootstrap),
             other(&self.drawn_coefficients),
         ))
+    }
+}
+
+impl CoefficientUncertainty {
+    /// All derivatives of the model with their intervals, at a few reduced frequencies of the tested range.
+    pub(crate) fn derivatives(
+        &self,
+        tested: ReducedFrequencyRange,
+    ) -> Result<Vec<DerivativeInterval>> {
+        derivative_intervals(self, &spread_over(tested, DERIVATIVE_POINTS))
     }
 }
 

@@ -6,6 +6,10 @@ use crate::flutter::ModeShare;
 pub(crate) const BRIDGE_FMU: &str = "bridge.fmu";
 /// Stem of the figure of frequencies and damping ratios.
 pub(crate) const FLUTTER_FIGURE: &str = "bridge_flutter";
+/// Stem of the figure of eigenvalues.
+pub(crate) const ROOTS_FIGURE: &str = "bridge_roots";
+/// Stem of the figure of derivatives of a section, followed by its number.
+pub(crate) const DERIVATIVES_FIGURE: &str = "bridge_derivatives_";
 /// Stem of the figure of the motion at the onset.
 pub(crate) const MOTION_FIGURE: &str = "flutter_motion";
 /// Frequencies and damping ratios as numbers.

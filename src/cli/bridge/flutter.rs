@@ -1,20 +1,26 @@
 //! `aerodeck bridge flutter`: onset, modes that take part, curves, the motion at flutter.
 
 use super::super::answer::Answer;
-use super::super::evidence::curves_csv;
+use super::super::evidence::{DerivativesShown, curves_csv};
 use super::super::figures;
 use super::super::output::{OutputDir, list};
 use super::super::progress::Progress;
 use super::super::report::{SUMMARY, is_of_a_study};
 use super::args::BridgeArgs;
-use super::files::{CURVES, FLUTTER_FIGURE, MOTION_FIGURE, shown_modes};
+use super::files::{
+    CURVES, DERIVATIVES_FIGURE, FLUTTER_FIGURE, MOTION_FIGURE, ROOTS_FIGURE, shown_modes,
+};
 use super::{account, summary};
 use crate::error::Result;
+use crate::files::derivatives::named_table;
 use crate::flutter::BridgeMotion;
-use crate::report::{bridge_curves_figure, flutter_motion_figure};
+use crate::report::{
+    bridge_curves_figure, bridge_roots_figure, derivatives_figure, flutter_motion_figure,
+};
 use crate::study::bridge::{
     BridgeFlutter, BridgeStudy, DerivativeScatter, Scatter, ScatteredOnset, bridge_flutter,
 };
+use crate::study::derivative_lines;
 use std::fmt::Write as _;
 
 /// Phases of an animation over one period.
@@ -172,8 +178,15 @@ pub(crate) fn staged(
         figures::write(FLUTTER_FIGURE, out, || {
             bridge_curves_figure(&results.curves, &shown, onset, &title)
         })?;
+        let title = format!("{}: eigenvalues as the wind rises", study.file.name);
+        figures::write(ROOTS_FIGURE, out, || {
+            bridge_roots_figure(&results.curves, &shown, &title)
+        })?;
         let curves = std::slice::from_ref(&results.curves);
         out.write(CURVES, curves_csv(&study.file.name, curves))?;
+    }
+    for number in 0..study.sections.len() {
+        write_derivatives(study, number, out)?;
     }
     if let Some(motion) = motion {
         let title = format!("{}: motion at flutter", study.file.name);
@@ -184,6 +197,31 @@ pub(crate) fn staged(
         out.write("flutter_animation.csv", animation_csv(motion))?;
     }
     Ok(())
+}
+
+/// The model of a section beside the derivatives that were measured; nothing for one of static coefficients.
+fn write_derivatives(study: &BridgeStudy, number: usize, out: &mut OutputDir) -> Result<()> {
+    let (block, forces) = (&study.file.sections[number], &study.sections[number]);
+    let Some(tested) = forces.tested else {
+        return Ok(());
+    };
+    let table = block.derivatives.as_ref();
+    let table = table.map(|name| named_table(name, &study.file.directory));
+    let table = table.transpose()?;
+    let model = forces.model.as_ref();
+    let shown = DerivativesShown {
+        title: format!("{}: measured derivatives and the model", block.name),
+        table: table.as_ref(),
+        dofs: model.dofs(),
+        fitted: vec![(
+            "model".to_owned(),
+            derivative_lines(model, tested.min.v_hat())?,
+        )],
+        exact: None,
+        intervals: ("the model", &forces.derivative_intervals()?),
+    };
+    let stem = format!("{DERIVATIVES_FIGURE}{}", number + 1);
+    figures::write(&stem, out, || derivatives_figure(&shown.plot()))
 }
 
 fn motion_csv(motion: &BridgeMotion) -> String {

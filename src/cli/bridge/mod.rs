@@ -10,7 +10,10 @@ mod flutter;
 mod show;
 mod summary;
 
-pub(crate) use files::{BRIDGE_FMU, CURVES, FLUTTER_FIGURE, MOTION_FIGURE, shown_modes};
+pub(crate) use files::{
+    BRIDGE_FMU, CURVES, DERIVATIVES_FIGURE, FLUTTER_FIGURE, MOTION_FIGURE, ROOTS_FIGURE,
+    shown_modes,
+};
 
 use super::answer::Answer;
 use super::progress::Progress;

@@ -3,8 +3,12 @@
 use super::curves::curves_of;
 use super::folder::{SUMMARY, digest, parsed};
 use super::parts::{capital, card, known, of_svg, round, row};
+use super::variables::variables_of;
 use super::view::{AnswerView, OnsetView};
-use crate::cli::bridge::{BRIDGE_FMU, CURVES, FLUTTER_FIGURE, MOTION_FIGURE, shown_modes};
+use crate::cli::bridge::{
+    BRIDGE_FMU, CURVES, DERIVATIVES_FIGURE, FLUTTER_FIGURE, MOTION_FIGURE, ROOTS_FIGURE,
+    shown_modes,
+};
 use crate::error::Result;
 use crate::files::bridge::{BridgeFile, DampingRatios};
 use crate::flutter::ModeShare;
@@ -136,7 +140,7 @@ pub(super) fn page(folder: &Path, text: &str) -> Result<String> {
             fewer(&view.flutter.left_out, facts),
         ],
         appendix: vec![data(facts), modes(facts)],
-        figures: figures(&text_of),
+        figures: figures(&text_of, &facts.sections),
         command: facts.command.clone(),
         licence: licences(facts),
         onset: facts.answer.speed_m_s,
@@ -151,6 +155,10 @@ pub(super) fn page(folder: &Path, text: &str) -> Result<String> {
             speeds,
             chosen(curves, &shown_modes(shares, own.map(|o| o.branch.as_str()))),
         );
+    }
+    if read(BRIDGE_FMU).is_some() {
+        page.fmu = BRIDGE_FMU.to_owned();
+        page.variables = variables_of(&folder.join(BRIDGE_FMU))?;
     }
     page.hashes.push((
         "bridge file".to_owned(),
@@ -338,12 +346,26 @@ fn modes(facts: &BridgeFacts) -> PageSection {
     }
 }
 
-fn figures(read: &dyn Fn(&str) -> Option<String>) -> Vec<PageFigure> {
-    let all = [
+fn figures(read: &dyn Fn(&str) -> Option<String>, sections: &[SectionFacts]) -> Vec<PageFigure> {
+    let drawn =
+        |stem: &str, title: &str, caption| of_svg(&read(&format!("{stem}.svg"))?, title, caption);
+    let of_section = |(i, section): (usize, &SectionFacts)| {
+        drawn(
+            &format!("{DERIVATIVES_FIGURE}{}", i + 1),
+            &format!("Derivatives of {}: measured and modelled", section.name),
+            "Points: measured. Line: the model, where it was tested. Bars: its 95 % interval.",
+        )
+    };
+    let of_bridge = [
         (
             FLUTTER_FIGURE,
             "Frequency and damping over wind speed",
             "In colour the modes with the largest shares of the kinetic energy at the onset, pale the others.",
+        ),
+        (
+            ROOTS_FIGURE,
+            "Root locus",
+            "Eigenvalues of all modes as the wind rises; right of the upright line motions grow.",
         ),
         (
             MOTION_FIGURE,
@@ -351,6 +373,9 @@ fn figures(read: &dyn Fn(&str) -> Option<String>) -> Vec<PageFigure> {
             "Displacements along the girder at two moments a quarter of a period apart; rotations count with half the width.",
         ),
     ];
-    let drawn = |(stem, title, caption)| of_svg(&read(&format!("{stem}.svg"))?, title, caption);
-    all.into_iter().filter_map(drawn).collect()
+    let of_bridge = of_bridge
+        .into_iter()
+        .filter_map(|(stem, title, caption)| drawn(stem, title, caption));
+    let sections = sections.iter().enumerate().filter_map(of_section);
+    sections.chain(of_bridge).collect()
 }

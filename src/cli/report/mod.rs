@@ -5,6 +5,7 @@ mod curves;
 mod folder;
 mod live;
 mod parts;
+mod variables;
 mod view;
 
 pub(crate) use bridge::{BridgeFacts, ModeFacts, SectionFacts};
@@ -17,14 +18,13 @@ use super::measured_forces::FORCES;
 use super::output::{OutputDir, list};
 use super::stages::{FIGURE, FMU_FILE, MODEL_FILE};
 use crate::error::{Error, Result};
-use crate::fmu::resources::{OptionFiles, Resources};
-use crate::fmu::standard::Causality;
 use crate::report::{PageFigure, PageFit, StudyPage, study_page};
 use crate::study::Study;
 use curves::curves_of;
 use folder::{Kind, digest, parsed};
 use parts::{capital, card, known, of_svg, round, row};
 use std::path::{Path, PathBuf};
+use variables::variables_of;
 use view::{EntryView, FitView, SummaryView};
 
 /// Write report.html, one self-contained page, from a folder of results of `study`, `demo` or `bridge flutter`
@@ -70,9 +70,10 @@ pub(super) fn page(folder: &Path, study_folder: &Path) -> Result<String> {
     let read = |name: &str| std::fs::read(folder.join(name)).ok();
     let mut page = of_summary(&summary, &study);
     page.figures = figures(&|name| std::fs::read_to_string(folder.join(name)).ok());
-    if let (Some(model), Some(_)) = (read(MODEL_FILE), read(FMU_FILE)) {
+    let fmu = folder.join(FMU_FILE);
+    if fmu.exists() {
         page.fmu = FMU_FILE.to_owned();
-        page.variables = variables(&model)?;
+        page.variables = variables_of(&fmu)?;
     }
     if let Ok(curves) = std::fs::read_to_string(folder.join(CURVES)) {
         (page.speeds, page.curves) = curves_of(&curves)?;
@@ -243,25 +244,4 @@ fn figures(read: &dyn Fn(&str) -> Option<String>) -> Vec<PageFigure> {
     ];
     let drawn = |(stem, title, caption)| of_svg(&read(&format!("{stem}.svg"))?, title, caption);
     all.into_iter().filter_map(drawn).collect()
-}
-
-fn variables(model: &[u8]) -> Result<Vec<[String; 4]>> {
-    let resources = Resources::from_bytes(model, OptionFiles::default())?;
-    let causality = |c| match c {
-        Causality::Parameter => "parameter",
-        Causality::CalculatedParameter => "calculated parameter",
-        Causality::Input => "input",
-        Causality::Output => "output",
-        Causality::Local => "local",
-        Causality::Independent => "time",
-    };
-    let row = |v: &crate::fmu::variables::Variable| {
-        [
-            v.name.clone(),
-            causality(v.causality).to_owned(),
-            v.unit.map_or("–", |u| u.name).to_owned(),
-            v.description.clone(),
-        ]
-    };
-    Ok(resources.table.variables().iter().map(row).collect())
 }

@@ -98,10 +98,10 @@ pub(super) fn round(x: f64) -> f64 {
 }
 
 /// The figure in a file, without what only a file of its own needs.
-pub(super) fn of_svg(text: &str, title: &'static str, caption: &'static str) -> Option<PageFigure> {
+pub(super) fn of_svg(text: &str, title: &str, caption: &'static str) -> Option<PageFigure> {
     let svg = text[text.find("<svg")?..].to_owned();
     Some(PageFigure {
-        title,
+        title: title.to_owned(),
         caption,
         svg,
     })

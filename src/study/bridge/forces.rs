@@ -9,7 +9,7 @@ use crate::files::bridge::SectionBlock;
 use crate::files::derivatives::named_table;
 use crate::identification::{FeedThrough, Form, FrequencyFit, FrequencyWeights, fit_table};
 use crate::trained_model::{Model, TrainedModel};
-use crate::uncertainty::{CoefficientUncertainty, table_uncertainty};
+use crate::uncertainty::{CoefficientUncertainty, DerivativeInterval, table_uncertainty};
 use crate::units::ReducedFrequencyRange;
 use nalgebra::DMatrix;
 use std::path::Path;
@@ -119,6 +119,17 @@ impl SectionForces {
             uncertainty: Ok(None),
             degrees_of_freedom: None,
         })
+    }
+
+    /// The derivatives of the model with their 95 % intervals; none where its covariance is not known.
+    ///
+    /// # Errors
+    /// [`Error::Numerical`] when the covariance cannot be carried to them.
+    pub(crate) fn derivative_intervals(&self) -> Result<Vec<DerivativeInterval>> {
+        match (&self.uncertainty, self.tested) {
+            (Ok(Some(known)), Some(tested)) => known.derivatives(tested),
+            _ => Ok(Vec::new()),
+        }
     }
 
     /// By the table where there is one and it is wanted, else by the model.
