@@ -9,30 +9,43 @@ const DIED_OUT: f64 = 1e-250;
 /// Rows are padded to whole groups of this many, so that the inner loop has a fixed length.
 const LANES: usize = 4;
 
+/// Groups whose sums run at once: as many as the registers of a processor hold, so that every number of the vector is
+/// fetched once for all of them.
+const GROUPS: usize = 3;
+
 /// A matrix stored for `y = W v`, in groups of rows.
 #[derive(Debug, Clone)]
 pub(super) struct Packed {
     rows: usize,
     columns: usize,
-    /// For each group of `LANES` rows, the columns one after the other.
-    data: Vec<[f64; LANES]>,
+    /// For each block of `GROUPS` groups of `LANES` rows, the columns one after the other.
+    blocks: Vec<[[f64; LANES]; GROUPS]>,
+    /// The same for the one or two groups behind them.
+    rest: Vec<[f64; LANES]>,
 }
 
 impl Packed {
     pub fn new(rows: usize, columns: usize, entry: impl Fn(usize, usize) -> f64) -> Self {
-        let data = (0..rows.div_ceil(LANES))
-            .flat_map(|group| (0..columns).map(move |j| (group, j)))
-            .map(|(group, j)| {
-                std::array::from_fn(|lane| {
-                    let i = group * LANES + lane;
-                    if i < rows { entry(i, j) } else { 0.0 }
-                })
+        let group = |group: usize, j: usize| -> [f64; LANES] {
+            std::array::from_fn(|lane| {
+                let i = group * LANES + lane;
+                if i < rows { entry(i, j) } else { 0.0 }
             })
-            .collect();
+        };
+        let groups = rows.div_ceil(LANES);
+        let first_of_rest = groups - groups % GROUPS;
+        let mut blocks = Vec::with_capacity(groups / GROUPS * columns);
+        for first in (0..first_of_rest).step_by(GROUPS) {
+            let column = |j| std::array::from_fn(|of_block| group(first + of_block, j));
+            blocks.extend((0..columns).map(column));
+        }
+        let behind = |j| (first_of_rest..groups).map(move |g| (g, j));
+        let rest = (0..columns).flat_map(behind);
         Self {
             rows,
             columns,
-            data,
+            blocks,
+            rest: rest.map(|(g, j)| group(g, j)).collect(),
         }
     }
 
@@ -118,12 +131,28 @@ const PARTIAL_SUMS: usize = 4;
 ///
 /// Lanes and partial sums are added in one order on every processor: whatever vectors it has, the bits are the same.
 pub(super) fn apply(w: &Packed, v: &[f64], y: &mut [f64]) {
-    pulp::Arch::new().dispatch(Apply { w, v, y });
+    with_vectors(Apply { w, v, y });
 }
 
 /// [`apply`] to a state: what has died out becomes zero; returns whether all of the new state is finite.
 pub(super) fn advanced(w: &Packed, v: &[f64], y: &mut [f64]) -> bool {
-    pulp::Arch::new().dispatch(Advance(Apply { w, v, y }))
+    with_vectors(Advance(Apply { w, v, y }))
+}
+
+/// Runs a product on the widest vectors that every processor may be asked for and this one has.
+#[inline(always)]
+fn with_vectors<P: pulp::NullaryFnOnce>(product: P) -> P::Output {
+    #[cfg(target_arch = "x86_64")]
+    if let pulp::x86::Arch::V3(vectors) = pulp::Arch::new() {
+        return vectors.vectorize(product);
+    }
+    with_baseline(product)
+}
+
+/// Apart, so that it takes no room where it is not used.
+#[inline(never)]
+fn with_baseline<P: pulp::NullaryFnOnce>(product: P) -> P::Output {
+    product.call()
 }
 
 /// A product that is compiled for each set of vectors a processor may have.
@@ -166,40 +195,74 @@ fn product(
     y: &mut [f64],
     mut finish: impl FnMut([f64; LANES]) -> [f64; LANES],
 ) {
-    let y = &mut y[..w.rows];
-    let (fours, rest) = v.as_chunks::<PARTIAL_SUMS>();
-    let (whole, last) = y.as_chunks_mut::<LANES>();
-    let mut data = w.data.as_slice();
-    for out in whole {
-        let (columns, others) = data.split_at(w.columns);
-        *out = finish(group(&columns[..v.len()], fours, rest));
-        data = others;
+    let (mut blocks, mut y) = (w.blocks.as_slice(), &mut y[..w.rows]);
+    while y.len() > 2 * LANES {
+        let (own, others) = blocks.split_at(w.columns);
+        let groups = sums(&own[..v.len()], v).map(&mut finish);
+        (blocks, y) = (others, write(y, groups));
     }
-    if !last.is_empty() {
-        let sums = finish(group(&data[..v.len()], fours, rest));
-        last.copy_from_slice(&sums[..last.len()]);
+    if y.len() > LANES {
+        write(
+            y,
+            sums(&w.rest.as_chunks::<2>().0[..v.len()], v).map(finish),
+        );
+    } else if !y.is_empty() {
+        write(
+            y,
+            sums(&w.rest.as_chunks::<1>().0[..v.len()], v).map(finish),
+        );
     }
 }
 
-/// The sums of one group of rows.
+/// Writes groups of rows of which the last may hold more; returns the rows behind them.
 #[inline(always)]
-fn group(columns: &[[f64; LANES]], fours: &[[f64; PARTIAL_SUMS]], rest: &[f64]) -> [f64; LANES] {
-    let mut sums = [[0.0; LANES]; PARTIAL_SUMS];
-    let (four_columns, last) = columns.as_chunks::<PARTIAL_SUMS>();
-    for (four, x) in four_columns.iter().zip(fours) {
-        for part in 0..PARTIAL_SUMS {
-            for lane in 0..LANES {
-                sums[part][lane] += four[part][lane] * x[part];
+fn write<const N: usize>(rows: &mut [f64], groups: [[f64; LANES]; N]) -> &mut [f64] {
+    if rows.len() >= N * LANES {
+        let (rows, behind) = rows.split_at_mut(N * LANES);
+        for (rows, group) in rows.as_chunks_mut().0.iter_mut().zip(groups) {
+            *rows = group;
+        }
+        return behind;
+    }
+    for (rows, group) in rows.chunks_mut(LANES).zip(groups) {
+        // lane by lane: so few are no copy of memory
+        for (lane, sum) in group.into_iter().enumerate() {
+            if let Some(row) = rows.get_mut(lane) {
+                *row = sum;
             }
         }
     }
+    &mut []
+}
+
+/// The sums of `N` groups of rows.
+#[inline(always)]
+fn sums<const N: usize>(columns: &[[[f64; LANES]; N]], v: &[f64]) -> [[f64; LANES]; N] {
+    let mut sums = [[[0.0; LANES]; N]; PARTIAL_SUMS];
+    let (four_columns, last) = columns.as_chunks::<PARTIAL_SUMS>();
+    let (fours, rest) = v.as_chunks::<PARTIAL_SUMS>();
+    for (four, x) in four_columns.iter().zip(fours) {
+        for part in 0..PARTIAL_SUMS {
+            add(&mut sums[part], &four[part], x[part]);
+        }
+    }
     for (sum, (column, x)) in sums.iter_mut().zip(last.iter().zip(rest)) {
+        add(sum, column, *x);
+    }
+    let [a, b, c, d] = sums;
+    std::array::from_fn(|group| {
+        let [a, b, c, d] = [a[group], b[group], c[group], d[group]];
+        std::array::from_fn(|lane| (a[lane] + b[lane]) + (c[lane] + d[lane]))
+    })
+}
+
+#[inline(always)]
+fn add<const N: usize>(sum: &mut [[f64; LANES]; N], column: &[[f64; LANES]; N], x: f64) {
+    for (sum, column) in sum.iter_mut().zip(column) {
         for lane in 0..LANES {
             sum[lane] += column[lane] * x;
         }
     }
-    let [a, b, c, d] = sums;
-    std::array::from_fn(|lane| (a[lane] + b[lane]) + (c[lane] + d[lane]))
 }
 
 /// `x`, or zero where it has died out; `spoilt` stays zero as long as all are finite. Without a branch: this is part of
@@ -217,4 +280,56 @@ pub(super) fn settled(values: &mut [f64]) -> bool {
         *x = settle(*x, &mut spoilt);
     }
     spoilt == 0.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// One row of `W v` in the order of the partial sums.
+    fn row(w: &DMatrix<f64>, i: usize, v: &[f64]) -> f64 {
+        let mut sums = [0.0; PARTIAL_SUMS];
+        for (j, x) in v.iter().enumerate() {
+            sums[j % PARTIAL_SUMS] += w[(i, j)] * x;
+        }
+        (sums[0] + sums[1]) + (sums[2] + sums[3])
+    }
+
+    #[test]
+    fn products_of_every_shape_have_the_bits_of_their_rows_whatever_the_vectors() {
+        for (rows, columns) in (0..28).flat_map(|rows| (1..15).map(move |c| (rows, c))) {
+            let w = DMatrix::from_fn(rows, columns, |i, j| {
+                (3.7 * i as f64 + 1.3 * j as f64).sin()
+            });
+            let packed = Packed::of(&w);
+            let v: Vec<f64> = (0..columns).map(|j| (0.7 * j as f64).cos()).collect();
+            for v in [&v[..], &v[..columns / 2]] {
+                let expected: Vec<_> = (0..rows).map(|i| row(&w, i, v)).collect();
+                let (mut wide, mut plain) = (vec![9.0; rows + 1], vec![9.0; rows + 1]);
+                apply(&packed, v, &mut wide);
+                let (w, y) = (&packed, &mut plain[..]);
+                with_baseline(Apply { w, v, y });
+                for y in [&wide, &plain] {
+                    assert_eq!(&y[..rows], expected, "{rows} by {columns}");
+                    assert_eq!(y[rows], 9.0, "{rows} by {columns}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn what_has_died_out_is_zero_and_what_has_outgrown_numbers_is_said_in_every_row() {
+        for rows in 1..28 {
+            for spoilt in 0..rows {
+                let unit = Packed::new(rows, rows, |i, j| f64::from(u8::from(i == j)));
+                let (mut v, mut y) = (vec![1e-260; rows], vec![9.0; rows]);
+                assert!(advanced(&unit, &v, &mut y));
+                assert_eq!(y, vec![0.0; rows]);
+                for bad in [f64::INFINITY, f64::NAN] {
+                    v[spoilt] = bad;
+                    assert!(!advanced(&unit, &v, &mut y), "row {spoilt} of {rows}");
+                }
+            }
+        }
+    }
 }
