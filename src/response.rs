@@ -44,6 +44,15 @@ const PARTS_OF_A_MATRIX: f64 = 32.0;
 /// States at most whose step becomes a matrix: that of more takes seconds to make and leaves the caches of any processor.
 const STATES_OF_A_MATRIX: usize = 800;
 
+/// A step by a matrix that may be taken again as it is, as long as nobody touches inputs and state in between.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Standing {
+    /// Its size, s.
+    pub step_s: f64,
+    /// Columns of the matrix that meet something other than zero.
+    columns: usize,
+}
+
 /// Steps a coupled section.
 ///
 /// ```
@@ -168,21 +177,12 @@ impl Stepper {
         inputs: &Inputs,
         step_s: f64,
     ) -> Result<()> {
-        if self.repeat(state, inputs, step_s) {
+        if let Some(standing) = self.standing(state, inputs, step_s)
+            && self.advance_as_before(state, inputs, &standing)
+        {
             return Ok(());
         }
         self.advance_anew(state, inputs, step_s)
-    }
-
-    /// Takes the step if it is the last one once more, in wind and size, as most steps are; else the state is as it was.
-    #[inline]
-    pub(crate) fn repeat(
-        &mut self,
-        state: &mut SectionState,
-        inputs: &Inputs,
-        step_s: f64,
-    ) -> bool {
-        self.repeats(state, inputs, step_s) && self.advance_as_before(state, inputs)
     }
 
     /// A step of which nothing is known yet.
@@ -234,29 +234,42 @@ impl Stepper {
         self.series.gusts().is_some() && blowing.chain(&state.gusts).any(|x| *x != 0.0)
     }
 
-    /// Whether wind and step are those of the last step by a matrix, and so are known to be right.
+    /// The step if wind and size are those of the last one by a matrix, and so are known to be right.
     #[inline]
-    fn repeats(&self, state: &SectionState, inputs: &Inputs, step: f64) -> bool {
+    pub(crate) fn standing(
+        &self,
+        state: &SectionState,
+        inputs: &Inputs,
+        step_s: f64,
+    ) -> Option<Standing> {
         let wind = inputs.wind_speed_m_s;
         let forces = [inputs.force.len(), inputs.force_rate.len()];
-        inputs.wind_speed_rate_m_s2 == 0.0
+        let stands = inputs.wind_speed_rate_m_s2 == 0.0
             && self.sampling.is_none()
             && state.values.len() == self.next.len()
             && forces == [(self.operand.len() - self.next.len()) / 2; 2]
-            && state.last_wind_m_s.is_none_or(|last| last == wind)
-            && self.cache.is_newest(wind, step)
-            && !self.gusts_act(state, inputs)
+            && state.last_wind_m_s == Some(wind)
+            && self.cache.is_newest(wind, step_s)
+            && !self.gusts_act(state, inputs);
+        stands.then(|| Standing {
+            step_s,
+            columns: active_columns(inputs, state.values.len()),
+        })
     }
 
-    /// The step of [`Stepper::repeats`]. Whatever is wrong with the forces leaves the state as it was.
-    #[inline]
-    fn advance_as_before(&mut self, state: &mut SectionState, inputs: &Inputs) -> bool {
+    /// Takes a step that stands. Whatever is wrong with the forces leaves the state as it was.
+    #[inline(always)]
+    pub(crate) fn advance_as_before(
+        &mut self,
+        state: &mut SectionState,
+        inputs: &Inputs,
+        standing: &Standing,
+    ) -> bool {
         let Some(step) = self.cache.newest() else {
             return false;
         };
-        let states = state.values.len();
-        let columns = active_columns(inputs, states);
-        let operand = if columns == states {
+        let columns = standing.columns;
+        let operand = if columns == state.values.len() {
             &state.values
         } else {
             load(&mut self.operand, &state.values, inputs);
@@ -265,7 +278,6 @@ impl Stepper {
         let right = advanced(step, operand, &mut self.next);
         if right {
             std::mem::swap(&mut state.values, &mut self.next);
-            state.last_wind_m_s = Some(inputs.wind_speed_m_s);
         }
         right
     }
@@ -278,7 +290,11 @@ impl Stepper {
     ) -> Result<()> {
         self.cache
             .full_system(&self.section, inputs.wind_speed_m_s, step)?;
-        if self.advance_as_before(state, inputs) {
+        let standing = Standing {
+            step_s: step,
+            columns: active_columns(inputs, state.values.len()),
+        };
+        if self.advance_as_before(state, inputs, &standing) {
             return Ok(());
         }
         Err(overgrown())

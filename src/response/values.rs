@@ -159,7 +159,8 @@ impl Outputs {
     }
 }
 
-/// Writes `[z, w, ẇ]`.
+/// Writes `[z, w, ẇ]`. Apart, so that steps without a force need no room for it.
+#[inline(never)]
 pub(super) fn load(operand: &mut [f64], values: &[f64], inputs: &Inputs) {
     let (z, rest) = operand.split_at_mut(values.len());
     let (w, rate) = rest.split_at_mut(inputs.force.len());

@@ -15,11 +15,22 @@ use crate::fmu::lifecycle::State;
 use crate::fmu::refusal::Answer;
 use crate::fmu::resources::Resources;
 use crate::fmu::variables::Role;
-use crate::response::{Inputs, Outputs, SectionState, Stepper};
+use crate::response::{Inputs, Outputs, SectionState, Standing, Stepper};
 
 /// Searches for growth of one instance at most: one takes as long as some thousand steps, and an importer may change
 /// parameters at every communication point.
 const GROWTH_SEARCHES: usize = 32;
+
+/// What is known of the inputs.
+#[derive(Debug, Clone, Copy)]
+enum Loaded {
+    /// Those of the memory may be others.
+    Stale,
+    /// They are those of the memory.
+    Current,
+    /// And a step has been taken with them that may be taken again.
+    Standing(Standing),
+}
 
 /// See the module.
 #[derive(Debug)]
@@ -42,8 +53,7 @@ pub(super) struct SectionUnit {
     growth_searches_left: usize,
     pub told: Told,
     pub inputs: Inputs,
-    /// Whether they are those of the memory.
-    inputs_current: bool,
+    loaded: Loaded,
     outputs: Outputs,
 }
 
@@ -73,7 +83,7 @@ impl SectionUnit {
             growth_known: false,
             growth_searches_left: GROWTH_SEARCHES,
             told: Told::default(),
-            inputs_current: false,
+            loaded: Loaded::Stale,
             outputs: Outputs::default(),
         })
     }
@@ -101,16 +111,18 @@ impl SectionUnit {
 
     /// The inputs of the memory of this unit, which are loaded once until one is set.
     fn load_own_inputs(&mut self, memory: &Memory) {
-        if !self.inputs_current {
+        if matches!(self.loaded, Loaded::Stale) {
             self.load_inputs(memory);
             // with a rate, a step carries them on
-            self.inputs_current = memory.input_rates.iter().all(|rate| *rate == 0.0);
+            if memory.input_rates.iter().all(|rate| *rate == 0.0) {
+                self.loaded = Loaded::Current;
+            }
         }
     }
 
     /// The inputs of any memory.
     pub fn load_inputs(&mut self, memory: &Memory) {
-        self.inputs_current = false;
+        self.loaded = Loaded::Stale;
         let (values, rates) = (&memory.values, &memory.input_rates);
         self.inputs.wind_speed_m_s = values[self.places.wind_speed];
         self.inputs.wind_speed_rate_m_s2 = rates[0];
@@ -190,9 +202,10 @@ impl Unit for SectionUnit {
 
     fn changed(&mut self, source: Source) {
         match source {
-            Source::Input => self.inputs_current = false,
+            Source::Input => self.loaded = Loaded::Stale,
             Source::Section => {
                 self.stepper = None;
+                self.loaded = Loaded::Stale;
                 self.onset_current = false;
                 self.growth_known = false;
                 self.release_pending = true;
@@ -219,11 +232,11 @@ impl Unit for SectionUnit {
     }
 
     fn input_rate_set(&mut self, _: &mut Memory, _: usize) {
-        self.inputs_current = false;
+        self.loaded = Loaded::Stale;
     }
 
     fn replace(&mut self, new: &mut Memory, old: &Memory, same: &dyn Fn(Source) -> bool) {
-        self.inputs_current = false;
+        self.loaded = Loaded::Stale;
         let same_section = same(Source::Section);
         if !same_section {
             self.stepper = None;
@@ -268,14 +281,20 @@ impl Unit for SectionUnit {
         self.load_own_inputs(memory);
         if let Some(stepper) = &mut self.stepper {
             stepper.advance(&mut memory.system, &self.inputs, step)?;
+            if !matches!(self.loaded, Loaded::Stale) {
+                let standing = stepper.standing(&memory.system, &self.inputs, step);
+                self.loaded = standing.map_or(Loaded::Current, Loaded::Standing);
+            }
         }
         Ok(false)
     }
 
     fn repeat(&mut self, memory: &mut Memory, step: f64) -> Option<bool> {
-        // inputs that are current have no rates, and parameters that change take the stepper with them
-        let stepper = self.stepper.as_mut().filter(|_| self.inputs_current)?;
-        let taken = stepper.repeat(&mut memory.system, &self.inputs, step);
+        let (Loaded::Standing(standing), Some(stepper)) = (&self.loaded, &mut self.stepper) else {
+            return None;
+        };
+        let taken = standing.step_s == step
+            && stepper.advance_as_before(&mut memory.system, &self.inputs, standing);
         taken.then(|| self.rotation_news(memory))
     }
 
