@@ -261,16 +261,22 @@ pub(in crate::fmu) unsafe fn array_mut<'a, T>(
 
 fn check_array<T>(pointer: *const T, count: usize, name: &str) -> Answer<()> {
     if pointer.is_null() {
-        return Err(Refusal::error(format!(
-            "{name}: expected {count} elements, found NULL"
-        )));
+        return Err(no_array(count, name));
     }
     if count > isize::MAX as usize / size_of::<T>().max(1) {
-        return Err(Refusal::error(format!(
-            "{name}: {count} elements do not fit into memory"
-        )));
+        return Err(array_too_long(count, name));
     }
     Ok(())
+}
+
+#[cold]
+fn no_array(count: usize, name: &str) -> Refusal {
+    Refusal::error(format!("{name}: expected {count} elements, found NULL"))
+}
+
+#[cold]
+fn array_too_long(count: usize, name: &str) -> Refusal {
+    Refusal::error(format!("{name}: {count} elements do not fit into memory"))
 }
 
 /// One place of the importer to be filled.

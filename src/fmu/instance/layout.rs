@@ -104,15 +104,13 @@ impl Access {
     }
 }
 
-/// Where a real variable is read at once, without any work.
+/// Where a real variable that is no part of the state is read at once, without any work.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum AtHand {
     /// Among the stored values.
     Always,
     /// Among them as long as the outputs are those of the present.
     WithOutputs,
-    /// In the state of the system, once it moves.
-    InState,
     /// Nowhere.
     Never,
 }
@@ -120,29 +118,28 @@ enum AtHand {
 /// What reading a variable at every step needs, and no more: between steps, whatever can be read may be read.
 #[derive(Debug, Clone, Copy)]
 struct Glance {
-    at_hand: AtHand,
-    /// Its place there.
+    /// Its entry in the state of the system; one that no state has where it is none.
     entry: u32,
+    at_hand: AtHand,
 }
 
 impl Glance {
-    fn of(access: &Access, place: usize, held: Option<usize>) -> Self {
+    fn of(access: &Access, held: Option<usize>) -> Self {
         let (at_hand, entry) = match (access.data_type, access.source, held) {
-            (DataType::Real, Source::Response | Source::State, Some(entry)) => {
-                (AtHand::InState, entry)
-            }
-            (DataType::Real, Source::Response, None) => (AtHand::WithOutputs, place),
+            (DataType::Real, Source::Response | Source::State, Some(_)) => (AtHand::Never, held),
+            (DataType::Real, Source::Response, None) => (AtHand::WithOutputs, None),
             (
                 DataType::Real,
                 Source::Calculated | Source::Status | Source::State | Source::Rate,
                 _,
-            ) => (AtHand::Never, place),
-            (DataType::Real, ..) => (AtHand::Always, place),
-            _ => (AtHand::Never, place),
+            ) => (AtHand::Never, None),
+            (DataType::Real, ..) => (AtHand::Always, None),
+            _ => (AtHand::Never, None),
         };
+        let entry = entry.and_then(|entry| u32::try_from(entry).ok());
         Self {
+            entry: entry.unwrap_or(u32::MAX),
             at_hand,
-            entry: u32::try_from(entry).unwrap_or(u32::MAX),
         }
     }
 }
@@ -180,7 +177,7 @@ impl Layout {
                     "variable table: a continuous state is no part of the state".into(),
                 )
             })?,
-            glances: each.map(|(i, a)| Glance::of(a, i, held(i))).collect(),
+            glances: each.map(|(i, a)| Glance::of(a, held(i))).collect(),
             access,
             wind_speed: place(table, Role::WindSpeed)?,
             state_rates,
@@ -189,21 +186,24 @@ impl Layout {
 
     /// Entry of the system's state that the output at `place` is, if it is one.
     pub fn held(&self, place: usize) -> Option<usize> {
-        let glance = self.glances[place];
-        (glance.at_hand == AtHand::InState).then_some(glance.entry as usize)
+        let entry = self.glances[place].entry;
+        (entry != u32::MAX).then_some(entry as usize)
     }
 
     /// The value of a real variable that needs no work, between steps: most of what is read at every step.
     #[inline]
     pub fn at_hand(&self, reference: u32, memory: &Memory, outputs_current: bool) -> Option<f64> {
-        let glance = self.glances.get(reference as usize)?;
-        let list = match glance.at_hand {
-            AtHand::InState => &memory.system.values,
-            AtHand::WithOutputs if outputs_current => &memory.values,
-            AtHand::Always => &memory.values,
-            _ => return None,
+        let place = reference as usize;
+        let glance = self.glances.get(place)?;
+        if let Some(held) = memory.system.values.get(glance.entry as usize) {
+            return Some(*held);
+        }
+        let stored = match glance.at_hand {
+            AtHand::Always => true,
+            AtHand::WithOutputs => outputs_current,
+            AtHand::Never => false,
         };
-        list.get(glance.entry as usize).copied()
+        stored.then(|| memory.values[place])
     }
 
     /// Where the value at `place` comes from.

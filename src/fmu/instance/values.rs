@@ -10,16 +10,41 @@ impl Instance {
     ///
     /// # Errors
     /// A reference that is none, of another type, or not readable now; a value that cannot be computed.
+    #[inline(always)]
     pub fn reals(&mut self, references: &[u32], values: &mut [f64]) -> Answer<()> {
+        let read = self.read_at_hand(references, values);
+        if read == references.len() {
+            return Ok(());
+        }
+        self.read_rest(&references[read..], &mut values[read..])
+    }
+
+    /// Reads real variables up to the first that needs work; returns how many.
+    #[inline]
+    fn read_at_hand(&self, references: &[u32], values: &mut [f64]) -> usize {
         // ahead of its release a section is not yet where its initial values put it
-        let stepping = self.memory.state == State::StepComplete;
+        if self.memory.state != State::StepComplete {
+            return 0;
+        }
+        let (memory, current) = (&self.memory, self.outputs_current);
+        let mut read = 0;
         for (reference, value) in references.iter().zip(values) {
-            let (memory, current) = (&self.memory, self.outputs_current);
-            let at_hand = stepping.then(|| self.layout.at_hand(*reference, memory, current));
-            *value = match at_hand.flatten() {
-                Some(value) => value,
-                None => self.number(*reference, DataType::Real)?,
+            let Some(at_hand) = self.layout.at_hand(*reference, memory, current) else {
+                break;
             };
+            *value = at_hand;
+            read += 1;
+        }
+        read
+    }
+
+    /// Reads one that needs work, after which others may need none.
+    #[inline(never)]
+    fn read_rest(&mut self, mut references: &[u32], mut values: &mut [f64]) -> Answer<()> {
+        while let ([reference, others @ ..], [value, rest @ ..]) = (references, values) {
+            *value = self.number(*reference, DataType::Real)?;
+            let read = self.read_at_hand(others, rest);
+            (references, values) = (&others[read..], &mut rest[read..]);
         }
         Ok(())
     }
