@@ -50,5 +50,7 @@ pub(crate) use sanity::{SanityLines, sanity_lines};
 pub use scan::{GrowthBand, growth_scan};
 pub(crate) use search::curve_speeds_m_s;
 pub use search::{OnsetSearch, find_onset};
-pub use sweep::{LinearForces, OnsetSweep, SweepOutcome, SweptOnset, at_samples};
+pub use sweep::{
+    LinearForces, OnsetSweep, SweepOutcome, SweptOnset, at_samples, stands_at_samples,
+};
 pub use unwanted::{UnwantedGrowth, unwanted_growth};

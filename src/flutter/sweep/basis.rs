@@ -213,7 +213,8 @@ impl LinearForces {
 }
 
 impl Function {
-    /// Value and derivative at `p` off the real axis.
+    /// Value and derivative at `p` off the real axis; where only one is used, the other costs nothing.
+    #[inline(always)]
     fn at(&self, p: Complex64) -> (Complex64, Complex64) {
         match self {
             Self::Power(0) => (Complex64::new(1.0, 0.0), Complex64::new(0.0, 0.0)),
@@ -242,6 +243,7 @@ impl Function {
 
 impl HeldFilter {
     /// `√(1−α)/D (N/D)^l (1 − b)/(pΔs)` with `b = e^{−pΔs}`, `D = 1 − √α b`, `N = √α − b`, and its derivative.
+    #[inline(always)]
     fn at(&self, p: Complex64) -> (Complex64, Complex64) {
         let (root, step) = (self.alpha.sqrt(), self.delta_s);
         let back = (-p * step).exp();

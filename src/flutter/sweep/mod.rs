@@ -14,7 +14,7 @@ mod samples;
 mod setup;
 
 pub use basis::LinearForces;
-pub use samples::at_samples;
+pub use samples::{at_samples, stands_at_samples};
 
 use crate::error::{Error, Result, positive};
 use crate::section::{Dof, SectionModel, Structure};

@@ -301,6 +301,7 @@ fn sampled_sections_flutter_where_their_eigenvalues_say() {
             panic!("no onset");
         };
         let sampled = at_samples(&coupled, held).unwrap().unwrap();
+        assert!(stands_at_samples(&coupled, held).unwrap());
         let off = |speed: f64| (speed / expected.speed_m_s - 1.0).abs();
         // what sampling adds, and what is left
         assert!(off(held.speed_m_s) < 1e-3, "{held:?}, {expected:?}");

@@ -5,10 +5,10 @@ use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
 use crate::flutter::{
     FlutterSearch, LinearForces, OnsetSearch, OnsetSweep, SweepOutcome, SweptOnset, UnwantedGrowth,
-    at_samples, divergence_speed, find_onset, unwanted_growth,
+    at_samples, divergence_speed, find_onset, stands_at_samples, unwanted_growth,
 };
 use crate::fmu::variables::{Calculated, Role, SectionParameter, VariableTable};
-use crate::section::{Dof, SectionModel};
+use crate::section::{Dof, SectionModel, Structure};
 use crate::trained_model::{Model, TrainedModel};
 use crate::units::{ReducedFrequency, ReducedVelocity};
 
@@ -88,6 +88,38 @@ pub(super) fn plain_onset(
     aerodynamics: &Realization,
     (values, limit): (&[f64], f64),
 ) -> Option<SweptOnset> {
+    let (structure, onset) = plain_without_samples(model, table, (values, limit))?;
+    if !matches!(model.model, Model::DiscreteLaguerre(_)) {
+        return Some(onset);
+    }
+    let sampled = CoupledSection::new(structure, aerodynamics.clone()).ok()?;
+    let onset = at_samples(&sampled, onset).ok()??;
+    (onset.speed_m_s <= limit).then_some(onset)
+}
+
+/// A speed up to which nothing grows because the onset there is plain, and stands where the force is sampled.
+pub(super) fn plainly_stable_to(
+    model: &TrainedModel,
+    table: &VariableTable,
+    aerodynamics: &Realization,
+    (values, limit): (&[f64], f64),
+) -> Option<f64> {
+    let (structure, onset) = plain_without_samples(model, table, (values, limit))?;
+    if matches!(model.model, Model::DiscreteLaguerre(_)) {
+        let sampled = CoupledSection::new(structure, aerodynamics.clone()).ok()?;
+        if !stands_at_samples(&sampled, onset).ok()? {
+            return None;
+        }
+    }
+    Some(onset.speed_m_s)
+}
+
+/// The structure, and its plain onset under forces that are not sampled.
+fn plain_without_samples(
+    model: &TrainedModel,
+    table: &VariableTable,
+    (values, limit): (&[f64], f64),
+) -> Option<(Structure, SweptOnset)> {
     let tested = Some(model.tested_range);
     let forces = match &model.model {
         Model::Laguerre(m) => LinearForces::of_laguerre(m, tested),
@@ -99,16 +131,7 @@ pub(super) fn plain_onset(
     let structure = section.structure().ok()?;
     let sweep = OnsetSweep::new(forces, &structure, limit).ok()?;
     match sweep.onset(&section, sweep.forces().coefficients()) {
-        Ok(SweepOutcome::Onset(o)) if o.in_tested_range && o.spurious == 0 => {
-            if let Model::DiscreteLaguerre(_) = &model.model {
-                let sampled = CoupledSection::new(structure, aerodynamics.clone()).ok()?;
-                at_samples(&sampled, o)
-                    .ok()?
-                    .filter(|o| o.speed_m_s <= limit)
-            } else {
-                Some(o)
-            }
-        }
+        Ok(SweepOutcome::Onset(o)) if o.in_tested_range && o.spurious == 0 => Some((structure, o)),
         _ => None,
     }
 }

@@ -142,11 +142,10 @@ impl SectionUnit {
         let Resources { model, table, .. } = resources;
         let speed_max_m_s = values[self.places.search_limit];
         let section = section::coupled_section(model, table, &self.aerodynamics, values)?;
-        if let Some(onset) =
-            section::plain_onset(model, table, &self.aerodynamics, (values, speed_max_m_s))
-        {
+        let asked = (values, speed_max_m_s);
+        if let Some(speed) = section::plainly_stable_to(model, table, &self.aerodynamics, asked) {
             return Ok(UnwantedGrowth {
-                scanned_to_m_s: onset.speed_m_s,
+                scanned_to_m_s: speed,
                 instability_from_m_s: None,
                 bands: Vec::new(),
             });
