@@ -114,22 +114,14 @@ fn legend(
 }
 
 const PLACE: &str = "aerodynamic derivatives";
-const BAR: Ink = Ink::Line {
-    colour: GREY,
-    dash: None,
-    width: 1.6,
-};
+const BAR: Ink = Ink::stroke(GREY, None, 1.6);
 
 fn fitted_ink(i: usize) -> Result<Ink> {
     Ok(Ink::line(colour(PLACE, i)?, dash(i)))
 }
 
 fn reference_ink(i: usize) -> Ink {
-    Ink::Line {
-        colour: BLACK,
-        dash: dash(i + 1),
-        width: 1.1,
-    }
+    Ink::stroke(BLACK, dash(i + 1), 1.1)
 }
 
 /// Black dots for one series; several in colours and shapes, from the far end of the palette, where no line is.

@@ -10,89 +10,53 @@ use crate::reference::{FirstOrderResults, SampledTransfer};
 /// The six figures with the number of each in the thesis: training input, predicted output, transfer function and impulse
 /// response of the model, transfer functions for several `α` and for several `L`.
 pub fn first_order_figures(results: &FirstOrderResults) -> Result<Vec<(&'static str, Figure)>> {
-    let step = results.example.step_s;
-    let over_time = |label: &str, values: &[f64]| {
-        let points = values
-            .iter()
-            .enumerate()
-            .map(|(k, y)| (k as f64 * step, *y));
-        PlottedSeries::new(label, points.collect())
+    let example = &results.example;
+    let over_time = |(label, values): &(&str, &Vec<f64>)| {
+        let points = values.iter().enumerate();
+        let points = points.map(|(k, y)| (k as f64 * example.step_s, *y));
+        PlottedSeries::new(*label, points.collect())
     };
-    let history = |title: &str, label: &str, series: Vec<PlottedSeries>| {
+    let history = |title: &str, label: &str, signals: &[(&str, &Vec<f64>)]| {
         let panel = TimePanel {
             y_label: label.to_owned(),
-            series,
+            series: signals.iter().map(over_time).collect(),
         };
         time_history_figure(title, &[panel], "Time (s)")
     };
-    let parameters = format!(
-        "L = {}, α = {}",
-        results.example.filters, results.example.alpha
-    );
+    let order = format!("L = {}", example.filters);
+    let parameters = format!("{order}, α = {}", example.alpha);
     let [training, _] = &results.training;
     let [_, system, model] = &results.validation;
     let [impulse, filters] = &results.impulse;
+    let input = history("Training input", "u (–)", &[("input", training)])?;
+    let output = history(
+        &format!("Output at {} Hz, {parameters}", example.validation_hz),
+        "y (–)",
+        &[("system", system), ("Laguerre model", model)],
+    )?;
+    let responses = history(
+        &format!("Impulse response, {parameters}"),
+        "h Δt (–)",
+        &[("system", impulse), ("Laguerre model", filters)],
+    )?;
+    let both = transfer(results, &parameters, [&results.tustin, &results.model])?;
+    let alphas = transfer(results, &order, &results.by_alpha)?;
+    let one_alpha = format!("α = {}", example.alpha_of_orders);
+    let orders = transfer(results, &one_alpha, &results.by_order)?;
     Ok(vec![
-        (
-            "2.6",
-            history(
-                "Training input",
-                "u (–)",
-                vec![over_time("input", training)],
-            )?,
-        ),
-        (
-            "2.7",
-            history(
-                &format!(
-                    "Output at {} Hz, {parameters}",
-                    results.example.validation_hz
-                ),
-                "y (–)",
-                vec![
-                    over_time("system", system),
-                    over_time("Laguerre model", model),
-                ],
-            )?,
-        ),
-        (
-            "2.8",
-            transfer(results, &parameters, &[&results.tustin, &results.model])?,
-        ),
-        (
-            "2.9",
-            history(
-                &format!("Impulse response, {parameters}"),
-                "h Δt (–)",
-                vec![
-                    over_time("system", impulse),
-                    over_time("Laguerre model", filters),
-                ],
-            )?,
-        ),
-        (
-            "2.10",
-            transfer(
-                results,
-                &format!("L = {}", results.example.filters),
-                &results.by_alpha.iter().collect::<Vec<_>>(),
-            )?,
-        ),
-        (
-            "2.11",
-            transfer(
-                results,
-                &format!("α = {}", results.example.alpha_of_orders),
-                &results.by_order.iter().collect::<Vec<_>>(),
-            )?,
-        ),
+        ("2.6", input),
+        ("2.7", output),
+        ("2.8", both),
+        ("2.9", responses),
+        ("2.10", alphas),
+        ("2.11", orders),
     ])
 }
 
-fn transfer(
+fn transfer<'a>(
     results: &FirstOrderResults,
     parameters: &str,
-    models: &[&SampledTransfer],
+    models: impl IntoIterator<Item = &'a SampledTransfer>,
 ) -> Result<Figure> {
     let curve = |t: &SampledTransfer| TransferCurve {
         label: t.label.clone(),
@@ -108,7 +72,7 @@ fn transfer(
         reference: curve(&results.system),
         reference_is_points: false,
         tolerance: None,
-        models: models.iter().map(|m| curve(m)).collect(),
+        models: models.into_iter().map(curve).collect(),
     };
     transfer_figure(
         &format!("Transfer functions, {parameters}"),

@@ -39,145 +39,228 @@ pub fn vf_vg_figure(
     onsets: &[Onset],
     options: &VfVgOptions,
 ) -> Result<Figure> {
-    let branches = branch_names(curves)?;
-    let speed = || Axis::new("Wind speed V (m/s)").tight();
-    let mut upright = Vec::new();
-    let mut frequency = Panel::new(
-        Axis {
-            label: String::new(),
-            ..speed()
-        },
-        Axis::new("Frequency f (Hz)").zero_based(),
-    );
-    let mut damping = Panel::new(speed(), Axis::new("Damping ratio ζ (%)"));
-    damping.level = Some(0.0);
-    damping.y.within = Some(DAMPING_WINDOW_PERCENT);
-    damping.y.range = options.damping_range_percent;
-    let mut close = damping.clone();
-    close.x.label = "Wind speed V (m/s)".to_owned();
-    close.y = Axis::new("ζ near zero (%)");
-    close.y.range = Some(NEAR_ZERO_PERCENT);
-    damping.x.label = String::new();
-    let mut models = Vec::new();
-    let mut untested = false;
+    let mut diagram = VfVg::new(branch_names(curves)?, options);
     for (i, model) in curves.iter().enumerate() {
-        let colour = colour(PLACE, i)?;
-        models.push(Entry::new(&model.model, Ink::line(colour, dash(i))));
-        for branch in &model.branches {
-            let width = branch_width(index_of(&branches, &branch.name));
-            let name = format!("{}, {} branch", model.model, branch.name);
-            for (outside, run) in runs(&branch.points) {
-                untested |= outside;
-                let shade = if outside { pale(colour) } else { colour };
-                let ink = Ink::Line {
-                    colour: shade,
-                    dash: dash(i),
-                    width,
-                };
-                frequency.add(&name, points(run, |p| p.frequency_hz), ink);
-                let percent = points(run, |p| 100.0 * p.damping_ratio);
-                for stretch in near_zero(&percent) {
-                    close.add(&name, stretch, ink);
-                }
-                damping.add(&name, percent, ink);
-            }
-        }
+        diagram.draw_curves(model, i)?;
     }
-    let mut stated = Vec::new();
     for onset in onsets {
-        let colour = colour_of(&onset.at.model, curves)?;
-        upright.push((onset.at.speed_m_s, colour));
-        mark_onset((&mut frequency, &mut damping, &mut close), onset, colour);
-        stated.push(Entry::new(statement(onset), onset_ink(onset, colour)));
+        diagram.mark_onset(onset, colour_of(&onset.at.model, curves)?);
     }
     if let Some(required) = options.required_speed_m_s {
-        let (low, high) = DAMPING_WINDOW_PERCENT;
-        let highest = |p: &Panel| {
-            let points = p.series.iter().flat_map(|s| &s.points);
-            points.map(|p| p.1).fold(0.0, f64::max)
-        };
-        let to = highest(&frequency);
-        for (panel, from, to) in [
-            (&mut frequency, 0.0, to),
-            (&mut damping, low, high),
-            (&mut close, NEAR_ZERO_PERCENT.0, NEAR_ZERO_PERCENT.1),
-        ] {
-            panel.add("required", vec![(required, from), (required, to)], REQUIRED);
-        }
-        let text = format!("required onset above {} m/s", significant(required));
-        models.push(Entry::new(text, REQUIRED));
+        diagram.draw_required(required);
     }
-    frequency.uprights.clone_from(&upright);
-    close.uprights.clone_from(&upright);
-    damping.uprights = upright;
-    let mut kinds: Vec<Entry> = branches
-        .iter()
-        .enumerate()
-        .map(|(i, name)| {
-            let ink = Ink::Line {
-                colour: GREY,
-                dash: None,
-                width: branch_width(i),
-            };
-            Entry::new(format!("{name} branch"), ink)
-        })
-        .collect();
-    if onsets.iter().any(|o| !o.spurious_speeds_m_s.is_empty()) {
-        kinds.push(Entry::new(
-            "probably spurious crossing",
-            Ink::dots(GREY, Shape::Cross),
-        ));
-    }
-    if onsets.iter().any(|o| o.in_tested_range == Some(false)) {
-        kinds.push(Entry::new(
-            "onset outside the tested range",
-            Ink::Dots {
-                colour: GREY,
-                shape: Shape::Circle,
-                radius: 4.5,
-                hollow: true,
-            },
-        ));
-    }
-    if close.series.iter().any(|s| s.name == BAR) {
-        let ink = Ink::Line {
-            colour: GREY,
-            dash: None,
-            width: 3.5,
-        };
-        kinds.push(Entry::new("interval of the onset", ink));
-    }
-    if untested {
-        kinds.push(Entry::new(
-            "pale: K = ωB/V outside the tested range",
-            Ink::line(PALE_GREY, None),
-        ));
-    }
+    diagram.explain_kinds(onsets);
     if let Some(tested) = options.tested_speeds_m_s {
-        shade_untested(&mut [&mut frequency, &mut damping, &mut close], tested)?;
-        kinds.push(Entry::new("wind speed outside the tests", Ink::Shade));
+        diagram.shade_untested(tested)?;
     }
-    Sheet {
-        name: PLACE,
-        title: options.title.clone(),
-        panels: if close.series.is_empty() {
-            vec![frequency, damping]
-        } else {
-            vec![frequency, damping, close]
-        },
-        columns: 1,
-        axes: (640.0, 210.0),
-        legend: vec![models, kinds, stated],
+    diagram.into_sheet(options.title.clone()).draw()
+}
+
+/// The panels of the diagrams, one below the other, and the groups of their legend.
+struct VfVg {
+    /// Names of the branches, which set the widths of lines.
+    branches: Vec<String>,
+    frequency: Panel,
+    damping: Panel,
+    /// Damping near zero.
+    close: Panel,
+    /// Whether some curve is pale.
+    untested: bool,
+    models: Vec<Entry>,
+    kinds: Vec<Entry>,
+    stated: Vec<Entry>,
+}
+
+impl VfVg {
+    fn new(branches: Vec<String>, options: &VfVgOptions) -> Self {
+        let speed = |label: &str| Axis::new(label).tight();
+        let damping = Axis {
+            within: Some(DAMPING_WINDOW_PERCENT),
+            range: options.damping_range_percent,
+            ..Axis::new("Damping ratio ζ (%)")
+        };
+        let close = Axis {
+            range: Some(NEAR_ZERO_PERCENT),
+            ..Axis::new("ζ near zero (%)")
+        };
+        let about_zero = |x, y| Panel {
+            level: Some(0.0),
+            ..Panel::new(x, y)
+        };
+        Self {
+            branches,
+            frequency: Panel::new(speed(""), Axis::new("Frequency f (Hz)").zero_based()),
+            damping: about_zero(speed(""), damping),
+            close: about_zero(speed("Wind speed V (m/s)"), close),
+            untested: false,
+            models: Vec::new(),
+            kinds: Vec::new(),
+            stated: Vec::new(),
+        }
     }
-    .draw()
+
+    fn panels(&mut self) -> [&mut Panel; 3] {
+        [&mut self.frequency, &mut self.damping, &mut self.close]
+    }
+
+    /// All branches of the `i`-th model.
+    fn draw_curves(&mut self, model: &FlutterCurves, i: usize) -> Result<()> {
+        let colour = colour(PLACE, i)?;
+        self.models
+            .push(Entry::new(&model.model, Ink::line(colour, dash(i))));
+        for branch in &model.branches {
+            let width = branch_width(index_of(&self.branches, &branch.name));
+            let name = format!("{}, {} branch", model.model, branch.name);
+            for (outside, run) in runs(&branch.points) {
+                self.untested |= outside;
+                let shade = if outside { pale(colour) } else { colour };
+                let ink = Ink::stroke(shade, dash(i), width);
+                let percent = points(run, |p| 100.0 * p.damping_ratio);
+                for stretch in near_zero(&percent) {
+                    self.close.add(&name, stretch, ink);
+                }
+                self.frequency
+                    .add(&name, points(run, |p| p.frequency_hz), ink);
+                self.damping.add(&name, percent, ink);
+            }
+        }
+        Ok(())
+    }
+
+    /// An onset in all panels, with its interval, and in words.
+    fn mark_onset(&mut self, onset: &Onset, colour: &'static str) {
+        let (speed, hertz) = (onset.at.speed_m_s, onset.at.frequency_hz);
+        for panel in self.panels() {
+            panel.uprights.push((speed, colour));
+        }
+        self.draw_interval(onset, colour);
+        let ink = onset_ink(onset, colour);
+        let name = format!("onset of {}", onset.at.model);
+        self.frequency.add(&name, vec![(speed, hertz)], ink);
+        self.damping.add(&name, vec![(speed, 0.0)], ink);
+        self.close.add("onset", vec![(speed, 0.0)], ink);
+        self.note_onset(onset, colour);
+        if !onset.spurious_speeds_m_s.is_empty() {
+            let crosses = onset.spurious_speeds_m_s.iter().map(|v| (*v, 0.0));
+            self.damping.add(
+                format!("spurious crossings of {}", onset.at.model),
+                crosses.collect(),
+                Ink::dots(colour, Shape::Cross),
+            );
+        }
+        self.stated.push(Entry::new(statement(onset), ink));
+    }
+
+    /// The bar of the interval below the zero line; the onset of the FMU has that of its model, which is drawn already.
+    fn draw_interval(&mut self, onset: &Onset, colour: &'static str) {
+        let (OnsetInterval::Known {
+            low_m_s, high_m_s, ..
+        }
+        | OnsetInterval::Spread {
+            low_m_s, high_m_s, ..
+        }) = onset.interval
+        else {
+            return;
+        };
+        if onset.at.method == OnsetMethod::FmuStepping {
+            return;
+        }
+        let bars = self.close.series.iter().filter(|s| s.name == BAR).count();
+        let level = -(FIRST_BAR_PERCENT + BAR_STEP_PERCENT * bars as f64).min(-NEAR_ZERO_PERCENT.0);
+        self.close.add(
+            BAR,
+            vec![(low_m_s, level), (high_m_s, level)],
+            Ink::stroke(colour, None, BAR_WIDTH),
+        );
+    }
+
+    /// Frequency and speed beside the markers; the same number of the same model by another route says nothing new.
+    fn note_onset(&mut self, onset: &Onset, colour: &'static str) {
+        let (speed, hertz) = (onset.at.speed_m_s, onset.at.frequency_hz);
+        let note = |y: f64, text: String| Note {
+            at: (speed, y),
+            text,
+            colour,
+        };
+        let at_speed = note(0.0, format!("{} m/s", significant(speed)));
+        let told = |n: &Note| n.text == at_speed.text && n.colour == colour;
+        if !self.damping.notes.iter().any(told) {
+            let at_frequency = note(hertz, format!("{} Hz", significant(hertz)));
+            self.frequency.notes.push(at_frequency);
+            self.damping.notes.push(at_speed);
+        }
+    }
+
+    /// The upright line that the onset has to exceed, over the height of each panel.
+    fn draw_required(&mut self, speed_m_s: f64) {
+        let drawn = self.frequency.series.iter().flat_map(|s| &s.points);
+        let highest = drawn.map(|p| p.1).fold(0.0, f64::max);
+        let heights = [(0.0, highest), DAMPING_WINDOW_PERCENT, NEAR_ZERO_PERCENT];
+        for (panel, (from, to)) in self.panels().into_iter().zip(heights) {
+            let line = vec![(speed_m_s, from), (speed_m_s, to)];
+            panel.add("required", line, REQUIRED);
+        }
+        let text = format!("required onset above {} m/s", significant(speed_m_s));
+        self.models.push(Entry::new(text, REQUIRED));
+    }
+
+    /// What widths, markers and pale lines stand for, as far as they are drawn.
+    fn explain_kinds(&mut self, onsets: &[Onset]) {
+        let mut add = |text: &str, ink| self.kinds.push(Entry::new(text, ink));
+        for (i, name) in self.branches.iter().enumerate() {
+            let ink = Ink::stroke(GREY, None, branch_width(i));
+            add(&format!("{name} branch"), ink);
+        }
+        if onsets.iter().any(|o| !o.spurious_speeds_m_s.is_empty()) {
+            let ink = Ink::dots(GREY, Shape::Cross);
+            add("probably spurious crossing", ink);
+        }
+        if onsets.iter().any(|o| o.in_tested_range == Some(false)) {
+            let ink = onset_marker(GREY, Shape::Circle, true);
+            add("onset outside the tested range", ink);
+        }
+        if self.close.series.iter().any(|s| s.name == BAR) {
+            add("interval of the onset", Ink::stroke(GREY, None, BAR_WIDTH));
+        }
+        if self.untested {
+            let ink = Ink::line(PALE_GREY, None);
+            add("pale: K = ωB/V outside the tested range", ink);
+        }
+    }
+
+    fn shade_untested(&mut self, (low, high): (f64, f64)) -> Result<()> {
+        if !(low.is_finite() && high.is_finite() && low < high) {
+            return Err(Error::input(
+                "tested wind speeds",
+                "a lower and a higher one",
+                format!("{low} to {high}"),
+            ));
+        }
+        for panel in self.panels() {
+            panel.shaded = vec![(f64::MIN, low), (high, f64::MAX)];
+        }
+        self.kinds
+            .push(Entry::new("wind speed outside the tests", Ink::Shade));
+        Ok(())
+    }
+
+    /// The panel near zero is left out when no curve comes there.
+    fn into_sheet(self, title: Option<String>) -> Sheet {
+        let mut panels = vec![self.frequency, self.damping];
+        panels.extend(Some(self.close).filter(|p| !p.series.is_empty()));
+        Sheet {
+            name: PLACE,
+            title,
+            panels,
+            columns: 1,
+            axes: (640.0, 210.0),
+            legend: vec![self.models, self.kinds, self.stated],
+        }
+    }
 }
 
 const PLACE: &str = "V-f and V-g diagram";
-const REQUIRED: Ink = Ink::Line {
-    colour: BLACK,
-    dash: None,
-    width: 1.6,
-};
+const REQUIRED: Ink = Ink::stroke(BLACK, None, 1.6);
 const DAMPING_WINDOW_PERCENT: (f64, f64) = (-10.0, 20.0);
 /// A growth of half a per cent below the onset is a finding, and a hair's breadth in the panel above.
 const NEAR_ZERO_PERCENT: (f64, f64) = (-1.0, 1.0);
@@ -186,6 +269,7 @@ const NEAR_ZERO_PERCENT: (f64, f64) = (-1.0, 1.0);
 const BAR: &str = "interval of the onset";
 const FIRST_BAR_PERCENT: f64 = 0.25;
 const BAR_STEP_PERCENT: f64 = 0.15;
+const BAR_WIDTH: f64 = 3.5;
 
 /// The stretches of a line in the window around zero, with the points on either side that lead out of it.
 fn near_zero(points: &[(f64, f64)]) -> Vec<Vec<(f64, f64)>> {
@@ -252,75 +336,21 @@ fn colour_of(model: &str, curves: &[FlutterCurves]) -> Result<&'static str> {
 }
 
 fn onset_ink(onset: &Onset, colour: &'static str) -> Ink {
-    Ink::Dots {
-        colour,
-        shape: match onset.at.method {
-            OnsetMethod::Eigenvalues => Shape::Circle,
-            OnsetMethod::Determinant => Shape::Diamond,
-            OnsetMethod::FmuStepping => Shape::Square,
-            OnsetMethod::PkIteration => Shape::Cross,
-        },
-        radius: 4.5,
-        hollow: onset.in_tested_range == Some(false),
-    }
+    let shape = match onset.at.method {
+        OnsetMethod::Eigenvalues => Shape::Circle,
+        OnsetMethod::Determinant => Shape::Diamond,
+        OnsetMethod::FmuStepping => Shape::Square,
+        OnsetMethod::PkIteration => Shape::Cross,
+    };
+    onset_marker(colour, shape, onset.in_tested_range == Some(false))
 }
 
-fn mark_onset(
-    (frequency, damping, close): (&mut Panel, &mut Panel, &mut Panel),
-    onset: &Onset,
-    colour: &'static str,
-) {
-    let again = onset.at.method == OnsetMethod::FmuStepping;
-    let bar = match onset.interval {
-        // that of the model, which is drawn already
-        _ if again => vec![],
-        OnsetInterval::Known {
-            low_m_s, high_m_s, ..
-        }
-        | OnsetInterval::Spread {
-            low_m_s, high_m_s, ..
-        } => {
-            let bars = close.series.iter().filter(|s| s.name == BAR).count();
-            let level =
-                -(FIRST_BAR_PERCENT + BAR_STEP_PERCENT * bars as f64).min(-NEAR_ZERO_PERCENT.0);
-            vec![(low_m_s, level), (high_m_s, level)]
-        }
-        OnsetInterval::Undetermined { .. } | OnsetInterval::None { .. } => vec![],
-    };
-    if !bar.is_empty() {
-        let ink = Ink::Line {
-            colour,
-            dash: None,
-            width: 3.5,
-        };
-        close.add(BAR, bar, ink);
-    }
-    let marker = onset_ink(onset, colour);
-    close.add("onset", vec![(onset.at.speed_m_s, 0.0)], marker);
-    let name = format!("onset of {}", onset.at.model);
-    let at_frequency = (onset.at.speed_m_s, onset.at.frequency_hz);
-    let at_zero = (onset.at.speed_m_s, 0.0);
-    frequency.add(&name, vec![at_frequency], onset_ink(onset, colour));
-    damping.add(&name, vec![at_zero], onset_ink(onset, colour));
-    let note = |panel: &mut Panel, at, text| panel.notes.push(Note { at, text, colour });
-    let hertz = format!("{} Hz", significant(onset.at.frequency_hz));
-    let speed = format!("{} m/s", significant(onset.at.speed_m_s));
-    // the same number of the same model by another route says nothing new
-    if !damping
-        .notes
-        .iter()
-        .any(|n| n.text == speed && n.colour == colour)
-    {
-        note(frequency, at_frequency, hertz);
-        note(damping, at_zero, speed);
-    }
-    if !onset.spurious_speeds_m_s.is_empty() {
-        let crosses = onset.spurious_speeds_m_s.iter().map(|v| (*v, 0.0));
-        damping.add(
-            format!("spurious crossings of {}", onset.at.model),
-            crosses.collect(),
-            Ink::dots(colour, Shape::Cross),
-        );
+fn onset_marker(colour: &'static str, shape: Shape, hollow: bool) -> Ink {
+    Ink::Dots {
+        colour,
+        shape,
+        radius: 4.5,
+        hollow,
     }
 }
 
@@ -351,11 +381,11 @@ pub(crate) fn root_locus_figure(curves: &[FlutterCurves], title: &str) -> Result
         let colour = colour(PLACE, i)?;
         models.push(Entry::new(&model.model, Ink::line(colour, dash(i))));
         for branch in model.branches.iter().filter(|b| !b.points.is_empty()) {
-            let ink = Ink::Line {
+            let ink = Ink::stroke(
                 colour,
-                dash: dash(i),
-                width: branch_width(index_of(&branches, &branch.name)),
-            };
+                dash(i),
+                branch_width(index_of(&branches, &branch.name)),
+            );
             let place = |p: &ModePoint| (p.eigenvalue.re, p.frequency_hz);
             panel.add(&branch.name, branch.points.iter().map(place).collect(), ink);
         }
@@ -369,18 +399,4 @@ pub(crate) fn root_locus_figure(curves: &[FlutterCurves], title: &str) -> Result
         legend: vec![models],
     }
     .draw()
-}
-
-fn shade_untested(panels: &mut [&mut Panel], (low, high): (f64, f64)) -> Result<()> {
-    if !(low.is_finite() && high.is_finite() && low < high) {
-        return Err(Error::input(
-            "tested wind speeds",
-            "a lower and a higher one",
-            format!("{low} to {high}"),
-        ));
-    }
-    for panel in panels {
-        panel.shaded = vec![(f64::MIN, low), (high, f64::MAX)];
-    }
-    Ok(())
 }

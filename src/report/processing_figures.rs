@@ -8,7 +8,7 @@ use super::sheet::Sheet;
 use super::style::{BLACK, Ink, colour};
 use crate::error::{Error, Result};
 use crate::section::Dof;
-use crate::wind_tunnel::processing::{RunReport, StageSignals};
+use crate::wind_tunnel::processing::{RunReport, StageSignals, index};
 
 const PLACE: &str = "processing of a run";
 /// Periods in the right column.
@@ -27,65 +27,52 @@ pub(crate) fn processing_figure(
     let Some(last) = stages.last() else {
         return Err(Error::input(PLACE, "stages", "none"));
     };
-    let at = |d: Dof| Dof::THREE.iter().position(|x| *x == d).unwrap_or(0);
-    let (force, motion) = (at(dof), at(run.dof));
+    let (force, motion) = (index(dof), index(run.dof));
     let rate = last.signals.sampling_hz;
-    let count = last.signals.force[force].len();
     let points = |x: &[f64]| -> Vec<(f64, f64)> {
-        x.iter()
-            .enumerate()
-            .map(|(k, v)| (k as f64 / rate, *v))
-            .collect()
+        let samples = x.iter().enumerate();
+        samples.map(|(k, v)| (k as f64 / rate, *v)).collect()
     };
-    let whole = (0.0, count as f64 / rate);
-    let close = close_up(run, whole);
+    let whole = (0.0, last.signals.force[force].len() as f64 / rate);
+    let columns = [whole, close_up(run, whole)];
     let shaded: Vec<(f64, f64)> = run
         .replaced
         .iter()
         .map(|r| (r.start_s, r.start_s + r.samples as f64 / rate))
         .collect();
-    let unit = if dof == Dof::Torsion { "N·m" } else { "N" };
-    let line = |i: usize| -> Result<Ink> {
-        Ok(Ink::Line {
-            colour: colour(PLACE, i)?,
-            dash: None,
-            width: 1.1,
-        })
-    };
+    let force_ink = Ink::stroke(colour(PLACE, 0)?, None, 1.1);
+    let motion_ink = Ink::stroke(colour(PLACE, 1)?, None, 1.1);
     let mut panels = Vec::with_capacity(2 * stages.len() + 2);
     for stage in stages {
-        let level = run.levels.iter().find(|l| l.stage == stage.stage);
-        let samples = points(&stage.signals.force[force]);
-        let mut left = panel("", force_name(dof, unit), whole, shaded.clone());
-        left.title = Some(match level {
-            Some(l) => format!(
-                "{}: peak {:.4}, RMS {:.4} {unit}",
-                stage.stage, l.peak[force], l.rms[force]
-            ),
-            None => stage.stage.clone(),
-        });
-        left.add(&stage.stage, samples.clone(), line(0)?);
-        let mut right = panel("", String::new(), close, shaded.clone());
-        right.add(&stage.stage, inside(&samples, close), line(0)?);
-        panels.extend([left, right]);
+        let row = Row {
+            title: stage_title(run, &stage.stage, dof),
+            label: force_name(dof),
+            time: "",
+            shaded: &shaded,
+            uprights: Vec::new(),
+            name: &stage.stage,
+            samples: points(&stage.signals.force[force]),
+            ink: force_ink,
+        };
+        panels.extend(row.panels(columns));
     }
-    let samples = points(&last.signals.motion[motion]);
+    let motion_name = format!("{} motion", run.dof.name());
     let unit = if run.dof == Dof::Torsion { "rad" } else { "m" };
-    let label = format!("{} ({unit})", run.dof.symbol());
-    let mut left = panel("t (s)", label, whole, Vec::new());
-    left.title = Some(format!("{} motion", run.dof.name()));
-    left.uprights = run
-        .segments
-        .iter()
-        .map(|s| (s.segment.start_s, BLACK))
-        .collect();
-    left.add("motion", samples.clone(), line(1)?);
-    let mut right = panel("t (s)", String::new(), close, Vec::new());
-    right.add("motion", inside(&samples, close), line(1)?);
-    panels.extend([left, right]);
+    let starts = run.segments.iter().map(|s| s.segment.start_s);
+    let row = Row {
+        title: motion_name.clone(),
+        label: format!("{} ({unit})", run.dof.symbol()),
+        time: "t (s)",
+        shaded: &[],
+        uprights: starts.map(|t| (t, BLACK)).collect(),
+        name: "motion",
+        samples: points(&last.signals.motion[motion]),
+        ink: motion_ink,
+    };
+    panels.extend(row.panels(columns));
     let legend = vec![
-        Entry::new(force_of(dof), line(0)?),
-        Entry::new(format!("{} motion", run.dof.name()), line(1)?),
+        Entry::new(force_of(dof), force_ink),
+        Entry::new(motion_name, motion_ink),
     ];
     Sheet {
         name: PLACE,
@@ -98,7 +85,42 @@ pub(crate) fn processing_figure(
     .draw()
 }
 
-fn panel(t: &str, label: String, range: (f64, f64), shaded: Vec<(f64, f64)>) -> Panel {
+/// One signal, in the left column over the whole run and in the right one close up; title, label and uprights stand left.
+struct Row<'a> {
+    title: String,
+    label: String,
+    /// Label of the abscissa.
+    time: &'static str,
+    shaded: &'a [(f64, f64)],
+    uprights: Vec<(f64, &'static str)>,
+    name: &'a str,
+    samples: Vec<(f64, f64)>,
+    ink: Ink,
+}
+
+impl Row<'_> {
+    fn panels(self, [whole, close]: [(f64, f64); 2]) -> [Panel; 2] {
+        let mut right = panel(self.time, String::new(), close, self.shaded);
+        right.add(self.name, inside(&self.samples, close), self.ink);
+        let mut left = panel(self.time, self.label, whole, self.shaded);
+        left.title = Some(self.title);
+        left.uprights = self.uprights;
+        left.add(self.name, self.samples, self.ink);
+        [left, right]
+    }
+}
+
+/// The stage with what is left of the force after it.
+fn stage_title(run: &RunReport, stage: &str, dof: Dof) -> String {
+    let force = index(dof);
+    let Some(l) = run.levels.iter().find(|l| l.stage == stage) else {
+        return stage.to_owned();
+    };
+    let (peak, rms, unit) = (l.peak[force], l.rms[force], force_unit(dof));
+    format!("{stage}: peak {peak:.4}, RMS {rms:.4} {unit}")
+}
+
+fn panel(t: &str, label: String, range: (f64, f64), shaded: &[(f64, f64)]) -> Panel {
     let time = Axis {
         range: Some(range),
         ..Axis::new(t)
@@ -106,7 +128,7 @@ fn panel(t: &str, label: String, range: (f64, f64), shaded: Vec<(f64, f64)>) -> 
     let mut panel = Panel::new(time, Axis::new(&label));
     panel.level = Some(0.0);
     panel.shaded = shaded
-        .into_iter()
+        .iter()
         .filter(|(a, b)| *b > range.0 && *a < range.1)
         .map(|(a, b)| (a.max(range.0), b.min(range.1)))
         .collect();
@@ -121,13 +143,17 @@ fn force_of(dof: Dof) -> &'static str {
     }
 }
 
-fn force_name(dof: Dof, unit: &str) -> String {
+fn force_unit(dof: Dof) -> &'static str {
+    if dof == Dof::Torsion { "N·m" } else { "N" }
+}
+
+fn force_name(dof: Dof) -> String {
     let symbol = match dof {
         Dof::Vertical => "F_y",
         Dof::Lateral => "F_x",
         Dof::Torsion => "M",
     };
-    format!("{symbol} ({unit})")
+    format!("{symbol} ({})", force_unit(dof))
 }
 
 /// A few periods around what was replaced, or of the test point in the middle.

@@ -14,13 +14,10 @@ const PLACE: &str = "distribution of the onset";
 /// Histogram of the onset speed (part of all answered samples in each bin) and its distribution function with the
 /// quantiles, over wind speed (m/s); the onset of the model itself and the design speed are upright lines.
 pub(crate) fn onset_distribution_figure(result: &MonteCarloResult) -> Result<Figure> {
-    let h = &result.histogram;
-    if h.counts.is_empty() {
+    if result.histogram.counts.is_empty() {
         return Err(Error::input(PLACE, "at least one onset", "none"));
     }
-    let (blue, red, green) = (colour(PLACE, 0)?, colour(PLACE, 1)?, colour(PLACE, 2)?);
-    let unstable = result.unstable_at_or_below;
-    let answered = (result.onsets + unstable + result.stable) as f64;
+    let samples = Ink::line(colour(PLACE, 0)?, None);
     let mut share = Panel::new(
         Axis::new("").tight(),
         Axis::new("Samples in a bin (%)").zero_based(),
@@ -29,68 +26,17 @@ pub(crate) fn onset_distribution_figure(result: &MonteCarloResult) -> Result<Fig
         Axis::new("Onset speed V (m/s)").tight(),
         Axis::new("Onset at or below V (%)").zero_based(),
     );
-    let (mut outline, mut steps) = (
-        vec![(h.from_m_s, 0.0)],
-        vec![(h.from_m_s, 100.0 * unstable as f64 / answered)],
-    );
-    // their onsets lie somewhere below
-    let mut sum = unstable as u64;
-    for (i, count) in h.counts.iter().enumerate() {
-        let (low, high) = (
-            h.from_m_s + h.width_m_s * i as f64,
-            h.from_m_s + h.width_m_s * (i + 1) as f64,
-        );
-        let part = 100.0 * *count as f64 / answered;
-        outline.extend([(low, part), (high, part)]);
-        sum += count;
-        steps.push((high, 100.0 * sum as f64 / answered));
-        if i + 1 == h.counts.len() {
-            outline.push((high, 0.0));
+    let (outline, steps) = curves(result);
+    share.add("histogram", outline, samples);
+    distribution.add("distribution function", steps, samples);
+    let mut legend = vec![Entry::new("samples", samples)];
+    legend.extend(mark_quantiles(result, &mut distribution));
+    for (speed, text, i) in known_speeds(result) {
+        let colour = colour(PLACE, i)?;
+        legend.push(Entry::new(text, Ink::line(colour, Some("3 3"))));
+        for panel in [&mut share, &mut distribution] {
+            panel.uprights.push((speed, colour));
         }
-    }
-    share.add("histogram", outline, Ink::line(blue, None));
-    distribution.add("distribution function", steps, Ink::line(blue, None));
-    let known: Vec<(f64, f64)> = result
-        .quantiles
-        .iter()
-        .filter_map(|q| Some((q.speed_m_s?, 100.0 * q.probability)))
-        .collect();
-    let mut legend = vec![
-        Entry::new("samples", Ink::line(blue, None)),
-        Entry::new("quantiles", Ink::dots(BLACK, Shape::Circle)),
-    ];
-    for at in &known {
-        let text = format!("{} m/s", significant(at.0));
-        let colour = BLACK;
-        distribution.notes.push(Note {
-            at: *at,
-            text,
-            colour,
-        });
-    }
-    if known.is_empty() {
-        legend.pop();
-    } else {
-        distribution.add("quantiles", known, Ink::dots(BLACK, Shape::Circle));
-    }
-    let upright = Some("3 3");
-    if let Some(nominal) = result.nominal_m_s {
-        let text = format!("model itself, {} m/s", significant(nominal));
-        legend.push(Entry::new(text, Ink::line(green, upright)));
-        share.uprights.push((nominal, green));
-        distribution.uprights.push((nominal, green));
-    }
-    if let Some(d) = &result.design {
-        let text = format!(
-            "design speed {} m/s: probability {:.2e} ({:.2e} to {:.2e})",
-            significant(d.speed_m_s),
-            d.probability,
-            d.lower,
-            d.upper
-        );
-        legend.push(Entry::new(text, Ink::line(red, upright)));
-        share.uprights.push((d.speed_m_s, red));
-        distribution.uprights.push((d.speed_m_s, red));
     }
     Sheet {
         name: PLACE,
@@ -104,4 +50,64 @@ pub(crate) fn onset_distribution_figure(result: &MonteCarloResult) -> Result<Fig
         legend: vec![legend],
     }
     .draw()
+}
+
+/// Points over wind speed, per cent.
+type Curve = Vec<(f64, f64)>;
+
+/// Outline of the histogram, and the distribution function, of all answered samples.
+fn curves(result: &MonteCarloResult) -> (Curve, Curve) {
+    let (h, unstable) = (&result.histogram, result.unstable_at_or_below);
+    let answered = (result.onsets + unstable + result.stable) as f64;
+    let percent = |count: u64| 100.0 * count as f64 / answered;
+    let edge = |i: usize| h.from_m_s + h.width_m_s * i as f64;
+    // their onsets lie somewhere below
+    let mut sum = unstable as u64;
+    let (mut outline, mut steps) = (vec![(edge(0), 0.0)], vec![(edge(0), percent(sum))]);
+    for (i, count) in h.counts.iter().enumerate() {
+        outline.extend([(edge(i), percent(*count)), (edge(i + 1), percent(*count))]);
+        sum += count;
+        steps.push((edge(i + 1), percent(sum)));
+    }
+    outline.push((edge(h.counts.len()), 0.0));
+    (outline, steps)
+}
+
+/// The quantiles that have a speed, each with its number; their entry of the legend, if there are any.
+fn mark_quantiles(result: &MonteCarloResult, panel: &mut Panel) -> Option<Entry> {
+    let known: Curve = result
+        .quantiles
+        .iter()
+        .filter_map(|q| Some((q.speed_m_s?, 100.0 * q.probability)))
+        .collect();
+    panel.notes.extend(known.iter().map(|at| Note {
+        at: *at,
+        text: format!("{} m/s", significant(at.0)),
+        colour: BLACK,
+    }));
+    let ink = Ink::dots(BLACK, Shape::Circle);
+    let entry = (!known.is_empty()).then(|| Entry::new("quantiles", ink));
+    if entry.is_some() {
+        panel.add("quantiles", known, ink);
+    }
+    entry
+}
+
+/// Onset of the model itself and design speed, with what the legend says and the number of their colour.
+fn known_speeds(result: &MonteCarloResult) -> Vec<(f64, String, usize)> {
+    let nominal = result.nominal_m_s.map(|speed| {
+        let text = format!("model itself, {} m/s", significant(speed));
+        (speed, text, 2)
+    });
+    let design = result.design.as_ref().map(|d| {
+        let text = format!(
+            "design speed {} m/s: probability {:.2e} ({:.2e} to {:.2e})",
+            significant(d.speed_m_s),
+            d.probability,
+            d.lower,
+            d.upper
+        );
+        (d.speed_m_s, text, 1)
+    });
+    nominal.into_iter().chain(design).collect()
 }

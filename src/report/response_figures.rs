@@ -28,13 +28,7 @@ pub fn time_history_figure(title: &str, panels: &[TimePanel], t_label: &str) -> 
     const PLACE: &str = "time history";
     let labels = labels_of(panels.iter().flat_map(|p| &p.series));
     // few distinct lines may lie exactly on each other: later ones are dashed, so that the first shows through
-    let ink = |i: usize| -> Result<Ink> {
-        Ok(Ink::Line {
-            colour: colour(PLACE, i)?,
-            dash: dash(i),
-            width: 1.3,
-        })
-    };
+    let ink = |i: usize| -> Result<Ink> { Ok(Ink::stroke(colour(PLACE, i)?, dash(i), 1.3)) };
     let ends = panels
         .iter()
         .flat_map(|p| &p.series)

@@ -94,12 +94,22 @@ const BRANCH_WIDTHS: [f64; 3] = [1.1, 2.3, 3.4];
 
 impl Ink {
     pub(super) fn line(colour: &'static str, dash: Option<&'static str>) -> Self {
+        Self::stroke(colour, dash, 1.8)
+    }
+
+    /// A line of a width of its own, px.
+    pub(super) const fn stroke(
+        colour: &'static str,
+        dash: Option<&'static str>,
+        width: f64,
+    ) -> Self {
         Self::Line {
             colour,
             dash,
-            width: 1.8,
+            width,
         }
     }
+
     pub(super) fn dots(colour: &'static str, shape: Shape) -> Self {
         Self::Dots {
             colour,

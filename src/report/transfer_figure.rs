@@ -102,21 +102,13 @@ pub(crate) fn transfer_figure(
     .draw()
 }
 
-const BAND: Ink = Ink::Line {
-    colour: GREY,
-    dash: Some("4 3"),
-    width: 0.9,
-};
+const BAND: Ink = Ink::stroke(GREY, Some("4 3"), 0.9);
 
 fn reference_ink(plot: &TransferPlot) -> Ink {
     if plot.reference_is_points {
         Ink::dots(BLACK, Shape::Circle)
     } else {
-        Ink::Line {
-            colour: BLACK,
-            dash: None,
-            width: 2.6,
-        }
+        Ink::stroke(BLACK, None, 2.6)
     }
 }
 

@@ -58,11 +58,7 @@ pub(crate) fn equilibrium_figure(
     }
     let mut legend = vec![Entry::new("static equilibrium", line)];
     if let Some(end) = &path.end {
-        let upright = Ink::Line {
-            colour: BLACK,
-            dash: Some("3 3"),
-            width: 0.9,
-        };
+        let upright = Ink::stroke(BLACK, Some("3 3"), 0.9);
         legend.push(Entry::new(end.explain(), upright));
     }
     stacked(PLACE, title, panels, 150.0, legend)
@@ -81,11 +77,7 @@ pub(crate) fn buffeting_rms_figure(title: &str, study: &BuffetingStudy) -> Resul
         Ink::line(colour(PLACE, 2)?, dash(2)),
     ];
     let stepped = Ink::dots(BLACK, Shape::Diamond);
-    let bar = Ink::Line {
-        colour: BLACK,
-        dash: None,
-        width: 1.2,
-    };
+    let bar = Ink::stroke(BLACK, None, 1.2);
     let last = study.dofs.len() - 1;
     let both = (0..2).all(|j| has_gust(study, j));
     let mut panels = Vec::with_capacity(study.dofs.len());
