@@ -83,27 +83,19 @@ pub(crate) fn fit_harmonics(
             format!("{} to {}", range.start, range.end),
         ));
     }
-    let unknowns = 2 + 2 * harmonics;
-    let centre = 0.5 * (range.start + range.end - 1) as f64;
-    let half = (0.5 * range.len() as f64).max(1.0);
-    let step = Complex::from_polar(1.0, TAU * frequency_hz / sampling_hz);
-    let regressors = |k: usize, row: &mut [f64]| {
-        row[0] = 1.0;
-        row[1] = (k as f64 - centre) / half;
-        let turn = step.powf(k as f64);
-        let mut power = Complex::new(1.0, 0.0);
-        for n in 0..harmonics {
-            power *= turn;
-            row[2 + 2 * n] = power.re;
-            row[3 + 2 * n] = -power.im;
-        }
+    let regressors = Regressors {
+        centre: 0.5 * (range.start + range.end - 1) as f64,
+        half: (0.5 * range.len() as f64).max(1.0),
+        step: Complex::from_polar(1.0, TAU * frequency_hz / sampling_hz),
+        harmonics,
     };
+    let unknowns = regressors.unknowns();
     let mut gram = DMatrix::zeros(unknowns, unknowns);
     let mut moments = DVector::zeros(unknowns);
     let mut row = vec![0.0; unknowns];
     let mut count = 0_usize;
     for k in range.clone().filter(|k| used(*k)) {
-        regressors(k, &mut row);
+        regressors.at(k, &mut row);
         for i in 0..unknowns {
             for j in 0..=i {
                 gram[(i, j)] += row[i] * row[j];
@@ -123,20 +115,49 @@ pub(crate) fn fit_harmonics(
         })?;
     let mut squares = 0.0;
     for k in range.filter(|k| used(*k)) {
-        regressors(k, &mut row);
+        regressors.at(k, &mut row);
         let fitted: f64 = row.iter().zip(solution.iter()).map(|(r, c)| r * c).sum();
         squares += (signal[k] - fitted).powi(2);
     }
     Ok(HarmonicFit {
         frequency_hz,
-        centre_s: centre / sampling_hz,
+        centre_s: regressors.centre / sampling_hz,
         offset: solution[0],
-        slope_per_s: solution[1] * sampling_hz / half,
+        slope_per_s: solution[1] * sampling_hz / regressors.half,
         amplitudes: (0..harmonics)
             .map(|n| Complex::new(solution[2 + 2 * n], solution[3 + 2 * n]))
             .collect(),
         residual_rms: (squares / count as f64).sqrt(),
     })
+}
+
+/// Constant, trend, then cosine and sine of each harmonic.
+struct Regressors {
+    /// Middle of the stretch, and half of its length, samples.
+    centre: f64,
+    half: f64,
+    /// Turn of the first harmonic from one sample to the next.
+    step: Complex<f64>,
+    harmonics: usize,
+}
+
+impl Regressors {
+    fn unknowns(&self) -> usize {
+        2 + 2 * self.harmonics
+    }
+
+    /// Those of sample `k`.
+    fn at(&self, k: usize, row: &mut [f64]) {
+        row[0] = 1.0;
+        row[1] = (k as f64 - self.centre) / self.half;
+        let turn = self.step.powf(k as f64);
+        let mut power = Complex::new(1.0, 0.0);
+        for n in 0..self.harmonics {
+            power *= turn;
+            row[2 + 2 * n] = power.re;
+            row[3 + 2 * n] = -power.im;
+        }
+    }
 }
 
 /// One harmonic, all samples used.

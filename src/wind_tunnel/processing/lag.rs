@@ -39,9 +39,8 @@ pub(crate) fn still_air_inertia(
     let at_rest = vec![0.0; still.len()];
     let cells = super::cells::to_global(still, rig, &at_rest);
     let total = sum_about_centre(&cells, rig, &at_rest);
-    let of = |force: &[f64]| ratios(motion, force, rates, segments);
-    let own = of(&total[super::index(dof)])?;
-    let Some(result) = solve(dof, &own) else {
+    let of = |force: &[f64]| Ok(solve(dof, &ratios(motion, force, rates, segments)?));
+    let Some(result) = of(&total[super::index(dof)])? else {
         return Ok(None);
     };
     let others: &[Dof] = match dof {
@@ -49,52 +48,56 @@ pub(crate) fn still_air_inertia(
         _ => &[Dof::Torsion],
     };
     for other in others {
-        if let Some(across) = solve(*other, &of(&total[super::index(*other)])?) {
+        let force = &total[super::index(*other)];
+        if let Some(across) = solve(*other, &ratios(motion, force, rates, segments)?) {
             body::check_motion(run, rig, &result, &across)?;
         }
     }
-    let certain = StillAirInertia::is_certain;
-    if certain(&result) && result.inertia < 0.0 {
+    if result.is_certain() && result.inertia < 0.0 {
         return Err(wrong_sign(run, "sum of the cells", dof, &result));
     }
-    if dof != Dof::Torsion {
-        let other = if dof == Dof::Vertical {
-            Dof::Lateral
-        } else {
-            Dof::Vertical
-        };
-        let across = solve(dof, &of(&total[super::index(other)])?);
-        if let Some(across) = across
-            && certain(&across)
-            && across.inertia.abs() > result.inertia.abs()
+    // of a translation the other force, and the channel of each cell that measures it
+    let (other, channel) = match dof {
+        Dof::Vertical => (Dof::Lateral, 1),
+        Dof::Lateral => (Dof::Vertical, 0),
+        Dof::Torsion => return Ok(Some(result)),
+    };
+    if let Some(across) = of(&total[super::index(other)])? {
+        refuse_exchanged(run, &result, &across, other)?;
+    }
+    // a cell of which one channel is turned round takes from the sum what it should add
+    for (place, cell) in rig.cells.iter().zip(&cells) {
+        if let Some(one) = of(&cell[channel])?
+            && one.is_certain()
+            && one.inertia < 0.0
         {
-            return Err(Error::input(
-                format!("run {run}, still air"),
-                format!(
-                    "inertia of the {} motion in the {} force",
-                    dof.name(),
-                    dof.name()
-                ),
-                format!(
-                    "{:.4} kg there and {:.4} kg in the {} force: force or motion channels are exchanged",
-                    result.inertia,
-                    across.inertia,
-                    other.name()
-                ),
-            ));
-        }
-        // a cell of which one channel is turned round takes from the sum what it should add
-        let channel = if dof == Dof::Vertical { 1 } else { 0 };
-        for (place, cell) in rig.cells.iter().zip(&cells) {
-            if let Some(one) = solve(dof, &of(&cell[channel])?)
-                && certain(&one)
-                && one.inertia < 0.0
-            {
-                return Err(wrong_sign(run, &format!("cell {}", place.name), dof, &one));
-            }
+            return Err(wrong_sign(run, &format!("cell {}", place.name), dof, &one));
         }
     }
     Ok(Some(result))
+}
+
+/// Refuses more inertia `across`, in the force of `other`, than in that of the motion itself.
+fn refuse_exchanged(
+    run: &str,
+    own: &StillAirInertia,
+    across: &StillAirInertia,
+    other: Dof,
+) -> Result<()> {
+    if !across.is_certain() || across.inertia.abs() <= own.inertia.abs() {
+        return Ok(());
+    }
+    let name = own.dof.name();
+    Err(Error::input(
+        format!("run {run}, still air"),
+        format!("inertia of the {name} motion in the {name} force"),
+        format!(
+            "{:.4} kg there and {:.4} kg in the {} force: force or motion channels are exchanged",
+            own.inertia,
+            across.inertia,
+            other.name()
+        ),
+    ))
 }
 
 fn wrong_sign(run: &str, what: &str, dof: Dof, found: &StillAirInertia) -> Error {

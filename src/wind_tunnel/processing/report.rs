@@ -11,6 +11,7 @@ use super::signals::{HarmonicSegment, Level, SectionSignals, level};
 use super::spikes::Replaced;
 use super::still_air::{Alignment, RemovedInertia};
 use crate::section::Dof;
+use crate::wind_tunnel::{RawRun, Rig};
 use serde::{Deserialize, Serialize};
 
 /// Force on the whole model after a stage.
@@ -36,7 +37,7 @@ impl StageLevels {
 }
 
 /// What drift was taken for.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct RemovedDrift {
     /// Degree of the polynomial.
     pub degree: usize,
@@ -45,7 +46,7 @@ pub struct RemovedDrift {
 }
 
 /// Force that follows the motion against what is left, over the steady parts of the segments, dB: lift, drag, moment.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct SignalToNoise {
     /// Before the low-pass.
     pub before_low_pass_db: [f64; 3],
@@ -64,6 +65,17 @@ pub struct DimensionlessFactors {
     pub pressure_pa: f64,
     /// `Δs = VΔt/B` of the record.
     pub delta_s: f64,
+}
+
+impl DimensionlessFactors {
+    pub(super) fn of(run: &RawRun, rig: &Rig) -> Self {
+        Self {
+            speed_m_s: run.mean_speed_m_s,
+            air_density_kg_m3: run.air_density_kg_m3,
+            pressure_pa: 0.5 * run.air_density_kg_m3 * run.mean_speed_m_s.powi(2),
+            delta_s: run.mean_speed_m_s / (rig.model_width_m * run.in_wind.sampling_hz),
+        }
+    }
 }
 
 /// Everything that was done to one run.

@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
 /// Motions that nobody drives, RMS over that of the driven one, both without dimensions: vertical, lateral, torsion.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct CrossTalk {
     /// The parts; 1 for the driven one.
     pub parts: [f64; 3],
@@ -62,7 +62,7 @@ pub(crate) fn still_the_rest(
 const REST_AT_LEAST_S: f64 = 0.5;
 
 /// Means that were removed; each lift (N), drag (N), moment (N·m) on the whole model.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct RemovedMeans {
     /// In wind.
     pub in_wind: [f64; 3],

@@ -3,13 +3,12 @@
 use super::cells::CellShare;
 use super::coherent::{Parts, Regressors};
 use super::drift::CellDrift;
-use super::low_pass::AppliedLowPass;
 use super::options::ProcessingOptions;
 use super::prepare::Prepared;
 use super::report::{DimensionlessFactors, RemovedDrift, RunReport, SignalToNoise, StageLevels};
-use super::rest::{RemovedMeans, Rest, remove_means, rest, still_the_rest};
+use super::rest::{CrossTalk, RemovedMeans, Rest, remove_means, rest, still_the_rest};
 use super::signals::{HarmonicSegment, SectionSignals, level};
-use super::still_air::Alignment;
+use super::still_air::{Alignment, RemovedInertia};
 use super::{cells, drift, index, low_pass, report, signals, spikes, still_air};
 use crate::error::Result;
 use crate::section::Dof;
@@ -56,117 +55,190 @@ pub(super) fn process_run(
     lag_s: f64,
     options: &ProcessingOptions,
 ) -> Result<ProcessedRun> {
-    let (run, rig) = (prepared.run, &campaign.rig);
-    let InStep {
-        wind: mut signals,
-        still_air: mut still,
-        shares,
-        covered,
-        alignment,
-        cell_drift,
-    } = in_step(prepared, rig, lag_s, options.drift_degree)?;
-    let segments = prepared.covered_segments(&covered)?;
-    let mut stages = Stages::default();
-    stages.add("sum of the cells", &signals);
-    let Rest {
-        samples: range,
-        at_rest,
-    } = rest(&segments, &signals);
-    let in_wind = remove_means(&mut signals, &range);
-    let still_air = remove_means(&mut still, &range);
-    stages.add("means removed", &signals);
-    let inertia = still_air::subtract(&mut signals, &still);
-    stages.add("still air subtracted", &signals);
-    let rate = signals.sampling_hz;
-    let filter = low_pass::design(&run.name, &options.low_pass, &segments, rate)?;
-    let (parts, replaced, drift) = clean(
-        &mut signals,
-        &mut stages,
-        Cleaning {
-            driven: prepared.dof,
-            segments: &segments,
-            filter: filter.as_ref(),
-            width_m: rig.model_width_m,
-            clipped: &prepared.clipped(&covered, alignment.map_or(0.0, |a| a.offset_samples)),
-            options,
-        },
-    )?;
-    let before_low_pass_db = noise_ratio(&signals, &parts, &segments);
-    if let Some((filter, _)) = &filter {
-        low_pass::apply(&mut signals, filter)?;
-        stages.add("low-pass", &signals);
-    }
-    let after_low_pass_db = noise_ratio(&signals, &parts, &segments);
-    let cross_talk = still_the_rest(
-        &mut signals,
-        prepared.dof,
-        &segments,
-        rig.model_width_m,
-        options.negligible_motion,
+    let mut run = UnderWay::in_step(prepared, &campaign.rig, lag_s, options)?;
+    run.remove_means();
+    run.subtract_still_air();
+    run.clean_and_filter()?;
+    run.still_the_rest();
+    report::warn(&mut run.report, options);
+    let records = signals::records(
+        campaign,
+        dofs,
+        &run.signals,
+        &run.report.segments,
+        prepared.run,
+        options.segments.ramps,
     );
-    let pressure = 0.5 * run.air_density_kg_m3 * run.mean_speed_m_s.powi(2);
-    let static_wind = std::array::from_fn(|d| in_wind[d] - still_air[d]);
-    let coefficient = |d: usize| {
-        let area = pressure * rig.model_length_m;
-        static_wind[d] / (area * Dof::THREE[d].force_scale(rig.model_width_m))
-    };
-    let findings = &prepared.findings;
-    let mut report = RunReport {
-        run: run.name.clone(),
-        dof: prepared.dof,
-        sampling_hz: rate,
-        samples: run.in_wind.len(),
-        cut: [covered.start, run.in_wind.len() - covered.end],
-        clipped: [
-            findings.clipped_in_wind.clone(),
-            findings.clipped_still_air.clone(),
-        ]
-        .concat(),
-        segments: segments.clone(),
-        still_air: prepared.still_air.clone(),
-        lag_corrected_s: lag_s,
-        alignment,
-        cells: shares,
-        means: RemovedMeans {
+    Ok(ProcessedRun {
+        records,
+        report: run.report,
+        stages: run.stages,
+    })
+}
+
+/// A run on its way: every stage changes the signals and enters in the report what it did.
+struct UnderWay<'a> {
+    prepared: &'a Prepared<'a>,
+    rig: &'a Rig,
+    options: &'a ProcessingOptions,
+    signals: SectionSignals,
+    still_air: SectionSignals,
+    /// Clipped stretches of both recordings.
+    clipped: Vec<Range<usize>>,
+    report: RunReport,
+    stages: Vec<StageSignals>,
+}
+
+impl<'a> UnderWay<'a> {
+    /// Stages 3 to 6.
+    fn in_step(
+        prepared: &'a Prepared<'a>,
+        rig: &'a Rig,
+        lag_s: f64,
+        options: &'a ProcessingOptions,
+    ) -> Result<Self> {
+        let (run, findings) = (prepared.run, &prepared.findings);
+        let start = in_step(prepared, rig, lag_s, options.drift_degree)?;
+        let covered = start.covered;
+        let offset = start.alignment.map_or(0.0, |a| a.offset_samples);
+        let clipped = [&findings.clipped_in_wind, &findings.clipped_still_air];
+        let report = RunReport {
+            run: run.name.clone(),
+            dof: prepared.dof,
+            sampling_hz: start.wind.sampling_hz,
+            samples: run.in_wind.len(),
+            cut: [covered.start, run.in_wind.len() - covered.end],
+            clipped: clipped.into_iter().flatten().cloned().collect(),
+            segments: prepared.covered_segments(&covered)?,
+            still_air: prepared.still_air.clone(),
+            lag_corrected_s: lag_s,
+            alignment: start.alignment,
+            cells: start.shares,
+            means: RemovedMeans::default(),
+            inertia: RemovedInertia::default(),
+            replaced: Vec::new(),
+            cell_drift: start.cell_drift,
+            drift: RemovedDrift::default(),
+            low_pass: None,
+            cross_talk: CrossTalk::default(),
+            signal_to_noise: SignalToNoise::default(),
+            dimensionless: DimensionlessFactors::of(run, rig),
+            levels: Vec::new(),
+            warnings: findings.warnings.clone(),
+        };
+        let mut under_way = Self {
+            clipped: prepared.clipped(&covered, offset),
+            prepared,
+            rig,
+            options,
+            signals: start.wind,
+            still_air: start.still_air,
+            report,
+            stages: Vec::new(),
+        };
+        under_way.done("sum of the cells");
+        Ok(under_way)
+    }
+
+    /// Levels and signals after a stage.
+    fn done(&mut self, stage: &str) {
+        self.report
+            .levels
+            .push(StageLevels::of(stage, &self.signals));
+        self.stages.push(StageSignals {
+            stage: stage.to_owned(),
+            signals: self.signals.clone(),
+        });
+    }
+
+    /// Stage 7.
+    fn remove_means(&mut self) {
+        let Rest { samples, at_rest } = rest(&self.report.segments, &self.signals);
+        let in_wind = remove_means(&mut self.signals, &samples);
+        let still_air = remove_means(&mut self.still_air, &samples);
+        let static_wind = std::array::from_fn(|d| in_wind[d] - still_air[d]);
+        let area = self.report.dimensionless.pressure_pa * self.rig.model_length_m;
+        let width = self.rig.model_width_m;
+        let coefficient = |d: usize| static_wind[d] / (area * Dof::THREE[d].force_scale(width));
+        self.report.means = RemovedMeans {
             in_wind,
             still_air,
             static_wind,
             static_coefficients: std::array::from_fn(coefficient),
-            samples: range,
+            samples,
             at_rest,
-        },
-        inertia,
-        replaced,
-        cell_drift,
-        drift,
-        low_pass: filter.map(|f| f.1),
-        cross_talk,
-        signal_to_noise: SignalToNoise {
+        };
+        self.done("means removed");
+    }
+
+    /// Stage 8.
+    fn subtract_still_air(&mut self) {
+        self.report.inertia = still_air::subtract(&mut self.signals, &self.still_air);
+        self.done("still air subtracted");
+    }
+
+    /// Stages 9 and 10, with what follows the motion over what is left on either side of the filter.
+    fn clean_and_filter(&mut self) -> Result<()> {
+        let name = &self.prepared.run.name;
+        let (segments, rate) = (&self.report.segments, self.signals.sampling_hz);
+        let (filter, applied) =
+            low_pass::design(name, &self.options.low_pass, segments, rate)?.unzip();
+        let parts = self.clean(filter.as_ref())?;
+        let ratio = |run: &Self| noise_ratio(&run.signals, &parts, &run.report.segments);
+        let before_low_pass_db = ratio(self);
+        if let Some(filter) = &filter {
+            low_pass::apply(&mut self.signals, filter)?;
+            self.done("low-pass");
+        }
+        self.report.low_pass = applied;
+        self.report.signal_to_noise = SignalToNoise {
             before_low_pass_db,
-            after_low_pass_db,
-        },
-        dimensionless: DimensionlessFactors {
-            speed_m_s: run.mean_speed_m_s,
-            air_density_kg_m3: run.air_density_kg_m3,
-            pressure_pa: pressure,
-            delta_s: run.mean_speed_m_s / (rig.model_width_m * rate),
-        },
-        levels: stages.levels,
-        warnings: findings.warnings.clone(),
-    };
-    report::warn(&mut report, options);
-    Ok(ProcessedRun {
-        records: signals::records(
-            campaign,
-            dofs,
-            &signals,
-            &segments,
-            run,
-            options.segments.ramps,
-        ),
-        report,
-        stages: stages.signals,
-    })
+            after_low_pass_db: ratio(self),
+        };
+        Ok(())
+    }
+
+    /// Stage 9: spikes replaced, drift removed; what of the forces follows the motion.
+    fn clean(&mut self, filter: Option<&ButterworthLowPass>) -> Result<[Parts; 3]> {
+        let degree = self.options.drift_degree;
+        let regressors = Regressors::new(
+            &self.signals.motion[index(self.prepared.dof)],
+            self.signals.sampling_hz,
+            &self.report.segments,
+            degree,
+        );
+        let cleaned = spikes::remove_spikes(
+            &mut self.signals,
+            &regressors,
+            filter,
+            &self.options.spikes,
+            self.rig.model_width_m,
+            &self.clipped,
+        )?;
+        self.report.replaced = cleaned.replaced;
+        self.done("spikes replaced");
+        let range = std::array::from_fn(|d| {
+            let drift = &cleaned.parts[d].drift;
+            let force = &mut self.signals.force[d];
+            force.iter_mut().zip(drift).for_each(|(f, x)| *f -= x);
+            let (low, high) = extremes(drift.iter().copied());
+            high - low
+        });
+        self.report.drift = RemovedDrift { degree, range };
+        self.done("drift removed");
+        Ok(cleaned.parts)
+    }
+
+    /// Stage 11.
+    fn still_the_rest(&mut self) {
+        self.report.cross_talk = still_the_rest(
+            &mut self.signals,
+            self.prepared.dof,
+            &self.report.segments,
+            self.rig.model_width_m,
+            self.options.negligible_motion,
+        );
+    }
 }
 
 /// Stages 3 to 6: lag, drift of the cells, alignment, axes, cells.
@@ -209,70 +281,6 @@ fn in_step(prepared: &Prepared<'_>, rig: &Rig, lag_s: f64, degree: usize) -> Res
         alignment: Some(aligned.alignment),
         cell_drift,
     })
-}
-
-/// What the search for spikes and drift needs besides the signals.
-struct Cleaning<'a> {
-    driven: Dof,
-    segments: &'a [HarmonicSegment],
-    filter: Option<&'a (ButterworthLowPass, AppliedLowPass)>,
-    width_m: f64,
-    clipped: &'a [Range<usize>],
-    options: &'a ProcessingOptions,
-}
-
-/// Stage 9: spikes replaced, drift removed.
-fn clean(
-    signals: &mut SectionSignals,
-    stages: &mut Stages,
-    how: Cleaning<'_>,
-) -> Result<([Parts; 3], Vec<spikes::Replaced>, RemovedDrift)> {
-    let degree = how.options.drift_degree;
-    let regressors = Regressors::new(
-        &signals.motion[index(how.driven)],
-        signals.sampling_hz,
-        how.segments,
-        degree,
-    );
-    let cleaned = spikes::remove_spikes(
-        signals,
-        &regressors,
-        how.filter.map(|f| &f.0),
-        &how.options.spikes,
-        how.width_m,
-        how.clipped,
-    )?;
-    stages.add("spikes replaced", signals);
-    let range = std::array::from_fn(|d| {
-        let drift = &cleaned.parts[d].drift;
-        let force = &mut signals.force[d];
-        force.iter_mut().zip(drift).for_each(|(f, x)| *f -= x);
-        let (low, high) = extremes(drift.iter().copied());
-        high - low
-    });
-    stages.add("drift removed", signals);
-    Ok((
-        cleaned.parts,
-        cleaned.replaced,
-        RemovedDrift { degree, range },
-    ))
-}
-
-/// Levels and signals after each stage.
-#[derive(Default)]
-struct Stages {
-    levels: Vec<StageLevels>,
-    signals: Vec<StageSignals>,
-}
-
-impl Stages {
-    fn add(&mut self, stage: &str, signals: &SectionSignals) {
-        self.levels.push(StageLevels::of(stage, signals));
-        self.signals.push(StageSignals {
-            stage: stage.to_owned(),
-            signals: signals.clone(),
-        });
-    }
 }
 
 /// Force channels earlier by the lag.

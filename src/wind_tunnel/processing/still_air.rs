@@ -120,7 +120,7 @@ pub(crate) fn from_rest(x: &[f64]) -> Vec<f64> {
 }
 
 /// What the subtraction took.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct RemovedInertia {
     /// RMS of what was subtracted: N, N, N·m.
     pub removed_rms: [f64; 3],
