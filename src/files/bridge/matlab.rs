@@ -54,42 +54,27 @@ fn parse(bytes: Vec<u8>, span: &SpanBlock) -> Result<Modes> {
     let mut all = Vec::with_capacity(3 * modes);
     for mode in 0..modes {
         for (row, motion) in ROWS.into_iter().enumerate() {
-            let omega = wn[row + 3 * mode];
-            let place = format!("wn({}, {})", row + 1, mode + 1);
+            let at = row + 3 * mode;
+            let omega = wn[at];
             if omega <= 0.0 || !omega.is_finite() {
-                return Err(Error::input(
-                    place,
-                    "a positive frequency, rad/s",
-                    omega.to_string(),
-                ));
+                let place = format!("wn({}, {})", row + 1, mode + 1);
+                let expected = "a positive frequency, rad/s";
+                return Err(Error::input(place, expected, omega.to_string()));
             }
-            let values: Vec<f64> = (0..points)
-                .map(|i| phi[row + 3 * mode + 3 * modes * i])
-                .collect();
-            let per_length = if motion == 2 {
-                span.inertia_kg_m2_m
-            } else {
-                span.mass_kg_m
-            };
-            let square: f64 = values.iter().zip(&lengths).map(|(x, w)| w * x * x).sum();
-            let shape = values.iter().map(|x| {
-                let mut s = [0.0; 3];
-                s[motion] = *x;
-                s
-            });
-            all.push(BridgeMode {
-                number: 0,
-                frequency_hz: omega / TAU,
-                generalised_mass: per_length * square,
-                damping_ratio: 0.0,
-                shape: shape.collect(),
-            });
+            let values = phi.iter().skip(at).step_by(3 * modes).take(points);
+            all.push(mode_of(
+                omega,
+                motion,
+                values.copied().collect(),
+                &lengths,
+                span,
+            ));
         }
     }
     all.sort_by(|a, b| a.frequency_hz.total_cmp(&b.frequency_hz));
-    all.iter_mut()
-        .enumerate()
-        .for_each(|(i, m)| m.number = i + 1);
+    for (mode, number) in all.iter_mut().zip(1..) {
+        mode.number = number;
+    }
     let nodes = along.iter().zip(lengths).enumerate();
     let nodes = nodes.map(|(i, (along_m, length_m))| Node {
         name: (i + 1).to_string(),
@@ -101,4 +86,28 @@ fn parse(bytes: Vec<u8>, span: &SpanBlock) -> Result<Modes> {
         nodes: nodes.collect(),
         modes: all,
     })
+}
+
+/// A mode of one motion, with the mass that goes with it; its number follows from the order of frequencies.
+fn mode_of(
+    omega: f64,
+    motion: usize,
+    values: Vec<f64>,
+    lengths: &[f64],
+    span: &SpanBlock,
+) -> BridgeMode {
+    let per_length = if motion == 2 {
+        span.inertia_kg_m2_m
+    } else {
+        span.mass_kg_m
+    };
+    let square: f64 = values.iter().zip(lengths).map(|(x, w)| w * x * x).sum();
+    let at_node = |x: f64| std::array::from_fn(|m| if m == motion { x } else { 0.0 });
+    BridgeMode {
+        number: 0,
+        frequency_hz: omega / TAU,
+        generalised_mass: per_length * square,
+        damping_ratio: 0.0,
+        shape: values.into_iter().map(at_node).collect(),
+    }
 }

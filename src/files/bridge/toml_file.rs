@@ -6,6 +6,7 @@ use super::wind_block::WindBlock;
 use super::{Axes, abaqus, embedded, matlab, opensees, single_file, tables, wawi};
 use crate::aerodynamics::derivatives::Interpolation;
 use crate::aerodynamics::quasi_steady::{Arms, CoefficientsAt};
+use crate::bridge::BridgeMode;
 use crate::error::{Error, Result, non_negative, positive};
 use crate::files::toml_lines;
 use crate::section::Dof;
@@ -91,6 +92,37 @@ pub enum DampingRatios {
     Same(f64),
     /// One a mode, in the order of the file of modes.
     Each(Vec<f64>),
+}
+
+impl DampingRatios {
+    fn apply(&self, modes: &mut [BridgeMode]) -> Result<()> {
+        match self {
+            Self::Same(ratio) => modes.iter_mut().for_each(|m| m.damping_ratio = *ratio),
+            Self::Each(all) if all.len() == modes.len() => {
+                for (mode, ratio) in modes.iter_mut().zip(all) {
+                    mode.damping_ratio = *ratio;
+                }
+            }
+            Self::Each(all) => {
+                let expected = format!("one number, or {}, one a mode", modes.len());
+                let found = format!("{} numbers", all.len());
+                return Err(Error::input("modes.damping_ratio", expected, found));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Keeps the modes of these numbers alone.
+fn keep(numbers: &[usize], modes: &mut Vec<BridgeMode>) -> Result<()> {
+    let known = |n: &&usize| modes.iter().any(|m| m.number == **n);
+    if let Some(unknown) = numbers.iter().find(|n| !known(n)) {
+        let all: Vec<String> = modes.iter().map(|m| m.number.to_string()).collect();
+        let expected = format!("modes among {}", all.join(", "));
+        return Err(Error::input("modes.select", expected, unknown.to_string()));
+    }
+    modes.retain(|m| numbers.contains(&m.number));
+    Ok(())
 }
 
 /// One section along the span: `derivatives` for the table, `model` for a model trained already (without one it is fitted to the
@@ -287,38 +319,9 @@ impl BridgeFile {
                     .map_err(|e| e.in_file(&path))?
             }
         };
-        match &block.damping_ratio {
-            DampingRatios::Same(ratio) => modes
-                .modes
-                .iter_mut()
-                .for_each(|m| m.damping_ratio = *ratio),
-            DampingRatios::Each(all) if all.len() == modes.modes.len() => {
-                modes
-                    .modes
-                    .iter_mut()
-                    .zip(all)
-                    .for_each(|(m, r)| m.damping_ratio = *r);
-            }
-            DampingRatios::Each(all) => {
-                let expected = format!("one number, or {}, one a mode", modes.modes.len());
-                return Err(Error::input(
-                    "modes.damping_ratio",
-                    expected,
-                    format!("{} numbers", all.len()),
-                ));
-            }
-        }
+        block.damping_ratio.apply(&mut modes.modes)?;
         if let Some(select) = &block.select {
-            let known = |n: &&usize| modes.modes.iter().any(|m| m.number == **n);
-            if let Some(unknown) = select.iter().find(|n| !known(n)) {
-                let all: Vec<String> = modes.modes.iter().map(|m| m.number.to_string()).collect();
-                return Err(Error::input(
-                    "modes.select",
-                    format!("modes among {}", all.join(", ")),
-                    unknown.to_string(),
-                ));
-            }
-            modes.modes.retain(|m| select.contains(&m.number));
+            keep(select, &mut modes.modes)?;
         }
         Ok(modes)
     }

@@ -5,6 +5,7 @@ use super::columns::{Order, push_array};
 use super::guarded::guarded;
 use crate::error::{Error, Result};
 use hdf5_pure::{AttrValue, DType, Dataset, File, Group};
+use std::collections::HashMap;
 
 /// First bytes; a user block of 512 bytes or a multiple by a power of two may stand before them.
 const SIGNATURE: &[u8] = b"\x89HDF\r\n\x1a\n";
@@ -106,79 +107,82 @@ impl Reader {
 
     fn take_dataset(&mut self, dataset: &Dataset, path: &str) -> Result<()> {
         let shape = dataset.shape().map_err(|e| corrupt(path, e))?;
-        let size = dataset.element_size().map_err(|e| corrupt(path, e))?;
-        let count = shape.iter().try_fold(1_u64, |n, side| n.checked_mul(*side));
-        let chunk = dataset.chunk_shape().map_err(|e| corrupt(path, e))?;
-        let chunk = chunk.unwrap_or_default();
-        let chunk = chunk.iter().try_fold(1_u64, |n, side| n.checked_mul(*side));
-        check_count(path, chunk.unwrap_or(u64::MAX))?;
-        self.numbers = self.numbers.saturating_add(count.unwrap_or(u64::MAX));
-        check_count(path, self.numbers)?;
-        let bytes = shape
-            .iter()
-            .try_fold(size, |product, n| product.checked_mul(*n));
-        if bytes.is_none_or(|bytes| bytes > self.bytes_at_most) {
-            return Err(corrupt(path, format!("a dataset of {shape:?} numbers")));
-        }
-        let attributes = dataset.attrs().unwrap_or_default();
-        let text = |name: &str| attributes.get(name).and_then(|v| v.as_str());
+        self.check_size(dataset, &shape, path)?;
         let kind = dataset.dtype().map_err(|e| corrupt(path, e))?;
-        let is_number = !matches!(
-            kind,
-            DType::String
-                | DType::Compound(_)
-                | DType::Array(..)
-                | DType::VariableLengthString
-                | DType::ObjectReference
-                | DType::Other(_)
-        );
-        if !is_number {
+        if !is_number(&kind) {
             match dataset.read_string().ok().as_deref() {
-                Some([text]) => {
-                    let text = Attribute::Text(text.clone());
-                    self.set.attributes.insert(path.to_owned(), text);
-                }
+                Some([text]) => self.take_text(path, text.clone()),
                 _ => self.set.leave_out(path, kind.to_string()),
             }
             return Ok(());
         }
         let values = dataset.read_f64().map_err(|e| corrupt(path, e))?;
-        let count: usize = shape.iter().map(|n| *n as usize).product();
+        let shape: Vec<usize> = shape.iter().map(|n| *n as usize).collect();
+        let count: usize = shape.iter().product();
         if values.len() != count {
-            return Err(corrupt(
-                path,
-                format!("{} of {count} numbers", values.len()),
-            ));
+            let found = format!("{} of {count} numbers", values.len());
+            return Err(corrupt(path, found));
         }
-        if text("MATLAB_class") == Some("char") {
+        let attributes = dataset.attrs().unwrap_or_default();
+        let class = attributes.get("MATLAB_class").and_then(AttrValue::as_str);
+        if class == Some("char") {
             let codes = values.iter().map(|x| *x as u16);
-            let text: String = char::decode_utf16(codes)
-                .map(|c| c.unwrap_or('?'))
-                .collect();
-            self.set
-                .attributes
-                .insert(path.to_owned(), Attribute::Text(text));
+            let text = char::decode_utf16(codes).map(|c| c.unwrap_or('?'));
+            self.take_text(path, text.collect());
             return Ok(());
         }
-        let stated = attributes
-            .iter()
-            .find(|(name, _)| ["unit", "units"].contains(&name.to_lowercase().as_str()))
-            .map(|(_, value)| value);
-        let units: Vec<String> = match stated.map(|v| (v.as_str(), v.as_strings())) {
-            Some((Some(one), _)) => vec![one.to_owned()],
-            Some((None, Some(all))) => all.to_vec(),
-            _ => Vec::new(),
-        };
-        let shape: Vec<usize> = shape.iter().map(|n| *n as usize).collect();
-        push_array(
-            &mut self.set,
-            path,
-            &shape,
-            Order::LastFastest,
-            values,
-            &units,
-        );
+        let units = units(&attributes);
+        let order = Order::LastFastest;
+        push_array(&mut self.set, path, &shape, order, values, &units);
         Ok(())
+    }
+
+    fn take_text(&mut self, path: &str, text: String) {
+        let text = Attribute::Text(text);
+        self.set.attributes.insert(path.to_owned(), text);
+    }
+
+    /// Refuses a dataset that states more numbers than the file can hold, before room is made for them.
+    fn check_size(&mut self, dataset: &Dataset, shape: &[u64], path: &str) -> Result<()> {
+        let product = |sides: &[u64], each: u64| {
+            let mut sides = sides.iter();
+            sides.try_fold(each, |n, side| n.checked_mul(*side))
+        };
+        let size = dataset.element_size().map_err(|e| corrupt(path, e))?;
+        let chunk = dataset.chunk_shape().map_err(|e| corrupt(path, e))?;
+        let chunk = product(&chunk.unwrap_or_default(), 1);
+        check_count(path, chunk.unwrap_or(u64::MAX))?;
+        let count = product(shape, 1).unwrap_or(u64::MAX);
+        self.numbers = self.numbers.saturating_add(count);
+        check_count(path, self.numbers)?;
+        match product(shape, size) {
+            Some(bytes) if bytes <= self.bytes_at_most => Ok(()),
+            _ => Err(corrupt(path, format!("a dataset of {shape:?} numbers"))),
+        }
+    }
+}
+
+fn is_number(kind: &DType) -> bool {
+    !matches!(
+        kind,
+        DType::String
+            | DType::Compound(_)
+            | DType::Array(..)
+            | DType::VariableLengthString
+            | DType::ObjectReference
+            | DType::Other(_)
+    )
+}
+
+/// The units that a dataset states: none, one for all columns, or one a column.
+fn units(attributes: &HashMap<String, AttrValue>) -> Vec<String> {
+    let stated = attributes
+        .iter()
+        .find(|(name, _)| ["unit", "units"].contains(&name.to_lowercase().as_str()));
+    match stated.map(|(_, v)| (v.as_str(), v.as_strings())) {
+        Some((Some(one), _)) => vec![one.to_owned()],
+        Some((None, Some(all))) => all.to_vec(),
+        _ => Vec::new(),
     }
 }
 

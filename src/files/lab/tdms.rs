@@ -200,36 +200,15 @@ impl TdmsFile {
         }
         let layout = |place: &usize| Some((*place, self.objects[*place].layout?));
         let layouts: Vec<(usize, Layout)> = self.active.iter().filter_map(layout).collect();
-        let (mut block, mut samples) = (0_usize, 0_usize);
-        for (place, layout) in &layouts {
-            let each = size_of(layout.kind, &self.objects[*place].path)?;
-            let size = layout.count.checked_mul(each);
-            block = size
-                .and_then(|s| block.checked_add(s))
-                .unwrap_or(usize::MAX);
-            samples = samples.saturating_add(layout.count);
-        }
         if layouts.is_empty() {
             return Ok(());
         }
-        let place = format!("byte {}", bytes.at);
-        if block == 0 || !raw.is_multiple_of(block) {
-            let expected = format!("whole blocks of {block} bytes");
-            return Err(Error::input(
-                place,
-                expected,
-                format!("{raw} bytes of samples"),
-            ));
-        }
-        self.samples += samples.saturating_mul(raw / block) as u64;
-        check_count(&place, self.samples)?;
+        let blocks = self.count_blocks(&layouts, raw, bytes.at)?;
         let rows = layouts[0].1.count;
         if is_interleaved && layouts.iter().any(|(_, l)| l.count != rows) {
-            return Err(Error::input(
-                place,
-                "interleaved channels of one length",
-                "others",
-            ));
+            let place = format!("byte {}", bytes.at);
+            let expected = "interleaved channels of one length";
+            return Err(Error::input(place, expected, "others"));
         }
         // row by row, or channel by channel
         let (rows, each) = if is_interleaved {
@@ -237,17 +216,43 @@ impl TdmsFile {
         } else {
             (1, usize::MAX)
         };
-        for _ in 0..raw / block {
-            for _ in 0..rows {
-                for (place, layout) in &layouts {
-                    let samples = &mut self.objects[*place].samples;
-                    for _ in 0..layout.count.min(each) {
-                        samples.push(sample(bytes, layout.kind)?);
-                    }
+        for _ in 0..blocks * rows {
+            for (place, layout) in &layouts {
+                let samples = &mut self.objects[*place].samples;
+                for _ in 0..layout.count.min(each) {
+                    samples.push(sample(bytes, layout.kind)?);
                 }
             }
         }
         Ok(())
+    }
+
+    /// Number of blocks in `raw` bytes of samples from the byte `at` on.
+    fn count_blocks(
+        &mut self,
+        layouts: &[(usize, Layout)],
+        raw: usize,
+        at: usize,
+    ) -> Result<usize> {
+        let (mut block, mut samples) = (0_usize, 0_usize);
+        for (place, layout) in layouts {
+            let each = size_of(layout.kind, &self.objects[*place].path)?;
+            let size = layout.count.checked_mul(each);
+            block = size
+                .and_then(|s| block.checked_add(s))
+                .unwrap_or(usize::MAX);
+            samples = samples.saturating_add(layout.count);
+        }
+        let place = format!("byte {at}");
+        if block == 0 || !raw.is_multiple_of(block) {
+            let expected = format!("whole blocks of {block} bytes");
+            let found = format!("{raw} bytes of samples");
+            return Err(Error::input(place, expected, found));
+        }
+        let blocks = raw / block;
+        self.samples += samples.saturating_mul(blocks) as u64;
+        check_count(&place, self.samples)?;
+        Ok(blocks)
     }
 
     fn channels(self, group: Option<&str>) -> Result<ChannelSet> {
