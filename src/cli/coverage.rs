@@ -3,7 +3,7 @@
 use super::answer::Answer;
 use super::progress::Progress;
 use crate::error::Result;
-use crate::uncertainty::{CoveragePlan, CoverageReport, Share, Truth, coverage};
+use crate::uncertainty::{CoveragePlan, CoverageReport, Truth, coverage};
 use crate::wind_tunnel::TunnelPlan;
 use std::fmt::Write as _;
 
@@ -81,61 +81,10 @@ pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
 }
 
 fn account(r: &CoverageReport) -> String {
-    let share = |s: &Share| format!("{:5.1} % ({} of {})", s.percent, s.inside, s.of);
-    let truth = match r.plan.truth {
-        Truth::Jones => "Jones's rational function",
-        Truth::Theodorsen => "Theodorsen's function",
-    };
-    let noise = if r.plan.tunnel.noise_correlation_s > 0.0 {
-        format!("correlation time {} s", r.plan.tunnel.noise_correlation_s)
-    } else {
-        "white".to_owned()
-    };
-    let mut text = format!(
-        "Truth {truth}; filters with poles {:?} ({}); noise {} % of each force, {noise}; {} repetitions\n\
-         Mean speeds {:?} m/s; truth scatters between speeds by {} %, between runs by {} %\n\n",
-        r.plan.poles,
-        if r.plan.search_poles {
-            "searched"
-        } else {
-            "given"
-        },
-        100.0 * r.plan.tunnel.noise_fraction,
-        r.plan.repetitions,
-        r.plan.tunnel.speeds_m_s,
-        100.0 * r.plan.speed_scatter,
-        100.0 * r.plan.run_scatter,
-    );
-    for (what, value) in [
-        ("true onset", r.true_onset_m_s),
-        ("bias (fit without noise − truth)", r.bias_m_s),
-        ("mean error", r.mean_error_m_s),
-        ("  its standard error", r.standard_error_of_mean_m_s),
-        ("scatter from repetition to repetition", r.scatter_m_s),
-        (
-            "stated standard error (root mean square)",
-            r.stated_standard_error_m_s,
-        ),
-        ("half width of the intervals (mean)", r.mean_half_width_m_s),
-    ] {
-        let _ = writeln!(text, "{what:<42} {value:>9.4} m/s");
-    }
-    for (what, value) in [
-        ("degrees of freedom (mean)", r.mean_degrees_of_freedom),
-        (
-            "  as the scatter of the variances shows",
-            r.observed_degrees_of_freedom,
-        ),
-    ] {
-        let _ = writeln!(text, "{what:<42} {value:>9.1}");
-    }
-    for (what, value) in [
-        ("intervals of the onset that hold the truth", &r.holds_truth),
-        ("  with the bias taken away", &r.holds_fit_without_noise),
-        ("intervals of the derivatives", &r.derivatives_hold_truth),
-        ("repetitions in which speeds differ", &r.speeds_differ),
-    ] {
-        let _ = writeln!(text, "{what:<42} {}", share(value));
+    let mut text = plan(&r.plan);
+    let rows = speeds(r).into_iter().chain(shares(r));
+    for (what, value) in rows {
+        let _ = writeln!(text, "{what:<42} {value}");
     }
     if r.without_onset > 0 {
         let _ = writeln!(text, "repetitions without an onset: {}", r.without_onset);
@@ -144,4 +93,74 @@ fn account(r: &CoverageReport) -> String {
         let _ = writeln!(text, "warning: {warning}");
     }
     text
+}
+
+/// What was repeated.
+fn plan(plan: &CoveragePlan) -> String {
+    let tunnel = &plan.tunnel;
+    let truth = match plan.truth {
+        Truth::Jones => "Jones's rational function",
+        Truth::Theodorsen => "Theodorsen's function",
+    };
+    let noise = if tunnel.noise_correlation_s > 0.0 {
+        format!("correlation time {} s", tunnel.noise_correlation_s)
+    } else {
+        "white".to_owned()
+    };
+    let poles = if plan.search_poles {
+        "searched"
+    } else {
+        "given"
+    };
+    format!(
+        "Truth {truth}; filters with poles {:?} ({poles}); noise {} % of each force, {noise}; {} repetitions\n\
+         Mean speeds {:?} m/s; truth scatters between speeds by {} %, between runs by {} %\n\n",
+        plan.poles,
+        100.0 * tunnel.noise_fraction,
+        plan.repetitions,
+        tunnel.speeds_m_s,
+        100.0 * plan.speed_scatter,
+        100.0 * plan.run_scatter,
+    )
+}
+
+/// Errors and standard errors of the onset.
+fn speeds(r: &CoverageReport) -> Vec<(&'static str, String)> {
+    let speed = |value: f64| format!("{value:>9.4} m/s");
+    let number = |value: f64| format!("{value:>9.1}");
+    let mean_square = "stated standard error (root mean square)";
+    let bias = "bias (fit without noise − truth)";
+    let half = "half width of the intervals (mean)";
+    let observed = "  as the scatter of the variances shows";
+    vec![
+        ("true onset", speed(r.true_onset_m_s)),
+        (bias, speed(r.bias_m_s)),
+        ("mean error", speed(r.mean_error_m_s)),
+        ("  its standard error", speed(r.standard_error_of_mean_m_s)),
+        (
+            "scatter from repetition to repetition",
+            speed(r.scatter_m_s),
+        ),
+        (mean_square, speed(r.stated_standard_error_m_s)),
+        (half, speed(r.mean_half_width_m_s)),
+        (
+            "degrees of freedom (mean)",
+            number(r.mean_degrees_of_freedom),
+        ),
+        (observed, number(r.observed_degrees_of_freedom)),
+    ]
+}
+
+/// How often intervals held the truth.
+fn shares(r: &CoverageReport) -> [(&'static str, String); 4] {
+    [
+        ("intervals of the onset that hold the truth", &r.holds_truth),
+        ("  with the bias taken away", &r.holds_fit_without_noise),
+        ("intervals of the derivatives", &r.derivatives_hold_truth),
+        ("repetitions in which speeds differ", &r.speeds_differ),
+    ]
+    .map(|(what, s)| {
+        let share = format!("{:5.1} % ({} of {})", s.percent, s.inside, s.of);
+        (what, share)
+    })
 }

@@ -8,7 +8,6 @@ use super::{figures, stages};
 use crate::error::{Result, counted};
 use crate::report::onset_distribution_figure;
 use crate::uncertainty::monte_carlo::{MonteCarloPlan, MonteCarloResult, monte_carlo};
-use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 /// Distribution of the flutter onset when section and forces are random, and its probability below a design speed
@@ -56,8 +55,14 @@ pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
 }
 
 fn account(r: &MonteCarloResult) -> String {
-    let mut text = format!(
-        "{}: {}, seed {}: {} with an onset up to {:.3} m/s, {} without, {} failed\n",
+    let parts = [onsets(r), design(r), warnings(r), failures(r)];
+    parts.concat().iter().map(|l| format!("{l}\n")).collect()
+}
+
+/// How many samples have an onset, where it lies, and how it scatters.
+fn onsets(r: &MonteCarloResult) -> Vec<String> {
+    let mut lines = vec![format!(
+        "{}: {}, seed {}: {} with an onset up to {:.3} m/s, {} without, {} failed",
         r.model,
         counted(r.samples, "sample"),
         r.seed,
@@ -65,85 +70,88 @@ fn account(r: &MonteCarloResult) -> String {
         r.speed_max_m_s,
         r.stable,
         r.failed
-    );
+    )];
     if let Some(speed) = r.unstable_up_to_m_s {
-        let _ = writeln!(
-            text,
+        lines.push(format!(
             "warning: {} samples are unstable at and below the lowest speed that could be judged (up to {speed:.3} m/s): \
              they count as flutter, not as safe",
             r.unstable_at_or_below
-        );
+        ));
     }
     let speed = |v: Option<f64>| match v {
         Some(v) => format!("{v:.3} m/s"),
         None => format!("above {:.3} m/s", r.speed_max_m_s),
     };
-    let _ = writeln!(
-        text,
-        "Onset     of the model itself {}{}",
-        if r.nominal_or_below {
-            "at or below "
-        } else {
-            ""
-        },
-        speed(r.nominal_m_s)
-    );
+    let or_below = if r.nominal_or_below {
+        "at or below "
+    } else {
+        ""
+    };
+    let nominal = speed(r.nominal_m_s);
+    lines.push(format!("Onset     of the model itself {or_below}{nominal}"));
     if let (Some(mean), Some(deviation)) = (r.mean_m_s, r.standard_deviation_m_s) {
-        let _ = writeln!(
-            text,
+        lines.push(format!(
             "          mean {mean:.3} m/s, standard deviation {deviation:.3} m/s"
-        );
+        ));
     }
-    for q in &r.quantiles {
-        let _ = writeln!(
-            text,
+    lines.extend(r.quantiles.iter().map(|q| {
+        format!(
             "          {:>6} % of all sections flutter at or below {}",
             100.0 * q.probability,
             speed(q.speed_m_s)
-        );
-    }
-    if let Some(d) = &r.design {
-        let _ = writeln!(
-            text,
-            "Design    onset below {:.3} m/s: probability {:.3e}, {} % confidence {:.3e} to {:.3e} ({})",
-            d.speed_m_s,
-            d.probability,
-            100.0 * d.confidence,
-            d.lower,
-            d.upper,
-            counted(d.below as usize, "sample")
-        );
-    }
-    if let Some(d) = r.design.filter(|d| d.undecided > 0) {
-        let _ = writeln!(
-            text,
+        )
+    }));
+    lines
+}
+
+/// The probability of an onset below the design speed, where one is stated.
+fn design(r: &MonteCarloResult) -> Vec<String> {
+    let Some(d) = &r.design else {
+        return Vec::new();
+    };
+    let mut lines = vec![format!(
+        "Design    onset below {:.3} m/s: probability {:.3e}, {} % confidence {:.3e} to {:.3e} ({})",
+        d.speed_m_s,
+        d.probability,
+        100.0 * d.confidence,
+        d.lower,
+        d.upper,
+        counted(d.below as usize, "sample")
+    )];
+    if d.undecided > 0 {
+        lines.push(format!(
             "          {} more could be judged above {:.3} m/s only, where they grow: they are in the probability and its upper end",
             d.undecided, d.speed_m_s
-        );
+        ));
     }
+    lines
+}
+
+fn warnings(r: &MonteCarloResult) -> Vec<String> {
+    let mut lines = Vec::new();
     if r.outside_tested_range > 0 {
-        let _ = writeln!(
-            text,
+        lines.push(format!(
             "warning: outside the tested range of the model: {}",
             counted(r.outside_tested_range, "onset")
-        );
+        ));
     }
     if r.with_spurious_crossings > 0 {
-        let _ = writeln!(
-            text,
+        lines.push(format!(
             "warning: {} samples lose damping below the onset, outside the tested range: probably spurious",
             r.with_spurious_crossings
-        );
+        ));
     }
-    for failure in &r.failures {
-        let _ = writeln!(
-            text,
-            "failed: sample {}: {}",
-            failure.sample, failure.reason
-        );
+    lines
+}
+
+/// The samples that failed, as far as they are named, and how many more.
+fn failures(r: &MonteCarloResult) -> Vec<String> {
+    let named = r.failures.iter();
+    let mut lines: Vec<String> = named
+        .map(|f| format!("failed: sample {}: {}", f.sample, f.reason))
+        .collect();
+    if r.failed > lines.len() {
+        lines.push(format!("failed: {} more", r.failed - lines.len()));
     }
-    if r.failed > r.failures.len() {
-        let _ = writeln!(text, "failed: {} more", r.failed - r.failures.len());
-    }
-    text
+    lines
 }

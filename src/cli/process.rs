@@ -87,56 +87,23 @@ pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     let processed = process(&raw, &options, &|done| stage.at(done as u64, total))
         .map_err(|e| e.in_file(&args.campaign))?;
     drop(stage);
-    let mut out = OutputDir::new(&args.out)?;
-    let names = write_records(&processed, &mut out)?;
-    let sources: Vec<&dyn RecordSource> = processed.records.iter().map(|r| r as _).collect();
-    let stage = progress.stage("derivatives");
     let mut notes: Vec<String> = reading.findings.iter().map(ToString::to_string).collect();
     notes.extend(processed.report.warnings());
-    let derivatives = identify_derivatives(&sources, &DerivativeOptions::default());
+    let stage = progress.stage("derivatives");
+    let derivatives = derivatives(&processed, &mut notes)?;
     drop(stage);
-    let stage = progress.steps("figures");
-    let count = processed.stages.len() as u64;
-    for (i, (run, stages)) in processed
-        .report
-        .runs
-        .iter()
-        .zip(&processed.stages)
-        .enumerate()
-    {
-        let stem = format!("processing/{}", file_name(&run.run));
-        figures::write(&stem, &mut out, || processing_figure(run, stages, run.dof))?;
-        stage.at(i as u64 + 1, count);
-    }
-    drop(stage);
+    let mut out = OutputDir::new(&args.out)?;
+    let names = write_records(&processed, &mut out)?;
+    draw_stages(&processed, &mut out, progress)?;
     out.write_json("processing.json", &processed.report)?;
-    let derivatives = match derivatives {
-        Ok(found) => {
-            notes.extend(found.warnings.iter().cloned());
-            Some(found)
-        }
-        Err(Error::Input(e)) => {
-            notes.push(format!("no derivatives: {e}"));
-            None
-        }
-        Err(e) => return Err(e),
-    };
     if let Some(found) = &derivatives {
-        out.write_json("derivatives.json", found)?;
-        let plot = plot(&raw, found, args.quasi_steady(&found.dofs)?.as_ref())?;
-        figures::write("derivatives", &mut out, || derivatives_figure(&plot))?;
+        write_derivatives(args, &raw, found, &mut out)?;
         match write_table(&raw, found, &mut out) {
             Ok(()) => {
                 let known = (base.as_ref(), section.as_ref());
                 let text = processed_study_text(&raw, known, TABLE, &names, &found.dofs)?;
-                out.write(STUDY, text)?;
-                let kept = out.keep_edited(STUDY, args.force)?;
-                if !kept && base.is_none() && section.is_none() {
-                    notes.push(format!(
-                        "state the section that is to be built in {STUDY}, at the marked place, before `aerodeck study` (or process \
-                         with --section FILE)"
-                    ));
-                }
+                let named = base.is_some() || section.is_some();
+                notes.extend(write_study(&text, args.force, named, &mut out)?);
             }
             Err(Error::Input(e)) => notes.push(format!("no complete table and no study: {e}")),
             Err(e) => return Err(e),
@@ -169,9 +136,7 @@ impl Args {
         options.validate()?;
         Ok(options)
     }
-}
 
-impl Args {
     /// Quasi-steady theory about no rotation, without arms.
     fn quasi_steady(&self, dofs: &[Dof]) -> Result<Option<LinearQuasiSteady>> {
         let Some(name) = &self.static_coefficients else {
@@ -182,6 +147,67 @@ impl Args {
             .linearised(0.0)
             .map(Some)
     }
+}
+
+/// The derivatives of the processed records; `None` with a note where these give none.
+fn derivatives(
+    processed: &Processed,
+    notes: &mut Vec<String>,
+) -> Result<Option<IdentifiedDerivatives>> {
+    let sources: Vec<&dyn RecordSource> = processed.records.iter().map(|r| r as _).collect();
+    match identify_derivatives(&sources, &DerivativeOptions::default()) {
+        Ok(found) => {
+            notes.extend(found.warnings.iter().cloned());
+            Ok(Some(found))
+        }
+        Err(Error::Input(e)) => {
+            notes.push(format!("no derivatives: {e}"));
+            Ok(None)
+        }
+        Err(e) => Err(e),
+    }
+}
+
+/// A figure of the stages of every run.
+fn draw_stages(processed: &Processed, out: &mut OutputDir, progress: &Progress) -> Result<()> {
+    let stage = progress.steps("figures");
+    let count = processed.stages.len() as u64;
+    let runs = processed.report.runs.iter().zip(&processed.stages);
+    for ((run, stages), done) in runs.zip(1..) {
+        let stem = format!("processing/{}", file_name(&run.run));
+        figures::write(&stem, out, || processing_figure(run, stages, run.dof))?;
+        stage.at(done, count);
+    }
+    Ok(())
+}
+
+/// The derivatives with all that is known of them, and their figure.
+fn write_derivatives(
+    args: &Args,
+    raw: &RawCampaign,
+    found: &IdentifiedDerivatives,
+    out: &mut OutputDir,
+) -> Result<()> {
+    out.write_json("derivatives.json", found)?;
+    let plot = plot(raw, found, args.quasi_steady(&found.dofs)?.as_ref())?;
+    figures::write("derivatives", out, || derivatives_figure(&plot))
+}
+
+/// Writes the study, unless one that was edited stands there; a note when its section is still to be stated.
+fn write_study(
+    text: &str,
+    force: bool,
+    section_named: bool,
+    out: &mut OutputDir,
+) -> Result<Option<String>> {
+    out.write(STUDY, text)?;
+    let kept = out.keep_edited(STUDY, force)?;
+    Ok((!kept && !section_named).then(|| {
+        format!(
+            "state the section that is to be built in {STUDY}, at the marked place, before `aerodeck study` (or process \
+             with --section FILE)"
+        )
+    }))
 }
 
 /// Writes the records; their paths from the folder of the results.

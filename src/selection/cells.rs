@@ -152,65 +152,85 @@ pub struct Recommendation {
     pub onset_m_s: Option<f64>,
 }
 
+/// A cell that may be used.
+#[derive(Clone, Copy)]
+struct Usable<'a> {
+    at: usize,
+    cell: &'a Cell,
+    validation: CrossValidation,
+}
+
+impl Usable<'_> {
+    fn score(&self) -> f64 {
+        self.validation.score
+    }
+}
+
 /// The fewest filters whose error on data left out is within one standard error of the least (the rule of Breiman,
 /// Friedman, Olshen & Stone, *Classification and Regression Trees*, 1984, section 3.4.3), among the cells without a
 /// reason against them; for that number of filters the best value.
 fn recommend(selection: &Selection) -> (Option<Recommendation>, String) {
-    let symbol = &selection.symbol;
-    let usable: Vec<(usize, &Cell, f64)> = selection
-        .cells
-        .iter()
-        .enumerate()
-        .filter(|(_, c)| c.rejected.is_empty())
-        .filter_map(|(at, c)| Some((at, c, c.cross_validation?.score)))
+    let cells = selection.cells.iter().enumerate();
+    let usable: Vec<Usable<'_>> = cells
+        .filter(|(_, cell)| cell.rejected.is_empty())
+        .filter_map(|(at, cell)| {
+            let validation = cell.cross_validation?;
+            Some(Usable {
+                at,
+                cell,
+                validation,
+            })
+        })
         .collect();
-    let Some(best) = usable.iter().min_by(|a, b| a.2.total_cmp(&b.2)) else {
+    let least = usable.iter().min_by(|a, b| a.score().total_cmp(&b.score()));
+    let Some(best) = least else {
         let most = most_common_reason(selection);
-        return (
-            None,
-            format!(
-                "No model can be recommended: every cell is refused, most often because {most}."
-            ),
+        let reason = format!(
+            "No model can be recommended: every cell is refused, most often because {most}."
         );
+        return (None, reason);
     };
-    let margin = best
-        .1
-        .cross_validation
-        .map_or(0.0, |v| v.standard_error_of_square);
-    let limit = best.2 * best.2 + margin;
+    let limit = best.score() * best.score() + best.validation.standard_error_of_square;
     let chosen = usable
         .iter()
-        .filter(|(_, _, score)| score * score <= limit)
+        .filter(|u| u.score() * u.score() <= limit)
         .min_by(|a, b| {
-            (a.1.filters, a.2)
-                .partial_cmp(&(b.1.filters, b.2))
-                .unwrap_or(std::cmp::Ordering::Equal)
+            let filters = a.cell.filters.cmp(&b.cell.filters);
+            filters.then(a.score().total_cmp(&b.score()))
         })
         .unwrap_or(best);
-    let mut reason = if chosen.0 == best.0 {
+    let recommended = Recommendation {
+        cell: chosen.at,
+        filters: chosen.cell.filters,
+        value: chosen.cell.value,
+        score: chosen.score(),
+        onset_m_s: chosen.cell.onset_m_s,
+    };
+    (Some(recommended), explain(selection, chosen, best))
+}
+
+/// Why `chosen` and not `best`, what speaks for a wider grid, and what fits better but is refused.
+fn explain(selection: &Selection, chosen: &Usable<'_>, best: &Usable<'_>) -> String {
+    let symbol = &selection.symbol;
+    let (own, error) = (name(chosen.cell, symbol), percent(chosen.score()));
+    let mut reason = if chosen.at == best.at {
         format!(
-            "{}: its error on data left out, {}, is the least of all models that may be used",
-            name(chosen.1, symbol),
-            percent(chosen.2)
+            "{own}: its error on data left out, {error}, is the least of all models that may be used"
         )
     } else {
         format!(
-            "{}: the fewest filters whose error on data left out, {}, is within one standard error of the least ({} with \
+            "{own}: the fewest filters whose error on data left out, {error}, is within one standard error of the least ({} with \
              {})",
-            name(chosen.1, symbol),
-            percent(chosen.2),
-            percent(best.2),
-            name(best.1, symbol)
+            percent(best.score()),
+            name(best.cell, symbol)
         )
     };
-    if let Some(onset) = chosen.1.onset_m_s {
+    if let Some(onset) = chosen.cell.onset_m_s {
         reason.push_str(&format!("; onset {onset:.3} m/s"));
     }
     reason.push('.');
-    let filters_max = selection.filters_max;
-    let at_edge =
-        chosen.0 / filters_max == 0 || chosen.0 / filters_max + 1 == selection.values.len();
-    if at_edge && selection.values.len() > 1 {
+    let (along, values) = (chosen.at / selection.filters_max, selection.values.len());
+    if values > 1 && (along == 0 || along + 1 == values) {
         reason.push_str(&format!(
             " {symbol} lies at the edge of the grid: widen it to see whether the error falls further."
         ));
@@ -225,16 +245,7 @@ fn recommend(selection: &Selection) -> (Option<Recommendation>, String) {
             refused.rejected.join("; ")
         ));
     }
-    (
-        Some(Recommendation {
-            cell: chosen.0,
-            filters: chosen.1.filters,
-            value: chosen.1.value,
-            score: chosen.2,
-            onset_m_s: chosen.1.onset_m_s,
-        }),
-        reason,
-    )
+    reason
 }
 
 /// What a free search would have taken for each number of filters, where it is refused.

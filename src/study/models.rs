@@ -9,7 +9,8 @@ use crate::identification::{
 };
 use crate::trained_model::{Experiment, Model, Provenance, TrainedModel};
 use crate::uncertainty::{
-    ModelUncertainty, discrete_uncertainty, record_uncertainty, table_uncertainty,
+    CoefficientUncertainty, ModelUncertainty, discrete_uncertainty, record_uncertainty,
+    table_uncertainty,
 };
 use crate::units::ReducedFrequencyRange;
 
@@ -35,40 +36,14 @@ pub fn train_one(
     records: &RecordSet,
     progress: OnProgress<'_>,
 ) -> Result<TrainedWithReport> {
-    let groups = block
-        .speed_groups
-        .as_deref()
-        .or(study.deck.speed_groups.as_deref());
-    let (model, mut report, estimate) = if let Some(fit) = &block.table {
-        let samples = deck.samples(study, groups)?;
-        let dofs = study.section.dofs();
-        let (model, report) = fit_table(&samples, &dofs, fit)?;
-        let estimate = table_uncertainty(&samples, &dofs, fit, &report);
-        (model, report, estimate)
-    } else {
-        let chosen = records.select(groups)?;
-        match (&block.records, &block.discrete) {
-            (Some(fit), _) => {
-                let (model, report) = fit_records(&chosen, fit, progress)?;
-                let estimate = record_uncertainty(&chosen, fit, &report, progress);
-                (model, report, estimate)
-            }
-            (_, Some(fit)) => {
-                let (model, report) = fit_discrete(&chosen, fit, progress)?;
-                let estimate = discrete_uncertainty(&chosen, fit, &model, progress);
-                (model, report, estimate)
-            }
-            (None, None) => {
-                return Err(Error::input(
-                    format!("model {}", block.name),
-                    "one of `records`, `table`, `discrete`",
-                    "none",
-                ));
-            }
-        }
-    };
+    let Fit {
+        model,
+        mut report,
+        estimate,
+    } = fit(study, block, deck, records, progress)?;
+    let onset = |model: &Model, tested| onset_of(study, &block.name, model, tested);
     // a search that fails takes no trained model with it
-    let search = onset_of(study, block, &model, &report).unwrap_or_else(|e| {
+    let search = onset(&model, report.tested_range).unwrap_or_else(|e| {
         report.notes.push(format!("onset: {e}"));
         FlutterSearch::StableUpTo(StableRange {
             from_m_s: 0.0,
@@ -78,12 +53,7 @@ pub fn train_one(
     });
     if let Some(constraints) = &mut report.constraints {
         // an account only: a search that fails without constraints is no reason to refuse the model with them
-        let alone = find_onset_of(
-            study,
-            block,
-            &constraints.unconstrained,
-            report.tested_range,
-        );
+        let alone = onset(&constraints.unconstrained, report.tested_range);
         let speed = |search: &FlutterSearch| search.onset().map(|o| o.at.speed_m_s);
         constraints.onset = Some(OnsetEffect {
             without_m_s: alone.ok().as_ref().and_then(speed),
@@ -91,25 +61,9 @@ pub fn train_one(
         });
     }
     let uncertainty = estimate
-        .and_then(|estimate| {
-            estimate.enter(&mut report);
-            ModelUncertainty::new(
-                estimate,
-                &study.section.structure()?,
-                search.onset(),
-                study.speeds().search(),
-                report.tested_range,
-            )
-        })
+        .and_then(|estimate| model_uncertainty(study, estimate, &mut report, &search))
         .map(Box::new)
         .map_err(|e| e.to_string());
-    if let Ok(known) = &uncertainty {
-        let speeds = known.coefficients.speeds.as_ref();
-        report.notes.extend(speeds.map(|s| s.describe()));
-        report.notes.extend(known.speeds.explain());
-        report.notes.extend(known.warning());
-    }
-    let experiment = experiment(study, &search);
     let trained = TrainedModel {
         schema_version: model.schema_version(),
         name: block.name.clone(),
@@ -123,7 +77,7 @@ pub fn train_one(
             notes: report.notes.clone(),
         },
         model,
-        experiment,
+        experiment: experiment(study, &search),
     };
     trained.validate()?;
     Ok(TrainedWithReport {
@@ -133,29 +87,82 @@ pub fn train_one(
     })
 }
 
+/// What the data say: the model, its account, and how far they leave its coefficients open.
+struct Fit {
+    model: Model,
+    report: FitReport,
+    estimate: Result<CoefficientUncertainty>,
+}
+
+/// Fits to the table, to records, or to records in discrete time, as the block of the model says.
+fn fit(
+    study: &Study,
+    block: &ModelBlock,
+    deck: &Deck,
+    records: &RecordSet,
+    progress: OnProgress<'_>,
+) -> Result<Fit> {
+    let own = block.speed_groups.as_deref();
+    let groups = own.or(study.deck.speed_groups.as_deref());
+    let (model, report, estimate);
+    if let Some(fit) = &block.table {
+        let (samples, dofs) = (deck.samples(study, groups)?, study.section.dofs());
+        (model, report) = fit_table(&samples, &dofs, fit)?;
+        estimate = table_uncertainty(&samples, &dofs, fit, &report);
+    } else {
+        let chosen = records.select(groups)?;
+        if let Some(fit) = &block.records {
+            (model, report) = fit_records(&chosen, fit, progress)?;
+            estimate = record_uncertainty(&chosen, fit, &report, progress);
+        } else if let Some(fit) = &block.discrete {
+            (model, report) = fit_discrete(&chosen, fit, progress)?;
+            estimate = discrete_uncertainty(&chosen, fit, &model, progress);
+        } else {
+            return Err(Error::input(
+                format!("model {}", block.name),
+                "one of `records`, `table`, `discrete`",
+                "none",
+            ));
+        }
+    }
+    Ok(Fit {
+        model,
+        report,
+        estimate,
+    })
+}
+
 /// Onset of the coupled section.
 fn onset_of(
     study: &Study,
-    block: &ModelBlock,
-    model: &Model,
-    report: &FitReport,
-) -> Result<FlutterSearch> {
-    find_onset_of(study, block, model, report.tested_range)
-}
-
-fn find_onset_of(
-    study: &Study,
-    block: &ModelBlock,
+    name: &str,
     model: &Model,
     tested: ReducedFrequencyRange,
 ) -> Result<FlutterSearch> {
     let section = CoupledSection::with_model(&study.section.structure()?, model)?;
-    find_onset(
-        &block.name,
-        &section,
-        &study.speeds().search(),
-        Some(tested),
-    )
+    find_onset(name, &section, &study.speeds().search(), Some(tested))
+}
+
+/// The uncertainty of coefficients, derivatives and onset, with what is to be said of it in the report.
+fn model_uncertainty(
+    study: &Study,
+    estimate: CoefficientUncertainty,
+    report: &mut FitReport,
+    search: &FlutterSearch,
+) -> Result<ModelUncertainty> {
+    estimate.enter(report);
+    let known = ModelUncertainty::new(
+        estimate,
+        &study.section.structure()?,
+        search.onset(),
+        study.speeds().search(),
+        report.tested_range,
+    )?;
+    let speeds = known.coefficients.speeds.as_ref();
+    report.notes.extend(speeds.map(|s| s.describe()));
+    report.notes.extend(known.speeds.explain());
+    report.notes.extend(known.warning());
+    Ok(known)
 }
 
 /// A released section just below the onset, so that an importer that merely runs the FMU sees something.

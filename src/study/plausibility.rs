@@ -26,32 +26,12 @@ const LEAST_ROTATION_DEG: f64 = 0.05;
 
 /// What is hardly meant in a section: one sentence a key, with the likely reason.
 pub(crate) fn section_warnings(section: &SectionModel) -> Vec<String> {
-    let mut found = Vec::new();
-    let (width, density) = (section.width_m, section.air_density_kg_m3);
-    if width > WIDEST_M {
-        let likely = format!("in millimetres it would be {} m", width / 1e3);
-        found.push(warning(
-            "section.width_m",
-            width,
-            &format!("no deck is wider than {WIDEST_M} m; {likely}"),
-        ));
-    } else if width < NARROWEST_M {
-        found.push(warning(
-            "section.width_m",
-            width,
-            "no model is that narrow; is it in kilometres or a semi-chord?",
-        ));
-    }
-    if !(DENSITIES.0..=DENSITIES.1).contains(&density) {
-        let usual = format!(
-            "air has {} to {} kg/m³; 1.2 at sea level",
-            DENSITIES.0, DENSITIES.1
-        );
-        found.push(warning("section.air_density_kg_m3", density, &usual));
-    }
-    let heave = &section.vertical;
-    let twist = &section.torsion;
+    let (heave, twist) = (&section.vertical, &section.torsion);
     let sway = section.lateral.as_ref();
+    let width = section.width_m;
+    let mut found = Vec::new();
+    found.extend(width_warning(width));
+    found.extend(density_warning(section.air_density_kg_m3));
     let mut supports = vec![
         ("vertical", heave.frequency_hz, heave.damping_ratio),
         ("torsion", twist.frequency_hz, twist.damping_ratio),
@@ -59,43 +39,71 @@ pub(crate) fn section_warnings(section: &SectionModel) -> Vec<String> {
     supports.extend(sway.map(|s| ("lateral", s.frequency_hz, s.damping_ratio)));
     for (name, frequency_hz, damping_ratio) in supports {
         found.extend(frequency_warning(name, frequency_hz, width));
-        if damping_ratio > MOST_DAMPING {
-            let likely = format!(
-                "a ratio to critical damping is usually 0.001 to 0.02; in per cent it would be {}",
-                damping_ratio / 100.0
-            );
-            let key = format!("section.{name}.damping_ratio");
-            found.push(warning(&key, damping_ratio, &likely));
-        }
+        found.extend(damping_warning(name, damping_ratio));
     }
-    let masses = [
-        Some(("vertical", heave.mass_kg_m)),
-        sway.map(|s| ("lateral", s.mass_kg_m)),
-    ];
-    for (name, mass) in masses.into_iter().flatten() {
-        let ratio = mass / (density * width * width);
-        if !(MASS_RATIOS.0..=MASS_RATIOS.1).contains(&ratio) {
-            let likely = if ratio < MASS_RATIOS.0 {
-                "is it in t/m?"
-            } else {
-                "is it that of the whole model or span?"
-            };
-            let why = format!(
-                "that is {ratio:.3} times the air in a square of the width (bridges have 5 to 100); {likely}"
-            );
-            found.push(warning(&format!("section.{name}.mass_kg_m"), mass, &why));
-        }
-    }
-    let inertia = twist.inertia_kg_m2_m;
-    let radius = (inertia / heave.mass_kg_m).sqrt() / width;
-    if !(RADII.0..=RADII.1).contains(&radius) {
+    found.extend(mass_warning("vertical", heave.mass_kg_m, section));
+    found.extend(sway.and_then(|s| mass_warning("lateral", s.mass_kg_m, section)));
+    found.extend(inertia_warning(section));
+    found
+}
+
+fn width_warning(width_m: f64) -> Option<String> {
+    let why = if width_m > WIDEST_M {
+        let millimetres = width_m / 1e3;
+        format!("no deck is wider than {WIDEST_M} m; in millimetres it would be {millimetres} m")
+    } else if width_m < NARROWEST_M {
+        "no model is that narrow; is it in kilometres or a semi-chord?".to_owned()
+    } else {
+        return None;
+    };
+    Some(warning("section.width_m", width_m, &why))
+}
+
+fn density_warning(density: f64) -> Option<String> {
+    let (least, most) = DENSITIES;
+    (!(least..=most).contains(&density)).then(|| {
+        let usual = format!("air has {least} to {most} kg/m³; 1.2 at sea level");
+        warning("section.air_density_kg_m3", density, &usual)
+    })
+}
+
+fn damping_warning(name: &str, damping_ratio: f64) -> Option<String> {
+    (damping_ratio > MOST_DAMPING).then(|| {
+        let likely = format!(
+            "a ratio to critical damping is usually 0.001 to 0.02; in per cent it would be {}",
+            damping_ratio / 100.0
+        );
+        let key = format!("section.{name}.damping_ratio");
+        warning(&key, damping_ratio, &likely)
+    })
+}
+
+fn mass_warning(name: &str, mass: f64, section: &SectionModel) -> Option<String> {
+    let (width, density) = (section.width_m, section.air_density_kg_m3);
+    let ratio = mass / (density * width * width);
+    let likely = if ratio < MASS_RATIOS.0 {
+        "is it in t/m?"
+    } else {
+        "is it that of the whole model or span?"
+    };
+    (!(MASS_RATIOS.0..=MASS_RATIOS.1).contains(&ratio)).then(|| {
+        let why = format!(
+            "that is {ratio:.3} times the air in a square of the width (bridges have 5 to 100); {likely}"
+        );
+        warning(&format!("section.{name}.mass_kg_m"), mass, &why)
+    })
+}
+
+fn inertia_warning(section: &SectionModel) -> Option<String> {
+    let inertia = section.torsion.inertia_kg_m2_m;
+    let radius = (inertia / section.vertical.mass_kg_m).sqrt() / section.width_m;
+    (!(RADII.0..=RADII.1).contains(&radius)).then(|| {
         let why = format!(
             "with the mass that is a radius of gyration of {radius:.3} widths (decks have 0.2 to 0.5); another unit of mass, \
              inertia or width?"
         );
-        found.push(warning("section.torsion.inertia_kg_m2_m", inertia, &why));
-    }
-    found
+        warning("section.torsion.inertia_kg_m2_m", inertia, &why)
+    })
 }
 
 fn frequency_warning(name: &str, frequency_hz: Option<f64>, width_m: f64) -> Option<String> {

@@ -78,6 +78,44 @@ impl Default for CoveragePlan {
     }
 }
 
+impl CoveragePlan {
+    fn validate(&self) -> Result<()> {
+        if self.repetitions < 2 {
+            let found = self.repetitions.to_string();
+            return Err(Error::input("repetitions", "at least 2", found));
+        }
+        self.poles
+            .iter()
+            .try_for_each(|p| positive("poles", *p).map(drop))?;
+        non_negative("speed_scatter", self.speed_scatter)?;
+        non_negative("run_scatter", self.run_scatter).map(drop)
+    }
+
+    /// The fit whose intervals are judged.
+    fn time_fit(&self) -> TimeFit {
+        let given = PoleSearch {
+            start: Some(self.poles.clone()),
+            ..PoleSearch::default()
+        };
+        TimeFit {
+            // −(e₁ + e₁ᵀ) of a flat plate is singular: the truth lies on a constraint, which would bind now and then
+            constraints: Constraints::None,
+            form: Form::TakenakaMalmquist {
+                filters: self.poles.len(),
+                feed_through: FeedThrough::default(),
+                pole_per_transfer_function: false,
+            },
+            poles: if self.search_poles {
+                given
+            } else {
+                PoleSearch::fixed(&self.poles)
+            },
+            weights: self.weights,
+            ..TimeFit::default()
+        }
+    }
+}
+
 /// How often intervals held the truth.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Share {
@@ -213,15 +251,7 @@ struct Run {
 
 impl Campaign {
     fn new(plan: &CoveragePlan) -> Result<Self> {
-        if plan.repetitions < 2 {
-            let found = plan.repetitions.to_string();
-            return Err(Error::input("repetitions", "at least 2", found));
-        }
-        plan.poles
-            .iter()
-            .try_for_each(|p| positive("poles", *p).map(drop))?;
-        non_negative("speed_scatter", plan.speed_scatter)?;
-        non_negative("run_scatter", plan.run_scatter)?;
+        plan.validate()?;
         let section = SectionModel::table_4_1();
         let model: Box<dyn Transfer + Sync> = match plan.truth {
             Truth::Jones => Box::new(RationalModel::jones_flat_plate()),
@@ -233,26 +263,6 @@ impl Campaign {
         };
         let scatter = (plan.speed_scatter, plan.run_scatter);
         let records = ScatteredTunnel::new(&quiet, model.as_ref(), section.width_m, scatter)?;
-        let given = PoleSearch {
-            start: Some(plan.poles.clone()),
-            ..PoleSearch::default()
-        };
-        let fit = TimeFit {
-            // −(e₁ + e₁ᵀ) of a flat plate is singular: the truth lies on a constraint, which would bind now and then
-            constraints: Constraints::None,
-            form: Form::TakenakaMalmquist {
-                filters: plan.poles.len(),
-                feed_through: FeedThrough::default(),
-                pole_per_transfer_function: false,
-            },
-            poles: if plan.search_poles {
-                given
-            } else {
-                PoleSearch::fixed(&plan.poles)
-            },
-            weights: plan.weights,
-            ..TimeFit::default()
-        };
         let mut campaign = Self {
             true_onset_m_s: 0.0,
             bias_m_s: 0.0,
@@ -260,7 +270,7 @@ impl Campaign {
             model,
             records,
             tunnel: plan.tunnel.clone(),
-            fit,
+            fit: plan.time_fit(),
             tested: ReducedFrequencyRange {
                 min: ReducedFrequency::from_full_width(0.02),
                 max: ReducedFrequency::from_full_width(10.0),

@@ -7,6 +7,7 @@ use super::parameters::{
     tangent_of,
 };
 use super::segments::{Part, Stretched, gather, sandwich};
+use crate::aerodynamics::DiscreteLaguerre;
 use crate::error::{Error, Result};
 use crate::identification::DiscreteFit;
 use crate::identification::discrete::discrete_pass;
@@ -18,6 +19,7 @@ use crate::identification::time::continuous::{RecordFit, Rows};
 use crate::identification::time::pass::{ColumnOrder, OnProgress, Stretch};
 use crate::identification::time::record::{DimensionlessRecord, Records};
 use crate::identification::time::search::padded;
+use crate::section::Dof;
 use crate::trained_model::Model;
 use crate::wind_tunnel::RecordSource;
 use nalgebra::{DMatrix, DVector};
@@ -219,48 +221,28 @@ pub(crate) fn discrete_uncertainty(
         ));
     };
     let records = Records::read(records, fit.static_term)?;
-    let dofs = &records.dofs;
-    let n = dofs.len();
+    let columns = DiscreteColumns {
+        inputs: records.dofs.len(),
+        filters,
+    };
     let order = ColumnOrder {
-        inputs: n,
+        inputs: columns.inputs,
         per_input: filters,
         constant: true,
     };
     let closed = discrete_pass(
         &records,
-        (order, &[vec![alpha; n]]),
+        (order, &[vec![alpha; columns.inputs]]),
         (fit.weights, STRETCHES),
         progress,
     )?
     .stretches;
-    let each = 1 + n * filters;
-    let mut parameters = Vec::with_capacity(n * each);
-    for (i, &force) in dofs.iter().enumerate() {
-        let mut push = |name: String, motion, value| {
-            parameters.push(Parameter {
-                name,
-                force: Some(force),
-                motion,
-                value,
-                standard_error: 0.0,
-            });
-        };
-        push("static".into(), None, model.static_term[i]);
-        for (j, &motion) in dofs.iter().enumerate() {
-            for l in 0..filters {
-                push(
-                    format!("c{l}"),
-                    Some(motion),
-                    model.terms[j].coefficients[(i, l)],
-                );
-            }
-        }
-    }
-    let values: Vec<f64> = parameters.iter().map(|p: &Parameter| p.value).collect();
+    let parameters = columns.parameters(model, &records.dofs);
+    let values = DVector::from_iterator(parameters.len(), parameters.iter().map(|p| p.value));
     let parts = closed
         .iter()
-        .flat_map(|stretch| (0..n).map(move |i| (stretch, i)))
-        .map(|(stretch, i)| discrete_part(stretch, i, each, filters, &values))
+        .flat_map(|stretch| (0..columns.inputs).map(move |i| (stretch, i)))
+        .map(|(stretch, i)| columns.part(stretch, i, &values))
         .collect();
     let (design, blocks) = sandwich(gather(&records.each, parts), None)?;
     CoefficientUncertainty::new(
@@ -268,7 +250,7 @@ pub(crate) fn discrete_uncertainty(
             format!("{blocks}; motions are exact; α is given"),
             Some(records.tested_range()?),
         ),
-        dofs.clone(),
+        records.dofs.clone(),
         Coordinates::Discrete {
             alpha,
             delta_s: model.delta_s,
@@ -279,27 +261,63 @@ pub(crate) fn discrete_uncertainty(
     )
 }
 
-/// Rows of force `i` in one stretch: a constant, then the filters of the inputs that move.
-fn discrete_part(stretch: &Stretch, i: usize, each: usize, filters: usize, values: &[f64]) -> Part {
-    let factor = &stretch.factors[0];
-    let weight = stretch.weights[i];
-    let mut columns = DMatrix::zeros(factor.columns(), values.len());
-    columns[(0, i * each)] = 1.0;
-    for (s, &j) in stretch.set.iter().enumerate() {
-        for l in 0..filters {
-            let row = 1 + l * stretch.set.len() + s;
-            columns[(row, i * each + 1 + j * filters + l)] = 1.0;
-        }
+/// The parameters of a discrete model, force by force: its constant, then the filters of every input.
+struct DiscreteColumns {
+    inputs: usize,
+    filters: usize,
+}
+
+impl DiscreteColumns {
+    /// Parameters of one force.
+    fn each(&self) -> usize {
+        1 + self.inputs * self.filters
     }
-    let fitted = &columns * DVector::from_column_slice(values);
-    Part {
-        record: stretch.record,
-        stretch: stretch.stretch,
-        segment: stretch.segment,
-        group: (stretch.set.clone(), i),
-        weight,
-        rows: factor.upper() * columns * weight,
-        residual: (factor.projected().column(i) - factor.upper() * fitted) * weight,
-        total: factor.total_sum(i) * weight * weight,
+
+    fn parameters(&self, model: &DiscreteLaguerre, dofs: &[Dof]) -> Vec<Parameter> {
+        let mut parameters = Vec::with_capacity(self.inputs * self.each());
+        for (i, &force) in dofs.iter().enumerate() {
+            let mut push = |name: String, motion, value| {
+                parameters.push(Parameter {
+                    name,
+                    force: Some(force),
+                    motion,
+                    value,
+                    standard_error: 0.0,
+                });
+            };
+            push("static".into(), None, model.static_term[i]);
+            for (term, &motion) in model.terms.iter().zip(dofs) {
+                for l in 0..self.filters {
+                    push(format!("c{l}"), Some(motion), term.coefficients[(i, l)]);
+                }
+            }
+        }
+        parameters
+    }
+
+    /// Rows of force `i` in one stretch: a constant, then the filters of the inputs that move.
+    fn part(&self, stretch: &Stretch, i: usize, values: &DVector<f64>) -> Part {
+        let factor = &stretch.factors[0];
+        let weight = stretch.weights[i];
+        let first = i * self.each();
+        let mut columns = DMatrix::zeros(factor.columns(), values.len());
+        columns[(0, first)] = 1.0;
+        for (s, &j) in stretch.set.iter().enumerate() {
+            for l in 0..self.filters {
+                let row = 1 + l * stretch.set.len() + s;
+                columns[(row, first + 1 + j * self.filters + l)] = 1.0;
+            }
+        }
+        let fitted = &columns * values;
+        Part {
+            record: stretch.record,
+            stretch: stretch.stretch,
+            segment: stretch.segment,
+            group: (stretch.set.clone(), i),
+            weight,
+            rows: factor.upper() * columns * weight,
+            residual: (factor.projected().column(i) - factor.upper() * fitted) * weight,
+            total: factor.total_sum(i) * weight * weight,
+        }
     }
 }

@@ -62,9 +62,47 @@ pub(crate) fn figures(
     selection: &Selection,
     metrics: &[MetricGrid],
 ) -> Result<Vec<(&'static str, Figure)>> {
+    let of = |f: fn(&Cell) -> Option<f64>| selection.cells.iter().map(f).collect();
+    let score = |c: &Cell| Some(c.cross_validation?.score);
+    let errors = [
+        ("Residual of the fit", of(|c| c.residual), true),
+        ("Error on data left out", of(score), true),
+        ("Flutter onset (m/s)", of(|c| c.onset_m_s), false),
+        ("Largest term over the fit", of(|c| c.cancellation), true),
+    ]
+    .map(|(title, values, logarithmic)| HeatMap {
+        logarithmic,
+        ..map(selection, title.to_owned(), values)
+    });
+    type Pick = fn(&CellMetrics) -> f64;
+    let kinds: [(&str, Pick); 3] = [
+        ("Phase", |m| m.phase),
+        ("Peak", |m| m.peak),
+        ("Warped magnitude", |m| m.magnitude_warped),
+    ];
+    let mut metric_maps = Vec::new();
+    for grid in metrics {
+        for (name, pick) in kinds {
+            let (force, hertz) = (grid.force.name(), grid.frequency_hz);
+            let title = format!("{name} metric: {force} force and motion, {hertz:.2} Hz");
+            let values = grid.cells.iter().map(|c| c.as_ref().map(pick)).collect();
+            metric_maps.push(map(selection, title, values));
+        }
+    }
+    let draw = |what: &str, maps: &[HeatMap], columns| {
+        heat_map_figure(&format!("{}: {what}", study.name), maps, columns)
+    };
+    let errors = draw("selection", &errors, 2)?;
+    let metrics = draw("metrics of the forces", &metric_maps, 3)?;
+    Ok(vec![("selection", errors), ("selection_metrics", metrics)])
+}
+
+/// A map of one value of every cell.
+fn map(selection: &Selection, title: String, values: Vec<Option<f64>>) -> HeatMap {
     let filters = selection.filters_max;
-    let map = |title: &str, values: Vec<Option<f64>>, logarithmic: bool| HeatMap {
-        title: title.to_owned(),
+    let cells = selection.cells.iter();
+    HeatMap {
+        title,
         x_label: match selection.symbol.as_str() {
             "p" => "Pole p (–)".to_owned(),
             other => format!("Decay factor {other} (–)"),
@@ -73,54 +111,11 @@ pub(crate) fn figures(
         y_label: "Filters L".to_owned(),
         rows: filters,
         values,
-        logarithmic,
-        refused: selection
-            .cells
-            .iter()
-            .map(|c| !c.rejected.is_empty())
-            .collect(),
+        logarithmic: false,
+        refused: cells.map(|c| !c.rejected.is_empty()).collect(),
         chosen: selection
             .recommended
             .as_ref()
             .map(|r| (r.cell / filters, r.cell % filters)),
-    };
-    let of = |f: &dyn Fn(&Cell) -> Option<f64>| selection.cells.iter().map(f).collect::<Vec<_>>();
-    let errors = [
-        map("Residual of the fit", of(&|c| c.residual), true),
-        map(
-            "Error on data left out",
-            of(&|c| Some(c.cross_validation?.score)),
-            true,
-        ),
-        map("Flutter onset (m/s)", of(&|c| c.onset_m_s), false),
-        map("Largest term over the fit", of(&|c| c.cancellation), true),
-    ];
-    let mut maps = Vec::new();
-    type Pick = fn(&CellMetrics) -> f64;
-    let kinds: [(&str, Pick); 3] = [
-        ("Phase", |m| m.phase),
-        ("Peak", |m| m.peak),
-        ("Warped magnitude", |m| m.magnitude_warped),
-    ];
-    for grid in metrics {
-        for (name, pick) in kinds {
-            let title = format!(
-                "{name} metric: {} force and motion, {:.2} Hz",
-                grid.force.name(),
-                grid.frequency_hz
-            );
-            let values = grid.cells.iter().map(|c| c.as_ref().map(pick)).collect();
-            maps.push(map(&title, values, false));
-        }
     }
-    Ok(vec![
-        (
-            "selection",
-            heat_map_figure(&format!("{}: selection", study.name), &errors, 2)?,
-        ),
-        (
-            "selection_metrics",
-            heat_map_figure(&format!("{}: metrics of the forces", study.name), &maps, 3)?,
-        ),
-    ])
 }

@@ -4,10 +4,10 @@ use super::result::{DerivativeEstimate, IdentifiedDerivatives};
 use super::test_points::{CROSS_TALK, Stretch};
 use crate::aerodynamics::derivatives::{Derivative, Part};
 use crate::error::{Error, Result};
-use crate::identification::least_squares::StreamingQr;
+use crate::identification::least_squares::{Factor, StreamingQr};
 use crate::section::Dof;
 use crate::signal::mean;
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 use std::f64::consts::TAU;
 
 /// Fourier frequencies on either side of the motion that tell the noise there: at least and at most.
@@ -19,98 +19,159 @@ pub(super) fn solve(
     group: &[Stretch],
     result: &mut IdentifiedDerivatives,
 ) -> Result<()> {
-    // columns: two a motion that some run drives, then constant and trend of each run
-    let active: Vec<usize> = (0..dofs.len())
-        .filter(|j| group.iter().any(|s| s.driven == *j))
-        .collect();
-    for stretch in group {
-        let own = stretch.amplitude[stretch.driven];
-        for j in (0..dofs.len()).filter(|j| !active.contains(j)) {
-            if stretch.amplitude[j] > CROSS_TALK * own {
-                result.warnings.push(format!(
-                    "run {} at {:.3} Hz also moves {} by {:.1} % and no run drives that: its share of the force is \
-                     taken for that of {}",
-                    stretch.run,
-                    stretch.frequency_hz,
-                    dofs[j].name(),
-                    100.0 * stretch.amplitude[j] / own,
-                    dofs[stretch.driven].name()
-                ));
-            }
+    let point = TestPoint::new(dofs, group);
+    result.warnings.extend(point.cross_talk());
+    let factor = point.factor()?;
+    let solution = factor.solve(point.columns)?;
+    let inverse = factor.inverse_gram(point.columns)?;
+    for force in 0..dofs.len() {
+        let coefficients = solution.column(force).into_owned();
+        let (residuals, meat) = point.residuals(force, &coefficients);
+        let covariance = &inverse * meat * &inverse;
+        for a in 0..point.active.len() {
+            let estimates = point.estimates((force, a), &coefficients, &covariance, &residuals);
+            result.estimates.extend(estimates);
         }
     }
-    let columns = 2 * active.len() + 2 * group.len();
-    let rows: Vec<DMatrix<f64>> = group
-        .iter()
-        .enumerate()
-        .map(|(run, s)| regressors(s, run, &active, columns))
-        .collect();
-    let factor = {
-        let mut qr = StreamingQr::new(columns, dofs.len());
-        let mut line = vec![0.0; columns + dofs.len()];
-        for (stretch, z) in group.iter().zip(&rows) {
+    Ok(())
+}
+
+/// The equations of one test point. Columns: two a motion that some run drives, then constant and trend of each run.
+struct TestPoint<'a> {
+    dofs: &'a [Dof],
+    group: &'a [Stretch],
+    /// Motions that some run drives.
+    active: Vec<usize>,
+    columns: usize,
+    /// Rows of each run.
+    rows: Vec<DMatrix<f64>>,
+}
+
+impl<'a> TestPoint<'a> {
+    fn new(dofs: &'a [Dof], group: &'a [Stretch]) -> Self {
+        let driven = |j: &usize| group.iter().any(|s| s.driven == *j);
+        let active: Vec<usize> = (0..dofs.len()).filter(driven).collect();
+        let columns = 2 * active.len() + 2 * group.len();
+        let runs = group.iter().enumerate();
+        Self {
+            dofs,
+            group,
+            columns,
+            rows: runs
+                .map(|(run, s)| regressors(s, run, &active, columns))
+                .collect(),
+            active,
+        }
+    }
+
+    /// Warnings of motions that no run drives.
+    fn cross_talk(&self) -> Vec<String> {
+        let mut warnings = Vec::new();
+        for stretch in self.group {
+            let own = stretch.amplitude[stretch.driven];
+            for j in (0..self.dofs.len()).filter(|j| !self.active.contains(j)) {
+                if stretch.amplitude[j] > CROSS_TALK * own {
+                    warnings.push(format!(
+                        "run {} at {:.3} Hz also moves {} by {:.1} % and no run drives that: its share of the force is \
+                         taken for that of {}",
+                        stretch.run,
+                        stretch.frequency_hz,
+                        self.dofs[j].name(),
+                        100.0 * stretch.amplitude[j] / own,
+                        self.dofs[stretch.driven].name()
+                    ));
+                }
+            }
+        }
+        warnings
+    }
+
+    /// The triangular factor of all runs, with the forces as right-hand sides.
+    fn factor(&self) -> Result<Factor> {
+        let mut qr = StreamingQr::new(self.columns, self.dofs.len());
+        let mut line = vec![0.0; self.columns + self.dofs.len()];
+        for (stretch, z) in self.group.iter().zip(&self.rows) {
             for k in 0..z.nrows() {
-                for (c, to) in line.iter_mut().enumerate().take(columns) {
+                for (c, to) in line.iter_mut().enumerate().take(self.columns) {
                     *to = z[(k, c)];
                 }
                 for (i, force) in stretch.force.iter().enumerate() {
-                    line[columns + i] = force[k];
+                    line[self.columns + i] = force[k];
                 }
                 qr.push_row(&line);
             }
         }
-        qr.finish()
-    };
-    if factor.undetermined(columns).is_some() || factor.condition(columns) > 1e6 {
-        let runs: Vec<&str> = group.iter().map(|s| s.run.as_str()).collect();
-        return Err(Error::input(
-            format!(
-                "runs {} at {:.3} Hz",
-                runs.join(", "),
-                group[0].frequency_hz
-            ),
-            "motions that can be told apart",
-            "motions in step with each other",
-        ));
+        let factor = qr.finish();
+        if factor.undetermined(self.columns).is_some() || factor.condition(self.columns) > 1e6 {
+            let runs: Vec<&str> = self.group.iter().map(|s| s.run.as_str()).collect();
+            let hertz = self.group[0].frequency_hz;
+            return Err(Error::input(
+                format!("runs {} at {hertz:.3} Hz", runs.join(", ")),
+                "motions that can be told apart",
+                "motions in step with each other",
+            ));
+        }
+        Ok(factor)
     }
-    let solution = factor.solve(columns)?;
-    let inverse = factor.inverse_gram(columns)?;
-    for (i, force) in dofs.iter().enumerate() {
-        let mut meat = DMatrix::zeros(columns, columns);
-        let mut residuals = vec![0.0; group.len()];
-        for (run, (stretch, z)) in group.iter().zip(&rows).enumerate() {
-            let fitted = z * solution.column(i);
-            let rest: Vec<f64> = stretch.force[i]
-                .iter()
-                .zip(fitted.iter())
-                .map(|(f, x)| f - x)
-                .collect();
+
+    /// What is left of a force in each run, relative to the force, and the middle of the sandwich of its covariance.
+    fn residuals(&self, force: usize, coefficients: &DVector<f64>) -> (Vec<f64>, DMatrix<f64>) {
+        let mut meat = DMatrix::zeros(self.columns, self.columns);
+        let mut relative = Vec::with_capacity(self.group.len());
+        for (run, (stretch, z)) in self.group.iter().zip(&self.rows).enumerate() {
+            let fitted = z * coefficients;
+            let measured = &stretch.force[force];
+            let rest: Vec<f64> = measured.iter().zip(&fitted).map(|(f, x)| f - x).collect();
             meat += z.transpose() * z * noise_level(&rest, stretch.periods);
-            residuals[run] = relative(&rest, &stretch.force[i], z, &solution, i, run, &active);
+            relative.push(self.relative(run, &rest, measured, coefficients));
         }
-        let covariance = &inverse * meat * &inverse;
-        for (a, &j) in active.iter().enumerate() {
-            let Some(run) = group.iter().position(|s| s.driven == j) else {
-                continue;
-            };
-            let s = &group[run];
-            for (part, c) in [(Part::Real, 2 * a), (Part::Imaginary, 2 * a + 1)] {
-                let v_hat = s.k.v_hat();
-                result.estimates.push(DerivativeEstimate {
-                    derivative: Derivative::of(*force, dofs[j], part),
-                    run: s.run.clone(),
-                    mean_speed_m_s: s.speed_m_s,
-                    frequency_hz: s.frequency_hz,
-                    v_hat,
-                    value: solution[(c, i)] * v_hat * v_hat,
-                    standard_error: covariance[(c, c)].max(0.0).sqrt() * v_hat * v_hat,
-                    periods: s.periods,
-                    residual: residuals[run],
-                });
-            }
+        (relative, meat)
+    }
+
+    /// RMS of the residual over that of the force, the latter without constant and trend.
+    fn relative(&self, run: usize, rest: &[f64], force: &[f64], solution: &DVector<f64>) -> f64 {
+        let z = &self.rows[run];
+        let at = 2 * self.active.len() + 2 * run;
+        let (mut above, mut below) = (0.0, 0.0);
+        for (k, (e, f)) in rest.iter().zip(force).enumerate() {
+            let base = z[(k, at)] * solution[at] + z[(k, at + 1)] * solution[at + 1];
+            above += e * e;
+            below += (f - base).powi(2);
+        }
+        if below > 0.0 {
+            (above / below).sqrt()
+        } else {
+            0.0
         }
     }
-    Ok(())
+
+    /// Both derivatives of a force by the `a`-th active motion, if some run drives it.
+    fn estimates(
+        &self,
+        (force, a): (usize, usize),
+        coefficients: &DVector<f64>,
+        covariance: &DMatrix<f64>,
+        residuals: &[f64],
+    ) -> Vec<DerivativeEstimate> {
+        let motion = self.active[a];
+        let Some(run) = self.group.iter().position(|s| s.driven == motion) else {
+            return Vec::new();
+        };
+        let s = &self.group[run];
+        let v_hat = s.k.v_hat();
+        let of = |part, c: usize| DerivativeEstimate {
+            derivative: Derivative::of(self.dofs[force], self.dofs[motion], part),
+            run: s.run.clone(),
+            mean_speed_m_s: s.speed_m_s,
+            frequency_hz: s.frequency_hz,
+            v_hat,
+            value: coefficients[c] * v_hat * v_hat,
+            standard_error: covariance[(c, c)].max(0.0).sqrt() * v_hat * v_hat,
+            periods: s.periods,
+            residual: residuals[run],
+        };
+        vec![of(Part::Real, 2 * a), of(Part::Imaginary, 2 * a + 1)]
+    }
 }
 
 /// Rows of one run: motions and rates, then its own constant and trend.
@@ -127,30 +188,6 @@ fn regressors(s: &Stretch, run: usize, active: &[usize], columns: usize) -> DMat
             _ => 0.0,
         }
     })
-}
-
-/// RMS of the residual over that of the force, the latter without constant and trend.
-fn relative(
-    rest: &[f64],
-    force: &[f64],
-    z: &DMatrix<f64>,
-    solution: &DMatrix<f64>,
-    i: usize,
-    run: usize,
-    active: &[usize],
-) -> f64 {
-    let at = 2 * active.len() + 2 * run;
-    let (mut above, mut below) = (0.0, 0.0);
-    for (k, (e, f)) in rest.iter().zip(force).enumerate() {
-        let base = z[(k, at)] * solution[(at, i)] + z[(k, at + 1)] * solution[(at + 1, i)];
-        above += e * e;
-        below += (f - base).powi(2);
-    }
-    if below > 0.0 {
-        (above / below).sqrt()
-    } else {
-        0.0
-    }
 }
 
 /// Spectral level of a residual next to the harmonic of `periods` in its length: the variance that white noise of the same level

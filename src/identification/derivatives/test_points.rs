@@ -3,7 +3,9 @@
 use super::result::DerivativeOptions;
 use crate::error::{Error, Result, positive};
 use crate::section::Dof;
-use crate::signal::{HarmonicFit, fit_harmonics, largest_about_mean, plateau, refine_frequency};
+use crate::signal::{
+    HarmonicFit, Plateau, fit_harmonics, largest_about_mean, plateau, refine_frequency,
+};
 use crate::units::ReducedFrequency;
 use crate::wind_tunnel::{Record, RecordHeader, RecordSource};
 
@@ -104,41 +106,16 @@ fn stretch(
     segment: usize,
     options: &DerivativeOptions,
 ) -> Result<Option<Stretch>> {
-    let n = header.dofs.len();
-    let rate = header.sampling_hz;
-    let count = channels[0].len();
-    if let Some((c, k)) = channels
-        .iter()
-        .enumerate()
-        .find_map(|(c, x)| Some((c, x.iter().position(|v| !v.is_finite())?)))
-    {
-        let place = format!("record {}, channel {}, sample {k}", header.name, c + 1);
-        return Err(Error::input(
-            place,
-            "a finite number",
-            channels[c][k].to_string(),
-        ));
-    }
-    let s = header.segments[segment];
-    let at = |t: f64| ((t * rate).round().max(0.0) as usize).min(count);
-    let range = at(s.start_s)..at(s.end_s);
-    let size = |j: usize| {
-        let greatest = largest_about_mean(&channels[j][range.clone()]);
-        greatest * header.dofs[j].motion_scale(header.width_m)
-    };
-    let driven = (0..n).max_by(|a, b| size(*a).total_cmp(&size(*b)));
-    let Some(driven) = driven.filter(|j| size(*j) > 0.0) else {
+    refuse_gaps(header, channels)?;
+    let Some(steady) = Steady::find(header, channels, segment, options)? else {
         return Ok(None);
     };
-    let motion = &channels[driven];
-    let steady = |f| plateau(motion, range.clone(), rate, f, options.full_amplitude);
-    let Some(rough) = steady(s.frequency_hz) else {
-        return Ok(None);
-    };
-    let frequency_hz = refine_frequency(motion, rough.range(), rate, s.frequency_hz)?;
-    let Some(p) = steady(frequency_hz) else {
-        return Ok(None);
-    };
+    let Steady {
+        driven,
+        frequency_hz,
+        plateau: p,
+    } = steady;
+    let (n, rate) = (header.dofs.len(), header.sampling_hz);
     let fit = |x: &[f64]| fit_harmonics(x, p.range(), rate, frequency_hz, HARMONICS, &|_| true);
     let fits = channels[..n]
         .iter()
@@ -158,11 +135,10 @@ fn stretch(
     };
     let force_of = |i: usize| {
         let factor = 1.0 / (pressure * header.dofs[i].force_scale(header.width_m));
-        channels[n + i][p.range()]
-            .iter()
-            .map(|f| f * factor)
-            .collect()
+        let force = &channels[n + i][p.range()];
+        force.iter().map(|f| f * factor).collect()
     };
+    let amplitude_of = |j: usize| scale(j) * fits[j].fundamental().norm();
     Ok(Some(Stretch {
         run: header.name.clone(),
         driven,
@@ -171,11 +147,61 @@ fn stretch(
         k: ReducedFrequency::from_hertz(frequency_hz, header.width_m, header.mean_speed_m_s),
         periods: p.periods,
         motion: (0..n).map(motion_of).collect(),
-        amplitude: (0..n)
-            .map(|j| scale(j) * fits[j].fundamental().norm())
-            .collect(),
+        amplitude: (0..n).map(amplitude_of).collect(),
         force: (0..n).map(force_of).collect(),
     }))
+}
+
+fn refuse_gaps(header: &RecordHeader, channels: &[Vec<f64>]) -> Result<()> {
+    for (c, channel) in channels.iter().enumerate() {
+        if let Some(k) = channel.iter().position(|v| !v.is_finite()) {
+            let place = format!("record {}, channel {}, sample {k}", header.name, c + 1);
+            let found = channel[k].to_string();
+            return Err(Error::input(place, "a finite number", found));
+        }
+    }
+    Ok(())
+}
+
+/// Whole periods of a driven motion at full amplitude.
+struct Steady {
+    /// The motion that is driven, by its place among the degrees of freedom.
+    driven: usize,
+    frequency_hz: f64,
+    plateau: Plateau,
+}
+
+impl Steady {
+    /// Those of the greatest motion in a segment; `None` when nothing moves or there is no whole period.
+    fn find(
+        header: &RecordHeader,
+        channels: &[Vec<f64>],
+        segment: usize,
+        options: &DerivativeOptions,
+    ) -> Result<Option<Self>> {
+        let (s, rate) = (header.segments[segment], header.sampling_hz);
+        let at = |t: f64| ((t * rate).round().max(0.0) as usize).min(channels[0].len());
+        let range = at(s.start_s)..at(s.end_s);
+        let size = |j: usize| {
+            let greatest = largest_about_mean(&channels[j][range.clone()]);
+            greatest * header.dofs[j].motion_scale(header.width_m)
+        };
+        let driven = (0..header.dofs.len()).max_by(|a, b| size(*a).total_cmp(&size(*b)));
+        let Some(driven) = driven.filter(|j| size(*j) > 0.0) else {
+            return Ok(None);
+        };
+        let motion = &channels[driven];
+        let steady = |f| plateau(motion, range.clone(), rate, f, options.full_amplitude);
+        let Some(rough) = steady(s.frequency_hz) else {
+            return Ok(None);
+        };
+        let frequency_hz = refine_frequency(motion, rough.range(), rate, s.frequency_hz)?;
+        Ok(steady(frequency_hz).map(|plateau| Self {
+            driven,
+            frequency_hz,
+            plateau,
+        }))
+    }
 }
 
 /// Into the group of the same frequency and the nearest speed, unless that motion is there already: repeated tests are points of their own.

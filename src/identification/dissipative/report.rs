@@ -221,40 +221,21 @@ fn sentences(active: &[ActiveConstraint], dofs: &[Dof]) -> Vec<String> {
 
 fn sentence(run: &[ActiveConstraint], whose: &str, dofs: &[Dof]) -> String {
     let first = &run[0];
-    let alone = run.iter().map(|c| c.alone).fold(f64::MIN, f64::max);
-    let would = |what: &str, symbol: &str| {
-        if alone > 0.0 {
-            format!("the data alone would make it negative ({symbol} {alone:+.3})")
-        } else {
-            format!(
-                "the data alone give {what} there ({symbol} {alone:+.3}), but not with the other constraints"
-            )
-        }
-    };
+    let would = |what: &str, symbol: &str| data_alone(run, what, symbol);
     let (i, j) = first.entry.unwrap_or_default();
-    let (force, motion) = (dofs[i], dofs[j]);
+    let (force, motion) = (dofs[i].name(), dofs[j].name());
+    let at_zero = |what: &str| {
+        format!(
+            "{what} of the {force} force due to {motion} motion at K → 0 is {:.4} as stated: the data alone would make it {:.4}",
+            first.held, first.alone
+        )
+    };
     match first.kind {
-        ConstraintKind::AboveTestedRange => {
-            let ks: Vec<f64> = run.iter().filter_map(|c| c.k).collect();
-            let (low, high) = (ks[0], ks[ks.len() - 1]);
-            let place = if low < high {
-                format!("K = {low:.3} to {high:.3}")
-            } else {
-                format!("K = {low:.3}")
-            };
-            let own = run.iter().map(|c| c.held).fold(0.0, f64::max);
-            let at = if own > 0.0 {
-                format!(
-                    "the growth with which the tests end, fading with K² (Im G/K {own:+.3} there)"
-                )
-            } else {
-                "zero".to_owned()
-            };
-            format!(
-                "{whose} damping at {place} is held at {at}: {}",
-                would("damping", "Im G/K")
-            )
-        }
+        ConstraintKind::AboveTestedRange => format!(
+            "{whose} damping at {}: {}",
+            place_and_limit(run),
+            would("damping", "Im G/K")
+        ),
         ConstraintKind::FastMotion => format!(
             "{whose} damping in the limit of fast motion is held at a thousandth of what was tested: {}",
             would("damping", "e1")
@@ -264,23 +245,42 @@ fn sentence(run: &[ActiveConstraint], whose: &str, dofs: &[Dof]) -> String {
             would("a mass", "e2")
         ),
         ConstraintKind::SymmetricAddedMass => format!(
-            "added mass that couples {} and {} motion is symmetric: the data alone would make its two numbers differ (e2 \
-             by {:+.3})",
-            motion.name(),
-            force.name(),
+            "added mass that couples {motion} and {force} motion is symmetric: the data alone would make its two numbers differ \
+             (e2 by {:+.3})",
             first.alone
         ),
-        ConstraintKind::ValueAtZero | ConstraintKind::SlopeAtZero => format!(
-            "{} of the {} force due to {} motion at K → 0 is {:.4} as stated: the data alone would make it {:.4}",
-            if first.kind == ConstraintKind::ValueAtZero {
-                "the value"
-            } else {
-                "the slope"
-            },
-            force.name(),
-            motion.name(),
-            first.held,
-            first.alone
-        ),
+        ConstraintKind::ValueAtZero => at_zero("the value"),
+        ConstraintKind::SlopeAtZero => at_zero("the slope"),
+    }
+}
+
+/// What the data alone would give at the worst of a run of constraints.
+fn data_alone(run: &[ActiveConstraint], what: &str, symbol: &str) -> String {
+    let alone = run.iter().map(|c| c.alone).fold(f64::MIN, f64::max);
+    if alone > 0.0 {
+        format!("the data alone would make it negative ({symbol} {alone:+.3})")
+    } else {
+        format!(
+            "the data alone give {what} there ({symbol} {alone:+.3}), but not with the other constraints"
+        )
+    }
+}
+
+/// The reduced frequencies of a run of constraints, and at what they hold the damping.
+fn place_and_limit(run: &[ActiveConstraint]) -> String {
+    let ks: Vec<f64> = run.iter().filter_map(|c| c.k).collect();
+    let (low, high) = (ks[0], ks[ks.len() - 1]);
+    let place = if low < high {
+        format!("K = {low:.3} to {high:.3}")
+    } else {
+        format!("K = {low:.3}")
+    };
+    let own = run.iter().map(|c| c.held).fold(0.0, f64::max);
+    if own > 0.0 {
+        format!(
+            "{place} is held at the growth with which the tests end, fading with K² (Im G/K {own:+.3} there)"
+        )
+    } else {
+        format!("{place} is held at zero")
     }
 }
