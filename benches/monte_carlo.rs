@@ -8,7 +8,7 @@ mod python;
 use aerodeck::aerodynamics::{LaguerreModel, Realizable, Realization};
 use aerodeck::files::derivatives::embedded;
 use aerodeck::flutter::{LinearForces, OnsetSweep, SweepOutcome};
-use aerodeck::identification::{Form, FrequencyFit, fit_table};
+use aerodeck::identification::{Fitted, Form, FrequencyFit, fit_table};
 use aerodeck::section::{Dof, SectionModel};
 use aerodeck::trained_model::{Experiment, Model, Provenance, SCHEMA_VERSION, TrainedModel};
 use aerodeck::uncertainty::monte_carlo::{MonteCarloPlan, monte_carlo};
@@ -65,7 +65,8 @@ fn three_filters() -> TrainedModel {
         form: Form::default(),
         ..FrequencyFit::default()
     };
-    let (model, report) = fit_table(&table.samples(&Dof::TWO), &Dof::TWO, &fit).expect("a fit");
+    let Fitted { model, report } =
+        fit_table(&table.samples(&Dof::TWO), &Dof::TWO, &fit).expect("a fit");
     let states = model.realize().states();
     assert_eq!(states, 6, "one bank of three filters");
     TrainedModel {

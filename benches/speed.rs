@@ -12,11 +12,12 @@ use aerodeck::flutter::trace_modes;
 use aerodeck::fmu::importer::{Fmu, Slave};
 use aerodeck::fmu::package::{Growing, Overwrite, Runtime, write_fmu};
 use aerodeck::identification::{
-    FeedThrough, Form, FrequencyFit, PoleSearch, TimeFit, TimeWeights, fit_records, fit_table,
+    FeedThrough, Fitted, Form, FrequencyFit, PoleSearch, TimeFit, TimeWeights, fit_records,
+    fit_table,
 };
 use aerodeck::section::{Dof, SectionModel};
 use aerodeck::study::demo_study_text;
-use aerodeck::trained_model::{Experiment, Model, Provenance, SCHEMA_VERSION, TrainedModel};
+use aerodeck::trained_model::{Experiment, Provenance, SCHEMA_VERSION, TrainedModel};
 use aerodeck::wind_tunnel::{Record, RecordSource, TunnelPlan};
 use nalgebra::{DMatrix, DVector};
 use serde_json::{Value, json};
@@ -58,7 +59,8 @@ fn twelve_states() -> TrainedModel {
         poles: PoleSearch::fixed(&[POLE]),
         ..FrequencyFit::default()
     };
-    let (model, report) = fit_table(&deck.samples(&Dof::TWO), &Dof::TWO, &fit).expect("a fit");
+    let Fitted { model, report } =
+        fit_table(&deck.samples(&Dof::TWO), &Dof::TWO, &fit).expect("a fit");
     TrainedModel {
         schema_version: SCHEMA_VERSION,
         name: "speed".into(),
@@ -289,8 +291,7 @@ fn training(python: &Path) {
     for _ in 0..ROUNDS {
         ours.push(seconds(|| {
             let result = one_thread.install(|| fit_records(&sources, &fit, &|_| ()));
-            let (model, _): (Model, _) = result.expect("a fit");
-            black_box(model);
+            black_box(result.expect("a fit").model);
         }));
         theirs.push(baseline(python, "training.py", file.path()));
     }

@@ -11,7 +11,7 @@
 //!
 //! # fn main() -> Result<()> {
 //! let table = named_table("LN21-5200", "".as_ref())?; // or read_table("workbook.xlsx")
-//! let (model, report) = fit_table(&table.samples(&Dof::TWO), &Dof::TWO, &FrequencyFit::default())?;
+//! let Fitted { model, report } = fit_table(&table.samples(&Dof::TWO), &Dof::TWO, &FrequencyFit::default())?;
 //!
 //! let structure = SectionModel::table_4_1().structure()?;
 //! let section = CoupledSection::with_model(&structure, &model)?;

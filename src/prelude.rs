@@ -16,7 +16,7 @@ pub use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 pub use crate::{
     files::derivatives::{named_table, read_table},
     fmu::package::{Growing, write_fmu},
-    identification::{Form, FrequencyFit, TimeFit, fit_records, fit_table},
+    identification::{Fitted, Form, FrequencyFit, TimeFit, fit_records, fit_table},
     study::Study,
     wind_tunnel::{Record, TunnelPlan},
 };

@@ -7,7 +7,7 @@ use aerodeck::files::derivatives::embedded;
 use aerodeck::flutter::{OnsetSearch, find_onset, unwanted_growth};
 use aerodeck::fmu::instance::Instance;
 use aerodeck::fmu::resources::{OptionFiles, Resources};
-use aerodeck::identification::{FeedThrough, Form, FrequencyFit, PoleSearch, fit_table};
+use aerodeck::identification::{FeedThrough, Fitted, Form, FrequencyFit, PoleSearch, fit_table};
 use aerodeck::section::{Dof, SectionModel};
 use aerodeck::trained_model::{Experiment, Provenance, SCHEMA_VERSION, TrainedModel};
 
@@ -21,7 +21,7 @@ fn trained(deck: &str, form: Form, poles: &[f64]) -> TrainedModel {
         poles: PoleSearch::fixed(poles),
         ..FrequencyFit::default()
     };
-    let (model, report) = fit_table(&deck.samples(&Dof::TWO), &Dof::TWO, &fit).unwrap();
+    let Fitted { model, report } = fit_table(&deck.samples(&Dof::TWO), &Dof::TWO, &fit).unwrap();
     TrainedModel {
         schema_version: SCHEMA_VERSION,
         name: deck.header.source.clone(),

@@ -10,7 +10,7 @@ mod fits;
 mod matrix;
 
 use aerodeck::aerodynamics::{FlatPlate, Transfer};
-use aerodeck::identification::{Constraints, FrequencyFit, fit_table, sample_model};
+use aerodeck::identification::{Constraints, Fitted, FrequencyFit, fit_table, sample_model};
 use aerodeck::section::Dof;
 use aerodeck::trained_model::Model;
 use aerodeck::units::ReducedFrequency;
@@ -21,7 +21,7 @@ use matrix::{decks, sections_of_three, sections_of_two};
 fn nothing_grows_below_the_onset_with_two_motions() {
     for table in decks() {
         for form in forms() {
-            let (model, _) = fitted(&table, &Dof::TWO, &form, Constraints::Dissipative);
+            let model = fitted(&table, &Dof::TWO, &form, Constraints::Dissipative).model;
             for named in sections_of_two() {
                 let what = format!("{}, {}", table.name, form.describe());
                 assert_stable_below_onset(&what, &model, &named);
@@ -34,7 +34,7 @@ fn nothing_grows_below_the_onset_with_two_motions() {
 fn nothing_grows_below_the_onset_with_three_motions() {
     for table in decks() {
         for form in forms() {
-            let (model, _) = fitted(&table, &Dof::THREE, &form, Constraints::Dissipative);
+            let model = fitted(&table, &Dof::THREE, &form, Constraints::Dissipative).model;
             for named in sections_of_three() {
                 let what = format!("{}, {}", table.name, form.describe());
                 assert_stable_below_onset(&what, &model, &named);
@@ -49,8 +49,14 @@ fn nothing_grows_below_the_onset_with_three_motions() {
 #[test]
 fn the_default_model_costs_little() {
     for table in decks() {
-        let (alone, before) = fitted(&table, &Dof::TWO, &laguerre(3), Constraints::None);
-        let (held, after) = fitted(&table, &Dof::TWO, &laguerre(3), Constraints::Dissipative);
+        let Fitted {
+            model: alone,
+            report: before,
+        } = fitted(&table, &Dof::TWO, &laguerre(3), Constraints::None);
+        let Fitted {
+            model: held,
+            report: after,
+        } = fitted(&table, &Dof::TWO, &laguerre(3), Constraints::Dissipative);
         for named in sections_of_two() {
             let (without, with) = (onset_m_s(&alone, &named), onset_m_s(&held, &named));
             let moved = with / without - 1.0;
@@ -95,7 +101,7 @@ fn a_flat_plate_does_not_feel_the_constraints() {
         };
         let (alone, held) = (fit(Constraints::None), fit(Constraints::Dissipative));
         for named in sections_of_two() {
-            let moved = onset_m_s(&held.0, &named) / onset_m_s(&alone.0, &named) - 1.0;
+            let moved = onset_m_s(&held.model, &named) / onset_m_s(&alone.model, &named) - 1.0;
             let tolerance = if form == laguerre(3) { 2e-4 } else { 2e-3 };
             assert!(moved.abs() <= tolerance, "{}: {moved}", form.describe());
         }
@@ -109,7 +115,7 @@ fn without_constraints_measured_decks_grow_in_slow_wind() {
     let growing = decks()
         .iter()
         .filter(|table| {
-            let (model, _) = fitted(table, &Dof::TWO, &laguerre(3), Constraints::None);
+            let model = fitted(table, &Dof::TWO, &laguerre(3), Constraints::None).model;
             sections.iter().any(|s| bands(&model, s).len() > 1)
         })
         .count();
@@ -129,8 +135,14 @@ fn what_the_constraints_change() {
     ] {
         for table in decks() {
             for form in forms() {
-                let (alone, before) = fitted(&table, dofs, &form, Constraints::None);
-                let (held, report) = fitted(&table, dofs, &form, Constraints::Dissipative);
+                let Fitted {
+                    model: alone,
+                    report: before,
+                } = fitted(&table, dofs, &form, Constraints::None);
+                let Fitted {
+                    model: held,
+                    report,
+                } = fitted(&table, dofs, &form, Constraints::Dissipative);
                 let rise = 100.0 * (objective(&report) - objective(&before));
                 for named in &sections {
                     let below = |m: &Model| {

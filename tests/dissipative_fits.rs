@@ -9,8 +9,8 @@ mod matrix;
 
 use aerodeck::aerodynamics::{FlatPlate, Transfer};
 use aerodeck::identification::{
-    Constraints, FrequencyFit, PoleSearch, QuasiSteadyLimit, TimeFit, fit_records, fit_table,
-    sample_model,
+    Constraints, Fitted, FrequencyFit, PoleSearch, QuasiSteadyLimit, TimeFit, fit_records,
+    fit_table, sample_model,
 };
 use aerodeck::section::Dof;
 use aerodeck::trained_model::Model;
@@ -48,7 +48,7 @@ fn constrained_fits_are_those_of_an_interior_point_method() {
             poles: PoleSearch::fixed(&[case.pole]),
             ..FrequencyFit::default()
         };
-        let (model, _) = fit_table(&table.samples(dofs), dofs, &fit).unwrap();
+        let model = fit_table(&table.samples(dofs), dofs, &fit).unwrap().model;
         // Clarabel's 1e-11 of the objective is 3e-6 of its root; with three motions of scattered data a coefficient moves by
         // up to thirty times that
         let tolerance = if dofs.len() == 2 { 2e-5 } else { 1e-4 };
@@ -89,9 +89,13 @@ fn constraints_that_do_not_bind_change_no_bit() {
             fit_table(&samples, &[Dof::Vertical], &options).unwrap()
         };
         let (alone, held) = (fit(Constraints::None), fit(Constraints::Dissipative));
-        assert!(held.1.constraints.is_none(), "{:?}", held.1.constraints);
-        assert_eq!(alone.0, held.0);
-        assert_eq!(alone.1, held.1);
+        assert!(
+            held.report.constraints.is_none(),
+            "{:?}",
+            held.report.constraints
+        );
+        assert_eq!(alone.model, held.model);
+        assert_eq!(alone.report, held.report);
     }
 }
 
@@ -114,7 +118,7 @@ fn nothing_grows_below_the_onset_with_models_from_records() {
                 form,
                 ..TimeFit::default()
             };
-            let (model, report) = fit_records(&sources(&records), &fit, &|_| ()).unwrap();
+            let Fitted { model, report } = fit_records(&sources(&records), &fit, &|_| ()).unwrap();
             for named in &sections {
                 assert_stable_below_onset(&format!("{name}, {}", report.method), &model, named);
             }
@@ -159,7 +163,7 @@ fn tables_know_what_constraints_hold() {
     for table in decks() {
         let fit = FrequencyFit::default();
         let samples = table.samples(&Dof::TWO);
-        let (_, report) = fit_table(&samples, &Dof::TWO, &fit).unwrap();
+        let report = fit_table(&samples, &Dof::TWO, &fit).unwrap().report;
         let known = table_uncertainty(&samples, &Dof::TWO, &fit, &report).unwrap();
         assert_held_numbers_are_known(&known, &Dof::TWO);
     }
@@ -197,10 +201,10 @@ fn quasi_steady_limits_of_laguerre_models_are_met() {
         let models = [
             fit_table(&table.samples(&Dof::TWO), &Dof::TWO, &in_frequency)
                 .unwrap()
-                .0,
+                .model,
             fit_records(&sources(&records), &in_time, &|_| ())
                 .unwrap()
-                .0,
+                .model,
         ];
         for model in models {
             let k = 1e-7;
@@ -241,8 +245,8 @@ fn least_squares_alone_are_what_they_were() {
     };
     let from_records = fit_records(&sources(&records), &in_time, &|_| ())
         .unwrap()
-        .1;
-    let from_table = fitted(&table, &Dof::TWO, &rational(1), Constraints::None).1;
+        .report;
+    let from_table = fitted(&table, &Dof::TWO, &rational(1), Constraints::None).report;
     for (report, stored) in [
         (from_records, stored.laguerre),
         (from_table, stored.rational_functions),

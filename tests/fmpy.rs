@@ -30,7 +30,7 @@ use aerodeck::files::derivatives::embedded;
 use aerodeck::fmu::force_options::ForceOptions;
 use aerodeck::fmu::package::{Export, FmiVersion, Growing, Label, Overwrite, Runtime, write_fmu};
 use aerodeck::fmu::variables::Listing;
-use aerodeck::identification::{Form, FrequencyFit, fit_table};
+use aerodeck::identification::{Fitted, Form, FrequencyFit, fit_table};
 use aerodeck::section::{Dof, SectionModel};
 use aerodeck::trained_model::{Experiment, Provenance, SCHEMA_VERSION, TrainedModel};
 use serde_json::{Map, Value, json};
@@ -45,7 +45,7 @@ fn measured_deck(form: Form) -> TrainedModel {
         form,
         ..FrequencyFit::default()
     };
-    let (model, report) = fit_table(&table.samples(&Dof::TWO), &Dof::TWO, &fit).unwrap();
+    let Fitted { model, report } = fit_table(&table.samples(&Dof::TWO), &Dof::TWO, &fit).unwrap();
     TrainedModel {
         schema_version: SCHEMA_VERSION,
         name: "LN21-5200".into(),

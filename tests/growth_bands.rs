@@ -7,7 +7,7 @@ mod matrix;
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::files::derivatives::embedded;
 use aerodeck::flutter::{OnsetSearch, find_onset, growth_scan};
-use aerodeck::identification::{Constraints, FrequencyFit, fit_table};
+use aerodeck::identification::{Constraints, Fitted, FrequencyFit, fit_table};
 use aerodeck::section::{Dof, SectionModel};
 
 /// Eigenvalues of the state matrix at many speeds, without any of the library's search.
@@ -35,7 +35,7 @@ fn followed_modes_and_all_eigenvalues_agree_over_the_matrix() {
                 constraints: Constraints::None,
                 ..FrequencyFit::default()
             };
-            let (model, report) = fit_table(&table.samples(&dofs), &dofs, &fit).unwrap();
+            let Fitted { model, report } = fit_table(&table.samples(&dofs), &dofs, &fit).unwrap();
             let structure = named.section.structure().unwrap();
             // least squares alone can give more negative added mass than the section has mass
             let Ok(section) = CoupledSection::with_model(&structure, &model) else {
@@ -108,7 +108,7 @@ fn bands_below_the_first_speed_are_met() {
         constraints: Constraints::None,
         ..FrequencyFit::default()
     };
-    let (model, report) = fit_table(&table.samples(&Dof::TWO), &Dof::TWO, &fit).unwrap();
+    let Fitted { model, report } = fit_table(&table.samples(&Dof::TWO), &Dof::TWO, &fit).unwrap();
     let structure = SectionModel::table_4_1().structure().unwrap();
     let section = CoupledSection::with_model(&structure, &model).unwrap();
     let bands = growth_scan(&section, 0.0, 30.0, Some(report.tested_range)).unwrap();

@@ -19,7 +19,7 @@ use aerodeck::flutter::{
     FlutterSearch, LinearForces, OnsetSearch, OnsetSweep, SweepOutcome, UnstableStart,
     determinant_onset, find_onset, pk_curves, pk_onset, quasi_pk_mode, trace_modes,
 };
-use aerodeck::identification::{Form, FrequencyFit, fit_table};
+use aerodeck::identification::{Fitted, Form, FrequencyFit, fit_table};
 use aerodeck::section::{Dof, SectionModel, Structure};
 use aerodeck::trained_model::Model;
 use aerodeck::uncertainty::monte_carlo::{MonteCarloPlan, monte_carlo};
@@ -226,7 +226,8 @@ fn modes_that_cannot_be_told_apart_do_not_end_the_search() {
     let structure = section.structure().unwrap();
     let table = embedded::deck("LN21-5200").unwrap();
     let fit = FrequencyFit::default();
-    let (model, report) = fit_table(&table.samples(&Dof::THREE), &Dof::THREE, &fit).unwrap();
+    let Fitted { model, report } =
+        fit_table(&table.samples(&Dof::THREE), &Dof::THREE, &fit).unwrap();
     let coupled = CoupledSection::with_model(&structure, &model).unwrap();
     let found = find_onset("", &coupled, &SEARCH, Some(report.tested_range)).unwrap();
     let onset = found.onset().unwrap();
@@ -251,7 +252,9 @@ fn a_branch_never_becomes_another() {
             .collect();
         let curves = pk_curves("", &structure, &model, &speeds).unwrap();
         let fit = FrequencyFit::default();
-        let (fitted, _) = fit_table(&table.samples(&Dof::THREE), &Dof::THREE, &fit).unwrap();
+        let fitted = fit_table(&table.samples(&Dof::THREE), &Dof::THREE, &fit)
+            .unwrap()
+            .model;
         let section = CoupledSection::with_model(&structure, &fitted).unwrap();
         let traced = trace_modes("", &section, &speeds).unwrap();
         for curves in [&curves, &traced] {
@@ -311,7 +314,7 @@ fn a_single_mode_is_that_of_its_branch() {
 fn points_of_curves_know_whether_they_were_tested() {
     let table = embedded::deck("LN21-5200").unwrap();
     let fit = FrequencyFit::default();
-    let (model, report) = fit_table(&table.samples(&Dof::TWO), &Dof::TWO, &fit).unwrap();
+    let Fitted { model, report } = fit_table(&table.samples(&Dof::TWO), &Dof::TWO, &fit).unwrap();
     let structure = SectionModel::table_4_1().structure().unwrap();
     let section = CoupledSection::with_model(&structure, &model).unwrap();
     let speeds: Vec<f64> = (1..=50).map(f64::from).collect();

@@ -8,7 +8,7 @@ use aerodeck::flutter::{OnsetSearch, find_onset};
 use aerodeck::identification::derivatives::{
     DerivativeOptions, IdentifiedDerivatives, identify_derivatives,
 };
-use aerodeck::identification::{TimeFit, fit_records};
+use aerodeck::identification::{Fitted, TimeFit, fit_records};
 use aerodeck::section::{Dof, SectionModel};
 use aerodeck::wind_tunnel::processing::{ProcessingOptions, process};
 use aerodeck::wind_tunnel::virtual_campaign::{VirtualCampaign, VirtualCampaignPlan};
@@ -20,7 +20,8 @@ fn sources(records: &[Record]) -> Vec<&dyn RecordSource> {
 
 /// Onset of the Table 4.1 section with the default Laguerre model of the records, m/s.
 fn onset_m_s(records: &[Record]) -> f64 {
-    let (model, report) = fit_records(&sources(records), &TimeFit::default(), &|_| {}).unwrap();
+    let Fitted { model, report } =
+        fit_records(&sources(records), &TimeFit::default(), &|_| {}).unwrap();
     let structure = SectionModel::table_4_1().structure().unwrap();
     let section = CoupledSection::new(structure, model.realize()).unwrap();
     let search = OnsetSearch {

@@ -6,19 +6,14 @@ use crate::error::{raised, wrong};
 use crate::model::Model;
 use crate::records::Records;
 use crate::work::Work;
-use aerodeck::identification::{FitReport, FrequencyFit, TimeFit, fit_records, fit_table};
+use aerodeck::aerodynamics::derivatives::DerivativeTable;
+use aerodeck::identification::{Fitted, FrequencyFit, TimeFit, fit_records, fit_table};
 use aerodeck::section::Dof;
-use aerodeck::trained_model::{self, Provenance};
+use aerodeck::trained_model::Provenance;
 use aerodeck::uncertainty::{CoefficientUncertainty, record_uncertainty, table_uncertainty};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use serde_json::{Value, json};
-
-type Fitted = (
-    trained_model::Model,
-    FitReport,
-    Result<CoefficientUncertainty, String>,
-);
 
 /// Fit continuous Laguerre filters with feed-through to derivatives (frequency domain) or records (time domain).
 ///
@@ -93,45 +88,73 @@ fn fit(
         set_default(&options, "poles", json!({ "fixed": poles }))?;
     }
     let work = Work::new(progress);
-    let (fitted, source, licence, name) = if let Ok(table) = data.cast::<Derivatives>() {
-        let table = &table.get().0;
-        let fit: FrequencyFit = from_python("options", options.as_any())?;
+    if let Ok(table) = data.cast::<Derivatives>() {
         let dofs: &[Dof] = if lateral { &Dof::THREE } else { &Dof::TWO };
-        table.require(dofs).map_err(raised)?;
-        let fitted = work.run(py, || {
-            let fitted = from_table(table.samples(dofs), dofs, &fit);
-            work.tell(1, 1);
-            fitted
-        })?;
-        let header = &table.header;
-        (
-            fitted,
-            header.source.clone(),
-            header.licence.clone(),
-            table.name.clone(),
-        )
+        let fit = from_python("options", options.as_any())?;
+        to_table(py, &table.get().0, dofs, &fit, &work)
     } else if let Ok(records) = data.cast::<Records>() {
-        let records = records.get();
-        let fit: TimeFit = from_python("options", options.as_any())?;
-        let fitted = work.run(py, || from_records(records, &fit, &work))?;
-        let of = |pick: fn(&aerodeck::wind_tunnel::RecordHeader) -> &String| {
-            records
-                .0
-                .first()
-                .map_or(String::new(), |r| pick(&r.header).clone())
-        };
-        (
-            fitted,
-            of(|h| &h.source),
-            of(|h| &h.licence),
-            "deck".to_owned(),
-        )
+        let fit = from_python("options", options.as_any())?;
+        to_records(py, records.get(), &fit, &work)
     } else {
         let found = data.get_type().name()?.to_string();
-        return Err(wrong("data", "Derivatives or Records", found));
+        Err(wrong("data", "Derivatives or Records", found))
+    }
+}
+
+fn to_table(
+    py: Python<'_>,
+    table: &DerivativeTable,
+    dofs: &[Dof],
+    fit: &FrequencyFit,
+    work: &Work,
+) -> PyResult<Model> {
+    table.require(dofs).map_err(raised)?;
+    let fitted = work.run(py, || {
+        let samples = table.samples(dofs);
+        let fitted = fit_table(&samples, dofs, fit);
+        let known = fitted.map(|fitted| {
+            let known = table_uncertainty(&samples, dofs, fit, &fitted.report);
+            (fitted, known)
+        });
+        work.tell(1, 1);
+        known
+    })?;
+    let (fitted, known) = fitted.map_err(raised)?;
+    let header = &table.header;
+    let origin = [&header.source, &header.licence, &table.name].map(String::clone);
+    Ok(model(fitted, known, origin))
+}
+
+fn to_records(py: Python<'_>, records: &Records, fit: &TimeFit, work: &Work) -> PyResult<Model> {
+    let progress = |p: aerodeck::identification::Progress| {
+        let done = (p.pass - 1) * p.records + p.records_done;
+        work.tell(done, p.passes * p.records);
     };
-    let (model, report, uncertainty) = fitted.map_err(raised)?;
-    Ok(Model {
+    let fitted = work.run(py, || {
+        let sources = records.sources();
+        fit_records(&sources, fit, &progress).map(|fitted| {
+            let known = record_uncertainty(&sources, fit, &fitted.report, &|_| work.check());
+            (fitted, known)
+        })
+    })?;
+    let (fitted, known) = fitted.map_err(raised)?;
+    let first = records.0.first().map(|r| &r.header);
+    let source = first.map_or(String::new(), |h| h.source.clone());
+    let licence = first.map_or(String::new(), |h| h.licence.clone());
+    Ok(model(fitted, known, [source, licence, "deck".to_owned()]))
+}
+
+/// The model with what the data leave open, and where it comes from.
+fn model(
+    fitted: Fitted,
+    known: aerodeck::Result<CoefficientUncertainty>,
+    [source, licence, name]: [String; 3],
+) -> Model {
+    let Fitted { model, mut report } = fitted;
+    if let Ok(known) = &known {
+        known.enter(&mut report);
+    }
+    Model {
         tested: report.tested_range,
         provenance: Provenance {
             source,
@@ -142,39 +165,8 @@ fn fit(
         },
         model,
         report: Some(report),
-        uncertainty,
+        uncertainty: known.map_err(|e| e.to_string()),
         stored: None,
         name,
-    })
-}
-
-fn from_table(
-    samples: Vec<aerodeck::aerodynamics::derivatives::TransferSample>,
-    dofs: &[Dof],
-    fit: &FrequencyFit,
-) -> aerodeck::Result<Fitted> {
-    let (model, mut report) = fit_table(&samples, dofs, fit)?;
-    let known = table_uncertainty(&samples, dofs, fit, &report);
-    enter(&known, &mut report);
-    Ok((model, report, known.map_err(|e| e.to_string())))
-}
-
-fn from_records(records: &Records, fit: &TimeFit, work: &Work) -> aerodeck::Result<Fitted> {
-    let sources = records.sources();
-    let progress = |p: aerodeck::identification::Progress| {
-        work.tell(
-            (p.pass - 1) * p.records + p.records_done,
-            p.passes * p.records,
-        );
-    };
-    let (model, mut report) = fit_records(&sources, fit, &progress)?;
-    let known = record_uncertainty(&sources, fit, &report, &|_| work.check());
-    enter(&known, &mut report);
-    Ok((model, report, known.map_err(|e| e.to_string())))
-}
-
-fn enter(known: &aerodeck::Result<CoefficientUncertainty>, report: &mut FitReport) {
-    if let Ok(known) = known {
-        known.enter(report);
     }
 }

@@ -3,8 +3,8 @@
 use super::testing::{records_alone, sources, table_alone};
 use super::training_tests::distance;
 use super::{
-    DiscreteFit, Form, FrequencyFit, PoleSearch, StaticTerm, TimeFit, fit_discrete, fit_records,
-    fit_table,
+    DiscreteFit, Fitted, Form, FrequencyFit, PoleSearch, StaticTerm, TimeFit, fit_discrete,
+    fit_records, fit_table,
 };
 use crate::aerodynamics::RationalModel;
 use crate::files::derivatives::embedded;
@@ -42,7 +42,7 @@ fn broadband_motions_train_models() {
             poles: PoleSearch::fixed(truth.lags.of_force(0)),
             ..records_alone()
         };
-        let (model, report) = fit_records(&sources(&all), &fit, &|_| ()).unwrap();
+        let Fitted { model, report } = fit_records(&sources(&all), &fit, &|_| ()).unwrap();
         let error = distance(&model, &truth, &[0.12, 0.5, 0.9]);
         assert!(error < 1e-3, "{motion:?}: {error}");
         let range = report.tested_range;
@@ -65,7 +65,7 @@ fn broadband_motions_train_models() {
         };
         fit_discrete(&sources(&all), &fit, &|_| ())
             .unwrap()
-            .1
+            .report
             .condition
     };
     let (white, sines) = (
@@ -102,12 +102,14 @@ fn a_table_is_interpolated_only_on_request() {
         poles: PoleSearch::fixed(&[0.5]),
         ..records_alone()
     };
-    let (noise, _) = fit_records(&sources(&all), &fit, &|_| ()).unwrap();
+    let noise = fit_records(&sources(&all), &fit, &|_| ()).unwrap().model;
     let frequency = FrequencyFit {
         poles: PoleSearch::fixed(&[0.5]),
         ..table_alone()
     };
-    let (table, _) = fit_table(&deck.samples(&Dof::TWO), &Dof::TWO, &frequency).unwrap();
+    let table = fit_table(&deck.samples(&Dof::TWO), &Dof::TWO, &frequency)
+        .unwrap()
+        .model;
     // measured derivatives are no smooth function between their points
     let error = distance(&noise, &table, &[0.2, 0.5, 0.8]);
     assert!(error < 0.15, "{error}");

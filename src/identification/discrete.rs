@@ -4,8 +4,8 @@ use super::form::{PoleSearch, number_of_filters};
 use super::least_squares::BLOCK_ROWS;
 use super::options::TimeWeights;
 use super::own::{OwnDecay, StaticTerm, describe_own, each_once, place_of};
-use super::report::{AlphaGuideline, FitReport, MemoryReport};
-use super::time::fitted::Fitted;
+use super::report::{AlphaGuideline, FitReport, Fitted, MemoryReport};
+use super::time::fitted::FittedSystems;
 use super::time::pass::{ColumnOrder, Columns, OnProgress, Pass, PassPlan, Piece, pass};
 use super::time::record::{DimensionlessRecord, Records};
 use super::time::systems::ForceSystems;
@@ -96,7 +96,7 @@ pub(crate) fn fit_discrete(
     records: &[&dyn RecordSource],
     fit: &DiscreteFit,
     progress: OnProgress<'_>,
-) -> Result<(Model, FitReport)> {
+) -> Result<Fitted> {
     fit.validate()?;
     let records = Records::read(records, fit.static_term)?;
     let (dofs, tested) = (&records.dofs, records.tested_range()?);
@@ -118,7 +118,7 @@ pub(crate) fn fit_discrete(
         counts: parameters.iter().map(|(_, filters)| *filters).collect(),
         systems: pass.systems(),
     };
-    let fitted = Fitted::new(dofs, systems, 1.0, "the filters")?;
+    let fitted = FittedSystems::new(dofs, systems, 1.0, "the filters")?;
     let model = model(&fitted, dofs, &parameters, delta_s)?;
     let entries = fitted.reports(|e| {
         let names = (0..parameters[e].1).map(|l| format!("c{l}")).collect();
@@ -147,7 +147,10 @@ pub(crate) fn fit_discrete(
         covariance_assumption: "white residuals, exact motions".into(),
         notes: Vec::new(),
     };
-    Ok((Model::DiscreteLaguerre(model), with_notes(report)))
+    Ok(Fitted {
+        model: Model::DiscreteLaguerre(model),
+        report: with_notes(report),
+    })
 }
 
 /// One pass over the records, resampled to one step, with the filters (2.33) of the given decay factors, one for each
@@ -237,7 +240,7 @@ impl Columns for DiscreteColumns {
 
 /// One chain a motion for all forces that share its parameters (`α` and `L` of every transfer function, row by row).
 fn model(
-    fitted: &Fitted<'_>,
+    fitted: &FittedSystems<'_>,
     dofs: &[Dof],
     parameters: &[(f64, usize)],
     delta_s: f64,

@@ -12,7 +12,7 @@ use super::form::Form;
 use super::frequency_options::{FrequencyFit, FrequencyWeights};
 use super::minimum_state::fit_minimum_state;
 use super::own::{describe_own, entry_forms};
-use super::report::{FitReport, FittedTable, variance};
+use super::report::{FitReport, Fitted, FittedTable, variance};
 use super::samples::{Entry, sizes, sort_by_entry, state_wishes};
 use crate::aerodynamics::derivatives::TransferSample;
 use crate::error::{Error, Result};
@@ -30,11 +30,7 @@ use poles::{choose_poles, choose_poles_together};
 ///
 /// # Errors
 /// [`Error::Input`] for impossible options, samples that are not finite, entries without samples or with too few.
-pub fn fit_table(
-    samples: &[TransferSample],
-    dofs: &[Dof],
-    fit: &FrequencyFit,
-) -> Result<(Model, FitReport)> {
+pub fn fit_table(samples: &[TransferSample], dofs: &[Dof], fit: &FrequencyFit) -> Result<Fitted> {
     fit.validate()?;
     let (mut entries, mut notes) = sort_by_entry(samples, dofs, fit.weights)?;
     state_wishes(&mut entries, dofs, fit)?;
@@ -82,7 +78,7 @@ pub fn fit_table(
     };
     report.judge(&fit.poles);
     note_lags(&model, &mut report.notes);
-    Ok((model, report))
+    Ok(Fitted { model, report })
 }
 
 /// Every form whose entries are linear in their coefficients once the poles are known: each entry by itself, and all of

@@ -44,7 +44,8 @@ pub use own::{OwnDecay, OwnFilters, StaticTerm};
 pub use records::fit_records;
 pub(crate) use report::CANCELLATION_LIMIT;
 pub use report::{
-    AlphaGuideline, FitReport, MemoryReport, OrderReport, SearchPoint, SearchReport, StaticReport,
+    AlphaGuideline, FitReport, Fitted, MemoryReport, OrderReport, SearchPoint, SearchReport,
+    StaticReport,
 };
 pub use samples::sample_model;
 pub(crate) use time::pass::OnProgress;

@@ -7,9 +7,9 @@ use super::entry_report::EntryReport;
 use super::form::Form;
 use super::options::TimeFit;
 use super::own::describe_own;
-use super::report::{FitReport, MemoryReport, OrderReport, SearchReport};
+use super::report::{FitReport, Fitted, MemoryReport, OrderReport, SearchReport};
 use super::time::continuous::{RecordFit, Rows};
-use super::time::fitted::Fitted;
+use super::time::fitted::FittedSystems;
 use super::time::pass::OnProgress;
 use super::time::record::{DimensionlessRecord, Records};
 use super::time::search::{ChosenPoles, PASSES, choose_poles, padded};
@@ -31,7 +31,7 @@ pub fn fit_records(
     records: &[&dyn RecordSource],
     fit: &TimeFit,
     progress: OnProgress<'_>,
-) -> Result<(Model, FitReport)> {
+) -> Result<Fitted> {
     fit.validate()?;
     let records = Records::read(records, fit.static_term)?;
     let tested = records.tested_range()?;
@@ -71,7 +71,7 @@ pub fn fit_records(
     report.condition = conditions.fold(1.0, f64::max);
     report.judge(&fit.poles);
     note_lags(&model, &mut report.notes);
-    Ok((model, report))
+    Ok(Fitted { model, report })
 }
 
 impl<'a> RecordFit<'a> {
@@ -141,7 +141,12 @@ impl<'a> RecordFit<'a> {
             Ok(AtPoles {
                 task: self,
                 chains,
-                fitted: Fitted::new(&self.records.dofs, systems, self.noise_ratio(), &filters)?,
+                fitted: FittedSystems::new(
+                    &self.records.dofs,
+                    systems,
+                    self.noise_ratio(),
+                    &filters,
+                )?,
                 still_samples: pass.still_samples.clone(),
             })
         };
@@ -154,7 +159,7 @@ struct AtPoles<'a> {
     task: &'a RecordFit<'a>,
     /// Poles of the filters of every transfer function, row by row.
     chains: Vec<Vec<f64>>,
-    fitted: Fitted<'a>,
+    fitted: FittedSystems<'a>,
     still_samples: Vec<usize>,
 }
 

@@ -14,6 +14,15 @@ pub(crate) const CANCELLATION_LIMIT: f64 = 30.0;
 /// Scaled columns above this condition number leave fewer than half of the digits to the coefficients.
 pub(crate) const CONDITION_LIMIT: f64 = 1e8;
 
+/// A fitted model with the account of its fit.
+#[derive(Debug, Clone)]
+pub struct Fitted {
+    /// The model.
+    pub model: Model,
+    /// How it was fitted, and how well.
+    pub report: FitReport,
+}
+
 /// Account of one fit.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FitReport {

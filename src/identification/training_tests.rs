@@ -2,8 +2,8 @@
 
 use super::testing::{records, records_alone, sources, table_alone};
 use super::{
-    DiscreteFit, FitReport, Form, FrequencyFit, OwnDecay, OwnFilters, PoleSearch, StaticTerm,
-    TimeFit, fit_discrete, fit_records, fit_table,
+    DiscreteFit, FitReport, Fitted, Form, FrequencyFit, OwnDecay, OwnFilters, PoleSearch,
+    StaticTerm, TimeFit, fit_discrete, fit_records, fit_table,
 };
 use crate::aerodynamics::laguerre::{DiscreteTerm, impulse_response};
 use crate::aerodynamics::{DiscreteLaguerre, LaguerreModel, RationalModel, Transfer};
@@ -35,7 +35,7 @@ pub fn distance(a: &dyn Transfer, b: &dyn Transfer, ks: &[f64]) -> f64 {
         .fold(0.0, f64::max)
 }
 
-fn three_by_three() -> (Model, FitReport) {
+fn three_by_three() -> Fitted {
     let deck = embedded::deck("LN21-5200").unwrap();
     let fit = FrequencyFit {
         poles: PoleSearch::fixed(&[0.5]),
@@ -48,7 +48,7 @@ fn three_by_three() -> (Model, FitReport) {
 /// fits to records and to the table say of the deck.
 #[test]
 fn three_motions_give_nine_transfer_functions() {
-    let (model, report) = three_by_three();
+    let Fitted { model, report } = three_by_three();
     assert_eq!(report.entries.len(), 9);
     let fit = TimeFit {
         poles: PoleSearch::fixed(&[0.5]),
@@ -56,7 +56,10 @@ fn three_motions_give_nine_transfer_functions() {
     };
     let all = records(&model, &[10.9], 0.0, 1);
     assert_eq!(all.len(), 3);
-    let (again, report) = fit_records(&sources(&all), &fit, &|_| ()).unwrap();
+    let Fitted {
+        model: again,
+        report,
+    } = fit_records(&sources(&all), &fit, &|_| ()).unwrap();
     assert_eq!(report.entries.len(), 9);
     // what the low-pass leaves of the images above half the sampling frequency
     let error = distance(&again, &model, &[0.1, 0.3, 0.7]);
@@ -66,7 +69,7 @@ fn three_motions_give_nine_transfer_functions() {
     let all = TunnelPlan::default()
         .records_from_table(&deck, &Dof::THREE)
         .unwrap();
-    let (in_time, _) = fit_records(&sources(&all), &fit, &|_| ()).unwrap();
+    let in_time = fit_records(&sources(&all), &fit, &|_| ()).unwrap().model;
     // measured scatter between the two speeds is weighted by segment here and by point there
     let error = distance(&in_time, &model, &[0.15, 0.3, 0.6, 0.9]);
     assert!(error < 0.1, "{error}");
@@ -82,7 +85,7 @@ fn nine_l_coefficients_match_a_fit_in_the_frequency_domain() {
         .records_from_table(&deck, &Dof::THREE)
         .unwrap();
     let fit = DiscreteFit::default();
-    let (model, report) = fit_discrete(&sources(&all[..3]), &fit, &|_| ()).unwrap();
+    let Fitted { model, report } = fit_discrete(&sources(&all[..3]), &fit, &|_| ()).unwrap();
     let count: usize = report.entries.iter().map(|e| e.coefficients.len()).sum();
     assert_eq!(count, 27);
     let Model::DiscreteLaguerre(discrete) = &model else {
@@ -160,7 +163,7 @@ fn discrete_filters_of_one_transfer_function_are_recovered() {
     }
     both.header.segments.clear();
     for all in [parts, vec![both]] {
-        let (model, report) = fit_discrete(&sources(&all), &fit, &|_| ()).unwrap();
+        let Fitted { model, report } = fit_discrete(&sources(&all), &fit, &|_| ()).unwrap();
         let Model::DiscreteLaguerre(model) = model else {
             panic!("not discrete");
         };
@@ -200,7 +203,10 @@ fn continuous_filters_of_one_transfer_function_are_recovered() {
         own: own(Some(vec![0.9])),
         ..table_alone()
     };
-    let (truth, report) = fit_table(&deck.samples(&Dof::TWO), &Dof::TWO, &frequency).unwrap();
+    let Fitted {
+        model: truth,
+        report,
+    } = fit_table(&deck.samples(&Dof::TWO), &Dof::TWO, &frequency).unwrap();
     let poles: Vec<usize> = report.entries.iter().map(|e| e.poles.len()).collect();
     assert_eq!(poles, [3, 3, 2, 3]);
     let Model::Laguerre(LaguerreModel { terms, .. }) = &truth else {
@@ -215,7 +221,7 @@ fn continuous_filters_of_one_transfer_function_are_recovered() {
         own: own(Some(vec![0.9])),
         ..records_alone()
     };
-    let (found, _) = fit_records(&sources(&all), &stated, &|_| ()).unwrap();
+    let found = fit_records(&sources(&all), &stated, &|_| ()).unwrap().model;
     // images above half the sampling frequency, as for shared poles
     let error = distance(&found, &truth, &[0.1, 0.3, 0.8]);
     assert!(error < 1e-4, "{error}");
@@ -223,7 +229,9 @@ fn continuous_filters_of_one_transfer_function_are_recovered() {
         own: own(None),
         ..stated
     };
-    let (_, report) = fit_records(&sources(&all), &searched, &|_| ()).unwrap();
+    let report = fit_records(&sources(&all), &searched, &|_| ())
+        .unwrap()
+        .report;
     assert_eq!(report.search.len(), 1);
     assert_eq!(report.search[0].entry, Some((Dof::Torsion, Dof::Vertical)));
     let pole = report.search[0].chosen.poles[0];
@@ -256,18 +264,18 @@ fn static_terms_are_estimated_or_removed() {
         };
         fit_records(&sources(&all), &fit, &|_| ()).unwrap()
     };
-    let (model, report) = fitted(StaticTerm::Estimated);
+    let Fitted { model, report } = fitted(StaticTerm::Estimated);
     assert!(distance(&model, &truth, &[0.1, 0.9]) < 1e-3);
     for (reported, c) in report.static_terms.iter().zip(constants) {
         assert!((reported.value - c).abs() < 1e-6, "{reported:?}");
         assert!(reported.standard_error.unwrap() < 1e-5 && reported.record.is_none());
     }
-    let (model, report) = fitted(StaticTerm::Removed);
+    let Fitted { model, report } = fitted(StaticTerm::Removed);
     assert!(distance(&model, &truth, &[0.1, 0.9]) < 2e-3);
     assert_eq!(report.static_terms.len(), 8);
     // the motions start and end at rest: their own mean is small
     assert!((report.static_terms[0].value - constants[0]).abs() < 1e-4);
-    let (model, report) = fitted(StaticTerm::None);
+    let Fitted { model, report } = fitted(StaticTerm::None);
     assert!(report.static_terms.is_empty());
     assert!(report.entries.iter().any(|e| e.relative_rms.unwrap() > 0.1));
     assert!(distance(&model, &truth, &[0.1, 0.9]) > 1e-2);
@@ -279,7 +287,7 @@ fn too_little_rest_before_the_motion_is_said() {
     let whole = records(&RationalModel::jones_flat_plate(), &[8.17], 0.0, 1);
     let discrete = |all: &[Record]| {
         let fit = DiscreteFit::default();
-        fit_discrete(&sources(all), &fit, &|_| ()).unwrap().1
+        fit_discrete(&sources(all), &fit, &|_| ()).unwrap().report
     };
     let continuous = |all: &[Record], discard_s| {
         let fit = TimeFit {
@@ -287,7 +295,7 @@ fn too_little_rest_before_the_motion_is_said() {
             discard_s,
             ..records_alone()
         };
-        fit_records(&sources(all), &fit, &|_| ()).unwrap().1
+        fit_records(&sources(all), &fit, &|_| ()).unwrap().report
     };
     let remembered = |r: &FitReport| r.notes.iter().any(|n| n.contains("the filters remember"));
     let report = discrete(&whole);

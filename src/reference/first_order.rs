@@ -233,7 +233,7 @@ impl FirstOrderExample {
             static_term: StaticTerm::None,
             ..DiscreteFit::default()
         };
-        Ok(fit_discrete(&[training], &fit, &|_| ())?.0)
+        Ok(fit_discrete(&[training], &fit, &|_| ())?.model)
     }
 
     /// (2.27) at `s = iω`.

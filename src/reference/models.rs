@@ -11,8 +11,8 @@ use crate::error::{Error, Result};
 use crate::files::derivatives::embedded;
 use crate::flutter::{Onset, divergence_speed, static_part};
 use crate::identification::{
-    Constraints, DiscreteFit, FeedThrough, Form, FrequencyFit, FrequencyWeights, PoleSearch,
-    TimeFit, fit_discrete, fit_records, fit_table, sample_model,
+    Constraints, DiscreteFit, FeedThrough, Fitted, Form, FrequencyFit, FrequencyWeights,
+    PoleSearch, TimeFit, fit_discrete, fit_records, fit_table, sample_model,
 };
 use crate::section::{Dof, SectionModel};
 use crate::trained_model::Model;
@@ -48,7 +48,7 @@ pub(super) fn flat_plate_fits() -> Result<Vec<f64>> {
             constraints: Constraints::None,
             ..FrequencyFit::default()
         };
-        Ok::<_, Error>(fit_table(&samples, &Dof::TWO, &options)?.0)
+        Ok::<_, Error>(fit_table(&samples, &Dof::TWO, &options)?.model)
     };
     let laguerre = || Form::Laguerre {
         filters: 3,
@@ -97,7 +97,7 @@ fn discrete_onset(records: &[Record], filters: usize) -> Result<Onset> {
         filters,
         ..DiscreteFit::default()
     };
-    let (model, report) = fit_discrete(&sources(records), &fit, &|_| {})?;
+    let Fitted { model, report } = fit_discrete(&sources(records), &fit, &|_| {})?;
     onset_of_records(&model, report.tested_range)
 }
 
@@ -155,7 +155,7 @@ pub(super) fn random_motion() -> Result<Vec<f64>> {
         ..TunnelPlan::default()
     };
     let records = plan.records_from_model(&WITHOUT_ROTARY, "flat plate", 0.5)?;
-    let (model, report) = fit_records(&sources(&records), &TimeFit::default(), &|_| {})?;
+    let Fitted { model, report } = fit_records(&sources(&records), &TimeFit::default(), &|_| {})?;
     let coupled = CoupledSection::with_model(&structure, &model)?;
     let trained = by_eigenvalues(&coupled, 120.0, Some(report.tested_range))?;
     Ok(vec![
@@ -177,7 +177,7 @@ pub(super) fn laguerre_flat_plate() -> Result<Vec<f64>> {
         constraints: Constraints::None,
         ..TimeFit::default()
     };
-    let (model, report) = fit_records(&sources(&records), &fit, &|_| {})?;
+    let Fitted { model, report } = fit_records(&sources(&records), &fit, &|_| {})?;
     Ok(vec![
         onset_of_records(&model, report.tested_range)?.at.speed_m_s,
     ])
@@ -200,7 +200,7 @@ pub(super) fn dissipative() -> Result<Vec<f64>> {
         for name in embedded::names() {
             let table = embedded::deck(name)?;
             let samples = table.samples(&Dof::TWO);
-            let (model, _) = fit_table(&samples, &Dof::TWO, &FrequencyFit::default())?;
+            let model = fit_table(&samples, &Dof::TWO, &FrequencyFit::default())?.model;
             let coupled = CoupledSection::with_model(&section.structure()?, &model)?;
             let tested = Some(table.tested_range(&Dof::TWO));
             let onset = by_eigenvalues(&coupled, *speed_max_m_s, tested)?
@@ -256,7 +256,7 @@ pub(super) fn fitted(table: &DerivativeTable, fit: FrequencyFit) -> Result<f64> 
         constraints: Constraints::None,
         ..fit
     };
-    let (model, _) = fit_table(&table.samples(&Dof::TWO), &Dof::TWO, &fit)?;
+    let model = fit_table(&table.samples(&Dof::TWO), &Dof::TWO, &fit)?.model;
     let section = CoupledSection::with_model(&SectionModel::table_4_1().structure()?, &model)?;
     let tested = Some(table.tested_range(&Dof::TWO));
     Ok(by_eigenvalues(&section, 50.0, tested)?.at.speed_m_s)

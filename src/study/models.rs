@@ -5,7 +5,7 @@ use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
 use crate::flutter::{FlutterSearch, StableRange, find_onset};
 use crate::identification::{
-    FitReport, OnProgress, OnsetEffect, fit_discrete, fit_records, fit_table,
+    FitReport, Fitted, OnProgress, OnsetEffect, fit_discrete, fit_records, fit_table,
 };
 use crate::trained_model::{Experiment, Model, Provenance, TrainedModel};
 use crate::uncertainty::{
@@ -36,11 +36,8 @@ pub fn train_one(
     records: &RecordSet,
     progress: OnProgress<'_>,
 ) -> Result<TrainedWithReport> {
-    let Fit {
-        model,
-        mut report,
-        estimate,
-    } = fit(study, block, deck, records, progress)?;
+    let (fitted, estimate) = fit(study, block, deck, records, progress)?;
+    let Fitted { model, mut report } = fitted;
     let onset = |model: &Model, tested| onset_of(study, &block.name, model, tested);
     // a search that fails takes no trained model with it
     let search = onset(&model, report.tested_range).unwrap_or_else(|e| {
@@ -87,49 +84,37 @@ pub fn train_one(
     })
 }
 
-/// What the data say: the model, its account, and how far they leave its coefficients open.
-struct Fit {
-    model: Model,
-    report: FitReport,
-    estimate: Result<CoefficientUncertainty>,
-}
-
-/// Fits to the table, to records, or to records in discrete time, as the block of the model says.
+/// Fits to the table, to records, or to records in discrete time, as the block of the model says; and how far the data
+/// leave the coefficients open.
 fn fit(
     study: &Study,
     block: &ModelBlock,
     deck: &Deck,
     records: &RecordSet,
     progress: OnProgress<'_>,
-) -> Result<Fit> {
+) -> Result<(Fitted, Result<CoefficientUncertainty>)> {
     let own = block.speed_groups.as_deref();
     let groups = own.or(study.deck.speed_groups.as_deref());
-    let (model, report, estimate);
     if let Some(fit) = &block.table {
         let (samples, dofs) = (deck.samples(study, groups)?, study.section.dofs());
-        (model, report) = fit_table(&samples, &dofs, fit)?;
-        estimate = table_uncertainty(&samples, &dofs, fit, &report);
-    } else {
-        let chosen = records.select(groups)?;
-        if let Some(fit) = &block.records {
-            (model, report) = fit_records(&chosen, fit, progress)?;
-            estimate = record_uncertainty(&chosen, fit, &report, progress);
-        } else if let Some(fit) = &block.discrete {
-            (model, report) = fit_discrete(&chosen, fit, progress)?;
-            estimate = discrete_uncertainty(&chosen, fit, &model, progress);
-        } else {
-            return Err(Error::input(
-                format!("model {}", block.name),
-                "one of `records`, `table`, `discrete`",
-                "none",
-            ));
-        }
+        let fitted = fit_table(&samples, &dofs, fit)?;
+        let estimate = table_uncertainty(&samples, &dofs, fit, &fitted.report);
+        return Ok((fitted, estimate));
     }
-    Ok(Fit {
-        model,
-        report,
-        estimate,
-    })
+    let chosen = records.select(groups)?;
+    if let Some(fit) = &block.records {
+        let fitted = fit_records(&chosen, fit, progress)?;
+        let estimate = record_uncertainty(&chosen, fit, &fitted.report, progress);
+        return Ok((fitted, estimate));
+    }
+    let Some(fit) = &block.discrete else {
+        let place = format!("model {}", block.name);
+        let expected = "one of `records`, `table`, `discrete`";
+        return Err(Error::input(place, expected, "none"));
+    };
+    let fitted = fit_discrete(&chosen, fit, progress)?;
+    let estimate = discrete_uncertainty(&chosen, fit, &fitted.model, progress);
+    Ok((fitted, estimate))
 }
 
 /// Onset of the coupled section.

@@ -11,7 +11,7 @@ use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, non_negative, positive};
 use crate::flutter::{Onset, OnsetSearch, determinant_onset, find_onset};
 use crate::identification::{
-    Constraints, FeedThrough, Form, PoleSearch, TimeFit, TimeWeights, fit_records,
+    Constraints, FeedThrough, Fitted, Form, PoleSearch, TimeFit, TimeWeights, fit_records,
 };
 use crate::section::SectionModel;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
@@ -303,7 +303,7 @@ impl Campaign {
         records: &[Record],
     ) -> Result<(CoefficientUncertainty, Option<Onset>, ReducedFrequencyRange)> {
         let sources: Vec<&dyn RecordSource> = records.iter().map(|r| r as _).collect();
-        let (model, report) = fit_records(&sources, &self.fit, &|_| ())?;
+        let Fitted { model, report } = fit_records(&sources, &self.fit, &|_| ())?;
         let estimate = record_uncertainty(&sources, &self.fit, &report, &|_| ())?;
         let section = CoupledSection::with_model(&self.section.structure()?, &model)?;
         let search = OnsetSearch {

@@ -9,8 +9,8 @@ use crate::aeroelastic::CoupledSection;
 use crate::files::derivatives::embedded;
 use crate::flutter::{Onset, OnsetSearch, find_onset};
 use crate::identification::{
-    DiscreteFit, FeedThrough, Form, FrequencyFit, FrequencyWeights, PoleSearch, fit_discrete,
-    fit_table, sample_model,
+    DiscreteFit, FeedThrough, Fitted, Form, FrequencyFit, FrequencyWeights, PoleSearch,
+    fit_discrete, fit_table, sample_model,
 };
 use crate::section::{Dof, SectionModel, Structure};
 use crate::trained_model::Model;
@@ -49,7 +49,7 @@ fn two_poles(poles: PoleSearch) -> FrequencyFit {
 }
 
 fn fitted(samples: &[TransferSample], fit: &FrequencyFit) -> (Model, CoefficientUncertainty) {
-    let (model, report) = fit_table(samples, &Dof::TWO, fit).unwrap();
+    let Fitted { model, report } = fit_table(samples, &Dof::TWO, fit).unwrap();
     let estimate = table_uncertainty(samples, &Dof::TWO, fit, &report).unwrap();
     (model, estimate)
 }
@@ -180,7 +180,7 @@ fn a_known_bias_leaves_no_bare_interval() {
         .unwrap();
     let sources: Vec<&dyn RecordSource> = records.iter().map(|r| r as _).collect();
     let fit = DiscreteFit::default();
-    let (model, report) = fit_discrete(&sources, &fit, &|_| ()).unwrap();
+    let Fitted { model, report } = fit_discrete(&sources, &fit, &|_| ()).unwrap();
     let estimate = discrete_uncertainty(&sources, &fit, &model, &|_| ()).unwrap();
     let at = onset(&model);
     let search = OnsetSearch::default();
@@ -219,7 +219,7 @@ fn gradients_are_differences_of_onsets() {
         .unwrap();
     let sources: Vec<&dyn RecordSource> = records.iter().map(|r| r as _).collect();
     let fit = DiscreteFit::default();
-    let (model, _) = fit_discrete(&sources, &fit, &|_| ()).unwrap();
+    let model = fit_discrete(&sources, &fit, &|_| ()).unwrap().model;
     let discrete = discrete_uncertainty(&sources, &fit, &model, &|_| ()).unwrap();
     for (model, estimate) in [continuous, (model, discrete)] {
         let at = onset(&model);

@@ -4,7 +4,7 @@ use crate::matrix::{NamedSection, fastest_growth};
 use aerodeck::aerodynamics::derivatives::DerivativeTable;
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::identification::{
-    Constraints, FeedThrough, FitReport, Form, FrequencyFit, fit_table,
+    Constraints, FeedThrough, FitReport, Fitted, Form, FrequencyFit, fit_table,
 };
 use aerodeck::section::{Dof, SectionModel};
 use aerodeck::trained_model::Model;
@@ -98,7 +98,7 @@ pub fn fitted(
     dofs: &[Dof],
     form: &Form,
     constraints: Constraints,
-) -> (Model, FitReport) {
+) -> Fitted {
     let fit = FrequencyFit {
         form: form.clone(),
         constraints,

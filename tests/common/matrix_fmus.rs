@@ -7,7 +7,7 @@ use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::flutter::{FlutterSearch, OnsetSearch, find_onset};
 use aerodeck::fmu::force_options::ForceOptions;
 use aerodeck::fmu::package::{Export, FmiVersion, Growing, Overwrite, Runtime, write_fmu};
-use aerodeck::identification::{Form, FrequencyFit, fit_table};
+use aerodeck::identification::{Fitted, Form, FrequencyFit, fit_table};
 use aerodeck::trained_model::{Experiment, Provenance, SCHEMA_VERSION, TrainedModel};
 use serde_json::{Value, json};
 use std::path::Path;
@@ -105,7 +105,7 @@ fn trained(table: &DerivativeTable, named: &NamedSection, form: Form) -> Trained
         form,
         ..FrequencyFit::default()
     };
-    let (model, report) = fit_table(&table.samples(&dofs), &dofs, &fit).unwrap();
+    let Fitted { model, report } = fit_table(&table.samples(&dofs), &dofs, &fit).unwrap();
     TrainedModel {
         schema_version: SCHEMA_VERSION,
         name: table.name.clone(),

@@ -3,7 +3,7 @@
 use aerodeck::aerodynamics::Realizable;
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::files::derivatives::embedded;
-use aerodeck::identification::{Constraints, Form, FrequencyFit, fit_table};
+use aerodeck::identification::{Constraints, Fitted, Form, FrequencyFit, fit_table};
 use aerodeck::section::{Dof, SectionModel, Translation};
 use aerodeck::trained_model::{Experiment, Provenance, SCHEMA_VERSION, TrainedModel};
 
@@ -28,7 +28,8 @@ pub fn trained(form: Form, lateral_hz: f64) -> TrainedModel {
         constraints: Constraints::None,
         ..FrequencyFit::default()
     };
-    let (model, report) = fit_table(&table.samples(&Dof::THREE), &Dof::THREE, &fit).unwrap();
+    let Fitted { model, report } =
+        fit_table(&table.samples(&Dof::THREE), &Dof::THREE, &fit).unwrap();
     TrainedModel {
         schema_version: SCHEMA_VERSION,
         name: "LN21-5200, three degrees of freedom".into(),

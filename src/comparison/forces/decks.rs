@@ -5,7 +5,7 @@ use super::score::{Score, ScoreSummary, Trial, run_all, summaries};
 use super::statements::{Statement, on_decks};
 use super::tested_deck::TestedDeck;
 use crate::error::{Error, Result};
-use crate::identification::{FitReport, fit_discrete};
+use crate::identification::{FitReport, Fitted, fit_discrete};
 use crate::trained_model::Model;
 use crate::wind_tunnel::Record;
 use serde::Serialize;
@@ -98,7 +98,7 @@ struct Trained {
 
 impl Trained {
     fn new(deck: &TestedDeck, options: &CompareOptions) -> Result<Self> {
-        let (model, report) = fit_discrete(&deck.training(), &options.laguerre, &|_| ())?;
+        let Fitted { model, report } = fit_discrete(&deck.training(), &options.laguerre, &|_| ())?;
         Ok(Self {
             deck: deck.table.name.clone(),
             speed_m_s: deck.training_speed_m_s(),

@@ -114,20 +114,18 @@ pub(crate) fn compare_models(
     ];
     let models: Vec<(String, &dyn Transfer)> = fits
         .iter()
-        .map(|(name, (model, _))| (name.clone(), model as &dyn Transfer))
+        .map(|(name, fitted)| (name.clone(), &fitted.model as &dyn Transfer))
         .collect();
-    let trials: Vec<Trial<'_>> = fits
-        .iter()
-        .flat_map(|(name, (model, _))| {
-            records.iter().map(|record| Trial {
-                deck: &deck,
-                record,
-                name,
-                model,
-                held_out: false,
-            })
-        })
-        .collect();
+    let mut trials = Vec::with_capacity(fits.len() * records.len());
+    for (name, fitted) in &fits {
+        trials.extend(records.iter().map(|record| Trial {
+            deck: &deck,
+            record,
+            name,
+            model: &fitted.model,
+            held_out: false,
+        }));
+    }
     let outcomes = run_all(&trials, options, progress)?;
     let (predicted, scores): (Vec<_>, Vec<_>) = outcomes
         .into_iter()
@@ -144,7 +142,7 @@ pub(crate) fn compare_models(
         statements: on_models(&entries, &scores),
         models: fits
             .iter()
-            .map(|(name, (_, report))| rival(name, report))
+            .map(|(name, fitted)| rival(name, &fitted.report))
             .collect(),
         entries,
         scores,

@@ -47,7 +47,7 @@ fn one_lag(poles: PoleSearch) -> FrequencyFit {
 #[test]
 fn constrained_fit_is_that_of_lapack() {
     let given = one_lag(PoleSearch::fixed(&[0.3]));
-    let (_, report) = fit_table(&samples(), &Dof::TWO, &given).unwrap();
+    let report = fit_table(&samples(), &Dof::TWO, &given).unwrap().report;
     let printed = [
         [0.0, -3.619493368, -1.438788960, -0.799107582],
         [
@@ -70,7 +70,7 @@ fn constrained_fit_is_that_of_lapack() {
         }
     }
     let searched = one_lag(PoleSearch::default());
-    let (_, report) = fit_table(&samples(), &Dof::TWO, &searched).unwrap();
+    let report = fit_table(&samples(), &Dof::TWO, &searched).unwrap().report;
     let chosen = &report.search[0].chosen;
     // a minimum is known to the root of the rounding of the objective
     assert!((chosen.poles[0] - 0.237_824_53).abs() < 2e-7, "{chosen:?}");
@@ -114,7 +114,7 @@ fn every_form_meets_the_limits() {
             limits: quasi_steady(),
             ..table_alone()
         };
-        let (model, report) = fit_table(&samples(), &Dof::TWO, &fit).unwrap();
+        let Fitted { model, report } = fit_table(&samples(), &Dof::TWO, &fit).unwrap();
         let at = |k: f64| {
             model
                 .transfer(ReducedFrequency::from_full_width(k))

@@ -56,7 +56,7 @@ fn jones_is_recovered_exactly_by_every_form() {
     let jones = RationalModel::jones_flat_plate();
     let samples = jones_samples();
     for form in [shared(2), per_force(2), minimum_state(2)] {
-        let (model, report) = fit_table(&samples, &Dof::TWO, &with(form)).unwrap();
+        let Fitted { model, report } = fit_table(&samples, &Dof::TWO, &with(form)).unwrap();
         let found = match &model {
             Model::Rational(m) => [m.lags.of_force(0), m.lags.of_force(1)].concat(),
             Model::MinimumState(m) => m.lags.clone(),
@@ -81,7 +81,7 @@ fn jones_is_recovered_exactly_by_every_form() {
         poles: PoleSearch::fixed(&[0.091, 0.6]),
         ..with(shared(2))
     };
-    let (Model::Rational(found), _) = fit_table(&samples, &Dof::TWO, &given).unwrap() else {
+    let Model::Rational(found) = fit_table(&samples, &Dof::TWO, &given).unwrap().model else {
         panic!("not rational");
     };
     for (a, b) in [
@@ -100,8 +100,11 @@ fn jones_is_recovered_exactly_by_every_form() {
 fn own_lags_fit_at_least_as_well() {
     let table = embedded::deck("LN21-5200").unwrap();
     let samples = table.samples(&Dof::TWO);
-    let (model, own) = fit_table(&samples, &Dof::TWO, &with(per_force(1))).unwrap();
-    let (_, common) = fit_table(&samples, &Dof::TWO, &with(shared(1))).unwrap();
+    let Fitted { model, report: own } =
+        fit_table(&samples, &Dof::TWO, &with(per_force(1))).unwrap();
+    let common = fit_table(&samples, &Dof::TWO, &with(shared(1)))
+        .unwrap()
+        .report;
     let forces: Vec<_> = own.search.iter().map(|s| s.force).collect();
     assert_eq!(forces, [Some(Dof::Vertical), Some(Dof::Torsion)]);
     // objectives of two rows are mean squares over two entries each
@@ -116,7 +119,7 @@ fn own_lags_fit_at_least_as_well() {
         poles: PoleSearch::fixed(&[0.3, 0.6]),
         ..with(per_force(1))
     };
-    let (Model::Rational(model), _) = fit_table(&samples, &Dof::TWO, &given).unwrap() else {
+    let Model::Rational(model) = fit_table(&samples, &Dof::TWO, &given).unwrap().model else {
         panic!("not rational");
     };
     assert_eq!(model.lags, Lags::PerForce(vec![vec![0.3], vec![0.6]]));
@@ -126,7 +129,8 @@ fn own_lags_fit_at_least_as_well() {
 /// degrees of freedom take no more states.
 #[test]
 fn minimum_state_on_the_flat_plate() {
-    let (model, report) = fit_table(&flat_plate(), &Dof::TWO, &with(minimum_state(2))).unwrap();
+    let Fitted { model, report } =
+        fit_table(&flat_plate(), &Dof::TWO, &with(minimum_state(2))).unwrap();
     assert_eq!(model.realize().states(), 2);
     assert!(
         (onset_m_s(&model) - 39.456).abs() < 0.03,
@@ -139,7 +143,9 @@ fn minimum_state_on_the_flat_plate() {
     }
     let table = embedded::deck("LN20-5500").unwrap();
     let wide = with(minimum_state(3));
-    let (model, _) = fit_table(&table.samples(&Dof::THREE), &Dof::THREE, &wide).unwrap();
+    let model = fit_table(&table.samples(&Dof::THREE), &Dof::THREE, &wide)
+        .unwrap()
+        .model;
     assert_eq!(model.realize().states(), 3);
 }
 
@@ -160,7 +166,9 @@ fn minimum_state_recovers_itself() {
         .map(|i| ReducedFrequency::from_full_width(0.12 * f64::from(i)))
         .collect();
     let samples = sample_model(&truth, &ks).unwrap();
-    let (model, _) = fit_table(&samples, &Dof::TWO, &with(minimum_state(2))).unwrap();
+    let model = fit_table(&samples, &Dof::TWO, &with(minimum_state(2)))
+        .unwrap()
+        .model;
     for k in [0.02, 0.5, 2.0].map(ReducedFrequency::from_full_width) {
         let expected = truth.transfer(k).unwrap();
         let error = (model.transfer(k).unwrap() - &expected).camax();
@@ -178,7 +186,7 @@ fn weights_of_entries_move_shared_lags() {
             entry_weights: weights,
             ..with(shared(1))
         };
-        let (_, report) = fit_table(&samples, &Dof::TWO, &fit).unwrap();
+        let report = fit_table(&samples, &Dof::TWO, &fit).unwrap().report;
         report.search[0].chosen.poles[0]
     };
     let only = lag(Some(vec![vec![0.0, 0.0], vec![0.0, 1.0]]));
@@ -190,7 +198,7 @@ fn weights_of_entries_move_shared_lags() {
         },
         ..table_alone()
     };
-    let (_, report) = fit_table(&samples, &Dof::TWO, &alone).unwrap();
+    let report = fit_table(&samples, &Dof::TWO, &alone).unwrap().report;
     let expected = report.search[3].chosen.poles[0];
     assert!((only / expected - 1.0).abs() < 1e-6, "{only} {expected}");
     assert!((lag(None) / expected - 1.0).abs() > 0.01);
@@ -214,13 +222,13 @@ fn degenerate_lags_are_said_and_a_ridge_holds_them() {
         values.map(|c| c.value.abs()).fold(0.0, f64::max)
     };
     let said = |report: &FitReport, what: &str| report.notes.iter().any(|n| n.contains(what));
-    let (_, free) = fit_table(&samples, &Dof::TWO, &fit(0.0)).unwrap();
+    let free = fit_table(&samples, &Dof::TWO, &fit(0.0)).unwrap().report;
     assert!(said(
         &free,
         "degenerate lags: 0.5000 and 0.5050 are nearly equal"
     ));
     assert!(said(&free, "coefficients cancel"), "{:?}", free.notes);
-    let (_, held) = fit_table(&samples, &Dof::TWO, &fit(0.05)).unwrap();
+    let held = fit_table(&samples, &Dof::TWO, &fit(0.05)).unwrap().report;
     assert!(
         largest(&held) < 0.02 * largest(&free),
         "{} {}",
@@ -239,7 +247,7 @@ fn degenerate_lags_are_said_and_a_ridge_holds_them() {
         },
         ..with(per_force(1))
     };
-    let (_, report) = fit_table(&samples, &Dof::TWO, &own).unwrap();
+    let report = fit_table(&samples, &Dof::TWO, &own).unwrap().report;
     assert!(
         report
             .notes

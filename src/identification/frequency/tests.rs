@@ -38,7 +38,7 @@ fn lags(model: &Model) -> Vec<f64> {
 #[test]
 fn flat_plate_reference_onsets() {
     let samples = flat_plate();
-    let (model, report) = fit_table(&samples, &Dof::TWO, &table_alone()).unwrap();
+    let Fitted { model, report } = fit_table(&samples, &Dof::TWO, &table_alone()).unwrap();
     // scipy.optimize.minimize_scalar on numpy.linalg.lstsq: 0.298892, weighted residual 0.00183478·√64
     assert!((report.search[0].chosen.poles[0] - 0.298_892).abs() < 1e-5);
     assert!((report.search[0].chosen.objective - 0.001_834_78 * 2f64.sqrt()).abs() < 1e-7);
@@ -47,12 +47,16 @@ fn flat_plate_reference_onsets() {
         poles: PoleSearch::fixed(&[0.305]),
         ..table_alone()
     };
-    let (model, _) = fit_table(&samples, &Dof::TWO, &given).unwrap();
+    let model = fit_table(&samples, &Dof::TWO, &given).unwrap().model;
     assert!((onset_m_s(&model) - 39.473).abs() < 1e-3);
-    let (model, _) = fit_table(&samples, &Dof::TWO, &rational(1, false)).unwrap();
+    let model = fit_table(&samples, &Dof::TWO, &rational(1, false))
+        .unwrap()
+        .model;
     assert!((lags(&model)[0] - 0.289).abs() < 1e-3);
     assert!((onset_m_s(&model) - 39.40).abs() < 0.01);
-    let (model, _) = fit_table(&samples, &Dof::TWO, &rational(2, true)).unwrap();
+    let model = fit_table(&samples, &Dof::TWO, &rational(2, true))
+        .unwrap()
+        .model;
     assert!((lags(&model)[0] - 0.149).abs() < 1e-3 && (lags(&model)[1] - 0.538).abs() < 1e-3);
     assert!((onset_m_s(&model) - 39.456).abs() < 2e-3);
 }
@@ -88,8 +92,10 @@ fn one_laguerre_filter_is_one_lag() {
         form: laguerre(1),
         ..table_alone()
     };
-    let (a, _) = fit_table(&flat_plate(), &Dof::TWO, &fit).unwrap();
-    let (b, _) = fit_table(&flat_plate(), &Dof::TWO, &rational(1, true)).unwrap();
+    let a = fit_table(&flat_plate(), &Dof::TWO, &fit).unwrap().model;
+    let b = fit_table(&flat_plate(), &Dof::TWO, &rational(1, true))
+        .unwrap()
+        .model;
     assert_same(&a, &b);
 }
 
@@ -111,12 +117,16 @@ fn takenaka_malmquist_filters_are_lags() {
             poles: poles.clone(),
             ..table_alone()
         };
-        let (a, _) = fit_table(&flat_plate(), &Dof::TWO, &with(form)).unwrap();
+        let a = fit_table(&flat_plate(), &Dof::TWO, &with(form))
+            .unwrap()
+            .model;
         let roger = Form::Rational {
             lags: n,
             added_mass: true,
         };
-        let (b, _) = fit_table(&flat_plate(), &Dof::TWO, &with(roger)).unwrap();
+        let b = fit_table(&flat_plate(), &Dof::TWO, &with(roger))
+            .unwrap()
+            .model;
         assert_same(&a, &b);
     }
 }
@@ -129,7 +139,7 @@ fn rational_function_is_recovered_from_its_samples() {
         .map(|i| ReducedFrequency::from_full_width(0.1 * f64::from(i)))
         .collect();
     let samples = sample_model(&jones, &ks).unwrap();
-    let (model, report) = fit_table(&samples, &Dof::TWO, &rational(2, true)).unwrap();
+    let Fitted { model, report } = fit_table(&samples, &Dof::TWO, &rational(2, true)).unwrap();
     let Model::Rational(found) = &model else {
         panic!("not rational");
     };
@@ -160,8 +170,8 @@ fn own_poles_fit_at_least_as_well() {
         form: laguerre(2),
         ..table_alone()
     };
-    let (model, a) = fit_table(&flat_plate(), &Dof::TWO, &own).unwrap();
-    let (_, b) = fit_table(&flat_plate(), &Dof::TWO, &shared).unwrap();
+    let Fitted { model, report: a } = fit_table(&flat_plate(), &Dof::TWO, &own).unwrap();
+    let b = fit_table(&flat_plate(), &Dof::TWO, &shared).unwrap().report;
     assert_eq!(a.search.len(), 4);
     let objective = |r: &FitReport| -> f64 { r.search.iter().map(|s| s.chosen.objective).sum() };
     assert!(objective(&a) / 4.0 <= objective(&b) * 1.000_001);
@@ -199,7 +209,7 @@ fn standard_errors_are_the_scatter_of_repeated_fits() {
     for _ in 0..400 {
         let mut noisy = clean.clone();
         noisy.iter_mut().for_each(|s| s.value += 0.2 * gauss());
-        let (_, report) = fit_table(&noisy, &Dof::TWO, &fit).unwrap();
+        let report = fit_table(&noisy, &Dof::TWO, &fit).unwrap().report;
         let c = &report.entries[1].coefficients[3];
         assert_eq!(c.name, "c0");
         values.push(c.value);
@@ -220,7 +230,7 @@ fn overfits_and_bounds_are_said() {
         poles: PoleSearch::fixed(&[0.3, 0.3003]),
         ..rational(2, true)
     };
-    let (_, report) = fit_table(&flat_plate(), &Dof::TWO, &two).unwrap();
+    let report = fit_table(&flat_plate(), &Dof::TWO, &two).unwrap().report;
     assert!(
         report
             .notes
@@ -237,7 +247,9 @@ fn overfits_and_bounds_are_said() {
         },
         ..rational(1, true)
     };
-    let (_, report) = fit_table(&flat_plate(), &Dof::TWO, &bounded).unwrap();
+    let report = fit_table(&flat_plate(), &Dof::TWO, &bounded)
+        .unwrap()
+        .report;
     assert!(
         report.notes.iter().any(|n| n.contains("lower bound")),
         "{:?}",

@@ -3,7 +3,9 @@
 use super::*;
 use crate::aerodynamics::{FlatPlate, Transfer};
 use crate::identification::testing::{records, records_alone, sources};
-use crate::identification::{DiscreteFit, FeedThrough, PoleSearch, fit_discrete, fit_records};
+use crate::identification::{
+    DiscreteFit, FeedThrough, Fitted, PoleSearch, fit_discrete, fit_records,
+};
 use crate::units::ReducedFrequency;
 
 fn differ(a: &Model, b: &Model) -> f64 {
@@ -33,7 +35,7 @@ fn discrete_cells_are_single_fits() {
                 alpha,
                 ..DiscreteFit::default()
             };
-            let (model, report) = fit_discrete(&sources, &fit, &|_| ()).unwrap();
+            let Fitted { model, report } = fit_discrete(&sources, &fit, &|_| ()).unwrap();
             let cell = cell.unwrap();
             // rounding times the condition of four filters
             assert!(differ(&cell.model, &model) < 1e-8, "{alpha} {l}");
@@ -60,7 +62,7 @@ fn continuous_cells_are_single_fits_but_for_thinning() {
         poles: PoleSearch::fixed(&[0.3]),
         ..records_alone()
     };
-    let (model, report) = fit_records(&sources, &fit, &|_| ()).unwrap();
+    let Fitted { model, report } = fit_records(&sources, &fit, &|_| ()).unwrap();
     assert!(differ(&cell.model, &model) < 1e-3);
     let objective = report.orders[2].objective;
     assert!((cell.objective / objective - 1.0).abs() < 1e-2);

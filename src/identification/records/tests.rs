@@ -48,7 +48,8 @@ fn rational_function_is_recovered_from_its_records() {
         TimeWeights::PerRecord,
         TimeWeights::PerSegment,
     ] {
-        let (model, report) = fit_records(&sources(&all), &jones_fit(weights), &quiet).unwrap();
+        let Fitted { model, report } =
+            fit_records(&sources(&all), &jones_fit(weights), &quiet).unwrap();
         assert_jones(&model, 1e-3);
         assert!(
             report
@@ -77,7 +78,7 @@ fn simultaneous_motions_are_told_apart() {
         }
     }
     both.header.segments.clear();
-    let (model, report) =
+    let Fitted { model, report } =
         fit_records(&[&both], &jones_fit(TimeWeights::PerRecord), &quiet).unwrap();
     assert_jones(&model, 4e-3);
     assert!(report.entries.iter().all(|e| e.relative_rms.is_none()));
@@ -111,7 +112,8 @@ fn flat_plate_from_records() {
         assert!(p.pass <= p.passes && p.records_done <= p.records);
         calls.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
     };
-    let (model, report) = fit_records(&sources(&all), &TimeFit::default(), &count).unwrap();
+    let Fitted { model, report } =
+        fit_records(&sources(&all), &TimeFit::default(), &count).unwrap();
     assert_eq!(calls.into_inner(), 5 * 2);
     assert!((onset_m_s(&model) / 39.468 - 1.0).abs() < 1e-3);
     assert_eq!(report.orders.len(), 3);
@@ -131,7 +133,9 @@ fn flat_plate_from_records() {
 fn noise_of_five_per_cent() {
     for seed in 0..10 {
         let all = records(&FlatPlate::default(), &[8.17, 4.0], 0.05, seed);
-        let (model, _) = fit_records(&sources(&all), &TimeFit::default(), &quiet).unwrap();
+        let model = fit_records(&sources(&all), &TimeFit::default(), &quiet)
+            .unwrap()
+            .model;
         assert!(
             (onset_m_s(&model) / 39.468 - 1.0).abs() < 5e-3,
             "seed {seed}"
@@ -151,7 +155,7 @@ fn own_poles_from_records() {
         },
         ..records_alone()
     };
-    let (model, report) = fit_records(&sources(&all), &fit, &quiet).unwrap();
+    let Fitted { model, report } = fit_records(&sources(&all), &fit, &quiet).unwrap();
     assert_eq!(report.search.len(), 4);
     assert!((onset_m_s(&model) / 39.468 - 1.0).abs() < 5e-3);
 }
@@ -192,8 +196,8 @@ fn blocks_do_not_matter() {
         weights: TimeWeights::PerSegment,
         ..records_alone()
     };
-    let (a, _) = fit_records(&sources(&whole), &fit, &quiet).unwrap();
-    let (b, _) = fit_records(&streams, &fit, &quiet).unwrap();
+    let a = fit_records(&sources(&whole), &fit, &quiet).unwrap().model;
+    let b = fit_records(&streams, &fit, &quiet).unwrap().model;
     let k = ReducedFrequency::from_full_width(0.4);
     assert!((a.transfer(k).unwrap() - b.transfer(k).unwrap()).camax() < 1e-10);
 }

@@ -14,7 +14,7 @@ use crate::section::Dof;
 use nalgebra::{DMatrix, DVector};
 
 /// The solved systems of all forces.
-pub(crate) struct Fitted<'a> {
+pub(crate) struct FittedSystems<'a> {
     dofs: &'a [Dof],
     pub systems: ForceSystems,
     /// Variance of white noise over that of the residuals, whose noise a low-pass may have taken.
@@ -24,7 +24,7 @@ pub(crate) struct Fitted<'a> {
     joint: Option<Joint>,
 }
 
-impl<'a> Fitted<'a> {
+impl<'a> FittedSystems<'a> {
     /// Least squares for every force by itself; `filters` says in words what the motions must be rich enough for.
     ///
     /// # Errors

@@ -371,8 +371,9 @@ fn measured_decks_flutter_where_their_sections_do() {
         for (section, fastest, period_s) in &sections {
             let structure = section.structure().unwrap();
             let dofs = structure.dofs.clone();
-            let (model, _) =
-                fit_table(&table.samples(&dofs), &dofs, &FrequencyFit::default()).unwrap();
+            let model = fit_table(&table.samples(&dofs), &dofs, &FrequencyFit::default())
+                .unwrap()
+                .model;
             let coupled = CoupledSection::with_model(&structure, &model).unwrap();
             let whole = crossing((1.0, *fastest), &mut |wind| {
                 let values = coupled.at(wind).unwrap().eigenvalues().unwrap();

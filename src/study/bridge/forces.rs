@@ -7,7 +7,7 @@ use crate::aerodynamics::{Lags, RationalModel, Transfer};
 use crate::error::{Error, Result};
 use crate::files::bridge::SectionBlock;
 use crate::files::derivatives::named_table;
-use crate::identification::{FeedThrough, Form, FrequencyFit, FrequencyWeights, fit_table};
+use crate::identification::{FeedThrough, Fitted, Form, FrequencyFit, FrequencyWeights, fit_table};
 use crate::trained_model::{Model, TrainedModel};
 use crate::uncertainty::{CoefficientUncertainty, DerivativeInterval, table_uncertainty};
 use crate::units::ReducedFrequencyRange;
@@ -176,7 +176,7 @@ fn by_table(
         },
     };
     let samples = table.samples(&block.motions);
-    let (model, report) = fit_table(&samples, &block.motions, &options)?;
+    let Fitted { model, report } = fit_table(&samples, &block.motions, &options)?;
     let uncertainty = table_uncertainty(&samples, &block.motions, &options, &report);
     let forces = SectionForces {
         table: None,
