@@ -39,7 +39,7 @@ pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     }
     let mut results = stages::flutter(&study, &deck, &models, &known, progress)?;
     let mut out = OutputDir::new(&directory)?;
-    let figure = stages::flutter_figure(&study, &results, &[], &mut out);
+    let figure = stages::flutter_figure(&study, &results, &mut out);
     attempt(&mut failed, "figure", figure)?;
     let curves = evidence::write_curves(&study, &results.curves, &mut out);
     attempt(&mut failed, "curves", curves)?;

@@ -201,10 +201,8 @@ pub(crate) fn flutter(
 pub(crate) fn flutter_figure(
     study: &Study,
     results: &FlutterStudy,
-    further: &[Onset],
     out: &mut OutputDir,
 ) -> Result<()> {
-    let onsets: Vec<Onset> = results.onsets.iter().chain(further).cloned().collect();
     if results.curves.is_empty() {
         return Err(Error::Numerical("no modes to draw".into()));
     }
@@ -214,7 +212,7 @@ pub(crate) fn flutter_figure(
         ..VfVgOptions::default()
     };
     figures::write(FIGURE, out, || {
-        vf_vg_figure(&results.curves, &onsets, &options)
+        vf_vg_figure(&results.curves, &results.onsets, &options)
     })
 }
 

@@ -9,11 +9,10 @@ use super::report::{self, REPORT, SUMMARY};
 use super::summary::{FitSummary, Summary};
 use super::{account, evidence, headline, measured_forces, select, stages};
 use crate::error::{Error, Result};
-use crate::flutter::Onset;
 use crate::fmu::package::Growing;
 use crate::study::{
-    Deck, FITS, KnownUncertainty, RecordSet, StageFailure, Study, attempt, interval_of,
-    stepped_onset, study_warnings,
+    Deck, FITS, FlutterStudy, KnownUncertainty, RecordSet, StageFailure, SteppedOnset, Study,
+    TrainedWithReport, attempt, interval_of, stepped_onset, study_warnings,
 };
 use crate::trained_model::TrainedModel;
 use std::path::PathBuf;
@@ -33,6 +32,10 @@ pub(crate) struct Args {
     #[arg(long)]
     force: bool,
 }
+
+/// Stages that later ones ask for, in the messages of failures.
+const RECORDS: &str = "records";
+const STEPPING: &str = "stepping the FMU";
 
 /// Runs the command.
 pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
@@ -57,158 +60,225 @@ pub(crate) fn run_chain(
     growing: Growing,
     progress: &Progress,
 ) -> Result<Answer> {
-    let study = ran.study;
-    let deck = Deck::load(study)?;
+    let deck = Deck::load(ran.study)?;
     let study_file = ran::leave(ran, &mut out)?;
-    let mut failed = Vec::new();
-    let records = records(study, &deck, &mut out, progress);
-    let records_error = records.as_ref().err().map(ToString::to_string);
-    let records = attempt(&mut failed, "records", records)?;
-    let selected = match &records {
-        Some(records) if study.select => {
-            let selected = select::with_selected(study, records, progress);
-            attempt(&mut failed, "selection", selected)?
-        }
-        _ => None,
-    };
-    let study = selected.as_ref().unwrap_or(study);
-    let aside = (&mut out, &mut failed);
-    let trained = stages::train(study, &deck, records.as_ref(), aside, progress)?;
-    if let (true, Some(reason)) = (trained.is_empty(), records_error) {
-        return Err(Error::Numerical(format!(
-            "no model can be trained: {reason}"
-        )));
-    }
-    let models: Vec<_> = trained.iter().map(|t| t.model.clone()).collect();
-    let known: Vec<_> = trained.iter().map(|t| t.uncertainty.clone()).collect();
-    let mut results = stages::flutter(study, &deck, &models, &known, progress)?;
-    failed.append(&mut results.failed);
-    let name = study.exported()?.name.clone();
-    let exported = export(
-        study,
-        (&models, &known),
-        (&mut out, &mut failed),
-        growing,
+    let mut chain = Chain {
+        study: ran.study.clone(),
+        deck,
+        out,
+        failed: Vec::new(),
         progress,
-    )?;
-    let mut stepped = None;
-    if let Some((model, path)) = exported {
-        let stage = progress.stage("stepping the FMU");
-        let found = stepped_onset(model, &path, study.speeds().speed_max_m_s);
+    };
+    let records = chain.records()?;
+    chain.select(records.as_ref())?;
+    let trained = chain.train(records.as_ref())?;
+    let mut results = chain.flutter(&trained)?;
+    let exported = chain.export(&trained, growing)?;
+    let stepped = chain.step(exported, &mut results)?;
+    chain.draw(&trained, &results)?;
+    chain.draw_exported(&trained, &results, records.as_ref())?;
+    let summary = chain.summary(study_file, trained, results, stepped)?;
+    chain.finish(summary)
+}
+
+/// A study on its way through the stages.
+struct Chain<'a> {
+    /// With the selected model, once there is one.
+    study: Study,
+    deck: Deck,
+    out: OutputDir,
+    failed: Vec<StageFailure>,
+    progress: &'a Progress,
+}
+
+/// The FMU, where it stands for now.
+struct Exported<'a> {
+    model: &'a TrainedModel,
+    known: &'a KnownUncertainty,
+    path: PathBuf,
+}
+
+impl Chain<'_> {
+    /// The value of a stage; a failure is noted.
+    fn attempt<T>(&mut self, stage: &str, result: Result<T>) -> Result<Option<T>> {
+        attempt(&mut self.failed, stage, result)
+    }
+
+    /// The records of the study: measured, or those of the virtual tunnel.
+    fn records(&mut self) -> Result<Option<RecordSet>> {
+        let records = if self.study.deck.records.is_empty() {
+            stages::tunnel(&self.study, &self.deck, &mut self.out, self.progress)
+                .and_then(RecordSet::staged)
+        } else {
+            RecordSet::measured(&self.study)
+        };
+        self.attempt(RECORDS, records)
+    }
+
+    /// Adds the selected model to the study, where one is asked for.
+    fn select(&mut self, records: Option<&RecordSet>) -> Result<()> {
+        if let Some(records) = records.filter(|_| self.study.select) {
+            let selected = select::with_selected(&self.study, records, self.progress);
+            if let Some(study) = self.attempt("selection", selected)? {
+                self.study = study;
+            }
+        }
+        Ok(())
+    }
+
+    fn train(&mut self, records: Option<&RecordSet>) -> Result<Vec<TrainedWithReport>> {
+        let aside = (&mut self.out, &mut self.failed);
+        let trained = stages::train(&self.study, &self.deck, records, aside, self.progress)?;
+        let no_records = self.failed.iter().find(|f| f.stage == RECORDS);
+        match no_records.filter(|_| trained.is_empty()) {
+            Some(StageFailure { reason, .. }) => Err(Error::Numerical(format!(
+                "no model can be trained: {reason}"
+            ))),
+            None => Ok(trained),
+        }
+    }
+
+    fn flutter(&mut self, trained: &[TrainedWithReport]) -> Result<FlutterStudy> {
+        let models: Vec<_> = trained.iter().map(|t| t.model.clone()).collect();
+        let known: Vec<_> = trained.iter().map(|t| t.uncertainty.clone()).collect();
+        let mut results = stages::flutter(&self.study, &self.deck, &models, &known, self.progress)?;
+        self.failed.append(&mut results.failed);
+        Ok(results)
+    }
+
+    /// Packs the model that the study exports.
+    fn export<'t>(
+        &mut self,
+        trained: &'t [TrainedWithReport],
+        growing: Growing,
+    ) -> Result<Option<Exported<'t>>> {
+        let name = &self.study.exported()?.name;
+        let Some(own) = trained.iter().find(|t| t.model.name == *name) else {
+            let reason = format!("{name} was not trained");
+            self.failed.push(StageFailure::new("export", reason));
+            return Ok(None);
+        };
+        let (model, known) = (&own.model, &own.uncertainty);
+        let bytes = stages::export((model, known), &self.study, growing, self.progress);
+        let Some(bytes) = self.attempt("export", bytes)? else {
+            return Ok(None);
+        };
+        self.out.write(stages::FMU_FILE, bytes)?;
+        let path = self.out.stage(stages::FMU_FILE)?;
+        Ok(Some(Exported { model, known, path }))
+    }
+
+    /// Steps the FMU to its onset, which enters `results` as far as it is a result.
+    fn step(
+        &mut self,
+        exported: Option<Exported<'_>>,
+        results: &mut FlutterStudy,
+    ) -> Result<Option<SteppedOnset>> {
+        let Some(Exported { model, known, path }) = exported else {
+            return Ok(None);
+        };
+        let stage = self.progress.stage(STEPPING);
+        let found = stepped_onset(model, &path, self.study.speeds().speed_max_m_s);
         drop(stage);
-        stepped = attempt(&mut failed, "stepping the FMU", found)?
-            .and_then(|answer| results.take_stepped(answer, &model.name));
-        let own = models
-            .iter()
-            .zip(&known)
-            .find(|(m, _)| m.name == model.name);
-        if let (Some(stepped), Some((_, known))) = (&mut stepped, own) {
-            let structure = study.section.structure()?;
-            stepped.onset.interval = interval_of(&structure, model, known, &stepped.onset);
-        }
+        let answer = self.attempt(STEPPING, found)?;
+        let stepped = answer.and_then(|answer| results.take_stepped(answer, &model.name));
+        let Some(mut stepped) = stepped else {
+            return Ok(None);
+        };
+        let structure = self.study.section.structure()?;
+        stepped.onset.interval = interval_of(&structure, model, known, &stepped.onset);
+        let to = match stepped.onset.headline_m_s() {
+            Ok(_) => &mut results.onsets,
+            Err(_) => &mut results.undetermined,
+        };
+        to.push(stepped.onset.clone());
+        Ok(Some(stepped))
     }
-    let further = stepped.iter().map(|s| s.onset.clone());
-    let (further, open): (Vec<Onset>, Vec<Onset>) = further.partition(|o| o.headline_m_s().is_ok());
-    results.undetermined.extend(open);
-    let figure = stages::flutter_figure(study, &results, &further, &mut out);
-    attempt(&mut failed, "figure", figure)?;
-    let derivatives = evidence::write_derivatives(study, &deck, &trained, &mut out);
-    attempt(&mut failed, "figure of derivatives", derivatives)?;
-    let curves = evidence::write_curves(study, &results.curves, &mut out);
-    attempt(&mut failed, "curves", curves)?;
-    results.onsets.extend(further);
-    let exported = models.iter().find(|m| m.name == name);
-    if let (Some(model), Some(at)) = (exported, headline::own_onset(&results, &name)) {
-        let at = (at.at.speed_m_s, at.at.frequency_hz);
-        if let Some(records) = &records {
-            let forces = measured_forces::write(model, records, at, &mut out);
-            attempt(&mut failed, "figure of measured forces", forces)?;
-        }
-        let response = evidence::write_response(model, at, &mut out);
-        attempt(&mut failed, "figure of the motion", response)?;
-    }
-    let answer = headline::answer(study, &results, &name);
-    let limits = headline::limits(&deck, &results, &name, &failed);
-    let comparisons = headline::comparisons(&results, stepped.as_ref(), &name);
-    out.stage(REPORT)?;
-    let summary_file = out.target(SUMMARY);
-    let staged_summary = out.stage(SUMMARY)?;
-    let mut summary = Summary {
-        answer,
-        limits,
-        comparisons,
-        study_file,
-        generator: format!("aerodeck {}", env!("CARGO_PKG_VERSION")),
-        study: study.name.clone(),
-        deck: deck.description(),
-        warnings: [deck.warnings(), study_warnings(study)].concat(),
-        licence: deck.licence(),
-        speeds: study.speeds(),
-        onsets: results.onsets,
-        undetermined: results.undetermined,
-        unstable: results.unstable,
-        stable: results.stable,
-        growth: results.growth,
-        divergence: results.divergence,
-        deviations: results.deviations,
-        fits: trained.into_iter().map(FitSummary::from).collect(),
-        stepped,
-        failed,
-        files: out.targets(),
-    };
-    summary.files.sort();
-    let json = serde_json::to_string_pretty(&summary)
-        .map_err(|e| crate::Error::Numerical(e.to_string()))?;
-    std::fs::write(&staged_summary, json + "\n").map_err(|e| crate::Error::io(&summary_file, e))?;
-    let page = report::page(out.staging(), &out.target(""))?;
-    out.write(REPORT, page)?;
-    let written = out.commit()?;
-    let answer = Answer::new(
-        account::chain(
-            study,
-            &deck,
-            &summary,
-            (&shown(&written), progress.verbose()),
-        ),
-        &summary,
-    )?;
-    Ok(answer.with_verdict(summary.failed.is_empty()))
-}
 
-/// The records of the study: measured, or those of the virtual tunnel.
-fn records(
-    study: &Study,
-    deck: &Deck,
-    out: &mut OutputDir,
-    progress: &Progress,
-) -> Result<RecordSet> {
-    if study.deck.records.is_empty() {
-        RecordSet::staged(stages::tunnel(study, deck, out, progress)?)
-    } else {
-        RecordSet::measured(study)
+    /// Figures and curves of all models.
+    fn draw(&mut self, trained: &[TrainedWithReport], results: &FlutterStudy) -> Result<()> {
+        let (study, out) = (&self.study, &mut self.out);
+        let figure = stages::flutter_figure(study, results, out);
+        let derivatives = evidence::write_derivatives(study, &self.deck, trained, out);
+        let curves = evidence::write_curves(study, &results.curves, out);
+        self.attempt("figure", figure)?;
+        self.attempt("figure of derivatives", derivatives)?;
+        self.attempt("curves", curves)?;
+        Ok(())
     }
-}
 
-/// Packs the model that the study exports; it with the place of its FMU.
-fn export<'a>(
-    study: &Study,
-    (models, known): (&'a [TrainedModel], &[KnownUncertainty]),
-    (out, failed): (&mut OutputDir, &mut Vec<StageFailure>),
-    growing: Growing,
-    progress: &Progress,
-) -> Result<Option<(&'a TrainedModel, PathBuf)>> {
-    let name = &study.exported()?.name;
-    let Some((model, known)) = models.iter().zip(known).find(|(m, _)| m.name == *name) else {
-        let reason = format!("{name} was not trained");
-        failed.push(StageFailure::new("export", reason));
-        return Ok(None);
-    };
-    let bytes = stages::export((model, known), study, growing, progress);
-    let Some(bytes) = attempt(failed, "export", bytes)? else {
-        return Ok(None);
-    };
-    out.write(stages::FMU_FILE, bytes)?;
-    Ok(Some((model, out.stage(stages::FMU_FILE)?)))
+    /// Measured forces and motion of the exported model at its onset.
+    fn draw_exported(
+        &mut self,
+        trained: &[TrainedWithReport],
+        results: &FlutterStudy,
+        records: Option<&RecordSet>,
+    ) -> Result<()> {
+        let name = &self.study.exported()?.name;
+        let own = trained.iter().find(|t| t.model.name == *name);
+        let (Some(own), Some(onset)) = (own, headline::own_onset(results, name)) else {
+            return Ok(());
+        };
+        let at = (onset.at.speed_m_s, onset.at.frequency_hz);
+        if let Some(records) = records {
+            let forces = measured_forces::write(&own.model, records, at, &mut self.out);
+            self.attempt("figure of measured forces", forces)?;
+        }
+        let response = evidence::write_response(&own.model, at, &mut self.out);
+        self.attempt("figure of the motion", response)?;
+        Ok(())
+    }
+
+    /// What `summary.json` holds, but for the files.
+    fn summary(
+        &mut self,
+        study_file: String,
+        trained: Vec<TrainedWithReport>,
+        results: FlutterStudy,
+        stepped: Option<SteppedOnset>,
+    ) -> Result<Summary> {
+        let (study, deck) = (&self.study, &self.deck);
+        let name = &study.exported()?.name;
+        let failed = std::mem::take(&mut self.failed);
+        Ok(Summary {
+            answer: headline::answer(study, &results, name),
+            limits: headline::limits(deck, &results, name, &failed),
+            comparisons: headline::comparisons(&results, stepped.as_ref(), name),
+            study_file,
+            generator: format!("aerodeck {}", env!("CARGO_PKG_VERSION")),
+            study: study.name.clone(),
+            deck: deck.description(),
+            warnings: [deck.warnings(), study_warnings(study)].concat(),
+            licence: deck.licence(),
+            speeds: study.speeds(),
+            onsets: results.onsets,
+            undetermined: results.undetermined,
+            unstable: results.unstable,
+            stable: results.stable,
+            growth: results.growth,
+            divergence: results.divergence,
+            deviations: results.deviations,
+            fits: trained.into_iter().map(FitSummary::from).collect(),
+            stepped,
+            failed,
+            files: Vec::new(),
+        })
+    }
+
+    /// Summary and report, then all files in their places.
+    fn finish(mut self, mut summary: Summary) -> Result<Answer> {
+        self.out.stage(REPORT)?;
+        self.out.stage(SUMMARY)?;
+        summary.files = self.out.targets();
+        summary.files.sort();
+        self.out.write_json(SUMMARY, &summary)?;
+        let page = report::page(self.out.staging(), &self.out.target(""))?;
+        self.out.write(REPORT, page)?;
+        let written = shown(&self.out.commit()?);
+        let how = (&written[..], self.progress.verbose());
+        let text = account::chain(&self.study, &self.deck, &summary, how);
+        Ok(Answer::new(text, &summary)?.with_verdict(summary.failed.is_empty()))
+    }
 }
 
 /// The files a reader looks for; records, models and fits are named by their folder.

@@ -59,7 +59,7 @@ pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     text.push_str(&account::failures(&failed));
     let _ = writeln!(text, "thesis: {PRINTED_M_S} m/s for both models");
     if let Some(folder) = &args.out {
-        stages::flutter_figure(&study, &results, &[], &mut out)?;
+        stages::flutter_figure(&study, &results, &mut out)?;
         evidence::write_curves(&study, &results.curves, &mut out)?;
         let own = models
             .first()
