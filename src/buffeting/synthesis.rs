@@ -52,15 +52,10 @@ pub(crate) fn synthesise(
     positive("wind speed", speed_m_s)?;
     positive("time step of the turbulence", step_s)?;
     if !SAMPLES.contains(&samples) || samples % 2 != 0 {
-        return Err(Error::input(
-            "samples of the turbulence",
-            format!(
-                "an even number from {} to {}",
-                SAMPLES.start(),
-                SAMPLES.end()
-            ),
-            samples.to_string(),
-        ));
+        let (least, most) = (SAMPLES.start(), SAMPLES.end());
+        let expected = format!("an even number from {least} to {most}");
+        let place = "samples of the turbulence";
+        return Err(Error::input(place, expected, samples.to_string()));
     }
     let n = problem.structure.dofs.len();
     let zero = || vec![Complex::<f64>::default(); samples];
@@ -76,13 +71,8 @@ pub(crate) fn synthesise(
         let mut random = random_stream(seed, j as u64);
         for k in 1..samples / 2 {
             let middle = k as f64 * width_hz;
-            let variance: f64 = GAUSS_3
-                .iter()
-                .map(|(x, weight)| {
-                    let f = middle + 0.5 * width_hz * x;
-                    0.5 * width_hz * weight * gust.spectrum.density(component, f, speed_m_s)
-                })
-                .sum();
+            let density = |f| gust.spectrum.density(component, f, speed_m_s);
+            let variance = variance_of_line(middle, width_hz, density);
             expected_variance[j] += variance;
             let (a, b): (f64, f64) = (random.sample(StandardNormal), random.sample(StandardNormal));
             // x = Σ a cos + b sin, so half of a − ib at +f and its conjugate at −f
@@ -105,6 +95,16 @@ pub(crate) fn synthesise(
         forces: forces.into_iter().map(to_time).collect(),
         expected_variance,
     })
+}
+
+/// The integral of a spectral density over the width of a line.
+fn variance_of_line(middle_hz: f64, width_hz: f64, density: impl Fn(f64) -> f64) -> f64 {
+    let points = GAUSS_3.iter();
+    let parts = points.map(|(x, weight)| {
+        let f = middle_hz + 0.5 * width_hz * x;
+        0.5 * width_hz * weight * density(f)
+    });
+    parts.sum()
 }
 
 /// Adds a coefficient at the frequency `k` and its conjugate at `−k`.

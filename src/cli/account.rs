@@ -202,21 +202,8 @@ pub(crate) fn onsets(
         "Flutter onset", "method", "V m/s", "95 % interval", "f Hz", "V*", "tested"
     );
     for o in onsets {
-        let _ = writeln!(
-            text,
-            "{:<18} {:<13} {:>8.3} {:>15} {:>7.4} {:>6.2}  {}",
-            o.at.model,
-            o.at.method.name(),
-            o.at.speed_m_s,
-            interval(&o.interval).replace(" – ", "–"),
-            o.at.frequency_hz,
-            o.at.reduced_velocity.v_star(),
-            match o.in_tested_range {
-                Some(true) => "yes",
-                Some(false) => "NO",
-                None => "exact",
-            }
-        );
+        let (model, method) = (&o.at.model, o.at.method.name());
+        let _ = writeln!(text, "{model:<18} {method:<13} {}", figures(o));
     }
     let mut without = |model: &str, method: OnsetMethod, why: &str| {
         let head = format!("{model:<18} {:<13}", method.name());
@@ -232,26 +219,47 @@ pub(crate) fn onsets(
     for s in stable {
         without(&s.model, s.method, &s.explain());
     }
+    let warnings = |model: &str, all: &[String]| -> String {
+        let all = all.iter();
+        all.map(|w| format!("warning: {model}: {w}\n")).collect()
+    };
     for o in onsets {
-        let place = format!("{} ({})", o.at.model, o.at.method.name());
-        let _ = match &o.interval {
-            OnsetInterval::None { reason } => writeln!(text, "no interval: {place}: {reason}"),
-            OnsetInterval::Spread { of, .. } => {
-                writeln!(text, "in brackets, no 95 % interval: {place}: {of}")
-            }
-            OnsetInterval::Undetermined { reason, .. } => writeln!(text, "{place}: {reason}"),
-            OnsetInterval::Known { .. } => Ok(()),
-        };
-        for warning in &o.warnings {
-            let _ = writeln!(text, "warning: {}: {warning}", o.at.model);
-        }
+        text.extend(without_interval(o));
+        text.push_str(&warnings(&o.at.model, &o.warnings));
     }
     for s in unstable {
-        for warning in &s.warnings {
-            let _ = writeln!(text, "warning: {}: {warning}", s.at.model);
-        }
+        text.push_str(&warnings(&s.at.model, &s.warnings));
     }
     text
+}
+
+/// The numbers of an onset, in the columns of the table.
+fn figures(o: &Onset) -> String {
+    format!(
+        "{:>8.3} {:>15} {:>7.4} {:>6.2}  {}",
+        o.at.speed_m_s,
+        interval(&o.interval).replace(" – ", "–"),
+        o.at.frequency_hz,
+        o.at.reduced_velocity.v_star(),
+        match o.in_tested_range {
+            Some(true) => "yes",
+            Some(false) => "NO",
+            None => "exact",
+        }
+    )
+}
+
+/// Why there is no 95 % interval, or none at all.
+fn without_interval(o: &Onset) -> Option<String> {
+    let place = format!("{} ({})", o.at.model, o.at.method.name());
+    match &o.interval {
+        OnsetInterval::None { reason } => Some(format!("no interval: {place}: {reason}\n")),
+        OnsetInterval::Spread { of, .. } => {
+            Some(format!("in brackets, no 95 % interval: {place}: {of}\n"))
+        }
+        OnsetInterval::Undetermined { reason, .. } => Some(format!("{place}: {reason}\n")),
+        OnsetInterval::Known { .. } => None,
+    }
 }
 
 /// The ends of an interval.

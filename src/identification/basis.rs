@@ -198,36 +198,43 @@ pub(crate) fn assemble(
         model.validate()?;
         return Ok(Model::Rational(model));
     }
-    let mut terms = Vec::new();
-    for input in 0..n {
-        let of_force: Vec<&Vec<f64>> = poles.iter().map(|row| &row[input]).collect();
-        for (i, chain) in of_force.iter().enumerate() {
-            // one chain serves all forces that share its poles
-            if of_force[..i].contains(chain) {
-                continue;
-            }
-            terms.push(FilterTerm {
-                input,
-                poles: FilterBank::new(chain.to_vec())?,
-                coefficients: DMatrix::from_fn(n, chain.len(), |r, l| {
-                    if of_force[r] == *chain {
-                        filter(r, input, l)
-                    } else {
-                        0.0
-                    }
-                }),
-            });
-        }
-    }
     let model = LaguerreModel {
         dofs: dofs.to_vec(),
         e0: part(0),
         e1: part(1),
         e2: part(2),
-        terms,
+        terms: filter_terms(poles, &filter)?,
     };
     model.validate()?;
     Ok(Model::Laguerre(model))
+}
+
+/// The filters of every input, with their coefficients `filter(force, input, l)`: one chain serves all forces that share
+/// its poles.
+fn filter_terms(
+    poles: &[Vec<Vec<f64>>],
+    filter: &dyn Fn(usize, usize, usize) -> f64,
+) -> Result<Vec<FilterTerm>> {
+    let n = poles.len();
+    let mut terms = Vec::new();
+    for input in 0..n {
+        let of_force: Vec<&Vec<f64>> = poles.iter().map(|row| &row[input]).collect();
+        for (i, chain) in of_force.iter().enumerate() {
+            if of_force[..i].contains(chain) {
+                continue;
+            }
+            let coefficient = |force: usize, l: usize| {
+                let own = of_force[force] == *chain;
+                if own { filter(force, input, l) } else { 0.0 }
+            };
+            terms.push(FilterTerm {
+                input,
+                poles: FilterBank::new(chain.to_vec())?,
+                coefficients: DMatrix::from_fn(n, chain.len(), coefficient),
+            });
+        }
+    }
+    Ok(terms)
 }
 
 /// Index of a degree of freedom in `dofs`.

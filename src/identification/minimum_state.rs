@@ -7,6 +7,7 @@
 
 mod held;
 
+use self::held::Rows;
 use super::basis::Basis;
 use super::constrained::{LinearProblem, LinearSolution};
 use super::dissipative::{ActiveConstraint, Constraints, Wishes};
@@ -68,33 +69,7 @@ pub(super) fn fit_minimum_state(
         },
         wishes: None,
     };
-    let mut points = Vec::new();
-    let mut best: Option<(f64, Vec<f64>)> = None;
-    for start in task.starts(fit)? {
-        let mut at = DVector::from_vec(start);
-        for _ in 0..ROUNDS {
-            at = descend(at, &|x| task.residuals(x).ok());
-        }
-        let Ok(residuals) = task.residuals(at.as_slice()) else {
-            continue;
-        };
-        let objective = residuals.norm();
-        points.push(SearchPoint {
-            poles: task.lags_at(at.as_slice()),
-            objective,
-        });
-        if objective.is_finite() && best.as_ref().is_none_or(|(o, _)| objective < *o) {
-            best = Some((objective, task.normalised(at.as_slice())));
-        }
-    }
-    let Some((_, best)) = best else {
-        // the first start says what is wrong
-        let start = task.starts(fit)?.swap_remove(0);
-        task.residuals(&start)?;
-        return Err(Error::Numerical(
-            "minimum-state form: no start leads to a finite fit".into(),
-        ));
-    };
+    let (best, points) = task.search(fit)?;
     let search = match &task.lags {
         SearchedLags::Given(_) => Vec::new(),
         SearchedLags::Within(bounds) => vec![SearchReport {
@@ -121,6 +96,38 @@ pub(super) fn fit_minimum_state(
 }
 
 impl Task<'_> {
+    /// Where the best of the descents from all starts ends, and where each does.
+    fn search(&self, fit: &FrequencyFit) -> Result<(Vec<f64>, Vec<SearchPoint>)> {
+        let mut points = Vec::new();
+        let mut best: Option<(f64, Vec<f64>)> = None;
+        for start in self.starts(fit)? {
+            let mut at = DVector::from_vec(start);
+            for _ in 0..ROUNDS {
+                at = descend(at, &|x| self.residuals(x).ok());
+            }
+            let Ok(residuals) = self.residuals(at.as_slice()) else {
+                continue;
+            };
+            let objective = residuals.norm();
+            points.push(SearchPoint {
+                poles: self.lags_at(at.as_slice()),
+                objective,
+            });
+            if objective.is_finite() && best.as_ref().is_none_or(|(o, _)| objective < *o) {
+                best = Some((objective, self.normalised(at.as_slice())));
+            }
+        }
+        if let Some((_, best)) = best {
+            return Ok((best, points));
+        }
+        // the first start says what is wrong
+        let start = self.starts(fit)?.swap_remove(0);
+        self.residuals(&start)?;
+        Err(Error::Numerical(
+            "minimum-state form: no start leads to a finite fit".into(),
+        ))
+    }
+
     /// Points of the search: variables of the lags, if they are searched, then `E` row by row.
     fn starts(&self, fit: &FrequencyFit) -> Result<Vec<Vec<f64>>> {
         let roger = Form::Rational {
@@ -303,73 +310,68 @@ impl Task<'_> {
         problem
     }
 
+    /// The model at one point with the account of its fit, and the constraints that bind there.
     fn finish(
         &self,
         dofs: &[Dof],
         x: &[f64],
         search: Vec<SearchReport>,
     ) -> Result<(FittedTable, Option<Vec<ActiveConstraint>>)> {
-        let (lags, e) = (self.lags_at(x), self.e_at(x));
-        let (n, feed) = (self.n, self.feed.count());
-        let mut d = DMatrix::zeros(n, self.states);
-        let mut a = vec![DMatrix::zeros(n, n); 3];
-        let mut accounts = Vec::new();
         let rows = self.rows(x)?;
-        for (i, solution) in rows.solutions.iter().enumerate() {
-            let values = &rows.values[i];
-            for j in 0..n {
-                for (c, order) in self.feed.orders().enumerate() {
-                    a[order][(i, j)] = values[j * feed + c];
-                }
-            }
-            for l in 0..self.states {
-                d[(i, l)] = values[n * feed + l];
-            }
-            accounts.push((
-                solution.factor.condition(solution.unknowns),
-                solution.cancellation,
-            ));
+        let model = self.model_of(dofs, x, &rows.values);
+        model.validate()?;
+        let fitted = FittedTable {
+            reports: self.reports(&model, &rows)?,
+            model: Model::MinimumState(model),
+            search,
+            constraints: None,
+        };
+        Ok((fitted, rows.active))
+    }
+
+    /// Feed-through and `D` from the coefficients of every force.
+    fn model_of(&self, dofs: &[Dof], x: &[f64], values: &[Vec<f64>]) -> MinimumStateModel {
+        let (n, feed) = (self.n, self.feed.count());
+        let of_order = |order: usize| {
+            let column = self.feed.orders().position(|o| o == order);
+            DMatrix::from_fn(n, n, |i, j| column.map_or(0.0, |c| values[i][j * feed + c]))
+        };
+        MinimumStateModel {
+            dofs: dofs.to_vec(),
+            a1: of_order(0),
+            a2: of_order(1),
+            a3: of_order(2),
+            lags: self.lags_at(x),
+            d: DMatrix::from_fn(n, self.states, |i, l| values[i][n * feed + l]),
+            e: self.e_at(x),
         }
-        let basis = self.roger_basis(&lags)?;
+    }
+
+    fn reports(&self, model: &MinimumStateModel, rows: &Rows) -> Result<Vec<EntryReport>> {
+        let (n, feed) = (self.n, self.feed.count());
+        let basis = self.roger_basis(&model.lags)?;
         let mut reports = Vec::new();
         for (at, entry) in self.entries.iter().enumerate() {
             let (i, j) = (at / n, at % n);
-            let mut values: Vec<f64> = self.feed.orders().map(|o| a[o][(i, j)]).collect();
-            values.extend((0..self.states).map(|l| d[(i, l)] * e[(l, j)]));
+            let mut values = rows.values[i][j * feed..(j + 1) * feed].to_vec();
+            values.extend((0..self.states).map(|l| model.d[(i, l)] * model.e[(l, j)]));
             let (relative_rms, worst) = sizes(entry, &entry.residuals(&basis, &values));
+            let solution = &rows.solutions[i];
             let report = EntryReport {
                 force: entry.force,
                 motion: entry.motion,
                 relative_rms: Some(relative_rms),
                 worst_relative: Some(worst),
-                poles: lags.clone(),
+                poles: model.lags.clone(),
                 coefficients: Vec::new(),
                 covariance: Vec::new(),
-                condition: accounts[i].0,
-                cancellation: accounts[i].1,
+                condition: solution.factor.condition(solution.unknowns),
+                cancellation: solution.cancellation,
             };
             // the product of D and E is not linear in what was searched: no standard errors
             reports.push(report.with_coefficients(basis.names(), &values, None));
         }
-        let mut parts = a.into_iter();
-        let mut next = || parts.next().unwrap_or_else(|| DMatrix::zeros(n, n));
-        let model = MinimumStateModel {
-            dofs: dofs.to_vec(),
-            a1: next(),
-            a2: next(),
-            a3: next(),
-            lags,
-            d,
-            e,
-        };
-        model.validate()?;
-        let fitted = FittedTable {
-            model: Model::MinimumState(model),
-            reports,
-            search,
-            constraints: None,
-        };
-        Ok((fitted, rows.active))
+        Ok(reports)
     }
 
     fn roger_basis(&self, lags: &[f64]) -> Result<Basis> {

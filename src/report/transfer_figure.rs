@@ -59,22 +59,9 @@ pub(crate) fn transfer_figure(
     for (row, plot) in plots.iter().enumerate() {
         let last = row + 1 == plots.len();
         for phase in [false, true] {
-            let y = if phase {
-                "Phase (°)"
-            } else {
-                "Magnitude (–)"
-            };
-            let x = Axis::new(if last { x_label } else { "" });
-            let mut panel = Panel::new(x.tight(), Axis::new(y));
-            panel.title = Some(plot.name.clone());
-            for (band, points) in bands(plot, phase) {
-                panel.add(band, points, BAND);
-            }
-            let value = |p: &(f64, f64, f64)| (p.0, if phase { p.2 } else { p.1 });
-            let reference = plot.reference.points.iter().map(value).collect();
-            panel.add(&plot.reference.label, reference, reference_ink(plot));
+            let mut panel = reference_panel(plot, phase, if last { x_label } else { "" });
             for curve in &plot.models {
-                let points = curve.points.iter().map(value).collect();
+                let points = points(curve, phase);
                 panel.add(&curve.label, points, ink(&curve.label)?);
             }
             panels.push(panel);
@@ -100,6 +87,28 @@ pub(crate) fn transfer_figure(
         legend: vec![legend],
     }
     .draw()
+}
+
+/// A panel of magnitudes or phases with the reference and the band around it.
+fn reference_panel(plot: &TransferPlot, phase: bool, x_label: &str) -> Panel {
+    let y = if phase {
+        "Phase (°)"
+    } else {
+        "Magnitude (–)"
+    };
+    let mut panel = Panel::new(Axis::new(x_label).tight(), Axis::new(y));
+    panel.title = Some(plot.name.clone());
+    for (band, points) in bands(plot, phase) {
+        panel.add(band, points, BAND);
+    }
+    let reference = points(&plot.reference, phase);
+    panel.add(&plot.reference.label, reference, reference_ink(plot));
+    panel
+}
+
+fn points(curve: &TransferCurve, phase: bool) -> Vec<(f64, f64)> {
+    let value = |p: &(f64, f64, f64)| (p.0, if phase { p.2 } else { p.1 });
+    curve.points.iter().map(value).collect()
 }
 
 const BAND: Ink = Ink::stroke(GREY, Some("4 3"), 0.9);

@@ -2,7 +2,7 @@
 
 use super::columns::LinearModel;
 use super::design::Design;
-use super::parameters::{Coordinates, Parameter};
+use super::parameters::{Coordinates, Parameter, per_chain};
 use super::speed_scatter::{self, Effect, POINTS, Slopes, SpeedScatter};
 use crate::aerodynamics::{DiscreteLaguerre, Transfer, TransferMatrix};
 use crate::error::{Error, Result};
@@ -195,31 +195,12 @@ impl CoefficientUncertainty {
                 chains,
                 searched,
             } => {
-                let mut chains = chains.clone();
                 let first_pole = expected.saturating_sub(searched.len());
+                let mut chains = chains.clone();
                 for (pole, value) in searched.iter().zip(&values[first_pole..]) {
-                    for (i, row) in chains.iter_mut().enumerate() {
-                        for (j, chain) in row.iter_mut().enumerate() {
-                            if pole.entry.is_none_or(|entry| entry == (i, j)) {
-                                let mut free = form.collapse(chain);
-                                free[pole.index] = *value;
-                                *chain = form.expand(&free);
-                            }
-                        }
-                    }
+                    pole.move_to(*value, form, &mut chains);
                 }
-                let mut rest = values.iter().copied();
-                let coefficients: Vec<Vec<Vec<f64>>> = chains
-                    .iter()
-                    .map(|row| {
-                        row.iter()
-                            .map(|chain| {
-                                let count = form.feed_through().count() + chain.len();
-                                rest.by_ref().take(count).collect()
-                            })
-                            .collect()
-                    })
-                    .collect();
+                let coefficients = per_chain(form, &chains, values);
                 assemble(form, &self.dofs, &chains, &coefficients)
             }
             Coordinates::Discrete {

@@ -42,6 +42,37 @@ pub struct SearchedPole {
     pub index: usize,
 }
 
+impl SearchedPole {
+    /// Gives it another value in the poles of every transfer function that has it.
+    pub(super) fn move_to(&self, value: f64, form: &Form, chains: &mut [Vec<Vec<f64>>]) {
+        for (i, row) in chains.iter_mut().enumerate() {
+            for (j, chain) in row.iter_mut().enumerate() {
+                if self.entry.is_none_or(|entry| entry == (i, j)) {
+                    let mut free = form.collapse(chain);
+                    free[self.index] = value;
+                    *chain = form.expand(&free);
+                }
+            }
+        }
+    }
+}
+
+/// Coefficients of every transfer function, one after the other in `values`.
+pub(super) fn per_chain(
+    form: &Form,
+    chains: &[Vec<Vec<f64>>],
+    values: &[f64],
+) -> Vec<Vec<Vec<f64>>> {
+    let mut rest = values.iter().copied();
+    let mut of_chain = |chain: &Vec<f64>| {
+        let count = form.feed_through().count() + chain.len();
+        rest.by_ref().take(count).collect()
+    };
+    let rows = chains.iter();
+    rows.map(|row| row.iter().map(&mut of_chain).collect())
+        .collect()
+}
+
 /// How parameters make a model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]

@@ -77,31 +77,11 @@ pub(super) struct Part {
 /// Stacks the forces of every stretch, each relative to its size over all stretches, as the search of poles weighs
 /// them.
 pub(super) fn gather(records: &[DimensionlessRecord], parts: Vec<Part>) -> Stretched {
-    let mut groups: BTreeMap<(Vec<usize>, usize), Vec<usize>> = BTreeMap::new();
-    for (at, part) in parts.iter().enumerate() {
-        groups.entry(part.group.clone()).or_default().push(at);
-    }
-    let mut scales = vec![1.0; parts.len()];
-    let mut variances = vec![1.0; parts.len()];
-    for members in groups.values() {
-        let total: f64 = members.iter().map(|&m| parts[m].total).sum();
-        let scale = if total > 0.0 {
-            total.sqrt().recip()
-        } else {
-            1.0
-        };
-        let own: Vec<&Part> = members.iter().map(|&m| &parts[m]).collect();
-        for (&m, variance) in members.iter().zip(working_variances(records, &own)) {
-            scales[m] = scale;
-            variances[m] = variance * scale * scale;
-        }
-    }
+    let weights = weights(records, &parts);
     let mut stretches: BTreeMap<(usize, usize), Vec<usize>> = BTreeMap::new();
     for (at, part) in parts.iter().enumerate() {
-        stretches
-            .entry((part.record, part.stretch))
-            .or_default()
-            .push(at);
+        let stretch = stretches.entry((part.record, part.stretch));
+        stretch.or_default().push(at);
     }
     let mut out = Stretched {
         blocks: Vec::new(),
@@ -111,39 +91,71 @@ pub(super) fn gather(records: &[DimensionlessRecord], parts: Vec<Part>) -> Stret
     let mut keys: BTreeMap<(usize, usize), usize> = BTreeMap::new();
     for ((record, stretch), members) in stretches {
         let segment = parts[members[0]].segment;
-        let name = match segment {
-            Some(s) => format!(
-                "{}, {:.2} Hz",
-                records[record].name(),
-                records[record].segments()[s].frequency_hz
-            ),
-            None => format!("{}, stretch {}", records[record].name(), stretch + 1),
+        let record_of = &records[record];
+        let hertz = segment.map(|s| record_of.segments()[s].frequency_hz);
+        let number = stretch + 1;
+        let (of_segment, name) = match hertz {
+            Some(f) => {
+                let segment = format!("{}, {f:.2} Hz", record_of.name());
+                let stretch = format!("{segment}, stretch {number}");
+                (segment, stretch)
+            }
+            None => {
+                let stretch = format!("{}, stretch {number}", record_of.name());
+                (stretch.clone(), stretch)
+            }
         };
-        let key = *keys
-            .entry((record, segment.unwrap_or(stretch)))
-            .or_insert_with(|| {
-                out.names.push(name.clone());
-                out.names.len() - 1
-            });
+        let key = keys.entry((record, segment.unwrap_or(stretch)));
+        out.segments.push(*key.or_insert_with(|| {
+            out.names.push(of_segment);
+            out.names.len() - 1
+        }));
         let scaled: Vec<_> = members
             .iter()
             .map(|&m| {
-                let (part, scale) = (&parts[m], scales[m]);
-                (&part.rows * scale, &part.residual * scale, variances[m])
+                let (part, Weight { scale, variance }) = (&parts[m], weights[m]);
+                (&part.rows * scale, &part.residual * scale, variance)
             })
             .collect();
-        let name = if segment.is_some() {
-            format!("{name}, stretch {}", stretch + 1)
-        } else {
-            name
-        };
-        let record = &records[record];
-        let k = segment.map(|s| TAU * record.segments()[s].frequency_hz / record.rate);
-        let test = (name, Some(record.mean_speed_m_s()), k);
+        let k = hertz.map(|f| TAU * f / record_of.rate);
+        let test = (name, Some(record_of.mean_speed_m_s()), k);
         out.blocks.push(Block::stacked(test, &scaled));
-        out.segments.push(key);
     }
     out
+}
+
+/// What rows of a part are multiplied with, and the working variance of them then.
+#[derive(Clone, Copy)]
+struct Weight {
+    scale: f64,
+    variance: f64,
+}
+
+/// The weights of all parts: equations of one group share their scale.
+fn weights(records: &[DimensionlessRecord], parts: &[Part]) -> Vec<Weight> {
+    let mut groups: BTreeMap<&(Vec<usize>, usize), Vec<usize>> = BTreeMap::new();
+    for (at, part) in parts.iter().enumerate() {
+        groups.entry(&part.group).or_default().push(at);
+    }
+    let alone = Weight {
+        scale: 1.0,
+        variance: 1.0,
+    };
+    let mut weights = vec![alone; parts.len()];
+    for members in groups.values() {
+        let total: f64 = members.iter().map(|&m| parts[m].total).sum();
+        let scale = if total > 0.0 {
+            total.sqrt().recip()
+        } else {
+            1.0
+        };
+        let own: Vec<&Part> = members.iter().map(|&m| &parts[m]).collect();
+        for (&m, variance) in members.iter().zip(working_variances(records, &own)) {
+            let variance = variance * scale * scale;
+            weights[m] = Weight { scale, variance };
+        }
+    }
+    weights
 }
 
 /// Weighted variance of one row in each part: `w² e^(a + γ ln f)`, with a level `a` a record and one `γ`, by least

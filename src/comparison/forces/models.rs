@@ -6,13 +6,14 @@ use super::score::{Score, ScoreSummary, Trial, run_all, summaries};
 use super::statements::{Statement, on_models};
 use super::tested_deck::TestedDeck;
 use crate::aerodynamics::Transfer;
+use crate::aerodynamics::derivatives::TransferSample;
 use crate::error::{Error, Result};
 use crate::identification::{
-    Constraints, FitReport, Form, FrequencyFit, FrequencyWeights, TimeFit, fit_discrete,
+    Constraints, FitReport, Fitted, Form, FrequencyFit, FrequencyWeights, TimeFit, fit_discrete,
     fit_records, fit_table,
 };
 use crate::section::Dof;
-use crate::wind_tunnel::Record;
+use crate::wind_tunnel::{Record, RecordSource};
 use serde::Serialize;
 
 /// Frequencies whose histories the thesis shows (Figures 3.29 to 3.32), Hz.
@@ -94,24 +95,7 @@ pub(crate) fn compare_models(
     let speed = deck.training_speed_m_s();
     let group = deck.table.at_speed_group(deck.training_group)?;
     let (records, sources) = (deck.training_records(), deck.training());
-    let fits = [
-        (
-            format!("Laguerre, {}", options.laguerre_name()),
-            fit_discrete(&sources, &options.laguerre, &|_| ())?,
-        ),
-        (
-            "rational functions, one lag".to_owned(),
-            fit_table(
-                &group.samples(&options.dofs),
-                &options.dofs,
-                &thesis_rational_functions(),
-            )?,
-        ),
-        (
-            "Laguerre with feed-through, L = 3".to_owned(),
-            fit_records(&sources, &TimeFit::default(), &|_| ())?,
-        ),
-    ];
+    let fits = fits(options, &sources, &group.samples(&options.dofs))?;
     let models: Vec<(String, &dyn Transfer)> = fits
         .iter()
         .map(|(name, fitted)| (name.clone(), &fitted.model as &dyn Transfer))
@@ -148,6 +132,22 @@ pub(crate) fn compare_models(
         scores,
         options: options.clone(),
     })
+}
+
+/// The models, each with its name.
+fn fits(
+    options: &CompareOptions,
+    sources: &[&dyn RecordSource],
+    samples: &[TransferSample],
+) -> Result<[(String, Fitted); 3]> {
+    let discrete = fit_discrete(sources, &options.laguerre, &|_| ())?;
+    let rational = fit_table(samples, &options.dofs, &thesis_rational_functions())?;
+    let continuous = fit_records(sources, &TimeFit::default(), &|_| ())?;
+    Ok([
+        (format!("Laguerre, {}", options.laguerre_name()), discrete),
+        ("rational functions, one lag".to_owned(), rational),
+        ("Laguerre with feed-through, L = 3".to_owned(), continuous),
+    ])
 }
 
 fn rival(name: &str, report: &FitReport) -> Rival {

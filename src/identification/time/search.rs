@@ -87,26 +87,7 @@ pub(crate) fn choose_poles(
         if groups.is_empty() {
             break;
         }
-        let mut candidates: Vec<Vec<f64>> = Vec::new();
-        let mut trials: Vec<(usize, Vec<f64>, usize)> = Vec::new();
-        for (g, group) in groups.iter_mut().enumerate() {
-            for poles in group.wanted(pass)? {
-                let chain = padded(&group.form.expand(&poles), longest);
-                let known = candidates.iter().position(|c| *c == chain);
-                let at = known.unwrap_or(candidates.len());
-                if known.is_none() {
-                    candidates.push(chain);
-                }
-                trials.push((g, poles, at));
-            }
-        }
-        let everywhere = |chain: Vec<f64>| vec![chain; dofs.len()];
-        let chains: Vec<_> = candidates.into_iter().map(everywhere).collect();
-        let systems = task.pass(&chains, Rows::THINNED, (pass, PASSES))?.systems();
-        for (g, poles, at) in trials {
-            let objective = groups[g].objective(&poles, &systems[at])?;
-            groups[g].points.push(SearchPoint { poles, objective });
-        }
+        task.evaluate(&mut groups, pass, longest)?;
     }
     let held = groups.split_off(alone);
     let alone = choice(&entries, dofs, groups)?;
@@ -120,6 +101,34 @@ pub(crate) fn choose_poles(
         held,
         wishes,
     })
+}
+
+impl RecordFit<'_> {
+    /// One pass over the records for the poles that every group wants to know of.
+    fn evaluate(&self, groups: &mut [Group], pass: usize, longest: usize) -> Result<()> {
+        let mut candidates: Vec<Vec<f64>> = Vec::new();
+        let mut trials: Vec<(usize, Vec<f64>, usize)> = Vec::new();
+        for (g, group) in groups.iter_mut().enumerate() {
+            for poles in group.wanted(pass)? {
+                let chain = padded(&group.form.expand(&poles), longest);
+                let known = candidates.iter().position(|c| *c == chain);
+                let at = known.unwrap_or(candidates.len());
+                if known.is_none() {
+                    candidates.push(chain);
+                }
+                trials.push((g, poles, at));
+            }
+        }
+        let everywhere = |chain: Vec<f64>| vec![chain; self.records.dofs.len()];
+        let chains: Vec<_> = candidates.into_iter().map(everywhere).collect();
+        let passed = self.pass(&chains, Rows::THINNED, (pass, PASSES))?;
+        let systems = passed.systems();
+        for (g, poles, at) in trials {
+            let objective = groups[g].objective(&poles, &systems[at])?;
+            groups[g].points.push(SearchPoint { poles, objective });
+        }
+        Ok(())
+    }
 }
 
 /// Fixed poles, and those that the groups found.

@@ -297,6 +297,20 @@ fn second_time(key: &str, of: &str, name: &str) -> Error {
 }
 
 impl RunBlock {
+    /// What the map lacks for a motion.
+    fn validate_motion(&self, dof: Dof, map: &ChannelMap) -> std::result::Result<(), String> {
+        let section = map.section.as_ref();
+        if section.is_some_and(|s| !s.dofs().contains(&dof)) {
+            let force = SectionForces::name(dof);
+            return Err(format!("its force too: `channels.section.{force}`"));
+        }
+        if map.motion(dof).is_none() {
+            let name = dof.name();
+            return Err(format!("a motion with a channel: `channels.{name}`"));
+        }
+        Ok(())
+    }
+
     fn validate(&self, place: &str, map: &ChannelMap, common: Air) -> Result<()> {
         let key = |name: &str| format!("{place}.{name}");
         let of_run = format!("(run `{}`)", self.name);
@@ -315,25 +329,10 @@ impl RunBlock {
             return Err(Error::input(key("motion"), expected, "nothing"));
         }
         for dof in &self.motion {
-            if map
-                .section
-                .as_ref()
-                .is_some_and(|s| !s.dofs().contains(dof))
-            {
-                let force = SectionForces::name(*dof);
-                let expected = format!("its force too: `channels.section.{force}` {of_run}");
-                return Err(Error::input(key("motion"), expected, "none"));
-            }
-            if map.motion(*dof).is_none() {
-                return Err(Error::input(
-                    key("motion"),
-                    format!(
-                        "a motion with a channel: `channels.{}` {of_run}",
-                        dof.name()
-                    ),
-                    "none",
-                ));
-            }
+            self.validate_motion(*dof, map).map_err(|expected| {
+                let expected = format!("{expected} {of_run}");
+                Error::input(key("motion"), expected, "none")
+            })?;
         }
         match self.mean_speed_m_s {
             Some(speed) => {

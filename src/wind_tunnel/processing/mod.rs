@@ -79,19 +79,16 @@ pub fn process(
         .map(|run| Prepared::new(run, &campaign.rig, options))
         .collect();
     let prepared = all_or_errors(prepared)?;
-    let dofs = options
-        .dofs
-        .clone()
-        .unwrap_or_else(|| dofs_of(campaign, &prepared));
-    let estimates: Vec<_> = prepared
-        .iter()
-        .filter_map(|p| p.still_air.clone())
-        .collect();
-    let sampling_hz = campaign.runs[0].in_wind.sampling_hz;
-    let estimated = lag::common_lag(&estimates, sampling_hz);
-    let lag_s = options
-        .lag_s
-        .unwrap_or_else(|| estimated.as_ref().map_or(0.0, |of| of.lag_s));
+    let stated = options.dofs.clone();
+    let dofs = stated.unwrap_or_else(|| dofs_of(campaign, &prepared));
+    let inertia = prepared.iter().filter_map(|p| p.still_air.clone());
+    let inertia: Vec<_> = inertia.collect();
+    let estimated = lag::common_lag(&inertia, campaign.runs[0].in_wind.sampling_hz);
+    let (lag_s, lag_standard_error_s) = match (options.lag_s, estimated) {
+        (Some(stated), _) => (stated, None),
+        (None, Some(found)) => (found.lag_s, Some(found.standard_error_s)),
+        (None, None) => (0.0, None),
+    };
     let done = AtomicUsize::new(0);
     let runs = prepared
         .into_par_iter()
@@ -107,10 +104,7 @@ pub fn process(
         section: campaign.section.clone(),
         options: options.clone(),
         lag_s,
-        lag_standard_error_s: match options.lag_s {
-            Some(_) => None,
-            None => estimated.map(|of| of.standard_error_s),
-        },
+        lag_standard_error_s,
         common_delta_s: runs.iter().map(delta_s).fold(0.0, f64::max),
         runs: runs.iter().map(|r| r.report.clone()).collect(),
     };
