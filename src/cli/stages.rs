@@ -197,6 +197,21 @@ pub(crate) fn flutter(
     Ok(results)
 }
 
+/// The same of models that were trained just now.
+pub(crate) fn flutter_of(
+    study: &Study,
+    deck: &Deck,
+    trained: &[TrainedWithReport],
+    failed: &mut Vec<StageFailure>,
+    progress: &Progress,
+) -> Result<FlutterStudy> {
+    let models: Vec<_> = trained.iter().map(|t| t.model.clone()).collect();
+    let known: Vec<_> = trained.iter().map(|t| t.uncertainty.clone()).collect();
+    let mut results = flutter(study, deck, &models, &known, progress)?;
+    failed.append(&mut results.failed);
+    Ok(results)
+}
+
 /// The V-f and V-g figure as SVG and PNG.
 pub(crate) fn flutter_figure(
     study: &Study,

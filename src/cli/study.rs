@@ -11,10 +11,9 @@ use super::{account, evidence, headline, measured_forces, select, stages};
 use crate::error::{Error, Result};
 use crate::fmu::package::Growing;
 use crate::study::{
-    Deck, FITS, FlutterStudy, KnownUncertainty, RecordSet, StageFailure, SteppedOnset, Study,
-    TrainedWithReport, attempt, interval_of, stepped_onset, study_warnings,
+    Deck, FITS, FlutterStudy, RecordSet, StageFailure, SteppedOnset, Study, TrainedWithReport,
+    attempt, interval_of, stepped_onset, study_warnings,
 };
-use crate::trained_model::TrainedModel;
 use std::path::PathBuf;
 
 /// Run the whole chain of a study file: records, training, flutter, FMU, onset by stepping the FMU
@@ -72,11 +71,13 @@ pub(crate) fn run_chain(
     let records = chain.records()?;
     chain.select(records.as_ref())?;
     let trained = chain.train(records.as_ref())?;
-    let mut results = chain.flutter(&trained)?;
-    let exported = chain.export(&trained, growing)?;
-    let stepped = chain.step(exported, &mut results)?;
+    let failed = &mut chain.failed;
+    let mut results = stages::flutter_of(&chain.study, &chain.deck, &trained, failed, progress)?;
+    let own = chain.own(&trained)?;
+    let fmu = chain.export(own, growing)?;
+    let stepped = chain.step(own, fmu, &mut results)?;
     chain.draw(&trained, &results)?;
-    chain.draw_exported(&trained, &results, records.as_ref())?;
+    chain.draw_exported(own, &results, records.as_ref())?;
     let summary = chain.summary(study_file, trained, results, stepped)?;
     chain.finish(summary)
 }
@@ -89,13 +90,6 @@ struct Chain<'a> {
     out: OutputDir,
     failed: Vec<StageFailure>,
     progress: &'a Progress,
-}
-
-/// The FMU, where it stands for now.
-struct Exported<'a> {
-    model: &'a TrainedModel,
-    known: &'a KnownUncertainty,
-    path: PathBuf,
 }
 
 impl Chain<'_> {
@@ -138,45 +132,43 @@ impl Chain<'_> {
         }
     }
 
-    fn flutter(&mut self, trained: &[TrainedWithReport]) -> Result<FlutterStudy> {
-        let models: Vec<_> = trained.iter().map(|t| t.model.clone()).collect();
-        let known: Vec<_> = trained.iter().map(|t| t.uncertainty.clone()).collect();
-        let mut results = stages::flutter(&self.study, &self.deck, &models, &known, self.progress)?;
-        self.failed.append(&mut results.failed);
-        Ok(results)
+    /// The model that the study exports, if it was trained.
+    fn own<'t>(&self, trained: &'t [TrainedWithReport]) -> Result<Option<&'t TrainedWithReport>> {
+        let name = &self.study.exported()?.name;
+        Ok(trained.iter().find(|t| t.model.name == *name))
     }
 
-    /// Packs the model that the study exports.
-    fn export<'t>(
+    /// Packs the model that the study exports; where its FMU stands for now.
+    fn export(
         &mut self,
-        trained: &'t [TrainedWithReport],
+        own: Option<&TrainedWithReport>,
         growing: Growing,
-    ) -> Result<Option<Exported<'t>>> {
-        let name = &self.study.exported()?.name;
-        let Some(own) = trained.iter().find(|t| t.model.name == *name) else {
-            let reason = format!("{name} was not trained");
+    ) -> Result<Option<PathBuf>> {
+        let Some(own) = own else {
+            let reason = format!("{} was not trained", self.study.exported()?.name);
             self.failed.push(StageFailure::new("export", reason));
             return Ok(None);
         };
-        let (model, known) = (&own.model, &own.uncertainty);
-        let bytes = stages::export((model, known), &self.study, growing, self.progress);
+        let known = (&own.model, &own.uncertainty);
+        let bytes = stages::export(known, &self.study, growing, self.progress);
         let Some(bytes) = self.attempt("export", bytes)? else {
             return Ok(None);
         };
         self.out.write(stages::FMU_FILE, bytes)?;
-        let path = self.out.stage(stages::FMU_FILE)?;
-        Ok(Some(Exported { model, known, path }))
+        self.out.stage(stages::FMU_FILE).map(Some)
     }
 
     /// Steps the FMU to its onset, which enters `results` as far as it is a result.
     fn step(
         &mut self,
-        exported: Option<Exported<'_>>,
+        own: Option<&TrainedWithReport>,
+        fmu: Option<PathBuf>,
         results: &mut FlutterStudy,
     ) -> Result<Option<SteppedOnset>> {
-        let Some(Exported { model, known, path }) = exported else {
+        let (Some(own), Some(path)) = (own, fmu) else {
             return Ok(None);
         };
+        let (model, known) = (&own.model, &own.uncertainty);
         let stage = self.progress.stage(STEPPING);
         let found = stepped_onset(model, &path, self.study.speeds().speed_max_m_s);
         drop(stage);
@@ -210,13 +202,12 @@ impl Chain<'_> {
     /// Measured forces and motion of the exported model at its onset.
     fn draw_exported(
         &mut self,
-        trained: &[TrainedWithReport],
+        own: Option<&TrainedWithReport>,
         results: &FlutterStudy,
         records: Option<&RecordSet>,
     ) -> Result<()> {
-        let name = &self.study.exported()?.name;
-        let own = trained.iter().find(|t| t.model.name == *name);
-        let (Some(own), Some(onset)) = (own, headline::own_onset(results, name)) else {
+        let Some(own) = own else { return Ok(()) };
+        let Some(onset) = headline::own_onset(results, &own.model.name) else {
             return Ok(());
         };
         let at = (onset.at.speed_m_s, onset.at.frequency_hz);

@@ -37,10 +37,7 @@ pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     let mut failed = Vec::new();
     let aside = (&mut out, &mut failed);
     let trained = stages::train(&study, &deck, Some(&records), aside, progress)?;
-    let models: Vec<_> = trained.iter().map(|t| t.model.clone()).collect();
-    let known: Vec<_> = trained.iter().map(|t| t.uncertainty.clone()).collect();
-    let mut results = stages::flutter(&study, &deck, &models, &known, progress)?;
-    failed.append(&mut results.failed);
+    let results = stages::flutter_of(&study, &deck, &trained, &mut failed, progress)?;
     let mut text = format!("{}\n\n", study.name);
     for result in &trained {
         text.push_str(&account::fit(
@@ -61,12 +58,11 @@ pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     if let Some(folder) = &args.out {
         stages::flutter_figure(&study, &results, &mut out)?;
         evidence::write_curves(&study, &results.curves, &mut out)?;
-        let own = models
-            .first()
-            .and_then(|m| Some((m, headline::own_onset(&results, &m.name)?)));
-        if let Some((model, onset)) = own {
+        if let Some(own) = trained.first()
+            && let Some(onset) = headline::own_onset(&results, &own.model.name)
+        {
             let at = (onset.at.speed_m_s, onset.at.frequency_hz);
-            evidence::write_response(model, at, &mut out)?;
+            evidence::write_response(&own.model, at, &mut out)?;
         }
         let page = thesis_page(&results, PRINTED_M_S, &out, progress)?;
         let mut left = OutputDir::new(folder)?;

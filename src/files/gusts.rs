@@ -14,7 +14,7 @@
 
 use crate::aerodynamics::GustSeries;
 use crate::error::{Error, Result};
-use crate::files::header_csv::{CommentHeader, csv_error, find_columns, number};
+use crate::files::header_csv::{CommentHeader, csv_error, find_columns, number, table_reader};
 use std::io::Write;
 use std::path::Path;
 
@@ -46,18 +46,10 @@ pub fn read_gusts(path: impl AsRef<Path>) -> Result<GustSeries> {
 /// [`Error::Input`] naming the line: wrong header or columns, text or NaN in numbers, times that do not start at zero or
 /// are not equally spaced, fewer than two samples.
 pub(crate) fn parse_gusts(text: &str) -> Result<GustSeries> {
-    let mut header = CommentHeader::new(&[FORMAT], &KEYS, &[]);
-    for line in text.lines() {
-        if !header.take(line)? {
-            break;
-        }
-    }
+    let header = CommentHeader::read(text, &[FORMAT], &KEYS, &[])?;
     header.must_say("units", UNITS)?;
     header.must_say("sign_convention", SIGNS)?;
-    let mut reader = csv::ReaderBuilder::new()
-        .comment(Some(b'#'))
-        .trim(csv::Trim::All)
-        .from_reader(text.as_bytes());
+    let mut reader = table_reader(text);
     let names = reader.headers().map_err(csv_error)?.clone();
     let columns = find_columns(&names, GUST_COLUMNS, header.lines() + 1)?;
     let (mut along, mut vertical, mut step) = (Vec::new(), Vec::new(), 0.0);

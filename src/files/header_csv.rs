@@ -3,6 +3,14 @@
 use crate::error::{Error, Result, counted};
 use std::io::Write;
 
+/// Reader of the table below the header of `text`.
+pub(crate) fn table_reader(text: &str) -> csv::Reader<&[u8]> {
+    csv::ReaderBuilder::new()
+        .comment(Some(b'#'))
+        .trim(csv::Trim::All)
+        .from_reader(text.as_bytes())
+}
+
 /// One header line.
 #[derive(Debug, Clone)]
 pub(crate) struct Entry {
@@ -35,6 +43,22 @@ impl CommentHeader {
             entries: Vec::new(),
             lines: 0,
         }
+    }
+
+    /// The header at the head of `text`, which allows what [`CommentHeader::new`] is given.
+    pub(crate) fn read(
+        text: &str,
+        formats: &'static [&'static str],
+        keys: &'static [&'static str],
+        repeated: &'static [&'static str],
+    ) -> Result<Self> {
+        let mut header = Self::new(formats, keys, repeated);
+        for line in text.lines() {
+            if !header.take(line)? {
+                break;
+            }
+        }
+        Ok(header)
     }
 
     /// Takes the next line of the file; `false` when it is no comment, so the header is over.

@@ -44,32 +44,21 @@ pub(crate) fn processing_figure(
     let motion_ink = Ink::stroke(colour(PLACE, 1)?, None, 1.1);
     let mut panels = Vec::with_capacity(2 * stages.len() + 2);
     for stage in stages {
-        let row = Row {
-            title: stage_title(run, &stage.stage, dof),
-            label: force_name(dof),
-            time: "",
-            shaded: &shaded,
-            uprights: Vec::new(),
-            name: &stage.stage,
-            samples: points(&stage.signals.force[force]),
-            ink: force_ink,
-        };
-        panels.extend(row.panels(columns));
+        let signal = (&stage.stage[..], points(&stage.signals.force[force]));
+        let label = force_name(dof);
+        let [mut left, right] = pair(columns, &shaded, ("", label), signal, force_ink);
+        left.title = Some(stage_title(run, &stage.stage, dof));
+        panels.extend([left, right]);
     }
     let motion_name = format!("{} motion", run.dof.name());
     let unit = if run.dof == Dof::Torsion { "rad" } else { "m" };
+    let label = format!("{} ({unit})", run.dof.symbol());
+    let signal = ("motion", points(&last.signals.motion[motion]));
+    let [mut left, right] = pair(columns, &[], ("t (s)", label), signal, motion_ink);
+    left.title = Some(motion_name.clone());
     let starts = run.segments.iter().map(|s| s.segment.start_s);
-    let row = Row {
-        title: motion_name.clone(),
-        label: format!("{} ({unit})", run.dof.symbol()),
-        time: "t (s)",
-        shaded: &[],
-        uprights: starts.map(|t| (t, BLACK)).collect(),
-        name: "motion",
-        samples: points(&last.signals.motion[motion]),
-        ink: motion_ink,
-    };
-    panels.extend(row.panels(columns));
+    left.uprights = starts.map(|t| (t, BLACK)).collect();
+    panels.extend([left, right]);
     let legend = vec![
         Entry::new(force_of(dof), force_ink),
         Entry::new(motion_name, motion_ink),
@@ -85,29 +74,19 @@ pub(crate) fn processing_figure(
     .draw()
 }
 
-/// One signal, in the left column over the whole run and in the right one close up; title, label and uprights stand left.
-struct Row<'a> {
-    title: String,
-    label: String,
-    /// Label of the abscissa.
-    time: &'static str,
-    shaded: &'a [(f64, f64)],
-    uprights: Vec<(f64, &'static str)>,
-    name: &'a str,
-    samples: Vec<(f64, f64)>,
+/// One signal over the whole run, and close up.
+fn pair(
+    [whole, close]: [(f64, f64); 2],
+    shaded: &[(f64, f64)],
+    (time, label): (&str, String),
+    (name, samples): (&str, Vec<(f64, f64)>),
     ink: Ink,
-}
-
-impl Row<'_> {
-    fn panels(self, [whole, close]: [(f64, f64); 2]) -> [Panel; 2] {
-        let mut right = panel(self.time, String::new(), close, self.shaded);
-        right.add(self.name, inside(&self.samples, close), self.ink);
-        let mut left = panel(self.time, self.label, whole, self.shaded);
-        left.title = Some(self.title);
-        left.uprights = self.uprights;
-        left.add(self.name, self.samples, self.ink);
-        [left, right]
-    }
+) -> [Panel; 2] {
+    let mut right = panel(time, String::new(), close, shaded);
+    right.add(name, inside(&samples, close), ink);
+    let mut left = panel(time, label, whole, shaded);
+    left.add(name, samples, ink);
+    [left, right]
 }
 
 /// The stage with what is left of the force after it.

@@ -32,20 +32,11 @@ pub(super) fn read(path: &Path) -> Result<Modes> {
 }
 
 pub(super) fn parse(text: &str) -> Result<Modes> {
-    let mut header = CommentHeader::new(&[FORMAT], KEYS, &[MODE]);
     if text.lines().next().map(str::trim) != Some(&format!("# {FORMAT}")) {
-        let found = text.lines().next().unwrap_or("").to_owned();
-        return Err(Error::input(
-            "line 1",
-            format!("`# {FORMAT}`"),
-            format!("`{found}`"),
-        ));
+        let found = format!("`{}`", text.lines().next().unwrap_or(""));
+        return Err(Error::input("line 1", format!("`# {FORMAT}`"), found));
     }
-    for line in text.lines() {
-        if !header.take(line)? {
-            break;
-        }
-    }
+    let header = CommentHeader::read(text, &[FORMAT], KEYS, &[MODE])?;
     header.must_say("axes", AXES)?;
     header.must_say("units", UNITS)?;
     let table = Table::parse(text)?;

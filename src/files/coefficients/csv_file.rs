@@ -19,7 +19,7 @@ use crate::aerodynamics::quasi_steady::{
     CoefficientRow, CoefficientsHeader, StaticCoefficients, TABLE_SIGN_CONVENTION, TABLE_UNITS,
 };
 use crate::error::{Error, Result};
-use crate::files::header_csv::{CommentHeader, csv_error, find_columns, number};
+use crate::files::header_csv::{CommentHeader, csv_error, find_columns, number, table_reader};
 use std::io::Write;
 use std::path::Path;
 
@@ -52,12 +52,7 @@ pub(crate) fn read_coefficients(path: impl AsRef<Path>) -> Result<StaticCoeffici
 /// [`Error::Input`] naming line, expectation and finding: missing or unknown header keys and columns, another sign
 /// convention or other units, text or NaN in numbers, angles that do not rise, fewer than four rows.
 pub(crate) fn parse_coefficients(text: &str) -> Result<StaticCoefficients> {
-    let mut header = CommentHeader::new(&[FORMAT], &KEYS, &[]);
-    for line in text.lines() {
-        if !header.take(line)? {
-            break;
-        }
-    }
+    let header = CommentHeader::read(text, &[FORMAT], &KEYS, &[])?;
     let (rows, lines) = read_rows(text, header.lines() + 1)?;
     if let Some(problem) = check_rows(&rows) {
         let line = lines.get(problem.index).copied();
@@ -102,10 +97,7 @@ pub fn write_coefficients(table: &StaticCoefficients, out: &mut dyn Write) -> st
 
 /// The rows and the lines they stand on.
 fn read_rows(text: &str, names_line: usize) -> Result<(Vec<CoefficientRow>, Vec<u64>)> {
-    let mut reader = csv::ReaderBuilder::new()
-        .comment(Some(b'#'))
-        .trim(csv::Trim::All)
-        .from_reader(text.as_bytes());
+    let mut reader = table_reader(text);
     let names = reader.headers().map_err(csv_error)?.clone();
     let columns = find_columns(&names, COEFFICIENT_COLUMNS, names_line)?;
     let (mut rows, mut lines) = (Vec::new(), Vec::new());

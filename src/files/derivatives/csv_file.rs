@@ -31,7 +31,9 @@ use crate::aerodynamics::derivatives::{Derivative, DerivativePoint, DerivativeTa
 use crate::error::{Error, Result};
 use crate::files::derivatives::csv_header::{Head, ReadOptions, write_head};
 use crate::files::derivatives::csv_wide;
-use crate::files::header_csv::{at_place, csv_error, find_columns, missing_column, number};
+use crate::files::header_csv::{
+    at_place, csv_error, find_columns, missing_column, number, table_reader,
+};
 use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::Path;
@@ -118,10 +120,7 @@ pub(crate) fn parse_csv_in(
 
 fn parse_long(text: &str, options: &ReadOptions) -> Result<(DerivativeTable, Convention)> {
     let head = Head::read(text)?;
-    let mut reader = csv::ReaderBuilder::new()
-        .comment(Some(b'#'))
-        .trim(csv::Trim::All)
-        .from_reader(text.as_bytes());
+    let mut reader = table_reader(text);
     let names = reader.headers().map_err(csv_error)?.clone();
     let line = head.lines() + 1;
     let mut in_file = head.stated()?;

@@ -56,12 +56,7 @@ pub(super) struct Head {
 impl Head {
     /// Reads the comment lines at the head of `text`.
     pub(crate) fn read(text: &str) -> Result<Self> {
-        let mut header = CommentHeader::new(&FORMATS, &KEYS, &REPEATED);
-        for line in text.lines() {
-            if !header.take(line)? {
-                break;
-            }
-        }
+        let header = CommentHeader::read(text, &FORMATS, &KEYS, &REPEATED)?;
         Ok(Self { header })
     }
 
