@@ -211,12 +211,12 @@ fn account(
 ) -> (EntryReport, Option<f64>) {
     let residuals = entry.residuals(basis, coefficients);
     let unknowns = fit.unknowns;
-    let (relative_rms, worst) = sizes(entry, &residuals);
+    let relative = sizes(entry, &residuals);
     let report = EntryReport {
         force: entry.force,
         motion: entry.motion,
-        relative_rms: Some(relative_rms),
-        worst_relative: Some(worst),
+        relative_rms: Some(relative.rms),
+        worst_relative: Some(relative.worst),
         poles: Vec::new(),
         coefficients: Vec::new(),
         covariance: Vec::new(),

@@ -355,13 +355,13 @@ impl Task<'_> {
             let (i, j) = (at / n, at % n);
             let mut values = rows.values[i][j * feed..(j + 1) * feed].to_vec();
             values.extend((0..self.states).map(|l| model.d[(i, l)] * model.e[(l, j)]));
-            let (relative_rms, worst) = sizes(entry, &entry.residuals(&basis, &values));
+            let relative = sizes(entry, &entry.residuals(&basis, &values));
             let solution = &rows.solutions[i];
             let report = EntryReport {
                 force: entry.force,
                 motion: entry.motion,
-                relative_rms: Some(relative_rms),
-                worst_relative: Some(worst),
+                relative_rms: Some(relative.rms),
+                worst_relative: Some(relative.worst),
                 poles: model.lags.clone(),
                 coefficients: Vec::new(),
                 covariance: Vec::new(),

@@ -265,8 +265,16 @@ pub(super) fn shares(entries: &[&Entry]) -> Vec<f64> {
     entries.iter().map(share).collect()
 }
 
-/// Relative root mean square and worst relative size of unweighted residuals.
-pub(super) fn sizes(entry: &Entry, residuals: &[f64]) -> (f64, f64) {
+/// Sizes of unweighted residuals.
+pub(super) struct RelativeSizes {
+    /// Root mean square over that of the data.
+    pub rms: f64,
+    /// Largest over the size of its own sample.
+    pub worst: f64,
+}
+
+/// Sizes of residuals relative to the samples of their entry.
+pub(super) fn sizes(entry: &Entry, residuals: &[f64]) -> RelativeSizes {
     let sum: f64 = residuals.iter().map(|r| r * r).sum();
     let total: f64 = entry.rows.iter().map(|r| r.value * r.value).sum();
     let relative = residuals
@@ -281,7 +289,7 @@ pub(super) fn sizes(entry: &Entry, residuals: &[f64]) -> (f64, f64) {
     } else {
         0.0
     };
-    (rms, worst)
+    RelativeSizes { rms, worst }
 }
 
 #[cfg(test)]

@@ -169,18 +169,16 @@ pub(super) fn between_speeds(
         let size: f64 = (0..n).map(|j| judge.mean_square((i, j))).sum::<f64>() / n as f64;
         let mut deviations = [0.0; 2];
         for (turn, deviation) in [Turn::Size, Turn::Phase].into_iter().zip(&mut deviations) {
-            let columns = judge.effect((i, n), turn, (values, own), &mut ratios);
-            let Some((columns, excess, total)) = columns else {
+            let unit = judge.effect((i, n), turn, (values, own), &mut ratios);
+            let Some(unit) = unit.filter(|u| u.excess > 0.0 && size > 0.0) else {
                 continue;
             };
-            if excess > 0.0 && size > 0.0 {
-                *deviation = (excess / size).sqrt();
-                effects.push(Effect {
-                    columns: columns * excess.sqrt(),
-                    total: total / excess,
-                    degrees_of_freedom: spare,
-                });
-            }
+            *deviation = (unit.excess / size).sqrt();
+            effects.push(Effect {
+                columns: unit.columns * unit.excess.sqrt(),
+                total: unit.total / unit.excess,
+                degrees_of_freedom: spare,
+            });
         }
         let [size, phase] = deviations;
         forces.push(ForceScatter { force, size, phase });
@@ -208,6 +206,15 @@ enum Turn {
     Phase,
 }
 
+/// An effect of unit absolute standard deviation.
+struct UnitEffect {
+    columns: DMatrix<f64>,
+    /// Its estimated variance: what exceeds the blocks.
+    excess: f64,
+    /// The same with the blocks.
+    total: f64,
+}
+
 /// What the scatter of all forces is judged by.
 struct Judge<'a> {
     design: &'a Design,
@@ -224,15 +231,14 @@ impl Judge<'_> {
         sum / self.common.len() as f64
     }
 
-    /// The effect of force `i` of `n` of unit absolute standard deviation, its estimated variance (what exceeds the blocks),
-    /// and the same with the blocks; adds the ratios of variances to `ratios`.
+    /// The effect of force `i` of `n`; adds the ratios of variances to `ratios`.
     fn effect(
         &self,
         (i, n): (usize, usize),
         turn: Turn,
         (values, own): (&DVector<f64>, &[Vec<usize>]),
         ratios: &mut Vec<f64>,
-    ) -> Option<(DMatrix<f64>, f64, f64)> {
+    ) -> Option<UnitEffect> {
         let parameters = values.len();
         let mut columns: Vec<DVector<f64>> = Vec::new();
         let (mut excess, mut total, mut weight) = (0.0, 0.0, 0.0);
@@ -264,12 +270,10 @@ impl Judge<'_> {
             }
             columns.extend(of_each.into_iter().map(|c| c / size.sqrt()));
         }
-        (weight > 0.0).then(|| {
-            (
-                DMatrix::from_columns(&columns),
-                (excess / weight).max(0.0),
-                total / weight,
-            )
+        (weight > 0.0).then(|| UnitEffect {
+            columns: DMatrix::from_columns(&columns),
+            excess: (excess / weight).max(0.0),
+            total: total / weight,
         })
     }
 
