@@ -7,7 +7,6 @@
 
 mod held;
 
-use self::held::Rows;
 use super::basis::Basis;
 use super::constrained::{LinearProblem, LinearSolution};
 use super::dissipative::{ActiveConstraint, Constraints, Wishes};
@@ -321,7 +320,7 @@ impl Task<'_> {
         let model = self.model_of(dofs, x, &rows.values);
         model.validate()?;
         let fitted = FittedTable {
-            reports: self.reports(&model, &rows)?,
+            reports: self.reports(&model, &rows.values, &rows.solutions)?,
             model: Model::MinimumState(model),
             search,
             constraints: None,
@@ -347,16 +346,21 @@ impl Task<'_> {
         }
     }
 
-    fn reports(&self, model: &MinimumStateModel, rows: &Rows) -> Result<Vec<EntryReport>> {
+    fn reports(
+        &self,
+        model: &MinimumStateModel,
+        values: &[Vec<f64>],
+        solutions: &[LinearSolution],
+    ) -> Result<Vec<EntryReport>> {
         let (n, feed) = (self.n, self.feed.count());
         let basis = self.roger_basis(&model.lags)?;
         let mut reports = Vec::new();
         for (at, entry) in self.entries.iter().enumerate() {
             let (i, j) = (at / n, at % n);
-            let mut values = rows.values[i][j * feed..(j + 1) * feed].to_vec();
-            values.extend((0..self.states).map(|l| model.d[(i, l)] * model.e[(l, j)]));
-            let relative = sizes(entry, &entry.residuals(&basis, &values));
-            let solution = &rows.solutions[i];
+            let mut own = values[i][j * feed..(j + 1) * feed].to_vec();
+            own.extend((0..self.states).map(|l| model.d[(i, l)] * model.e[(l, j)]));
+            let relative = sizes(entry, &entry.residuals(&basis, &own));
+            let solution = &solutions[i];
             let report = EntryReport {
                 force: entry.force,
                 motion: entry.motion,
@@ -369,7 +373,7 @@ impl Task<'_> {
                 cancellation: solution.cancellation,
             };
             // the product of D and E is not linear in what was searched: no standard errors
-            reports.push(report.with_coefficients(basis.names(), &values, None));
+            reports.push(report.with_coefficients(basis.names(), &own, None));
         }
         Ok(reports)
     }

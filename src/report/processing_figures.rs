@@ -8,7 +8,7 @@ use super::sheet::Sheet;
 use super::style::{BLACK, Ink, colour};
 use crate::error::{Error, Result};
 use crate::section::Dof;
-use crate::wind_tunnel::processing::{RunReport, StageSignals, index};
+use crate::wind_tunnel::processing::{RunReport, StageSignals};
 
 const PLACE: &str = "processing of a run";
 /// Periods in the right column.
@@ -27,7 +27,7 @@ pub(crate) fn processing_figure(
     let Some(last) = stages.last() else {
         return Err(Error::input(PLACE, "stages", "none"));
     };
-    let (force, motion) = (index(dof), index(run.dof));
+    let (force, motion) = (dof as usize, run.dof as usize);
     let rate = last.signals.sampling_hz;
     let points = |x: &[f64]| -> Vec<(f64, f64)> {
         let samples = x.iter().enumerate();
@@ -91,7 +91,7 @@ fn pair(
 
 /// The stage with what is left of the force after it.
 fn stage_title(run: &RunReport, stage: &str, dof: Dof) -> String {
-    let force = index(dof);
+    let force = dof as usize;
     let Some(l) = run.levels.iter().find(|l| l.stage == stage) else {
         return stage.to_owned();
     };
