@@ -48,8 +48,8 @@ pub use quasi_steady::quasi_steady_modes;
 pub(crate) use quasi_steady::{QuasiSteadyOnset, quasi_steady_onset};
 pub(crate) use sanity::{SanityLines, sanity_lines};
 pub use scan::{GrowthBand, growth_scan};
-pub(crate) use search::curve_speeds_m_s;
 pub use search::{OnsetSearch, find_onset};
+pub(crate) use search::{curve_speeds_m_s, find_onset_of_modes};
 pub use sweep::{
     LinearForces, OnsetSweep, SweepOutcome, SweptOnset, at_samples, stands_at_samples,
 };

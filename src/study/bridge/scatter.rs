@@ -8,7 +8,7 @@ use crate::aerodynamics::{
 use crate::bridge::Bridge;
 use crate::error::{Error, Result, non_negative};
 use crate::files::bridge::SectionBlock;
-use crate::flutter::{NearbyOnset, Onset, find_onset};
+use crate::flutter::{NearbyOnset, Onset, find_onset_of_modes};
 use crate::section::Dof;
 use crate::signal::random_stream;
 use crate::uncertainty::{ModelDraws, moments, sample_quantile};
@@ -96,7 +96,7 @@ pub struct ScatteredOnset {
 
 impl BridgeStudy {
     /// The onset when frequencies, damping and forces scatter: that of the mode which flutters in the mean, followed in every
-    /// sample from the onset of the mean; where it cannot be followed the onset is searched. `progress` is called with the samples
+    /// sample from the onset of the mean; where it cannot be followed the onset is searched among all modes. `progress` is called with the samples
     /// done and all of them, from any thread.
     ///
     /// # Errors
@@ -229,7 +229,7 @@ impl Sampler<'_> {
             return Ok(Some(speed));
         }
         let other = coupled(&self.sample(index, 1.0)?)?;
-        let found = find_onset(
+        let found = find_onset_of_modes(
             "sample",
             &other,
             &self.study.search(),
@@ -354,6 +354,7 @@ impl Realizable for Scaled {
 mod tests {
     use super::*;
     use crate::files::bridge::BridgeFile;
+    use crate::flutter::find_onset;
 
     /// Frequencies that scatter change the motion at flutter; what is followed is what a search finds.
     #[test]
@@ -390,6 +391,9 @@ mod tests {
                 "{index}"
             );
             let found = find_onset("sample", &other, &search, study.tested_range()).unwrap();
+            let of_modes =
+                find_onset_of_modes("sample", &other, &search, study.tested_range()).unwrap();
+            assert_eq!(of_modes.critical_speed_m_s(), found.critical_speed_m_s());
             // where the onset lies outside the tested range the search names the end of that instead
             if let Some(onset) = found.onset() {
                 assert!((speed / onset.at.speed_m_s - 1.0).abs() < 1e-8, "{index}");
