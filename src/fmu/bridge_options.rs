@@ -2,8 +2,10 @@
 
 use super::bridge_gusts::BridgeGusts;
 use super::onset_bounds::OnsetBounds;
-use crate::bridge::{Bridge, BridgeMode, Node, StripGroup};
+use crate::aeroelastic::CoupledSection;
+use crate::bridge::{Bridge, BridgeMode, GustChannels, Node, StripGroup};
 use crate::error::{Error, Result, positive};
+use crate::response::Stepper;
 use crate::trained_model::Model;
 use crate::units::ReducedFrequencyRange;
 use serde::{Deserialize, Serialize};
@@ -90,6 +92,20 @@ impl BridgeOptions {
             modes,
             groups,
         )
+    }
+
+    /// The stepper of a bridge with these gusts, and what the gusts of the strips do to its modes.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for forces that cannot be stepped and for strips that are none.
+    pub(super) fn stepper(&self, bridge: &Bridge) -> Result<(Stepper, Option<GustChannels>)> {
+        let coupled = CoupledSection::new(bridge.structure(), bridge.forces().realize()?)?;
+        let Some(gusts) = &self.gusts else {
+            return Ok((Stepper::new(coupled), None));
+        };
+        let channels = GustChannels::new(bridge, &gusts.coefficients, &gusts.strips)?;
+        let stepper = Stepper::in_modal_gusts(coupled, &channels.passing, gusts.admittance);
+        Ok((stepper, Some(channels)))
     }
 
     /// Name of a node in the names of variables: its own where that is a number, else its place from 1 on.

@@ -92,6 +92,9 @@ pub fn array_of(role: Role, name: &str) -> Option<Cow<'_, str>> {
     let (of, rest) = name.split_once("].")?;
     let (kind, _) = of.split_once('[')?;
     match role {
+        Role::Filter(_) | Role::FilterRate(_) if kind == "mode" => {
+            Some(format!("{kind}.{rest}").into())
+        }
         Role::Motion(..) | Role::Gust(..) | Role::Force(..) | Role::Strip(..) | Role::Filter(_) => {
             (kind == "strip").then_some(rest.into())
         }

@@ -5,6 +5,7 @@
 //! types.
 
 mod bridge;
+mod bridge_states;
 mod dependencies;
 mod force;
 #[cfg(feature = "cli")]

@@ -365,3 +365,91 @@ def test_forces_on_strips_make_the_same_bridge(unpacked):
     found = zero(speeds, rates)
     print(found, ONSET, rates)
     assert found == pytest.approx(ONSET, rel=3e-3)
+
+
+# what CVode is asked for, relative; it keeps each step to it, and a run holds some hundred of them, whose errors add up
+SOLVER = 1e-9
+AGREEMENT = 1e4 * SOLVER
+SEEN = ["node[1156].heave", "node[1156].rotation", "node[1156].heave_rate", "node[1156].rotation_acceleration"]
+
+
+@pytest.mark.parametrize("of_onset", [0.0, 0.001, 0.5, 1.0, 1.05])
+def test_cvode_moves_the_bridge_as_its_own_steps_do(of_onset):
+    start = {"wind_speed": of_onset * ONSET, "node[1156].external_lift": 1e6}
+    options = {"stop_time": 20.0, "output_interval": 0.25, "output": SEEN, "start_values": start}
+    fmu = str(FOLDER / "bridge.fmu")
+    own = fmpy.simulate_fmu(fmu, fmi_type="CoSimulation", **options)
+    foreign = fmpy.simulate_fmu(
+        fmu, fmi_type="ModelExchange", solver="CVode", relative_tolerance=SOLVER, **options
+    )
+    assert len(own) == len(foreign)
+    for name in SEEN:
+        size = np.abs(own[name]).max()
+        assert np.abs(own[name] - foreign[name]).max() <= AGREEMENT * size, name
+
+
+def test_cvode_blows_gusts_on_the_bridge_as_its_own_steps_do():
+    description = read_model_description(str(FOLDER / "bridge_gusts.fmu"))
+    gusts = [v.name for v in description.modelVariables if v.name.endswith(".gust_w")]
+    start = {"wind_speed": 0.5 * ONSET, **{name: 3.0 + i for i, name in enumerate(gusts)}}
+    options = {"stop_time": 10.0, "output_interval": 0.25, "output": SEEN, "start_values": start}
+    fmu = str(FOLDER / "bridge_gusts.fmu")
+    own = fmpy.simulate_fmu(fmu, fmi_type="CoSimulation", **options)
+    foreign = fmpy.simulate_fmu(
+        fmu, fmi_type="ModelExchange", solver="CVode", relative_tolerance=SOLVER, **options
+    )
+    for name in SEEN:
+        size = np.abs(own[name]).max()
+        assert np.abs(own[name] - foreign[name]).max() <= AGREEMENT * size, name
+
+
+def linear_system(slave):
+    """A of the unit, by its directional derivatives: what each state does to all rates."""
+    rates = [u.variable for u in slave.description.derivatives]
+    states = [r.derivative.valueReference for r in rates]
+    rates = [r.valueReference for r in rates]
+    column = lambda state: slave.fmu.getDirectionalDerivative(rates, [state], [1.0])
+    return np.array([column(state) for state in states]).T
+
+
+def test_the_linear_system_flutters_at_the_onset(bridge):
+    """Its eigenvalues, by NumPy, cross zero where the unit says; nothing grows below."""
+    bridge.start(wind_speed=ONSET)
+    bridge.step(0.1)
+    at_onset = np.linalg.eigvals(linear_system(bridge))
+    assert len(at_onset) == bridge.description.numberOfContinuousStates == 5 * len(BRIDGE["modes"])
+    critical = at_onset[np.argmax(at_onset.real)]
+    assert abs(critical.real) < 1e-7
+    assert abs(critical.imag) == pytest.approx(2 * np.pi * BRIDGE["frequency_hz"], rel=1e-6)
+    bridge.set({"wind_speed": 0.98 * ONSET})
+    assert np.linalg.eigvals(linear_system(bridge)).real.max() < 0
+
+
+def test_what_depends_on_what_is_all_there_is(bridge):
+    """No entry of A that the description does not name."""
+    bridge.start(wind_speed=0.7 * ONSET)
+    bridge.step(0.1)
+    a = linear_system(bridge)
+    unknowns = bridge.description.derivatives
+    states = [u.variable.derivative.name for u in unknowns]
+    for row, unknown in zip(a, unknowns):
+        named = {v.name for v in unknown.dependencies}
+        acts = {state for state, slope in zip(states, row) if slope != 0.0}
+        assert acts <= named, unknown.variable.name
+
+
+def test_states_of_modes_are_arrays_in_fmi3(unpacked):
+    """The rates of FMI 3.0 are those of FMI 2.0, bit for bit."""
+    description = read_model_description(str(FOLDER / "bridge_fmi3.fmu"))
+    states = [u.variable.derivative for u in description.derivatives]
+    modes = len(BRIDGE["modes"])
+    assert [s.name for s in states[:2]] == ["mode.normalised_coordinate", "mode.normalised_rate"]
+    assert all(int(s.dimensions[0].start) == modes for s in states[:2])
+    options = {"stop_time": 5.0, "output_interval": 0.25, "fmi_type": "ModelExchange", "solver": "CVode"}
+    options["start_values"] = {"wind_speed": 0.5 * ONSET}
+    nodes = [v.name for v in read_model_description(str(FOLDER / "bridge.fmu")).modelVariables]
+    nodes = [name for name in nodes if name.startswith("node[") and name.endswith("].heave")]
+    two = fmpy.simulate_fmu(str(FOLDER / "bridge.fmu"), output=nodes, **options)
+    three = fmpy.simulate_fmu(str(FOLDER / "bridge_fmi3.fmu"), output=["node.heave"], **options)
+    expected = np.array([two[name] for name in nodes]).T
+    assert np.array_equal(three["node.heave"], expected)

@@ -1,10 +1,8 @@
 //! What follows from the parameters of an exported bridge: its coupled modes, and what gusts do to them.
 
-use crate::aerodynamics::RationalAdmittance;
-use crate::aeroelastic::CoupledSection;
 use crate::bridge::{Bridge, GustChannels};
 use crate::error::{Error, Result};
-use crate::fmu::bridge_gusts::{BridgeGusts, GustRecord};
+use crate::fmu::bridge_gusts::GustRecord;
 use crate::fmu::bridge_options::BridgeOptions;
 use crate::fmu::resources::Resources;
 use crate::fmu::variables::{ModeParameter, Role, SectionParameter};
@@ -38,20 +36,10 @@ impl Built {
                 _ => {}
             }
         }
-        let coupled = CoupledSection::new(bridge.structure(), bridge.forces().realize()?)?;
-        let channels = |g: &BridgeGusts| GustChannels::new(&bridge, &g.coefficients, &g.strips);
-        let gusts = options.gusts.as_ref().map(channels).transpose()?;
+        let (stepper, gusts) = options.stepper(&bridge)?;
         let turbulence = match (&resources.turbulence, &options.gusts) {
             (Some(field), Some(gusts)) => Some(field.channels(&bridge, gusts)?),
             _ => None,
-        };
-        let admittance = options.gusts.as_ref().map(|g| g.admittance);
-        let stepper = match &gusts {
-            Some(gusts) => {
-                let admittance = admittance.unwrap_or(RationalAdmittance::None);
-                Stepper::in_modal_gusts(coupled, &gusts.passing, admittance)
-            }
-            None => Stepper::new(coupled),
         };
         Ok(Self {
             bridge,

@@ -6,7 +6,7 @@ use super::bridge_unit::BridgeUnit;
 use super::layout::Source;
 use super::memory::Memory;
 use super::section::OnsetCard;
-use super::sensitivity::{central_difference, parameter_step};
+use super::sensitivity::{Instant, central_difference, parameter_step};
 use super::trust::{Present, is_of_onset, smallest_damping, without_motion};
 use super::unit::Unit;
 use crate::error::Result;
@@ -14,7 +14,6 @@ use crate::fmu::lifecycle::State;
 use crate::fmu::refusal::Answer;
 use crate::fmu::resources::Resources;
 use crate::fmu::variables::{Calculated, Role, Status};
-use crate::response::Outputs;
 
 impl BridgeUnit {
     /// Derivatives of all unknowns with respect to one known.
@@ -26,13 +25,13 @@ impl BridgeUnit {
         unknowns: &[Role],
     ) -> Answer<Vec<f64>> {
         let role = resources.table.variables()[known].role;
-        let modal = match (Source::of(role), role) {
+        let instant = match (Source::of(role), role) {
             (_, Role::WindSpeed) => {
                 self.load_inputs(memory);
-                let modal = self.by_wind(memory);
+                let by_wind = self.by_wind(memory);
                 let slope = |role: &Role| match role {
                     Role::Status(_) => self.present_by_wind(memory, *role),
-                    other => Ok(self.pick(&modal, *other)),
+                    other => Ok(self.pick_of(&by_wind, *other)),
                 };
                 return Ok(unknowns.iter().map(slope).collect::<Result<_>>()?);
             }
@@ -40,11 +39,12 @@ impl BridgeUnit {
             (Source::Section, _) => return self.by_parameter(resources, memory, known, unknowns),
             _ => self.by_unit(memory, known)?,
         };
-        Ok(unknowns.iter().map(|u| self.pick(&modal, *u)).collect())
+        let derivative = |unknown: &Role| self.pick_of(&instant, *unknown);
+        Ok(unknowns.iter().map(derivative).collect())
     }
 
-    /// What a force, a gust or a coordinate at release of one does.
-    fn by_unit(&mut self, memory: &Memory, known: usize) -> Result<Outputs> {
+    /// What a force, a gust, a state or a coordinate at release of one does.
+    fn by_unit(&mut self, memory: &Memory, known: usize) -> Result<Instant> {
         let mut unit = memory.clone();
         let inputs = &self.places.inputs[1..];
         for place in inputs.iter().chain(&self.places.initial) {
@@ -58,12 +58,15 @@ impl BridgeUnit {
         let released = self.places.initial.contains(&known);
         // while initialising the lags stand where the gusts are
         let initial = memory.state == State::Initialization;
-        let state = if released || initial {
+        let mut state = if released || initial {
             self.release(&unit.values)?
         } else {
             self.built.at_rest()
         };
-        self.modal(&state)
+        if let Some(entry) = self.places.state_entry[known] {
+            state.set_number(entry, 1.0);
+        }
+        self.instant(&state)
     }
 
     /// What is found below the limit of the search does not depend on it; what is not found is the limit.
@@ -114,7 +117,7 @@ impl BridgeUnit {
     fn unknowns(&mut self, memory: &Memory, unknowns: &[Role]) -> Result<Vec<f64>> {
         self.load_inputs(memory);
         let state = self.release(&memory.values)?;
-        let modal = self.modal(&state)?;
+        let instant = self.instant(&state)?;
         let wind = memory.values[self.places.inputs[0]];
         let wants = |wanted: fn(&Role) -> bool| unknowns.iter().any(wanted);
         let limit = memory.values[self.places.limit];
@@ -128,7 +131,7 @@ impl BridgeUnit {
         let calculated = |which| card.as_ref().map_or(0.0, |card| card.value(which));
         let value = |unknown: &Role| {
             let still = without_motion(*unknown, calculated, wind, damping);
-            still.unwrap_or_else(|| self.pick(&modal, *unknown))
+            still.unwrap_or_else(|| self.pick_of(&instant, *unknown))
         };
         Ok(unknowns.iter().map(value).collect())
     }

@@ -24,6 +24,8 @@ pub(super) struct Places {
     pub onset_found: usize,
     /// Factor on the turbulence of the archive.
     pub turbulence_factor: Option<usize>,
+    /// Entry of the state that a variable is; by place.
+    pub state_entry: Vec<Option<usize>>,
 }
 
 impl Places {
@@ -63,6 +65,12 @@ impl Places {
             onset_frequency: found(Calculated::OnsetFrequency)?,
             onset_found: found(Calculated::OnsetFound)?,
             turbulence_factor: table.find(Role::TurbulenceFactor),
+            state_entry: all()
+                .map(|(_, v)| match v.role {
+                    Role::Filter(entry) => Some(entry),
+                    _ => None,
+                })
+                .collect(),
         })
     }
 }

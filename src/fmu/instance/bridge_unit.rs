@@ -8,7 +8,7 @@ use super::bridge_places::Places;
 use super::layout::Source;
 use super::memory::{Memory, starts};
 use super::section::OnsetCard;
-use super::sensitivity::{add, check_finite, speed_sensitivity};
+use super::sensitivity::{Instant, add, check_finite, overgrown};
 use super::trust::{LINEAR_ROTATION_RAD, Present, beyond_linear};
 use super::unit::Unit;
 use crate::aeroelastic::CoupledSection;
@@ -132,6 +132,15 @@ impl BridgeUnit {
         }
     }
 
+    /// The same with the states and their rates.
+    pub fn pick_of(&self, instant: &Instant, role: Role) -> f64 {
+        match role {
+            Role::Filter(entry) => instant.of_state(entry),
+            Role::FilterRate(entry) => instant.of_rate(entry),
+            other => self.pick(&instant.outputs, other),
+        }
+    }
+
     /// Outputs of the modes for a state, with the inputs that are loaded.
     pub fn modal(&mut self, state: &SectionState) -> Result<Outputs> {
         let mut outputs = Outputs::default();
@@ -141,9 +150,14 @@ impl BridgeUnit {
         Ok(outputs)
     }
 
+    /// All that there is in a state, with the inputs that are loaded.
+    pub fn instant(&mut self, state: &SectionState) -> Result<Instant> {
+        Instant::of(&mut self.built.stepper, state, &self.inputs)
+    }
+
     /// `∂/∂V`, per m/s, in the state of `memory` with the inputs that are loaded.
-    pub fn by_wind(&self, memory: &Memory) -> Outputs {
-        speed_sensitivity(&self.built.stepper, &memory.system, &self.inputs)
+    pub fn by_wind(&self, memory: &Memory) -> Instant {
+        Instant::by_speed(&self.built.stepper, &memory.system, &self.inputs)
     }
 }
 
@@ -268,6 +282,20 @@ impl Unit for BridgeUnit {
         Ok(false)
     }
 
+    fn state_rates(&mut self, _: &Resources, memory: &Memory) -> Answer<Vec<f64>> {
+        self.load_inputs(memory);
+        let stepper = &mut self.built.stepper;
+        let rates = stepper.state_derivative(&memory.system, &self.inputs)?;
+        if rates.iter().all(|x| x.is_finite()) {
+            return Ok(rates);
+        }
+        Err(overgrown())
+    }
+
+    fn held_output(&self, place: usize) -> Option<usize> {
+        self.places.state_entry[place]
+    }
+
     fn outputs(&mut self, _: &Resources, memory: &mut Memory) -> Answer<()> {
         self.load_inputs(memory);
         let (stepper, inputs) = (&mut self.built.stepper, &self.inputs);
@@ -319,7 +347,7 @@ impl Unit for BridgeUnit {
         std::mem::swap(&mut inputs.force, &mut inputs.force_rate);
         std::mem::swap(&mut inputs.gust_m_s, &mut inputs.gust_rate_m_s2);
         let mut rates = self.modal(&velocity)?;
-        add(&mut rates, &by_wind, wind_rate);
+        add(&mut rates, &by_wind.outputs, wind_rate);
         let rate = |role: &Role| match role {
             Role::Status(_) => Ok(self.present_by_wind(memory, *role)? * wind_rate),
             response => Ok(self.pick(&rates, *response)),

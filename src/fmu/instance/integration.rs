@@ -9,12 +9,12 @@ impl Instance {
     /// Makes an instance whose importer integrates.
     ///
     /// # Errors
-    /// A unit without continuous states: sampled models, and whole bridges.
+    /// A unit without continuous states: sampled models, and bridges with more than anybody integrates.
     pub fn for_model_exchange(mut self) -> Answer<Self> {
         if !self.offers_model_exchange() {
             return Err(Refusal::error(
-                "type of the unit: expected co-simulation (1), because sampled models and whole bridges have no continuous \
-                 states, found model exchange (0)",
+                "type of the unit: expected co-simulation (1), because sampled models have no continuous states and bridges of \
+                 many hundred do not offer them, found model exchange (0)",
             ));
         }
         self.unit.will_be_integrated();
@@ -48,6 +48,8 @@ impl Instance {
             )));
         }
         self.memory.time = time;
+        // turbulence that is in the archive goes on
+        self.outputs_current = false;
         Ok(())
     }
 

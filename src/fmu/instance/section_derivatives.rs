@@ -6,55 +6,14 @@ use super::layout::Source;
 use super::memory::Memory;
 use super::section_unit::SectionUnit;
 use super::sensitivity::{
-    add, central_difference, check_finite, parameter_step, pick, speed_sensitivity,
+    Instant, add, central_difference, check_finite, parameter_step, speed_sensitivity,
 };
 use super::trust::{Present, is_of_onset, smallest_damping, without_motion};
-use crate::aerodynamics::Realization;
 use crate::error::Result;
 use crate::fmu::refusal::Answer;
 use crate::fmu::resources::Resources;
 use crate::fmu::variables::{Role, Status};
-use crate::response::{Inputs, Outputs, SectionState, Stepper};
-
-/// All that a section has at an instant, or its derivative with respect to one known.
-#[derive(Debug, Default)]
-pub(super) struct Instant {
-    outputs: Outputs,
-    /// `[q, q̇, x]`.
-    state: Vec<f64>,
-    /// Its rate.
-    rate: Vec<f64>,
-}
-
-impl Instant {
-    fn of(stepper: &mut Stepper, state: &SectionState, inputs: &Inputs) -> Result<Self> {
-        let mut outputs = Outputs::default();
-        stepper.outputs(state, inputs, &mut outputs)?;
-        let continuous = matches!(stepper.section().aerodynamics(), Realization::Continuous(_));
-        Ok(Self {
-            outputs,
-            state: state.all(),
-            rate: if continuous {
-                stepper.state_derivative(state, inputs)?
-            } else {
-                Vec::new()
-            },
-        })
-    }
-
-    /// The entry that a role stands for; zero for what inputs and release do not act on.
-    fn pick(&self, role: Role) -> f64 {
-        let filter = |of: &[f64], i: usize| {
-            let motion = 2 * self.outputs.displacement.len();
-            of.get(motion + i).copied().unwrap_or(0.0)
-        };
-        match role {
-            Role::Filter(i) => filter(&self.state, i),
-            Role::FilterRate(i) => filter(&self.rate, i),
-            other => pick(&self.outputs, other),
-        }
-    }
-}
+use crate::response::{Inputs, Outputs, Stepper};
 
 impl SectionUnit {
     /// `ẏ = C ż + D ẇ + (∂y/∂V) V̇` of all outputs.
@@ -113,11 +72,7 @@ impl SectionUnit {
             return Ok(Instant::default());
         };
         if known == self.places.wind_speed {
-            return Ok(Instant {
-                outputs: speed_sensitivity(stepper, &memory.system, &self.inputs),
-                state: Vec::new(),
-                rate: rate_by_speed(stepper, &memory.system, &self.inputs),
-            });
+            return Ok(Instant::by_speed(stepper, &memory.system, &self.inputs));
         }
         let mut unit = Inputs::steady(speed, self.places.force.len());
         for (force, place) in unit.force.iter_mut().zip(&self.places.force) {
@@ -203,13 +158,4 @@ impl SectionUnit {
         };
         Ok(unknowns.iter().map(value).collect())
     }
-}
-
-/// `∂ż/∂V` of the filters and of the lagging gusts; zero for the motion, which [`speed_sensitivity`] gives.
-fn rate_by_speed(stepper: &Stepper, state: &SectionState, inputs: &Inputs) -> Vec<f64> {
-    let section = stepper.section();
-    let motion = vec![0.0; 2 * section.structure().dofs.len()];
-    let filters = section.filter_rates_per_wind(&state.values);
-    let (_, lagging) = stepper.gusts_per_wind(state, inputs);
-    [&motion, filters.as_slice(), &lagging].concat()
 }

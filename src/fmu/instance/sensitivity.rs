@@ -2,6 +2,7 @@
 
 use super::memory::Memory;
 use crate::aerodynamics::Realization;
+use crate::error::Result;
 use crate::fmu::refusal::{Answer, Refusal};
 use crate::fmu::resources::Resources;
 use crate::fmu::variables::Role;
@@ -26,6 +27,75 @@ pub(super) fn pick(outputs: &Outputs, role: Role) -> f64 {
         Dof::Torsion => list.len().saturating_sub(1),
     };
     list.get(index).copied().unwrap_or(0.0)
+}
+
+/// All that a section has at an instant, or its derivative with respect to one known.
+#[derive(Debug, Default)]
+pub(super) struct Instant {
+    pub outputs: Outputs,
+    /// `[q, q̇, x]`.
+    state: Vec<f64>,
+    /// Its rate.
+    rate: Vec<f64>,
+}
+
+impl Instant {
+    pub fn of(stepper: &mut Stepper, state: &SectionState, inputs: &Inputs) -> Result<Self> {
+        let mut outputs = Outputs::default();
+        stepper.outputs(state, inputs, &mut outputs)?;
+        let continuous = matches!(stepper.section().aerodynamics(), Realization::Continuous(_));
+        Ok(Self {
+            outputs,
+            state: state.all(),
+            rate: if continuous {
+                stepper.state_derivative(state, inputs)?
+            } else {
+                Vec::new()
+            },
+        })
+    }
+
+    /// `∂/∂V` in a state, with these inputs.
+    pub fn by_speed(stepper: &Stepper, state: &SectionState, inputs: &Inputs) -> Self {
+        Self {
+            outputs: speed_sensitivity(stepper, state, inputs),
+            state: Vec::new(),
+            rate: rate_by_speed(stepper, state, inputs),
+        }
+    }
+
+    /// The entry that a role stands for; zero for what inputs and release do not act on.
+    pub fn pick(&self, role: Role) -> f64 {
+        let filter = |of: &[f64], i: usize| {
+            let motion = 2 * self.outputs.displacement.len();
+            of.get(motion + i).copied().unwrap_or(0.0)
+        };
+        match role {
+            Role::Filter(i) => filter(&self.state, i),
+            Role::FilterRate(i) => filter(&self.rate, i),
+            other => pick(&self.outputs, other),
+        }
+    }
+
+    /// An entry of the whole state `[q, q̇, x]`.
+    pub fn of_state(&self, entry: usize) -> f64 {
+        let n = self.outputs.displacement.len();
+        match entry {
+            i if i < n => self.outputs.displacement[i],
+            i if i < 2 * n => self.outputs.rate[i - n],
+            i => self.state.get(i).copied().unwrap_or(0.0),
+        }
+    }
+
+    /// Its rate.
+    pub fn of_rate(&self, entry: usize) -> f64 {
+        let n = self.outputs.displacement.len();
+        match entry {
+            i if i < n => self.outputs.rate[i],
+            i if i < 2 * n => self.outputs.acceleration[i - n],
+            i => self.rate.get(i).copied().unwrap_or(0.0),
+        }
+    }
 }
 
 pub(super) fn add(outputs: &mut Outputs, other: &Outputs, factor: f64) {
@@ -76,6 +146,15 @@ pub(super) fn speed_sensitivity(
         acceleration: acceleration.as_slice().to_vec(),
         self_excited_force: force.as_slice().to_vec(),
     }
+}
+
+/// `∂ż/∂V` of the filters and of the lagging gusts; zero for the motion, which [`speed_sensitivity`] gives.
+fn rate_by_speed(stepper: &Stepper, state: &SectionState, inputs: &Inputs) -> Vec<f64> {
+    let section = stepper.section();
+    let motion = vec![0.0; 2 * section.structure().dofs.len()];
+    let filters = section.filter_rates_per_wind(&state.values);
+    let (_, lagging) = stepper.gusts_per_wind(state, inputs);
+    [&motion, filters.as_slice(), &lagging].concat()
 }
 
 /// The step of a central difference over a parameter of this value.

@@ -1,5 +1,6 @@
 //! The variables of a whole bridge, in the order of the table.
 
+use super::bridge_states;
 use super::real::{FIXED, INPUT, OUTPUT, SMALLEST, TUNABLE, constants, real};
 use super::section::{
     calculated_parameters, capitalized, gust_inputs, onset_bounds, search_limit, status, wind_speed,
@@ -40,6 +41,7 @@ pub(super) fn variables(
     table.extend(interval.flat_map(|b| onset_bounds(b, "bridge")));
     table.extend(status());
     fill_dependencies(&mut table);
+    bridge_states::add(&mut table, options)?;
     Ok(table)
 }
 
