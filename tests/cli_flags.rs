@@ -25,7 +25,7 @@ const WITHOUT_OUT: [&str; 11] = [
     "validate",
 ];
 /// Commands that write files which users edit or hand on. What can be computed again is replaced without being asked.
-const WITH_FORCE: [&str; 8] = [
+const WITH_FORCE: [&str; 9] = [
     "buffeting",
     "campaign virtual",
     "demo",
@@ -34,6 +34,7 @@ const WITH_FORCE: [&str; 8] = [
     "process",
     "quasi-steady",
     "select",
+    "study",
 ];
 
 /// Every command with its help, from the program itself.

@@ -168,7 +168,7 @@ impl NearbyOnset {
         let problem = ModalCharacteristic::new(other)?;
         let mut known = (self.lambda, self.shape.clone());
         let mut at = |speed: f64| {
-            known = problem.at(speed).solve(known.0, &known.1)?;
+            known = problem.at(speed).solve(known.0, &known.1, None)?;
             Some(known.clone())
         };
         let (mut before, mut speed) = (self.speed_m_s, self.speed_m_s * (1.0 + FIRST_STEP));

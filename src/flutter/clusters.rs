@@ -52,13 +52,20 @@ fn each_alone(
 ) -> Vec<Option<Root>> {
     let alone = |i: usize| {
         let old = &before[i].shape;
-        let root = problem.solve(predicted[i], old);
+        let root = problem.solve(predicted[i], old, Some(apart(predicted, i)));
         root.filter(|(_, shape)| assurance(shape, old) >= MIN_ASSURANCE)
     };
     #[cfg(feature = "cli")]
     return (0..before.len()).into_par_iter().map(alone).collect();
     #[cfg(not(feature = "cli"))]
     (0..before.len()).map(alone).collect()
+}
+
+/// How far an eigenvalue is from the nearest of the others.
+fn apart(eigenvalues: &[Complex64], i: usize) -> f64 {
+    let others = (0..eigenvalues.len()).filter(|j| *j != i);
+    let distances = others.map(|j| (eigenvalues[j] - eigenvalues[i]).norm());
+    distances.fold(f64::INFINITY, f64::min)
 }
 
 /// Whether a mode that has neighbours has hardly changed its shape, so that it needs no look at them.
@@ -100,9 +107,10 @@ fn corrected(
         let shapes: Vec<Shape> = found.iter().map(|r| r.1.clone()).collect();
         basis = DMatrix::from_columns(&shapes).qr().q();
     }
-    let each = found
-        .iter()
-        .map(|(lambda, shape)| problem.solve(*lambda, shape));
+    let each = found.iter().enumerate().map(|(i, (lambda, shape))| {
+        let apart = apart(&at, i);
+        problem.solve(*lambda, shape, Some(apart))
+    });
     let mut roots = each.collect::<Option<Vec<Root>>>()?;
     let inside = |shape: &Shape| (space.adjoint() * shape).norm_squared() / shape.norm_squared();
     if roots.iter().any(|(_, shape)| inside(shape) < MIN_ASSURANCE) {

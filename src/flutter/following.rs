@@ -14,6 +14,8 @@ pub(super) const MIN_ASSURANCE: f64 = 0.9;
 /// Two modes closer than this, relatively, are one root found twice.
 pub(super) const SEPARATION: f64 = 1e-9;
 
+/// Part of a wind speed that is no step.
+const NO_STEP: f64 = 1e-6;
 /// Growth up to this part of the eigenvalue is rounding.
 const ROUNDING: f64 = 1e-9;
 
@@ -65,7 +67,8 @@ impl Course {
 
     /// The course at `next`, to where the eigenvalue has changed from `speed`.
     pub(super) fn to(&self, speed: f64, next: f64, change: Complex<f64>) -> Self {
-        if next == speed {
+        // what is left of a way that was halved is rounding, and its difference quotient noise
+        if (next - speed).abs() <= NO_STEP * next.abs() {
             return *self;
         }
         let slope = change / (next - speed);

@@ -24,6 +24,8 @@ const MAX_ROUNDS: usize = 12;
 const TOLERANCE: f64 = 1e-5;
 /// The same after a residual was taken away, which brings the error down by the step before over the distance to other modes.
 const POLISHED: f64 = 1e-9;
+/// Part of the distance to other eigenvalues up to which a step is small.
+const SMALL_PART: f64 = 0.1;
 /// Part of an eigenvalue by which it is moved where the problem is exactly singular; below the tolerance, so that it settles.
 const NUDGE: f64 = 1e-11;
 
@@ -94,8 +96,20 @@ pub(super) struct AtSpeed<'a> {
 
 impl AtSpeed<'_> {
     /// The eigenvalue that is reached from `start` and the shape of a mode nearby, with its own shape of unit norm; `None`
-    /// when the iteration does not settle.
-    pub(super) fn solve(&self, start: Complex64, near: &Shape) -> Option<(Complex64, Shape)> {
+    /// when the iteration does not settle. `apart` is how far other eigenvalues are, rad/s, where that is known: the last
+    /// step is a small part of it, since before that the shape may be any mixture of both; and as long as a step is not, its
+    /// residual is left to a round of its own, since the triangles at hand do not tell the modes apart.
+    pub(super) fn solve(
+        &self,
+        start: Complex64,
+        near: &Shape,
+        apart: Option<f64>,
+    ) -> Option<(Complex64, Shape)> {
+        let small = |step: Complex64| apart.is_some_and(|apart| step.norm() <= SMALL_PART * apart);
+        let settled = |step: Complex64, lambda: Complex64, tolerance: f64| {
+            let told_apart = small(step) || apart.is_none() || step.norm() <= NUDGE * lambda.norm();
+            step.norm() <= tolerance * lambda.norm() && told_apart
+        };
         let mut lambda = start;
         let mut shape = Columns::of_column(&near.normalize());
         for _ in 0..MAX_ROUNDS {
@@ -109,13 +123,17 @@ impl AtSpeed<'_> {
                 continue;
             };
             lambda -= round.step;
-            if round.step.norm() <= TOLERANCE * lambda.norm() {
+            if settled(round.step, lambda, TOLERANCE) {
                 return Some((lambda, round.right.to_column()));
+            }
+            if !small(round.step) {
+                shape = round.right;
+                continue;
             }
             let terms = self.terms(lambda)?;
             let (step, better) = pulp::Arch::new().dispatch(Residual { terms, round })?;
             lambda -= step;
-            if step.norm() <= POLISHED * lambda.norm() {
+            if settled(step, lambda, POLISHED) {
                 return Some((lambda, better.to_column()));
             }
             shape = better;
