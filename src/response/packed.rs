@@ -12,6 +12,8 @@ const LANES: usize = 4;
 /// Groups whose sums run at once: as many as the registers of a processor hold, so that every number of the vector is
 /// fetched once for all of them.
 const GROUPS: usize = 3;
+/// Columns up to which they do: sums of more wait for the matrix, and not for the vector.
+const FEW_COLUMNS: usize = 64;
 
 /// A matrix stored for `y = W v`, in groups of rows.
 #[derive(Debug, Clone)]
@@ -198,7 +200,12 @@ fn product(
     let (mut blocks, mut y) = (w.blocks.as_slice(), &mut y[..w.rows]);
     while y.len() > 2 * LANES {
         let (own, others) = blocks.split_at(w.columns);
-        let groups = sums(&own[..v.len()], v).map(&mut finish);
+        let groups = if v.len() > FEW_COLUMNS {
+            one_by_one(&own[..v.len()], v)
+        } else {
+            sums(&own[..v.len()], v)
+        };
+        let groups = groups.map(&mut finish);
         (blocks, y) = (others, write(y, groups));
     }
     if y.len() > LANES {
@@ -256,6 +263,48 @@ fn sums<const N: usize>(columns: &[[[f64; LANES]; N]], v: &[f64]) -> [[f64; LANE
     })
 }
 
+/// The same, one group after the other, in a function of its own: compiled into its callers, so many sums may lose their vectors.
+#[inline(never)]
+fn one_by_one<const N: usize>(columns: &[[[f64; LANES]; N]], v: &[f64]) -> [[f64; LANES]; N] {
+    with_vectors(OneByOne { columns, v })
+}
+
+struct OneByOne<'a, const N: usize> {
+    columns: &'a [[[f64; LANES]; N]],
+    v: &'a [f64],
+}
+
+impl<const N: usize> pulp::NullaryFnOnce for OneByOne<'_, N> {
+    type Output = [[f64; LANES]; N];
+
+    #[inline(always)]
+    fn call(self) -> Self::Output {
+        let mut all = [[0.0; LANES]; N];
+        for (group, all) in all.iter_mut().enumerate() {
+            let mut sums = [[0.0; LANES]; PARTIAL_SUMS];
+            let (four_columns, last) = self.columns.as_chunks::<PARTIAL_SUMS>();
+            let (fours, rest) = self.v.as_chunks::<PARTIAL_SUMS>();
+            for (four, x) in four_columns.iter().zip(fours) {
+                for part in 0..PARTIAL_SUMS {
+                    for lane in 0..LANES {
+                        sums[part][lane] += four[part][group][lane] * x[part];
+                    }
+                }
+            }
+            for (sum, (column, x)) in sums.iter_mut().zip(last.iter().zip(rest)) {
+                for lane in 0..LANES {
+                    sum[lane] += column[group][lane] * x;
+                }
+            }
+            let [a, b, c, d] = sums;
+            for lane in 0..LANES {
+                all[lane] = (a[lane] + b[lane]) + (c[lane] + d[lane]);
+            }
+        }
+        all
+    }
+}
+
 #[inline(always)]
 fn add<const N: usize>(sum: &mut [[f64; LANES]; N], column: &[[f64; LANES]; N], x: f64) {
     for (sum, column) in sum.iter_mut().zip(column) {
@@ -297,7 +346,9 @@ mod tests {
 
     #[test]
     fn products_of_every_shape_have_the_bits_of_their_rows_whatever_the_vectors() {
-        for (rows, columns) in (0..28).flat_map(|rows| (1..15).map(move |c| (rows, c))) {
+        for (rows, columns) in
+            (0..28).flat_map(|rows| (1..15).chain([64, 65, 71]).map(move |c| (rows, c)))
+        {
             let w = DMatrix::from_fn(rows, columns, |i, j| {
                 (3.7 * i as f64 + 1.3 * j as f64).sin()
             });
