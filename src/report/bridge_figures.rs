@@ -4,8 +4,9 @@ use super::axis::Axis;
 use super::figure::Figure;
 use super::legend::Entry;
 use super::panel::Panel;
+use super::root_locus::RootLocus;
 use super::sheet::Sheet;
-use super::style::{BLACK, COLOURS, GREY, Ink, PALE_GREY, Shape, dash};
+use super::style::{COLOURS, GREY, Ink, PALE_GREY, Shape, dash};
 use crate::bridge::Bridge;
 use crate::error::Result;
 use crate::flutter::{BridgeMotion, CriticalPoint, FlutterCurves, ModeBranch, ModePoint};
@@ -159,25 +160,12 @@ pub fn bridge_roots_figure(
     shown: &[String],
     title: &str,
 ) -> Result<Figure> {
-    let mut panel = Panel::new(
-        Axis::new("Growth rate (1/s)"),
-        Axis::new("Frequency (Hz)").zero_based(),
-    );
-    panel.uprights.push((0.0, BLACK));
+    let mut roots = RootLocus::new();
     let (modes, legend) = drawn(curves, shown);
     for mode in modes {
-        let line = mode.line(|p| (p.eigenvalue.re, p.frequency_hz));
-        panel.add(&mode.branch.name, line, mode.ink);
+        roots.add(mode.branch, mode.ink);
     }
-    Sheet {
-        name: "root locus of the bridge",
-        title: Some(title.to_owned()),
-        panels: vec![panel],
-        columns: 1,
-        axes: (640.0, 300.0),
-        legend: vec![legend, vec![other_modes()]],
-    }
-    .draw()
+    roots.draw(title, vec![legend, vec![other_modes()]])
 }
 
 /// The motion at flutter along the girder: real and imaginary part, a quarter of a period apart.

@@ -366,37 +366,3 @@ fn statement(onset: &Onset) -> String {
         onset.at.method.name(),
     )
 }
-
-/// The eigenvalues of all modes as the wind speed rises: growth rate (1/s) against frequency (Hz). Right of the zero line
-/// motions grow.
-pub(crate) fn root_locus_figure(curves: &[FlutterCurves], title: &str) -> Result<Figure> {
-    let branches = branch_names(curves)?;
-    let mut panel = Panel::new(
-        Axis::new("Growth rate (1/s)"),
-        Axis::new("Frequency (Hz)").zero_based(),
-    );
-    panel.uprights.push((0.0, BLACK));
-    let mut models = Vec::new();
-    for (i, model) in curves.iter().enumerate() {
-        let colour = colour(PLACE, i)?;
-        models.push(Entry::new(&model.model, Ink::line(colour, dash(i))));
-        for branch in model.branches.iter().filter(|b| !b.points.is_empty()) {
-            let ink = Ink::stroke(
-                colour,
-                dash(i),
-                branch_width(index_of(&branches, &branch.name)),
-            );
-            let place = |p: &ModePoint| (p.eigenvalue.re, p.frequency_hz);
-            panel.add(&branch.name, branch.points.iter().map(place).collect(), ink);
-        }
-    }
-    Sheet {
-        name: "root locus",
-        title: Some(title.to_owned()),
-        panels: vec![panel],
-        columns: 1,
-        axes: (640.0, 260.0),
-        legend: vec![models],
-    }
-    .draw()
-}

@@ -369,12 +369,8 @@ impl Campaign {
         let average = mean(&|r| r.onset_m_s);
         let scatter = (mean(&|r| (r.onset_m_s - average).powi(2)) * count / (count - 1.0)).sqrt();
         let variance = mean(&|r| r.standard_error_m_s.powi(2));
-        let holds = |target: f64| {
-            Share::count(
-                good.iter()
-                    .map(|r| (r.onset_m_s - target).abs() <= r.half_width_m_s),
-            )
-        };
+        let inside = |r: &Run, target: f64| (r.onset_m_s - target).abs() <= r.half_width_m_s;
+        let holds = |target: f64| Share::count(good.iter().map(|r| inside(r, target)));
         let mut report = CoverageReport {
             plan: plan.clone(),
             true_onset_m_s: self.true_onset_m_s,

@@ -8,7 +8,7 @@ use super::bridge_places::Places;
 use super::layout::Source;
 use super::memory::{Memory, starts};
 use super::section::OnsetCard;
-use super::sensitivity::{Instant, add, check_finite, overgrown};
+use super::sensitivity::{Instant, add, check_finite, finite};
 use super::trust::{LINEAR_ROTATION_RAD, Present, beyond_linear};
 use super::unit::Unit;
 use crate::aeroelastic::CoupledSection;
@@ -285,11 +285,7 @@ impl Unit for BridgeUnit {
     fn state_rates(&mut self, _: &Resources, memory: &Memory) -> Answer<Vec<f64>> {
         self.load_inputs(memory);
         let stepper = &mut self.built.stepper;
-        let rates = stepper.state_derivative(&memory.system, &self.inputs)?;
-        if rates.iter().all(|x| x.is_finite()) {
-            return Ok(rates);
-        }
-        Err(overgrown())
+        finite(stepper.state_derivative(&memory.system, &self.inputs)?)
     }
 
     fn held_output(&self, place: usize) -> Option<usize> {

@@ -5,7 +5,7 @@ use super::layout::Source;
 use super::memory::Memory;
 use super::section::{self, OnsetCard};
 use super::section_places::Places;
-use super::sensitivity::{check_finite, overgrown, pick};
+use super::sensitivity::{check_finite, finite, pick};
 use super::trust::{Present, Told, tested_winds};
 use super::unit::Unit;
 use crate::aerodynamics::{GustForce, Realizable, Realization};
@@ -302,11 +302,7 @@ impl Unit for SectionUnit {
         let Some(stepper) = &mut self.stepper else {
             return Ok(Vec::new());
         };
-        let rates = stepper.state_derivative(&memory.system, &self.inputs)?;
-        if rates.iter().all(|x| x.is_finite()) {
-            return Ok(rates);
-        }
-        Err(overgrown())
+        finite(stepper.state_derivative(&memory.system, &self.inputs)?)
     }
 
     fn held_output(&self, place: usize) -> Option<usize> {

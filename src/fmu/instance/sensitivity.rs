@@ -195,6 +195,14 @@ pub(super) fn check_finite(outputs: &Outputs) -> Answer<()> {
     Err(overgrown())
 }
 
-pub(super) fn overgrown() -> Refusal {
+/// The same for rates of states.
+pub(super) fn finite(rates: Vec<f64>) -> Answer<Vec<f64>> {
+    if rates.iter().all(|x| x.is_finite()) {
+        return Ok(rates);
+    }
+    Err(overgrown())
+}
+
+fn overgrown() -> Refusal {
     Refusal::discard("outputs: the motion has grown beyond the range of numbers")
 }

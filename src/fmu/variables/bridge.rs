@@ -1,15 +1,12 @@
 //! The variables of a whole bridge, in the order of the table.
 
-use super::bridge_states;
 use super::real::{FIXED, INPUT, OUTPUT, SMALLEST, TUNABLE, constants, real};
 use super::section::{
     calculated_parameters, capitalized, gust_inputs, onset_bounds, search_limit, status, wind_speed,
 };
 use super::words::words;
-use super::{
-    InitialDependency, ModeOutput, ModeParameter, Response, Role, SectionParameter, Status,
-    Variable,
-};
+use super::{ModeOutput, ModeParameter, Response, Role, SectionParameter, Status, Variable};
+use super::{bridge_states, dependencies};
 use crate::error::Result;
 use crate::fmu::bridge_options::BridgeOptions;
 use crate::fmu::si;
@@ -216,14 +213,7 @@ fn fill_dependencies(table: &mut [Variable]) {
             )
     });
     let with_wind = [wind.clone(), searched.clone()].concat();
-    let dependent = |on: &[usize]| -> Vec<InitialDependency> {
-        on.iter()
-            .map(|on| InitialDependency {
-                on: *on,
-                constant: false,
-            })
-            .collect()
-    };
+    let dependent = |on: &[usize]| dependencies::dependent(on.iter().copied());
     for variable in table.iter_mut() {
         (variable.direct_inputs, variable.initial_dependencies) = match variable.role {
             Role::NodeMotion(_, Response::Acceleration, _) | Role::Mode(_, ModeOutput::Force) => {

@@ -1,6 +1,7 @@
 //! The continuous states of a whole bridge, for importers that integrate and for linear state spaces: mass-normalised modes, filters
 //! of the self-excited forces, gusts behind the lags of their admittance.
 
+use super::dependencies::dependent;
 use super::real::{INNER, real};
 use super::section::{filter, gust_filter};
 use super::{InitialDependency, ModeOutput, Response, Role, Status, Variable};
@@ -116,7 +117,7 @@ impl States {
 
     fn modes_depend(&self, table: &mut [Variable], known: &Known) {
         for m in 0..self.modes {
-            table[self.state(m)].initial_dependencies = dependent(&known.release[m..=m]);
+            table[self.state(m)].initial_dependencies = dependent([known.release[m]]);
             let rate = self.rate(m);
             table[rate].direct_inputs = vec![rate];
             let acceleration = &mut table[self.rate(self.modes + m)];
@@ -137,10 +138,10 @@ impl States {
             direct.extend(known.wind);
             direct.sort_unstable();
             let settled: Vec<usize> = drivers(air, i).iter().map(|m| known.release[*m]).collect();
-            table[self.state(entry)].initial_dependencies = dependent(&settled);
+            table[self.state(entry)].initial_dependencies = dependent(settled.iter().copied());
             let rate = &mut table[self.rate(entry)];
             rate.direct_inputs = direct;
-            rate.initial_dependencies = dependent(&with(&settled, known.wind));
+            rate.initial_dependencies = dependent(with(&settled, known.wind));
         }
     }
 
@@ -148,8 +149,8 @@ impl States {
         for i in 0..self.lags {
             let entry = 2 * self.modes + self.filters + i;
             let (state, rate) = (self.state(entry), self.rate(entry));
-            table[state].initial_dependencies = dependent(&known.blowing);
-            table[rate].initial_dependencies = dependent(&with(&known.blowing, known.wind));
+            table[state].initial_dependencies = dependent(known.blowing.iter().copied());
+            table[rate].initial_dependencies = dependent(with(&known.blowing, known.wind));
             let gusts = with(&known.gusts, known.wind);
             table[rate].direct_inputs = with(&gusts, Some(state));
         }
@@ -211,14 +212,6 @@ fn with(places: &[usize], further: Option<usize>) -> Vec<usize> {
     let mut all: Vec<usize> = places.iter().copied().chain(further).collect();
     all.sort_unstable();
     all
-}
-
-fn dependent(on: &[usize]) -> Vec<InitialDependency> {
-    let dependency = |on: &usize| InitialDependency {
-        on: *on,
-        constant: false,
-    };
-    on.iter().map(dependency).collect()
 }
 
 /// Mass-normalised coordinate of a mode, its rate or its second rate.

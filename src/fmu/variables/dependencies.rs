@@ -209,7 +209,7 @@ fn parameters(known: &Known) -> Vec<InitialDependency> {
     }))
 }
 
-fn dependent(places: impl IntoIterator<Item = usize>) -> Vec<InitialDependency> {
+pub(super) fn dependent(places: impl IntoIterator<Item = usize>) -> Vec<InitialDependency> {
     places
         .into_iter()
         .map(|on| InitialDependency {

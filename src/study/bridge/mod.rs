@@ -5,6 +5,7 @@ mod buffeting;
 mod export;
 mod forces;
 mod interval;
+mod scaled_forces;
 mod scatter;
 
 pub use answers::{BridgeAnswer, BridgeFlutter, LeftOut, bridge_flutter};

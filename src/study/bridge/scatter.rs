@@ -1,18 +1,15 @@
 //! The onset of a bridge whose frequencies, damping and derivatives scatter (Monte Carlo).
 
 use super::answers::coupled;
+use super::scaled_forces::Scaled;
 use super::{BridgeStudy, SectionForces};
-use crate::aerodynamics::{
-    ContinuousRealization, Realizable, Realization, Transfer, TransferMatrix,
-};
+use crate::aerodynamics::Transfer;
 use crate::bridge::Bridge;
 use crate::error::{Error, Result, non_negative};
 use crate::files::bridge::SectionBlock;
 use crate::flutter::{NearbyOnset, Onset, find_onset_of_modes};
-use crate::section::Dof;
 use crate::signal::random_stream;
 use crate::uncertainty::{ModelDraws, moments, sample_quantile};
-use crate::units::ReducedFrequency;
 use nalgebra::DMatrix;
 use rand::Rng;
 use rand_distr::StandardNormal;
@@ -285,68 +282,6 @@ impl Sampler<'_> {
             models[section] = Some(group.forces.clone());
         }
         Ok(())
-    }
-}
-
-/// Forces whose entries are multiplied by a factor each.
-struct Scaled {
-    dofs: Vec<Dof>,
-    realization: Realization,
-}
-
-impl Scaled {
-    fn of(forces: &dyn Transfer, factors: &DMatrix<f64>) -> Result<Self> {
-        let unfit = || {
-            Error::input(
-                "scatter of the derivatives",
-                "forces with filters of single motions",
-                "others",
-            )
-        };
-        let Some(Realization::Continuous(r)) = forces.realizable().map(Realizable::realize) else {
-            return Err(unfit());
-        };
-        let mut c = r.c.clone();
-        for (l, mut column) in c.column_iter_mut().enumerate() {
-            let motion = driver(&r, l).ok_or_else(unfit)?;
-            column.component_mul_assign(&factors.column(motion));
-        }
-        Ok(Self {
-            dofs: forces.dofs().to_vec(),
-            realization: Realization::Continuous(ContinuousRealization {
-                c,
-                e0: r.e0.component_mul(factors),
-                e1: r.e1.component_mul(factors),
-                e2: r.e2.component_mul(factors),
-                ..r
-            }),
-        })
-    }
-}
-
-/// The one motion that drives a filter.
-fn driver(r: &ContinuousRealization, filter: usize) -> Option<usize> {
-    let mut motions = (0..r.b.ncols()).filter(|j| r.b[(filter, *j)] != 0.0);
-    motions.next().filter(|_| motions.next().is_none())
-}
-
-impl Transfer for Scaled {
-    fn dofs(&self) -> &[Dof] {
-        &self.dofs
-    }
-
-    fn transfer(&self, k: ReducedFrequency) -> Result<TransferMatrix> {
-        self.realization.transfer(k)
-    }
-
-    fn realizable(&self) -> Option<&dyn Realizable> {
-        Some(self)
-    }
-}
-
-impl Realizable for Scaled {
-    fn realize(&self) -> Realization {
-        self.realization.clone()
     }
 }
 
