@@ -94,7 +94,7 @@ pub fn find_onset(
     Ok(choose(found, tested))
 }
 
-/// The same by the modes that are followed alone, in a tenth of the time: for one of many sections of which another was searched
+/// The same by the modes that are followed alone, without all eigenvalues: for one of many sections of which another was searched
 /// whole. Where modes cannot be told apart all eigenvalues are looked at after all.
 ///
 /// # Errors
