@@ -11,29 +11,6 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
-/// Parts of `src/` that never reach the runtime, beside tests; every other file there leads to a new build of it.
-const NOT_IN_RUNTIME: [&str; 19] = [
-    "main.rs",
-    "reference",
-    "buffeting",
-    "cli",
-    "comparison",
-    "identification",
-    "live",
-    "plausibility.rs",
-    "report",
-    "selection",
-    "signal",
-    "study",
-    "files",
-    "uncertainty",
-    "wind_tunnel",
-    "fmu/description.rs",
-    "fmu/xml.rs",
-    "fmu/importer",
-    "fmu/package",
-];
-
 /// Environment variable that names a ready-made runtime to embed instead of building one, such as one for an older C
 /// library; or a folder of them, laid out as `binaries/` of an FMU, which are embedded all.
 const READY_MADE: &str = "AERODECK_RUNTIME";
@@ -72,8 +49,9 @@ fn embed_runtimes() -> Result<(), String> {
             runtimes = ready_made(Path::new(&ready), here)?;
         }
         if runtimes.iter().all(|(platform, _)| platform != here) {
-            watch(&source)?;
-            runtimes.push((here.to_owned(), build_runtime(&source, &out)?));
+            let library = build_runtime(&source, &out)?;
+            watch(&library)?;
+            runtimes.push((here.to_owned(), library));
         }
     }
     let mut list = String::from("&[");
@@ -108,30 +86,18 @@ fn ready_made(ready: &Path, here: &str) -> Result<Vec<(String, PathBuf)>, String
     Ok(runtimes)
 }
 
-/// Asks cargo to call this script again when a source of the runtime changes. Files are named one by one: a new
-/// file changes the `mod` line of one that is watched.
-fn watch(source: &Path) -> Result<(), String> {
+/// Asks cargo to call this script again when a source of the runtime changes: what the compiler has read for `library` stands
+/// beside it, in the form of a makefile. A new file changes the `mod` line of one that is watched.
+fn watch(library: &Path) -> Result<(), String> {
+    let read = library.with_extension("d");
+    let rule = fs::read_to_string(&read).map_err(|e| format!("{}: {e}", read.display()))?;
     println!("cargo::rerun-if-changed=Cargo.toml");
     println!("cargo::rerun-if-changed=Cargo.lock");
-    let mut folders = vec![PathBuf::from("src")];
-    while let Some(folder) = folders.pop() {
-        let entries =
-            fs::read_dir(source.join(&folder)).map_err(|e| format!("{}: {e}", folder.display()))?;
-        for entry in entries.flatten() {
-            let path = folder.join(entry.file_name());
-            let below_src = path.strip_prefix("src").unwrap_or(&path);
-            let stem = below_src.with_extension("");
-            let left_out = NOT_IN_RUNTIME.iter().map(Path::new);
-            if stem.ends_with("tests") || left_out.into_iter().any(|n| n == below_src || n == stem)
-            {
-                continue;
-            }
-            if source.join(&path).is_dir() {
-                folders.push(path);
-            } else {
-                println!("cargo::rerun-if-changed={}", path.display());
-            }
-        }
+    // a space inside a path is escaped, one between two paths is not
+    let rule = rule.replace("\\ ", "\0");
+    let sources = rule.lines().filter_map(|line| line.split_once(": "));
+    for path in sources.flat_map(|(_, paths)| paths.split(' ')) {
+        println!("cargo::rerun-if-changed={}", path.replace('\0', " "));
     }
     Ok(())
 }
