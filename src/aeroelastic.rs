@@ -20,7 +20,7 @@ pub use equilibrium::{
 use crate::aerodynamics::{ContinuousRealization, DiscreteRealization, Realizable, Realization};
 use crate::error::{Error, Result, non_negative, positive};
 use crate::section::Structure;
-use crate::state_space::{Continuous, Discrete, StateSpace, c2d, first_order};
+use crate::state_space::{Continuous, Damping, Discrete, StateSpace, c2d, first_order};
 use nalgebra::{Complex, DMatrix, DVector};
 
 /// An elastically suspended section with a realised aerodynamic model.
@@ -55,12 +55,17 @@ pub enum CoupledSystem {
 }
 
 impl CoupledSystem {
+    /// Natural frequencies (rad/s) and damping ratios of all eigenvalues.
+    pub fn damp(&self) -> Result<Vec<Damping>> {
+        match self {
+            Self::Continuous(s) => s.damp(),
+            Self::Sampled(s) => s.damp(),
+        }
+    }
+
     /// Eigenvalues in continuous time, rad/s (`ln z / Δt` for the sampled system).
     pub fn eigenvalues(&self) -> Result<Vec<Complex<f64>>> {
-        match self {
-            Self::Continuous(s) => s.poles(),
-            Self::Sampled(s) => s.poles(),
-        }
+        Ok(self.damp()?.iter().map(|d| d.pole).collect())
     }
 
     /// The state matrix: of `ż = A z`, or of `z(k+1) = A z(k)`.

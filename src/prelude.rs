@@ -9,6 +9,7 @@ pub use crate::flutter::{
     trace_modes,
 };
 pub use crate::section::{Dof, SectionModel, Structure};
+pub use crate::state_space::{Continuous, Damping, Discrete, StateSpace};
 pub use crate::trained_model::{Model, TrainedModel};
 pub use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 

@@ -66,13 +66,13 @@ struct ModeSaid {
 fn modes(section: &CoupledSection, speed: f64) -> Result<Vec<ModeSaid>> {
     let mut modes: Vec<ModeSaid> = section
         .at(speed)?
-        .eigenvalues()?
+        .damp()?
         .into_iter()
-        .filter(|z| z.im > 0.0)
-        .map(|z| ModeSaid {
-            frequency_hz: z.im / std::f64::consts::TAU,
-            growth_rate_per_s: z.re,
-            damping_ratio: crate::state_space::damping_ratio(z),
+        .filter(|mode| mode.pole.im > 0.0)
+        .map(|mode| ModeSaid {
+            frequency_hz: mode.pole.im / std::f64::consts::TAU,
+            growth_rate_per_s: mode.pole.re,
+            damping_ratio: mode.damping_ratio,
         })
         .collect();
     modes.sort_by(|a, b| a.damping_ratio.total_cmp(&b.damping_ratio));

@@ -90,17 +90,32 @@ impl<T> StateSpace<T> {
 }
 
 impl StateSpace<Continuous> {
-    /// Step matrices for the step `h`; exact for inputs that run on a straight line over it.
+    /// Step matrices for the step `h`: exact when the inputs run on a straight line over it.
+    ///
+    /// # Errors
+    /// [`Error::Numerical`] when the step is not finite or so long that no digit would be right.
     pub fn c2d(&self, h: f64) -> Result<StepMatrices> {
         c2d(&self.a, &self.b, h)
     }
 
-    /// Poles, in the inverse time unit.
+    /// Poles: the eigenvalues of `A`, in the inverse time unit. Exact when they are distinct, to rounding times the condition
+    /// of `A`; a pole repeated n times is known to the n-th root of that.
+    ///
+    /// # Errors
+    /// [`Error::Numerical`] when the iteration for them does not end.
     pub fn poles(&self) -> Result<Vec<Complex<f64>>> {
         eigenvalues(&self.a)
     }
 
-    /// `C (iωI − A)⁻¹ B + D`, p×m.
+    /// Natural frequency and damping ratio of every pole; exact when the poles are.
+    ///
+    /// # Errors
+    /// As for [`poles`](Self::poles).
+    pub fn damp(&self) -> Result<Vec<Damping>> {
+        Ok(self.poles()?.into_iter().map(Damping::of).collect())
+    }
+
+    /// `C (iωI − A)⁻¹ B + D`, p×m: exact when the transients have died out, to rounding times the condition of `iωI − A`.
     ///
     /// # Errors
     /// [`Error::Numerical`] when `iω` is a pole.
@@ -110,21 +125,55 @@ impl StateSpace<Continuous> {
 }
 
 impl StateSpace<Discrete> {
-    /// Poles in continuous time, `ln z/h`. A pole at the origin has died out after one step and is left out: no finite rate
-    /// describes it.
+    /// Poles: the eigenvalues of `A`, in the z-plane; exact when they are distinct, as those of a continuous system.
+    ///
+    /// # Errors
+    /// [`Error::Numerical`] when the iteration for them does not end.
     pub fn poles(&self) -> Result<Vec<Complex<f64>>> {
-        let finite = eigenvalues(&self.a)?
-            .into_iter()
-            .filter(|z| z.norm() > f64::MIN_POSITIVE);
-        Ok(finite.map(|z| z.ln() / self.time.step).collect())
+        eigenvalues(&self.a)
     }
 
-    /// `C (e^{iωh}I − A)⁻¹ B + D`, p×m.
+    /// Natural frequency and damping ratio of the rates `ln z/h`: exact when the motion between two samples holds no frequency
+    /// above half the sampling frequency. A pole at the origin has died out after one step and is left out: no finite rate
+    /// describes it.
+    ///
+    /// # Errors
+    /// As for [`poles`](Self::poles).
+    pub fn damp(&self) -> Result<Vec<Damping>> {
+        let poles = self.poles()?.into_iter();
+        let finite = poles.filter(|z| z.norm() > f64::MIN_POSITIVE);
+        Ok(finite
+            .map(|z| Damping::of(z.ln() / self.time.step))
+            .collect())
+    }
+
+    /// `C (e^{iωh}I − A)⁻¹ B + D`, p×m: exact at the samples when the transients have died out.
     ///
     /// # Errors
     /// [`Error::Numerical`] when `e^{iωh}` is a pole.
     pub fn freqresp(&self, omega: f64) -> Result<DMatrix<Complex<f64>>> {
         self.response_at(Complex::new(0.0, omega * self.time.step).exp())
+    }
+}
+
+/// One pole as a table of damping has it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Damping {
+    /// The pole `λ` in continuous time, in the inverse time unit.
+    pub pole: Complex<f64>,
+    /// `|λ|`, rad per time unit.
+    pub natural_frequency: f64,
+    /// `−Re λ/|λ|`; negative when the motion grows.
+    pub damping_ratio: f64,
+}
+
+impl Damping {
+    fn of(pole: Complex<f64>) -> Self {
+        Self {
+            pole,
+            natural_frequency: pole.norm(),
+            damping_ratio: damping_ratio(pole),
+        }
     }
 }
 
@@ -152,4 +201,41 @@ pub fn damping_ratio(pole: Complex<f64>) -> f64 {
 /// A real matrix as a complex one.
 pub fn complex(real: &DMatrix<f64>) -> DMatrix<Complex<f64>> {
     real.map(|x| Complex::new(x, 0.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// `ẍ + 2ζω₀ẋ + ω₀²x = u`, continuous and sampled with its input held: the damping table has the closed form for both, and
+    /// holding changes nothing of the answer to a constant input.
+    #[test]
+    fn a_sampled_oscillator_has_the_damping_of_the_continuous_one() {
+        let (frequency, ratio, h) = (3.0, 0.02, 0.1);
+        let a = DMatrix::from_row_slice(
+            2,
+            2,
+            &[0.0, 1.0, -frequency * frequency, -2.0 * ratio * frequency],
+        );
+        let b = DMatrix::from_row_slice(2, 1, &[0.0, 1.0]);
+        let c = DMatrix::from_row_slice(1, 2, &[1.0, 0.0]);
+        let d = DMatrix::zeros(1, 1);
+        let continuous = StateSpace::new(a, b, c.clone(), d.clone(), Continuous).unwrap();
+        let held = continuous.c2d(h).unwrap();
+        let discrete = StateSpace::new(held.phi, held.gamma_0, c, d, Discrete { step: h }).unwrap();
+        for modes in [continuous.damp().unwrap(), discrete.damp().unwrap()] {
+            assert_eq!(modes.len(), 2);
+            for mode in modes {
+                assert!((mode.natural_frequency / frequency - 1.0).abs() < 1e-12);
+                assert!((mode.damping_ratio / ratio - 1.0).abs() < 1e-12);
+            }
+        }
+        for z in discrete.poles().unwrap() {
+            assert!((z.norm() - (-ratio * frequency * h).exp()).abs() < 1e-14);
+        }
+        let static_gain = 1.0 / (frequency * frequency);
+        for gain in [continuous.freqresp(0.0), discrete.freqresp(0.0)] {
+            assert!((gain.unwrap()[0].re / static_gain - 1.0).abs() < 1e-12);
+        }
+    }
 }
