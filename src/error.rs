@@ -1,5 +1,9 @@
 //! What can go wrong, said so that a user can mend it: file, place, what was expected, what was found.
 
+mod place;
+
+pub use place::{Part, Place};
+
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -11,8 +15,8 @@ pub type Result<T> = std::result::Result<T, Error>;
 pub struct InputError {
     /// File in which the problem stands, if it came from a file.
     pub file: Option<PathBuf>,
-    /// Line, key, column or run in that file, in words.
-    pub place: String,
+    /// Line, key, column or run in that file.
+    pub place: Place,
     /// What would have been accepted.
     pub expected: String,
     /// What stood there.
@@ -67,13 +71,13 @@ fn lines(errors: &[Error]) -> String {
 impl Error {
     /// Wrong input at `place` (no file yet; see `Error::in_file`).
     pub(crate) fn input(
-        place: impl Into<String>,
+        place: impl Into<Place>,
         expected: impl Into<String>,
         found: impl Into<String>,
     ) -> Self {
         Self::Input(Box::new(InputError {
             file: None,
-            place: quoted(place.into()),
+            place: place.into().quoted(),
             expected: quoted(expected.into()),
             found: quoted(found.into()),
         }))
@@ -87,11 +91,26 @@ impl Error {
         }
     }
 
+    /// JSON that could not be read as what was `expected`.
+    pub(crate) fn json(expected: impl Into<String>, error: &serde_json::Error) -> Self {
+        let place = Place::position(error.line(), error.column());
+        Self::input(place, expected, error.to_string())
+    }
+
     /// The same error at another place.
     #[must_use]
-    pub(crate) fn at(mut self, place: impl Into<String>) -> Self {
+    pub(crate) fn at(mut self, place: impl Into<Place>) -> Self {
         if let Self::Input(input) = &mut self {
             input.place = place.into();
+        }
+        self
+    }
+
+    /// The same error with what it stands in before its place.
+    #[must_use]
+    pub(crate) fn within(mut self, outer: impl Into<Place>) -> Self {
+        if let Self::Input(input) = &mut self {
+            input.place = std::mem::take(&mut input.place).within(outer);
         }
         self
     }
@@ -150,7 +169,7 @@ pub(crate) fn all_or_errors<T>(results: Vec<Result<T>>) -> Result<Vec<T>> {
 ///
 /// # Errors
 /// [`Error::Input`] naming `place` otherwise.
-pub fn positive(place: &str, value: f64) -> Result<f64> {
+pub fn positive(place: impl Into<Place>, value: f64) -> Result<f64> {
     if value.is_finite() && value > 0.0 {
         Ok(value)
     } else {
@@ -162,7 +181,7 @@ pub fn positive(place: &str, value: f64) -> Result<f64> {
 ///
 /// # Errors
 /// [`Error::Input`] naming `place` otherwise.
-pub fn finite(place: &str, value: f64) -> Result<f64> {
+pub fn finite(place: impl Into<Place>, value: f64) -> Result<f64> {
     if value.is_finite() {
         return Ok(value);
     }
@@ -170,7 +189,7 @@ pub fn finite(place: &str, value: f64) -> Result<f64> {
 }
 
 /// Nothing if `values` are `count` finite numbers.
-pub(crate) fn finite_numbers(place: &str, values: &[f64], count: usize) -> Result<()> {
+pub(crate) fn finite_numbers(place: impl Into<Place>, values: &[f64], count: usize) -> Result<()> {
     if values.len() == count && values.iter().all(|x| x.is_finite()) {
         return Ok(());
     }
@@ -179,7 +198,7 @@ pub(crate) fn finite_numbers(place: &str, values: &[f64], count: usize) -> Resul
 }
 
 /// Nothing if `value` is at most `bound`: one that no real study reaches.
-pub(crate) fn at_most(place: &str, value: f64, bound: f64) -> Result<()> {
+pub(crate) fn at_most(place: impl Into<Place>, value: f64, bound: f64) -> Result<()> {
     if value <= bound {
         Ok(())
     } else {
@@ -192,7 +211,7 @@ pub(crate) fn at_most(place: &str, value: f64, bound: f64) -> Result<()> {
 }
 
 /// `value` if it is finite and not negative.
-pub(crate) fn non_negative(place: &str, value: f64) -> Result<f64> {
+pub(crate) fn non_negative(place: impl Into<Place>, value: f64) -> Result<f64> {
     if value.is_finite() && value >= 0.0 {
         Ok(value)
     } else {

@@ -9,7 +9,7 @@ mod structure;
 
 pub use structure::Structure;
 
-use crate::error::{Error, Result, finite, non_negative, positive};
+use crate::error::{Error, Place, Result, finite, non_negative, positive};
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -283,8 +283,8 @@ fn support(
     damping_ratio: f64,
 ) -> Result<Support> {
     // the place is put together only where something is wrong: this is called for every sample of a random section
-    let at = |key: &str, checked: fn(&str, f64) -> Result<f64>, value: f64| {
-        checked("", value).map_err(|e| e.at(format!("{place}.{key}")))
+    let at = |key: &str, checked: fn(&'static str, f64) -> Result<f64>, value: f64| {
+        checked("", value).map_err(|e| e.at(Place::from(place).key(key)))
     };
     let inertia = at(inertia_key, positive, inertia)?;
     let damping_ratio = at("damping_ratio", non_negative, damping_ratio)?;

@@ -267,11 +267,7 @@ struct SchemaOnly {
 }
 
 fn json_error(e: &serde_json::Error) -> Error {
-    Error::input(
-        format!("line {}, column {}", e.line(), e.column()),
-        "a trained model as written by `aerodeck train`",
-        e.to_string(),
-    )
+    Error::json("a trained model as written by `aerodeck train`", e)
 }
 
 #[cfg(test)]

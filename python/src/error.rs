@@ -27,7 +27,7 @@ fn exception(py: Python<'_>, error: &Error) -> PyResult<PyErr> {
         Error::Input(e) => {
             let file = e.file.as_ref().map(|f| f.display().to_string());
             let class = module.getattr("InputError")?;
-            class.call1((file, &e.place, &e.expected, &e.found))?
+            class.call1((file, e.place.to_string(), &e.expected, &e.found))?
         }
         Error::Io { path, source } => {
             let class = module.getattr("FileError")?;

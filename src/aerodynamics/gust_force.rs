@@ -114,7 +114,7 @@ impl GustForce {
         for (row, dof) in self.coefficients.iter().zip(dofs) {
             for (x, gust) in row.iter().zip(["u", "w"]) {
                 finite(
-                    &format!(
+                    format!(
                         "gust forces: coefficient of {gust} in the {} force",
                         dof.symbol()
                     ),

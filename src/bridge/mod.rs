@@ -256,8 +256,8 @@ impl Bridge {
         let mut owner: Vec<Option<&str>> = vec![None; self.nodes.len()];
         for group in &self.groups {
             let place = format!("section {}", group.name);
-            positive(&format!("{place}: width_m"), group.width_m)?;
-            non_negative(&format!("{place}: wind factor"), group.wind_factor)?;
+            positive(format!("{place}: width_m"), group.width_m)?;
+            non_negative(format!("{place}: wind factor"), group.wind_factor)?;
             for &node in &group.nodes {
                 let claimed = owner.get_mut(node).ok_or_else(|| {
                     Error::input(&place, "nodes of the bridge", format!("node {node}"))
@@ -307,8 +307,8 @@ fn check_nodes(nodes: &[Node]) -> Result<()> {
     let mut before: Option<&Node> = None;
     for node in nodes {
         let place = format!("node {}", node.name);
-        finite(&format!("{place}: place along the bridge"), node.along_m)?;
-        positive(&format!("{place}: tributary length"), node.length_m)?;
+        finite(format!("{place}: place along the bridge"), node.along_m)?;
+        positive(format!("{place}: tributary length"), node.length_m)?;
         if let Some(b) = before.filter(|b| b.along_m >= node.along_m) {
             return Err(Error::input(
                 place,
@@ -326,9 +326,9 @@ fn check_nodes(nodes: &[Node]) -> Result<()> {
 
 fn check_mode(mode: &BridgeMode, nodes: usize) -> Result<()> {
     let place = format!("mode {}", mode.number);
-    positive(&format!("{place}: frequency_hz"), mode.frequency_hz)?;
-    positive(&format!("{place}: generalised mass"), mode.generalised_mass)?;
-    non_negative(&format!("{place}: damping_ratio"), mode.damping_ratio)?;
+    positive(format!("{place}: frequency_hz"), mode.frequency_hz)?;
+    positive(format!("{place}: generalised mass"), mode.generalised_mass)?;
+    non_negative(format!("{place}: damping_ratio"), mode.damping_ratio)?;
     if mode.shape.len() != nodes {
         return Err(Error::input(
             place,

@@ -38,7 +38,7 @@ impl Admittance {
     /// Checks the decay factor.
     pub(crate) fn validate(&self, place: &str) -> Result<()> {
         if let Self::Davenport { decay } = self {
-            positive(&format!("{place}.decay"), *decay)?;
+            positive(format!("{place}.decay"), *decay)?;
         }
         Ok(())
     }

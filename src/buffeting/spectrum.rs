@@ -108,9 +108,9 @@ impl SpectrumShape {
         };
         let SpectrumFormula { a, b, c, d, e } = formula;
         for (key, value) in [("a", a), ("b", b), ("c", c), ("d", d)] {
-            positive(&format!("{place}.{key}"), value)?;
+            positive(format!("{place}.{key}"), value)?;
         }
-        crate::error::non_negative(&format!("{place}.e"), e)?;
+        crate::error::non_negative(format!("{place}.e"), e)?;
         let fall = if e > 0.0 { c * (d - 1.0) } else { c * d };
         if fall <= 1.0 {
             let expected = if e > 0.0 { "c(d − 1)" } else { "c d" };
@@ -138,8 +138,8 @@ impl SpectrumShape {
 impl GustSpectrum {
     /// Checks scales and constants.
     pub(crate) fn validate(&self, place: &str) -> Result<()> {
-        positive(&format!("{place}.length_m"), self.length_m)?;
-        positive(&format!("{place}.intensity"), self.intensity)?;
+        positive(format!("{place}.length_m"), self.length_m)?;
+        positive(format!("{place}.intensity"), self.intensity)?;
         if self.intensity >= 1.0 {
             return Err(Error::input(
                 format!("{place}.intensity"),

@@ -13,7 +13,7 @@
 //! Times start at zero and are equally spaced.
 
 use crate::aerodynamics::GustSeries;
-use crate::error::{Error, Result};
+use crate::error::{Error, Place, Result};
 use crate::files::header_csv::{CommentHeader, csv_error, find_columns, number, table_reader};
 use std::io::Write;
 use std::path::Path;
@@ -57,7 +57,7 @@ pub(crate) fn parse_gusts(text: &str) -> Result<GustSeries> {
         let record = record.map_err(csv_error)?;
         let line = record.position().map_or(0, csv::Position::line);
         let cell = |i: usize| -> Result<f64> {
-            let place = format!("line {line}, column {}", GUST_COLUMNS[i]);
+            let place = Place::line(line).column(GUST_COLUMNS[i]);
             let value = number(&place, record.get(columns[i]).unwrap_or(""))?;
             if value.is_finite() {
                 return Ok(value);
@@ -66,12 +66,12 @@ pub(crate) fn parse_gusts(text: &str) -> Result<GustSeries> {
         };
         let time = cell(0)?;
         if along.len() == 1 {
-            step = crate::error::positive(&format!("line {line}, column time_s"), time)?;
+            step = crate::error::positive(Place::line(line).column("time_s"), time)?;
         }
         let expected = step * along.len() as f64;
         if (time - expected).abs() > JITTER * step {
             return Err(Error::input(
-                format!("line {line}, column time_s"),
+                Place::line(line).column("time_s"),
                 format!("{expected} (equal steps from zero)"),
                 time.to_string(),
             ));
@@ -81,7 +81,7 @@ pub(crate) fn parse_gusts(text: &str) -> Result<GustSeries> {
     }
     if along.len() < 2 {
         return Err(Error::input(
-            format!("line {}", header.lines() + 1 + along.len()),
+            Place::line(header.lines() + 1 + along.len()),
             "at least 2 samples",
             along.len().to_string(),
         ));

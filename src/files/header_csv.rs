@@ -1,6 +1,6 @@
 //! What all CSV files of this project share: `# key: value` lines at the head, columns by name, numbers with their place.
 
-use crate::error::{Error, Result, counted};
+use crate::error::{Error, Place, Result, counted};
 use std::io::Write;
 
 /// Reader of the table below the header of `text`.
@@ -70,7 +70,7 @@ impl CommentHeader {
         if comment.is_empty() || self.formats.contains(&comment) {
             return Ok(true);
         }
-        let place = format!("line {}", self.lines);
+        let place = Place::line(self.lines);
         let (key, value) = comment.split_once(':').ok_or_else(|| {
             Error::input(
                 &place,
@@ -149,8 +149,8 @@ impl CommentHeader {
 
 impl Entry {
     /// Where it stands: `line 8 (width_m)`.
-    pub(crate) fn place(&self) -> String {
-        format!("line {} ({})", self.line, self.key)
+    pub(crate) fn place(&self) -> Place {
+        Place::line(self.line).about(self.key)
     }
 
     /// The error that something else was `expected` here.
@@ -165,7 +165,7 @@ impl Entry {
 
     /// The value as a positive number.
     pub(crate) fn positive(&self) -> Result<f64> {
-        crate::error::positive(&self.place(), self.number()?)
+        crate::error::positive(self.place(), self.number()?)
     }
 }
 /// Positions of the `wanted` columns among `names`, which may stand in any order.
@@ -187,31 +187,23 @@ pub(crate) fn find_columns<const N: usize>(
 pub(crate) fn missing_column(names: &csv::StringRecord, line: usize, wanted: &str) -> Error {
     let found = names.iter().collect::<Vec<_>>().join(",");
     Error::input(
-        format!("line {line}"),
+        Place::line(line),
         format!("a column `{wanted}`"),
         format!("`{found}`"),
     )
 }
 
 /// The number in one cell.
-pub(crate) fn number(place: &str, text: &str) -> Result<f64> {
+pub(crate) fn number(place: impl Into<Place>, text: &str) -> Result<f64> {
     text.parse()
         .map_err(|_| Error::input(place, "a number", format!("`{text}`")))
-}
-
-/// The same error at a better place.
-pub(crate) fn at_place(error: Error, place: &str) -> Error {
-    match error {
-        Error::Input(input) => Error::input(place, input.expected, input.found),
-        other => other,
-    }
 }
 
 /// An error of the CSV reader as one of ours, with the line.
 pub(crate) fn csv_error(error: csv::Error) -> Error {
     let place = error
         .position()
-        .map_or_else(String::new, |p| format!("line {}", p.line()));
+        .map_or_else(Place::default, |p| Place::line(p.line()));
     match error.kind() {
         csv::ErrorKind::UnequalLengths {
             expected_len, len, ..

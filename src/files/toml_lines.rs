@@ -1,9 +1,9 @@
 //! TOML files of ours: read, checked, and every complaint with its line.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Part, Place, Result};
 use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};
-use toml::de::{DeTable, DeValue};
+use toml::de::{DeArray, DeTable};
 
 fn line_of(text: &str, offset: usize) -> usize {
     1 + text.as_bytes()[..offset.min(text.len())]
@@ -39,9 +39,9 @@ fn syntax_error(what: &str, text: &str, error: &toml::de::Error) -> Error {
         Some(span) => {
             let line = line_of(text, span.start);
             let stood = text.lines().nth(line - 1).unwrap_or("").trim();
-            (format!("line {line}"), format!("`{stood}`"))
+            (Place::line(line), format!("`{stood}`"))
         }
-        None => (String::new(), "something else".to_owned()),
+        None => (Place::default(), "something else".to_owned()),
     };
     Error::input(
         place,
@@ -55,36 +55,38 @@ pub(crate) fn with_line(text: &str, error: Error) -> Error {
     let Error::Input(mut input) = error else {
         return error;
     };
-    if let Some(line) = line_of_key(text, &input.place) {
-        input.place = format!("line {line}, {}", input.place);
+    if let Some(line) = line_of_key(text, &input.place.parts) {
+        input.place.line = Place::line(line).line;
     }
     Error::Input(input)
 }
 
-/// Line of the deepest part of the dotted key that the file states.
-fn line_of_key(text: &str, key: &str) -> Option<usize> {
+/// Line of the deepest of the keys that the file states.
+fn line_of_key(text: &str, place: &[Part]) -> Option<usize> {
     let document = DeTable::parse(text).ok()?;
-    let mut table = document.get_ref();
+    let mut table = Some(document.get_ref());
+    let mut list = None;
     let mut offset = None;
-    for part in key.split('.') {
-        let (name, index) = match part.split_once('[') {
-            Some((name, index)) => (name, index.trim_end_matches(']').parse::<usize>().ok()),
-            None => (part, None),
-        };
-        let Some((spanned_key, value)) = table.iter().find(|(k, _)| k.get_ref() == name) else {
-            break;
-        };
-        offset = Some(spanned_key.span().start);
-        let value = match (value.get_ref(), index) {
-            (DeValue::Array(items), Some(i)) => {
-                let Some(item) = items.get(i) else { break };
-                offset = Some(item.span().start);
-                item.get_ref()
+    for part in place {
+        let value = match part {
+            Part::Key(name) => {
+                let found = table.and_then(|t| t.iter().find(|(k, _)| k.get_ref() == name));
+                let Some((spanned_key, value)) = found else {
+                    break;
+                };
+                offset = Some(spanned_key.span().start);
+                value
             }
-            (value, _) => value,
+            Part::Index(index) => {
+                let Some(item) = list.and_then(|l: &DeArray| l.get(*index)) else {
+                    break;
+                };
+                offset = Some(item.span().start);
+                item
+            }
+            _ => break,
         };
-        let DeValue::Table(inner) = value else { break };
-        table = inner;
+        (table, list) = (value.get_ref().as_table(), value.get_ref().as_array());
     }
     offset.map(|o| line_of(text, o))
 }

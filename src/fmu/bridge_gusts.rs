@@ -27,7 +27,7 @@ impl BridgeGusts {
     pub(super) fn validate(&self, bridge: &Bridge) -> Result<()> {
         for (group, matrix) in self.coefficients.iter().enumerate() {
             for x in matrix.iter().flatten() {
-                finite(&format!("gusts: coefficients of group {}", group + 1), *x)?;
+                finite(format!("gusts: coefficients of group {}", group + 1), *x)?;
             }
         }
         GustChannels::new(bridge, &self.coefficients, &self.strips).map(drop)
@@ -53,10 +53,8 @@ impl TurbulenceOptions {
     /// [`Error::Input`] for text that is none, for a bridge without such forces, and for another number of nodes or of
     /// samples.
     pub fn from_json(text: &str, nodes: usize, gusts: Option<&BridgeGusts>) -> Result<Self> {
-        let field: Self = serde_json::from_str(text).map_err(|e| {
-            let place = format!("line {}, column {}", e.line(), e.column());
-            Error::input(place, "a field of turbulence", e.to_string())
-        })?;
+        let field: Self =
+            serde_json::from_str(text).map_err(|e| Error::json("a field of turbulence", &e))?;
         positive("step_s", field.step_s)?;
         if gusts.is_none() {
             let expected = "a bridge with gust forces";

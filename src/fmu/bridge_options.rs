@@ -173,14 +173,8 @@ impl BridgeOptions {
     /// # Errors
     /// [`Error::Input`] for text that is not such a file, and for numbers that make no bridge.
     pub fn from_json(text: &str) -> Result<Self> {
-        let options: Self = serde_json::from_str(text).map_err(|e| {
-            let place = format!("line {}, column {}", e.line(), e.column());
-            Error::input(
-                place,
-                "a bridge as `aerodeck fmu export --bridge` writes it",
-                e.to_string(),
-            )
-        })?;
+        let options: Self = serde_json::from_str(text)
+            .map_err(|e| Error::json("a bridge as `aerodeck fmu export --bridge` writes it", &e))?;
         options.validate()?;
         Ok(options)
     }

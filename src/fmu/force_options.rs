@@ -68,9 +68,9 @@ impl ForceOptions {
         }
         for (i, strip) in self.strips.iter().enumerate() {
             let place = |key: &str| format!("strip {}: {key}", i + 1);
-            positive(&place("width"), strip.width_m)?;
-            positive(&place("length"), strip.length_m)?;
-            non_negative(&place("wind factor"), strip.wind_factor)?;
+            positive(place("width"), strip.width_m)?;
+            positive(place("length"), strip.length_m)?;
+            non_negative(place("wind factor"), strip.wind_factor)?;
         }
         let prediction = self.prediction_steps;
         if !(0.0..=MAX_PREDICTION).contains(&prediction) {
@@ -85,10 +85,8 @@ impl ForceOptions {
     /// # Errors
     /// [`Error::Input`] for text that is not such a file, and for strips or a prediction that cannot be.
     pub fn from_json(text: &str) -> Result<Self> {
-        let options: Self = serde_json::from_str(text).map_err(|e| {
-            let place = format!("line {}, column {}", e.line(), e.column());
-            Error::input(place, "options of a unit of forces", e.to_string())
-        })?;
+        let options: Self = serde_json::from_str(text)
+            .map_err(|e| Error::json("options of a unit of forces", &e))?;
         options.validate()?;
         Ok(options)
     }

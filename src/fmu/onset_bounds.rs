@@ -35,10 +35,8 @@ impl OnsetBounds {
     /// # Errors
     /// [`Error::Input`] for text that is not such a file, and for ends that are no interval of speeds.
     pub fn from_json(text: &str) -> Result<Self> {
-        let bounds: Self = serde_json::from_str(text).map_err(|e| {
-            let place = format!("line {}, column {}", e.line(), e.column());
-            Error::input(place, "an interval of the onset speed", e.to_string())
-        })?;
+        let bounds: Self = serde_json::from_str(text)
+            .map_err(|e| Error::json("an interval of the onset speed", &e))?;
         bounds.check()?;
         Ok(bounds)
     }

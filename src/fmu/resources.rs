@@ -162,10 +162,8 @@ impl Resources {
 }
 
 fn gust_force(text: &str, model: &TrainedModel) -> Result<GustForce> {
-    let force: GustForce = serde_json::from_str(text).map_err(|e| {
-        let place = format!("line {}, column {}", e.line(), e.column());
-        Error::input(place, "forces of gusts", e.to_string())
-    })?;
+    let force: GustForce =
+        serde_json::from_str(text).map_err(|e| Error::json("forces of gusts", &e))?;
     force.validate(model.model.dofs())?;
     Ok(force)
 }

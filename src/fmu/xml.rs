@@ -1,6 +1,6 @@
 //! A small tree of XML elements: read with line numbers, so that every finding can name its place, and written.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Place, Result};
 use quick_xml::XmlVersion;
 use quick_xml::escape::partial_escape;
 use quick_xml::events::{BytesStart, Event};
@@ -159,7 +159,7 @@ fn element(tag: &BytesStart<'_>, line: usize) -> Result<Element> {
 }
 
 fn malformed(line: usize, found: &dyn std::fmt::Display) -> Error {
-    Error::input(format!("line {line}"), "well-formed XML", found.to_string())
+    Error::input(Place::line(line), "well-formed XML", found.to_string())
 }
 
 /// Line numbers of positions that only grow.

@@ -167,7 +167,7 @@ pub(crate) fn sort_by_entry(
         let place = format!("sample {at}");
         let i = index_of(dofs, s.force, &place)?;
         let j = index_of(dofs, s.motion, &place)?;
-        let k = crate::error::positive(&format!("{place}: K"), s.k.full_width())?;
+        let k = crate::error::positive(format!("{place}: K"), s.k.full_width())?;
         if !s.value.is_finite() {
             return Err(Error::input(place, "a finite value", s.value.to_string()));
         }

@@ -224,7 +224,7 @@ impl UserFigure {
                 found,
             ));
         }
-        positive(&format!("{place}.tolerance"), self.tolerance)?;
+        positive(format!("{place}.tolerance"), self.tolerance)?;
         if self.route == Some(OnsetMethod::FmuStepping) {
             let expected = "`eigenvalues`, `determinant` or `pk_iteration`";
             return Err(Error::input(
@@ -236,7 +236,7 @@ impl UserFigure {
         let in_wind = (self.speed_m_s, self.dof);
         match (self.quantity.in_wind(), in_wind) {
             (true, (Some(speed), Some(_))) => {
-                non_negative(&format!("{place}.speed_m_s"), speed).map(drop)
+                non_negative(format!("{place}.speed_m_s"), speed).map(drop)
             }
             (true, _) => Err(Error::input(
                 place,

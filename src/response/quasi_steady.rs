@@ -207,14 +207,7 @@ impl NonlinearSection {
 
 /// The same error with the time of the run in front.
 fn at_time(error: Error, time: f64) -> Error {
-    match error {
-        Error::Input(input) => Error::input(
-            format!("t = {time:.3} s, {}", input.place),
-            input.expected,
-            input.found,
-        ),
-        other => other,
-    }
+    error.within(format!("t = {time:.3} s"))
 }
 
 /// Over all quantities: largest difference as a part of the largest value.

@@ -44,7 +44,7 @@ pub use wind::{CoefficientsBlock, example_wind_study_text};
 
 use crate::aerodynamics::derivatives::notation::StatedConvention;
 use crate::aerodynamics::derivatives::{Interpolation, Missing};
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Place, Result, positive};
 use crate::files::toml_lines;
 use crate::identification::{DiscreteFit, FrequencyFit, TimeFit};
 use crate::section::SectionModel;
@@ -305,13 +305,7 @@ impl ModelBlock {
             ));
         }
         let below = |key: &str, result: Result<()>| {
-            result.map_err(|e| match e {
-                Error::Input(mut input) => {
-                    input.place = format!("{place}.{key}.{}", input.place);
-                    Error::Input(input)
-                }
-                other => other,
-            })
+            result.map_err(|e| e.within(Place::from(place).key(key)))
         };
         match (&self.records, &self.table, &self.discrete) {
             (Some(fit), None, None) => below("records", fit.validate()),

@@ -104,10 +104,9 @@ impl ModelUncertainty {
     /// Reads what was saved.
     pub(crate) fn from_json(text: &str) -> Result<Self> {
         serde_json::from_str(text).map_err(|e| {
-            Error::input(
-                format!("line {}, column {}", e.line(), e.column()),
+            Error::json(
                 "the uncertainty of a model as written by `aerodeck train`",
-                e.to_string(),
+                &e,
             )
         })
     }

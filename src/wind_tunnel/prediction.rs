@@ -24,10 +24,10 @@ pub(crate) fn predicted_forces(model: &dyn Transfer, record: &Record) -> Result<
             Dof::names(&h.dofs),
         ));
     }
-    let width = positive(&place("width_m"), h.width_m)?;
-    let speed = positive(&place("mean_speed_m_s"), h.mean_speed_m_s)?;
-    let sampling = positive(&place("sampling_hz"), h.sampling_hz)?;
-    let density = positive(&place("air_density_kg_m3"), h.air_density_kg_m3)?;
+    let width = positive(place("width_m"), h.width_m)?;
+    let speed = positive(place("mean_speed_m_s"), h.mean_speed_m_s)?;
+    let sampling = positive(place("sampling_hz"), h.sampling_hz)?;
+    let density = positive(place("air_density_kg_m3"), h.air_density_kg_m3)?;
     let samples = record.motion.first().map_or(0, Vec::len);
     if let Some(other) = record.motion.iter().find(|m| m.len() != samples) {
         return Err(Error::input(

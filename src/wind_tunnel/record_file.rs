@@ -6,7 +6,7 @@
 
 use super::record_format::{RecordColumns, read_head, text, write_head};
 use super::records::{Record, RecordBlock, RecordHeader, RecordSource};
-use crate::error::{Error, Result, counted};
+use crate::error::{Error, Place, Result, counted};
 use std::fmt::Write as _;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Seek, SeekFrom, Write};
@@ -197,8 +197,8 @@ impl<'a> Rows<'a> {
     /// Takes one line of the file; blank lines count for nothing.
     fn push(&mut self, line: &[u8]) -> Result<()> {
         self.line += 1;
-        let line = text(line)
-            .map_err(|found| Error::input(format!("line {}", self.line), "numbers", found))?;
+        let line =
+            text(line).map_err(|found| Error::input(Place::line(self.line), "numbers", found))?;
         if line.trim().is_empty() {
             return Ok(());
         }
@@ -207,7 +207,7 @@ impl<'a> Rows<'a> {
             let cell = cells.next().ok_or_else(|| self.unequal(line))?.trim();
             let value = cell.parse::<f64>().ok().filter(|x| x.is_finite());
             let value = value.ok_or_else(|| {
-                let place = format!("line {}, column {}", self.line, self.columns.names[column]);
+                let place = Place::line(self.line).column(&self.columns.names[column]);
                 Error::input(place, "a finite number", format!("`{cell}`"))
             })?;
             let n = self.motion.len();
@@ -226,7 +226,7 @@ impl<'a> Rows<'a> {
 
     fn unequal(&self, line: &str) -> Error {
         Error::input(
-            format!("line {}", self.line),
+            Place::line(self.line),
             counted(self.columns.channels.len(), "column"),
             line.split(',').count().to_string(),
         )
@@ -240,7 +240,7 @@ impl<'a> Rows<'a> {
             if (step * self.header.sampling_hz - 1.0).abs() > JITTER {
                 let sampling = self.header.sampling_hz;
                 return Err(Error::input(
-                    format!("line {}, column time_s", self.line),
+                    Place::line(self.line).column("time_s"),
                     format!(
                         "{} s after the sample before ({sampling} Hz)",
                         1.0 / sampling

@@ -17,7 +17,7 @@
 //! ```
 
 use super::records::{RecordHeader, Segment};
-use crate::error::{Error, Result};
+use crate::error::{Error, Place, Result};
 use crate::files::header_csv::{CommentHeader, Entry};
 use crate::section::Dof;
 use std::io::{BufRead, Write};
@@ -116,7 +116,7 @@ pub(super) fn read_head(
             .read_until(b'\n', &mut line)
             .map_err(|e| Error::io(path, e))?;
         start += read as u64;
-        let place = || format!("line {}", head.lines() + 1);
+        let place = || Place::line(head.lines() + 1);
         let text = text(&line).map_err(|found| Error::input(place(), "a line of text", found))?;
         if read == 0 {
             return Err(Error::input(
@@ -189,7 +189,7 @@ fn segment(entry: &Entry) -> Result<Segment> {
 
 fn find_channels(names: &[String], dofs: &[Dof], line: usize) -> Result<Vec<Option<usize>>> {
     let expected = column_names(dofs);
-    let place = format!("line {line}");
+    let place = Place::line(line);
     let wrong = |found: String| {
         let columns = format!("the columns {}, each once", expected.join(","));
         Error::input(&place, columns, found)

@@ -2,7 +2,7 @@
 
 use super::{Derivative, Part, TransferSample};
 use crate::aerodynamics::Transfer;
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Place, Result, positive};
 use crate::section::Dof;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange, SAME_SPEED, near_groups};
 use std::collections::BTreeMap;
@@ -18,7 +18,7 @@ pub(crate) const UNITS: &str =
 const POINTS_AT_MOST: usize = 10_000;
 
 /// Refuses more test points than a table can have.
-pub(crate) fn check_point_count(place: &str, count: usize) -> Result<()> {
+pub(crate) fn check_point_count(place: impl Into<Place>, count: usize) -> Result<()> {
     if count <= POINTS_AT_MOST {
         return Ok(());
     }

@@ -145,7 +145,7 @@ impl DiscreteLaguerre {
     /// Checks ranges and shapes.
     pub(crate) fn validate(&self) -> Result<()> {
         let place = |field: &str| format!("discrete Laguerre model: {field}");
-        positive(&place("delta_s"), self.delta_s)?;
+        positive(place("delta_s"), self.delta_s)?;
         let n = self.dofs.len();
         for (i, term) in self.terms.iter().enumerate() {
             let place = |field: &str| place(&format!("terms[{i}].{field}"));
@@ -180,7 +180,7 @@ impl DiscreteLaguerre {
                 "a motion without any",
             ));
         }
-        finite_numbers(&place("static_term"), &self.static_term, n)
+        finite_numbers(place("static_term"), &self.static_term, n)
     }
 }
 

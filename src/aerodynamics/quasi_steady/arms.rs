@@ -35,7 +35,7 @@ impl Arms {
     /// Checks that all are finite.
     pub(crate) fn validate(&self) -> Result<()> {
         for dof in Dof::THREE {
-            finite(&format!("arms.{}", dof.name()), self.of(dof))?;
+            finite(format!("arms.{}", dof.name()), self.of(dof))?;
         }
         Ok(())
     }

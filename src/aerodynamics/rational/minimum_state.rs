@@ -61,7 +61,7 @@ impl MinimumStateModel {
             }
         }
         for d in &self.lags {
-            positive(&format!("{PLACE}: lags"), *d)?;
+            positive(format!("{PLACE}: lags"), *d)?;
         }
         Ok(())
     }

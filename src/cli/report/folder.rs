@@ -26,9 +26,8 @@ pub(super) struct Kind {
 /// The summary in `text`, which was read from `path`, as far as it is asked for.
 pub(super) fn parsed<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T> {
     serde_json::from_str(text).map_err(|e| {
-        let place = format!("line {}, column {}", e.line(), e.column());
         let expected = "the summary of `study`, `demo` or `bridge flutter` of this version";
-        Error::input(place, expected, e.to_string()).in_file(path)
+        Error::json(expected, &e).in_file(path)
     })
 }
 

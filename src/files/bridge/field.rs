@@ -1,7 +1,7 @@
 //! Turbulence along the span as a file: `time_s,u[x1],u[x2],…,w[x1],…`, m/s, the places along the girder in metres.
 
 use super::table::Table;
-use crate::error::{Error, Result};
+use crate::error::{Error, Place, Result};
 use std::path::Path;
 
 /// Nodes and columns this close are at one place, m: places are written with a few digits.
@@ -140,7 +140,7 @@ fn step(times: &[f64], table: &Table) -> Result<f64> {
     match times.windows(2).position(wrong) {
         None if mean > 0.0 => Ok(mean),
         at => {
-            let place = format!("line {}, column time_s", table.rows[at.unwrap_or(0) + 1].0);
+            let place = Place::line(table.rows[at.unwrap_or(0) + 1].0).column("time_s");
             Err(Error::input(
                 place,
                 format!("times that rise by {mean} s"),

@@ -10,7 +10,7 @@
 
 use super::modal_data::{ModalData, RawMode};
 use super::table::Table;
-use crate::error::{Error, Result};
+use crate::error::{Error, Place, Result};
 use std::f64::consts::TAU;
 use std::path::Path;
 
@@ -86,7 +86,7 @@ fn shape(table: &Table, nodes: usize) -> Result<Vec<[f64; 6]>> {
     let leading = cells.len().checked_sub(wanted).filter(|time| *time <= 1);
     let Some(leading) = leading else {
         return Err(Error::input(
-            format!("line {line}"),
+            Place::line(*line),
             format!("{wanted} numbers, six for each of the {nodes} nodes of nodes.out"),
             cells.len().to_string(),
         ));

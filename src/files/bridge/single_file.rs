@@ -55,8 +55,8 @@ pub(super) fn parse(text: &str) -> Result<Modes> {
         let (number, frequency_hz, generalised_mass) = mode_line(&entry.value)
             .ok_or_else(|| entry.wrong("`number, frequency Hz, generalised mass kg`"))?;
         let place = entry.place();
-        positive(&format!("{place}, frequency"), frequency_hz)?;
-        positive(&format!("{place}, generalised mass"), generalised_mass)?;
+        positive(format!("{place}, frequency"), frequency_hz)?;
+        positive(format!("{place}, generalised mass"), generalised_mass)?;
         let columns = ["vertical", "lateral", "rotation"]
             .map(|part| table.required(&[&format!("{part}_{number}")]));
         let [v, l, r] = columns;

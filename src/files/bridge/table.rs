@@ -1,6 +1,6 @@
 //! Tables of numbers as programs write them: commas, semicolons, tabs or blanks between, comments and headings in front.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Place, Result};
 use std::path::Path;
 
 /// Rows of a file at most: a thousand nodes by thousands of modes.
@@ -50,7 +50,7 @@ impl Table {
             }
             if table.rows.len() == ROWS_AT_MOST {
                 return Err(Error::input(
-                    format!("line {}", i + 1),
+                    Place::line(i + 1),
                     format!("at most {ROWS_AT_MOST} rows"),
                     "more",
                 ));
@@ -83,7 +83,7 @@ impl Table {
 
     /// The number in a cell.
     pub(super) fn number(row: &(usize, Vec<String>), column: usize) -> Result<f64> {
-        let place = format!("line {}, column {}", row.0, column + 1);
+        let place = Place::line(row.0).column(column + 1);
         let cell = row.1.get(column).map_or("", String::as_str);
         let number: Option<f64> = cell.parse().ok();
         number
@@ -97,7 +97,7 @@ impl Table {
         if x >= 0.0 && x.fract() == 0.0 {
             return Ok(x as usize);
         }
-        let place = format!("line {}, column {}", row.0, column + 1);
+        let place = Place::line(row.0).column(column + 1);
         Err(Error::input(
             place,
             "a whole number",

@@ -8,7 +8,7 @@
 
 use super::modal_data::{ModalData, RawMode};
 use super::table::Table;
-use crate::error::{Error, Result};
+use crate::error::{Error, Place, Result};
 use std::collections::HashMap;
 use std::path::Path;
 
@@ -44,7 +44,7 @@ pub(super) fn nodes(table: &Table) -> Result<Vec<(String, [f64; 3])>> {
     let nodes: Vec<(String, [f64; 3])> = table.rows.iter().map(one).collect::<Result<_>>()?;
     for (i, (name, _)) in nodes.iter().enumerate() {
         if nodes[..i].iter().any(|n| n.0 == *name) {
-            let place = format!("line {}", table.rows[i].0);
+            let place = Place::line(table.rows[i].0);
             return Err(Error::input(
                 place,
                 "each node once",
@@ -76,7 +76,7 @@ pub(super) fn positive(row: &(usize, Vec<String>), column: usize, expected: &str
     if x > 0.0 {
         return Ok(x);
     }
-    let place = format!("line {}, column {}", row.0, column + 1);
+    let place = Place::line(row.0).column(column + 1);
     Err(Error::input(place, expected, x.to_string()))
 }
 
@@ -100,7 +100,7 @@ fn fill(table: &Table, nodes: &[(String, [f64; 3])], modes: &mut [RawMode]) -> R
         let number = Table::count(row, mode)?;
         let of_mode = mode_of.get(&number).ok_or_else(|| {
             Error::input(
-                format!("line {}", row.0),
+                Place::line(row.0),
                 format!("a mode of {MODES}"),
                 format!("mode {number}"),
             )
@@ -108,7 +108,7 @@ fn fill(table: &Table, nodes: &[(String, [f64; 3])], modes: &mut [RawMode]) -> R
         let name = Table::name(row, node);
         let at = place_of.get(name.as_str()).ok_or_else(|| {
             Error::input(
-                format!("line {}", row.0),
+                Place::line(row.0),
                 format!("a node of {NODES}"),
                 format!("node {name}"),
             )

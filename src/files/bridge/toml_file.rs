@@ -329,7 +329,7 @@ impl BridgeFile {
 
 impl SectionBlock {
     fn validate(&self, place: &str) -> Result<()> {
-        positive(&format!("{place}.width_m"), self.width_m)?;
+        positive(format!("{place}.width_m"), self.width_m)?;
         if self.derivatives.is_none() && self.model.is_none() && self.statics.is_none() {
             return Err(Error::input(
                 place,

@@ -39,10 +39,8 @@ pub(super) fn read(folder: &Path) -> Result<ModalData> {
 
 fn json<T: DeserializeOwned>(path: &Path) -> Result<T> {
     let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, e))?;
-    serde_json::from_str(&text).map_err(|e| {
-        let place = format!("line {}, column {}", e.line(), e.column());
-        Error::input(place, "a file of wawi's model folder", e.to_string()).in_file(path)
-    })
+    serde_json::from_str(&text)
+        .map_err(|e| Error::json("a file of wawi's model folder", &e).in_file(path))
 }
 
 fn data(element: Element, modal: Modal) -> Result<ModalData> {

@@ -42,8 +42,8 @@ impl WindBlock {
         let points = &self.profile;
         for (i, point) in points.iter().enumerate() {
             let place = format!("wind.profile[{i}]");
-            finite(&format!("{place}.along_m"), point.along_m)?;
-            non_negative(&format!("{place}.factor"), point.factor)?;
+            finite(format!("{place}.along_m"), point.along_m)?;
+            non_negative(format!("{place}.factor"), point.factor)?;
             if i > 0 && points[i - 1].along_m >= point.along_m {
                 let expected = format!("a place beyond {} m", points[i - 1].along_m);
                 return Err(Error::input(place, expected, point.along_m.to_string()));

@@ -18,7 +18,7 @@ use crate::aerodynamics::quasi_steady::coefficients::check_rows;
 use crate::aerodynamics::quasi_steady::{
     CoefficientRow, CoefficientsHeader, StaticCoefficients, TABLE_SIGN_CONVENTION, TABLE_UNITS,
 };
-use crate::error::{Error, Result};
+use crate::error::{Error, Place, Result};
 use crate::files::header_csv::{CommentHeader, csv_error, find_columns, number, table_reader};
 use std::io::Write;
 use std::path::Path;
@@ -58,7 +58,7 @@ pub(crate) fn parse_coefficients(text: &str) -> Result<StaticCoefficients> {
         let line = lines.get(problem.index).copied();
         let line = line.unwrap_or(header.lines() as u64 + 1);
         return Err(Error::input(
-            format!("line {line}"),
+            Place::line(line),
             problem.expected,
             problem.found,
         ));
@@ -105,7 +105,7 @@ fn read_rows(text: &str, names_line: usize) -> Result<(Vec<CoefficientRow>, Vec<
         let record = record.map_err(csv_error)?;
         let line = record.position().map_or(0, csv::Position::line);
         let cell = |i: usize| {
-            let place = format!("line {line}, column {}", COEFFICIENT_COLUMNS[i]);
+            let place = Place::line(line).column(COEFFICIENT_COLUMNS[i]);
             number(&place, record.get(columns[i]).unwrap_or(""))
         };
         rows.push(CoefficientRow {

@@ -28,12 +28,10 @@ use crate::aerodynamics::derivatives::notation::{
 };
 use crate::aerodynamics::derivatives::table::{check_point_count, check_points};
 use crate::aerodynamics::derivatives::{Derivative, DerivativePoint, DerivativeTable, TableHeader};
-use crate::error::{Error, Result};
+use crate::error::{Error, Place, Result};
 use crate::files::derivatives::csv_header::{Head, ReadOptions, write_head};
 use crate::files::derivatives::csv_wide;
-use crate::files::header_csv::{
-    at_place, csv_error, find_columns, missing_column, number, table_reader,
-};
+use crate::files::header_csv::{csv_error, find_columns, missing_column, number, table_reader};
 use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::Path;
@@ -127,7 +125,7 @@ fn parse_long(text: &str, options: &ReadOptions) -> Result<(DerivativeTable, Con
     let column = find_argument(&names, line)?;
     if let Some(said) = in_file.argument.filter(|said| *said != column) {
         return Err(Error::input(
-            format!("line {line}"),
+            Place::line(line),
             format!("a column `{said}` as the header says"),
             format!("`{column}`"),
         ));
@@ -141,7 +139,7 @@ fn parse_long(text: &str, options: &ReadOptions) -> Result<(DerivativeTable, Con
     for (derivative, (points, lines)) in &rows {
         if let Some(problem) = check_points(points) {
             let name = convention.notation.name_of(*derivative);
-            let place = format!("line {} ({name})", lines[problem.index]);
+            let place = Place::line(lines[problem.index]).about(name);
             return Err(Error::input(place, problem.expected, problem.found));
         }
     }
@@ -220,12 +218,12 @@ fn read_rows(
             } else {
                 CSV_COLUMNS[column]
             };
-            format!("line {line}, column {name}")
+            Place::line(line).column(name)
         };
         let derivative = convention
             .notation
             .derivative(cell(0))
-            .map_err(|e| at_place(e, &place(0)))?;
+            .map_err(|e| e.at(place(0)))?;
         let (points, lines) = rows.entry(derivative).or_default();
         let expected = (points.len() + 1).to_string();
         if cell(1) != expected {
@@ -234,19 +232,19 @@ fn read_rows(
         }
         let mean_speed_m_s = match cell(2) {
             "" => None,
-            text => Some(number(&place(2), text)?),
+            text => Some(number(place(2), text)?),
         };
-        let argument = number(&place(ARGUMENT), cell(ARGUMENT))?;
+        let argument = number(place(ARGUMENT), cell(ARGUMENT))?;
         if convention.argument != Argument::VHat {
-            crate::error::positive(&place(ARGUMENT), argument)?;
+            crate::error::positive(place(ARGUMENT), argument)?;
         }
-        let value = number(&place(4), cell(4))?;
+        let value = number(place(4), cell(4))?;
         let point = ExpressedPoint {
             mean_speed_m_s,
             argument,
             value,
         };
-        check_point_count(&place(0), points.len() + 1)?;
+        check_point_count(place(0), points.len() + 1)?;
         points.push(convention.read_point(derivative, &point));
         lines.push(line);
     }
@@ -262,7 +260,7 @@ fn find_argument(names: &csv::StringRecord, line: usize) -> Result<Argument> {
         (Some(argument), None) => Ok(argument),
         (None, _) => Err(missing_column(names, line, Argument::VHat.name())),
         (Some(first), Some(second)) => Err(Error::input(
-            format!("line {line}"),
+            Place::line(line),
             "one column of reduced velocities or frequencies",
             format!("`{first}` and `{second}`"),
         )),

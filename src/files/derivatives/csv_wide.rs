@@ -16,7 +16,7 @@ use crate::aerodynamics::derivatives::missing::fill_in;
 use crate::aerodynamics::derivatives::notation::{Argument, Convention, ExpressedPoint};
 use crate::aerodynamics::derivatives::table::{check_point_count, check_points};
 use crate::aerodynamics::derivatives::{Derivative, DerivativePoint, DerivativeTable};
-use crate::error::{Error, Result, counted, positive};
+use crate::error::{Error, Place, Result, counted, positive};
 use crate::files::derivatives::csv_header::{Head, ReadOptions};
 use crate::files::derivatives::workbook::WIDTH_ASSUMED;
 use crate::files::header_csv::number;
@@ -114,8 +114,8 @@ struct Row<'a> {
 }
 
 impl Row<'_> {
-    fn place(&self, column: usize) -> String {
-        format!("line {}, column {}", self.line, self.names[column])
+    fn place(&self, column: usize) -> Place {
+        Place::line(self.line).column(self.names[column])
     }
 
     /// The number in a column; `None` for an empty cell.
@@ -125,7 +125,7 @@ impl Row<'_> {
             (text, true) => text.replace(',', "."),
             (text, false) => text.to_owned(),
         };
-        number(&self.place(column), &text).map(Some)
+        number(self.place(column), &text).map(Some)
     }
 
     /// Adds the points of this line.
@@ -133,10 +133,10 @@ impl Row<'_> {
         if self.cells.len() != self.names.len() {
             let expected = counted(self.names.len(), "column");
             let found = self.cells.len().to_string();
-            return Err(Error::input(format!("line {}", self.line), expected, found));
+            return Err(Error::input(Place::line(self.line), expected, found));
         }
         let argument = self.number(columns.argument)?.unwrap_or(f64::NAN);
-        positive(&self.place(columns.argument), argument)?;
+        positive(self.place(columns.argument), argument)?;
         let speed = columns.speed.map(|column| self.number(column));
         let mean_speed_m_s = speed.transpose()?.flatten();
         for (column, derivative) in &columns.derivatives {
@@ -162,7 +162,7 @@ fn checked(rows: Rows, convention: &Convention) -> Result<Points> {
     for (derivative, (points, lines)) in &rows {
         if let Some(problem) = check_points(points) {
             let name = convention.notation.name_of(*derivative);
-            let place = format!("line {} ({name})", lines[problem.index]);
+            let place = Place::line(lines[problem.index]).about(name);
             return Err(Error::input(place, problem.expected, problem.found));
         }
     }
@@ -209,7 +209,7 @@ fn find_columns(names: &[&str], line: usize, convention: &Convention) -> Result<
     for (i, name) in names.iter().enumerate() {
         if let Ok(derivative) = convention.notation.derivative(name) {
             if columns.derivatives.iter().any(|(_, d)| *d == derivative) {
-                let place = format!("line {line}");
+                let place = Place::line(line);
                 return Err(Error::input(place, format!("`{name}` once"), "it twice"));
             }
             columns.derivatives.push((i, derivative));
@@ -226,7 +226,7 @@ fn find_columns(names: &[&str], line: usize, convention: &Convention) -> Result<
         let [only] = unnamed[..] else {
             let expected = format!("a column `{}`", convention.argument.name());
             return Err(Error::input(
-                format!("line {line}"),
+                Place::line(line),
                 expected,
                 format!("`{}`", names.join(",")),
             ));
@@ -237,7 +237,7 @@ fn find_columns(names: &[&str], line: usize, convention: &Convention) -> Result<
     if columns.derivatives.is_empty() {
         let expected = format!("columns of derivatives, {}", convention.notation.names());
         let found = format!("`{}`", names.join(","));
-        return Err(Error::input(format!("line {line}"), expected, found));
+        return Err(Error::input(Place::line(line), expected, found));
     }
     columns.others = unnamed.into_iter().map(|i| names[i].to_owned()).collect();
     Ok(columns)

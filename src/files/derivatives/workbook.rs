@@ -108,7 +108,7 @@ fn width_in_book(
         let column = sheet.titles().into_iter().find(|t| t.1.trim() == "B");
         if let Some((column, _)) = column {
             let width = number(&sheet, DIMENSIONS, sheet.first_row() + 1, column)?;
-            return Ok(Some((positive(&place(), width)?, place())));
+            return Ok(Some((positive(place(), width)?, place())));
         }
     }
     let Some(text) = notes.get("width_m") else {
@@ -247,7 +247,7 @@ fn read_columns(
     };
     let columns: Vec<u32> = held.iter().map(column).collect::<Result<_>>()?;
     let rows = sheet.first_row() + 1..sheet.last_row(&columns) + 1;
-    check_point_count(&format!("sheet {name}"), rows.len())?;
+    check_point_count(format!("sheet {name}"), rows.len())?;
     let numbers = |column: u32| {
         let rows = rows.clone();
         rows.map(|row| number(sheet, name, row, column))

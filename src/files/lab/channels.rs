@@ -1,6 +1,6 @@
 //! What a laboratory file holds: channels, single values and what was left out.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Place, Result};
 use std::collections::BTreeMap;
 
 /// What one file, or one group of it, holds.
@@ -43,7 +43,7 @@ pub(super) const NUMBERS_AT_MOST: u64 = 32 << 20;
 const NAMES_AT_MOST: usize = 60;
 
 /// Refuses more numbers than a recording has.
-pub(super) fn check_count(place: &str, numbers: u64) -> Result<()> {
+pub(super) fn check_count(place: impl Into<Place>, numbers: u64) -> Result<()> {
     if numbers <= NUMBERS_AT_MOST {
         return Ok(());
     }

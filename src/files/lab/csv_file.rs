@@ -5,7 +5,7 @@
 //! An empty cell or `NaN` is a missing sample. A column whose first cell is text is left out.
 
 use super::channels::{Attribute, ChannelSet, check_count, no_group};
-use crate::error::{Error, Result, counted};
+use crate::error::{Error, Place, Result, counted};
 use std::borrow::Cow;
 
 /// A row of a thousand channels has 20 kB.
@@ -44,7 +44,7 @@ pub(super) fn parse(bytes: &[u8], group: Option<&str>) -> Result<ChannelSet> {
         match reader.read_byte_record(&mut row) {
             Ok(true) => {}
             Ok(false) => break,
-            Err(e) => return Err(Error::input(format!("line {line}"), "a row", e.to_string())),
+            Err(e) => return Err(Error::input(Place::line(line), "a row", e.to_string())),
         }
         match &mut table {
             None => table = Some(Table::begin(&row, style)),
@@ -90,7 +90,7 @@ fn check_lines(bytes: &[u8], skipped: usize) -> Result<()> {
         None => Ok(()),
         Some((i, line)) => {
             let expected = format!("a row of at most {LINE_BYTES_AT_MOST} bytes");
-            let place = format!("line {}", skipped + i + 1);
+            let place = Place::line(skipped + i + 1);
             Err(Error::input(
                 place,
                 expected,
@@ -174,7 +174,7 @@ impl Table {
         let surplus = row.iter().skip(self.names.len());
         if row.len() < self.names.len() || surplus.into_iter().any(|c| !c.trim_ascii().is_empty()) {
             return Err(Error::input(
-                format!("line {line}"),
+                Place::line(line),
                 format!("{} as in the header", counted(self.names.len(), "column")),
                 row.len().to_string(),
             ));
@@ -191,16 +191,13 @@ impl Table {
                 None if self.rows == 0 => self.columns[c] = None,
                 None => {
                     let found = format!("`{}`", String::from_utf8_lossy(cell));
-                    let place = format!("line {line}, column {}", self.names[c]);
+                    let place = Place::line(line).column(&self.names[c]);
                     return Err(Error::input(place, "a number", found));
                 }
             }
         }
         self.rows += 1;
-        check_count(
-            &format!("line {line}"),
-            (self.rows * self.names.len()) as u64,
-        )
+        check_count(Place::line(line), (self.rows * self.names.len()) as u64)
     }
 
     /// Takes a row without any number as units.

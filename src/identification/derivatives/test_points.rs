@@ -84,7 +84,7 @@ fn check(header: &RecordHeader, first: &RecordHeader) -> Result<()> {
         ("mean_speed_m_s", header.mean_speed_m_s),
         ("sampling_hz", header.sampling_hz),
     ] {
-        positive(&place(key), value)?;
+        positive(place(key), value)?;
     }
     if header.dofs != first.dofs {
         let expected = format!("{}, as in the first record", Dof::names(&first.dofs));

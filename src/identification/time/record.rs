@@ -101,12 +101,12 @@ impl Records {
 
 fn check_header(header: &RecordHeader, dofs: &[Dof]) -> Result<()> {
     let place = |key: &str| format!("record {}: {key}", header.name);
-    positive(&place("width_m"), header.width_m)?;
-    positive(&place("air_density_kg_m3"), header.air_density_kg_m3)?;
-    positive(&place("mean_speed_m_s"), header.mean_speed_m_s)?;
-    positive(&place("sampling_hz"), header.sampling_hz)?;
+    positive(place("width_m"), header.width_m)?;
+    positive(place("air_density_kg_m3"), header.air_density_kg_m3)?;
+    positive(place("mean_speed_m_s"), header.mean_speed_m_s)?;
+    positive(place("sampling_hz"), header.sampling_hz)?;
     for segment in &header.segments {
-        positive(&place("segments: frequency_hz"), segment.frequency_hz)?;
+        positive(place("segments: frequency_hz"), segment.frequency_hz)?;
     }
     for dof in dofs {
         index_of(&header.dofs, *dof, &place("dofs"))?;

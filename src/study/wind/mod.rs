@@ -147,7 +147,7 @@ impl WindStudy {
             turbulence.validate("turbulence")?;
         }
         for (i, speed) in self.time.speeds_m_s.iter().enumerate() {
-            positive(&format!("time.speeds_m_s[{i}]"), *speed)?;
+            positive(format!("time.speeds_m_s[{i}]"), *speed)?;
         }
         if let Some(block) = &self.coefficients {
             block.validate("coefficients")?;

@@ -87,16 +87,16 @@ impl Distribution {
                 Ok(Transform::Uniform { lower, width })
             }
             Self::Normal(given) => {
-                let mean = finite(&at("mean"), given.mean.unwrap_or(nominal))?;
+                let mean = finite(at("mean"), given.mean.unwrap_or(nominal))?;
                 let deviation = given.deviation(place, mean)?;
                 gaussian(place, (mean, deviation), (given.lower, given.upper), false)
             }
             Self::Lognormal(given) => {
-                let mean = positive(&at("mean"), given.mean.unwrap_or(nominal))?;
+                let mean = positive(at("mean"), given.mean.unwrap_or(nominal))?;
                 let ratio = given.deviation(place, mean)? / mean;
                 let variance = (ratio * ratio).ln_1p();
                 let log = |key: &str, end: Option<f64>| {
-                    end.map(|x| positive(&at(key), x).map(f64::ln)).transpose()
+                    end.map(|x| positive(at(key), x).map(f64::ln)).transpose()
                 };
                 let ends = (log("lower", given.lower)?, log("upper", given.upper)?);
                 let moments = (mean.ln() - 0.5 * variance, variance.sqrt());
@@ -110,7 +110,7 @@ impl Gaussian {
     /// The standard deviation for a mean, in the unit of the parameter.
     fn deviation(&self, place: &str, mean: f64) -> Result<f64> {
         match (self.standard_deviation, self.coefficient_of_variation) {
-            (Some(s), None) => positive(&format!("{place}.standard_deviation"), s),
+            (Some(s), None) => positive(format!("{place}.standard_deviation"), s),
             (None, Some(c)) => {
                 let key = format!("{place}.coefficient_of_variation");
                 positive(&key, c)?;

@@ -226,7 +226,7 @@ pub fn many_onsets(
 fn of_section(index: usize, error: Error) -> Error {
     match error {
         Error::Input(mut input) => {
-            input.place = format!("section {index}: {}", input.place);
+            input.place = format!("section {index}: {}", input.place).into();
             Error::Input(input)
         }
         other => other,

@@ -7,7 +7,7 @@
 
 use super::coefficients;
 use super::plan::MonteCarloPlan;
-use crate::error::{Error, Result, counted};
+use crate::error::{Error, Place, Result, counted};
 use crate::section::Dof;
 use crate::trained_model::{Model, TrainedModel};
 use crate::uncertainty::CoefficientUncertainty;
@@ -164,14 +164,8 @@ struct ReportCoefficient {
 
 /// The blocks of all transfer functions of a fit, independent of each other.
 fn from_report(text: &str) -> Result<(Vec<String>, DMatrix<f64>)> {
-    let report: Report = serde_json::from_str(text).map_err(|e| {
-        let place = format!("line {}, column {}", e.line(), e.column());
-        Error::input(
-            place,
-            "a report of a fit as written by `aerodeck train`",
-            e.to_string(),
-        )
-    })?;
+    let report: Report = serde_json::from_str(text)
+        .map_err(|e| Error::json("a report of a fit as written by `aerodeck train`", &e))?;
     let size = report.entries.iter().map(|e| e.coefficients.len()).sum();
     let mut names = Vec::with_capacity(size);
     let mut matrix = DMatrix::zeros(size, size);
@@ -219,7 +213,7 @@ fn from_csv(text: &str) -> Result<(Vec<String>, DMatrix<f64>)> {
     let mut rows = 0;
     for (line, number) in lines {
         let row = cells(line);
-        let place = format!("line {number}");
+        let place = Place::line(number);
         if row.len() != names.len() || rows == names.len() {
             let expected = format!("{0} rows of {0} numbers", names.len());
             let found = format!("{} numbers in row {}", row.len(), rows + 1);

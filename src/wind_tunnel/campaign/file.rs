@@ -336,7 +336,7 @@ impl RunBlock {
         }
         match self.mean_speed_m_s {
             Some(speed) => {
-                positive(&key("mean_speed_m_s"), speed)?;
+                positive(key("mean_speed_m_s"), speed)?;
             }
             None if map.wind_speed.is_none() => {
                 let expected =

@@ -59,17 +59,9 @@ impl Loading {
 /// The same error with the run in front of its place.
 fn below(place: &str, error: Error) -> Error {
     match error {
-        Error::Input(mut input) => {
-            input.place = if input.place.is_empty() {
-                place.to_owned()
-            } else {
-                format!("{place}, {}", input.place)
-            };
-            Error::Input(input)
-        }
         // a file that is not there is the run's that names it
         Error::Io { source, .. } => Error::input(place, "a recording", source.to_string()),
-        other => other,
+        other => other.within(place),
     }
 }
 

@@ -42,8 +42,8 @@ pub(crate) struct Findings {
 /// at their limit for more than a short while.
 pub(crate) fn check_run(run: &RawRun, rig: &Rig) -> Result<Findings> {
     let place = |what: &str| format!("run {}, {what}", run.name);
-    positive(&place("mean wind speed"), run.mean_speed_m_s)?;
-    positive(&place("air density"), run.air_density_kg_m3)?;
+    positive(place("mean wind speed"), run.mean_speed_m_s)?;
+    positive(place("air density"), run.air_density_kg_m3)?;
     let wind = &run.in_wind;
     check_recording(&place("in wind"), wind, rig)?;
     let mut findings = Findings {
@@ -122,7 +122,7 @@ fn channels<'a>(recording: &'a RawRecording, rig: &'a Rig) -> Vec<(String, &'a [
 
 fn check_recording(place: &str, recording: &RawRecording, rig: &Rig) -> Result<()> {
     positive(
-        &format!("{place}, sampling frequency"),
+        format!("{place}, sampling frequency"),
         recording.sampling_hz,
     )?;
     if recording.cells.len() != rig.cells.len() || rig.cells.is_empty() {

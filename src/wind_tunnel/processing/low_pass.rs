@@ -2,7 +2,7 @@
 
 use super::options::LowPassOptions;
 use super::signals::{HarmonicSegment, SectionSignals};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::signal::ButterworthLowPass;
 use serde::{Deserialize, Serialize};
 
@@ -43,14 +43,8 @@ pub fn design(
     if options.order == 0 || (options.cutoff_hz.is_none() && segments.is_empty()) {
         return Ok(None);
     }
-    let filter =
-        ButterworthLowPass::new(options.order, cutoff_hz, sampling_hz).map_err(|e| match e {
-            Error::Input(mut input) => {
-                input.place = format!("run {run}, {}", input.place);
-                Error::Input(input)
-            }
-            other => other,
-        })?;
+    let filter = ButterworthLowPass::new(options.order, cutoff_hz, sampling_hz)
+        .map_err(|e| e.within(format!("run {run}")))?;
     let applied = AppliedLowPass {
         order: options.order,
         cutoff_hz,
