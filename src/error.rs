@@ -4,6 +4,7 @@ mod place;
 
 pub use place::{Part, Place};
 
+use place::quoted;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -130,22 +131,6 @@ impl Error {
             _ => {}
         }
         self
-    }
-}
-
-/// Characters of an input that a message shows at most.
-const QUOTED_AT_MOST: usize = 300;
-
-/// At most a line of what stood in an input, cut where it is long.
-fn quoted(text: String) -> String {
-    let is_short = text.len() <= QUOTED_AT_MOST && !text.contains(['\n', '\r']);
-    if is_short {
-        return text;
-    }
-    let line = text.replace(['\n', '\r'], " ");
-    match line.char_indices().nth(QUOTED_AT_MOST) {
-        None => line,
-        Some((end, _)) => format!("{} … ({} characters)", &line[..end], line.chars().count()),
     }
 }
 

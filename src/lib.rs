@@ -48,6 +48,21 @@
 //! `files` reads and writes tables, `comparison` compares time histories, `buffeting` adds gusts. `study` runs the
 //! whole chain, `report` draws it, [`live`] answers its sliders and `cli` is the program.
 #![deny(unsafe_code, missing_docs)]
+// the process is the caller's: no abrupt end, and no word on its terminal
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::unwrap_used,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::todo,
+        clippy::unimplemented,
+        clippy::unreachable,
+        clippy::print_stdout,
+        clippy::print_stderr,
+        clippy::dbg_macro
+    )
+)]
 // the runtime of the FMU reaches only a part of the rooms it is built of
 #![cfg_attr(not(feature = "cli"), allow(dead_code, unused_imports))]
 
@@ -57,6 +72,7 @@ pub mod bridge;
 #[cfg(feature = "cli")]
 pub mod buffeting;
 #[cfg(feature = "cli")]
+#[allow(clippy::print_stdout, clippy::print_stderr)]
 pub mod cli;
 #[cfg(feature = "cli")]
 pub mod comparison;

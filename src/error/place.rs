@@ -88,7 +88,7 @@ impl Place {
             if let Part::Key(text) | Part::Column(text) | Part::Words(text) | Part::About(text) =
                 part
             {
-                *text = super::quoted(std::mem::take(text));
+                *text = quoted(std::mem::take(text));
             }
         }
         self
@@ -97,6 +97,22 @@ impl Place {
     fn and(mut self, part: Part) -> Self {
         self.parts.push(part);
         self
+    }
+}
+
+/// Characters of an input that a message shows at most.
+const QUOTED_AT_MOST: usize = 300;
+
+/// At most a line of what stood in an input, cut where it is long.
+pub(super) fn quoted(text: String) -> String {
+    let is_short = text.len() <= QUOTED_AT_MOST && !text.contains(['\n', '\r']);
+    if is_short {
+        return text;
+    }
+    let line = text.replace(['\n', '\r'], " ");
+    match line.char_indices().nth(QUOTED_AT_MOST) {
+        None => line,
+        Some((end, _)) => format!("{} … ({} characters)", &line[..end], line.chars().count()),
     }
 }
 

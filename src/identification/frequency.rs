@@ -237,8 +237,4 @@ fn account(
 }
 
 #[cfg(test)]
-mod constrained_tests;
-#[cfg(test)]
-mod form_tests;
-#[cfg(test)]
 mod tests;

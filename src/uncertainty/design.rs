@@ -385,5 +385,4 @@ fn scaled(m: &DMatrix<f64>, factors: &DVector<f64>) -> DMatrix<f64> {
 }
 
 #[cfg(test)]
-#[path = "design_tests.rs"]
 mod tests;

@@ -277,5 +277,4 @@ impl<'a> Rows<'a> {
 }
 
 #[cfg(test)]
-#[path = "record_file_tests.rs"]
 mod tests;

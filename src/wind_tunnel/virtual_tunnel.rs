@@ -357,5 +357,4 @@ impl TunnelPlan {
 }
 
 #[cfg(test)]
-#[path = "virtual_tunnel_tests.rs"]
 mod tests;

@@ -1,30 +1,30 @@
-//! A source file as tokens: comments and test code left out, use trees spread out, paths to our modules found.
+//! A source file as the paths in it: comments and test code left out, use trees spread out, imported names followed.
 
-use proc_macro2::{Delimiter, Spacing, TokenStream, TokenTree};
 use std::collections::BTreeMap;
+use syn::parse::ParseStream;
+use syn::spanned::Spanned;
+use syn::visit::{self, Visit};
+use syn::{Attribute, Expr, ImplItem, Item, ItemMod, ItemUse, Macro, Meta, Path, UseTree};
 
 /// A source file.
 #[derive(Default)]
 pub struct Source {
-    /// The file, then each `mod name { … }` in it.
-    sections: Vec<Section>,
     /// Modules that stand in files of their own: `mod name;`.
-    pub children: Vec<String>,
-    /// Those of them that are compiled for tests only: their names or `#[path]` files.
+    children: Vec<String>,
+    /// Those of them that are compiled for tests only.
     pub test_files: Vec<String>,
-}
-
-/// The tokens of one module.
-#[derive(Default)]
-struct Section {
-    /// Names of the modules around it, within the file.
+    written: Vec<Written>,
+    /// Names of the modules around what is being read, within the file.
     inside: Vec<String>,
-    tokens: Vec<Token>,
 }
 
-/// A word, `::`, a sign, a bracket or a literal.
-struct Token {
-    text: String,
+/// A path as it is written.
+struct Written {
+    inside: Vec<String>,
+    segments: Vec<String>,
+    /// What a `use` calls it here; none where the path is used on the spot.
+    name: Option<String>,
+    is_public: bool,
     line: usize,
 }
 
@@ -44,272 +44,210 @@ pub struct Mention {
 impl Source {
     /// Reads a file.
     pub fn new(text: &str) -> Self {
+        let file = syn::parse_file(text).expect("Rust");
         let mut source = Self::default();
-        source.take(text.parse().expect("Rust"), Vec::new());
+        if !are_for_tests(&file.attrs) {
+            source.visit_file(&file);
+        }
         source
-    }
-
-    /// Reads the tokens of a module.
-    fn take(&mut self, stream: TokenStream, inside: Vec<String>) {
-        let mut section = Section {
-            inside,
-            tokens: Vec::new(),
-        };
-        self.flatten(stream, &mut section);
-        self.sections.push(section);
-    }
-
-    fn flatten(&mut self, stream: TokenStream, section: &mut Section) {
-        let trees: Vec<TokenTree> = stream.into_iter().collect();
-        let mut at = 0;
-        while at < trees.len() {
-            if is_for_tests(&trees[at..], "#![") {
-                return;
-            }
-            if is_for_tests(&trees[at..], "#[") {
-                let end = at + item_length(&trees[at..]);
-                self.test_files.extend(own_file(&trees[at..end]));
-                at = end;
-                continue;
-            }
-            match &trees[at..] {
-                [
-                    TokenTree::Ident(word),
-                    TokenTree::Ident(name),
-                    TokenTree::Group(body),
-                    ..,
-                ] if word == "mod" && body.delimiter() == Delimiter::Brace => {
-                    let mut inside = section.inside.clone();
-                    inside.push(name.to_string());
-                    self.take(body.stream(), inside);
-                    at += 3;
-                    continue;
-                }
-                [
-                    TokenTree::Ident(word),
-                    TokenTree::Ident(name),
-                    TokenTree::Punct(end),
-                    ..,
-                ] if word == "mod" && end.as_char() == ';' => {
-                    self.children.push(name.to_string());
-                }
-                _ => {}
-            }
-            at += self.push(&trees[at..], section);
-        }
-    }
-
-    /// Adds the first of some trees; how many were taken.
-    fn push(&mut self, trees: &[TokenTree], section: &mut Section) -> usize {
-        let line = trees[0].span().start().line;
-        let mut token = |text: String| section.tokens.push(Token { text, line });
-        match &trees[0] {
-            TokenTree::Group(group) => {
-                let (open, close) = match group.delimiter() {
-                    Delimiter::Parenthesis => ("(", ")"),
-                    Delimiter::Brace => ("{", "}"),
-                    Delimiter::Bracket => ("[", "]"),
-                    Delimiter::None => ("", ""),
-                };
-                token(open.to_owned());
-                self.flatten(group.stream(), section);
-                section.tokens.push(Token {
-                    text: close.to_owned(),
-                    line: group.span_close().start().line,
-                });
-            }
-            TokenTree::Punct(p) if p.as_char() == ':' && p.spacing() == Spacing::Joint => {
-                token("::".to_owned());
-                return 2;
-            }
-            // a path in an attribute stands in a string
-            TokenTree::Literal(text) if text.to_string().starts_with("\"crate::") => {
-                for part in text.to_string().trim_matches('"').split("::") {
-                    token(part.to_owned());
-                    token("::".to_owned());
-                }
-                section.tokens.pop();
-            }
-            other => token(other.to_string()),
-        }
-        1
-    }
-
-    /// Lines at which these tokens stand, written with spaces between them.
-    pub fn find(&self, words: &str) -> Vec<usize> {
-        let words: Vec<&str> = words.split_whitespace().collect();
-        let all = self
-            .sections
-            .iter()
-            .flat_map(|s| s.tokens.windows(words.len()));
-        all.filter(|found| {
-            found
-                .iter()
-                .map(|t| t.text.as_str())
-                .eq(words.iter().copied())
-        })
-        .map(|found| found[0].line)
-        .collect()
     }
 
     /// Every path that starts with `crate`, `aerodeck`, `super`, `self`, a module declared here or an imported name.
     pub fn mentions(&self, module: &[String]) -> Vec<Mention> {
-        self.sections
-            .iter()
-            .flat_map(|section| section.mentions(module, &self.children))
-            .collect()
-    }
-}
-
-impl Section {
-    fn text(&self, at: usize) -> &str {
-        self.tokens.get(at).map_or("", |t| t.text.as_str())
-    }
-
-    fn mentions(&self, module: &[String], children: &[String]) -> Vec<Mention> {
-        let mut found = self.paths(module, children);
-        found.extend(self.through_imports(&found));
-        found
-    }
-
-    /// Paths that start with an imported name: `use super::roots;`, then `roots::bisect(…)`.
-    fn through_imports(&self, imports: &[Mention]) -> Vec<Mention> {
-        let imports: BTreeMap<&str, &Mention> = imports
-            .iter()
-            .filter_map(|import| Some((import.name.as_deref()?, import)))
-            .collect();
-        let mut found = Vec::new();
-        let mut in_use = false;
-        for at in 0..self.tokens.len() {
-            in_use = self.text(at) == "use" || in_use && self.text(at) != ";";
-            let starts = self.text(at + 1) == "::" && !self.continues(at);
-            let import = imports.get(self.text(at)).filter(|_| starts && !in_use);
-            let Some(import) = import else { continue };
-            let from = found.len();
-            self.spread(at + 2, import.path.clone(), &mut found);
-            for mention in &mut found[from..] {
-                mention.line = self.tokens[at].line;
-                mention.name = None;
-            }
-        }
-        found
-    }
-
-    /// Whether a path or a call goes on at this token.
-    fn continues(&self, at: usize) -> bool {
-        at > 0 && matches!(self.text(at - 1), "::" | ".")
-    }
-
-    /// Paths that start with `crate`, `aerodeck`, `super`, `self` or a module declared here.
-    fn paths(&self, module: &[String], children: &[String]) -> Vec<Mention> {
-        let mut found = Vec::new();
-        let mut of_use = None;
-        for at in 0..self.tokens.len() {
-            match self.text(at) {
-                "use" => of_use = Some(at > 0 && matches!(self.text(at - 1), "pub" | ")")),
-                ";" => of_use = None,
-                _ => {}
-            }
-            if self.text(at + 1) != "::" || self.continues(at) {
-                continue;
-            }
-            let mut base = [module, &self.inside].concat();
-            let mut after = at + 2;
-            match self.text(at) {
-                "crate" | "aerodeck" => base.clear(),
-                "self" => {}
-                "super" => {
-                    base.pop();
-                    while self.text(after) == "super" {
-                        base.pop();
-                        after += 2;
-                    }
-                }
-                name if children.iter().any(|c| c == name) => after = at,
-                _ => continue,
-            }
-            let start = found.len();
-            self.spread(after, base, &mut found);
-            for mention in &mut found[start..] {
-                mention.line = self.tokens[at].line;
-                mention.is_public = of_use == Some(true);
-                mention.name = mention.name.take().filter(|_| of_use.is_some());
-            }
-        }
-        found
-    }
-
-    /// Follows a path or use tree from a token, adding every leaf; returns where it ends.
-    fn spread(&self, mut at: usize, mut path: Vec<String>, found: &mut Vec<Mention>) -> usize {
-        if self.text(at) == "{" {
-            at += 1;
-            while !matches!(self.text(at), "}" | "") {
-                at = self.spread(at, path.clone(), found);
-                at += usize::from(self.text(at) == ",");
-            }
-            return at + 1;
-        }
-        if self.text(at) != "self" {
-            path.push(self.text(at).to_owned());
-        }
-        if self.text(at + 1) == "::" && self.text(at + 2) != "<" {
-            return self.spread(at + 2, path, found);
-        }
-        let is_renamed = self.text(at + 1) == "as";
-        let end = at + if is_renamed { 2 } else { 0 };
-        let name = match self.text(end) {
-            "self" => path.last().cloned(),
-            name => Some(name.to_owned()),
-        };
-        found.push(Mention {
-            path,
-            name,
-            is_public: false,
-            line: 0,
+        let own = self.written.iter().filter_map(|written| {
+            let path = written.absolute(module, &self.children)?;
+            Some(written.mention(path))
         });
-        end + 1
+        let mut found: Vec<Mention> = own.collect();
+        let imports: BTreeMap<&str, &[String]> = found
+            .iter()
+            .filter_map(|m| Some((m.name.as_deref()?, &m.path[..])))
+            .collect();
+        let on_the_spot = self.written.iter().filter(|w| w.name.is_none());
+        let through_imports = on_the_spot.filter_map(|written| {
+            let import = imports.get(written.segments[0].as_str())?;
+            Some(written.mention([import, &written.segments[1..]].concat()))
+        });
+        let through_imports: Vec<Mention> = through_imports.collect();
+        found.extend(through_imports);
+        found
+    }
+
+    fn write(&mut self, segments: Vec<String>, line: usize) {
+        self.written.push(Written {
+            inside: self.inside.clone(),
+            segments,
+            name: None,
+            is_public: false,
+            line,
+        });
+    }
+
+    /// Adds every leaf of a use tree.
+    fn spread(&mut self, tree: &UseTree, mut path: Vec<String>, is_public: bool) {
+        let (last, name) = match tree {
+            UseTree::Path(onward) => {
+                path.push(onward.ident.to_string());
+                return self.spread(&onward.tree, path, is_public);
+            }
+            UseTree::Group(group) => {
+                for tree in &group.items {
+                    self.spread(tree, path.clone(), is_public);
+                }
+                return;
+            }
+            UseTree::Name(leaf) => (leaf.ident.to_string(), leaf.ident.to_string()),
+            UseTree::Rename(leaf) => (leaf.ident.to_string(), leaf.rename.to_string()),
+            UseTree::Glob(_) => ("*".to_owned(), "*".to_owned()),
+        };
+        let of_module = last == "self";
+        let name = if of_module && name == last {
+            path.last().cloned().unwrap_or_default()
+        } else {
+            name
+        };
+        path.extend((!of_module).then_some(last));
+        self.write(path, tree.span().start().line);
+        if let Some(written) = self.written.last_mut() {
+            written.name = Some(name);
+            written.is_public = is_public;
+        }
     }
 }
 
-/// Whether `#[cfg(test)]` stands here, or `#![cfg(test)]`; `all(test, …)` counts, `not(test)` does not.
-fn is_for_tests(trees: &[TokenTree], start: &str) -> bool {
-    let (signs, tail) = trees.split_at(start.len().min(trees.len()) - 1);
-    let signs: String = signs.iter().map(ToString::to_string).collect();
-    let Some(TokenTree::Group(group)) = tail.first() else {
-        return false;
-    };
-    let words = all_words(group.stream());
-    let has = |word: &str| words.iter().any(|w| w == word);
-    start.strip_suffix('[') == Some(&signs) && words[0] == "cfg" && has("test") && !has("not")
+impl Written {
+    /// The path from the root of the crate; none where it does not start in it.
+    fn absolute(&self, module: &[String], children: &[String]) -> Option<Vec<String>> {
+        let mut base = [module, &self.inside].concat();
+        let mut rest = &self.segments[1..];
+        match self.segments[0].as_str() {
+            "crate" | "aerodeck" => base.clear(),
+            "self" => {}
+            "super" => {
+                base.pop();
+                while let Some(("super", onward)) =
+                    rest.split_first().map(|(first, r)| (first.as_str(), r))
+                {
+                    base.pop();
+                    rest = onward;
+                }
+            }
+            name if children.iter().any(|child| child == name) => rest = &self.segments,
+            _ => return None,
+        }
+        Some([&base, rest].concat())
+    }
+
+    fn mention(&self, path: Vec<String>) -> Mention {
+        Mention {
+            path,
+            name: self.name.clone(),
+            is_public: self.is_public,
+            line: self.line,
+        }
+    }
 }
 
-fn all_words(stream: TokenStream) -> Vec<String> {
-    let words = |tree: TokenTree| match tree {
-        TokenTree::Group(group) => all_words(group.stream()),
-        other => vec![other.to_string()],
-    };
-    stream.into_iter().flat_map(words).collect()
+impl<'ast> Visit<'ast> for Source {
+    fn visit_item(&mut self, item: &'ast Item) {
+        if !are_for_tests(attributes(item)) {
+            return visit::visit_item(self, item);
+        }
+        if let Item::Mod(ItemMod {
+            content: None,
+            ident,
+            ..
+        }) = item
+        {
+            self.test_files.push(ident.to_string());
+        }
+    }
+
+    fn visit_impl_item(&mut self, item: &'ast ImplItem) {
+        let is_for_tests = matches!(item, ImplItem::Fn(method) if are_for_tests(&method.attrs));
+        if !is_for_tests {
+            visit::visit_impl_item(self, item);
+        }
+    }
+
+    fn visit_item_mod(&mut self, module: &'ast ItemMod) {
+        if module.content.is_none() {
+            self.children.push(module.ident.to_string());
+        }
+        self.inside.push(module.ident.to_string());
+        visit::visit_item_mod(self, module);
+        self.inside.pop();
+    }
+
+    fn visit_item_use(&mut self, item: &'ast ItemUse) {
+        let is_public = !matches!(item.vis, syn::Visibility::Inherited);
+        self.spread(&item.tree, Vec::new(), is_public);
+    }
+
+    fn visit_path(&mut self, path: &'ast Path) {
+        if path.segments.len() > 1 && path.leading_colon.is_none() {
+            let segments = path.segments.iter().map(|s| s.ident.to_string());
+            self.write(segments.collect(), path.span().start().line);
+        }
+        visit::visit_path(self, path);
+    }
+
+    /// The arguments, as far as they are expressions.
+    fn visit_macro(&mut self, call: &'ast Macro) {
+        let mut arguments: Vec<Expr> = Vec::new();
+        let read = |input: ParseStream<'_>| {
+            while !input.is_empty() {
+                arguments.push(input.parse()?);
+                input.parse::<Option<proc_macro2::Punct>>()?;
+            }
+            Ok(())
+        };
+        // what follows an argument that is none is left out
+        let _ = call.parse_body_with(read);
+        for argument in arguments {
+            Source::visit_expr(self, &argument);
+        }
+    }
+
+    /// A path in an attribute stands in a string.
+    fn visit_attribute(&mut self, attribute: &'ast Attribute) {
+        let Meta::List(list) = &attribute.meta else {
+            return;
+        };
+        let text = list.tokens.to_string();
+        for path in text.split('"').filter(|part| part.starts_with("crate::")) {
+            let segments = path.split("::").map(str::to_owned).collect();
+            self.write(segments, attribute.span().start().line);
+        }
+    }
 }
 
-/// Trees up to the `;` or the closing brace of an item.
-fn item_length(trees: &[TokenTree]) -> usize {
-    let is_end = |tree: &TokenTree| match tree {
-        TokenTree::Group(group) => group.delimiter() == Delimiter::Brace,
-        TokenTree::Punct(p) => p.as_char() == ';',
+fn attributes(item: &Item) -> &[Attribute] {
+    match item {
+        Item::Const(item) => &item.attrs,
+        Item::Enum(item) => &item.attrs,
+        Item::Fn(item) => &item.attrs,
+        Item::Impl(item) => &item.attrs,
+        Item::Macro(item) => &item.attrs,
+        Item::Mod(item) => &item.attrs,
+        Item::Static(item) => &item.attrs,
+        Item::Struct(item) => &item.attrs,
+        Item::Trait(item) => &item.attrs,
+        Item::Type(item) => &item.attrs,
+        Item::Use(item) => &item.attrs,
+        _ => &[],
+    }
+}
+
+/// Whether `cfg(test)` is among them; `all(test, …)` counts, `not(test)` does not.
+fn are_for_tests(attributes: &[Attribute]) -> bool {
+    let is_for_tests = |attribute: &Attribute| match &attribute.meta {
+        Meta::List(list) if list.path.is_ident("cfg") => {
+            let words = list.tokens.to_string();
+            let mut words = words.split(|c: char| !c.is_alphanumeric());
+            words.clone().any(|w| w == "test") && words.all(|w| w != "not")
+        }
         _ => false,
     };
-    trees
-        .iter()
-        .position(is_end)
-        .map_or(trees.len(), |end| end + 1)
-}
-
-/// `mod name;`: the `#[path]` file if one is given, else the name.
-fn own_file(item: &[TokenTree]) -> Option<String> {
-    let words = all_words(item.iter().cloned().collect());
-    let (end, item) = words.split_last()?;
-    let [.., word, name] = item else { return None };
-    let by_path = words.windows(3).find(|w| w[0] == "path" && w[1] == "=");
-    (end == ";" && word == "mod")
-        .then(|| by_path.map_or_else(|| name.clone(), |w| w[2].trim_matches('"').to_owned()))
+    attributes.iter().any(is_for_tests)
 }

@@ -298,5 +298,4 @@ fn parabola_slopes(x: &[f64], y: &[f64]) -> Vec<f64> {
 }
 
 #[cfg(test)]
-#[path = "interpolation_tests.rs"]
 mod tests;

@@ -180,5 +180,4 @@ fn flat_plate(derivative: Derivative, point: &DerivativePoint) -> f64 {
 }
 
 #[cfg(test)]
-#[path = "plausibility_tests.rs"]
 mod tests;

@@ -385,5 +385,4 @@ fn check_monotone(points: &[DerivativePoint]) -> Option<PointProblem> {
 }
 
 #[cfg(test)]
-#[path = "table_tests.rs"]
 pub(super) mod tests;

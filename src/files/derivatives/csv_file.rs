@@ -268,5 +268,4 @@ fn find_argument(names: &csv::StringRecord, line: usize) -> Result<Argument> {
 }
 
 #[cfg(test)]
-#[path = "csv_tests.rs"]
 mod tests;

@@ -244,5 +244,4 @@ fn find_columns(names: &[&str], line: usize, convention: &Convention) -> Result<
 }
 
 #[cfg(test)]
-#[path = "csv_wide_tests.rs"]
 mod tests;

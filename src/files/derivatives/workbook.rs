@@ -356,5 +356,4 @@ fn width_from_frequencies(table: &DerivativeTable, frequencies_hz: &[f64]) -> Re
 }
 
 #[cfg(test)]
-#[path = "workbook_tests.rs"]
 mod tests;

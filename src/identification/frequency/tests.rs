@@ -1,3 +1,6 @@
+mod constrained;
+mod form;
+
 use super::*;
 use crate::aerodynamics::{FlatPlate, RationalModel, Realizable, Transfer};
 use crate::aeroelastic::CoupledSection;

@@ -6,6 +6,7 @@ mod channels;
 mod findings;
 mod order;
 mod section_forces;
+mod write;
 
 use super::*;
 use crate::error::Result;

@@ -1,5 +1,7 @@
 //! The flat plate in each notation against published closed forms, round trips, contradictions.
 
+mod definition;
+
 use super::*;
 use crate::aerodynamics::FlatPlate;
 use crate::aerodynamics::derivatives::{DerivativePoint, DerivativeTable, TableHeader};

@@ -1,13 +1,13 @@
 //! Training in full: three motions, filters of single transfer functions, static terms, memory.
 
-use super::testing::{records, records_alone, sources, table_alone};
-use super::{
-    DiscreteFit, FitReport, Fitted, Form, FrequencyFit, OwnDecay, OwnFilters, PoleSearch,
-    StaticTerm, TimeFit, fit_discrete, fit_records, fit_table,
-};
 use crate::aerodynamics::laguerre::{DiscreteTerm, impulse_response};
 use crate::aerodynamics::{DiscreteLaguerre, LaguerreModel, RationalModel, Transfer};
 use crate::files::derivatives::embedded;
+use crate::identification::testing::{records, records_alone, sources, table_alone};
+use crate::identification::{
+    DiscreteFit, FitReport, Fitted, Form, FrequencyFit, OwnDecay, OwnFilters, PoleSearch,
+    StaticTerm, TimeFit, fit_discrete, fit_records, fit_table,
+};
 use crate::section::Dof;
 use crate::trained_model::Model;
 use crate::units::ReducedFrequency;

@@ -1,10 +1,10 @@
 //! Fits to the measured decks, against figures computed independently with NumPy and SciPy (Table 4.1 structure).
 
-use super::form::{FeedThrough, Form};
-use super::testing::{onset_above, onset_m_s, table_alone};
-use super::{Fitted, FrequencyFit, FrequencyWeights, fit_table};
 use crate::aerodynamics::derivatives::DerivativeTable;
 use crate::files::derivatives::embedded;
+use crate::identification::form::{FeedThrough, Form};
+use crate::identification::testing::{onset_above, onset_m_s, table_alone};
+use crate::identification::{Fitted, FrequencyFit, FrequencyWeights, fit_table};
 use crate::section::Dof;
 
 fn fit(table: &DerivativeTable, fit: &FrequencyFit) -> Fitted {

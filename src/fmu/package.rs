@@ -37,15 +37,12 @@ use zip::{CompressionMethod, DateTime, ZipWriter};
 
 /// Licence texts: file below `documentation/licenses/` and contents.
 const LICENCES: [(&str, &str); 3] = [
-    (
-        "LICENSE-APACHE.txt",
-        include_str!("../../../LICENSE-APACHE"),
-    ),
-    ("LICENSE-MIT.txt", include_str!("../../../LICENSE-MIT")),
-    ("THIRD-PARTY.txt", include_str!("THIRD-PARTY.txt")),
+    ("LICENSE-APACHE.txt", include_str!("../../LICENSE-APACHE")),
+    ("LICENSE-MIT.txt", include_str!("../../LICENSE-MIT")),
+    ("THIRD-PARTY.txt", include_str!("package/THIRD-PARTY.txt")),
 ];
 
-const ICON: &[u8] = include_bytes!("model.png");
+const ICON: &[u8] = include_bytes!("package/model.png");
 
 /// What to do with a file that is already there.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

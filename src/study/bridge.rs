@@ -25,7 +25,7 @@ use std::collections::BTreeMap;
 
 /// Text of the bridge file of the demo.
 pub fn demo_bridge_text() -> &'static str {
-    include_str!("demo.toml")
+    include_str!("bridge/demo.toml")
 }
 
 /// Winds of one section at most; with more, the profile is taken in steps.

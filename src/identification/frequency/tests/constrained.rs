@@ -1,6 +1,6 @@
 //! Fits with the quasi-steady limit, against the figures of `tests/data/constrained_fit.py` (LAPACK's dgglse and SciPy).
 
-use super::*;
+use super::super::*;
 use crate::aerodynamics::{FlatPlate, Transfer};
 use crate::identification::form::FeedThrough;
 use crate::identification::form::PoleSearch;

@@ -26,7 +26,7 @@ const WIND_SCHEMA: u32 = 1;
 
 /// Text of the example: a box girder of made-up coefficients in turbulent wind.
 pub fn example_wind_study_text() -> &'static str {
-    include_str!("example.toml")
+    include_str!("wind/example.toml")
 }
 
 /// Contents of a wind file.

@@ -22,14 +22,14 @@ use serde::{Deserialize, Serialize};
 
 /// The files of `data/reference`.
 const FILES: [&str; 8] = [
-    include_str!("../../data/reference/flat-plate-fits.toml"),
-    include_str!("../../data/reference/fung-1955.toml"),
-    include_str!("../../data/reference/iabse-1.1a.toml"),
-    include_str!("../../data/reference/jones-1940.toml"),
-    include_str!("../../data/reference/kavrakov-2022.toml"),
-    include_str!("../../data/reference/ntnu-langenuen.toml"),
-    include_str!("../../data/reference/thesis.toml"),
-    include_str!("../../data/reference/typical-section.toml"),
+    include_str!("../data/reference/flat-plate-fits.toml"),
+    include_str!("../data/reference/fung-1955.toml"),
+    include_str!("../data/reference/iabse-1.1a.toml"),
+    include_str!("../data/reference/jones-1940.toml"),
+    include_str!("../data/reference/kavrakov-2022.toml"),
+    include_str!("../data/reference/ntnu-langenuen.toml"),
+    include_str!("../data/reference/thesis.toml"),
+    include_str!("../data/reference/typical-section.toml"),
 ];
 
 /// Computes the figures of a case, in the order of its file.

@@ -1,6 +1,6 @@
 //! Forces written down from the definition of each notation, with dimensions, against the conversion of tables.
 
-use super::*;
+use super::super::*;
 use crate::aerodynamics::derivatives::{DerivativePoint, DerivativeTable, TableHeader};
 use crate::units::ReducedVelocity;
 use nalgebra::{Complex, Matrix3};

@@ -1,6 +1,6 @@
 //! Lags of each force, minimum state, weights of entries, regularisation; degenerate lags are said.
 
-use super::*;
+use super::super::*;
 use crate::aerodynamics::{
     FlatPlate, Lags, MinimumStateModel, RationalModel, Realizable, Transfer,
 };

@@ -1,6 +1,6 @@
 //! A virtual campaign written and read back.
 
-use super::*;
+use super::super::*;
 use crate::aerodynamics::RationalModel;
 use crate::wind_tunnel::virtual_campaign::{VirtualCampaign, VirtualCampaignPlan};
 use crate::wind_tunnel::{RawCampaign, RawRecording, Record, RecordFile, Rig};

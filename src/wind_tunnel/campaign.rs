@@ -22,5 +22,3 @@ pub(crate) use write::{FileFormat, write_virtual_campaign};
 
 #[cfg(test)]
 mod tests;
-#[cfg(test)]
-mod write_tests;

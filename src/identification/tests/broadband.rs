@@ -1,13 +1,13 @@
 //! Training with broadband motions.
 
-use super::testing::{records_alone, sources, table_alone};
-use super::training_tests::distance;
-use super::{
+use super::training::distance;
+use crate::aerodynamics::RationalModel;
+use crate::files::derivatives::embedded;
+use crate::identification::testing::{records_alone, sources, table_alone};
+use crate::identification::{
     DiscreteFit, Fitted, Form, FrequencyFit, PoleSearch, StaticTerm, TimeFit, fit_discrete,
     fit_records, fit_table,
 };
-use crate::aerodynamics::RationalModel;
-use crate::files::derivatives::embedded;
 use crate::section::Dof;
 use crate::units::ReducedFrequency;
 use crate::wind_tunnel::{TrainingMotion, TunnelPlan};

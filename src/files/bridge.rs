@@ -48,7 +48,7 @@ pub mod embedded {
     use crate::error::{Error, Result};
 
     /// The Langenuen suspension bridge, MIT © 2022 juelpb.
-    const LANGENUEN: &str = include_str!("../../../data/bridges/langenuen.csv");
+    const LANGENUEN: &str = include_str!("../../data/bridges/langenuen.csv");
 
     /// Modes of an embedded bridge by name.
     ///

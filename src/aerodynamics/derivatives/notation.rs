@@ -163,6 +163,4 @@ impl FromStr for Notation {
 }
 
 #[cfg(test)]
-mod definition_tests;
-#[cfg(test)]
 mod tests;

@@ -1,11 +1,7 @@
 //! From records and tables to models: regressors, fits, reports.
 
 pub(crate) mod basis;
-#[cfg(test)]
-mod broadband_tests;
 mod constrained;
-#[cfg(test)]
-mod deck_tests;
 mod degenerate;
 pub mod derivatives;
 pub(crate) mod discrete;
@@ -25,9 +21,9 @@ pub(crate) mod samples;
 mod search;
 #[cfg(test)]
 mod testing;
-pub(crate) mod time;
 #[cfg(test)]
-mod training_tests;
+mod tests;
+pub(crate) mod time;
 
 pub use discrete::DiscreteFit;
 pub(crate) use discrete::fit_discrete;

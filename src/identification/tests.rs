@@ -1,0 +1,5 @@
+//! Fits to records and tables of all decks.
+
+mod broadband;
+mod deck;
+mod training;
