@@ -201,7 +201,7 @@ impl Bridge {
     }
 
     /// Names of the modes: `mode 23`.
-    pub fn mode_names(&self) -> Vec<String> {
+    pub(crate) fn mode_names(&self) -> Vec<String> {
         self.modes
             .iter()
             .map(|m| format!("mode {}", m.number))
@@ -209,7 +209,7 @@ impl Bridge {
     }
 
     /// Displacements and rotations of the mass-normalised modes at some nodes: three rows a node, one column a mode.
-    pub fn shapes_at(&self, nodes: &[usize]) -> DMatrix<f64> {
+    pub(crate) fn shapes_at(&self, nodes: &[usize]) -> DMatrix<f64> {
         DMatrix::from_fn(3 * nodes.len(), self.modes.len(), |row, m| {
             let mode = &self.modes[m];
             mode.shape[nodes[row / 3]][row % 3] / mode.generalised_mass.sqrt()

@@ -50,7 +50,7 @@ pub(crate) use sanity::{SanityLines, sanity_lines};
 pub use scan::{GrowthBand, growth_scan};
 pub use search::{OnsetSearch, find_onset};
 pub(crate) use search::{curve_speeds_m_s, find_onset_of_modes};
-pub use sweep::{
-    LinearForces, OnsetSweep, SweepOutcome, SweptOnset, at_samples, stands_at_samples,
-};
+pub(crate) use sweep::at_samples;
+pub(crate) use sweep::stands_at_samples;
+pub use sweep::{LinearForces, OnsetSweep, SweepOutcome, SweptOnset};
 pub use unwanted::{UnwantedGrowth, unwanted_growth};

@@ -48,6 +48,8 @@
 //! `files` reads and writes tables, `comparison` compares time histories, `buffeting` adds gusts. `study` runs the
 //! whole chain, `report` draws it, [`live`] answers its sliders and `cli` is the program.
 #![deny(unsafe_code, missing_docs)]
+// what is public can be reached from outside
+#![cfg_attr(feature = "cli", deny(unreachable_pub))]
 // the process is the caller's: no abrupt end, and no word on its terminal
 #![cfg_attr(
     not(test),

@@ -32,9 +32,10 @@ mod transfer_figure;
 mod wind_figures;
 
 pub(crate) use axes_sketch::axes_sketch;
-pub use bridge_figures::{
-    bridge_curves_figure, bridge_roots_figure, flutter_motion_figure, modes_figure,
-};
+pub(crate) use bridge_figures::bridge_curves_figure;
+pub(crate) use bridge_figures::bridge_roots_figure;
+pub(crate) use bridge_figures::flutter_motion_figure;
+pub(crate) use bridge_figures::modes_figure;
 pub use derivatives_figure::{DerivativePlot, DerivativesPlot, derivatives_figure};
 pub use figure::{Figure, PNG_SCALE};
 pub use first_order_figures::first_order_figures;

@@ -100,7 +100,7 @@ impl Stepper {
 
     /// A stepper of modes in gusts: see [`Inputs::gust_m_s`]; `passing` is the wind factor over the width (1/m) of each group
     /// of strips, so many inputs as there are modes for each.
-    pub fn in_modal_gusts(
+    pub(crate) fn in_modal_gusts(
         section: CoupledSection,
         passing: &[f64],
         admittance: RationalAdmittance,
@@ -124,7 +124,7 @@ impl Stepper {
     }
 
     /// Numbers of the state of the gusts.
-    pub fn gust_states(&self) -> usize {
+    pub(crate) fn gust_states(&self) -> usize {
         self.series.gusts().map_or(0, Gusts::states)
     }
 

@@ -6,9 +6,11 @@ mod poles;
 mod roots;
 pub mod rows;
 
-pub use discretize::{StepMatrices, c2d, matrix_exponential};
-pub use poles::{balance, eigenvalues, eigenvector};
-pub use roots::{boundary, golden_section, root};
+pub use discretize::{StepMatrices, c2d};
+pub(crate) use poles::eigenvector;
+pub use poles::{balance, eigenvalues};
+pub(crate) use roots::golden_section;
+pub use roots::{boundary, root};
 
 use crate::error::{Error, Result};
 use nalgebra::{Complex, ComplexField, DMatrix};

@@ -134,7 +134,7 @@ fn mutated_options_of_forces() {
     let rational = model("rational");
     let options = ForceOptions::single(0.45).to_json().unwrap();
     all_survive("force.json", options.as_bytes(), 100, |bytes| {
-        Resources::from_bytes(&rational, OptionFiles::of_force(Some(bytes))).is_ok_and(run)
+        Resources::from_bytes(&rational, of_force(Some(bytes))).is_ok_and(run)
     });
 }
 
@@ -154,6 +154,14 @@ fn mutated_gust_forces() {
     });
 }
 
+/// Options of forces alone, without gusts.
+fn of_force(force: Option<&[u8]>) -> OptionFiles<'_> {
+    OptionFiles {
+        force,
+        ..OptionFiles::default()
+    }
+}
+
 /// States with the right digest, so that what is behind it is reached as well.
 #[test]
 fn mutated_states() {
@@ -162,7 +170,7 @@ fn mutated_states() {
         let options = force.map(|f| f.to_json().unwrap());
         let resources = || {
             let options = options.as_deref().map(str::as_bytes);
-            Resources::from_bytes(&rational, OptionFiles::of_force(options)).unwrap()
+            Resources::from_bytes(&rational, of_force(options)).unwrap()
         };
         let mut instance = Instance::new(resources()).unwrap();
         instance.enter_initialization();

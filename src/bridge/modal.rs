@@ -70,7 +70,7 @@ impl ModalForces {
 
     /// Reduced frequencies of the bridge at which every group is inside the range that `of` states for it; `None` where no
     /// group has one.
-    pub fn common_range(
+    pub(crate) fn common_range(
         &self,
         of: impl Fn(&StripGroup) -> Option<ReducedFrequencyRange>,
     ) -> Option<ReducedFrequencyRange> {

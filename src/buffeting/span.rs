@@ -10,8 +10,11 @@ mod frequency;
 mod time;
 
 pub use field::{TurbulenceField, turbulence_field};
-pub use frequency::{SpanResponse, SpanSpectra, span_response, span_spectra};
-pub use time::{SpanEnsemble, SpanPlan, SpanRecord, span_ensemble, span_record};
+pub(crate) use frequency::span_response;
+pub(crate) use frequency::span_spectra;
+pub use frequency::{SpanResponse, SpanSpectra};
+pub(crate) use time::span_ensemble;
+pub use time::{SpanEnsemble, SpanPlan, SpanRecord, span_record};
 
 use super::problem::Turbulence;
 use super::spectrum::GustComponent;

@@ -21,7 +21,7 @@ use crate::error::Result;
 
 /// Flutter of whole bridges, their modes, and modes of finite-element programs
 #[derive(clap::Subcommand)]
-pub enum Bridge {
+pub(super) enum Bridge {
     Flutter(flutter::Args),
     Show(show::Args),
     Buffeting(buffeting::Args),
@@ -29,7 +29,7 @@ pub enum Bridge {
 }
 
 /// Runs the command.
-pub fn run(command: &Bridge, progress: &Progress) -> Result<Answer> {
+pub(super) fn run(command: &Bridge, progress: &Progress) -> Result<Answer> {
     match command {
         Bridge::Flutter(args) => flutter::run(args, progress),
         Bridge::Show(args) => show::run(args, progress),

@@ -9,13 +9,13 @@ use crate::error::Result;
 
 /// Export and check FMUs
 #[derive(clap::Subcommand)]
-pub enum Fmu {
+pub(super) enum Fmu {
     Export(Box<export::Args>),
     Check(check::Args),
 }
 
 /// Runs the command.
-pub fn run(command: &Fmu, progress: &Progress) -> Result<Answer> {
+pub(super) fn run(command: &Fmu, progress: &Progress) -> Result<Answer> {
     match command {
         Fmu::Export(args) => export::run(args, progress),
         Fmu::Check(args) => check::run(args, progress),

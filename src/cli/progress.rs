@@ -4,7 +4,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use std::time::Duration;
 
 /// Shows what is being done.
-pub struct Progress {
+pub(super) struct Progress {
     shown: bool,
     verbose: bool,
 }

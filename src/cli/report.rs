@@ -38,7 +38,7 @@ pub(crate) struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args) -> Result<Answer> {
+pub(super) fn run(args: &Args) -> Result<Answer> {
     let page = page(&args.folder, &args.folder)?;
     let mut out = OutputDir::new(&args.folder)?;
     out.write(REPORT, page)?;

@@ -35,7 +35,7 @@ use std::path::Path;
 /// # Errors
 /// [`Error::Io`](crate::Error::Io) when it cannot be read; [`Error::Input`](crate::Error::Input) with file and place for what is
 /// wrong in it.
-pub fn read_field(path: &Path) -> Result<FieldTable> {
+pub(crate) fn read_field(path: &Path) -> Result<FieldTable> {
     match path.extension() {
         Some(ending) if ending == turbsim::ENDING => turbsim::read(path),
         _ => field::read(path),

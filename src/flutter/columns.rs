@@ -71,7 +71,7 @@ pub(super) struct RealColumns {
 struct Eight([f64; WIDTH]);
 
 impl RealColumns {
-    pub fn of(matrix: &DMatrix<f64>) -> Self {
+    pub(super) fn of(matrix: &DMatrix<f64>) -> Self {
         let stride = matrix.nrows().div_ceil(WIDTH);
         let mut all = vec![Eight([0.0; WIDTH]); stride * matrix.ncols()];
         for (j, column) in matrix.column_iter().enumerate() {
@@ -104,7 +104,7 @@ pub(super) struct Columns {
 }
 
 impl Columns {
-    pub fn zeros(rows: usize, columns: usize) -> Self {
+    pub(super) fn zeros(rows: usize, columns: usize) -> Self {
         let stride = rows.div_ceil(WIDTH);
         Self {
             rows,
@@ -113,7 +113,7 @@ impl Columns {
         }
     }
 
-    pub fn of(matrix: &DMatrix<Complex64>) -> Self {
+    pub(super) fn of(matrix: &DMatrix<Complex64>) -> Self {
         let mut all = Self::zeros(matrix.nrows(), matrix.ncols());
         for (j, column) in matrix.column_iter().enumerate() {
             for (i, z) in column.iter().enumerate() {
@@ -124,7 +124,7 @@ impl Columns {
     }
 
     /// One column.
-    pub fn of_column(column: &DVector<Complex64>) -> Self {
+    pub(super) fn of_column(column: &DVector<Complex64>) -> Self {
         let mut all = Self::zeros(column.len(), 1);
         for (i, z) in column.iter().enumerate() {
             all.set(i, 0, *z);
@@ -133,17 +133,17 @@ impl Columns {
     }
 
     /// The first column.
-    pub fn to_column(&self) -> DVector<Complex64> {
+    pub(super) fn to_column(&self) -> DVector<Complex64> {
         DVector::from_fn(self.rows, |i, _| self.at(i, 0))
     }
 
-    pub fn to_matrix(&self) -> DMatrix<Complex64> {
+    pub(super) fn to_matrix(&self) -> DMatrix<Complex64> {
         DMatrix::from_fn(self.rows, self.columns(), |i, j| self.at(i, j))
     }
 
     /// The sum of the terms.
     #[inline(always)]
-    pub fn value(terms: &[Term<'_>]) -> Self {
+    pub(super) fn value(terms: &[Term<'_>]) -> Self {
         let mut value = Self::like(terms);
         for i in 0..value.all.len() {
             let mut sum = Rows::ZERO;
@@ -157,7 +157,7 @@ impl Columns {
 
     /// The sum of the terms and its derivative.
     #[inline(always)]
-    pub fn sum(terms: &[Term<'_>]) -> (Self, Self) {
+    pub(super) fn sum(terms: &[Term<'_>]) -> (Self, Self) {
         let (mut value, mut slope) = (Self::like(terms), Self::like(terms));
         for i in 0..value.all.len() {
             let (mut sum, mut slopes) = (Rows::ZERO, Rows::ZERO);
@@ -183,30 +183,30 @@ impl Columns {
         }
     }
 
-    pub fn columns(&self) -> usize {
+    pub(super) fn columns(&self) -> usize {
         self.all.len() / self.stride.max(1)
     }
 
     #[inline(always)]
-    pub fn at(&self, i: usize, j: usize) -> Complex64 {
+    pub(super) fn at(&self, i: usize, j: usize) -> Complex64 {
         let rows = &self.all[j * self.stride + i / WIDTH];
         Complex64::new(rows.re[i % WIDTH], rows.im[i % WIDTH])
     }
 
     #[inline(always)]
-    pub fn set(&mut self, i: usize, j: usize, z: Complex64) {
+    pub(super) fn set(&mut self, i: usize, j: usize, z: Complex64) {
         let rows = &mut self.all[j * self.stride + i / WIDTH];
         (rows.re[i % WIDTH], rows.im[i % WIDTH]) = (z.re, z.im);
     }
 
     #[inline(always)]
-    pub fn column(&self, j: usize) -> &[Rows] {
+    pub(super) fn column(&self, j: usize) -> &[Rows] {
         &self.all[j * self.stride..][..self.stride]
     }
 
     /// `self · v` for a matrix `v`.
     #[inline(always)]
-    pub fn times(&self, v: &Self) -> Self {
+    pub(super) fn times(&self, v: &Self) -> Self {
         let mut product = Self::zeros(self.rows, v.columns());
         for j in 0..v.columns() {
             let to = &mut product.all[j * self.stride..][..self.stride];
@@ -222,7 +222,7 @@ impl Columns {
 
     /// `uᵀ self` for a column `u`, as a column.
     #[inline(always)]
-    pub fn transposed_times(&self, u: &Self) -> Self {
+    pub(super) fn transposed_times(&self, u: &Self) -> Self {
         let mut product = Self::zeros(self.columns(), 1);
         for k in 0..self.columns() {
             product.set(k, 0, dot(self.column(k), u.column(0)));
@@ -232,7 +232,7 @@ impl Columns {
 
     /// Subtracts another matrix of the same size.
     #[inline(always)]
-    pub fn subtract(&mut self, other: &Self) {
+    pub(super) fn subtract(&mut self, other: &Self) {
         for (to, from) in self.all.iter_mut().zip(&other.all) {
             to.subtract(from, Complex64::from(1.0));
         }
@@ -240,7 +240,7 @@ impl Columns {
 
     /// Scales to unit norm; the norm before.
     #[inline(always)]
-    pub fn normalise(&mut self) -> f64 {
+    pub(super) fn normalise(&mut self) -> f64 {
         let squares: f64 = self
             .all
             .iter()
@@ -262,12 +262,12 @@ impl Columns {
 
     /// `uᵀ v` of two columns.
     #[inline(always)]
-    pub fn dot(&self, v: &Self) -> Complex64 {
+    pub(super) fn dot(&self, v: &Self) -> Complex64 {
         dot(self.column(0), v.column(0))
     }
 
     #[inline(always)]
-    pub fn swap(&mut self, a: usize, b: usize) {
+    pub(super) fn swap(&mut self, a: usize, b: usize) {
         if a != b {
             for j in 0..self.columns() {
                 let (x, y) = (self.at(a, j), self.at(b, j));

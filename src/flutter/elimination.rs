@@ -10,7 +10,7 @@ type Complex64 = Complex<f64>;
 impl Columns {
     /// Lower and upper triangle; `None` where the matrix is singular or not finite.
     #[inline(always)]
-    pub fn factors(mut self) -> Option<Factors> {
+    pub(super) fn factors(mut self) -> Option<Factors> {
         let (n, stride) = (self.rows, self.stride);
         let mut below = vec![Rows::ZERO; stride];
         let mut swaps = Vec::with_capacity(n);
@@ -63,7 +63,7 @@ pub(super) struct Factors {
 impl Factors {
     /// The solution `x` of `A x = sides`.
     #[inline(always)]
-    pub fn solve(&self, mut sides: Columns) -> Columns {
+    pub(super) fn solve(&self, mut sides: Columns) -> Columns {
         let n = self.lu.rows;
         for (k, row) in self.swaps.iter().enumerate() {
             sides.swap(k, *row);
@@ -97,7 +97,7 @@ impl Factors {
 
     /// The solution `x` of `Aᵀ x = side`, a column.
     #[inline(always)]
-    pub fn solve_transposed(&self, side: &Columns) -> Columns {
+    pub(super) fn solve_transposed(&self, side: &Columns) -> Columns {
         let n = self.lu.rows;
         // what is not found yet is zero, so that a product with a whole column takes what is found
         let (mut y, mut x) = (Columns::zeros(n, 1), Columns::zeros(n, 1));

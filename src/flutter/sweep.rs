@@ -14,7 +14,8 @@ mod samples;
 mod setup;
 
 pub use basis::LinearForces;
-pub use samples::{at_samples, stands_at_samples};
+pub(crate) use samples::at_samples;
+pub(crate) use samples::stands_at_samples;
 
 use crate::error::{Error, Result, positive};
 use crate::section::{Dof, SectionModel, Structure};

@@ -6,7 +6,7 @@ use crate::error::{Error, Result, finite, positive};
 use serde::{Deserialize, Serialize};
 
 /// The file of the turbulence in `resources/`; an archive without it brings none of its own.
-pub const TURBULENCE_FILE: &str = "turbulence.json";
+pub(crate) const TURBULENCE_FILE: &str = "turbulence.json";
 
 /// Gusts of a bridge.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

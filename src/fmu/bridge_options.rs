@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// The file of the bridge in `resources/`; an archive without it holds a section.
-pub const BRIDGE_FILE: &str = "bridge.json";
+pub(crate) const BRIDGE_FILE: &str = "bridge.json";
 /// Modes at most: the step matrix of more would not fit into a gigabyte.
 const MAX_MODES: usize = 500;
 /// Nodes at most.
@@ -109,7 +109,7 @@ impl BridgeOptions {
     }
 
     /// Name of a node in the names of variables: its own where that is a number, else its place from 1 on.
-    pub fn node_name(&self, named: usize) -> String {
+    pub(crate) fn node_name(&self, named: usize) -> String {
         let place = self.named[named];
         let name = &self.nodes[place].name;
         if name.parse::<u32>().is_ok() {

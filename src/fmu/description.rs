@@ -256,7 +256,7 @@ fn unknown(at: usize, on: impl Iterator<Item = (usize, &'static str)>) -> Elemen
 
 /// Step of the default experiment, s: that of the model, or the smallest multiple of it that needs no more than a
 /// thousand communication points.
-pub fn default_step_s(e: &Experiment) -> f64 {
+pub(crate) fn default_step_s(e: &Experiment) -> f64 {
     let steps = e.stop_time_s / e.step_size_s;
     // rounding of 10/0.01 must not make a thousand and one of a thousand
     let multiple = (steps / MAX_DEFAULT_STEPS * (1.0 - 1e-12)).ceil().max(1.0);

@@ -20,4 +20,4 @@ pub use stepping::*;
 pub use values::*;
 
 /// Truth value of C: any byte but zero is true.
-pub type Fmi3Boolean = u8;
+pub(crate) type Fmi3Boolean = u8;

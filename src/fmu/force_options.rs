@@ -4,14 +4,14 @@ use crate::error::{Error, Result, non_negative, positive};
 use serde::{Deserialize, Serialize};
 
 /// The file of the options in `resources/`; an archive without it holds a coupled section.
-pub const FORCE_FILE: &str = "force.json";
+pub(crate) const FORCE_FILE: &str = "force.json";
 /// Strips at most: a bridge of ten kilometres in strips of a metre.
-pub const MAX_STRIPS: usize = 10_000;
+pub(crate) const MAX_STRIPS: usize = 10_000;
 /// Communication steps from the motion that the unit was given last to the middle of the step over which an explicit
 /// (Jacobi) importer holds the force: one until the force is read, half of the step for which it is held.
-pub const EXPLICIT_PREDICTION: f64 = 1.5;
+pub(crate) const EXPLICIT_PREDICTION: f64 = 1.5;
 /// Largest prediction, in communication steps.
-pub const MAX_PREDICTION: f64 = 3.0;
+pub(crate) const MAX_PREDICTION: f64 = 3.0;
 
 /// A strip of deck.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

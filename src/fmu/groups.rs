@@ -57,7 +57,7 @@ impl Groups {
     }
 
     /// Value reference of the variable to which a place in the table belongs.
-    pub fn reference_of(&self, place: usize) -> Option<usize> {
+    pub(crate) fn reference_of(&self, place: usize) -> Option<usize> {
         self.references.get(place).copied()
     }
 
@@ -81,7 +81,7 @@ impl Groups {
 }
 
 /// The name of the array to which a variable of named strips, modes or nodes belongs: `heave` of strips, `mode.coordinate`.
-pub fn array_of(role: Role, name: &str) -> Option<Cow<'_, str>> {
+pub(crate) fn array_of(role: Role, name: &str) -> Option<Cow<'_, str>> {
     if let Some(state) = name
         .strip_prefix("der(")
         .filter(|n| n.starts_with("strip["))

@@ -4,10 +4,10 @@ use super::variables::{Value, Variable, VariableTable};
 use uuid::Uuid;
 
 /// Version of the interface between archive and runtime: raised when an old archive must not meet a new binary.
-pub const INTERFACE_VERSION: u32 = 1;
+pub(crate) const INTERFACE_VERSION: u32 = 1;
 
 /// `modelIdentifier`: the name of the shared library and of the functions' owner.
-pub const MODEL_IDENTIFIER: &str = "aerodeck_section";
+pub(crate) const MODEL_IDENTIFIER: &str = "aerodeck_section";
 
 /// Namespace of the digests of this program.
 const NAMESPACE: Uuid = Uuid::from_u128(0x6f1d_9c52_77a4_5b0e_9f3a_2d84_c1e6_40b7);

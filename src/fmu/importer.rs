@@ -25,9 +25,9 @@ pub use description::{
     ScalarVariable, SimpleType, TypeAttributes, Unit, Unknown, Value, Variability,
 };
 pub use findings::{CheckReport, Finding, Severity, Trial};
+pub(crate) use growth::growth_by_stepping;
 pub use growth::{
-    Growth, GrowthPoint, SteppedOnset, SteppedSearch, SteppingSearch, growth_by_stepping,
-    growth_of_samples, onset_by_stepping,
+    Growth, GrowthPoint, SteppedOnset, SteppedSearch, SteppingSearch, onset_by_stepping,
 };
 pub use log::LogMessage;
 pub use simulation::{Simulation, Table, simulate};
@@ -200,7 +200,7 @@ impl Fmu {
     }
 
     /// A new instance that logs all it has to say.
-    pub fn instantiate_logging(&self, name: &str) -> Result<Slave> {
+    pub(crate) fn instantiate_logging(&self, name: &str) -> Result<Slave> {
         Slave::new(&self.load()?, name, &self.description.guid, true)
     }
 

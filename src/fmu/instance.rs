@@ -112,7 +112,7 @@ impl Instance {
     }
 
     /// Whether there are remarks.
-    pub fn has_notices(&self) -> bool {
+    pub(crate) fn has_notices(&self) -> bool {
         !self.notices.is_empty()
     }
 
@@ -120,7 +120,7 @@ impl Instance {
     ///
     /// # Errors
     /// A [`Refusal`] naming call and state.
-    pub fn admit(&self, call: Call) -> Answer<()> {
+    pub(crate) fn admit(&self, call: Call) -> Answer<()> {
         let foreign = call.is_model_exchange() && self.interface != Interface::ModelExchange;
         if call.legal_in().contains(self.memory.state) && !foreign {
             Ok(())

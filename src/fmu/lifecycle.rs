@@ -1,7 +1,7 @@
 //! Which call is legal when: the state machines of co-simulation and of model exchange as data (FMI 2.0.5, sections 4.2.4
 //! and 3.2.3).
 //!
-//! Two tables decide everything: [`LEGAL_CALLS`] for whole functions, and [`settable_in`] / [`gettable_in`] for single
+//! Two tables decide everything: `LEGAL_CALLS` for whole functions, and `settable_in` and `gettable_in` for single
 //! variables. Beyond the letter of the standard, inputs and parameters may be read while instantiated and everything
 //! may be read between setting and stepping, because importers do so.
 
@@ -66,7 +66,7 @@ impl State {
     }
 
     /// The state with this code, as it stands in a serialised state.
-    pub fn from_code(code: u8) -> Option<Self> {
+    pub(crate) fn from_code(code: u8) -> Option<Self> {
         Self::ALL.into_iter().find(|s| *s as u8 == code)
     }
 }
@@ -96,9 +96,9 @@ pub struct StateSet(u8);
 
 impl StateSet {
     /// No state.
-    pub const NONE: Self = Self(0);
+    pub(crate) const NONE: Self = Self(0);
     /// Every state.
-    pub const ANY: Self = Self::of(&State::ALL);
+    pub(crate) const ANY: Self = Self::of(&State::ALL);
     /// From the end of initialisation on, whatever has happened.
     const STARTED: Self = Self::of(&[
         State::StepComplete,
@@ -203,7 +203,7 @@ pub enum Call {
 
 /// The calls of [`Call`] in its order, their names without the prefix of the standard's version, and where each is
 /// legal. Cancelling a step is missing: no step is ever left pending.
-pub const LEGAL_CALLS: [(Call, &str, StateSet); 40] = {
+pub(crate) const LEGAL_CALLS: [(Call, &str, StateSet); 40] = {
     use Call as C;
     use StateSet as S;
     let stepping = S::of(&[State::StepComplete, State::StepFailed]);
@@ -322,12 +322,12 @@ impl Call {
     }
 
     /// States in which the call is legal.
-    pub const fn legal_in(self) -> StateSet {
+    pub(crate) const fn legal_in(self) -> StateSet {
         LEGAL_CALLS[self as usize].2
     }
 
     /// Whether it belongs to model exchange alone.
-    pub const fn is_model_exchange(self) -> bool {
+    pub(crate) const fn is_model_exchange(self) -> bool {
         matches!(
             self,
             Self::EnterEventMode
@@ -346,7 +346,7 @@ impl Call {
 
 /// States in which a variable may be set: inputs until the run ends, tunable parameters also, but not between events, fixed
 /// parameters until initialisation ends.
-pub fn settable_in(causality: Causality, variability: Variability) -> StateSet {
+pub(crate) fn settable_in(causality: Causality, variability: Variability) -> StateSet {
     match (causality, variability) {
         (Causality::Input, _) => StateSet::SETTING.and(State::ContinuousTimeMode),
         (Causality::Parameter, Variability::Tunable) => StateSet::SETTING,
@@ -356,7 +356,7 @@ pub fn settable_in(causality: Causality, variability: Variability) -> StateSet {
 }
 
 /// States in which a variable may be read: what is computed only from the initialisation mode on.
-pub fn gettable_in(causality: Causality, variability: Variability) -> StateSet {
+pub(crate) fn gettable_in(causality: Causality, variability: Variability) -> StateSet {
     match (causality, variability) {
         (Causality::Output | Causality::CalculatedParameter, _)
         | (Causality::Local, Variability::Continuous) => StateSet::INITIALIZED,

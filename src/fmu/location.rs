@@ -4,7 +4,7 @@ use crate::error::{Error, Result};
 use std::path::{Path, PathBuf};
 
 /// The model's file in `resources/`.
-pub const MODEL_FILE: &str = "model.json";
+pub(crate) const MODEL_FILE: &str = "model.json";
 
 /// The folder of a resource location: `file:/a`, `file:///a`, `file:////a` and `file://localhost/a`, percent-coded,
 /// with or without a slash at the end, drive letters included; also an absolute path without a scheme.
@@ -13,7 +13,7 @@ pub const MODEL_FILE: &str = "model.json";
 ///
 /// # Errors
 /// [`Error::Input`] for an empty location, another scheme, another host, or a relative path.
-pub fn folder_of(location: &str) -> Result<PathBuf> {
+pub(crate) fn folder_of(location: &str) -> Result<PathBuf> {
     let path = local_path(location, cfg!(windows))?;
     let path = PathBuf::from(path);
     if path.is_absolute() {

@@ -1,7 +1,7 @@
 //! Categories of log messages, for the description and for the logger.
 
 /// Categories of log messages with their descriptions, under the names of the standard.
-pub const LOG_CATEGORIES: [(&str, &str); 6] = [
+pub(crate) const LOG_CATEGORIES: [(&str, &str); 6] = [
     ("logEvents", "Instantiation, initialisation, reset"),
     (
         "logStatusWarning",

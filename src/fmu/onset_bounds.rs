@@ -6,7 +6,7 @@ use crate::flutter::OnsetInterval;
 use serde::{Deserialize, Serialize};
 
 /// The file in `resources/`; an archive without it says nothing of the interval.
-pub const BOUNDS_FILE: &str = "onset_interval.json";
+pub(crate) const BOUNDS_FILE: &str = "onset_interval.json";
 
 /// 95 % interval of the onset speed of the section as it was exported.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

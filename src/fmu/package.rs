@@ -12,9 +12,11 @@ mod terminals;
 
 pub use super::standard::FmiVersion;
 pub use documentation::documentation;
-pub use growth::{Growing, growth_of};
+pub use growth::Growing;
+pub(crate) use growth::growth_of;
 pub use label::Label;
-pub use runtime::{RUNTIME_DIR_VARIABLE, Runtime, live_module};
+pub use runtime::Runtime;
+pub(crate) use runtime::live_module;
 
 use super::bridge_gusts::{TURBULENCE_FILE, TurbulenceOptions};
 use super::bridge_options::{BRIDGE_FILE, BridgeOptions};

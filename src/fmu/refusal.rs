@@ -24,7 +24,7 @@ pub struct Refusal {
 }
 
 /// Result of what an importer asks.
-pub type Answer<T> = Result<T, Refusal>;
+pub(crate) type Answer<T> = Result<T, Refusal>;
 
 impl Refusal {
     /// The run cannot go on.
@@ -47,7 +47,7 @@ impl Refusal {
 
     /// Nothing has changed.
     #[cold]
-    pub fn discard(message: impl Into<String>) -> Self {
+    pub(crate) fn discard(message: impl Into<String>) -> Self {
         Self {
             severity: Severity::Discard,
             message: message.into(),

@@ -14,7 +14,7 @@ use std::path::Path;
 use uuid::Uuid;
 
 /// The file of the gust forces in `resources/`; an archive without it takes no gusts.
-pub const GUST_FILE: &str = "gusts.json";
+pub(crate) const GUST_FILE: &str = "gusts.json";
 
 /// Files beside the model that say what is exported of it, as bytes.
 #[derive(Debug, Clone, Copy, Default)]
@@ -25,16 +25,6 @@ pub struct OptionFiles<'a> {
     pub gusts: Option<&'a [u8]>,
     /// Interval of the onset, see [`OnsetBounds`].
     pub bounds: Option<&'a [u8]>,
-}
-
-impl<'a> OptionFiles<'a> {
-    /// Of forces alone where there are options of them, without gusts.
-    pub fn of_force(force: Option<&'a [u8]>) -> Self {
-        Self {
-            force,
-            ..Self::default()
-        }
-    }
 }
 
 /// What is read once, at instantiation.
@@ -57,7 +47,7 @@ pub struct Resources {
 }
 
 impl Resources {
-    /// Reads `model.json` from the folder that `location` names (see [`folder_of`]); where it is not there, from the
+    /// Reads `model.json` from the folder that `location` names (see `folder_of`); where it is not there, from the
     /// folder whose name is the location as it stands, since some importers write paths without coding them. An empty
     /// location means the archive in which this library lies.
     ///

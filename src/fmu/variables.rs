@@ -98,7 +98,7 @@ impl VariableTable {
     }
 
     /// Rates of the continuous states in the order of the states; none where an importer cannot integrate them.
-    pub fn state_rates(&self) -> Vec<usize> {
+    pub(crate) fn state_rates(&self) -> Vec<usize> {
         state_rates(&self.variables)
     }
 

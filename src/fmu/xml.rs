@@ -26,7 +26,7 @@ pub(super) struct Element {
 
 impl Element {
     /// An element to be written.
-    pub fn new(name: &str) -> Self {
+    pub(super) fn new(name: &str) -> Self {
         Self {
             name: name.to_owned(),
             line: 0,
@@ -36,13 +36,13 @@ impl Element {
     }
 
     /// The same with one more attribute.
-    pub fn with(mut self, name: &str, value: impl ToString) -> Self {
+    pub(super) fn with(mut self, name: &str, value: impl ToString) -> Self {
         self.attributes.push((name.to_owned(), value.to_string()));
         self
     }
 
     /// The same with one more attribute if there is a value.
-    pub fn with_any(self, name: &str, value: Option<impl ToString>) -> Self {
+    pub(super) fn with_any(self, name: &str, value: Option<impl ToString>) -> Self {
         match value {
             Some(value) => self.with(name, value),
             None => self,
@@ -50,13 +50,13 @@ impl Element {
     }
 
     /// The same with more children.
-    pub fn containing(mut self, children: impl IntoIterator<Item = Element>) -> Self {
+    pub(super) fn containing(mut self, children: impl IntoIterator<Item = Element>) -> Self {
         self.children.extend(children);
         self
     }
 
     /// The document: an element a line, two spaces a level.
-    pub fn document(&self) -> String {
+    pub(super) fn document(&self) -> String {
         let mut text = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
         self.write(&mut text, 0);
         text
@@ -84,7 +84,7 @@ impl Element {
     ///
     /// # Errors
     /// [`Error::Input`] with the line where the text stops being XML.
-    pub fn parse(text: &str) -> Result<Self> {
+    pub(super) fn parse(text: &str) -> Result<Self> {
         let mut reader = Reader::from_str(text);
         let mut lines = Lines::new(text);
         let mut open: Vec<Element> = Vec::new();
@@ -120,7 +120,7 @@ impl Element {
     }
 
     /// Value of an attribute, if it is there.
-    pub fn attribute(&self, name: &str) -> Option<&str> {
+    pub(super) fn attribute(&self, name: &str) -> Option<&str> {
         self.attributes
             .iter()
             .find(|(n, _)| n == name)
@@ -128,12 +128,12 @@ impl Element {
     }
 
     /// The first child of that name.
-    pub fn child(&self, name: &str) -> Option<&Element> {
+    pub(super) fn child(&self, name: &str) -> Option<&Element> {
         self.children.iter().find(|c| c.name == name)
     }
 
     /// All children of that name.
-    pub fn children_named<'a>(&'a self, name: &'a str) -> impl Iterator<Item = &'a Element> {
+    pub(super) fn children_named<'a>(&'a self, name: &'a str) -> impl Iterator<Item = &'a Element> {
         self.children.iter().filter(move |c| c.name == name)
     }
 }

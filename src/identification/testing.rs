@@ -43,7 +43,7 @@ fn growth(section: &CoupledSection, speed: f64) -> f64 {
 }
 
 /// First wind speed (m/s) above 5 at which a mode of the Table 4.1 section stops being damped.
-pub fn onset_m_s(model: &dyn Realizable) -> f64 {
+pub(super) fn onset_m_s(model: &dyn Realizable) -> f64 {
     onset_above(model, 5.0)
 }
 
@@ -70,7 +70,7 @@ pub(crate) fn onset_above(model: &dyn Realizable, speed_m_s: f64) -> f64 {
 
 /// Forced-vibration records of Table 3.2 at the given speeds, one a speed and motion, B = 0.5 m: the exact linear response
 /// of `model` with white noise on the forces.
-pub fn records(
+pub(super) fn records(
     model: &dyn Transfer,
     speeds_m_s: &[f64],
     noise_fraction: f64,
@@ -86,6 +86,6 @@ pub fn records(
 }
 
 /// Records as the fits take them.
-pub fn sources(records: &[Record]) -> Vec<&dyn RecordSource> {
+pub(super) fn sources(records: &[Record]) -> Vec<&dyn RecordSource> {
     records.iter().map(|r| r as &dyn RecordSource).collect()
 }

@@ -34,7 +34,7 @@ fn motion_legend() -> Vec<Entry> {
 ///
 /// # Errors
 /// [`crate::Error::Input`] for shapes that cannot be drawn.
-pub fn modes_figure(bridge: &Bridge, title: &str) -> Result<Figure> {
+pub(crate) fn modes_figure(bridge: &Bridge, title: &str) -> Result<Figure> {
     let half_width = 0.5 * bridge.width_m();
     let scale = [1.0, 1.0, half_width];
     let mut panels = Vec::with_capacity(bridge.modes.len());
@@ -109,7 +109,7 @@ fn drawn<'a>(curves: &'a FlutterCurves, shown: &[String]) -> (Vec<Drawn<'a>>, Ve
 ///
 /// # Errors
 /// [`crate::Error::Input`] for curves that cannot be drawn.
-pub fn bridge_curves_figure(
+pub(crate) fn bridge_curves_figure(
     curves: &FlutterCurves,
     shown: &[String],
     onset: Option<&CriticalPoint>,
@@ -155,7 +155,7 @@ fn other_modes() -> Entry {
 ///
 /// # Errors
 /// [`crate::Error::Input`] for curves that cannot be drawn.
-pub fn bridge_roots_figure(
+pub(crate) fn bridge_roots_figure(
     curves: &FlutterCurves,
     shown: &[String],
     title: &str,
@@ -172,7 +172,7 @@ pub fn bridge_roots_figure(
 ///
 /// # Errors
 /// [`crate::Error::Input`] for a motion that cannot be drawn.
-pub fn flutter_motion_figure(
+pub(crate) fn flutter_motion_figure(
     motion: &BridgeMotion,
     half_width_m: f64,
     title: &str,

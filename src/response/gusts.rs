@@ -59,7 +59,7 @@ impl GustCourse<'_> {
 
 impl Gusts {
     /// On a section.
-    pub fn new(force: &GustForce, structure: &Structure) -> Self {
+    pub(super) fn new(force: &GustForce, structure: &Structure) -> Self {
         let n = structure.dofs.len();
         let about_axis =
             structure.forces_at_axis(DMatrix::from_fn(n, 2, |i, j| force.coefficients[i][j]));
@@ -72,7 +72,7 @@ impl Gusts {
     }
 
     /// On a bridge: `passing` is the wind factor over the width of each group of `modes` channels.
-    pub fn on_modes(modes: usize, passing: &[f64], admittance: RationalAdmittance) -> Self {
+    pub(super) fn on_modes(modes: usize, passing: &[f64], admittance: RationalAdmittance) -> Self {
         let passing = passing.iter().flat_map(|p| vec![*p; modes]).collect();
         Self::of(ByChannel::Modes(modes), passing, admittance)
     }
@@ -93,12 +93,12 @@ impl Gusts {
     }
 
     /// Numbers of the state: each channel behind each lag.
-    pub fn states(&self) -> usize {
+    pub(super) fn states(&self) -> usize {
         self.speeds.len()
     }
 
     /// Largest speed of a lag, 1/m.
-    pub fn fastest(&self) -> f64 {
+    pub(super) fn fastest(&self) -> f64 {
         self.speeds.iter().copied().fold(0.0, f64::max)
     }
 
@@ -114,7 +114,7 @@ impl Gusts {
     }
 
     /// `Q g`: force per unit length and 1 m/s of wind.
-    pub fn force_per_wind(&self, gust: &[f64], lagging: &[f64], force: &mut [f64]) {
+    pub(super) fn force_per_wind(&self, gust: &[f64], lagging: &[f64], force: &mut [f64]) {
         force.fill(0.0);
         for j in 0..self.channels {
             let felt = self.passed(stated(gust, j), &lagging[self.of_channel(j)]);
@@ -123,7 +123,7 @@ impl Gusts {
     }
 
     /// Rates of the lagging gusts per 1 m/s of wind.
-    pub fn rates_per_wind(&self, gust: &[f64], lagging: &[f64]) -> Vec<f64> {
+    pub(super) fn rates_per_wind(&self, gust: &[f64], lagging: &[f64]) -> Vec<f64> {
         let of_channel = |j: usize| {
             let (gust, range) = (stated(gust, j), self.of_channel(j));
             let lags = lagging[range.clone()].iter().zip(&self.speeds[range]);
@@ -133,7 +133,7 @@ impl Gusts {
     }
 
     /// Begins the series of one part at the present lagging gusts.
-    pub fn begin(&mut self, lagging: &[f64]) {
+    pub(super) fn begin(&mut self, lagging: &[f64]) {
         let s = &mut self.series;
         s.term.clear();
         s.term.extend_from_slice(lagging);
@@ -148,7 +148,7 @@ impl Gusts {
 
     /// The force of order `k` in time over `tau` from `start` on, in wind that begins at `wind` and changes by `change`; adds
     /// the lagging gusts of order `k + 1` to `sum`.
-    pub fn next(
+    pub(super) fn next(
         &mut self,
         k: usize,
         (start, tau): (f64, f64),
@@ -188,7 +188,7 @@ impl Gusts {
     }
 
     /// Whether the last term is below `part` of the largest gust.
-    pub fn settled(&self, part: f64) -> bool {
+    pub(super) fn settled(&self, part: f64) -> bool {
         self.series.last <= part * self.series.largest
     }
 }

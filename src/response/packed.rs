@@ -27,7 +27,7 @@ pub(super) struct Packed {
 }
 
 impl Packed {
-    pub fn new(rows: usize, columns: usize, entry: impl Fn(usize, usize) -> f64) -> Self {
+    pub(super) fn new(rows: usize, columns: usize, entry: impl Fn(usize, usize) -> f64) -> Self {
         let group = |group: usize, j: usize| -> [f64; LANES] {
             std::array::from_fn(|lane| {
                 let i = group * LANES + lane;
@@ -52,7 +52,7 @@ impl Packed {
     }
 
     /// A whole matrix.
-    pub fn of(m: &DMatrix<f64>) -> Self {
+    pub(super) fn of(m: &DMatrix<f64>) -> Self {
         Self::new(m.nrows(), m.ncols(), |i, j| m[(i, j)])
     }
 }
@@ -67,7 +67,7 @@ pub(super) struct Sparse {
 }
 
 impl Sparse {
-    pub fn of(m: &DMatrix<f64>) -> Self {
+    pub(super) fn of(m: &DMatrix<f64>) -> Self {
         let (mut ends, mut entries) = (Vec::with_capacity(m.nrows()), Vec::new());
         for row in m.row_iter() {
             let filled = row.iter().enumerate().filter(|(_, x)| **x != 0.0);
@@ -78,7 +78,7 @@ impl Sparse {
     }
 
     /// `y = W v`.
-    pub fn apply(&self, v: &[f64], y: &mut [f64]) {
+    pub(super) fn apply(&self, v: &[f64], y: &mut [f64]) {
         let mut from = 0;
         for (y, end) in y.iter_mut().zip(&self.ends) {
             *y = self.entries[from..*end]
@@ -104,7 +104,7 @@ pub(super) enum Linked {
 
 impl Linked {
     /// A matrix whose first `full` rows are full.
-    pub fn of(matrix: &DMatrix<f64>, full: usize) -> Self {
+    pub(super) fn of(matrix: &DMatrix<f64>, full: usize) -> Self {
         let rest = matrix.nrows() - full;
         if matrix.nrows() > FEW_ROWS {
             let linked = Sparse::of(&matrix.rows(full, rest).into_owned());
@@ -114,7 +114,7 @@ impl Linked {
         }
     }
 
-    pub fn apply(&self, v: &[f64], y: &mut [f64]) {
+    pub(super) fn apply(&self, v: &[f64], y: &mut [f64]) {
         match self {
             Self::Few(matrix) => apply(matrix, v, y),
             Self::Many(full, linked) => {

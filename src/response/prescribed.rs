@@ -113,17 +113,17 @@ impl PrescribedForces {
     }
 
     /// Time of the newest point, s.
-    pub fn newest_s(state: &[f64]) -> Option<f64> {
+    pub(crate) fn newest_s(state: &[f64]) -> Option<f64> {
         (Self::points(state) > 0).then_some(state[2])
     }
 
     /// Mean wind speed at the newest point, m/s.
-    pub fn newest_wind_m_s(state: &[f64]) -> f64 {
+    pub(crate) fn newest_wind_m_s(state: &[f64]) -> f64 {
         state[1]
     }
 
     /// As if the deck had not moved so far and no force acted: the points stay, their motion becomes zero.
-    pub fn forget(&self, state: &mut [f64]) {
+    pub(crate) fn forget(&self, state: &mut [f64]) {
         for strip in state[SHARED..].chunks_mut(self.per_strip()) {
             let first = 1 + self.realization.states();
             strip[1..first].fill(0.0);

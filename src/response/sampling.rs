@@ -25,7 +25,7 @@ pub(super) struct Sampling {
 
 impl Sampling {
     /// None for a continuous model.
-    pub fn of(section: &CoupledSection) -> Option<Self> {
+    pub(super) fn of(section: &CoupledSection) -> Option<Self> {
         let Realization::Discrete(d) = section.aerodynamics() else {
             return None;
         };
@@ -47,14 +47,14 @@ impl Sampling {
     }
 
     /// Force of the filters at a wind speed, per unit length.
-    pub fn force(&self, values: &[f64], speed: f64) -> [f64; MAX_DOFS] {
+    pub(super) fn force(&self, values: &[f64], speed: f64) -> [f64; MAX_DOFS] {
         let mut force = [0.0; MAX_DOFS];
         apply(&self.force, &values[2 * self.dofs..], &mut force);
         force.map(|f| f * (speed * speed))
     }
 
     /// `S(k+1) = A S(k) + B r(k+1)`.
-    pub fn sample(&mut self, values: &mut [f64]) {
+    pub(super) fn sample(&mut self, values: &mut [f64]) {
         let filters = self.operand.len() - self.dofs;
         self.operand[..filters].copy_from_slice(&values[2 * self.dofs..]);
         self.operand[filters..].copy_from_slice(&values[..self.dofs]);
@@ -62,7 +62,12 @@ impl Sampling {
     }
 
     /// Wind, and the coefficients of the forces, from `time` after the start of the step on.
-    pub fn drive(&self, values: &[f64], inputs: &Inputs, time: f64) -> (f64, [[f64; MAX_DOFS]; 3]) {
+    pub(super) fn drive(
+        &self,
+        values: &[f64],
+        inputs: &Inputs,
+        time: f64,
+    ) -> (f64, [[f64; MAX_DOFS]; 3]) {
         let rate = inputs.wind_speed_rate_m_s2;
         let wind = wind_after(inputs, time);
         let mut force = [[0.0; MAX_DOFS]; 3];

@@ -97,7 +97,7 @@ struct Work {
 
 impl Series {
     /// The section; of a sampled model the structure alone. Gusts act where their forces are known.
-    pub fn new(section: &CoupledSection, gusts: Option<Gusts>) -> Self {
+    pub(super) fn new(section: &CoupledSection, gusts: Option<Gusts>) -> Self {
         let s = section.structure();
         let n = s.dofs.len();
         let scale = s.dofs.iter();
@@ -141,7 +141,7 @@ impl Series {
     }
 
     /// The gusts of the section.
-    pub fn gusts(&self) -> Option<&Gusts> {
+    pub(super) fn gusts(&self) -> Option<&Gusts> {
         self.gusts.as_ref()
     }
 
@@ -153,7 +153,7 @@ impl Series {
     }
 
     /// Parts into which a step is cut in winds up to `wind`, with or without gusts; not a number where the norm is none.
-    pub fn parts(&self, wind: f64, step: f64, gusts: bool) -> f64 {
+    pub(super) fn parts(&self, wind: f64, step: f64, gusts: bool) -> f64 {
         let lags = if gusts {
             step * wind * self.norms.lags
         } else {
@@ -164,7 +164,7 @@ impl Series {
     }
 
     /// Advances what moves by a step of so many parts. Says whether the result is finite; the values are changed only then.
-    pub fn advance(
+    pub(super) fn advance(
         &mut self,
         moving: Moving<'_>,
         drive: &Drive<'_>,

@@ -25,7 +25,7 @@ impl StripGusts {
     }
 
     /// Numbers of the state of a strip.
-    pub fn per_strip(&self) -> usize {
+    pub(crate) fn per_strip(&self) -> usize {
         2 + 2 * self.lags.len()
     }
 
@@ -47,7 +47,7 @@ impl StripGusts {
 
     /// Adds the force of the gusts `ahead_s` seconds after the newest point, until then running on at `rate` (m/s²), in a mean
     /// wind (m/s) on a deck of this width (m) in air of this density (kg/m³).
-    pub fn add_ahead(
+    pub(crate) fn add_ahead(
         &self,
         strip: &[f64],
         rate: [f64; 2],

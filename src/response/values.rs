@@ -47,7 +47,7 @@ impl SectionState {
     }
 
     /// Replaces number `i` of [`SectionState::all`].
-    pub fn set_number(&mut self, i: usize, number: f64) {
+    pub(crate) fn set_number(&mut self, i: usize, number: f64) {
         let behind = i.checked_sub(self.values.len());
         match behind {
             Some(behind) => self.gusts[behind] = number,
@@ -56,7 +56,7 @@ impl SectionState {
     }
 
     /// Replaces the numbers of [`SectionState::all`].
-    pub fn set_all(&mut self, numbers: &[f64]) {
+    pub(crate) fn set_all(&mut self, numbers: &[f64]) {
         let (values, gusts) = numbers.split_at(self.values.len());
         self.values.copy_from_slice(values);
         self.gusts.copy_from_slice(gusts);
@@ -64,7 +64,7 @@ impl SectionState {
 
     /// The same state with other numbers in [`SectionState::all`].
     #[must_use]
-    pub fn with_all(&self, numbers: &[f64]) -> Self {
+    pub(crate) fn with_all(&self, numbers: &[f64]) -> Self {
         let mut other = self.clone();
         other.set_all(numbers);
         other

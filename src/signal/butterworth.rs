@@ -14,7 +14,7 @@ const ORDER_AT_MOST: usize = 12;
 
 /// `y[k] = b₀x[k] + b₁x[k−1] + b₂x[k−2] − a₁y[k−1] − a₂y[k−2]`; a first-order section has `b₂ = a₂ = 0`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Section {
+pub(super) struct Section {
     /// Numerator, from `z⁰` on.
     pub b: [f64; 3],
     /// Denominator without its leading one.

@@ -71,7 +71,7 @@ pub fn eigenvalues(a: &DMatrix<f64>) -> Result<Vec<Complex<f64>>> {
 ///
 /// # Errors
 /// [`Error::Numerical`] when no vector with a small residual is found.
-pub fn eigenvector(a: &DMatrix<f64>, lambda: Complex<f64>) -> Result<DVector<Complex<f64>>> {
+pub(crate) fn eigenvector(a: &DMatrix<f64>, lambda: Complex<f64>) -> Result<DVector<Complex<f64>>> {
     let n = a.nrows();
     let size = a.amax().max(f64::MIN_POSITIVE);
     // a shift off the eigenvalue by rounding keeps the factorisation regular

@@ -64,7 +64,7 @@ pub fn boundary<E>(
 ///
 /// `at` gives the value at a number, `left_is_higher` compares two, `done` is asked before each step with the width of the
 /// interval and the two values.
-pub fn golden_section<T, E>(
+pub(crate) fn golden_section<T, E>(
     (mut low, mut high): (f64, f64),
     mut at: impl FnMut(f64) -> std::result::Result<T, E>,
     left_is_higher: impl Fn(&T, &T) -> bool,

@@ -19,12 +19,12 @@ fn from_rows(rows: &[Vec<f64>]) -> Result<DMatrix<f64>, String> {
 }
 
 /// Writes a matrix as rows.
-pub fn serialize<S: Serializer>(m: &DMatrix<f64>, s: S) -> Result<S::Ok, S::Error> {
+pub(crate) fn serialize<S: Serializer>(m: &DMatrix<f64>, s: S) -> Result<S::Ok, S::Error> {
     to_rows(m).serialize(s)
 }
 
 /// Reads a matrix from rows of one length.
-pub fn deserialize<'de, D: Deserializer<'de>>(d: D) -> Result<DMatrix<f64>, D::Error> {
+pub(crate) fn deserialize<'de, D: Deserializer<'de>>(d: D) -> Result<DMatrix<f64>, D::Error> {
     from_rows(&Vec::<Vec<f64>>::deserialize(d)?).map_err(D::Error::custom)
 }
 
@@ -34,12 +34,14 @@ pub mod list {
     use serde::de::Error as _;
 
     /// Writes a list of matrices.
-    pub fn serialize<S: Serializer>(list: &[DMatrix<f64>], s: S) -> Result<S::Ok, S::Error> {
+    pub(crate) fn serialize<S: Serializer>(list: &[DMatrix<f64>], s: S) -> Result<S::Ok, S::Error> {
         list.iter().map(to_rows).collect::<Vec<_>>().serialize(s)
     }
 
     /// Reads a list of matrices.
-    pub fn deserialize<'de, D: Deserializer<'de>>(d: D) -> Result<Vec<DMatrix<f64>>, D::Error> {
+    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(
+        d: D,
+    ) -> Result<Vec<DMatrix<f64>>, D::Error> {
         Vec::<Vec<Vec<f64>>>::deserialize(d)?
             .iter()
             .map(|rows| from_rows(rows).map_err(D::Error::custom))

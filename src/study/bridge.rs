@@ -24,7 +24,7 @@ use crate::units::ReducedFrequencyRange;
 use std::collections::BTreeMap;
 
 /// Text of the bridge file of the demo.
-pub fn demo_bridge_text() -> &'static str {
+pub(crate) fn demo_bridge_text() -> &'static str {
     include_str!("bridge/demo.toml")
 }
 
@@ -121,7 +121,7 @@ impl BridgeStudy {
     }
 
     /// Static coefficients `(C_L, C_D, C_M)` of each group, `None` where a section does not state them.
-    pub fn static_coefficients(&self) -> Option<Vec<[f64; 3]>> {
+    pub(crate) fn static_coefficients(&self) -> Option<Vec<[f64; 3]>> {
         let of = |section: &usize| {
             let statics = self.file.sections[*section].statics?;
             Some([statics.lift, statics.drag, statics.moment])

@@ -50,7 +50,7 @@ impl SpanResponse {
 /// # Errors
 /// [`Error::Input`] for parts that do not fit together and forces that say nothing at a `K`; [`Error::Unstable`] when the
 /// bridge is unstable at this speed.
-pub fn span_response(
+pub(crate) fn span_response(
     problem: &SpanProblem<'_>,
     nodes: &[usize],
     speed_m_s: f64,
@@ -113,7 +113,7 @@ pub struct SpanSpectra {
 /// # Errors
 /// [`Error::Input`] for parts that do not fit together and forces that say nothing at a `K`; [`Error::Unstable`] when the
 /// bridge is unstable at this speed.
-pub fn span_spectra(
+pub(crate) fn span_spectra(
     problem: &SpanProblem<'_>,
     nodes: &[usize],
     speed_m_s: f64,

@@ -124,7 +124,7 @@ impl Periodic {
 /// # Errors
 /// [`Error::Input`] for a plan that cannot be and parts that do not fit together; [`Error::Unstable`] when the bridge is unstable
 /// at this speed.
-pub fn span_ensemble(
+pub(crate) fn span_ensemble(
     problem: &SpanProblem<'_>,
     nodes: &[usize],
     speed_m_s: f64,

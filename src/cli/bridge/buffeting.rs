@@ -31,7 +31,7 @@ pub(crate) struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+pub(super) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     let study = args.bridge.study(progress)?;
     let block = study
         .buffeting_block()

@@ -28,7 +28,7 @@ pub(crate) struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args) -> Result<Answer> {
+pub(super) fn run(args: &Args) -> Result<Answer> {
     if args.every == 0 {
         return Err(Error::input("--every", "a number from 1 on", "0"));
     }

@@ -55,7 +55,7 @@ pub(crate) struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+pub(super) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     let study = args.bridge.study(progress)?;
     let mut out = args.bridge.out()?;
     let results = computed(&study, progress)?;

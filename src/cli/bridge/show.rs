@@ -24,7 +24,7 @@ pub(crate) struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+pub(super) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     let study = args.bridge.study(progress)?;
     let mut out = args.bridge.out()?;
     let bridge = &study.by_model;

@@ -18,7 +18,7 @@ pub(crate) struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+pub(super) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     let stage = progress.stage("checking the FMU");
     let report = Fmu::open(&args.fmu)?.check();
     drop(stage);

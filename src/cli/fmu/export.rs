@@ -247,7 +247,7 @@ fn saved_bounds(file: &Path, model: &TrainedModel) -> Result<Option<OnsetBounds>
 }
 
 /// Runs the command.
-pub fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+pub(super) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     if args.bridge {
         return args.whole_bridge(progress);
     }

@@ -91,7 +91,7 @@ pub(super) fn check_order(nodes: &[Node]) -> Result<()> {
 impl Modes {
     /// Takes only every `n`-th node, both ends kept; tributary lengths follow by the trapezoidal rule.
     #[must_use]
-    pub fn thinned(&self, n: usize) -> Self {
+    pub(crate) fn thinned(&self, n: usize) -> Self {
         let last = self.nodes.len() - 1;
         let kept: Vec<usize> = (0..=last).filter(|i| i % n == 0 || *i == last).collect();
         let along: Vec<f64> = kept.iter().map(|i| self.nodes[*i].along_m).collect();

@@ -23,7 +23,10 @@ const ROUNDING: f64 = 1e-9;
 ///
 /// # Errors
 /// [`crate::Error::Numerical`] when eigenvalues cannot be computed.
-pub fn at_samples(section: &CoupledSection, onset: SweptOnset) -> Result<Option<SweptOnset>> {
+pub(crate) fn at_samples(
+    section: &CoupledSection,
+    onset: SweptOnset,
+) -> Result<Option<SweptOnset>> {
     moved(section, onset, KNOWN)
 }
 
@@ -32,7 +35,7 @@ pub fn at_samples(section: &CoupledSection, onset: SweptOnset) -> Result<Option<
 ///
 /// # Errors
 /// [`crate::Error::Numerical`] when eigenvalues cannot be computed.
-pub fn stands_at_samples(section: &CoupledSection, onset: SweptOnset) -> Result<bool> {
+pub(crate) fn stands_at_samples(section: &CoupledSection, onset: SweptOnset) -> Result<bool> {
     Ok(moved(section, onset, THERE)?.is_some())
 }
 

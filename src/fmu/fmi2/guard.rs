@@ -27,7 +27,7 @@ pub(in crate::fmu) struct Component {
 }
 
 impl Component {
-    pub fn new(instance: Instance, logger: Logger) -> Self {
+    pub(crate) fn new(instance: Instance, logger: Logger) -> Self {
         let variables = instance.table().variables().iter();
         let texts = variables.map(|v| match &v.value {
             Value::String(text) => c_text(text),
@@ -179,7 +179,7 @@ mod silence {
     /// The panic hook that was there before ours.
     static PREVIOUS_HOOK: OnceLock<PanicHook> = OnceLock::new();
 
-    pub fn install() {
+    pub(super) fn install() {
         let _ = PREVIOUS_HOOK.set(std::panic::take_hook());
         std::panic::set_hook(Box::new(|info| {
             if let (false, Some(previous)) = (SHIELDED.get(), PREVIOUS_HOOK.get()) {
@@ -188,11 +188,11 @@ mod silence {
         }));
     }
 
-    pub fn enter() -> bool {
+    pub(super) fn enter() -> bool {
         SHIELDED.replace(true)
     }
 
-    pub fn leave(outer: bool) {
+    pub(super) fn leave(outer: bool) {
         SHIELDED.set(outer);
     }
 }

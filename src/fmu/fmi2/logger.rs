@@ -39,7 +39,7 @@ impl Category {
     }
 
     /// The category of this name.
-    pub fn named(name: &CStr) -> Option<Self> {
+    pub(crate) fn named(name: &CStr) -> Option<Self> {
         Self::EVERY.into_iter().find(|c| c.name() == name)
     }
 
@@ -71,7 +71,7 @@ pub(in crate::fmu) struct Logger {
 
 impl Logger {
     /// `None` when the importer has no logger.
-    pub fn new(
+    pub(crate) fn new(
         functions: &fmi2CallbackFunctions,
         instance_name: &CStr,
         logging_on: bool,
@@ -87,7 +87,7 @@ impl Logger {
     }
 
     /// The logger of an importer of FMI 3.0.
-    pub fn plain(callback: PlainLogger, environment: *mut c_void, logging_on: bool) -> Self {
+    pub(crate) fn plain(callback: PlainLogger, environment: *mut c_void, logging_on: bool) -> Self {
         let mut logger = Self {
             callback: Callback::Plain(callback),
             environment,
@@ -99,7 +99,7 @@ impl Logger {
     }
 
     /// What the functions of the interface begin with.
-    pub fn prefix(&self) -> &'static str {
+    pub(crate) fn prefix(&self) -> &'static str {
         match self.callback {
             Callback::Printf(_) => "fmi2",
             Callback::Plain(_) => "fmi3",
@@ -107,7 +107,7 @@ impl Logger {
     }
 
     /// Switches categories on; none named means all.
-    pub fn select(&mut self, on: bool, categories: &[Category]) {
+    pub(crate) fn select(&mut self, on: bool, categories: &[Category]) {
         self.wanted = match (on, categories) {
             (false, _) => Vec::new(),
             (true, []) => vec![Category::All],
@@ -116,7 +116,7 @@ impl Logger {
     }
 
     /// Writes a message.
-    pub fn log(&self, status: fmi2Status, category: Category, message: &str) {
+    pub(crate) fn log(&self, status: fmi2Status, category: Category, message: &str) {
         let wanted = |c: &Category| *c == category || *c == Category::All;
         if !category.is_refusal() && !self.wanted.iter().any(wanted) {
             return;

@@ -6,37 +6,35 @@
 use std::ffi::{c_char, c_int, c_uint, c_void};
 
 /// Handle of an instance.
-pub type fmi2Component = *mut c_void;
+pub(crate) type fmi2Component = *mut c_void;
 /// Handle of the importer, passed back to its callbacks.
-pub type fmi2ComponentEnvironment = *mut c_void;
+pub(crate) type fmi2ComponentEnvironment = *mut c_void;
 /// Handle of a saved state.
 pub type fmi2FMUstate = *mut c_void;
 /// Place in the variable table.
-pub type fmi2ValueReference = c_uint;
+pub(crate) type fmi2ValueReference = c_uint;
 /// Real number.
-pub type fmi2Real = f64;
+pub(crate) type fmi2Real = f64;
 /// Integer.
-pub type fmi2Integer = c_int;
+pub(crate) type fmi2Integer = c_int;
 /// Truth value: 0 is false, everything else true.
 pub type fmi2Boolean = c_int;
 /// Text, UTF-8, ended by a zero byte.
-pub type fmi2String = *const c_char;
+pub(crate) type fmi2String = *const c_char;
 /// Byte of a serialised state.
-pub type fmi2Byte = c_char;
+pub(crate) type fmi2Byte = c_char;
 /// Kind of unit asked for: [`fmi2ModelExchange`] or [`fmi2CoSimulation`].
-pub type fmi2Type = c_int;
+pub(crate) type fmi2Type = c_int;
 /// What status is asked for.
-pub type fmi2StatusKind = c_int;
+pub(crate) type fmi2StatusKind = c_int;
 
 /// Model exchange.
-pub const fmi2ModelExchange: fmi2Type = 0;
+pub(crate) const fmi2ModelExchange: fmi2Type = 0;
 /// Co-simulation.
-pub const fmi2CoSimulation: fmi2Type = 1;
+pub(crate) const fmi2CoSimulation: fmi2Type = 1;
 
 /// Status of a pending step.
 pub const fmi2DoStepStatus: fmi2StatusKind = 0;
-/// Description of a pending step.
-pub const fmi2PendingStatus: fmi2StatusKind = 1;
 /// End of the last successful step.
 pub const fmi2LastSuccessfulTime: fmi2StatusKind = 2;
 /// Whether the unit wants to end the run.

@@ -98,7 +98,7 @@ pub struct ScalarVariable {
 impl ScalarVariable {
     /// `initial` as stated, or its default; `None` for inputs and time, which have none, and for combinations of
     /// causality and variability that are not legal (table in section 2.2.7 of the standard).
-    pub fn effective_initial(&self) -> Option<Initial> {
+    pub(crate) fn effective_initial(&self) -> Option<Initial> {
         self.initial.or_else(|| {
             initial_choices(self.causality, self.variability).and_then(|(default, _)| default)
         })
@@ -115,7 +115,7 @@ impl ScalarVariable {
     }
 
     /// An attribute of the variable or, when it states none, of its declared type among `types`
-    /// ([`ModelDescription::types_by_name`]).
+    /// (`ModelDescription::types_by_name`).
     pub fn attribute<T>(
         &self,
         types: &HashMap<&str, &SimpleType>,
@@ -297,7 +297,7 @@ impl ModelDescription {
     }
 
     /// The declared types by name, the first of each: to look them up for many variables.
-    pub fn types_by_name(&self) -> HashMap<&str, &SimpleType> {
+    pub(crate) fn types_by_name(&self) -> HashMap<&str, &SimpleType> {
         let mut types = HashMap::new();
         for t in &self.types {
             types.entry(t.name.as_str()).or_insert(t);

@@ -57,7 +57,7 @@ impl std::fmt::Display for Finding {
 pub(super) struct Findings(pub Vec<Finding>);
 
 impl Findings {
-    pub fn add(
+    pub(super) fn add(
         &mut self,
         severity: Severity,
         place: impl Into<String>,
@@ -72,7 +72,7 @@ impl Findings {
         });
     }
 
-    pub fn error(
+    pub(super) fn error(
         &mut self,
         place: impl Into<String>,
         expected: impl Into<String>,
@@ -81,7 +81,7 @@ impl Findings {
         self.add(Severity::Error, place, expected, found);
     }
 
-    pub fn warning(
+    pub(super) fn warning(
         &mut self,
         place: impl Into<String>,
         expected: impl Into<String>,
@@ -91,7 +91,7 @@ impl Findings {
     }
 
     /// An error for every text that comes more than once.
-    pub fn each_once<'a>(
+    pub(super) fn each_once<'a>(
         &mut self,
         place: &str,
         expected: &str,

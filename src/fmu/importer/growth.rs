@@ -6,7 +6,8 @@
 mod estimate;
 mod search;
 
-pub use estimate::{Growth, growth_of_samples};
+pub use estimate::Growth;
+pub(crate) use estimate::growth_of_samples;
 pub use search::{GrowthPoint, SteppedOnset, SteppedSearch, SteppingSearch};
 
 use super::Fmu;
@@ -100,7 +101,7 @@ pub fn onset_by_stepping(fmu: &Fmu, search: &SteppingSearch) -> Result<SteppedSe
 /// # Errors
 /// [`Error::Input`] for a search that makes no sense or an FMU without these variables; [`Error::Numerical`] when the FMU
 /// refuses a call.
-pub fn growth_by_stepping(
+pub(crate) fn growth_by_stepping(
     fmu: &Fmu,
     speed_m_s: f64,
     communication_step_s: f64,

@@ -115,7 +115,7 @@ impl Binary {
     ///
     /// # Errors
     /// [`Error::Input`] with what the loader said, or naming the function that is missing.
-    pub fn load(path: &Path) -> Result<Self> {
+    pub(super) fn load(path: &Path) -> Result<Self> {
         let library = open(path)?;
         let functions = Functions::load(&library)?;
         Ok(Self {

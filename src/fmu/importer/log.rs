@@ -30,11 +30,11 @@ impl std::fmt::Display for LogMessage {
 pub(super) struct LogBook(Mutex<Vec<LogMessage>>);
 
 impl LogBook {
-    pub fn messages(&self) -> Vec<LogMessage> {
+    pub(super) fn messages(&self) -> Vec<LogMessage> {
         self.lock().clone()
     }
 
-    pub fn take(&self) -> Vec<LogMessage> {
+    pub(super) fn take(&self) -> Vec<LogMessage> {
         std::mem::take(&mut *self.lock())
     }
 

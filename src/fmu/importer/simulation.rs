@@ -49,7 +49,7 @@ pub(super) struct Times {
 
 impl Times {
     /// As stated, else from the default experiment, else from 0 to 1 s in 500 steps.
-    pub fn new(d: &ModelDescription, s: &Simulation) -> Result<Self> {
+    pub(super) fn new(d: &ModelDescription, s: &Simulation) -> Result<Self> {
         let e = &d.default_experiment;
         let start = s.start_s.or(e.start_time).unwrap_or(0.0);
         let stop = s.stop_s.or(e.stop_time).unwrap_or(start + 1.0);
@@ -63,12 +63,12 @@ impl Times {
     }
 
     /// Number of whole steps; a last partial one is left out, since not every FMU can take it.
-    pub fn steps(&self) -> usize {
+    pub(super) fn steps(&self) -> usize {
         ((self.stop - self.start) / self.step * (1.0 + 1e-12)).floor() as usize
     }
 
     /// Time of a communication point, from its number and so without adding up rounding errors, s.
-    pub fn at(&self, point: usize) -> f64 {
+    pub(super) fn at(&self, point: usize) -> f64 {
         self.start + point as f64 * self.step
     }
 }

@@ -111,7 +111,7 @@ impl Slave {
     }
 
     /// Messages logged so far, which are then forgotten.
-    pub fn take_log(&self) -> Vec<LogMessage> {
+    pub(crate) fn take_log(&self) -> Vec<LogMessage> {
         self.core.log.take()
     }
 
@@ -198,7 +198,7 @@ impl Slave {
     }
 
     /// As [`Slave::do_step`], whatever the answer.
-    pub fn try_step(&mut self, time_s: f64, step_s: f64) -> Status {
+    pub(crate) fn try_step(&mut self, time_s: f64, step_s: f64) -> Status {
         self.status(|f, c| unsafe { (f.do_step)(c, time_s, step_s, 1) })
     }
 

@@ -35,7 +35,7 @@ impl Status {
     }
 
     /// Whether the call did what it should.
-    pub fn is_good(self) -> bool {
+    pub(crate) fn is_good(self) -> bool {
         matches!(self, Self::Ok | Self::Warning)
     }
 }

@@ -24,7 +24,11 @@ pub(super) struct Built {
 
 impl Built {
     /// The bridge of an export with the parameters in `values`.
-    pub fn new(resources: &Resources, options: &BridgeOptions, values: &[f64]) -> Result<Self> {
+    pub(super) fn new(
+        resources: &Resources,
+        options: &BridgeOptions,
+        values: &[f64],
+    ) -> Result<Self> {
         let mut bridge = options.bridge()?;
         for (variable, value) in resources.table.variables().iter().zip(values) {
             match variable.role {
@@ -50,7 +54,7 @@ impl Built {
     }
 
     /// Nothing moves.
-    pub fn at_rest(&self) -> SectionState {
+    pub(super) fn at_rest(&self) -> SectionState {
         SectionState {
             values: vec![0.0; self.stepper.section().states()],
             gusts: vec![0.0; self.stepper.gust_states()],
@@ -59,7 +63,7 @@ impl Built {
     }
 
     /// Loads gusts of the strips and their rates.
-    pub fn set_gusts(
+    pub(super) fn set_gusts(
         &self,
         inputs: &mut Inputs,
         gusts: impl Iterator<Item = f64>,
@@ -78,7 +82,7 @@ impl Built {
     }
 
     /// Adds the turbulence of the archive at a time.
-    pub fn add_turbulence(&self, inputs: &mut Inputs, time: f64, factor: f64) {
+    pub(super) fn add_turbulence(&self, inputs: &mut Inputs, time: f64, factor: f64) {
         if let Some(record) = &self.turbulence {
             let (gust, rate) = (&mut inputs.gust_m_s, &mut inputs.gust_rate_m_s2);
             record.add(time, factor, gust, rate);
@@ -87,7 +91,7 @@ impl Built {
 
     /// A step from `time` with the inputs that hold there, turbulence apart, cut where that has its samples. On an error the
     /// state is as it was.
-    pub fn advance(
+    pub(super) fn advance(
         &mut self,
         state: &mut SectionState,
         inputs: &Inputs,

@@ -17,7 +17,7 @@ use crate::fmu::variables::{Calculated, Role, Status};
 
 impl BridgeUnit {
     /// Derivatives of all unknowns with respect to one known.
-    pub fn column(
+    pub(super) fn column(
         &mut self,
         resources: &Resources,
         memory: &mut Memory,

@@ -29,7 +29,7 @@ pub(super) struct Places {
 }
 
 impl Places {
-    pub fn new(table: &VariableTable, options: &BridgeOptions) -> Result<Self> {
+    pub(super) fn new(table: &VariableTable, options: &BridgeOptions) -> Result<Self> {
         let mut inputs = vec![place(table, Role::WindSpeed)?];
         for (node, dof) in
             (0..options.named.len()).flat_map(|node| Dof::THREE.map(|dof| (node, dof)))

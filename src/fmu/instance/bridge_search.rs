@@ -14,7 +14,11 @@ const SPEEDS: usize = 60;
 impl OnsetCard {
     /// Searches a bridge up to `limit`, m/s, as [`OnsetCard::search`] a section. The tested range is that of the girder at the
     /// frequency of flutter.
-    pub fn of_bridge(built: &Built, tested: Option<ReducedFrequencyRange>, limit: f64) -> Self {
+    pub(super) fn of_bridge(
+        built: &Built,
+        tested: Option<ReducedFrequencyRange>,
+        limit: f64,
+    ) -> Self {
         let mut card = Self::nothing_found(limit, Vec::new());
         match divergence_of(built) {
             Ok(speed) => card.set_divergence(speed, limit),

@@ -47,7 +47,7 @@ impl BridgeUnit {
     ///
     /// # Errors
     /// [`crate::Error::Input`] for numbers that make no bridge; [`crate::Error::Numerical`] for a table that is not one of a bridge.
-    pub fn new(resources: &Resources, options: &BridgeOptions) -> Result<Self> {
+    pub(super) fn new(resources: &Resources, options: &BridgeOptions) -> Result<Self> {
         let table = &resources.table;
         let built = Built::new(resources, options, &starts(table))?;
         let masses = options.modes.iter().map(|m| m.generalised_mass.sqrt());
@@ -67,7 +67,7 @@ impl BridgeUnit {
     }
 
     /// Wind, and forces and gusts on the modes, at the time of the memory.
-    pub fn load_inputs(&mut self, memory: &Memory) {
+    pub(super) fn load_inputs(&mut self, memory: &Memory) {
         self.load_own_inputs(memory);
         let factor = self.turbulence_factor(memory);
         self.built
@@ -104,7 +104,7 @@ impl BridgeUnit {
     }
 
     /// State at release with the initial values in `values` and the gusts that are loaded, which have blown like that until then.
-    pub fn release(&self, values: &[f64]) -> Result<SectionState> {
+    pub(super) fn release(&self, values: &[f64]) -> Result<SectionState> {
         let initial = self.places.initial.iter().zip(&self.roots);
         let displacement: Vec<f64> = initial.map(|(place, root)| values[*place] * root).collect();
         let still = vec![0.0; displacement.len()];
@@ -118,7 +118,7 @@ impl BridgeUnit {
     }
 
     /// What a role stands for in the motion of the mass-normalised modes.
-    pub fn pick(&self, modal: &Outputs, role: Role) -> f64 {
+    pub(super) fn pick(&self, modal: &Outputs, role: Role) -> f64 {
         match role {
             Role::NodeMotion(node, response, dof) => {
                 let row = self.shapes.row(3 * node + crate::bridge::motion_index(dof));
@@ -133,7 +133,7 @@ impl BridgeUnit {
     }
 
     /// The same with the states and their rates.
-    pub fn pick_of(&self, instant: &Instant, role: Role) -> f64 {
+    pub(super) fn pick_of(&self, instant: &Instant, role: Role) -> f64 {
         match role {
             Role::Filter(entry) => instant.of_state(entry),
             Role::FilterRate(entry) => instant.of_rate(entry),
@@ -142,7 +142,7 @@ impl BridgeUnit {
     }
 
     /// Outputs of the modes for a state, with the inputs that are loaded.
-    pub fn modal(&mut self, state: &SectionState) -> Result<Outputs> {
+    pub(super) fn modal(&mut self, state: &SectionState) -> Result<Outputs> {
         let mut outputs = Outputs::default();
         self.built
             .stepper
@@ -151,12 +151,12 @@ impl BridgeUnit {
     }
 
     /// All that there is in a state, with the inputs that are loaded.
-    pub fn instant(&mut self, state: &SectionState) -> Result<Instant> {
+    pub(super) fn instant(&mut self, state: &SectionState) -> Result<Instant> {
         Instant::of(&mut self.built.stepper, state, &self.inputs)
     }
 
     /// `∂/∂V`, per m/s, in the state of `memory` with the inputs that are loaded.
-    pub fn by_wind(&self, memory: &Memory) -> Instant {
+    pub(super) fn by_wind(&self, memory: &Memory) -> Instant {
         Instant::by_speed(&self.built.stepper, &memory.system, &self.inputs)
     }
 }

@@ -12,7 +12,7 @@ impl Instance {
     ///
     /// # Errors
     /// A reference that is no output, or another order than one.
-    pub fn output_rates(
+    pub(crate) fn output_rates(
         &mut self,
         references: &[u32],
         orders: &[i32],

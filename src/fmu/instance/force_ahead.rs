@@ -30,7 +30,7 @@ impl ForceUnit {
     }
 
     /// Forces of all strips in the order of the motion. `renewed` says that there is motion of the present time.
-    pub fn ahead(&mut self, memory: &Memory, renewed: bool) -> Result<Vec<ForceAhead>> {
+    pub(super) fn ahead(&mut self, memory: &Memory, renewed: bool) -> Result<Vec<ForceAhead>> {
         let Conditions { flows, density } = self.conditions(&memory.values);
         let mut state = Cow::Borrowed(&memory.system.values[self.first()..]);
         let mut ahead_s = memory.system.values[0];
@@ -91,7 +91,7 @@ impl ForceUnit {
     }
 
     /// Whether there is motion of the present time that no step has taken yet.
-    pub fn renewed(&self, memory: &Memory) -> bool {
+    pub(super) fn renewed(&self, memory: &Memory) -> bool {
         let [flags, state] = [
             &memory.system.values[1..self.first()],
             &memory.system.values[self.first()..],

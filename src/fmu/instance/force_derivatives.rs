@@ -14,7 +14,7 @@ const RELATIVE_STEP: f64 = 1e-5;
 
 impl ForceUnit {
     /// Derivatives of all unknowns with respect to one known.
-    pub fn column(
+    pub(super) fn column(
         &mut self,
         resources: &Resources,
         memory: &mut Memory,

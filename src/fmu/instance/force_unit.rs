@@ -68,7 +68,7 @@ impl ForceUnit {
     ///
     /// # Errors
     /// [`crate::Error::Numerical`] for a table that is not one of forces.
-    pub fn new(resources: &Resources, options: &ForceOptions) -> Result<Self> {
+    pub(super) fn new(resources: &Resources, options: &ForceOptions) -> Result<Self> {
         let table = &resources.table;
         let dofs = resources.model.section.dofs();
         let n = dofs.len();
@@ -137,27 +137,27 @@ impl ForceUnit {
     }
 
     /// Coordinates of all strips.
-    pub fn coordinates(&self) -> usize {
+    pub(super) fn coordinates(&self) -> usize {
         self.outputs.len()
     }
 
     /// Numbers of the motion.
-    pub fn motions(&self) -> usize {
+    pub(super) fn motions(&self) -> usize {
         3 * self.outputs.len()
     }
 
     /// Where the state of the forces begins.
-    pub fn first(&self) -> usize {
+    pub(super) fn first(&self) -> usize {
         1 + self.motions()
     }
 
     /// How many strips there are.
-    pub fn strips(&self) -> usize {
+    pub(super) fn strips(&self) -> usize {
         self.strips.len()
     }
 
     /// The air around strip `s`.
-    pub fn flow(&self, values: &[f64], s: usize) -> StripFlow {
+    pub(super) fn flow(&self, values: &[f64], s: usize) -> StripFlow {
         let [width, _, factor] = self.strips[s];
         StripFlow {
             width_m: values[width],
@@ -165,7 +165,7 @@ impl ForceUnit {
         }
     }
 
-    pub fn conditions(&self, values: &[f64]) -> Conditions {
+    pub(super) fn conditions(&self, values: &[f64]) -> Conditions {
         let each = 0..self.strips.len();
         Conditions {
             flows: each.map(|s| self.flow(values, s)).collect(),
@@ -173,7 +173,7 @@ impl ForceUnit {
         }
     }
 
-    pub fn entry(&self, memory: &Memory, forces: &[ForceAhead], role: Role) -> ForceAhead {
+    pub(super) fn entry(&self, memory: &Memory, forces: &[ForceAhead], role: Role) -> ForceAhead {
         let Role::Force(s, kind, dof) = role else {
             return ForceAhead::default();
         };

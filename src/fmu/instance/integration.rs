@@ -10,7 +10,7 @@ impl Instance {
     ///
     /// # Errors
     /// A unit without continuous states: sampled models, and bridges with more than anybody integrates.
-    pub fn for_model_exchange(mut self) -> Answer<Self> {
+    pub(crate) fn for_model_exchange(mut self) -> Answer<Self> {
         if !self.offers_model_exchange() {
             return Err(Refusal::error(
                 "type of the unit: expected co-simulation (1), because sampled models have no continuous states and bridges of \
@@ -28,7 +28,7 @@ impl Instance {
     }
 
     /// Number of continuous states.
-    pub fn state_count(&self) -> usize {
+    pub(crate) fn state_count(&self) -> usize {
         self.layout.state_rates.len()
     }
 
@@ -57,7 +57,7 @@ impl Instance {
     ///
     /// # Errors
     /// Another number of them; a discard where one is not finite, with everything as it was.
-    pub fn set_continuous_states(&mut self, states: &[f64]) -> Answer<()> {
+    pub(crate) fn set_continuous_states(&mut self, states: &[f64]) -> Answer<()> {
         self.check_states("states", states.len())?;
         if !states.iter().all(|x| x.is_finite()) {
             return Err(Refusal::discard("states: expected finite numbers"));
@@ -73,7 +73,7 @@ impl Instance {
     ///
     /// # Errors
     /// Room for another number of them; parameters that give nothing that can be simulated.
-    pub fn continuous_states(&mut self, states: &mut [f64]) -> Answer<()> {
+    pub(crate) fn continuous_states(&mut self, states: &mut [f64]) -> Answer<()> {
         self.check_states("states", states.len())?;
         self.unit.prepare(&self.resources, &mut self.memory)?;
         for (state, entry) in states.iter_mut().zip(&self.layout.state_entries) {
@@ -86,7 +86,7 @@ impl Instance {
     ///
     /// # Errors
     /// Room for another number of them; rates that cannot be computed.
-    pub fn state_rates(&mut self, rates: &mut [f64]) -> Answer<()> {
+    pub(crate) fn state_rates(&mut self, rates: &mut [f64]) -> Answer<()> {
         self.check_states("derivatives", rates.len())?;
         self.unit.prepare(&self.resources, &mut self.memory)?;
         rates.copy_from_slice(&self.unit.state_rates(&self.resources, &self.memory)?);
@@ -97,7 +97,7 @@ impl Instance {
     ///
     /// # Errors
     /// Room for another number of them.
-    pub fn state_nominals(&self, nominals: &mut [f64]) -> Answer<()> {
+    pub(crate) fn state_nominals(&self, nominals: &mut [f64]) -> Answer<()> {
         self.check_states("nominals", nominals.len())?;
         let variables = self.table().variables();
         for (nominal, rate) in nominals.iter_mut().zip(&self.layout.state_rates) {
@@ -111,7 +111,7 @@ impl Instance {
     ///
     /// # Errors
     /// A step that the inputs do not allow.
-    pub fn step_taken(&mut self) -> Answer<()> {
+    pub(crate) fn step_taken(&mut self) -> Answer<()> {
         self.watch();
         let (table, notices) = (&self.resources.table, &mut self.notices);
         self.unit.step_taken(table, &self.memory, notices)

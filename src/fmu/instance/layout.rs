@@ -46,7 +46,7 @@ pub(super) enum Source {
 
 impl Source {
     /// Where the value of a variable with this role comes from.
-    pub fn of(role: Role) -> Self {
+    pub(super) fn of(role: Role) -> Self {
         match role {
             Role::WindSpeed
             | Role::ExternalForce(_)
@@ -165,7 +165,10 @@ pub(super) fn place(table: &VariableTable, role: Role) -> Result<usize> {
 
 impl Layout {
     /// The layout of a table; `held` says which outputs are entries of the system's state.
-    pub fn new(table: &VariableTable, held: impl Fn(usize) -> Option<usize>) -> Result<Self> {
+    pub(super) fn new(
+        table: &VariableTable,
+        held: impl Fn(usize) -> Option<usize>,
+    ) -> Result<Self> {
         let access: Vec<_> = table.variables().iter().map(Access::of).collect();
         let each = access.iter().enumerate();
         let state_rates = table.state_rates();
@@ -185,14 +188,19 @@ impl Layout {
     }
 
     /// Entry of the system's state that the output at `place` is, if it is one.
-    pub fn held(&self, place: usize) -> Option<usize> {
+    pub(super) fn held(&self, place: usize) -> Option<usize> {
         let entry = self.glances[place].entry;
         (entry != u32::MAX).then_some(entry as usize)
     }
 
     /// The value of a real variable that needs no work, between steps: most of what is read at every step.
     #[inline]
-    pub fn at_hand(&self, reference: u32, memory: &Memory, outputs_current: bool) -> Option<f64> {
+    pub(super) fn at_hand(
+        &self,
+        reference: u32,
+        memory: &Memory,
+        outputs_current: bool,
+    ) -> Option<f64> {
         let place = reference as usize;
         let glance = self.glances.get(place)?;
         if let Some(held) = memory.system.values.get(glance.entry as usize) {
@@ -207,12 +215,12 @@ impl Layout {
     }
 
     /// Where the value at `place` comes from.
-    pub fn source(&self, place: usize) -> Source {
+    pub(super) fn source(&self, place: usize) -> Source {
         self.access[place].source
     }
 
     /// `value` as it is stored at `place`: a wind that rounding has taken below zero is at rest.
-    pub fn settled(&self, place: usize, value: f64) -> f64 {
+    pub(super) fn settled(&self, place: usize, value: f64) -> f64 {
         if place == self.wind_speed {
             wind_at_rest(value, 0.0)
         } else {

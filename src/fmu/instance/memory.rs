@@ -29,7 +29,7 @@ pub(super) struct Memory {
 
 impl Memory {
     /// The start values of the table, with so many inputs and what is simulated in the state `system`.
-    pub fn new(table: &VariableTable, inputs: usize, system: SectionState) -> Self {
+    pub(super) fn new(table: &VariableTable, inputs: usize, system: SectionState) -> Self {
         Self {
             state: State::Instantiated,
             experiment: None,

@@ -23,7 +23,7 @@ impl Instance {
     }
 
     /// Copies everything that changes into an existing snapshot.
-    pub fn snapshot_into(&self, snapshot: &mut Snapshot) {
+    pub(crate) fn snapshot_into(&self, snapshot: &mut Snapshot) {
         snapshot.guid = self.resources.guid;
         snapshot.memory.clone_from(&self.memory);
     }
@@ -78,7 +78,7 @@ impl Instance {
     }
 
     /// Length in bytes of a serialised state.
-    pub fn serialized_length(&self) -> usize {
+    pub(crate) fn serialized_length(&self) -> usize {
         serialized::length(&self.memory)
     }
 
@@ -86,7 +86,7 @@ impl Instance {
     ///
     /// # Errors
     /// A snapshot of another model.
-    pub fn serialize(&self, snapshot: &Snapshot) -> Answer<Vec<u8>> {
+    pub(crate) fn serialize(&self, snapshot: &Snapshot) -> Answer<Vec<u8>> {
         self.check_owner(snapshot)?;
         Ok(serialized::write(&snapshot.memory, &snapshot.guid))
     }
@@ -95,7 +95,7 @@ impl Instance {
     ///
     /// # Errors
     /// Bytes that are no state of this export, or hold a value outside the limits of its variable.
-    pub fn deserialize(&self, bytes: &[u8]) -> Answer<Snapshot> {
+    pub(crate) fn deserialize(&self, bytes: &[u8]) -> Answer<Snapshot> {
         let guid = self.resources.guid;
         let mut memory = serialized::read(bytes, &guid, &self.fresh)
             .map_err(|e| Refusal::call(e.to_string()))?;

@@ -163,7 +163,7 @@ pub(super) struct OnsetCard {
 impl OnsetCard {
     /// Searches up to `limit` m/s. What is not found is the limit itself, with frequency and reduced velocity zero; so is
     /// what cannot be searched for, with a warning: parameters that are legal must not make a getter fail.
-    pub fn search(
+    pub(super) fn search(
         model: &TrainedModel,
         section: &CoupledSection,
         limit: f64,
@@ -196,7 +196,7 @@ impl OnsetCard {
     }
 
     /// The card of parameters that give no section at all.
-    pub fn unknown(limit: f64, why: &Error) -> Self {
+    pub(super) fn unknown(limit: f64, why: &Error) -> Self {
         let why = format!("flutter onset and divergence are not known for these parameters: {why}");
         Self::nothing_found(limit, vec![why])
     }
@@ -266,7 +266,7 @@ impl OnsetCard {
     }
 
     /// One of its numbers.
-    pub fn value(&self, which: Calculated) -> f64 {
+    pub(super) fn value(&self, which: Calculated) -> f64 {
         self.values[which as usize]
     }
 }

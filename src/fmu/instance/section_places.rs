@@ -28,7 +28,7 @@ pub(super) struct Places {
 }
 
 impl Places {
-    pub fn new(table: &VariableTable) -> Result<Self> {
+    pub(super) fn new(table: &VariableTable) -> Result<Self> {
         let dofs = table.dofs();
         let each = |role: fn(Dof) -> Role| -> Result<Vec<usize>> {
             dofs.iter().map(|&dof| place(table, role(dof))).collect()

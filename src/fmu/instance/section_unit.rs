@@ -62,7 +62,7 @@ impl SectionUnit {
     ///
     /// # Errors
     /// [`crate::Error::Input`] for a model without a realisation.
-    pub fn new(resources: &Resources) -> Result<Self> {
+    pub(super) fn new(resources: &Resources) -> Result<Self> {
         let places = Places::new(&resources.table)?;
         let forces = places.force.iter().chain(&places.gusts).copied();
         let inputs = std::iter::once(places.wind_speed).chain(forces);
@@ -88,14 +88,14 @@ impl SectionUnit {
         })
     }
 
-    pub fn new_stepper(&self, resources: &Resources, values: &[f64]) -> Result<Stepper> {
+    pub(super) fn new_stepper(&self, resources: &Resources, values: &[f64]) -> Result<Stepper> {
         let Resources { model, table, .. } = resources;
         let section = section::coupled_section(model, table, &self.aerodynamics, values)?;
         Ok(Stepper::in_gusts(section, resources.gusts.as_ref()))
     }
 
     /// State at release with the initial values in `values`.
-    pub fn release(&self, stepper: &Stepper, values: &[f64]) -> Result<SectionState> {
+    pub(super) fn release(&self, stepper: &Stepper, values: &[f64]) -> Result<SectionState> {
         let pick = |places: &[usize]| places.iter().map(|i| values[*i]).collect::<Vec<_>>();
         let mut state = stepper.released(
             &pick(&self.places.initial_displacement),
@@ -121,7 +121,7 @@ impl SectionUnit {
     }
 
     /// The inputs of any memory.
-    pub fn load_inputs(&mut self, memory: &Memory) {
+    pub(super) fn load_inputs(&mut self, memory: &Memory) {
         self.loaded = Loaded::Stale;
         let (values, rates) = (&memory.values, &memory.input_rates);
         self.inputs.wind_speed_m_s = values[self.places.wind_speed];
@@ -173,7 +173,7 @@ impl SectionUnit {
         }
     }
 
-    pub fn onset_card(&self, resources: &Resources, values: &[f64]) -> OnsetCard {
+    pub(super) fn onset_card(&self, resources: &Resources, values: &[f64]) -> OnsetCard {
         let Resources { model, table, .. } = resources;
         let limit = values[self.places.search_limit];
         match section::coupled_section(model, table, &self.aerodynamics, values) {

@@ -40,7 +40,7 @@ pub(super) struct Instant {
 }
 
 impl Instant {
-    pub fn of(stepper: &mut Stepper, state: &SectionState, inputs: &Inputs) -> Result<Self> {
+    pub(super) fn of(stepper: &mut Stepper, state: &SectionState, inputs: &Inputs) -> Result<Self> {
         let mut outputs = Outputs::default();
         stepper.outputs(state, inputs, &mut outputs)?;
         let continuous = matches!(stepper.section().aerodynamics(), Realization::Continuous(_));
@@ -56,7 +56,7 @@ impl Instant {
     }
 
     /// `∂/∂V` in a state, with these inputs.
-    pub fn by_speed(stepper: &Stepper, state: &SectionState, inputs: &Inputs) -> Self {
+    pub(super) fn by_speed(stepper: &Stepper, state: &SectionState, inputs: &Inputs) -> Self {
         Self {
             outputs: speed_sensitivity(stepper, state, inputs),
             state: Vec::new(),
@@ -65,7 +65,7 @@ impl Instant {
     }
 
     /// The entry that a role stands for; zero for what inputs and release do not act on.
-    pub fn pick(&self, role: Role) -> f64 {
+    pub(super) fn pick(&self, role: Role) -> f64 {
         let filter = |of: &[f64], i: usize| {
             let motion = 2 * self.outputs.displacement.len();
             of.get(motion + i).copied().unwrap_or(0.0)
@@ -78,7 +78,7 @@ impl Instant {
     }
 
     /// An entry of the whole state `[q, q̇, x]`.
-    pub fn of_state(&self, entry: usize) -> f64 {
+    pub(super) fn of_state(&self, entry: usize) -> f64 {
         let n = self.outputs.displacement.len();
         match entry {
             i if i < n => self.outputs.displacement[i],
@@ -88,7 +88,7 @@ impl Instant {
     }
 
     /// Its rate.
-    pub fn of_rate(&self, entry: usize) -> f64 {
+    pub(super) fn of_rate(&self, entry: usize) -> f64 {
         let n = self.outputs.displacement.len();
         match entry {
             i if i < n => self.outputs.rate[i],

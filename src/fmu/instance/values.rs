@@ -50,17 +50,17 @@ impl Instance {
     }
 
     /// Value of an integer variable.
-    pub fn integer(&mut self, reference: u32) -> Answer<i32> {
+    pub(crate) fn integer(&mut self, reference: u32) -> Answer<i32> {
         Ok(self.number(reference, DataType::Integer)? as i32)
     }
 
     /// Value of a truth variable.
-    pub fn boolean(&mut self, reference: u32) -> Answer<bool> {
+    pub(crate) fn boolean(&mut self, reference: u32) -> Answer<bool> {
         Ok(self.number(reference, DataType::Boolean)? != 0.0)
     }
 
     /// Place in the table of a text that may be read now.
-    pub fn text_place(&self, reference: u32) -> Answer<usize> {
+    pub(crate) fn text_place(&self, reference: u32) -> Answer<usize> {
         Ok(self.readable(reference, DataType::String)?.0)
     }
 
@@ -122,7 +122,7 @@ impl Instance {
     ///
     /// # Errors
     /// For every reference.
-    pub fn refuse_to_set(&self, references: &[u32], of_type: DataType) -> Answer<()> {
+    pub(crate) fn refuse_to_set(&self, references: &[u32], of_type: DataType) -> Answer<()> {
         for reference in references {
             self.writable(*reference, of_type)?;
         }

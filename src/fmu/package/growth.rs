@@ -15,7 +15,7 @@ pub enum Growing {
 }
 
 /// Growth below the onset of the section of a model, by extrapolation alone; see `unwanted_growth`.
-pub fn growth_of(model: &TrainedModel) -> Result<UnwantedGrowth> {
+pub(crate) fn growth_of(model: &TrainedModel) -> Result<UnwantedGrowth> {
     let section = CoupledSection::with_model(&model.section.structure()?, &model.model)?;
     let search = OnsetSearch {
         speed_max_m_s: model.experiment.onset_search_limit_m_s,

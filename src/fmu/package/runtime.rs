@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 /// Environment variable that names a folder of runtimes for further platforms, laid out as in an FMU:
 /// `linux64/aerodeck_section.so`, `win64/aerodeck_section.dll`, `darwin64/aerodeck_section.dylib`,
 /// `aarch64-linux/aerodeck_section.so`, …
-pub const RUNTIME_DIR_VARIABLE: &str = "AERODECK_RUNTIME_DIR";
+pub(crate) const RUNTIME_DIR_VARIABLE: &str = "AERODECK_RUNTIME_DIR";
 
 /// Folder of the module for WebAssembly, which is no runtime of an FMU but is made and found as one.
 const LIVE: &str = "wasm32";
@@ -61,7 +61,7 @@ impl Runtime {
         Self::new(here, Cow::Borrowed(own.map_or(&[], |(_, bytes)| bytes)))
     }
 
-    /// The runtimes in the folder that [`RUNTIME_DIR_VARIABLE`] names, if it is set, and for other platforms those
+    /// The runtimes in the folder that `RUNTIME_DIR_VARIABLE` names, if it is set, and for other platforms those
     /// that this program carries.
     ///
     /// # Errors
@@ -114,7 +114,7 @@ impl Runtime {
     /// # Errors
     /// [`Error::Io`] for a folder or file that cannot be read, [`Error::Input`] for a folder without any runtime and
     /// for files that are no library of their platform.
-    pub fn in_folder(folder: &Path) -> Result<Vec<Self>> {
+    pub(crate) fn in_folder(folder: &Path) -> Result<Vec<Self>> {
         std::fs::read_dir(folder).map_err(|e| Error::io(folder, e))?;
         let mut found = Vec::new();
         for (platform, extension, ..) in PLATFORMS {
@@ -164,12 +164,12 @@ impl Runtime {
     }
 
     /// The platform in words.
-    pub fn platform_words(&self) -> &'static str {
+    pub(crate) fn platform_words(&self) -> &'static str {
         self.words
     }
 
     /// Path of the library in the archive.
-    pub fn path_in_archive(&self, version: FmiVersion) -> String {
+    pub(crate) fn path_in_archive(&self, version: FmiVersion) -> String {
         let platform = match (version, self.platform) {
             (FmiVersion::Two, platform) => platform,
             (FmiVersion::Three, "linux64") if is_arm(&self.bytes) => "aarch64-linux",
@@ -189,11 +189,11 @@ fn live_file(folder: &Path) -> PathBuf {
 }
 
 /// The module that answers the sliders of a report, [`crate::live`] for WebAssembly: the one in the folder that
-/// [`RUNTIME_DIR_VARIABLE`] names, else the one that this program carries; `None` without either.
+/// `RUNTIME_DIR_VARIABLE` names, else the one that this program carries; `None` without either.
 ///
 /// # Errors
 /// [`Error::Io`] for a file that cannot be read, [`Error::Input`] for one that is no such module.
-pub fn live_module() -> Result<Option<Cow<'static, [u8]>>> {
+pub(crate) fn live_module() -> Result<Option<Cow<'static, [u8]>>> {
     if let Some(folder) = std::env::var_os(RUNTIME_DIR_VARIABLE) {
         let file = live_file(Path::new(&folder));
         if file.is_file() {

@@ -50,7 +50,7 @@ impl SectionParameter {
 
     /// The value in a section, in the unit of the variable; a stiffness is turned into `f = √(K/m)/2π`. NaN for a
     /// degree of freedom that the section does not have.
-    pub fn value_in(self, section: &SectionModel) -> f64 {
+    pub(crate) fn value_in(self, section: &SectionModel) -> f64 {
         let support = |dof: Dof| match dof {
             Dof::Torsion => {
                 let s = &section.torsion;

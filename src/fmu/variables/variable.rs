@@ -20,7 +20,7 @@ pub enum Value {
 
 impl Value {
     /// Name of the type.
-    pub fn type_name(&self) -> &'static str {
+    pub(crate) fn type_name(&self) -> &'static str {
         match self {
             Self::Real(_) => "Real",
             Self::Integer(_) => "Integer",
@@ -182,7 +182,7 @@ pub enum Gust {
 
 impl Gust {
     /// Both, in the order of the columns of coefficients.
-    pub const BOTH: [Gust; 2] = [Self::Along, Self::Vertical];
+    pub(crate) const BOTH: [Gust; 2] = [Self::Along, Self::Vertical];
 }
 
 /// A property of a strip.
@@ -244,12 +244,12 @@ pub struct Variable {
 
 impl Variable {
     /// Whether it is one of the unknowns of the initialisation mode.
-    pub fn is_initial_unknown(&self) -> bool {
+    pub(crate) fn is_initial_unknown(&self) -> bool {
         self.initial == Some(Initial::Calculated)
     }
 
     /// Whether it is found by integration.
-    pub fn is_state(&self) -> bool {
+    pub(crate) fn is_state(&self) -> bool {
         matches!(
             self.role,
             Role::Response(Response::Displacement | Response::Rate, _) | Role::Filter(_)

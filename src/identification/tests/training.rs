@@ -21,7 +21,7 @@ fn at(k: f64) -> ReducedFrequency {
 }
 
 /// Largest difference of two models over several `K`, each entry relative to its own largest value over them.
-pub fn distance(a: &dyn Transfer, b: &dyn Transfer, ks: &[f64]) -> f64 {
+pub(super) fn distance(a: &dyn Transfer, b: &dyn Transfer, ks: &[f64]) -> f64 {
     let of =
         |m: &dyn Transfer| -> Vec<_> { ks.iter().map(|k| m.transfer(at(*k)).unwrap()).collect() };
     let (a, b) = (of(a), of(b));

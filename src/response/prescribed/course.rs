@@ -18,7 +18,7 @@ impl Course {
     /// The highest derivative that is known at the newest point runs through its last values; below it stands what is
     /// known at the newest point. Displacements and rates of one interval together would see the structure under a
     /// force that was held over it, and take the jumps in between for smooth.
-    pub fn through(times: &[f64], points: &[f64]) -> Self {
+    pub(super) fn through(times: &[f64], points: &[f64]) -> Self {
         let known = |p: usize| (points[p * NUMBERS + NUMBERS - 1] as usize).min(NUMBERS - 1);
         let highest = known(0).saturating_sub(1);
         let most = (COEFFICIENTS - highest).min(times.len());
@@ -51,12 +51,12 @@ impl Course {
     }
 
     /// With this value, rate and acceleration at `t` = 0, and no more.
-    pub fn now([value, rate, acceleration]: [f64; 3]) -> Self {
+    pub(super) fn now([value, rate, acceleration]: [f64; 3]) -> Self {
         Self([value, rate, 0.5 * acceleration, 0.0])
     }
 
     /// The same with `t` from `by` seconds later on.
-    pub fn from(mut self, by: f64) -> Self {
+    pub(super) fn from(mut self, by: f64) -> Self {
         for first in 0..COEFFICIENTS {
             for c in (first..COEFFICIENTS - 1).rev() {
                 self.0[c] += by * self.0[c + 1];
@@ -66,17 +66,17 @@ impl Course {
     }
 
     /// `factor` times the motion.
-    pub fn times(self, factor: f64) -> Self {
+    pub(super) fn times(self, factor: f64) -> Self {
         Self(self.0.map(|c| factor * c))
     }
 
     /// Its coefficients.
-    pub fn coefficients(&self) -> &[f64; COEFFICIENTS] {
+    pub(super) fn coefficients(&self) -> &[f64; COEFFICIENTS] {
         &self.0
     }
 
     /// Value, rate, acceleration and its rate at `t` = 0.
-    pub fn derivatives(&self) -> [f64; COEFFICIENTS] {
+    pub(super) fn derivatives(&self) -> [f64; COEFFICIENTS] {
         let [value, rate, half, sixth] = self.0;
         [value, rate, 2.0 * half, 6.0 * sixth]
     }

@@ -28,7 +28,7 @@ impl PrescribedForces {
     ///
     /// # Errors
     /// [`crate::Error::Numerical`] for a filter that does not settle.
-    pub fn settling(&self) -> Result<DMatrix<f64>> {
+    pub(crate) fn settling(&self) -> Result<DMatrix<f64>> {
         let (matrix, drive) = match &self.realization {
             Realization::Continuous(c) => (-&c.a, &c.b),
             Realization::Discrete(d) => (DMatrix::identity(d.a.nrows(), d.a.nrows()) - &d.a, &d.b),
@@ -40,7 +40,7 @@ impl PrescribedForces {
     }
 
     /// Enters the filters of a strip of this width (m) held at a displacement (m or rad) until the flow has settled.
-    pub fn settle_at(
+    pub(crate) fn settle_at(
         &self,
         settling: &DMatrix<f64>,
         displacement: &[f64],
@@ -53,7 +53,7 @@ impl PrescribedForces {
 
     /// Forces on a strip now, from its filters and the displacement, rate and acceleration of each coordinate, in a wind (m/s)
     /// on a deck of this width (m) in air of this density (kg/m³).
-    pub fn at_instant(
+    pub(crate) fn at_instant(
         &mut self,
         filters: &[f64],
         motion: &[[f64; 3]],
@@ -69,7 +69,7 @@ impl PrescribedForces {
     }
 
     /// `ż = (V/B)(A z + B r)` of a strip, 1/s; sampled filters have no rate.
-    pub fn filter_rates(
+    pub(crate) fn filter_rates(
         &self,
         filters: &[f64],
         displacement: &[f64],

@@ -27,7 +27,7 @@ pub struct AppliedLowPass {
 /// The filter for a run, with what it does; `None` when it is switched off or nothing says where it should cut.
 ///
 /// # Errors
-/// [`Error::Input`] naming `run` for a cut-off at or above half the sampling frequency.
+/// [`crate::Error::Input`] naming `run` for a cut-off at or above half the sampling frequency.
 pub fn design(
     run: &str,
     options: &LowPassOptions,

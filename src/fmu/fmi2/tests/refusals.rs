@@ -320,7 +320,8 @@ fn a_step_that_cannot_be_computed_is_discarded() {
     unit.ok(unsafe { fmi2GetBooleanStatus(c, fmi2Terminated, &raw mut flag) });
     assert_eq!(flag, 0);
     let mut text = std::ptr::null();
-    let status = unsafe { fmi2GetStringStatus(c, fmi2PendingStatus, &raw mut text) };
+    let pending_status = 1;
+    let status = unsafe { fmi2GetStringStatus(c, pending_status, &raw mut text) };
     unit.refused(status, fmi2Discard, &["nothing to report"]);
     assert!(unsafe { CStr::from_ptr(text) }.is_empty());
     let mut step_status = fmi2Error;

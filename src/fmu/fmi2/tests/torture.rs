@@ -21,8 +21,11 @@ fn unit_of(kind: &str) -> Unit {
     let json = std::fs::read(archive.folder.path().join("model.json")).unwrap();
     let options = ForceOptions::single(0.45).to_json().unwrap();
     std::fs::write(archive.folder.path().join(FORCE_FILE), &options).unwrap();
-    archive.resources =
-        Resources::from_bytes(&json, OptionFiles::of_force(Some(options.as_bytes()))).unwrap();
+    let files = OptionFiles {
+        force: Some(options.as_bytes()),
+        ..OptionFiles::default()
+    };
+    archive.resources = Resources::from_bytes(&json, files).unwrap();
     Unit::instantiate(archive)
 }
 

@@ -52,7 +52,7 @@ pub(super) fn rough_period(samples: &[f64], width: usize) -> f64 {
 ///
 /// # Errors
 /// [`Error::Numerical`] when there are too few samples for two periods, or they are not finite or all zero.
-pub fn growth_of_samples(samples: &[f64], width: usize, step_s: f64) -> Result<Growth> {
+pub(crate) fn growth_of_samples(samples: &[f64], width: usize, step_s: f64) -> Result<Growth> {
     let unclear = |why: &str| Error::Numerical(format!("growth rate: {why}"));
     if width == 0 || !width.is_multiple_of(2) || !samples.len().is_multiple_of(width) {
         return Err(unclear("rows must hold pairs of displacement and rate"));

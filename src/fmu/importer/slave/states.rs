@@ -25,7 +25,7 @@ impl Drop for FmuState {
 // SAFETY of every call below: the component lives, and states are its own
 impl Slave {
     /// `fmi2GetFMUstate`.
-    pub fn get_state(&self) -> Result<FmuState> {
+    pub(crate) fn get_state(&self) -> Result<FmuState> {
         let mut pointer: StatePointer = std::ptr::null_mut();
         self.good("fmi2GetFMUstate", |f, c| unsafe {
             (f.get_fmu_state)(c, &mut pointer)
@@ -44,7 +44,7 @@ impl Slave {
     ///
     /// # Errors
     /// [`Error::Input`] for a state of another instance.
-    pub fn set_state(&mut self, state: &FmuState) -> Result<()> {
+    pub(crate) fn set_state(&mut self, state: &FmuState) -> Result<()> {
         self.own(state)?;
         self.good("fmi2SetFMUstate", |f, c| unsafe {
             (f.set_fmu_state)(c, state.pointer)
@@ -67,7 +67,7 @@ impl Slave {
     ///
     /// # Errors
     /// [`Error::Input`] for a state of another instance.
-    pub fn serialize_state(&self, state: &FmuState) -> Result<Vec<u8>> {
+    pub(crate) fn serialize_state(&self, state: &FmuState) -> Result<Vec<u8>> {
         self.own(state)?;
         let mut size = 0;
         self.good("fmi2SerializedFMUstateSize", |f, c| unsafe {
@@ -81,7 +81,7 @@ impl Slave {
     }
 
     /// `fmi2DeSerializeFMUstate`: bytes of an instance of the same FMU as a state of this one.
-    pub fn deserialize_state(&self, bytes: &[u8]) -> Result<FmuState> {
+    pub(crate) fn deserialize_state(&self, bytes: &[u8]) -> Result<FmuState> {
         let mut pointer: StatePointer = std::ptr::null_mut();
         self.good("fmi2DeSerializeFMUstate", |f, c| unsafe {
             (f.de_serialize_fmu_state)(c, bytes.as_ptr(), bytes.len(), &mut pointer)

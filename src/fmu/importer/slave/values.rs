@@ -32,7 +32,7 @@ impl Slave {
     }
 
     /// `fmi2GetInteger`.
-    pub fn get_integer(&self, references: &[u32]) -> Result<Vec<i32>> {
+    pub(crate) fn get_integer(&self, references: &[u32]) -> Result<Vec<i32>> {
         let mut values = vec![0; references.len()];
         self.good("fmi2GetInteger", |f, c| unsafe {
             (f.get_integer)(
@@ -46,7 +46,7 @@ impl Slave {
     }
 
     /// `fmi2GetBoolean`.
-    pub fn get_boolean(&self, references: &[u32]) -> Result<Vec<bool>> {
+    pub(crate) fn get_boolean(&self, references: &[u32]) -> Result<Vec<bool>> {
         let mut values: Vec<Int> = vec![0; references.len()];
         self.good("fmi2GetBoolean", |f, c| unsafe {
             (f.get_boolean)(
@@ -60,7 +60,7 @@ impl Slave {
     }
 
     /// `fmi2GetString`.
-    pub fn get_string(&self, references: &[u32]) -> Result<Vec<String>> {
+    pub(crate) fn get_string(&self, references: &[u32]) -> Result<Vec<String>> {
         let mut values: Vec<Text> = vec![std::ptr::null(); references.len()];
         self.good("fmi2GetString", |f, c| unsafe {
             (f.get_string)(
@@ -86,7 +86,7 @@ impl Slave {
     }
 
     /// `fmi2SetInteger`.
-    pub fn set_integer(&mut self, references: &[u32], values: &[i32]) -> Result<()> {
+    pub(crate) fn set_integer(&mut self, references: &[u32], values: &[i32]) -> Result<()> {
         same_length(references, values.len())?;
         self.good("fmi2SetInteger", |f, c| unsafe {
             (f.set_integer)(c, references.as_ptr(), references.len(), values.as_ptr())
@@ -94,7 +94,7 @@ impl Slave {
     }
 
     /// `fmi2SetBoolean`.
-    pub fn set_boolean(&mut self, references: &[u32], values: &[bool]) -> Result<()> {
+    pub(crate) fn set_boolean(&mut self, references: &[u32], values: &[bool]) -> Result<()> {
         same_length(references, values.len())?;
         let values: Vec<Int> = values.iter().map(|v| Int::from(*v)).collect();
         self.good("fmi2SetBoolean", |f, c| unsafe {
@@ -106,7 +106,7 @@ impl Slave {
     ///
     /// # Errors
     /// [`Error::Input`] when the lengths differ, and for a text with a zero byte.
-    pub fn set_string(&mut self, references: &[u32], values: &[&str]) -> Result<()> {
+    pub(crate) fn set_string(&mut self, references: &[u32], values: &[&str]) -> Result<()> {
         same_length(references, values.len())?;
         let owned: Vec<CString> = values
             .iter()
@@ -165,7 +165,11 @@ impl Slave {
     }
 
     /// `fmi2GetRealOutputDerivatives` of the given orders.
-    pub fn output_derivatives(&self, references: &[u32], orders: &[i32]) -> Result<Vec<f64>> {
+    pub(crate) fn output_derivatives(
+        &self,
+        references: &[u32],
+        orders: &[i32],
+    ) -> Result<Vec<f64>> {
         same_length(references, orders.len())?;
         let mut values = vec![0.0; references.len()];
         self.good("fmi2GetRealOutputDerivatives", |f, c| unsafe {
