@@ -2,10 +2,10 @@
 //! maximum likelihood.
 
 use crate::signal::random_stream;
-use libm::lgamma;
 use rand::Rng;
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex64;
+use statrs::function::gamma::checked_gamma_lr;
 use std::f64::consts::TAU;
 
 /// `count` signals with the Fourier moduli of a `signal` of even length and phases uniform in 0…2π; mean and
@@ -73,51 +73,8 @@ impl Gamma {
 
     /// Probability of values up to `x`: the regularised incomplete gamma function `P(k, x/θ)`.
     pub(super) fn cumulative(&self, x: f64) -> f64 {
-        let x = x / self.scale;
-        if x <= 0.0 {
-            return 0.0;
-        }
-        let front = (self.shape * x.ln() - x - lgamma(self.shape)).exp();
-        if x < self.shape + 1.0 {
-            front * series(self.shape, x)
-        } else {
-            1.0 - front * continued_fraction(self.shape, x)
-        }
+        checked_gamma_lr(self.shape, x.max(0.0) / self.scale).unwrap_or(f64::NAN)
     }
-}
-
-/// `Σ x^n/(k (k+1) … (k+n))` (DLMF 8.11.4).
-fn series(shape: f64, x: f64) -> f64 {
-    let mut term = 1.0 / shape;
-    let mut sum = term;
-    let mut n = 1.0;
-    while term > sum * f64::EPSILON {
-        term *= x / (shape + n);
-        sum += term;
-        n += 1.0;
-    }
-    sum
-}
-
-/// `1/(x + 1 − k − 1(1−k)/(x + 3 − k − …))` (DLMF 8.9.2) by the recurrences of Lentz.
-fn continued_fraction(shape: f64, x: f64) -> f64 {
-    const TERMS: u32 = 100_000;
-    let mut b = x + 1.0 - shape;
-    let mut c = f64::INFINITY;
-    let mut d = 1.0 / b;
-    let mut value = d;
-    for n in 1..TERMS {
-        let n = f64::from(n);
-        let a = -n * (n - shape);
-        b += 2.0;
-        d = 1.0 / (a * d + b);
-        c = b + a / c;
-        value *= c * d;
-        if (c * d - 1.0).abs() < 4.0 * f64::EPSILON {
-            break;
-        }
-    }
-    value
 }
 
 /// `ψ(x)` and `ψ'(x)` by recurrence up to 10 and the asymptotic series there (DLMF 5.11.2, 5.15.8).

@@ -2,10 +2,11 @@
 //! intervals of counted probabilities, quantiles of what was drawn, roots of covariances.
 
 use crate::state_space::boundary;
-use libm::lgamma;
 use nalgebra::{DMatrix, SymmetricEigen};
+use statrs::function::beta::checked_beta_reg;
+use statrs::function::erf::erfc_inv;
 use std::convert::Infallible;
-use std::f64::consts::{FRAC_1_SQRT_2, PI};
+use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
 /// `t` with `P(|T| ≤ t) = confidence` for `degrees_of_freedom > 0` (not necessarily whole).
 pub(super) fn two_sided_quantile(confidence: f64, degrees_of_freedom: f64) -> f64 {
@@ -21,44 +22,9 @@ pub(super) fn two_sided_quantile(confidence: f64, degrees_of_freedom: f64) -> f6
     0.5 * (low + high)
 }
 
-/// Regularised incomplete beta function `I_x(a, b)` (DLMF 8.17.22), by the continued fraction on the side where it
-/// converges.
+/// Regularised incomplete beta function `I_x(a, b)`; no number where it has none.
 fn incomplete_beta(x: f64, a: f64, b: f64) -> f64 {
-    if x <= 0.0 {
-        return 0.0;
-    }
-    if x >= 1.0 {
-        return 1.0;
-    }
-    let front = (lgamma(a + b) - lgamma(a) - lgamma(b) + a * x.ln() + b * (1.0 - x).ln()).exp();
-    if x < (a + 1.0) / (a + b + 2.0) {
-        front * beta_fraction(x, a, b) / a
-    } else {
-        1.0 - front * beta_fraction(1.0 - x, b, a) / b
-    }
-}
-
-/// `1/(1 + d₁/(1 + d₂/(1 + …)))` by the recurrences of Lentz.
-fn beta_fraction(x: f64, a: f64, b: f64) -> f64 {
-    const TERMS: u32 = 10_000;
-    let mut c = 1.0;
-    let mut d = 1.0 / (1.0 - (a + b) * x / (a + 1.0));
-    let mut value = d;
-    for m in 1..TERMS {
-        let m = f64::from(m);
-        let even = m * (b - m) * x / ((a + 2.0 * m - 1.0) * (a + 2.0 * m));
-        d = 1.0 / (1.0 + even * d);
-        c = 1.0 + even / c;
-        value *= c * d;
-        let odd = -(a + m) * (a + b + m) * x / ((a + 2.0 * m) * (a + 2.0 * m + 1.0));
-        d = 1.0 / (1.0 + odd * d);
-        c = 1.0 + odd / c;
-        value *= c * d;
-        if (c * d - 1.0).abs() < 4.0 * f64::EPSILON {
-            break;
-        }
-    }
-    value
+    checked_beta_reg(a, b, x).unwrap_or(f64::NAN)
 }
 
 /// `Φ(z)`.
@@ -66,61 +32,9 @@ pub(super) fn normal_cdf(z: f64) -> f64 {
     0.5 * libm::erfc(-z * FRAC_1_SQRT_2)
 }
 
-/// `Φ⁻¹(u)` for `0 < u < 1`: Acklam's rational approximation (1e-9) and two steps of Halley's method on `erfc`.
+/// `Φ⁻¹(u)` for `0 < u < 1`.
 pub(super) fn normal_quantile(u: f64) -> f64 {
-    if u > 0.5 {
-        // the upper tail of erfc holds its digits on the other side
-        return -normal_quantile(1.0 - u);
-    }
-    let mut z = start(u);
-    for _ in 0..2 {
-        let error = normal_cdf(z) - u;
-        let step = error * (2.0 * PI).sqrt() * (0.5 * z * z).exp();
-        z -= step / (1.0 + 0.5 * z * step);
-    }
-    z
-}
-
-/// P. J. Acklam's approximation for `u ≤ 1/2`.
-fn start(u: f64) -> f64 {
-    const A: [f64; 6] = [
-        -3.969683028665376e1,
-        2.209460984245205e2,
-        -2.759285104469687e2,
-        1.38357751867269e2,
-        -3.066479806614716e1,
-        2.506628277459239,
-    ];
-    const B: [f64; 6] = [
-        -5.447609879822406e1,
-        1.615858368580409e2,
-        -1.556989798598866e2,
-        6.680131188771972e1,
-        -1.328068155288572e1,
-        1.0,
-    ];
-    const C: [f64; 6] = [
-        -7.784894002430293e-3,
-        -3.223964580411365e-1,
-        -2.400758277161838,
-        -2.549732539343734,
-        4.374664141464968,
-        2.938163982698783,
-    ];
-    const D: [f64; 5] = [
-        7.784695709041462e-3,
-        3.224671290700398e-1,
-        2.445134137142996,
-        3.754408661907416,
-        1.0,
-    ];
-    let horner = |c: &[f64], x: f64| c.iter().fold(0.0, |sum, c| sum * x + c);
-    if u < 0.02425 {
-        let q = (-2.0 * u.ln()).sqrt();
-        return horner(&C, q) / horner(&D, q);
-    }
-    let q = u - 0.5;
-    q * horner(&A, q * q) / horner(&B, q * q)
+    -SQRT_2 * erfc_inv(2.0 * u)
 }
 
 /// Exact (Clopper–Pearson 1934) two-sided interval at the level `confidence` for `count` of `samples`.
