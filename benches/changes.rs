@@ -9,7 +9,7 @@ use aerodeck::flutter::{OnsetSearch, find_onset};
 use aerodeck::fmu::instance::Instance;
 use aerodeck::fmu::resources::{OptionFiles, Resources};
 use aerodeck::response::{Inputs, Stepper};
-use aerodeck::state_space::c2d;
+use aerodeck::state_space::{StateEquation, c2d};
 use aerodeck::trained_model::TrainedModel;
 use nalgebra::DVector;
 use std::hint::black_box;
@@ -143,8 +143,8 @@ fn stepped(
     };
     let mut z = DVector::from_element(section.states(), 0.01);
     let by_exponential = |i: usize| {
-        let (a, b) = match section.at(wind(i)).expect("a system") {
-            CoupledSystem::Continuous(s) => (s.a, s.b),
+        let StateEquation { a, b } = match section.at(wind(i)).expect("a system") {
+            CoupledSystem::Continuous(s) => StateEquation { a: s.a, b: s.b },
             CoupledSystem::Sampled(_) => section.structure_alone(),
         };
         let phi = c2d(&a, &b, STEP_S).expect("a step").phi;

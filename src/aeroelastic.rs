@@ -20,7 +20,9 @@ pub use equilibrium::{
 use crate::aerodynamics::{ContinuousRealization, DiscreteRealization, Realizable, Realization};
 use crate::error::{Error, Result, non_negative, positive};
 use crate::section::Structure;
-use crate::state_space::{Continuous, Damping, Discrete, StateSpace, c2d, first_order};
+use crate::state_space::{
+    Continuous, Damping, Discrete, StateEquation, StateSpace, c2d, first_order,
+};
 use nalgebra::{Complex, DMatrix, DVector};
 
 /// An elastically suspended section with a realised aerodynamic model.
@@ -242,8 +244,8 @@ impl CoupledSection {
         let s = &self.structure;
         let (n, filters) = (s.dofs.len(), aero.a.nrows());
         let step = aero.delta_s * s.width_m / speed;
-        let (a_c, b_c) = self.structure_alone();
-        let held = c2d(&a_c, &b_c, step)?;
+        let alone = self.structure_alone();
+        let held = c2d(&alone.a, &alone.b, step)?;
         let force = self.force_of_filters(&aero.c, speed);
         let drive = DMatrix::from_fn(filters, 2 * n, |l, j| {
             if j < n {
@@ -265,7 +267,7 @@ impl CoupledSection {
         b.view_mut((0, 0), (2 * n, n)).copy_from(&held.gamma_0);
         b.view_mut((2 * n, 0), (filters, n))
             .copy_from(&(&drive * &held.gamma_0));
-        let (c, d) = self.sampled_outputs(&a_c, &force);
+        let (c, d) = self.sampled_outputs(&alone.a, &force);
         StateSpace::new(a, b, c, d, Discrete { step })
     }
 
@@ -297,8 +299,8 @@ impl CoupledSection {
                 Ok((system.c, system.d))
             }
             Realization::Discrete(d) => {
-                let (a, _) = self.structure_alone();
-                Ok(self.sampled_outputs(&a, &self.force_of_filters(&d.c, speed_m_s)))
+                let alone = self.structure_alone();
+                Ok(self.sampled_outputs(&alone.a, &self.force_of_filters(&d.c, speed_m_s)))
             }
         }
     }
@@ -326,13 +328,13 @@ impl CoupledSection {
     }
 
     /// `[[0, I], [−M⁻¹K, −M⁻¹R]]` and `[0; M⁻¹]` of the section without aerodynamic force.
-    pub fn structure_alone(&self) -> (DMatrix<f64>, DMatrix<f64>) {
+    pub fn structure_alone(&self) -> StateEquation {
         let s = &self.structure;
         let n = s.dofs.len();
         let a = first_order(&self.inverse_mass, &-&s.stiffness, &-&s.damping);
         let mut b = DMatrix::zeros(2 * n, n);
         b.view_mut((n, 0), (n, n)).copy_from(&self.inverse_mass);
-        (a, b)
+        StateEquation { a, b }
     }
 }
 

@@ -158,6 +158,15 @@ impl StateSpace<Discrete> {
     }
 }
 
+/// `ẋ = A x + B u`.
+#[derive(Debug, Clone)]
+pub struct StateEquation {
+    /// State matrix, n×n.
+    pub a: DMatrix<f64>,
+    /// Input matrix, n×m.
+    pub b: DMatrix<f64>,
+}
+
 /// One pole as a table of damping has it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Damping {

@@ -58,7 +58,7 @@ impl Derivatives {
                 .transpose()?,
             ..ReadOptions::default()
         };
-        let (table, _) = read_table_with(path, &options).map_err(raised)?;
+        let table = read_table_with(path, &options).map_err(raised)?.table;
         Ok(Self(table))
     }
 

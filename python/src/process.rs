@@ -8,7 +8,7 @@ use crate::work::Work;
 use aerodeck::aerodynamics::derivatives::TableHeader;
 use aerodeck::identification::derivatives::{DerivativeOptions, identify_derivatives};
 use aerodeck::wind_tunnel::RecordSource;
-use aerodeck::wind_tunnel::campaign::read_campaign;
+use aerodeck::wind_tunnel::campaign::{LoadedCampaign, read_campaign};
 use aerodeck::wind_tunnel::processing::{self, ProcessingOptions};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -65,7 +65,10 @@ pub fn process(
     };
     let work = Work::new(progress);
     let done = work.run(py, || {
-        let (raw, mut warnings) = read_campaign(&campaign)?;
+        let LoadedCampaign {
+            campaign: raw,
+            mut warnings,
+        } = read_campaign(&campaign)?;
         let runs = raw.runs.len();
         let processed = processing::process(&raw, &options, &|done| work.tell(done, runs))?;
         let sources: Vec<&dyn RecordSource> = processed

@@ -10,7 +10,8 @@ use crate::aerodynamics::derivatives::notation::{
 use crate::aerodynamics::derivatives::{DerivativeTable, Missing};
 use crate::error::{Error, Result};
 use crate::files::derivatives::{
-    ReadOptions, embedded, is_table_file, read_table_with, workbook_bytes_in, write_csv_in,
+    ReadOptions, TableInConvention, embedded, is_table_file, read_table_with, workbook_bytes_in,
+    write_csv_in,
 };
 use crate::report::{PNG_SCALE, axes_sketch};
 use crate::signal::extremes;
@@ -83,7 +84,7 @@ impl TableArgs {
     }
 
     /// The table and the convention it was in.
-    fn read(&self) -> Result<(DerivativeTable, Convention)> {
+    fn read(&self) -> Result<TableInConvention> {
         let stated = StatedConvention {
             notation: self.from,
             argument: self.from_argument,
@@ -101,7 +102,7 @@ impl TableArgs {
         }
         let table = embedded::deck(&self.table)?;
         let convention = stated.with_file(Convention::default().into())?;
-        Ok((table, convention))
+        Ok(TableInConvention { table, convention })
     }
 }
 
@@ -128,7 +129,10 @@ fn convert(args: &ConvertArgs) -> Result<Answer> {
         let found = args.out.display().to_string();
         Error::input("out", "a file name that ends in .csv or .xlsx", found)
     })?;
-    let (table, from) = args.table.read()?;
+    let TableInConvention {
+        table,
+        convention: from,
+    } = args.table.read()?;
     let to = args.table.target();
     let bytes = if is_workbook {
         workbook_bytes_in(&table, &to)?
@@ -162,7 +166,10 @@ pub(crate) struct ShowArgs {
 }
 
 fn show(args: &ShowArgs) -> Result<Answer> {
-    let (table, from) = args.table.read()?;
+    let TableInConvention {
+        table,
+        convention: from,
+    } = args.table.read()?;
     let expressed = args.table.target().express(&table);
     let mut text = head(&table, &from, &expressed.convention);
     let warnings: Vec<String> = table

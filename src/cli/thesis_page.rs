@@ -72,7 +72,7 @@ fn first_order(progress: &Progress) -> Result<PageSection> {
             .collect(),
         figures: figures
             .into_iter()
-            .map(|(number, figure)| (format!("Figure {number}"), figure.svg().to_owned()))
+            .map(|f| (format!("Figure {}", f.number), f.figure.svg().to_owned()))
             .collect(),
     })
 }

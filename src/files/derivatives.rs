@@ -12,12 +12,12 @@ mod xlsx_cells;
 pub(crate) use csv_file::parse_csv_in;
 pub(crate) use csv_file::{parse_csv, read_csv_with, write_points};
 pub use csv_file::{read_csv, write_csv, write_csv_in};
-pub use csv_header::ReadOptions;
+pub use csv_header::{ReadOptions, TableInConvention};
 pub(crate) use workbook::{TABLE_3_2_FREQUENCIES_HZ, read_workbook_in};
 pub use workbook::{WorkbookOptions, read_workbook};
 pub(crate) use workbook_writer::{workbook_bytes, workbook_bytes_in};
 
-use crate::aerodynamics::derivatives::{DerivativeTable, notation};
+use crate::aerodynamics::derivatives::DerivativeTable;
 
 /// Whether `name` means a file that holds a table, not an embedded deck: it ends in `.csv` or `.xlsx`.
 pub(crate) fn is_table_file(name: &str) -> bool {
@@ -36,17 +36,17 @@ pub fn named_table(name: &str, directory: &std::path::Path) -> crate::Result<Der
 
 /// Reads a table from `path`: an NTNU workbook when the name ends in `.xlsx`, else a CSV.
 pub fn read_table(path: impl AsRef<std::path::Path>) -> crate::Result<DerivativeTable> {
-    read_table_with(path, &ReadOptions::default()).map(|(table, _)| table)
+    read_table_with(path, &ReadOptions::default()).map(|read| read.table)
 }
 
-/// The same with what the caller states; the second value is the convention that the file is in.
+/// The same with what the caller states.
 ///
 /// # Errors
 /// [`crate::Error::Io`]; [`crate::Error::Input`] with file and place, also where the caller contradicts the file.
 pub fn read_table_with(
     path: impl AsRef<std::path::Path>,
     options: &ReadOptions,
-) -> crate::Result<(DerivativeTable, notation::Convention)> {
+) -> crate::Result<TableInConvention> {
     let path = path.as_ref();
     let is_workbook = path
         .extension()

@@ -295,10 +295,10 @@ impl<'a> Scan<'a> {
 
     /// The last speed from `yes` towards `no` at which the test still holds.
     fn edge(&self, yes: f64, no: f64, test: impl Fn(&Point) -> bool) -> Result<f64> {
-        let (last, _) = boundary(yes, no, EDGE_TOLERANCE, |v| {
+        let found = boundary(yes, no, EDGE_TOLERANCE, |v| {
             Ok::<_, Error>(test(&self.at(v)?))
         })?;
-        Ok(last)
+        Ok(found.holds)
     }
 
     /// The structural mode that `lambda` belongs to, followed from still air; where modes cannot be followed, the degree

@@ -53,7 +53,7 @@ pub(super) fn modes_of_many(section: &CoupledSection) -> Option<Vec<Mode>> {
 pub(super) fn natural_modes(section: &CoupledSection) -> Result<Vec<Mode>> {
     let s = section.structure();
     let n = s.dofs.len();
-    let (a, _) = section.structure_alone();
+    let a = section.structure_alone().a;
     let mut modes = Vec::with_capacity(n);
     for lambda in eigenvalues(&a)?.into_iter().filter(|z| z.im > 0.0) {
         let vector = eigenvector(&a, lambda)?;

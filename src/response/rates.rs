@@ -2,6 +2,7 @@
 
 use super::{Inputs, Outputs, SectionState, Stepper};
 use crate::error::Result;
+use crate::state_space::StateEquation;
 use nalgebra::DVector;
 
 impl Stepper {
@@ -19,7 +20,7 @@ impl Stepper {
             let w = DVector::from_fn(n, |i, _| inputs.force[i] + wind * gusts[i]);
             let force = sampling.force(&state.values, wind);
             let force = DVector::from_column_slice(&force[..n]);
-            let (a, b) = self.section.structure_alone();
+            let StateEquation { a, b } = self.section.structure_alone();
             let motion = a * z.rows(0, 2 * n) + b * (w + force);
             let mut derivative = vec![0.0; state.values.len()];
             derivative[..2 * n].copy_from_slice(motion.as_slice());

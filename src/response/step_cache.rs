@@ -74,8 +74,8 @@ impl StepCache {
     /// Step of the structure alone under a given force, for the sampled model.
     pub(super) fn structure(&mut self, section: &CoupledSection, step: f64) -> Result<&Packed> {
         self.steps.get((0, step.to_bits()), || {
-            let (a, b) = section.structure_alone();
-            Ok(pack(&c2d(&a, &b, step)?))
+            let alone = section.structure_alone();
+            Ok(pack(&c2d(&alone.a, &alone.b, step)?))
         })
     }
 

@@ -38,14 +38,30 @@ pub fn root(low: (f64, f64), high: (f64, f64), f: impl Fn(f64) -> Result<f64>) -
     Ok(b)
 }
 
-/// Where a test that holds at one number and fails at another changes, by bisection: the last two numbers at which it held
-/// and failed, no more than `tolerance` of the number apart, neighbours for zero.
+/// The last two numbers at which a test was made, on either side of where its answer changes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Boundary {
+    /// Where it held.
+    pub holds: f64,
+    /// Where it failed.
+    pub fails: f64,
+}
+
+impl Boundary {
+    /// Half way between both.
+    pub(crate) fn middle(self) -> f64 {
+        0.5 * (self.holds + self.fails)
+    }
+}
+
+/// Where a test that holds at one number and fails at another changes, by bisection, no more than `tolerance` of the number
+/// wide; for zero between neighbours.
 pub fn boundary<E>(
     mut holds: f64,
     mut fails: f64,
     tolerance: f64,
     mut test: impl FnMut(f64) -> std::result::Result<bool, E>,
-) -> std::result::Result<(f64, f64), E> {
+) -> std::result::Result<Boundary, E> {
     while (holds - fails).abs() > tolerance * holds.abs() {
         let middle = 0.5 * (holds + fails);
         if middle == holds || middle == fails {
@@ -57,7 +73,7 @@ pub fn boundary<E>(
             fails = middle;
         }
     }
-    Ok((holds, fails))
+    Ok(Boundary { holds, fails })
 }
 
 /// Interval about the maximum of a function with one maximum, by the golden section, with the two values inside.

@@ -71,9 +71,9 @@ impl Deck {
                 missing: study.deck.missing,
                 ..ReadOptions::default()
             };
-            let (table, stated) = read_table_with(study.directory.join(name), &options)?;
-            convention = stated;
-            Source::Table(table)
+            let read = read_table_with(study.directory.join(name), &options)?;
+            convention = read.convention;
+            Source::Table(read.table)
         } else {
             Source::Table(embedded::deck(name)?)
         };

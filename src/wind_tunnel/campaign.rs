@@ -16,8 +16,8 @@ mod section_forces;
 mod write;
 
 pub(crate) use file::Campaign;
-pub use load::read_campaign;
 pub(crate) use load::{CampaignReading, RecordingSummary};
+pub use load::{LoadedCampaign, read_campaign};
 pub(crate) use write::{FileFormat, write_virtual_campaign};
 
 #[cfg(test)]

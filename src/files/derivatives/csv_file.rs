@@ -29,7 +29,7 @@ use crate::aerodynamics::derivatives::notation::{
 use crate::aerodynamics::derivatives::table::{check_point_count, check_points};
 use crate::aerodynamics::derivatives::{Derivative, DerivativePoint, DerivativeTable, TableHeader};
 use crate::error::{Error, Place, Result};
-use crate::files::derivatives::csv_header::{Head, ReadOptions, write_head};
+use crate::files::derivatives::csv_header::{Head, ReadOptions, TableInConvention, write_head};
 use crate::files::derivatives::csv_wide;
 use crate::files::header_csv::{csv_error, find_columns, missing_column, number, table_reader};
 use std::collections::BTreeMap;
@@ -53,7 +53,7 @@ type Rows = BTreeMap<Derivative, (Vec<DerivativePoint>, Vec<u64>)>;
 /// # Errors
 /// [`Error::Io`] when the file cannot be read; [`Error::Input`] with file and line, what was expected and what was found.
 pub fn read_csv(path: impl AsRef<Path>) -> Result<DerivativeTable> {
-    read_csv_in(path, StatedConvention::default()).map(|(table, _)| table)
+    read_csv_in(path, StatedConvention::default()).map(|read| read.table)
 }
 
 /// Reads a table in this project's CSV whose convention the caller states, all of it or in part; the second value is
@@ -61,7 +61,7 @@ pub fn read_csv(path: impl AsRef<Path>) -> Result<DerivativeTable> {
 pub(crate) fn read_csv_in(
     path: impl AsRef<Path>,
     stated: StatedConvention,
-) -> Result<(DerivativeTable, Convention)> {
+) -> Result<TableInConvention> {
     let options = ReadOptions {
         convention: stated,
         ..ReadOptions::default()
@@ -74,7 +74,7 @@ pub(crate) fn read_csv_in(
 pub(crate) fn read_csv_with(
     path: impl AsRef<Path>,
     options: &ReadOptions,
-) -> Result<(DerivativeTable, Convention)> {
+) -> Result<TableInConvention> {
     let path = path.as_ref();
     let size = std::fs::metadata(path)
         .map_err(|e| Error::io(path, e))?
@@ -101,14 +101,11 @@ pub(crate) fn read_csv_with(
 /// is not stated or contradicts itself, text in numbers, points out of order or twice, `V̂` not positive or not monotone
 /// in a speed group, missing derivatives.
 pub(crate) fn parse_csv(text: &str) -> Result<DerivativeTable> {
-    parse_csv_in(text, StatedConvention::default()).map(|(table, _)| table)
+    parse_csv_in(text, StatedConvention::default()).map(|read| read.table)
 }
 
 /// As [`parse_csv`], with what the caller states about the convention; the second value is the one the text is in.
-pub(crate) fn parse_csv_in(
-    text: &str,
-    stated: StatedConvention,
-) -> Result<(DerivativeTable, Convention)> {
+pub(crate) fn parse_csv_in(text: &str, stated: StatedConvention) -> Result<TableInConvention> {
     let options = ReadOptions {
         convention: stated,
         ..ReadOptions::default()
@@ -116,7 +113,7 @@ pub(crate) fn parse_csv_in(
     parse_long(text, &options)
 }
 
-fn parse_long(text: &str, options: &ReadOptions) -> Result<(DerivativeTable, Convention)> {
+fn parse_long(text: &str, options: &ReadOptions) -> Result<TableInConvention> {
     let head = Head::read(text)?;
     let mut reader = table_reader(text);
     let names = reader.headers().map_err(csv_error)?.clone();
@@ -151,7 +148,7 @@ fn parse_long(text: &str, options: &ReadOptions) -> Result<(DerivativeTable, Con
     header.notes.extend(fill_in(&mut points, options.missing));
     let width = head.width_m(options.width_m)?;
     let table = DerivativeTable::new(head.name()?, width, header, points)?;
-    Ok((table, convention))
+    Ok(TableInConvention { table, convention })
 }
 
 /// Writes a table in this project's CSV and convention; `parse_csv` gives the same table back, bit for bit.

@@ -17,7 +17,7 @@ use crate::aerodynamics::derivatives::notation::{Argument, Convention, Expressed
 use crate::aerodynamics::derivatives::table::{check_point_count, check_points};
 use crate::aerodynamics::derivatives::{Derivative, DerivativePoint, DerivativeTable};
 use crate::error::{Error, Place, Result, counted, positive};
-use crate::files::derivatives::csv_header::{Head, ReadOptions};
+use crate::files::derivatives::csv_header::{Head, ReadOptions, TableInConvention};
 use crate::files::derivatives::workbook::WIDTH_ASSUMED;
 use crate::files::header_csv::number;
 use std::collections::BTreeMap;
@@ -65,11 +65,7 @@ pub(super) fn is_wide(text: &str) -> bool {
 ///
 /// # Errors
 /// [`Error::Input`] naming line, column, expectation and finding.
-pub(super) fn parse(
-    text: &str,
-    stem: &str,
-    options: &ReadOptions,
-) -> Result<(DerivativeTable, Convention)> {
+pub(super) fn parse(text: &str, stem: &str, options: &ReadOptions) -> Result<TableInConvention> {
     let text = text.trim_start_matches('\u{feff}');
     let head = Head::read(text)?;
     let mut lines = (1..)
@@ -102,7 +98,7 @@ pub(super) fn parse(
     }
     let points = checked(rows, &convention)?;
     let table = finished(&head, points, columns.others, stem, options)?;
-    Ok((table, convention))
+    Ok(TableInConvention { table, convention })
 }
 
 /// One line of numbers.

@@ -18,6 +18,7 @@ use crate::aerodynamics::derivatives::{
     Derivative, DerivativePoint, DerivativeTable, Missing, TableHeader,
 };
 use crate::error::{Error, Result, positive};
+use crate::files::derivatives::csv_header::TableInConvention;
 use crate::files::derivatives::xlsx_cells::{Book, Cell, Sheet};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -67,14 +68,14 @@ pub struct WorkbookOptions {
 /// [`Error::Input`] with file, sheet and cell: not a workbook, a missing sheet or column, an empty cell or text in place
 /// of a number, sheets of unequal length, no common width, points out of order or twice.
 pub fn read_workbook(path: impl AsRef<Path>, options: &WorkbookOptions) -> Result<DerivativeTable> {
-    read_workbook_in(path, options).map(|(table, _)| table)
+    read_workbook_in(path, options).map(|read| read.table)
 }
 
 /// The same; the second value is the convention that the workbook is in.
 pub(crate) fn read_workbook_in(
     path: impl AsRef<Path>,
     options: &WorkbookOptions,
-) -> Result<(DerivativeTable, Convention)> {
+) -> Result<TableInConvention> {
     let path = path.as_ref();
     let read = || {
         let mut book = Book::open(path)?;
@@ -85,7 +86,7 @@ pub(crate) fn read_workbook_in(
         header.notes.extend(fill_in(&mut points, options.missing));
         let stated = width_in_book(&mut book, &notes)?;
         let table = table_from(path, options, header, points, stated)?;
-        Ok((table, convention))
+        Ok(TableInConvention { table, convention })
     };
     read().map_err(|e: Error| e.in_file(path))
 }

@@ -163,14 +163,17 @@ mod tests {
     fn notes_state_the_convention() {
         use crate::aerodynamics::derivatives::notation::Notation;
         use crate::aerodynamics::derivatives::notation::StatedConvention;
-        use crate::files::derivatives::read_workbook_in;
+        use crate::files::derivatives::{TableInConvention, read_workbook_in};
         let table = embedded::deck("LN21-5200").unwrap();
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("w.xlsx");
         for notation in Notation::ALL {
             let convention = Convention::usual(notation);
             std::fs::write(&path, workbook_bytes_in(&table, &convention).unwrap()).unwrap();
-            let (again, said) = read_workbook_in(&path, &WorkbookOptions::default()).unwrap();
+            let TableInConvention {
+                table: again,
+                convention: said,
+            } = read_workbook_in(&path, &WorkbookOptions::default()).unwrap();
             assert_eq!(said, convention);
             same(&table, &again);
         }

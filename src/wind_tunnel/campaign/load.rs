@@ -54,14 +54,26 @@ pub(crate) struct RecordingSummary {
     pub channels: Vec<String>,
 }
 
-/// All recordings that a campaign file names, and in words what is odd about them.
+/// A campaign with what is odd about it.
+#[derive(Debug, Clone)]
+pub struct LoadedCampaign {
+    /// All recordings.
+    pub campaign: RawCampaign,
+    /// What is odd about them, in words.
+    pub warnings: Vec<String>,
+}
+
+/// All recordings that a campaign file names.
 ///
 /// # Errors
 /// [`Error::Io`]; [`Error::Input`] naming file, run, recording, channel and sample.
-pub fn read_campaign(path: impl AsRef<std::path::Path>) -> Result<(RawCampaign, Vec<String>)> {
+pub fn read_campaign(path: impl AsRef<std::path::Path>) -> Result<LoadedCampaign> {
     let reading = Campaign::read(path)?.load()?;
     let findings = reading.findings.iter().map(ToString::to_string);
-    Ok((reading.raw, findings.collect()))
+    Ok(LoadedCampaign {
+        campaign: reading.raw,
+        warnings: findings.collect(),
+    })
 }
 
 impl Campaign {

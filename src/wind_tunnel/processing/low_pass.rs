@@ -24,7 +24,16 @@ pub struct AppliedLowPass {
     pub kept_at_highest: f64,
 }
 
-/// The filter for a run, with what it does; `None` when it is switched off or nothing says where it should cut.
+/// A filter with what it does.
+#[derive(Debug)]
+pub struct DesignedLowPass {
+    /// One passage.
+    pub filter: ButterworthLowPass,
+    /// What both do.
+    pub applied: AppliedLowPass,
+}
+
+/// The filter for a run; `None` when it is switched off or nothing says where it should cut.
 ///
 /// # Errors
 /// [`crate::Error::Input`] naming `run` for a cut-off at or above half the sampling frequency.
@@ -33,7 +42,7 @@ pub fn design(
     options: &LowPassOptions,
     segments: &[HarmonicSegment],
     sampling_hz: f64,
-) -> Result<Option<(ButterworthLowPass, AppliedLowPass)>> {
+) -> Result<Option<DesignedLowPass>> {
     let highest = segments
         .iter()
         .map(|s| s.segment.frequency_hz)
@@ -50,7 +59,7 @@ pub fn design(
         cutoff_hz,
         kept_at_highest: filter.gain(highest, sampling_hz).powi(2),
     };
-    Ok(Some((filter, applied)))
+    Ok(Some(DesignedLowPass { filter, applied }))
 }
 
 impl AppliedLowPass {

@@ -181,16 +181,16 @@ impl<'a> UnderWay<'a> {
     fn clean_and_filter(&mut self) -> Result<()> {
         let name = &self.prepared.run.name;
         let (segments, rate) = (&self.report.segments, self.signals.sampling_hz);
-        let (filter, applied) =
-            low_pass::design(name, &self.options.low_pass, segments, rate)?.unzip();
-        let parts = self.clean(filter.as_ref())?;
+        let designed = low_pass::design(name, &self.options.low_pass, segments, rate)?;
+        let filter = designed.as_ref().map(|low_pass| &low_pass.filter);
+        let parts = self.clean(filter)?;
         let ratio = |run: &Self| noise_ratio(&run.signals, &parts, &run.report.segments);
         let before_low_pass_db = ratio(self);
-        if let Some(filter) = &filter {
+        if let Some(filter) = filter {
             low_pass::apply(&mut self.signals, filter)?;
             self.done("low-pass");
         }
-        self.report.low_pass = applied;
+        self.report.low_pass = designed.map(|low_pass| low_pass.applied);
         self.report.signal_to_noise = SignalToNoise {
             before_low_pass_db,
             after_low_pass_db: ratio(self),

@@ -5,7 +5,7 @@ mod definition;
 use super::*;
 use crate::aerodynamics::FlatPlate;
 use crate::aerodynamics::derivatives::{DerivativePoint, DerivativeTable, TableHeader};
-use crate::files::derivatives::{parse_csv_in, write_csv_in};
+use crate::files::derivatives::{TableInConvention, parse_csv_in, write_csv_in};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::collections::BTreeMap;
@@ -166,7 +166,10 @@ fn every_pair_of_conventions_round_trips() {
             let mut text = Vec::new();
             write_csv_in(&table, &from, &mut text).unwrap();
             let text = String::from_utf8(text).unwrap();
-            let (read, said) = parse_csv_in(&text, StatedConvention::default()).unwrap();
+            let TableInConvention {
+                table: read,
+                convention: said,
+            } = parse_csv_in(&text, StatedConvention::default()).unwrap();
             assert_eq!(said, from);
             assert_same(&table, &read, &from.to_string());
             for to in all_conventions() {
@@ -279,8 +282,12 @@ fn contradictions_are_refused() {
         .collect();
     assert!(says(&silent, nothing).starts_with("notation: expected it stated in the file or"));
     let stated = StatedConvention::notation(Notation::Polimi);
-    let (table, _) = parse_csv_in(&silent, stated).unwrap();
-    assert_same(&table, &parse_csv_in(&polimi, nothing).unwrap().0, "stated");
+    let table = parse_csv_in(&silent, stated).unwrap().table;
+    assert_same(
+        &table,
+        &parse_csv_in(&polimi, nothing).unwrap().table,
+        "stated",
+    );
     let over_k = written(&Convention::usual(Notation::Starossek));
     let negative = over_k.replacen("c_pp_im,1,8.17,0.5", "c_pp_im,1,8.17,-0.5", 1);
     assert!(says(&negative, nothing).contains("column k_semi: expected a positive number"));

@@ -116,7 +116,8 @@ fn first_format() -> String {
 #[test]
 fn files_of_the_first_format_are_still_read() {
     let old = first_format();
-    let (table, convention) = parse_csv_in(&old, StatedConvention::default()).unwrap();
+    let TableInConvention { table, convention } =
+        parse_csv_in(&old, StatedConvention::default()).unwrap();
     assert_eq!(convention, Convention::default());
     let embedded = embedded::deck("LN21-5200").unwrap();
     for d in Derivative::ALL {

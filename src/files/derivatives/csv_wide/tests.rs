@@ -3,11 +3,11 @@
 use crate::aerodynamics::derivatives::Missing;
 use crate::aerodynamics::derivatives::notation::{Notation, StatedConvention};
 use crate::files::derivatives::csv_wide::*;
-use crate::files::derivatives::{embedded, read_csv_with};
+use crate::files::derivatives::{TableInConvention, embedded, read_csv_with};
 use crate::section::Dof;
 
 fn read(text: &str, options: &ReadOptions) -> Result<DerivativeTable> {
-    parse(text, "deck", options).map(|(table, _)| table)
+    parse(text, "deck", options).map(|read| read.table)
 }
 
 fn scanlan() -> ReadOptions {
@@ -69,7 +69,8 @@ fn a_deck_written_wide_comes_back() {
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("wide.csv");
     std::fs::write(&path, text).unwrap();
-    let (table, convention) = read_csv_with(&path, &ReadOptions::default()).unwrap();
+    let TableInConvention { table, convention } =
+        read_csv_with(&path, &ReadOptions::default()).unwrap();
     assert_eq!(convention, polimi);
     assert_eq!((table.name.as_str(), table.width_m), ("wide", 0.5057));
     assert_eq!(table.dofs(), Dof::THREE);
