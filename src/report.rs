@@ -8,6 +8,7 @@ mod axes_sketch;
 mod axis;
 mod bridge_figures;
 mod derivatives_figure;
+mod drawing;
 mod figure;
 mod first_order_figures;
 mod flutter_figures;
@@ -23,7 +24,6 @@ mod response_figures;
 mod root_locus;
 mod sections_page;
 mod series;
-mod sheet;
 
 mod study_page;
 mod style;

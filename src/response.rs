@@ -18,7 +18,7 @@ mod step_cache;
 mod strip_gusts;
 mod values;
 
-pub use prescribed::{ForceAhead, Given, KnownMotion, PrescribedForces, StripFlow};
+pub use prescribed::{ForceAhead, GivenMotion, KnownMotion, PrescribedForces, StripFlow};
 pub use quasi_steady::{NonlinearRun, NonlinearSection};
 pub use strip_gusts::StripGusts;
 pub use values::{Inputs, Outputs, SectionState, wind_at_rest};
@@ -46,7 +46,7 @@ const STATES_OF_A_MATRIX: usize = 800;
 
 /// A step by a matrix that may be taken again as it is, as long as nobody touches inputs and state in between.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Standing {
+pub(crate) struct RepeatableStep {
     /// Its size, s.
     pub step_s: f64,
     /// Columns of the matrix that meet something other than zero.
@@ -241,7 +241,7 @@ impl Stepper {
         state: &SectionState,
         inputs: &Inputs,
         step_s: f64,
-    ) -> Option<Standing> {
+    ) -> Option<RepeatableStep> {
         let wind = inputs.wind_speed_m_s;
         let forces = [inputs.force.len(), inputs.force_rate.len()];
         let stands = inputs.wind_speed_rate_m_s2 == 0.0
@@ -251,7 +251,7 @@ impl Stepper {
             && state.last_wind_m_s == Some(wind)
             && self.cache.is_newest(wind, step_s)
             && !self.gusts_act(state, inputs);
-        stands.then(|| Standing {
+        stands.then(|| RepeatableStep {
             step_s,
             columns: active_columns(inputs, state.values.len()),
         })
@@ -263,7 +263,7 @@ impl Stepper {
         &mut self,
         state: &mut SectionState,
         inputs: &Inputs,
-        standing: &Standing,
+        standing: &RepeatableStep,
     ) -> bool {
         let Some(step) = self.cache.newest() else {
             return false;
@@ -290,7 +290,7 @@ impl Stepper {
     ) -> Result<()> {
         self.cache
             .full_system(&self.section, inputs.wind_speed_m_s, step)?;
-        let standing = Standing {
+        let standing = RepeatableStep {
             step_s: step,
             columns: active_columns(inputs, state.values.len()),
         };

@@ -40,7 +40,7 @@ use crate::fmu::xml::Element;
 use description::FILE;
 use findings::Findings;
 use library::Binary;
-use slave::Loaded;
+use slave::LoadedFmu;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 use tempfile::TempDir;
@@ -83,7 +83,7 @@ pub struct Fmu {
     description: Arc<ModelDescription>,
     /// Found while unpacking and reading.
     findings: Findings,
-    loaded: Mutex<Option<Arc<Loaded>>>,
+    loaded: Mutex<Option<Arc<LoadedFmu>>>,
 }
 
 impl Fmu {
@@ -226,7 +226,7 @@ impl Fmu {
     }
 
     /// The binary, loaded once.
-    fn load(&self) -> Result<Arc<Loaded>> {
+    fn load(&self) -> Result<Arc<LoadedFmu>> {
         let mut slot = self
             .loaded
             .lock()
@@ -234,7 +234,7 @@ impl Fmu {
         if let Some(loaded) = &*slot {
             return Ok(Arc::clone(loaded));
         }
-        let loaded = Arc::new(Loaded {
+        let loaded = Arc::new(LoadedFmu {
             binary: Binary::load(&self.binary()?).map_err(|e| e.in_file(&self.path))?,
             resources: location_of(&self.folder.path().join("resources"))?,
             _folder: Arc::clone(&self.folder),

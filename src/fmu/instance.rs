@@ -42,7 +42,7 @@ use super::variables::VariableTable;
 use crate::error::Result;
 use bridge_unit::BridgeUnit;
 use force_unit::ForceUnit;
-use layout::Layout;
+use layout::VariablePlaces;
 use memory::{Experiment, Memory};
 use section_unit::SectionUnit;
 use unit::Unit;
@@ -52,7 +52,7 @@ use unit::Unit;
 pub struct Instance {
     resources: Resources,
     interface: Interface,
-    layout: Layout,
+    layout: VariablePlaces,
     unit: Box<dyn Unit>,
     memory: Memory,
     /// The memory at the beginning.
@@ -72,7 +72,7 @@ impl Instance {
             (None, Some(options)) => Box::new(ForceUnit::new(&resources, options)?),
             (None, None) => Box::new(SectionUnit::new(&resources)?),
         };
-        let layout = Layout::new(&resources.table, |place| unit.held_output(place))?;
+        let layout = VariablePlaces::new(&resources.table, |place| unit.held_output(place))?;
         let fresh = Memory::new(&resources.table, unit.inputs().len(), unit.at_rest());
         let mut memory = fresh.clone();
         // a section that cannot be coupled is no model to run: say so now

@@ -7,6 +7,7 @@
 mod bridge;
 mod bridge_states;
 mod dependencies;
+mod dof_names;
 mod force;
 #[cfg(feature = "cli")]
 mod listing;
@@ -16,7 +17,6 @@ mod section;
 #[cfg(test)]
 mod tests;
 mod variable;
-mod words;
 
 pub use super::standard::{Causality, Initial, Variability};
 #[cfg(feature = "cli")]

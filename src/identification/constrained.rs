@@ -37,11 +37,11 @@ pub(crate) struct LinearSolution {
     /// Largest `‖A_c c‖` over `‖A c‖`: near one for a sound fit, large when terms cancel.
     pub cancellation: f64,
     /// From the free unknowns to all coefficients.
-    spread: Spread,
+    spread: CoefficientSpace,
 }
 
 /// `c = c₀ + N z`.
-enum Spread {
+enum CoefficientSpace {
     /// `N` picks columns, `c₀ = 0`.
     Columns(Vec<usize>),
     /// Constrained: `c₀`, `N`.
@@ -122,12 +122,12 @@ impl LinearProblem {
         largest / fitted.sqrt()
     }
 
-    fn spread(&self, place: &str) -> Result<Spread> {
+    fn spread(&self, place: &str) -> Result<CoefficientSpace> {
         let seen = |c: &usize| self.rows.iter().any(|row| row[*c] != 0.0);
         let n = self.columns();
         if self.constraints.is_empty() {
             // with one part only (say, no H4*), columns that have no such part are out of reach
-            return Ok(Spread::Columns((0..n).filter(seen).collect()));
+            return Ok(CoefficientSpace::Columns((0..n).filter(seen).collect()));
         }
         let bound = |c: &usize| self.constraints.iter().any(|(row, _)| row[*c] != 0.0);
         let reached: Vec<usize> = (0..n).filter(|c| seen(c) || bound(c)).collect();
@@ -171,7 +171,7 @@ impl LinearProblem {
             start[c] = particular[at];
             map.row_mut(c).copy_from(&free.row(at));
         }
-        Ok(Spread::Affine(start, map))
+        Ok(CoefficientSpace::Affine(start, map))
     }
 }
 
@@ -180,7 +180,7 @@ fn norm_of(row: &[f64]) -> f64 {
     if norm > 0.0 { norm } else { 1.0 }
 }
 
-impl Spread {
+impl CoefficientSpace {
     fn unknowns(&self) -> usize {
         match self {
             Self::Columns(columns) => columns.len(),
@@ -242,14 +242,14 @@ impl LinearSolution {
     pub(crate) fn spread(&self) -> Result<DMatrix<f64>> {
         let inverse = self.factor.inverse_upper(self.unknowns)?;
         Ok(match &self.spread {
-            Spread::Columns(columns) => {
+            CoefficientSpace::Columns(columns) => {
                 let mut all = DMatrix::zeros(self.coefficients.len(), self.unknowns);
                 for (row, &c) in columns.iter().enumerate() {
                     all.row_mut(c).copy_from(&inverse.row(row));
                 }
                 all
             }
-            Spread::Affine(_, map) => map * inverse,
+            CoefficientSpace::Affine(_, map) => map * inverse,
         })
     }
 
@@ -258,7 +258,7 @@ impl LinearSolution {
         let small = self.factor.inverse_gram(self.unknowns)?;
         let n = self.coefficients.len();
         match &self.spread {
-            Spread::Columns(columns) => {
+            CoefficientSpace::Columns(columns) => {
                 let mut full = DMatrix::zeros(n, n);
                 for (a, &i) in columns.iter().enumerate() {
                     for (b, &j) in columns.iter().enumerate() {
@@ -267,7 +267,7 @@ impl LinearSolution {
                 }
                 Ok(full)
             }
-            Spread::Affine(_, map) => Ok(map * small * map.transpose()),
+            CoefficientSpace::Affine(_, map) => Ok(map * small * map.transpose()),
         }
     }
 }

@@ -27,7 +27,7 @@ use nalgebra::{Complex, DMatrix, DVector};
 const ROUNDS: usize = 3;
 
 /// Everything that stays the same during the search.
-struct Task<'a> {
+struct LagSearch<'a> {
     entries: &'a [Entry],
     /// Weight of the residuals of each entry.
     shares: Vec<f64>,
@@ -56,7 +56,7 @@ pub(super) fn fit_minimum_state(
     tested: ReducedFrequencyRange,
 ) -> Result<FittedTable> {
     let states = fit.form.filters();
-    let mut task = Task {
+    let mut task = LagSearch {
         entries,
         shares: shares(&entries.iter().collect::<Vec<_>>()),
         n: dofs.len(),
@@ -94,7 +94,7 @@ pub(super) fn fit_minimum_state(
     task.constrain(dofs, best, alone)
 }
 
-impl Task<'_> {
+impl LagSearch<'_> {
     /// Where the best of the descents from all starts ends, and where each does.
     fn search(&self, fit: &FrequencyFit) -> Result<(Vec<f64>, Vec<SearchPoint>)> {
         let mut points = Vec::new();

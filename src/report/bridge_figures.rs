@@ -1,11 +1,11 @@
 //! Modes of a bridge, their frequencies and damping over wind speed, and the motion at flutter.
 
 use super::axis::Axis;
+use super::drawing::Drawing;
 use super::figure::Figure;
 use super::legend::Entry;
 use super::panel::Panel;
 use super::root_locus::RootLocus;
-use super::sheet::Sheet;
 use super::style::{COLOURS, GREY, Ink, PALE_GREY, Shape, dash};
 use crate::bridge::Bridge;
 use crate::error::Result;
@@ -57,7 +57,7 @@ pub(crate) fn modes_figure(bridge: &Bridge, title: &str) -> Result<Figure> {
         }
         panels.push(panel);
     }
-    Sheet {
+    Drawing {
         name: "modes of the bridge",
         title: Some(title.to_owned()),
         panels,
@@ -135,7 +135,7 @@ pub(crate) fn bridge_curves_figure(
         let words = format!("onset {:.3} m/s, {:.4} Hz", at.speed_m_s, at.frequency_hz);
         stated.push(Entry::new(words, ink));
     }
-    Sheet {
+    Drawing {
         name: "V-f and V-ζ diagram of the bridge",
         title: Some(title.to_owned()),
         panels: vec![frequency, damping],
@@ -202,7 +202,7 @@ pub(crate) fn flutter_motion_figure(
         }
         panel
     });
-    Sheet {
+    Drawing {
         name: "motion at flutter",
         title: Some(title.to_owned()),
         panels: panels.collect(),

@@ -1,11 +1,11 @@
 //! Aerodynamic derivatives over the reduced velocity: measured points and fitted lines.
 
 use super::axis::Axis;
+use super::drawing::Drawing;
 use super::figure::Figure;
 use super::legend::Entry;
 use super::panel::Panel;
 use super::series::{PlottedSeries, index_of, labels_of};
-use super::sheet::Sheet;
 use super::style::{BLACK, GREY, Ink, Shape, colour, dash};
 use crate::error::{Error, Result};
 
@@ -78,7 +78,7 @@ pub fn derivatives_figure(plot: &DerivativesPlot) -> Result<Figure> {
         }
         panels.push(panel);
     }
-    Sheet {
+    Drawing {
         name: PLACE,
         title: Some(plot.title.clone()).filter(|t| !t.is_empty()),
         panels,

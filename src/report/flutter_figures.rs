@@ -1,11 +1,11 @@
 //! Frequencies and damping ratios over wind speed, with the onsets.
 
 use super::axis::{Axis, significant};
+use super::drawing::Drawing;
 use super::figure::Figure;
 use super::legend::Entry;
 use super::panel::{Note, Panel};
 use super::series::index_of;
-use super::sheet::Sheet;
 use super::style::{BLACK, GREY, Ink, PALE_GREY, Shape, branch_width, colour, dash, pale};
 use crate::error::{Error, Result};
 use crate::flutter::{FlutterCurves, ModePoint, Onset, OnsetInterval, OnsetMethod};
@@ -53,7 +53,7 @@ pub fn vf_vg_figure(
     if let Some(tested) = options.tested_speeds_m_s {
         diagram.shade_untested(tested)?;
     }
-    diagram.into_sheet(options.title.clone()).draw()
+    diagram.into_drawing(options.title.clone()).draw()
 }
 
 /// The panels of the diagrams, one below the other, and the groups of their legend.
@@ -245,10 +245,10 @@ impl VfVg {
     }
 
     /// The panel near zero is left out when no curve comes there.
-    fn into_sheet(self, title: Option<String>) -> Sheet {
+    fn into_drawing(self, title: Option<String>) -> Drawing {
         let mut panels = vec![self.frequency, self.damping];
         panels.extend(Some(self.close).filter(|p| !p.series.is_empty()));
-        Sheet {
+        Drawing {
             name: PLACE,
             title,
             panels,

@@ -1,8 +1,8 @@
 //! A number over a grid of two parameters, as cells of colour.
 
+use super::drawing::finished;
 use super::figure::Figure;
 use super::font::FAMILIES;
-use super::sheet::finished;
 use super::style::{BLACK, GREY};
 use super::text::text;
 use crate::error::{Error, Result};

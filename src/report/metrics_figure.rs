@@ -1,11 +1,11 @@
 //! Metrics of goodness of fit over the frequency of the motion, side by side.
 
 use super::axis::Axis;
+use super::drawing::Drawing;
 use super::figure::Figure;
 use super::legend::Entry;
 use super::panel::Panel;
 use super::series::{PlottedSeries, index_of, labels_of};
-use super::sheet::Sheet;
 use super::style::{Ink, Shape, colour, dash};
 use crate::error::Result;
 
@@ -53,7 +53,7 @@ pub(crate) fn metrics_figure(
     for (i, label) in labels.iter().enumerate() {
         legend.push(Entry::new(label, line(i)?));
     }
-    Sheet {
+    Drawing {
         name: PLACE,
         title: Some(title.to_owned()).filter(|t| !t.is_empty()),
         panels: drawn,

@@ -1,10 +1,10 @@
 //! The stages of processing of one run, one below the other: the whole run, and a few periods of it.
 
 use super::axis::Axis;
+use super::drawing::Drawing;
 use super::figure::Figure;
 use super::legend::Entry;
 use super::panel::Panel;
-use super::sheet::Sheet;
 use super::style::{BLACK, Ink, colour};
 use crate::error::{Error, Result};
 use crate::section::Dof;
@@ -63,7 +63,7 @@ pub(crate) fn processing_figure(
         Entry::new(force_of(dof), force_ink),
         Entry::new(motion_name, motion_ink),
     ];
-    Sheet {
+    Drawing {
         name: PLACE,
         title: Some(format!("{}: {}, stage by stage", run.run, force_of(dof))),
         panels,

@@ -1,10 +1,10 @@
 //! Distribution of the onset speed of random sections.
 
 use super::axis::{Axis, significant};
+use super::drawing::Drawing;
 use super::figure::Figure;
 use super::legend::Entry;
 use super::panel::{Note, Panel};
-use super::sheet::Sheet;
 use super::style::{BLACK, Ink, Shape, colour};
 use crate::error::{Error, Result};
 use crate::uncertainty::monte_carlo::MonteCarloResult;
@@ -38,7 +38,7 @@ pub(crate) fn onset_distribution_figure(result: &MonteCarloResult) -> Result<Fig
             panel.uprights.push((speed, colour));
         }
     }
-    Sheet {
+    Drawing {
         name: PLACE,
         title: Some(format!(
             "{}: onset of {} random sections, {} of them stable up to {:.3} m/s",

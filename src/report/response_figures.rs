@@ -1,11 +1,11 @@
 //! Time histories.
 
 use super::axis::Axis;
+use super::drawing::Drawing;
 use super::figure::Figure;
 use super::legend::Entry;
 use super::panel::Panel;
 use super::series::{PlottedSeries, index_of, labels_of};
-use super::sheet::Sheet;
 use super::style::{Ink, colour, dash};
 use crate::error::Result;
 
@@ -54,7 +54,7 @@ pub fn time_history_figure(title: &str, panels: &[TimePanel], t_label: &str) -> 
     for (i, label) in labels.iter().enumerate() {
         legend.push(Entry::new(label, ink(i)?));
     }
-    Sheet {
+    Drawing {
         name: PLACE,
         title: Some(title.to_owned()).filter(|t| !t.is_empty()),
         panels: drawn,

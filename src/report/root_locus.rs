@@ -2,12 +2,12 @@
 //! grow.
 
 use super::axis::Axis;
+use super::drawing::Drawing;
 use super::figure::Figure;
 use super::flutter_figures::branch_names;
 use super::legend::Entry;
 use super::panel::Panel;
 use super::series::index_of;
-use super::sheet::Sheet;
 use super::style::{BLACK, Ink, branch_width, colour, dash};
 use crate::error::Result;
 use crate::flutter::{FlutterCurves, ModeBranch};
@@ -36,7 +36,7 @@ impl RootLocus {
     }
 
     pub(super) fn draw(self, title: &str, legend: Vec<Vec<Entry>>) -> Result<Figure> {
-        Sheet {
+        Drawing {
             name: PLACE,
             title: Some(title.to_owned()),
             panels: vec![self.0],

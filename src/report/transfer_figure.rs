@@ -1,11 +1,11 @@
 //! Transfer functions over frequency: magnitude and phase, models against a reference with its tolerance bands.
 
 use super::axis::Axis;
+use super::drawing::Drawing;
 use super::figure::Figure;
 use super::legend::Entry;
 use super::panel::Panel;
 use super::series::index_of;
-use super::sheet::Sheet;
 use super::style::{BLACK, GREY, Ink, Shape, colour, dash};
 use crate::error::Result;
 
@@ -78,7 +78,7 @@ pub(crate) fn transfer_figure(
     for label in &labels {
         legend.push(Entry::new(label, ink(label)?));
     }
-    Sheet {
+    Drawing {
         name: PLACE,
         title: Some(title.to_owned()).filter(|t| !t.is_empty()),
         panels,

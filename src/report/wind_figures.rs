@@ -1,10 +1,10 @@
 //! Static equilibria, spectra and root mean squares of the response to turbulence.
 
 use super::axis::Axis;
+use super::drawing::Drawing;
 use super::figure::Figure;
 use super::legend::Entry;
 use super::panel::Panel;
-use super::sheet::Sheet;
 use super::style::{BLACK, Ink, Shape, colour, dash};
 use crate::aeroelastic::EquilibriumPath;
 use crate::error::Result;
@@ -182,7 +182,7 @@ fn stacked(
     height: f64,
     legend: Vec<Entry>,
 ) -> Result<Figure> {
-    Sheet {
+    Drawing {
         name: place,
         title: titled(title),
         panels,

@@ -29,7 +29,7 @@ const SHARED: usize = 2 + POINTS;
 pub struct StripFlow {
     /// Width `B`, m.
     pub width_m: f64,
-    /// Mean wind speed at the strip over that of [`Given`].
+    /// Mean wind speed at the strip over that of [`GivenMotion`].
     pub wind_factor: f64,
 }
 
@@ -44,7 +44,7 @@ pub struct KnownMotion {
 
 /// Wind and motion of all strips at one point of time.
 #[derive(Debug, Clone, Copy)]
-pub struct Given<'a> {
+pub struct GivenMotion<'a> {
     /// Point of time, s.
     pub time_s: f64,
     /// Mean wind speed, m/s.
@@ -140,7 +140,12 @@ impl PrescribedForces {
     /// [`Error::Input`] for a point that is not later than the newest and for a step of more than ten thousand parts over
     /// all strips (a hundred of each at least);
     /// [`Error::Numerical`] for a filter that does not settle, and beyond the range of numbers.
-    pub fn take(&mut self, state: &mut [f64], given: &Given, strips: &[StripFlow]) -> Result<()> {
+    pub fn take(
+        &mut self,
+        state: &mut [f64],
+        given: &GivenMotion,
+        strips: &[StripFlow],
+    ) -> Result<()> {
         if Self::points(state) > 0 && given.time_s <= state[2] {
             return Err(Error::input(
                 "prescribed motion",
@@ -231,7 +236,7 @@ impl PrescribedForces {
     }
 
     /// Enters the point in front of the others.
-    fn enter(&self, state: &mut [f64], given: &Given) {
+    fn enter(&self, state: &mut [f64], given: &GivenMotion) {
         state.copy_within(2..SHARED - 1, 3);
         state[0] = (Self::points(state) + 1).min(POINTS) as f64;
         (state[1], state[2]) = (given.wind_speed_m_s, given.time_s);

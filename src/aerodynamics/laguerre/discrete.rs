@@ -26,7 +26,7 @@ pub struct DiscreteTerm {
 /// One [`DiscreteTerm`] a motion when the parameters are shared, as in the thesis; more where a transfer function has a
 /// decay factor or a number of filters of its own.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "Layout", into = "Layout")]
+#[serde(try_from = "SavedModel", into = "SavedModel")]
 pub struct DiscreteLaguerre {
     /// Degrees of freedom of rows and columns.
     pub dofs: Vec<Dof>,
@@ -234,7 +234,7 @@ impl Realizable for DiscreteLaguerre {
 /// their filters, a list of `terms` where they do not.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Layout {
+struct SavedModel {
     dofs: Vec<Dof>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     alpha: Option<f64>,
@@ -250,7 +250,7 @@ struct Layout {
 #[serde(transparent)]
 struct Matrices(#[serde(with = "crate::state_space::rows::list")] Vec<DMatrix<f64>>);
 
-impl From<DiscreteLaguerre> for Layout {
+impl From<DiscreteLaguerre> for SavedModel {
     fn from(model: DiscreteLaguerre) -> Self {
         let shared = model.shared_parameters();
         let (coefficients, terms) = match shared {
@@ -271,10 +271,10 @@ impl From<DiscreteLaguerre> for Layout {
     }
 }
 
-impl TryFrom<Layout> for DiscreteLaguerre {
+impl TryFrom<SavedModel> for DiscreteLaguerre {
     type Error = String;
 
-    fn try_from(layout: Layout) -> std::result::Result<Self, String> {
+    fn try_from(layout: SavedModel) -> std::result::Result<Self, String> {
         match (layout.alpha, layout.coefficients, layout.terms) {
             (Some(alpha), Some(Matrices(coefficients)), None) => Ok(Self::shared(
                 layout.dofs,

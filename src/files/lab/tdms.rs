@@ -37,9 +37,9 @@ pub(super) fn parse(data: &[u8], group: Option<&str>) -> Result<ChannelSet> {
     file.channels(group)
 }
 
-/// Layout of the samples of one channel in a block.
+/// SampleLayout of the samples of one channel in a block.
 #[derive(Debug, Clone, Copy)]
-struct Layout {
+struct SampleLayout {
     kind: u32,
     count: usize,
 }
@@ -50,7 +50,7 @@ struct Object {
     /// Whether it is in `active`.
     is_active: bool,
     properties: BTreeMap<String, Attribute>,
-    layout: Option<Layout>,
+    layout: Option<SampleLayout>,
     samples: Vec<f64>,
 }
 
@@ -143,7 +143,7 @@ impl TdmsFile {
                             format!("texts (index of {length} bytes)"),
                         ));
                     }
-                    object.layout = Some(Layout { kind, count });
+                    object.layout = Some(SampleLayout { kind, count });
                     true
                 }
             };
@@ -199,7 +199,7 @@ impl TdmsFile {
             return Err(Error::input(format!("byte {}", bytes.at), expected, "more"));
         }
         let layout = |place: &usize| Some((*place, self.objects[*place].layout?));
-        let layouts: Vec<(usize, Layout)> = self.active.iter().filter_map(layout).collect();
+        let layouts: Vec<(usize, SampleLayout)> = self.active.iter().filter_map(layout).collect();
         if layouts.is_empty() {
             return Ok(());
         }
@@ -230,7 +230,7 @@ impl TdmsFile {
     /// Number of blocks in `raw` bytes of samples from the byte `at` on.
     fn count_blocks(
         &mut self,
-        layouts: &[(usize, Layout)],
+        layouts: &[(usize, SampleLayout)],
         raw: usize,
         at: usize,
     ) -> Result<usize> {

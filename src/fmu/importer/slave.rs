@@ -17,7 +17,7 @@ use std::sync::Arc;
 use tempfile::TempDir;
 
 /// What an instance needs for as long as it lives.
-pub(super) struct Loaded {
+pub(super) struct LoadedFmu {
     pub binary: Binary,
     /// The unpacked archive; removed with the last user.
     pub _folder: Arc<TempDir>,
@@ -29,7 +29,7 @@ pub(super) struct Loaded {
 struct Core {
     component: Component,
     fatal: Cell<bool>,
-    loaded: Arc<Loaded>,
+    loaded: Arc<LoadedFmu>,
     // the FMU keeps the addresses of both
     _callbacks: Box<CallbackFunctions>,
     log: Box<LogBook>,
@@ -56,7 +56,12 @@ pub struct Slave {
 }
 
 impl Slave {
-    pub(super) fn new(loaded: &Arc<Loaded>, name: &str, guid: &str, logging: bool) -> Result<Self> {
+    pub(super) fn new(
+        loaded: &Arc<LoadedFmu>,
+        name: &str,
+        guid: &str,
+        logging: bool,
+    ) -> Result<Self> {
         let c_text = |what: &str, text: &str| {
             CString::new(text).map_err(|_| Error::input(what, "text without a zero byte", text))
         };

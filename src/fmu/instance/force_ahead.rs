@@ -3,7 +3,7 @@
 use super::force_unit::{Conditions, ForceUnit, NOT_SET, SET_AS_DERIVATIVE, check_forces};
 use super::memory::Memory;
 use crate::error::Result;
-use crate::response::{ForceAhead, Given, KnownMotion, PrescribedForces, StripFlow};
+use crate::response::{ForceAhead, GivenMotion, KnownMotion, PrescribedForces, StripFlow};
 use std::borrow::Cow;
 
 impl ForceUnit {
@@ -39,7 +39,7 @@ impl ForceUnit {
             if let Some(newest) = PrescribedForces::newest_s(&state) {
                 ahead_s = (newest + ahead_s - memory.time).max(0.0);
             }
-            let given = Given {
+            let given = GivenMotion {
                 time_s: memory.time,
                 wind_speed_m_s: memory.values[self.inputs[0]],
                 motion: &motion,

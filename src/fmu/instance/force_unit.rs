@@ -16,7 +16,7 @@ use crate::fmu::refusal::{Answer, Refusal};
 use crate::fmu::resources::Resources;
 use crate::fmu::variables::{ForceOutput, Role, SectionParameter, VariableTable};
 use crate::response::{
-    ForceAhead, Given, PrescribedForces, SectionState, StripFlow, StripGusts, wind_at_rest,
+    ForceAhead, GivenMotion, PrescribedForces, SectionState, StripFlow, StripGusts, wind_at_rest,
 };
 
 /// How a number of the motion has been set since the last step.
@@ -307,7 +307,7 @@ impl Unit for ForceUnit {
         }
         let motion = self.motion(memory);
         let flows = self.conditions(&memory.values).flows;
-        let given = Given {
+        let given = GivenMotion {
             time_s: memory.time,
             wind_speed_m_s: wind,
             motion: &motion,

@@ -146,7 +146,7 @@ impl Glance {
 
 /// The variables by place, which is the index into the table and into the stored values.
 #[derive(Debug, Clone)]
-pub(super) struct Layout {
+pub(super) struct VariablePlaces {
     pub access: Vec<Access>,
     glances: Vec<Glance>,
     wind_speed: usize,
@@ -163,7 +163,7 @@ pub(super) fn place(table: &VariableTable, role: Role) -> Result<usize> {
         .ok_or_else(|| Error::Numerical(format!("variable table: nothing stands for {role:?}")))
 }
 
-impl Layout {
+impl VariablePlaces {
     /// The layout of a table; `held` says which outputs are entries of the system's state.
     pub(super) fn new(
         table: &VariableTable,

@@ -6,7 +6,7 @@ use super::memory::Memory;
 use super::section::{self, OnsetCard};
 use super::section_places::Places;
 use super::sensitivity::{check_finite, finite, pick};
-use super::trust::{Present, Told, tested_winds};
+use super::trust::{Present, ToldOfTrust, tested_winds};
 use super::unit::Unit;
 use crate::aerodynamics::{GustForce, Realizable, Realization};
 use crate::error::Result;
@@ -15,7 +15,7 @@ use crate::fmu::lifecycle::State;
 use crate::fmu::refusal::Answer;
 use crate::fmu::resources::Resources;
 use crate::fmu::variables::Role;
-use crate::response::{Inputs, Outputs, SectionState, Standing, Stepper};
+use crate::response::{Inputs, Outputs, RepeatableStep, SectionState, Stepper};
 
 /// Searches for growth of one instance at most: one takes as long as some thousand steps, and an importer may change
 /// parameters at every communication point.
@@ -23,13 +23,13 @@ const GROWTH_SEARCHES: usize = 32;
 
 /// What is known of the inputs.
 #[derive(Debug, Clone, Copy)]
-enum Loaded {
+enum LoadedInputs {
     /// Those of the memory may be others.
     Stale,
     /// They are those of the memory.
     Current,
     /// And a step has been taken with them that may be taken again.
-    Standing(Standing),
+    Repeatable(RepeatableStep),
 }
 
 /// See the module.
@@ -51,9 +51,9 @@ pub(super) struct SectionUnit {
     growth_known: bool,
     /// Searches for growth that this instance may still do.
     growth_searches_left: usize,
-    pub told: Told,
+    pub told: ToldOfTrust,
     pub inputs: Inputs,
-    loaded: Loaded,
+    loaded: LoadedInputs,
     outputs: Outputs,
 }
 
@@ -82,8 +82,8 @@ impl SectionUnit {
             onset_current: false,
             growth_known: false,
             growth_searches_left: GROWTH_SEARCHES,
-            told: Told::default(),
-            loaded: Loaded::Stale,
+            told: ToldOfTrust::default(),
+            loaded: LoadedInputs::Stale,
             outputs: Outputs::default(),
         })
     }
@@ -111,18 +111,18 @@ impl SectionUnit {
 
     /// The inputs of the memory of this unit, which are loaded once until one is set.
     fn load_own_inputs(&mut self, memory: &Memory) {
-        if matches!(self.loaded, Loaded::Stale) {
+        if matches!(self.loaded, LoadedInputs::Stale) {
             self.load_inputs(memory);
             // with a rate, a step carries them on
             if memory.input_rates.iter().all(|rate| *rate == 0.0) {
-                self.loaded = Loaded::Current;
+                self.loaded = LoadedInputs::Current;
             }
         }
     }
 
     /// The inputs of any memory.
     pub(super) fn load_inputs(&mut self, memory: &Memory) {
-        self.loaded = Loaded::Stale;
+        self.loaded = LoadedInputs::Stale;
         let (values, rates) = (&memory.values, &memory.input_rates);
         self.inputs.wind_speed_m_s = values[self.places.wind_speed];
         self.inputs.wind_speed_rate_m_s2 = rates[0];
@@ -201,10 +201,10 @@ impl Unit for SectionUnit {
 
     fn changed(&mut self, source: Source) {
         match source {
-            Source::Input => self.loaded = Loaded::Stale,
+            Source::Input => self.loaded = LoadedInputs::Stale,
             Source::Section => {
                 self.stepper = None;
-                self.loaded = Loaded::Stale;
+                self.loaded = LoadedInputs::Stale;
                 self.onset_current = false;
                 self.growth_known = false;
                 self.release_pending = true;
@@ -226,16 +226,16 @@ impl Unit for SectionUnit {
     }
 
     fn begin_initialization(&mut self) {
-        self.told = Told::default();
+        self.told = ToldOfTrust::default();
         self.release_pending = true;
     }
 
     fn input_rate_set(&mut self, _: &mut Memory, _: usize) {
-        self.loaded = Loaded::Stale;
+        self.loaded = LoadedInputs::Stale;
     }
 
     fn replace(&mut self, new: &mut Memory, old: &Memory, same: &dyn Fn(Source) -> bool) {
-        self.loaded = Loaded::Stale;
+        self.loaded = LoadedInputs::Stale;
         let same_section = same(Source::Section);
         if !same_section {
             self.stepper = None;
@@ -280,16 +280,17 @@ impl Unit for SectionUnit {
         self.load_own_inputs(memory);
         if let Some(stepper) = &mut self.stepper {
             stepper.advance(&mut memory.system, &self.inputs, step)?;
-            if !matches!(self.loaded, Loaded::Stale) {
+            if !matches!(self.loaded, LoadedInputs::Stale) {
                 let standing = stepper.standing(&memory.system, &self.inputs, step);
-                self.loaded = standing.map_or(Loaded::Current, Loaded::Standing);
+                self.loaded = standing.map_or(LoadedInputs::Current, LoadedInputs::Repeatable);
             }
         }
         Ok(false)
     }
 
     fn repeat(&mut self, memory: &mut Memory, step: f64) -> Option<bool> {
-        let (Loaded::Standing(standing), Some(stepper)) = (&self.loaded, &mut self.stepper) else {
+        let (LoadedInputs::Repeatable(standing), Some(stepper)) = (&self.loaded, &mut self.stepper)
+        else {
             return None;
         };
         let taken = standing.step_s == step

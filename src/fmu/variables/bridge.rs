@@ -1,10 +1,10 @@
 //! The variables of a whole bridge, in the order of the table.
 
+use super::dof_names::names_of;
 use super::real::{FIXED, INPUT, OUTPUT, SMALLEST, TUNABLE, constants, real};
 use super::section::{
     calculated_parameters, capitalized, gust_inputs, onset_bounds, search_limit, status, wind_speed,
 };
-use super::words::words;
 use super::{ModeOutput, ModeParameter, Response, Role, SectionParameter, Status, Variable};
 use super::{bridge_states, dependencies};
 use crate::error::Result;
@@ -121,7 +121,11 @@ fn force(options: &BridgeOptions, named: usize, dof: Dof) -> Variable {
         Dof::Lateral => (&si::NEWTON, "Force", "lateral force, positive downwind"),
         Dof::Torsion => (&si::NEWTON_METRE, "Torque", "moment, positive nose-up"),
     };
-    let name = format!("node[{}].{}", options.node_name(named), words(dof).external);
+    let name = format!(
+        "node[{}].{}",
+        options.node_name(named),
+        names_of(dof).external
+    );
     let text = format!("External {what}, {}", place(options, named));
     real(name, Role::NodeForce(named, dof), INPUT, text)
         .start(0.0)
@@ -133,7 +137,7 @@ fn motions(options: &BridgeOptions, named: usize) -> impl Iterator<Item = Variab
         .into_iter()
         .flat_map(|dof| Response::MOTION.map(|response| (dof, response)));
     each.map(move |(dof, response)| {
-        let (w, i) = (words(dof), response as usize);
+        let (w, i) = (names_of(dof), response as usize);
         let what = match response {
             Response::Displacement => capitalized(w.motion),
             Response::Rate => format!("Rate of the {}", w.motion),

@@ -34,7 +34,7 @@ pub(super) fn add(table: &mut Vec<Variable>, options: &BridgeOptions) -> Result<
     for entry in 0..states.count() {
         table[states.rate(entry)].derivative_of = Some(states.state(entry));
     }
-    let known = Known::of(table);
+    let known = StateDependencies::of(table);
     for variable in &mut table[..states.first] {
         variable.direct_inputs.extend(states.behind(variable.role));
         variable.direct_inputs.sort_unstable();
@@ -115,7 +115,7 @@ impl States {
         }
     }
 
-    fn modes_depend(&self, table: &mut [Variable], known: &Known) {
+    fn modes_depend(&self, table: &mut [Variable], known: &StateDependencies) {
         for m in 0..self.modes {
             table[self.state(m)].initial_dependencies = dependent([known.release[m]]);
             let rate = self.rate(m);
@@ -127,7 +127,12 @@ impl States {
         }
     }
 
-    fn filters_depend(&self, table: &mut [Variable], known: &Known, air: &ContinuousRealization) {
+    fn filters_depend(
+        &self,
+        table: &mut [Variable],
+        known: &StateDependencies,
+        air: &ContinuousRealization,
+    ) {
         for i in 0..self.filters {
             let entry = 2 * self.modes + i;
             let linked = |k: &usize| air.a[(i, *k)] != 0.0;
@@ -145,7 +150,7 @@ impl States {
         }
     }
 
-    fn lags_depend(&self, table: &mut [Variable], known: &Known) {
+    fn lags_depend(&self, table: &mut [Variable], known: &StateDependencies) {
         for i in 0..self.lags {
             let entry = 2 * self.modes + self.filters + i;
             let (state, rate) = (self.state(entry), self.rate(entry));
@@ -158,7 +163,7 @@ impl States {
 }
 
 /// What states depend on, by place in the table.
-struct Known {
+struct StateDependencies {
     /// Wind, forces and gusts.
     inputs: Vec<usize>,
     wind: Option<usize>,
@@ -171,7 +176,7 @@ struct Known {
     of_forces: Vec<InitialDependency>,
 }
 
-impl Known {
+impl StateDependencies {
     fn of(table: &[Variable]) -> Self {
         let places = |wanted: fn(Role) -> bool| -> Vec<usize> {
             let all = table.iter().enumerate();

@@ -14,7 +14,7 @@ pub(super) fn fill(variables: &mut [Variable], model: &TrainedModel, gusts: Opti
         gusts_at_once: gusts.is_some_and(|g| g.states() == 0),
     };
     let filters = model.model.realize().states();
-    let known = &Known::of(variables);
+    let known = &UnknownSources::of(variables);
     for variable in variables.iter_mut() {
         let (mut direct, mut initial) = match variable.role {
             Role::Filter(i) if i >= filters => (Vec::new(), dependent(gust(known))),
@@ -68,14 +68,14 @@ pub(super) fn fill(variables: &mut [Variable], model: &TrainedModel, gusts: Opti
 }
 
 /// What unknowns depend on, by place in the table, with what each stands for.
-struct Known {
+struct UnknownSources {
     /// Inputs and parameters.
     stated: Vec<(usize, Role)>,
     /// States, where importers see them.
     states: Vec<(usize, Role)>,
 }
 
-impl Known {
+impl UnknownSources {
     fn of(variables: &[Variable]) -> Self {
         let seen = variables.iter().any(|v| v.derivative_of.is_some());
         let stated = |v: &Variable| matches!(v.causality, Causality::Input | Causality::Parameter);
@@ -93,7 +93,7 @@ impl Known {
 
 /// States on which a variable depends: a state on itself, forces and accelerations on all, a filter's rate on displacements and
 /// filters.
-fn states_behind(known: &Known, of: Role, filters: usize) -> impl Iterator<Item = usize> {
+fn states_behind(known: &UnknownSources, of: Role, filters: usize) -> impl Iterator<Item = usize> {
     let depends = move |on: Role| match of {
         Role::Status(Status::AmplitudeInLinearRange) => {
             on == Role::Response(Response::Displacement, Dof::Torsion)
@@ -113,7 +113,7 @@ fn states_behind(known: &Known, of: Role, filters: usize) -> impl Iterator<Item 
 }
 
 /// What the filters of a section held still depend on.
-fn settled_flow(known: &Known) -> Vec<InitialDependency> {
+fn settled_flow(known: &UnknownSources) -> Vec<InitialDependency> {
     dependent(places(known, |role| {
         matches!(
             role,
@@ -123,7 +123,7 @@ fn settled_flow(known: &Known) -> Vec<InitialDependency> {
     }))
 }
 
-fn gust(known: &Known) -> Vec<usize> {
+fn gust(known: &UnknownSources) -> Vec<usize> {
     places(known, |role| matches!(role, Role::Gust(..)))
 }
 
@@ -153,7 +153,12 @@ fn has_added_mass(model: &TrainedModel) -> bool {
 }
 
 /// Inputs that act at once: displacements and rates are states and none acts on them.
-fn direct_inputs(known: &Known, response: Response, dof: Dof, coupling: Coupling) -> Vec<usize> {
+fn direct_inputs(
+    known: &UnknownSources,
+    response: Response,
+    dof: Dof,
+    coupling: Coupling,
+) -> Vec<usize> {
     let coupled = coupling.of(response);
     let acts = |role: Role| match (response, role) {
         (Response::Acceleration | Response::SelfExcitedForce, Role::WindSpeed) => true,
@@ -167,7 +172,7 @@ fn direct_inputs(known: &Known, response: Response, dof: Dof, coupling: Coupling
 }
 
 fn initial_knowns(
-    known: &Known,
+    known: &UnknownSources,
     response: Response,
     dof: Dof,
     coupling: Coupling,
@@ -203,7 +208,7 @@ fn initial_knowns(
 }
 
 /// Everything that onset and divergence depend on.
-fn parameters(known: &Known) -> Vec<InitialDependency> {
+fn parameters(known: &UnknownSources) -> Vec<InitialDependency> {
     dependent(places(known, |role| {
         matches!(role, Role::Section(_) | Role::OnsetSearchLimit)
     }))
@@ -219,7 +224,7 @@ pub(super) fn dependent(places: impl IntoIterator<Item = usize>) -> Vec<InitialD
         .collect()
 }
 
-fn places(known: &Known, wanted: impl Fn(Role) -> bool) -> Vec<usize> {
+fn places(known: &UnknownSources, wanted: impl Fn(Role) -> bool) -> Vec<usize> {
     let mut places = Vec::with_capacity(known.stated.len());
     let wanted = known.stated.iter().filter(|(_, role)| wanted(*role));
     places.extend(wanted.map(|(i, _)| *i));

@@ -1,8 +1,8 @@
 //! The variables of a unit of forces, in the order of the table.
 
+use super::dof_names::names_of;
 use super::real::{FIXED, INPUT, OUTPUT, SMALLEST, TUNABLE, constants, force_scale, nominal, real};
 use super::section::{capitalized, filter, gust_filter, gust_inputs, wind_speed};
-use super::words::words;
 use super::{
     ForceOutput, InitialDependency, Response, Role, SectionParameter, StripParameter, Variable,
 };
@@ -93,7 +93,7 @@ fn motion<'a>(
         .iter()
         .flat_map(|&dof| Response::MOTION.map(|response| (dof, response)));
     each.map(move |(dof, response)| {
-        let (w, i) = (words(dof), response as usize);
+        let (w, i) = (names_of(dof), response as usize);
         let text = match response {
             Response::Displacement => {
                 format!(
@@ -126,7 +126,7 @@ fn forces<'a>(
     options: &'a ForceOptions,
 ) -> impl Iterator<Item = Variable> + 'a {
     dofs.iter().flat_map(move |&dof| {
-        let w = words(dof);
+        let w = names_of(dof);
         let (total_unit, total_quantity): (&'static Unit, _) = match dof {
             Dof::Torsion => (&si::NEWTON_METRE, "Torque"),
             _ => (&si::NEWTON, "Force"),

@@ -1,12 +1,12 @@
 //! The variables of the coupled section, in the order of the table.
 
+use super::dof_names::{DofNames, motion, names_of};
 use super::parameters::SectionParameter;
 use super::real::{
     CALCULATED, DISCRETE, FIXED, INNER, INPUT, LOCAL, OUTPUT, SMALLEST, SPEED, TUNABLE, constants,
     force_scale, nominal, real,
 };
 use super::variable::find;
-use super::words::{Words, motion, words};
 use super::{Calculated, Gust, Initial, Response, Role, Status, Value, Variable};
 use crate::aerodynamics::{GustForce, Realizable, Realization};
 use crate::error::Result;
@@ -161,7 +161,7 @@ pub(super) fn wind_speed(model: &TrainedModel) -> Variable {
 
 fn inputs(model: &TrainedModel, dofs: &[Dof]) -> Vec<Variable> {
     let external = dofs.iter().map(|&dof| {
-        let w = words(dof);
+        let w = names_of(dof);
         let text = format!("External {}", w.force);
         real(w.external, Role::ExternalForce(dof), INPUT, text)
             .start(0.0)
@@ -179,7 +179,7 @@ fn outputs(model: &TrainedModel, dofs: &[Dof]) -> Vec<Variable> {
         ),
         _ => String::new(),
     };
-    let describe = |response: Response, w: &Words| match response {
+    let describe = |response: Response, w: &DofNames| match response {
         Response::Displacement => capitalized(w.motion),
         Response::Rate => format!("Rate of the {}", w.motion),
         Response::Acceleration => format!("Second rate of the {}", w.motion),
@@ -190,7 +190,7 @@ fn outputs(model: &TrainedModel, dofs: &[Dof]) -> Vec<Variable> {
     dofs.iter()
         .flat_map(|&dof| Response::ALL.map(|response| (dof, response)))
         .map(|(dof, response)| {
-            let (w, i) = (words(dof), response as usize);
+            let (w, i) = (names_of(dof), response as usize);
             let quantity = w.quantities.get(i).copied().unwrap_or(w.force_quantity);
             let role = Role::Response(response, dof);
             real(w.responses[i], role, OUTPUT, describe(response, w))
@@ -206,7 +206,7 @@ fn section_parameter(parameter: SectionParameter, section: &SectionModel) -> Var
     let of_support = |dof, i: usize, text: &str| {
         let text = format!("{text}, {} motion", motion(dof));
         real(
-            words(dof).support[i],
+            names_of(dof).support[i],
             Role::Section(parameter),
             TUNABLE,
             text,
@@ -237,7 +237,7 @@ fn section_parameter(parameter: SectionParameter, section: &SectionModel) -> Var
                 Dof::Lateral => (SMALLEST, "Mass per unit length of span, lateral motion"),
                 Dof::Torsion => (SMALLEST_INERTIA, "Mass moment of inertia per unit length of span"),
             };
-            let w = words(dof);
+            let w = names_of(dof);
             variable(w.support[0], text)
                 .quantity(w.inertia_quantity, Some(w.inertia_unit))
                 .min(min)
@@ -254,7 +254,7 @@ fn section_parameter(parameter: SectionParameter, section: &SectionModel) -> Var
 
 /// Displacement and rate at release.
 fn initial_values(dof: Dof, model: &TrainedModel) -> [Variable; 2] {
-    let w = words(dof);
+    let w = names_of(dof);
     let release = match dof {
         Dof::Vertical => model.experiment.initial_vertical_m,
         Dof::Lateral => 0.0,

@@ -1,6 +1,6 @@
 //! The minimum-state form under constraints: for given lags and `E` they are convex in `D` and the feed-through of all forces.
 
-use super::{FittedTable, LinearProblem, LinearSolution, ROUNDS, Task};
+use super::{FittedTable, LagSearch, LinearProblem, LinearSolution, ROUNDS};
 use crate::error::Result;
 use crate::identification::dissipative::{
     ActiveConstraint, ConstraintReport, Dissipation, LinearEntry,
@@ -20,7 +20,7 @@ pub(super) struct Rows {
     pub active: Option<Vec<ActiveConstraint>>,
 }
 
-impl Task<'_> {
+impl LagSearch<'_> {
     /// The fit under its constraints, searched from the best point of least squares alone; that fit where nothing binds.
     pub(super) fn constrain(
         &self,

@@ -25,7 +25,7 @@ const WIDE: ReducedFrequencyRange = ReducedFrequencyRange {
 impl UserCase {
     /// Computes every figure. A computation that fails is a result that has not passed.
     pub(crate) fn run(&self) -> Vec<CaseResult> {
-        let loaded = Loaded::new(self);
+        let loaded = LoadedCase::new(self);
         let judge = |figure: &UserFigure| {
             let found = match &loaded {
                 Ok(loaded) => loaded.figure(figure).map_err(|e| e.to_string()),
@@ -71,14 +71,14 @@ impl UserCase {
 }
 
 /// A case with its forces loaded.
-struct Loaded {
+struct LoadedCase {
     structure: Structure,
     model: Box<dyn Transfer>,
     tested: Option<ReducedFrequencyRange>,
     speed_max: f64,
 }
 
-impl Loaded {
+impl LoadedCase {
     /// Reads what the case names.
     fn new(case: &UserCase) -> Result<Self> {
         let a = &case.aerodynamics;

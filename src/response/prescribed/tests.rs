@@ -31,7 +31,7 @@ fn take(
     known: usize,
 ) {
     let motion = motion.map(|values| KnownMotion { values, known });
-    let given = Given {
+    let given = GivenMotion {
         time_s: t,
         wind_speed_m_s: wind,
         motion: &motion,
@@ -206,7 +206,7 @@ fn radius(
                 known,
             })
             .collect();
-        let given = Given {
+        let given = GivenMotion {
             time_s: 0.0,
             wind_speed_m_s: wind,
             motion: &motion,
@@ -314,7 +314,7 @@ fn what_cannot_be_computed_leaves_the_state() {
             values: [0.1, 0.0, 0.0],
             known: 1,
         }; 2];
-        let given = Given {
+        let given = GivenMotion {
             time_s,
             wind_speed_m_s,
             motion: &motion,

@@ -18,7 +18,7 @@ const RIGHT: f64 = 16.0;
 
 /// A whole figure before it is drawn.
 #[derive(Debug)]
-pub(super) struct Sheet {
+pub(super) struct Drawing {
     /// Kind of figure, for messages.
     pub(super) name: &'static str,
     pub(super) title: Option<String>,
@@ -31,7 +31,7 @@ pub(super) struct Sheet {
     pub(super) legend: Vec<Vec<Entry>>,
 }
 
-impl Sheet {
+impl Drawing {
     /// Draws everything.
     ///
     /// # Errors
@@ -131,7 +131,7 @@ impl Sheet {
     }
 }
 
-/// Puts the scene of a panel into that of the sheet. Clip paths are numbered anew: the library counts them over the
+/// Puts the scene of a panel into that of the drawing. Clip paths are numbered anew: the library counts them over the
 /// life of the process, which would make every drawing differ.
 fn insert(scene: &mut Scene, panel: Scene, (x, y): (f64, f64)) {
     let name = format!("{CLIP}{}", scene.defs.len());

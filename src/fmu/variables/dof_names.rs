@@ -4,7 +4,7 @@ use crate::fmu::si::{self, Unit};
 use crate::section::Dof;
 
 /// Names, units and words of one degree of freedom.
-pub(super) struct Words {
+pub(super) struct DofNames {
     /// Displacement, rate, acceleration, force.
     pub responses: [&'static str; 4],
     /// Units of the same.
@@ -34,7 +34,7 @@ const TRANSLATION_UNITS: [&Unit; 4] = [
 ];
 const TRANSLATION_QUANTITIES: [&str; 3] = ["Length", "Velocity", "Acceleration"];
 
-static HEAVE: Words = Words {
+static HEAVE: DofNames = DofNames {
     responses: ["heave", "heave_rate", "heave_acceleration", "lift"],
     units: TRANSLATION_UNITS,
     external: "external_lift",
@@ -48,7 +48,7 @@ static HEAVE: Words = Words {
     quantities: TRANSLATION_QUANTITIES,
 };
 
-static SWAY: Words = Words {
+static SWAY: DofNames = DofNames {
     responses: ["sway", "sway_rate", "sway_acceleration", "drag"],
     units: TRANSLATION_UNITS,
     external: "external_drag",
@@ -62,7 +62,7 @@ static SWAY: Words = Words {
     quantities: TRANSLATION_QUANTITIES,
 };
 
-static ROTATION: Words = Words {
+static ROTATION: DofNames = DofNames {
     responses: [
         "rotation",
         "rotation_rate",
@@ -86,7 +86,7 @@ static ROTATION: Words = Words {
     quantities: ["Angle", "AngularVelocity", "AngularAcceleration"],
 };
 
-pub(super) fn words(dof: Dof) -> &'static Words {
+pub(super) fn names_of(dof: Dof) -> &'static DofNames {
     match dof {
         Dof::Vertical => &HEAVE,
         Dof::Lateral => &SWAY,
