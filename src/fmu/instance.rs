@@ -45,7 +45,7 @@ use force_unit::ForceUnit;
 use layout::VariablePlaces;
 use memory::{Experiment, Memory};
 use section_unit::SectionUnit;
-use unit::Unit;
+use unit::Differentiable;
 
 /// One instance; instances share nothing.
 #[derive(Debug)]
@@ -53,7 +53,7 @@ pub struct Instance {
     resources: Resources,
     interface: Interface,
     layout: VariablePlaces,
-    unit: Box<dyn Unit>,
+    unit: Box<dyn Differentiable>,
     memory: Memory,
     /// The memory at the beginning.
     fresh: Memory,
@@ -67,7 +67,7 @@ impl Instance {
     /// # Errors
     /// [`crate::Error::Input`] for a model without a realisation, or whose section cannot be coupled with it.
     pub fn new(resources: Resources) -> Result<Self> {
-        let mut unit: Box<dyn Unit> = match (&resources.bridge, &resources.force) {
+        let mut unit: Box<dyn Differentiable> = match (&resources.bridge, &resources.force) {
             (Some(options), _) => Box::new(BridgeUnit::new(&resources, options)?),
             (None, Some(options)) => Box::new(ForceUnit::new(&resources, options)?),
             (None, None) => Box::new(SectionUnit::new(&resources)?),

@@ -6,18 +6,37 @@ use super::bridge_unit::BridgeUnit;
 use super::layout::Source;
 use super::memory::Memory;
 use super::section::OnsetCard;
-use super::sensitivity::{Instant, central_difference, parameter_step};
+use super::sensitivity::{Instant, add, central_difference, parameter_step};
 use super::trust::{Present, is_of_onset, smallest_damping, without_motion};
-use super::unit::Unit;
+use super::unit::{Differentiable, Unit};
 use crate::error::Result;
 use crate::fmu::lifecycle::State;
 use crate::fmu::refusal::Answer;
 use crate::fmu::resources::Resources;
 use crate::fmu::variables::{Calculated, Role, Status};
 
-impl BridgeUnit {
-    /// Derivatives of all unknowns with respect to one known.
-    pub(super) fn column(
+impl Differentiable for BridgeUnit {
+    /// `ẏ = C ż + D ẇ + (∂y/∂V) V̇`.
+    fn output_rates(&mut self, memory: &mut Memory, outputs: &[Role]) -> Answer<Vec<f64>> {
+        self.load_inputs(memory);
+        let stepper = &mut self.built.stepper;
+        let velocity = stepper.state_derivative(&memory.system, &self.inputs)?;
+        let velocity = memory.system.with_all(&velocity);
+        let by_wind = self.by_wind(memory);
+        let wind_rate = self.inputs.wind_speed_rate_m_s2;
+        let inputs = &mut self.inputs;
+        std::mem::swap(&mut inputs.force, &mut inputs.force_rate);
+        std::mem::swap(&mut inputs.gust_m_s, &mut inputs.gust_rate_m_s2);
+        let mut rates = self.modal(&velocity)?;
+        add(&mut rates, &by_wind.outputs, wind_rate);
+        let rate = |role: &Role| match role {
+            Role::Status(_) => Ok(self.present_by_wind(memory, *role)? * wind_rate),
+            response => Ok(self.pick(&rates, *response)),
+        };
+        outputs.iter().map(rate).collect()
+    }
+
+    fn derivatives(
         &mut self,
         resources: &Resources,
         memory: &mut Memory,
@@ -42,7 +61,9 @@ impl BridgeUnit {
         let derivative = |unknown: &Role| self.pick_of(&instant, *unknown);
         Ok(unknowns.iter().map(derivative).collect())
     }
+}
 
+impl BridgeUnit {
     /// What a force, a gust, a state or a coordinate at release of one does.
     fn by_unit(&mut self, memory: &Memory, known: usize) -> Result<Instant> {
         let mut unit = memory.clone();

@@ -8,7 +8,7 @@ use super::bridge_places::Places;
 use super::layout::Source;
 use super::memory::{Memory, starts};
 use super::section::OnsetCard;
-use super::sensitivity::{Instant, add, check_finite, finite};
+use super::sensitivity::{Instant, check_finite, finite};
 use super::trust::{LINEAR_ROTATION_RAD, Present, beyond_linear};
 use super::unit::Unit;
 use crate::aeroelastic::CoupledSection;
@@ -324,40 +324,5 @@ impl Unit for BridgeUnit {
         notices: &mut Vec<String>,
     ) -> f64 {
         self.present(resources, memory, role, notices)
-    }
-
-    /// `ẏ = C ż + D ẇ + (∂y/∂V) V̇`.
-    fn output_rates(
-        &mut self,
-        _: &Resources,
-        memory: &mut Memory,
-        outputs: &[Role],
-    ) -> Answer<Vec<f64>> {
-        self.load_inputs(memory);
-        let stepper = &mut self.built.stepper;
-        let velocity = stepper.state_derivative(&memory.system, &self.inputs)?;
-        let velocity = memory.system.with_all(&velocity);
-        let by_wind = self.by_wind(memory);
-        let wind_rate = self.inputs.wind_speed_rate_m_s2;
-        let inputs = &mut self.inputs;
-        std::mem::swap(&mut inputs.force, &mut inputs.force_rate);
-        std::mem::swap(&mut inputs.gust_m_s, &mut inputs.gust_rate_m_s2);
-        let mut rates = self.modal(&velocity)?;
-        add(&mut rates, &by_wind.outputs, wind_rate);
-        let rate = |role: &Role| match role {
-            Role::Status(_) => Ok(self.present_by_wind(memory, *role)? * wind_rate),
-            response => Ok(self.pick(&rates, *response)),
-        };
-        outputs.iter().map(rate).collect()
-    }
-
-    fn derivatives(
-        &mut self,
-        resources: &Resources,
-        memory: &mut Memory,
-        known: usize,
-        unknowns: &[Role],
-    ) -> Answer<Vec<f64>> {
-        self.column(resources, memory, known, unknowns)
     }
 }

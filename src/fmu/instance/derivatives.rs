@@ -30,9 +30,7 @@ impl Instance {
             .map(|r| self.response_of(*r))
             .collect::<Answer<Vec<_>>>()?;
         self.unit.prepare(&self.resources, &mut self.memory)?;
-        let found = self
-            .unit
-            .output_rates(&self.resources, &mut self.memory, &outputs)?;
+        let found = self.unit.output_rates(&mut self.memory, &outputs)?;
         rates.copy_from_slice(&found);
         Ok(())
     }

@@ -3,6 +3,7 @@
 use super::force_unit::{ForceUnit, SET};
 use super::memory::Memory;
 use super::sensitivity::central_difference;
+use super::unit::Differentiable;
 use crate::error::Result;
 use crate::fmu::lifecycle::State;
 use crate::fmu::refusal::Answer;
@@ -12,9 +13,14 @@ use crate::fmu::variables::Role;
 /// Relative step of the differences with respect to wind and parameters.
 const RELATIVE_STEP: f64 = 1e-5;
 
-impl ForceUnit {
-    /// Derivatives of all unknowns with respect to one known.
-    pub(super) fn column(
+impl Differentiable for ForceUnit {
+    fn output_rates(&mut self, memory: &mut Memory, outputs: &[Role]) -> Answer<Vec<f64>> {
+        let forces = self.ahead(memory, self.renewed(memory))?;
+        let rate = |role: &Role| self.entry(memory, &forces, *role).rate;
+        Ok(outputs.iter().map(rate).collect())
+    }
+
+    fn derivatives(
         &mut self,
         resources: &Resources,
         memory: &mut Memory,
@@ -46,7 +52,9 @@ impl ForceUnit {
             Ok(self.unknowns(&mut other.clone(), renewed, unknowns)?)
         })
     }
+}
 
+impl ForceUnit {
     /// The unknowns for a memory.
     fn unknowns(
         &mut self,

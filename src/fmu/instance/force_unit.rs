@@ -341,27 +341,6 @@ impl Unit for ForceUnit {
         self.put_out(memory, &forces);
         Ok(())
     }
-
-    fn output_rates(
-        &mut self,
-        _: &Resources,
-        memory: &mut Memory,
-        outputs: &[Role],
-    ) -> Answer<Vec<f64>> {
-        let forces = self.ahead(memory, self.renewed(memory))?;
-        let rate = |role: &Role| self.entry(memory, &forces, *role).rate;
-        Ok(outputs.iter().map(rate).collect())
-    }
-
-    fn derivatives(
-        &mut self,
-        resources: &Resources,
-        memory: &mut Memory,
-        known: usize,
-        unknowns: &[Role],
-    ) -> Answer<Vec<f64>> {
-        self.column(resources, memory, known, unknowns)
-    }
 }
 
 /// Refuses forces that no number holds any more.

@@ -6,42 +6,32 @@ use super::layout::Source;
 use super::memory::Memory;
 use super::section_unit::SectionUnit;
 use super::sensitivity::{
-    Instant, add, central_difference, check_finite, parameter_step, speed_sensitivity,
+    Instant, add, central_difference, check_finite, parameter_step, pick, speed_sensitivity,
 };
 use super::trust::{Present, is_of_onset, smallest_damping, without_motion};
+use super::unit::Differentiable;
 use crate::error::Result;
 use crate::fmu::refusal::Answer;
 use crate::fmu::resources::Resources;
 use crate::fmu::variables::{Role, Status};
 use crate::response::{Inputs, Outputs, Stepper};
 
-impl SectionUnit {
-    /// `ẏ = C ż + D ẇ + (∂y/∂V) V̇` of all outputs.
-    pub(super) fn time_derivative(&mut self, memory: &Memory) -> Answer<Outputs> {
-        self.load_inputs(memory);
-        let Some(stepper) = &mut self.stepper else {
-            return Ok(Outputs::default());
+impl Differentiable for SectionUnit {
+    fn output_rates(&mut self, memory: &mut Memory, outputs: &[Role]) -> Answer<Vec<f64>> {
+        let all = self.time_derivative(memory)?;
+        let rate = |role: &Role| -> Answer<f64> {
+            match role {
+                Role::Status(_) => Ok(self.present_by_wind(memory, *role)? * memory.input_rates[0]),
+                response => Ok(pick(&all, *response)),
+            }
         };
-        let velocity = stepper.state_derivative(&memory.system, &self.inputs)?;
-        let velocity = memory.system.with_all(&velocity);
-        let driven = Inputs {
-            force: self.inputs.force_rate.clone(),
-            gust_m_s: self.inputs.gust_rate_m_s2.clone(),
-            ..Inputs::steady(self.inputs.wind_speed_m_s, self.inputs.force.len())
-        };
-        let mut rates = Outputs::default();
-        stepper.outputs(&velocity, &driven, &mut rates)?;
-        let by_speed = speed_sensitivity(stepper, &memory.system, &self.inputs);
-        add(&mut rates, &by_speed, self.inputs.wind_speed_rate_m_s2);
-        check_finite(&rates)?;
-        Ok(rates)
+        outputs.iter().map(rate).collect()
     }
 
-    /// Derivatives of all unknowns with respect to one known.
-    pub(super) fn column(
+    fn derivatives(
         &mut self,
         resources: &Resources,
-        memory: &Memory,
+        memory: &mut Memory,
         known: usize,
         unknowns: &[Role],
     ) -> Answer<Vec<f64>> {
@@ -63,6 +53,29 @@ impl SectionUnit {
             other => Ok(instant.pick(*other)),
         };
         Ok(unknowns.iter().map(derivative).collect::<Result<_>>()?)
+    }
+}
+
+impl SectionUnit {
+    /// `ẏ = C ż + D ẇ + (∂y/∂V) V̇` of all outputs.
+    pub(super) fn time_derivative(&mut self, memory: &Memory) -> Answer<Outputs> {
+        self.load_inputs(memory);
+        let Some(stepper) = &mut self.stepper else {
+            return Ok(Outputs::default());
+        };
+        let velocity = stepper.state_derivative(&memory.system, &self.inputs)?;
+        let velocity = memory.system.with_all(&velocity);
+        let driven = Inputs {
+            force: self.inputs.force_rate.clone(),
+            gust_m_s: self.inputs.gust_rate_m_s2.clone(),
+            ..Inputs::steady(self.inputs.wind_speed_m_s, self.inputs.force.len())
+        };
+        let mut rates = Outputs::default();
+        stepper.outputs(&velocity, &driven, &mut rates)?;
+        let by_speed = speed_sensitivity(stepper, &memory.system, &self.inputs);
+        add(&mut rates, &by_speed, self.inputs.wind_speed_rate_m_s2);
+        check_finite(&rates)?;
+        Ok(rates)
     }
 
     fn by_input(&mut self, memory: &Memory, known: usize) -> Result<Instant> {

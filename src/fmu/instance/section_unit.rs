@@ -5,7 +5,7 @@ use super::layout::Source;
 use super::memory::Memory;
 use super::section::{self, OnsetCard};
 use super::section_places::Places;
-use super::sensitivity::{check_finite, finite, pick};
+use super::sensitivity::{check_finite, finite};
 use super::trust::{Present, ToldOfTrust, tested_winds};
 use super::unit::Unit;
 use crate::aerodynamics::{GustForce, Realizable, Realization};
@@ -347,31 +347,5 @@ impl Unit for SectionUnit {
         notices: &mut Vec<String>,
     ) -> f64 {
         self.present(resources, memory, role, notices)
-    }
-
-    fn output_rates(
-        &mut self,
-        _: &Resources,
-        memory: &mut Memory,
-        outputs: &[Role],
-    ) -> Answer<Vec<f64>> {
-        let all = self.time_derivative(memory)?;
-        let rate = |role: &Role| -> Answer<f64> {
-            match role {
-                Role::Status(_) => Ok(self.present_by_wind(memory, *role)? * memory.input_rates[0]),
-                response => Ok(pick(&all, *response)),
-            }
-        };
-        outputs.iter().map(rate).collect()
-    }
-
-    fn derivatives(
-        &mut self,
-        resources: &Resources,
-        memory: &mut Memory,
-        known: usize,
-        unknowns: &[Role],
-    ) -> Answer<Vec<f64>> {
-        self.column(resources, memory, known, unknowns)
     }
 }

@@ -117,17 +117,15 @@ pub(super) trait Unit: Debug + Send {
     ) -> f64 {
         0.0
     }
+}
 
+/// What is known of how a unit changes, in time and with its inputs, states and parameters.
+pub(super) trait Differentiable: Unit {
     /// First time derivatives of these outputs, per second.
     ///
     /// # Errors
     /// When they cannot be computed.
-    fn output_rates(
-        &mut self,
-        resources: &Resources,
-        memory: &mut Memory,
-        outputs: &[Role],
-    ) -> Answer<Vec<f64>>;
+    fn output_rates(&mut self, memory: &mut Memory, outputs: &[Role]) -> Answer<Vec<f64>>;
 
     /// Derivatives of these unknowns with respect to the value at `known`.
     ///
