@@ -117,7 +117,7 @@ fn platform() -> Result<&'static str, String> {
         ("macos", "x86_64") => Ok("darwin64"),
         ("macos", "aarch64") => Ok("aarch64-darwin"),
         _ => Err(format!(
-            "FMI names no platform for {system} on {processor}: build without the features `cli` and `packaging`"
+            "FMI names no platform for {system} on {processor}: build without the feature `cli`"
         )),
     }
 }

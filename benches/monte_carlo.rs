@@ -58,7 +58,7 @@ fn main() {
     whole_analysis(&trained);
 }
 
-/// One bank of three filters a motion, fitted to the deck LN21-5200.
+/// One bank of three filters per motion, fitted to the deck LN21-5200.
 fn three_filters() -> TrainedModel {
     let table = embedded::deck("LN21-5200").expect("a deck");
     let fit = FrequencyFit {

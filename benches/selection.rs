@@ -135,7 +135,7 @@ fn baseline(python: &Path, argument: &Path) -> f64 {
         .unwrap_or_else(|_| panic!("the baseline printed `{text}`"))
 }
 
-/// Records of 43 200 samples, four for each motion: 172 800 samples a motion.
+/// Records of 43 200 samples, four for each motion: 172 800 samples per motion.
 fn full_set() -> Vec<Record> {
     let plan = TunnelPlan::default();
     ["LN21-5200", "LN21-5500"]

@@ -51,7 +51,7 @@ fn main() {
     growth(&fmu);
 }
 
-/// A model with four filters a motion: twelve states with the section.
+/// A model with four filters per motion: twelve states with the section.
 fn twelve_states() -> TrainedModel {
     let deck = embedded::deck("LN21-5200").expect("an embedded deck");
     let fit = FrequencyFit {
@@ -248,7 +248,7 @@ fn sweep(model: &TrainedModel, python: &Path) {
     );
 }
 
-/// Records of 43 200 samples, four for each motion: 172 800 samples a motion.
+/// Records of 43 200 samples, four for each motion: 172 800 samples per motion.
 fn full_set() -> Vec<Record> {
     let deck = embedded::deck("LN21-5200").expect("an embedded deck");
     let other = embedded::deck("LN21-5500").expect("an embedded deck");

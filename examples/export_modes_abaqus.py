@@ -13,7 +13,7 @@ from odbAccess import openOdb
 
 
 def export(path, node_set, step_name, folder):
-    """Nodes, frequencies, generalised masses and one file a mode."""
+    """Nodes, frequencies, generalised masses and one file per mode."""
     if not os.path.isdir(folder):
         os.makedirs(folder)
     odb = openOdb(path, readOnly=True)

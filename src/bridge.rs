@@ -208,7 +208,7 @@ impl Bridge {
             .collect()
     }
 
-    /// Displacements and rotations of the mass-normalised modes at some nodes: three rows a node, one column a mode.
+    /// Displacements and rotations of the mass-normalised modes at some nodes: three rows per node, one column per mode.
     pub(crate) fn shapes_at(&self, nodes: &[usize]) -> DMatrix<f64> {
         DMatrix::from_fn(3 * nodes.len(), self.modes.len(), |row, m| {
             let mode = &self.modes[m];

@@ -1,4 +1,4 @@
-//! The command line: one file a subcommand. Commands compute an [`Answer`]; it is printed here and nowhere else.
+//! The command line: one file per subcommand. Commands compute an [`Answer`]; it is printed here and nowhere else.
 
 mod account;
 mod answer;

@@ -43,7 +43,7 @@ struct Answer {
     ended: Option<String>,
 }
 
-/// A mode over wind speed, one number a speed.
+/// A mode over wind speed, one number per speed.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 struct ModeCurve {
     /// Degree of freedom the mode moves in still air.

@@ -294,7 +294,7 @@ fn wrong_bridge_files_are_named_with_their_line() {
                 "damping_ratio = [0.01, 0.02, 0.03]",
             )
         },
-        &["modes.damping_ratio: expected one number, or 2, one a mode, found 3 numbers"],
+        &["modes.damping_ratio: expected one number, or 2, one per mode, found 3 numbers"],
     );
     refused(
         |_| text("csv", "").replace("damping_ratio", "select = [7]\ndamping_ratio"),

@@ -1,6 +1,6 @@
 //! Exports FMUs and lets FMPy, the importer most people use, judge and step them.
 //!
-//! Writes one FMU a model and `expected.json` (what the same models give in process) to a folder below the target
+//! Writes one FMU per model and `expected.json` (what the same models give in process) to a folder below the target
 //! directory, then runs `tests/fmpy` with pytest in an environment of its own; see `common/python.rs`.
 #![cfg(feature = "cli")]
 

@@ -17,7 +17,7 @@ use std::path::PathBuf;
 /// Records and derivatives of a campaign.
 #[pyclass(frozen, module = "aerodeck", get_all)]
 pub struct Processing {
-    /// Self-excited forces, one record a run.
+    /// Self-excited forces, one record per run.
     records: Py<Records>,
     /// The table of derivatives.
     derivatives: Py<Derivatives>,

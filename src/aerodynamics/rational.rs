@@ -20,7 +20,7 @@ use std::f64::consts::PI;
 pub enum Lags {
     /// The same for all forces.
     Shared(Vec<f64>),
-    /// Those of each force, one list a row of `G`, all of one length: the `d_l^y` of (1.23a).
+    /// Those of each force, one list per row of `G`, all of one length: the `d_l^y` of (1.23a).
     PerForce(Vec<Vec<f64>>),
 }
 
@@ -51,7 +51,7 @@ impl Lags {
                     let found = rows.len().to_string();
                     return Err(Error::input(
                         PLACE,
-                        format!("{n} lists, one a force"),
+                        format!("{n} lists, one per force"),
                         found,
                     ));
                 }
@@ -89,7 +89,7 @@ pub struct RationalModel {
     pub a3: DMatrix<f64>,
     /// Lags `d_l`, dimensionless, positive.
     pub lags: Lags,
-    /// Lag terms, one n×n matrix a lag; row `i` belongs to the `l`-th lag of force `i`.
+    /// Lag terms, one n×n matrix per lag; row `i` belongs to the `l`-th lag of force `i`.
     #[serde(with = "crate::state_space::rows::list")]
     pub lag_terms: Vec<DMatrix<f64>>,
 }
@@ -118,7 +118,7 @@ impl RationalModel {
         if self.lag_terms.len() != self.lags.count() {
             return Err(Error::input(
                 "rational model: lag_terms",
-                format!("one matrix a lag, {} in all", self.lags.count()),
+                format!("one matrix per lag, {} in all", self.lags.count()),
                 self.lag_terms.len().to_string(),
             ));
         }
@@ -190,7 +190,7 @@ impl Transfer for RationalModel {
 }
 
 impl Realizable for RationalModel {
-    /// n states a lag; `p/(p+d) = 1 − d/(p+d)` puts `a_{l+3}` into `e₀`. Shared lags: one state per lag and motion,
+    /// n states per lag; `p/(p+d) = 1 − d/(p+d)` puts `a_{l+3}` into `e₀`. Shared lags: one state per lag and motion,
     /// `x' = −d x + d r`. Lags of each force: one per lag and force, `x' = −d x + d Σ_j a_j r_j`.
     fn realize(&self) -> Realization {
         let n = self.dofs.len();
@@ -286,7 +286,7 @@ mod tests {
         model.lags = Lags::Shared(vec![0.1, -0.5]);
         assert!(message(&model).contains("expected a positive number, found -0.5"));
         model.lags = Lags::Shared(vec![0.1]);
-        assert!(message(&model).contains("one matrix a lag, 1 in all"));
+        assert!(message(&model).contains("one matrix per lag, 1 in all"));
         let text = serde_json::to_string(&RationalModel::jones_flat_plate()).unwrap();
         assert!(text.contains("\"lags\":[0.091,0.6]"), "{text}");
         let word = text.replace("[0.091,0.6]", "\"two\"");

@@ -112,7 +112,7 @@ struct Grid {
 /// Steps `plan.records` records at a mean wind speed through the coupled section. Gust forces run on straight lines between
 /// samples, for which the steps are exact; each record is one period of its force after a warm-up by its own end.
 ///
-/// `progress` is told how many of all records are done.
+/// `progress` gets how many of all records are done.
 ///
 /// # Errors
 /// [`Error::Input`] for a plan that cannot be, a model without realisation, and records shorter than their warm-up;

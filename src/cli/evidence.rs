@@ -34,7 +34,7 @@ const AROUND_ONSET: [f64; 3] = [0.95, 1.0, 1.05];
 /// Periods and samples of a period that are shown.
 const PERIODS: (f64, f64) = (30.0, 24.0);
 
-/// Frequencies and damping ratios over wind speed, one row a point, as CSV.
+/// Frequencies and damping ratios over wind speed, one row per point, as CSV.
 pub(super) fn curves_csv(name: &str, curves: &[FlutterCurves]) -> String {
     let mut text = format!(
         "# {}: modes over wind speed\n# generator: aerodeck {}\n# units: speed_m_s in m/s; frequency_hz in Hz; \
@@ -180,7 +180,7 @@ pub(super) fn write_derivatives(
     figures::write(DERIVATIVES, out, || derivatives_figure(&shown.plot()))
 }
 
-/// The test points of a derivative, one series a mean speed.
+/// The test points of a derivative, one series per mean speed.
 fn measured(table: &DerivativeTable, d: Derivative) -> Vec<PlottedSeries> {
     let points = table.points(d);
     let groups = near_groups(points.iter().filter_map(|p| p.mean_speed_m_s), SAME_SPEED);

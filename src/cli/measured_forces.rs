@@ -16,7 +16,7 @@ pub(super) const FORCES: &str = "forces";
 /// Periods that are shown.
 const PERIODS: f64 = 3.0;
 
-/// Three periods of one record a motion, as near to the onset in reduced frequency as the tests are; nothing without records.
+/// Three periods of one record per motion, as near to the onset in reduced frequency as the tests are; nothing without records.
 /// `onset` is its speed, m/s, and frequency, Hz.
 pub(super) fn write(
     model: &TrainedModel,
@@ -49,8 +49,8 @@ pub(super) fn write(
     for stretch in &chosen {
         panels.extend(stretch.panels(model)?);
     }
-    let told = chosen.iter().map(Stretch::describe).collect::<Vec<_>>();
-    let title = format!("Forces by {}", told.join(", by "));
+    let descriptions = chosen.iter().map(Stretch::describe).collect::<Vec<_>>();
+    let title = format!("Forces by {}", descriptions.join(", by "));
     figures::write(FORCES, out, || {
         time_history_figure(&title, &panels, "Periods of the motion")
     })
@@ -101,7 +101,7 @@ impl Stretch {
         )
     }
 
-    /// One panel a force.
+    /// One panel per force.
     fn panels(&self, model: &TrainedModel) -> Result<Vec<TimePanel>> {
         let h = &self.record.header;
         let predicted = predicted_forces(&model.model, &self.record)?;

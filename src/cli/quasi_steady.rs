@@ -223,7 +223,7 @@ fn csv(study: &WindStudy, run: &SimulatedMotion) -> String {
     text
 }
 
-/// One panel a degree of freedom, then the gusts.
+/// One panel per degree of freedom, then the gusts.
 fn panels(run: &SimulatedMotion) -> Vec<TimePanel> {
     let series = |label: &str, values: &mut dyn Iterator<Item = f64>| {
         let points = values.enumerate();

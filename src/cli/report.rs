@@ -228,7 +228,7 @@ fn figures(read: &dyn Fn(&str) -> Option<String>) -> Vec<PageFigure> {
         (
             FORCES,
             "Records: measured forces and the model",
-            "Three periods of the steady motion nearest the onset in reduced frequency, of one record a motion. Full: measured. Dashes: the \
+            "Three periods of the steady motion nearest the onset in reduced frequency, of one record per motion. Full: measured. Dashes: the \
              exported model under the measured motion. Dots: what is left.",
         ),
         (

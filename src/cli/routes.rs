@@ -96,7 +96,7 @@ fn sanity(lines: &SanityLines) -> String {
     )
 }
 
-/// One card a force model: by eigenvalues where it has them, else by the determinant.
+/// One card per force model: by eigenvalues where it has them, else by the determinant.
 fn cards(table: &RouteTable) -> impl Iterator<Item = &Route> {
     let mut seen: Vec<&str> = Vec::new();
     table.routes.iter().filter(move |route| {
@@ -200,7 +200,7 @@ fn found(o: &Onset, route: &Route) -> String {
     text
 }
 
-/// The onsets that the figure marks: one a force model, as on the cards.
+/// The onsets that the figure marks: one per force model, as on the cards.
 pub(crate) fn marked(table: &RouteTable) -> Vec<Onset> {
     cards(table)
         .filter_map(|route| route.search.onset().cloned())

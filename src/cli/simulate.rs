@@ -45,7 +45,7 @@ pub(crate) struct Args {
 struct Trajectory {
     /// Column names with units.
     columns: Vec<String>,
-    /// One row a step.
+    /// One row per step.
     rows: Vec<Vec<f64>>,
     /// The modes at this wind speed, the least damped first.
     modes: Vec<ModeSaid>,
@@ -200,7 +200,7 @@ fn csv(model: &TrainedModel, speed: f64, trajectory: &Trajectory) -> String {
     text
 }
 
-/// Displacements over time, one panel a degree of freedom; rotations in degrees.
+/// Displacements over time, one panel per degree of freedom; rotations in degrees.
 fn panels(model: &TrainedModel, trajectory: &Trajectory) -> Vec<TimePanel> {
     let dofs = model.section.dofs();
     let panel = |(i, dof): (usize, &Dof)| {

@@ -33,7 +33,7 @@ pub(crate) struct Summary {
     pub warnings: Vec<String>,
     /// Wind speeds of curves and searches.
     pub speeds: SpeedRange,
-    /// All onsets found, one entry a model and method.
+    /// All onsets found, one entry per model and method.
     pub onsets: Vec<Onset>,
     /// Onsets that the data leave so far open that they are no results.
     pub undetermined: Vec<Onset>,

@@ -8,7 +8,7 @@
 //! | HDF5 (`.h5`, `.hdf5`) | `hdf5-pure` | `group/dataset` |
 //! | NI TDMS (`.tdms`) | this crate | `group/channel` |
 //!
-//! A matrix gives one channel a column, `name[3]`, counted from 1; time runs along its longer side. A single number
+//! A matrix gives one channel per column, `name[3]`, counted from 1; time runs along its longer side. A single number
 //! or text is an attribute, not a channel. With a group (of HDF5 or TDMS, or a MATLAB struct) only what is in it is
 //! read, under names without the group.
 

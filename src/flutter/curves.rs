@@ -62,7 +62,7 @@ impl From<Complex<f64>> for Complex64 {
 pub struct ModeBranch {
     /// Degree of freedom the mode moves in still air.
     pub name: String,
-    /// One point a wind speed, up to where the mode stops oscillating.
+    /// One point per wind speed, up to where the mode stops oscillating.
     pub points: Vec<ModePoint>,
 }
 
@@ -71,7 +71,7 @@ pub struct ModeBranch {
 pub struct FlutterCurves {
     /// Name of the force model.
     pub model: String,
-    /// One branch a degree of freedom.
+    /// One branch per degree of freedom.
     pub branches: Vec<ModeBranch>,
     /// Why the branches end before the highest speed, where they do because the modes cannot be followed.
     pub ended: Option<String>,

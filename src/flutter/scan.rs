@@ -150,7 +150,7 @@ impl<'a> Scan<'a> {
             return Err(Error::input(
                 "highest wind speed",
                 format!(
-                    "more than {lowest:.3} m/s, below which the sampled model has too few samples a period"
+                    "more than {lowest:.3} m/s, below which the sampled model has too few samples per period"
                 ),
                 format!("{to_m_s} m/s"),
             ));
@@ -159,7 +159,7 @@ impl<'a> Scan<'a> {
             from_m_s: lowest,
             to_m_s,
             not_judged: (lowest > 0.0)
-                .then(|| "below, the sampled model has too few samples a period".to_owned()),
+                .then(|| "below, the sampled model has too few samples per period".to_owned()),
         })
     }
 

@@ -34,13 +34,13 @@ impl BridgeGusts {
     }
 }
 
-/// A field of turbulence that blows whenever the unit runs, one gust a node. It begins at the time zero and repeats itself.
+/// A field of turbulence that blows whenever the unit runs, one gust per node. It begins at the time zero and repeats itself.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TurbulenceOptions {
     /// Time from sample to sample, s.
     pub step_s: f64,
-    /// `u` of every node of the bridge, m/s: a row of samples a node.
+    /// `u` of every node of the bridge, m/s: a row of samples per node.
     pub u: Vec<Vec<f64>>,
     /// `w`.
     pub w: Vec<Vec<f64>>,

@@ -54,7 +54,7 @@ pub struct BridgeOptions {
     pub named: Vec<usize>,
     /// Reduced frequencies, of the bridge, in which the force models were tested.
     pub tested_range: Option<ReducedFrequencyRange>,
-    /// Modal coordinates at release, one a mode.
+    /// Modal coordinates at release, one per mode.
     pub initial: Vec<f64>,
     /// Gusts as inputs of strips; none without.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -55,7 +55,7 @@ impl Element {
         self
     }
 
-    /// The document: an element a line, two spaces a level.
+    /// The document: an element per line, two spaces per level.
     pub(super) fn document(&self) -> String {
         let mut text = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
         self.write(&mut text, 0);

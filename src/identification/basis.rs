@@ -34,7 +34,7 @@ pub(crate) struct Filters {
 }
 
 impl Basis {
-    /// The basis of `form` with the poles `poles`, one a filter.
+    /// The basis of `form` with the poles `poles`, one per filter.
     pub(crate) fn new(form: &Form, poles: &[f64]) -> Result<Self> {
         let orthonormal = || FilterBank::new(poles.to_vec()).map(Chain::Orthonormal);
         let chain = match form {

@@ -182,14 +182,14 @@ pub(crate) fn discrete_pass(
 
 /// Columns of the discrete model by the recursion (2.33); a candidate is a decay factor for each input.
 struct DiscreteColumns {
-    /// One a candidate and input.
+    /// One per candidate and input.
     recursions: Vec<Vec<Recursion>>,
     filters: usize,
     /// The constant, if there is one.
     ones: Option<Vec<f64>>,
-    /// Filter states at the last sample, one vector a candidate and input.
+    /// Filter states at the last sample, one vector per candidate and input.
     states: Vec<Vec<Vec<f64>>>,
-    /// Filter columns of the candidate asked for last, one stretch of [`BLOCK_ROWS`] a filter, one vector an input.
+    /// Filter columns of the candidate asked for last, one stretch of [`BLOCK_ROWS`] per filter, one vector per input.
     columns: Vec<Vec<f64>>,
 }
 
@@ -238,7 +238,7 @@ impl Columns for DiscreteColumns {
     }
 }
 
-/// One chain a motion for all forces that share its parameters (`α` and `L` of every transfer function, row by row).
+/// One chain per motion for all forces that share its parameters (`α` and `L` of every transfer function, row by row).
 fn model(
     fitted: &FittedSystems<'_>,
     dofs: &[Dof],

@@ -92,7 +92,7 @@ pub enum Form {
         #[serde(default = "yes")]
         added_mass: bool,
     },
-    /// Karpel's `a₁ + a₂ p + a₃ p² + D (pI − R)⁻¹ E p` with one state a lag. For tables only.
+    /// Karpel's `a₁ + a₂ p + a₃ p² + D (pI − R)⁻¹ E p` with one state per lag. For tables only.
     MinimumState {
         /// Number of lag states.
         #[serde(default = "two")]
@@ -177,7 +177,7 @@ impl Form {
         }
     }
 
-    /// One pole a filter from the free ones.
+    /// One pole per filter from the free ones.
     pub(crate) fn expand(&self, free: &[f64]) -> Vec<f64> {
         match self {
             Self::Laguerre { filters, .. } => vec![free[0]; *filters],
@@ -185,7 +185,7 @@ impl Form {
         }
     }
 
-    /// The free poles from one pole a filter.
+    /// The free poles from one pole per filter.
     pub(crate) fn collapse(&self, chain: &[f64]) -> Vec<f64> {
         match self {
             Self::Laguerre { .. } => chain.iter().take(1).copied().collect(),
@@ -278,7 +278,7 @@ impl Form {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct PoleSearch {
-    /// Poles to be used as they are; one for Laguerre filters, else one a filter. For lags of each force either one list
+    /// Poles to be used as they are; one for Laguerre filters, else one per filter. For lags of each force either one list
     /// for all of them, or the lists of the forces one after the other.
     pub fixed: Option<Vec<f64>>,
     /// Where the nonlinear step starts; left out, the best point of a grid.

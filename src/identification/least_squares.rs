@@ -25,7 +25,7 @@ pub(crate) struct StreamingQr {
     /// Sum of squares of each right-hand side that no column can reach.
     rest: Vec<f64>,
     rows: usize,
-    /// Block waiting to be factored, one stretch of [`BLOCK_ROWS`] a column.
+    /// Block waiting to be factored, one stretch of [`BLOCK_ROWS`] per column.
     pending: Vec<f64>,
     pending_rows: usize,
 }

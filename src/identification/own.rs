@@ -17,7 +17,7 @@ pub enum StaticTerm {
     /// Nothing: the forces have no mean.
     #[default]
     None,
-    /// One dimensionless constant a force is estimated along with the coefficients, common to all records: a steady wind
+    /// One dimensionless constant per force is estimated along with the coefficients, common to all records: a steady wind
     /// load grows with `V²` like the other forces.
     Estimated,
     /// The mean of each force over each record is subtracted first (thesis, section 3.3): whatever offset a record has, but

@@ -36,7 +36,7 @@ pub struct FitReport {
     pub tested_range: ReducedFrequencyRange,
     /// Largest condition number of the columns, each scaled to unit norm.
     pub condition: f64,
-    /// One account a transfer function, row by row.
+    /// One account per transfer function, row by row.
     pub entries: Vec<EntryReport>,
     /// Searches of the poles; empty when they were given.
     pub search: Vec<SearchReport>,
@@ -46,7 +46,7 @@ pub struct FitReport {
     pub alpha_guideline: Option<AlphaGuideline>,
     /// The constant part of the forces, as far as the fit dealt with it; empty when it did not.
     pub static_terms: Vec<StaticReport>,
-    /// Memory of the filters against the rest before the motion starts, one account a record; empty for fits to a table.
+    /// Memory of the filters against the rest before the motion starts, one account per record; empty for fits to a table.
     pub memory: Vec<MemoryReport>,
     /// What held the fit back; `None` when nothing did, or when nothing was asked for.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -68,7 +68,7 @@ pub(crate) fn onset_above(model: &dyn Realizable, speed_m_s: f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// Forced-vibration records of Table 3.2 at the given speeds, one a speed and motion, B = 0.5 m: the exact linear response
+/// Forced-vibration records of Table 3.2 at the given speeds, one per speed and motion, B = 0.5 m: the exact linear response
 /// of `model` with white noise on the forces.
 pub(super) fn records(
     model: &dyn Transfer,

@@ -85,7 +85,7 @@ pub struct SampledTransfer {
 pub struct FirstOrderResults {
     /// The example.
     pub example: FirstOrderExample,
-    /// Training input and output, one a step (Figure 2.6).
+    /// Training input and output, one per step (Figure 2.6).
     pub training: [Vec<f64>; 2],
     /// Validation: input, output of the system, output of the model (Figure 2.7).
     pub validation: [Vec<f64>; 3],
@@ -101,7 +101,7 @@ pub struct FirstOrderResults {
     pub tustin: SampledTransfer,
     /// The model (Figure 2.8).
     pub model: SampledTransfer,
-    /// Impulse responses of system and model times the step, one a step (Figure 2.9).
+    /// Impulse responses of system and model times the step, one per step (Figure 2.9).
     pub impulse: [Vec<f64>; 2],
     /// Models with other decay factors (Figure 2.10).
     pub by_alpha: Vec<SampledTransfer>,

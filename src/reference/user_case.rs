@@ -83,7 +83,7 @@ pub(crate) struct UserRational {
     /// `d_l`.
     #[serde(default)]
     pub lags: Vec<f64>,
-    /// `a_{l+3}`, one matrix a lag.
+    /// `a_{l+3}`, one matrix per lag.
     #[serde(default, with = "crate::state_space::rows::list")]
     pub lag_terms: Vec<DMatrix<f64>>,
 }

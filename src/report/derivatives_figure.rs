@@ -18,7 +18,7 @@ pub struct DerivativePlot {
     pub measured: Vec<PlottedSeries>,
     /// Intervals: abscissa, lower and upper end, drawn as thin bars.
     pub bars: Vec<(f64, f64, f64)>,
-    /// Fitted or computed lines, one a model.
+    /// Fitted or computed lines, one per model.
     pub fitted: Vec<PlottedSeries>,
     /// Theory to compare with (flat plate, quasi-steady), drawn thin and black.
     pub reference: Vec<PlottedSeries>,

@@ -26,7 +26,7 @@ pub struct VfVgOptions {
 
 /// Frequencies (Hz) and damping ratios (per cent of critical) of all modes over wind speed (m/s).
 ///
-/// A colour and a line style a model, a line width a branch, so that print without colours tells them apart; onsets with the
+/// A colour and a line style a model, a line width per branch, so that print without colours tells them apart; onsets with the
 /// bars of their intervals are marked on both panels and stated in the legend. An onset is
 /// drawn in the colour of the curves of the same model, hollow when it lies outside the tested range; crossings
 /// suspected to be spurious are crosses on the zero line. Where the reduced frequency of a mode lies outside the tested
@@ -183,8 +183,8 @@ impl VfVg {
             colour,
         };
         let at_speed = note(0.0, format!("{} m/s", significant(speed)));
-        let told = |n: &Note| n.text == at_speed.text && n.colour == colour;
-        if !self.damping.notes.iter().any(told) {
+        let already_there = |n: &Note| n.text == at_speed.text && n.colour == colour;
+        if !self.damping.notes.iter().any(already_there) {
             let at_frequency = note(hertz, format!("{} Hz", significant(hertz)));
             self.frequency.notes.push(at_frequency);
             self.damping.notes.push(at_speed);

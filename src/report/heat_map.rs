@@ -38,7 +38,7 @@ pub(crate) struct HeatMap {
     pub title: String,
     /// Name of the parameter along the abscissa.
     pub x_label: String,
-    /// Its values, one a column.
+    /// Its values, one per column.
     pub x: Vec<f64>,
     /// Name of the whole number along the ordinate.
     pub y_label: String,

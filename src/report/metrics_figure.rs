@@ -14,7 +14,7 @@ use crate::error::Result;
 pub(crate) struct MetricPanel {
     /// Name of metric and force.
     pub title: String,
-    /// Frequency (Hz) and metric (0 to 1), one series a deck or model.
+    /// Frequency (Hz) and metric (0 to 1), one series per deck or model.
     pub series: Vec<PlottedSeries>,
 }
 

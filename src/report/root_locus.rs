@@ -48,7 +48,7 @@ impl RootLocus {
     }
 }
 
-/// That of a section: a colour a model, a width a branch.
+/// That of a section: a colour per model, a width per branch.
 pub(crate) fn root_locus_figure(curves: &[FlutterCurves], title: &str) -> Result<Figure> {
     let branches = branch_names(curves)?;
     let mut roots = RootLocus::new();

@@ -33,7 +33,7 @@ pub(crate) struct TransferPlot {
     pub models: Vec<TransferCurve>,
 }
 
-/// Magnitude and phase of transfer functions, one a row.
+/// Magnitude and phase of transfer functions, one per row.
 ///
 /// Curves of one label share ink and legend entry.
 ///

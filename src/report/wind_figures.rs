@@ -30,7 +30,7 @@ fn titled(title: &str) -> Option<String> {
     Some(title.to_owned()).filter(|t| !t.is_empty())
 }
 
-/// Static displacements over wind speed, one panel a degree of freedom; the end of the branch is an upright.
+/// Static displacements over wind speed, one panel per degree of freedom; the end of the branch is an upright.
 ///
 /// # Errors
 /// [`crate::Error::Input`] for no points and numbers that are not finite.
@@ -64,7 +64,7 @@ pub(crate) fn equilibrium_figure(
     stacked(PLACE, title, panels, 150.0, legend)
 }
 
-/// Root mean squares over wind speed, one panel a degree of freedom: in all, by each component of the turbulence, and in
+/// Root mean squares over wind speed, one panel per degree of freedom: in all, by each component of the turbulence, and in
 /// the time domain with two standard errors either way.
 ///
 /// # Errors

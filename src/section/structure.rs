@@ -20,7 +20,7 @@ pub struct Structure {
     pub damping: DMatrix<f64>,
     /// `K`, n×n: N/m² and N·m/(rad·m).
     pub stiffness: DMatrix<f64>,
-    /// Names of generalised coordinates, one a row; empty for a section, whose coordinates are its degrees of freedom.
+    /// Names of generalised coordinates, one per row; empty for a section, whose coordinates are its degrees of freedom.
     pub mode_names: Vec<String>,
 }
 

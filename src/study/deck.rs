@@ -144,7 +144,7 @@ impl Deck {
         }
     }
 
-    /// Records of the virtual tunnel, one a motion and speed.
+    /// Records of the virtual tunnel, one per motion and speed.
     pub(crate) fn virtual_records(&self, study: &Study) -> Result<Vec<Record>> {
         match &self.source {
             Source::Table(table) => study.tunnel.records_from_table(table, &self.dofs),

@@ -16,7 +16,7 @@ use serde::Serialize;
 /// Results of all models of a study.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FlutterStudy {
-    /// Modes over wind speed, one entry a trained model.
+    /// Modes over wind speed, one entry per trained model.
     pub curves: Vec<FlutterCurves>,
     /// Onsets found.
     pub onsets: Vec<Onset>,

@@ -45,7 +45,7 @@ pub(crate) struct RouteTable {
     pub routes: Vec<Route>,
     /// Handbook formulas; `null` when they say nothing about this section.
     pub sanity: Option<SanityLines>,
-    /// Modes over wind speed of one route a force model.
+    /// Modes over wind speed of one route per force model.
     pub curves: Vec<FlutterCurves>,
     /// Routes that failed, with the reason.
     pub failed: Vec<FailedRoute>,

@@ -81,7 +81,7 @@ pub enum Coordinates {
     Continuous {
         /// Form of the model.
         form: Form,
-        /// Poles of every transfer function, one a filter, row by row.
+        /// Poles of every transfer function, one per filter, row by row.
         chains: Vec<Vec<Vec<f64>>>,
         /// Poles that are parameters.
         searched: Vec<SearchedPole>,

@@ -74,7 +74,7 @@ impl ScatteredTunnel {
         for (record, turned) in records.iter_mut().zip(&self.turned) {
             let run = factor(self.runs);
             for (force, turned) in record.force.iter_mut().zip(&turned.force) {
-                // one motion a record: each force of a record is a transfer function of its own at that speed
+                // one motion per record: each force of a record is a transfer function of its own at that speed
                 let change = factor(self.speeds) + run;
                 for (f, t) in force.iter_mut().zip(turned) {
                     *f += change.re * *f + change.im * t;

@@ -26,7 +26,7 @@ const COHERENT: f64 = 1.5;
 /// Blocks with the segment each belongs to.
 pub(super) struct Stretched {
     blocks: Vec<Block>,
-    /// One key a segment.
+    /// One key per segment.
     segments: Vec<usize>,
     /// Names of the segments, by their keys.
     names: Vec<String>,

@@ -277,7 +277,7 @@ impl Judge<'_> {
         })
     }
 
-    /// Change of an entry relative to itself with all parameters, one row a common `K`.
+    /// Change of an entry relative to itself with all parameters, one row per common `K`.
     fn relative_rows(&self, entry: (usize, usize), turn: Turn, size: f64) -> DMatrix<f64> {
         let parameters = self.common[0].slopes.len();
         DMatrix::from_fn(self.common.len(), parameters, |q, p| {

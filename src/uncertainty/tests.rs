@@ -74,7 +74,7 @@ fn scattered(seed: u64) -> Vec<TransferSample> {
     for (i, (sample, size)) in samples.iter_mut().zip(sizes).enumerate() {
         let normal: f64 = StandardNormal.sample(&mut random);
         sample.value += 0.01 * size * normal;
-        // eight samples a test point, eight points a speed
+        // eight samples per test point, eight points per speed
         sample.mean_speed_m_s = Some(if i < 64 { 8.17 } else { 4.0 });
     }
     samples

@@ -1,4 +1,4 @@
-//! The motion of a forced-vibration run: rest, then one ramped sine a frequency.
+//! The motion of a forced-vibration run: rest, then one ramped sine per frequency.
 
 use super::records::Segment;
 use serde::{Deserialize, Serialize};
@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum TrainingMotion {
-    /// One ramped sine a frequency of the plan, in turn (Table 3.2 of the thesis).
+    /// One ramped sine per frequency of the plan, in turn (Table 3.2 of the thesis).
     #[default]
     Harmonic,
     /// All frequencies of the plan at once with equal amplitudes; their phases follow from the seed.
@@ -92,7 +92,7 @@ pub(super) fn window(t_s: f64, duration_s: f64, ramp_s: f64) -> [f64; 3] {
 #[derive(Debug, Clone)]
 pub(super) struct UnitMotion {
     pub segments: Vec<Segment>,
-    /// Displacement, one a sample.
+    /// Displacement, one per sample.
     pub displacement: Vec<f64>,
     /// Velocity, 1/s.
     pub velocity: Vec<f64>,

@@ -6,7 +6,7 @@ use crate::aerodynamics::Transfer;
 use crate::error::{Error, Result, positive};
 use crate::section::Dof;
 
-/// Self-excited forces (N/m, N·m/m; one vector a force, one number a sample) that `model` predicts for the motion of
+/// Self-excited forces (N/m, N·m/m; one vector per force, one number per sample) that `model` predicts for the motion of
 /// `record`: the exact linear response, summed over the motions, by Fourier transform of the motion padded with zeros.
 ///
 /// The motion counts as zero before the record. For the discrete model this is the recursion (2.33) to rounding where its

@@ -54,7 +54,7 @@ pub struct Processed {
     pub records: Vec<Record>,
     /// What was done.
     pub report: ProcessingReport,
-    /// Signals after each stage, one list a run, for figures.
+    /// Signals after each stage, one list per run, for figures.
     pub stages: Vec<Vec<StageSignals>>,
 }
 

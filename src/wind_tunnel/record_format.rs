@@ -1,4 +1,4 @@
-//! Records as CSV: a header of `# key: value` lines, a line of column names, one row a sample.
+//! Records as CSV: a header of `# key: value` lines, a line of column names, one row per sample.
 //!
 //! ```text
 //! # aerodeck record 1
@@ -11,7 +11,7 @@
 //! # sign_convention: …
 //! # source: …
 //! # licence: …
-//! # segment: 0.25 Hz from 8 s to 34 s      one line a stretch of harmonic motion
+//! # segment: 0.25 Hz from 8 s to 34 s      one line per stretch of harmonic motion
 //! time_s,vertical_m,torsion_rad,lift_n_m,moment_n_m_m
 //! 0,0,0,0,0
 //! ```

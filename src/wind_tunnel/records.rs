@@ -41,7 +41,7 @@ pub struct RecordHeader {
     pub licence: String,
 }
 
-/// A run of samples, one slice a channel in the order of [`RecordHeader::dofs`], all of one length.
+/// A run of samples, one slice per channel in the order of [`RecordHeader::dofs`], all of one length.
 #[derive(Debug, Clone, Copy)]
 pub struct RecordBlock<'a> {
     /// Motion: m, rad.
@@ -64,9 +64,9 @@ pub trait RecordSource: Sync {
 pub struct Record {
     /// What is known besides the samples.
     pub header: RecordHeader,
-    /// Motion, one vector a degree of freedom: m, rad.
+    /// Motion, one vector per degree of freedom: m, rad.
     pub motion: Vec<Vec<f64>>,
-    /// Self-excited force per unit length, one vector a degree of freedom: N/m, N·m/m.
+    /// Self-excited force per unit length, one vector per degree of freedom: N/m, N·m/m.
     pub force: Vec<Vec<f64>>,
 }
 

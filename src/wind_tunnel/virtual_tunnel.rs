@@ -89,7 +89,7 @@ impl Default for TunnelPlan {
 }
 
 impl TunnelPlan {
-    /// One record a motion and speed group of `table`, forces from its derivatives at its own test points.
+    /// One record per motion and speed group of `table`, forces from its derivatives at its own test points.
     ///
     /// # Errors
     /// [`crate::Error::Input`] for an impossible plan, or a table that lacks a derivative of `dofs`. Where derivatives of one motion
@@ -125,7 +125,7 @@ impl TunnelPlan {
         Ok(records)
     }
 
-    /// One record a motion and speed of the plan, forces from the transfer matrix of `model` for a deck of `width_m`.
+    /// One record per motion and speed of the plan, forces from the transfer matrix of `model` for a deck of `width_m`.
     ///
     /// # Errors
     /// [`crate::Error::Input`] for an impossible plan or width, and a model that says nothing at a `K` from zero to
@@ -157,7 +157,7 @@ impl TunnelPlan {
         Ok(records)
     }
 
-    /// One record a motion at one speed, without noise.
+    /// One record per motion at one speed, without noise.
     pub(super) fn records_at_speed(
         &self,
         model: &dyn Transfer,

@@ -130,7 +130,7 @@ class Section:
         return self
 
     def steps(self, count, step, start=0, names=OUTPUTS):
-        """`count` communication steps from point `start` on; the outputs after each, one row a step."""
+        """`count` communication steps from point `start` on; the outputs after each, one row per step."""
         references = self.references(names)
         rows = np.empty((count, len(names)))
         for n in range(count):

@@ -20,14 +20,14 @@ pub struct FilterTerm {
     pub input: usize,
     /// The chain.
     pub poles: FilterBank,
-    /// `c`, one row a force, one column a filter (n×L); rows of zeros where another chain serves the force.
+    /// `c`, one row per force, one column per filter (n×L); rows of zeros where another chain serves the force.
     #[serde(with = "crate::state_space::rows")]
     pub coefficients: DMatrix<f64>,
 }
 
 /// Orthonormal filters with feed-through.
 ///
-/// One [`FilterTerm`] a motion when the poles are shared; one a motion and force when every transfer function has
+/// One [`FilterTerm`] per motion when the poles are shared; one per motion and force when every transfer function has
 /// its own pole.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

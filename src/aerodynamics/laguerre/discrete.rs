@@ -16,7 +16,7 @@ pub struct DiscreteTerm {
     pub input: usize,
     /// Decay factor `0 < α < 1`; it belongs to one `Δs`.
     pub alpha: f64,
-    /// `c`, one row a force, one column a filter (n×L); rows of zeros where another chain serves the force.
+    /// `c`, one row per force, one column per filter (n×L); rows of zeros where another chain serves the force.
     #[serde(with = "crate::state_space::rows")]
     pub coefficients: DMatrix<f64>,
 }
@@ -109,7 +109,7 @@ pub(crate) fn impulse_response(alpha: f64, count: usize, samples: usize) -> DMat
 
 impl DiscreteLaguerre {
     /// A model whose transfer functions share `α` and the number of filters: `coefficients[j][(i, l)]` is filter `l` of
-    /// motion `j` in force `i` (one n×L matrix a motion).
+    /// motion `j` in force `i` (one n×L matrix per motion).
     pub fn shared(
         dofs: Vec<Dof>,
         alpha: f64,
@@ -230,7 +230,7 @@ impl Realizable for DiscreteLaguerre {
     }
 }
 
-/// How the model stands in a file: one `alpha` and one coefficient matrix a motion where all transfer functions share
+/// How the model stands in a file: one `alpha` and one coefficient matrix per motion where all transfer functions share
 /// their filters, a list of `terms` where they do not.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

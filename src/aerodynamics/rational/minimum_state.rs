@@ -1,7 +1,7 @@
 //! Karpel's minimum-state form, `G = a₁ + a₂ p + a₃ p² + D (pI − R)⁻¹ E p` with `R = −diag(d)`.
 //!
 //! M. Karpel, Design for active flutter suppression and gust alleviation using state-space aeroelastic modeling,
-//! J. Aircraft 19 (1982). One state a lag instead of n: Roger's form in which every `a_{l+3}` is the product of a column
+//! J. Aircraft 19 (1982). One state per lag instead of n: Roger's form in which every `a_{l+3}` is the product of a column
 //! of `D` and a row of `E`.
 
 use super::{RationalModel, check_square};
@@ -30,7 +30,7 @@ pub struct MinimumStateModel {
     /// Added mass, n×n; zero when the model has none.
     #[serde(with = "crate::state_space::rows")]
     pub a3: DMatrix<f64>,
-    /// Lags `d_l`, dimensionless, positive, one a state; several may be equal.
+    /// Lags `d_l`, dimensionless, positive, one per state; several may be equal.
     pub lags: Vec<f64>,
     /// Forces of the states, n×m.
     #[serde(with = "crate::state_space::rows")]
@@ -66,7 +66,7 @@ impl MinimumStateModel {
         Ok(())
     }
 
-    /// The same as a function in Roger's form, with n states a lag: `a_{l+3} = D_l E_l`.
+    /// The same as a function in Roger's form, with n states per lag: `a_{l+3} = D_l E_l`.
     pub(crate) fn to_roger(&self) -> RationalModel {
         RationalModel {
             dofs: self.dofs.clone(),
@@ -102,7 +102,7 @@ impl Transfer for MinimumStateModel {
 }
 
 impl Realizable for MinimumStateModel {
-    /// `x' = −d x + d E r`, `q = … + D (E r − x)`: one state a lag.
+    /// `x' = −d x + d E r`, `q = … + D (E r − x)`: one state per lag.
     fn realize(&self) -> Realization {
         let lags = DMatrix::from_diagonal(&DVector::from_column_slice(&self.lags));
         Realization::Continuous(ContinuousRealization {

@@ -25,7 +25,7 @@ pub struct TurbulenceField {
     pub step_s: f64,
     /// Place of each node along the girder, m.
     pub along_m: Vec<f64>,
-    /// `u` then `w`, m/s: a row of samples a node.
+    /// `u` then `w`, m/s: a row of samples per node.
     pub gusts: [Vec<Vec<f64>>; 2],
 }
 
@@ -89,7 +89,7 @@ pub fn turbulence_field(
     })
 }
 
-/// Fourier coefficients of one component, a row a node. Twice those of the positive frequencies stand there alone: the real
+/// Fourier coefficients of one component, a row per node. Twice those of the positive frequencies stand there alone: the real
 /// part of the inverse transform is the gust.
 fn coefficients(
     problem: &SpanProblem<'_>,

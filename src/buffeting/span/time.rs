@@ -119,7 +119,7 @@ impl Periodic {
     }
 }
 
-/// Steps `plan.records` fields through the coupled bridge. `progress` is told how many are done.
+/// Steps `plan.records` fields through the coupled bridge. `progress` gets how many are done.
 ///
 /// # Errors
 /// [`Error::Input`] for a plan that cannot be and parts that do not fit together; [`Error::Unstable`] when the bridge is unstable
@@ -161,7 +161,7 @@ pub(crate) fn span_ensemble(
     Ok(gathered(speed_m_s, plan, nodes, &runs))
 }
 
-/// Forces on the mass-normalised modes by a field, one row a mode; the admittance is exact at every frequency of the record.
+/// Forces on the mass-normalised modes by a field, one row per mode; the admittance is exact at every frequency of the record.
 pub(crate) fn modal_forces(
     problem: &SpanProblem<'_>,
     field: &TurbulenceField,

@@ -24,7 +24,7 @@ pub(super) struct Summary<'a> {
     #[serde(flatten)]
     facts: BridgeFacts,
     warnings: &'a [String],
-    /// All onsets found, one entry a route.
+    /// All onsets found, one entry per route.
     onsets: Vec<&'a Onset>,
     /// The full answer.
     flutter: &'a BridgeFlutter,

@@ -75,7 +75,7 @@ pub(super) fn compared<T>(
     compare(options, &|done, of| stage.at(done as u64, of as u64))
 }
 
-/// The thesis's three metrics of every force over frequency, one line a label (Figures 3.20, 3.27 and 3.28).
+/// The thesis's three metrics of every force over frequency, one line per label (Figures 3.20, 3.27 and 3.28).
 pub(super) fn metrics_of(
     title: &str,
     forces: &[Dof],
@@ -135,7 +135,7 @@ pub(super) fn section(
     }
 }
 
-/// Mean of every metric over the frequencies, a line a deck or model, speed, motion and force.
+/// Mean of every metric over the frequencies, a line per deck or model, speed, motion and force.
 pub(super) fn metrics_table(summaries: &[ScoreSummary], name: fn(&ScoreSummary) -> &str) -> String {
     let widest = summaries.iter().map(|s| name(s).chars().count()).max();
     let width = widest.unwrap_or(0);

@@ -43,7 +43,7 @@ pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     out.answer(text, serde_json::json!({ "comparison": results }))
 }
 
-/// The metrics, one figure a motion and kind of speed.
+/// The metrics, one figure per motion and kind of speed.
 fn figures(options: &CompareOptions, results: &DecksComparison) -> Result<Vec<(String, Figure)>> {
     let mut figures = Vec::new();
     for &motion in &options.dofs {

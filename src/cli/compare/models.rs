@@ -129,7 +129,7 @@ fn derivatives(results: &ModelsComparison) -> Result<Figure> {
     })
 }
 
-/// Forces over a few periods, one figure a motion and frequency (Figures 3.29 to 3.32).
+/// Forces over a few periods, one figure per motion and frequency (Figures 3.29 to 3.32).
 fn histories(results: &ModelsComparison) -> Result<Vec<(String, Figure)>> {
     let same = |a: &History, b: &History| (a.motion, a.frequency_hz) == (b.motion, b.frequency_hz);
     results

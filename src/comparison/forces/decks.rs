@@ -34,7 +34,7 @@ pub(crate) struct DecksComparison {
     pub options: CompareOptions,
     /// The decks.
     pub decks: Vec<DeckAccount>,
-    /// One entry a deck, speed, motion, force and frequency.
+    /// One entry per deck, speed, motion, force and frequency.
     pub scores: Vec<Score>,
     /// Over the frequencies.
     pub summaries: Vec<ScoreSummary>,

@@ -34,7 +34,7 @@ pub(crate) struct TestPoint {
 pub(crate) struct OfModel<P> {
     /// Model.
     pub model: String,
-    /// One entry a point.
+    /// One entry per point.
     pub points: Vec<P>,
 }
 

@@ -49,7 +49,7 @@ pub(crate) struct History {
     pub time_s: Vec<f64>,
     /// Measured force, N/m or N·m/m.
     pub measured: Vec<f64>,
-    /// Predicted forces, one vector a model in the order of [`ModelsComparison::models`].
+    /// Predicted forces, one vector per model in the order of [`ModelsComparison::models`].
     pub predicted: Vec<Vec<f64>>,
 }
 
@@ -68,7 +68,7 @@ pub(crate) struct ModelsComparison {
     pub entries: Vec<EntryComparison>,
     /// Derivatives.
     pub derivatives: Vec<DerivativeComparison>,
-    /// One entry a model, motion, force and frequency.
+    /// One entry per model, motion, force and frequency.
     pub scores: Vec<Score>,
     /// Over the frequencies.
     pub summaries: Vec<ScoreSummary>,

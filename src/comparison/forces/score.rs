@@ -1,4 +1,4 @@
-//! Models asked for the forces of records, and the metrics of these against what was measured, one set a frequency of the motion.
+//! Models asked for the forces of records, and the metrics of these against what was measured, one set per frequency of the motion.
 
 use super::options::{CompareOptions, OnRecords, Scoring};
 use super::tested_deck::TestedDeck;
@@ -150,7 +150,7 @@ pub(crate) struct ScoreSummary {
     pub lowest: [f64; 7],
 }
 
-/// One summary a case, in the order of the scores.
+/// One summary per case, in the order of the scores.
 pub(crate) fn summaries(scores: &[Score]) -> Vec<ScoreSummary> {
     let mut all: Vec<Vec<&Score>> = Vec::new();
     for score in scores {
@@ -211,9 +211,9 @@ pub(super) struct Trial<'a> {
 
 /// What a model predicts for a record.
 pub(super) struct Outcome {
-    /// One vector a force, one number a sample.
+    /// One vector per force, one number per sample.
     pub(super) predicted: Vec<Vec<f64>>,
-    /// One entry a force and frequency.
+    /// One entry per force and frequency.
     pub(super) scores: Vec<Score>,
 }
 

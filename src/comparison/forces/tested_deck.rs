@@ -42,7 +42,7 @@ impl TestedDeck {
         self.speeds_m_s[self.training_group]
     }
 
-    /// Records for training, one a motion.
+    /// Records for training, one per motion.
     pub(super) fn training_records(&self) -> &[Record] {
         let motions = self.records.len() / self.speeds_m_s.len().max(1);
         &self.records[self.training_group * motions..][..motions]

@@ -1,8 +1,8 @@
-//! CSV exports of Abaqus: a folder with one file a mode.
+//! CSV exports of Abaqus: a folder with one file per mode.
 //!
 //! - `nodes.csv`: `node,x,y,z`;
-//! - `eigenfrequencies.csv`: one frequency a mode, Hz (the last column counts where there are several);
-//! - `generalised_masses.csv`: one a mode, likewise;
+//! - `eigenfrequencies.csv`: one frequency per mode, Hz (the last column counts where there are several);
+//! - `generalised_masses.csv`: one per mode, likewise;
 //! - `mode_1.csv`, `mode_2.csv`, …: `node,U1,U2,U3,UR1,UR2,UR3`, in any order of nodes.
 //!
 //! `examples/export_modes_abaqus.py` writes them from an output database.
@@ -25,7 +25,7 @@ pub(super) fn read(folder: &Path) -> Result<ModalData> {
     let path = folder.join("generalised_masses.csv");
     let masses = column(&path, "a positive generalised mass")?;
     if masses.len() != frequencies.len() {
-        let expected = format!("{} masses, one a frequency", frequencies.len());
+        let expected = format!("{} masses, one per frequency", frequencies.len());
         return Err(Error::input("", expected, masses.len().to_string()).in_file(path));
     }
     let mut modes = Vec::with_capacity(masses.len());

@@ -1,8 +1,8 @@
-//! Text of OpenSees recorders: a folder with eigenvalues and one recording a mode.
+//! Text of OpenSees recorders: a folder with eigenvalues and one recording per mode.
 //!
 //! - `nodes.out`: `tag x y z` a line, in the order in which the nodes are recorded;
 //! - `eigenvalues.out`: what `eigen` returns, `ω²` in (rad/s)², on one line or many;
-//! - `mode_1.out`, …: `recorder Node -file mode_1.out -node … -dof 1 2 3 4 5 6 "eigen 1"`: six numbers a node in one line, of
+//! - `mode_1.out`, …: `recorder Node -file mode_1.out -node … -dof 1 2 3 4 5 6 "eigen 1"`: six numbers per node in one line, of
 //!   which the last counts; a leading time is allowed;
 //! - `masses.out`, optional: generalised masses; without it the vectors are mass-normalised, as `eigen` makes them.
 //!

@@ -1,6 +1,6 @@
 //! Our folder of three tables: `nodes.csv`, `modes.csv`, `shapes.csv`.
 //!
-//! - `nodes.csv`: `node,x_m,y_m,z_m`, one row a node in the order of the girder;
+//! - `nodes.csv`: `node,x_m,y_m,z_m`, one row per node in the order of the girder;
 //! - `modes.csv`: `mode,frequency_hz,generalised_mass_kg`;
 //! - `shapes.csv`: `mode,node,ux,uy,uz,rx,ry,rz`, displacements (m) and rotations (rad) along and about the axes of the nodes.
 //!

@@ -56,7 +56,7 @@ pub struct ModesBlock {
     /// Up and downwind in the axes of the files.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub axes: Option<Axes>,
-    /// Damping ratio of all modes, or a list of one a mode.
+    /// Damping ratio of all modes, or a list of one per mode.
     pub damping_ratio: DampingRatios,
     /// Numbers of the modes that take part; left out, all.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -86,11 +86,11 @@ pub enum ModesFormat {
 
 /// Damping ratios of the modes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(untagged, expecting = "a number, or a list of one number a mode")]
+#[serde(untagged, expecting = "a number, or a list of one number per mode")]
 pub enum DampingRatios {
     /// The same for all.
     Same(f64),
-    /// One a mode, in the order of the file of modes.
+    /// One per mode, in the order of the file of modes.
     Each(Vec<f64>),
 }
 
@@ -104,7 +104,7 @@ impl DampingRatios {
                 }
             }
             Self::Each(all) => {
-                let expected = format!("one number, or {}, one a mode", modes.len());
+                let expected = format!("one number, or {}, one per mode", modes.len());
                 let found = format!("{} numbers", all.len());
                 return Err(Error::input("modes.damping_ratio", expected, found));
             }

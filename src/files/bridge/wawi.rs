@@ -1,6 +1,6 @@
 //! The model folder of wawi: `modal.json` (generalised masses, stiffnesses, shapes) and `element.json` (nodes).
 //!
-//! `phi.full` has six rows a node, in the order of `node_matrix`, and one column a mode; axes are those of the nodes.
+//! `phi.full` has six rows per node, in the order of `node_matrix`, and one column per mode; axes are those of the nodes.
 
 use super::modal_data::{ModalData, RawMode};
 use crate::error::{Error, Result, counted};
@@ -101,7 +101,7 @@ fn frequencies(modal: &Modal) -> Result<Vec<f64>> {
         if values.len() != count {
             return Err(Error::input(
                 name,
-                format!("{count} values, one a mode of `m`"),
+                format!("{count} values, one per mode of `m`"),
                 values.len().to_string(),
             ));
         }

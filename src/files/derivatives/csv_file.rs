@@ -69,7 +69,7 @@ pub(crate) fn read_csv_in(
     read_csv_with(path, &options)
 }
 
-/// Reads a CSV table, this project's or a wide one (one row a reduced velocity, one column a derivative), with what the
+/// Reads a CSV table, this project's or a wide one (one row per reduced velocity, one column per derivative), with what the
 /// caller states.
 pub(crate) fn read_csv_with(
     path: impl AsRef<Path>,

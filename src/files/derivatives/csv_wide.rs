@@ -1,4 +1,4 @@
-//! Tables as laboratories and papers keep them: one row a reduced velocity, one column a derivative.
+//! Tables as laboratories and papers keep them: one row per reduced velocity, one column per derivative.
 //!
 //! ```text
 //! # notation: scanlan

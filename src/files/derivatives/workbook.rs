@@ -1,7 +1,7 @@
 //! Workbooks of derivatives as NTNU keeps them (.xlsx).
 //!
 //! Three sheets, `Mean wind velocity`, `Reduced Velocities`, `Aerodynamic Derivatives`, in any order; in each a
-//! row of names and below it one row a test point; one column a derivative, named `MeanWind_H1`, `Vred_H1`, `H1`, or
+//! row of names and below it one row per test point; one column per derivative, named `MeanWind_H1`, `Vred_H1`, `H1`, or
 //! in all sheets `H1` or `H_1` as the laboratory's own package writes them, with a column of row numbers that is not looked
 //! at. Derivatives of sway may be left out, in all three sheets alike, likewise H4, A4 ([`super::Missing`]).
 //! Every derivative has its own `V̂ = V/(ωB)`. The width is that of a sheet `Dim section model` (names `D`, `B`, `L` over
@@ -327,7 +327,7 @@ fn width_from_frequencies(table: &DerivativeTable, frequencies_hz: &[f64]) -> Re
         let points = table.points(derivative);
         if frequencies_hz.is_empty() || !points.len().is_multiple_of(frequencies_hz.len()) {
             let expected = format!(
-                "{} test points a speed, one a frequency (or the width stated)",
+                "{} test points per speed, one per frequency (or the width stated)",
                 frequencies_hz.len()
             );
             return Err(Error::input(

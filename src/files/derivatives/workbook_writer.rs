@@ -1,6 +1,6 @@
 //! Workbooks of derivatives written as NTNU keeps them; [`super::read_workbook`] reads them.
 //!
-//! Three sheets, each with a row of names and one row a test point; see [`super::workbook`] for the layout. Derivatives that the
+//! Three sheets, each with a row of names and one row per test point; see [`super::workbook`] for the layout. Derivatives that the
 //! table does not hold have no columns. A fourth sheet, `Notes`, which other readers of the layout do not look at, says where
 //! the figures come from, in which convention they are, and which width belongs to them.
 

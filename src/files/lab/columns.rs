@@ -1,4 +1,4 @@
-//! Arrays as channels: one a column, time along the longer side.
+//! Arrays as channels: one per column, time along the longer side.
 
 use super::channels::{Attribute, ChannelSet};
 
@@ -24,7 +24,7 @@ pub(super) fn push_array(
     units: &[String],
 ) {
     let sides: Vec<usize> = shape.iter().copied().filter(|n| *n != 1).collect();
-    // one unit for all columns, or one a column
+    // one unit for all columns, or one per column
     let unit = |column: usize, columns: usize| match units {
         [one] => Some(one.clone()),
         all if all.len() == columns => Some(all[column].clone()),

@@ -174,7 +174,7 @@ fn is_number(kind: &DType) -> bool {
     )
 }
 
-/// The units that a dataset states: none, one for all columns, or one a column.
+/// The units that a dataset states: none, one for all columns, or one per column.
 fn units(attributes: &HashMap<String, AttrValue>) -> Vec<String> {
     let stated = attributes
         .iter()

@@ -37,7 +37,7 @@ pub(super) fn parse(data: &[u8], group: Option<&str>) -> Result<ChannelSet> {
     file.channels(group)
 }
 
-/// SampleLayout of the samples of one channel in a block.
+/// Where the samples of one channel in a block.
 #[derive(Debug, Clone, Copy)]
 struct SampleLayout {
     kind: u32,

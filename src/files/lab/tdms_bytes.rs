@@ -61,7 +61,7 @@ impl<'a> Bytes<'a> {
     }
 }
 
-/// Bytes a sample.
+/// Bytes per sample.
 pub(super) fn size_of(kind: u32, path: &str) -> Result<usize> {
     match kind {
         1 | 5 | BOOLEAN => Ok(1),

@@ -37,7 +37,7 @@ pub(super) struct BridgeUnit {
     pub roots: Vec<f64>,
     release_pending: bool,
     onset_current: bool,
-    told: bool,
+    warned: bool,
     pub inputs: Inputs,
     outputs: Outputs,
 }
@@ -61,7 +61,7 @@ impl BridgeUnit {
             stale: false,
             release_pending: true,
             onset_current: false,
-            told: false,
+            warned: false,
             outputs: Outputs::default(),
         })
     }
@@ -232,7 +232,7 @@ impl Unit for BridgeUnit {
     }
 
     fn begin_initialization(&mut self) {
-        self.told = false;
+        self.warned = false;
         self.release_pending = true;
     }
 
@@ -263,12 +263,12 @@ impl Unit for BridgeUnit {
     }
 
     fn watch(&mut self, _: &Resources, memory: &Memory, notices: &mut Vec<String>) {
-        if self.told {
+        if self.warned {
             return;
         }
         let rotation = self.rotation(memory);
         if rotation.abs() > LINEAR_ROTATION_RAD {
-            self.told = true;
+            self.warned = true;
             notices.push(beyond_linear(rotation));
         }
     }

@@ -162,8 +162,8 @@ impl ForceUnit {
                     name(3 * i + 1)
                 )));
             }
-            if acceleration && flags[2] == NOT_SET && !self.told_mass {
-                self.told_mass = true;
+            if acceleration && flags[2] == NOT_SET && !self.warned_of_mass {
+                self.warned_of_mass = true;
                 notices.push(format!(
                     "`{}` has not been set: the forces hold no added mass of the air (set motion_derivatives to 1 where that \
                      is meant)",

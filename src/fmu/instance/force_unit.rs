@@ -52,9 +52,9 @@ pub(super) struct ForceUnit {
     /// While initialising: the flow has to settle around other motion.
     settle_pending: bool,
     /// Whether it has been said that a rotation is beyond linear theory.
-    told: bool,
+    warned: bool,
     /// Whether it has been said that the added mass is missing.
-    pub told_mass: bool,
+    pub warned_of_mass: bool,
 }
 
 /// What acts on the strips.
@@ -112,8 +112,8 @@ impl ForceUnit {
             held: Vec::new(),
             integrated: false,
             settle_pending: true,
-            told: false,
-            told_mass: false,
+            warned: false,
+            warned_of_mass: false,
         };
         unit.find_states(table);
         Ok(unit)
@@ -212,7 +212,7 @@ impl Unit for ForceUnit {
     }
 
     fn begin_initialization(&mut self) {
-        (self.told, self.told_mass) = (false, false);
+        (self.warned, self.warned_of_mass) = (false, false);
         self.settle_pending = true;
     }
 
@@ -237,8 +237,8 @@ impl Unit for ForceUnit {
             .step_by(n);
         let largest = rotations.map(|places| memory.values[places[0]].abs());
         let largest = largest.fold(0.0, f64::max);
-        if largest > LINEAR_ROTATION_RAD && !self.told {
-            self.told = true;
+        if largest > LINEAR_ROTATION_RAD && !self.warned {
+            self.warned = true;
             notices.push(beyond_linear(largest));
         }
     }

@@ -12,7 +12,7 @@ use crate::section::{Dof, SectionModel, Structure};
 use crate::trained_model::{Model, TrainedModel};
 use crate::units::{ReducedFrequency, ReducedVelocity};
 
-/// The section of the model with the parameters in `values` (one number a variable of `table`).
+/// The section of the model with the parameters in `values` (one number per variable of `table`).
 ///
 /// A support whose three numbers are the start values stays as the model states it, so that an unchanged section is
 /// the model's own to the last bit even where that states a stiffness.

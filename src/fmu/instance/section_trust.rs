@@ -40,32 +40,32 @@ impl SectionUnit {
     /// Whether there may be something to say; part of every step.
     #[inline]
     pub(super) fn trust_changes(&self, memory: &Memory) -> bool {
-        self.in_tested_winds(memory) != self.told.wind_was_tested || self.rotation_news(memory)
+        self.in_tested_winds(memory) != self.warned.wind_was_tested || self.rotation_news(memory)
     }
 
     /// Whether the rotation is beyond linear theory for the first time.
     #[inline]
     pub(super) fn rotation_news(&self, memory: &Memory) -> bool {
-        self.rotation(memory).abs() > LINEAR_ROTATION_RAD && !self.told.rotation_left
+        self.rotation(memory).abs() > LINEAR_ROTATION_RAD && !self.warned.rotation_left
     }
 
     /// Says when the wind leaves the tested range, and when the rotation leaves linear theory; each once.
     #[cold]
     pub(super) fn watch_trust(&mut self, memory: &Memory, notices: &mut Vec<String>) {
         let inside = self.in_tested_winds(memory);
-        let leaves = self.told.wind_was_tested && !inside && !self.told.wind_left;
+        let leaves = self.warned.wind_was_tested && !inside && !self.warned.wind_left;
         if let Some([low, high]) = self.tested_winds.filter(|_| leaves) {
-            self.told.wind_left = true;
+            self.warned.wind_left = true;
             let wind = self.wind_speed(memory);
             notices.push(format!(
                 "wind_speed = {wind} m/s leaves the speeds at which this section was tested, {low:.3} to {high:.3} m/s \
                  at its frequencies in still air: the forces are extrapolated"
             ));
         }
-        self.told.wind_was_tested = inside;
+        self.warned.wind_was_tested = inside;
         let rotation = self.rotation(memory);
-        if rotation.abs() > LINEAR_ROTATION_RAD && !self.told.rotation_left {
-            self.told.rotation_left = true;
+        if rotation.abs() > LINEAR_ROTATION_RAD && !self.warned.rotation_left {
+            self.warned.rotation_left = true;
             notices.push(beyond_linear(rotation));
         }
     }

@@ -6,7 +6,7 @@ use super::memory::Memory;
 use super::section::{self, OnsetCard};
 use super::section_places::Places;
 use super::sensitivity::{check_finite, finite};
-use super::trust::{Present, ToldOfTrust, tested_winds};
+use super::trust::{Present, TrustWarnings, tested_winds};
 use super::unit::Unit;
 use crate::aerodynamics::{GustForce, Realizable, Realization};
 use crate::error::Result;
@@ -51,7 +51,7 @@ pub(super) struct SectionUnit {
     growth_known: bool,
     /// Searches for growth that this instance may still do.
     growth_searches_left: usize,
-    pub told: ToldOfTrust,
+    pub warned: TrustWarnings,
     pub inputs: Inputs,
     loaded: LoadedInputs,
     outputs: Outputs,
@@ -82,7 +82,7 @@ impl SectionUnit {
             onset_current: false,
             growth_known: false,
             growth_searches_left: GROWTH_SEARCHES,
-            told: ToldOfTrust::default(),
+            warned: TrustWarnings::default(),
             loaded: LoadedInputs::Stale,
             outputs: Outputs::default(),
         })
@@ -226,7 +226,7 @@ impl Unit for SectionUnit {
     }
 
     fn begin_initialization(&mut self) {
-        self.told = ToldOfTrust::default();
+        self.warned = TrustWarnings::default();
         self.release_pending = true;
     }
 

@@ -142,7 +142,7 @@ pub(super) fn beyond_linear(rotation: f64) -> String {
 
 /// What has been said since the initialisation: a gust may cross a limit at every step.
 #[derive(Debug, Default)]
-pub(super) struct ToldOfTrust {
+pub(super) struct TrustWarnings {
     /// Whether the wind was in the tested range after the last step.
     pub wind_was_tested: bool,
     pub wind_left: bool,

@@ -36,7 +36,7 @@ pub(super) fn solve(
     Ok(())
 }
 
-/// The equations of one test point. Columns: two a motion that some run drives, then constant and trend of each run.
+/// The equations of one test point. Columns: two per motion that some run drives, then constant and trend of each run.
 struct TestPoint<'a> {
     dofs: &'a [Dof],
     group: &'a [Stretch],

@@ -76,7 +76,7 @@ pub struct ConstraintReport {
     pub active: Vec<ActiveConstraint>,
     /// The same in sentences.
     pub sentences: Vec<String>,
-    /// What they cost, one account a transfer function, row by row.
+    /// What they cost, one account per transfer function, row by row.
     pub costs: Vec<ConstraintCost>,
     /// What they do to the onset; filled in where the section is known.
     #[serde(skip_serializing_if = "Option::is_none")]

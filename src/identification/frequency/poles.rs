@@ -26,7 +26,7 @@ fn searched(forms: &[EntryForm], fit: &FrequencyFit) -> Result<(Vec<EntryForm>, 
     Ok((forms, groups))
 }
 
-/// Poles of every entry, one a filter, and how they were found.
+/// Poles of every entry, one per filter, and how they were found.
 pub(super) fn choose_poles(
     entries: &[Entry],
     forms: &[EntryForm],

@@ -20,7 +20,7 @@ fn differ(a: &Model, b: &Model) -> f64 {
 }
 
 /// Every cell of the discrete grid is the fit with that number of filters and that decay factor: the same rows, one
-/// factorisation against one a cell.
+/// factorisation against one per cell.
 #[test]
 fn discrete_cells_are_single_fits() {
     let made = records(&FlatPlate::default(), &[8.17, 4.0], 0.02, 3);

@@ -88,7 +88,7 @@ impl RecordFit<'_> {
         self.fit.low_pass_hz.unwrap_or(default)
     }
 
-    /// Every how many samples a row is enough: four rows a period of the cut-off still hold what the low-pass lets
+    /// Every how many samples a row is enough: four rows per period of the cut-off still hold what the low-pass lets
     /// through.
     fn thinning(&self) -> usize {
         let stride = |r: &DimensionlessRecord| (0.25 / (self.cutoff_hz(r) * r.step_s)) as usize;

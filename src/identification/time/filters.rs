@@ -141,7 +141,7 @@ struct FilterStep {
 
 impl FilterStep {
     /// `x[k] = own x[k−1] + drive (w[k−1], u[k−1], u[k])` for a whole piece; `out` holds one stretch of
-    /// [`BLOCK_ROWS`] a filter.
+    /// [`BLOCK_ROWS`] per filter.
     fn advance(&self, input: &Filtered, state: &mut [f64], out: &mut [f64]) {
         let rows = input.input.len() - 1;
         let [w0, w1, w2, w3] = &input.states;
@@ -173,13 +173,13 @@ impl FilterStep {
 pub(crate) struct ContinuousColumns<'a> {
     bases: &'a [Vec<Basis>],
     low_pass: LowPassStep,
-    /// One step a candidate and input.
+    /// One step per candidate and input.
     steps: Vec<Vec<FilterStep>>,
     motion: Vec<Filtered>,
     force: Vec<Filtered>,
-    /// Filter states, one vector a candidate and input.
+    /// Filter states, one vector per candidate and input.
     states: Vec<Vec<Vec<f64>>>,
-    /// Filter columns of the candidate asked for last, one stretch an input.
+    /// Filter columns of the candidate asked for last, one stretch per input.
     filters: Vec<Vec<f64>>,
     /// The constant, if there is one.
     ones: Option<Vec<f64>>,

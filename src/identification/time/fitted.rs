@@ -216,9 +216,9 @@ impl<'a> FittedSystems<'a> {
 
 /// All transfer functions at given poles, each force by itself and together under the constraints.
 pub(crate) struct Joint {
-    /// One a transfer function where each has rows of its own, else one a force, constant included.
+    /// One per transfer function where each has rows of its own, else one per force, constant included.
     whole: Vec<LinearEntry>,
-    /// One a transfer function.
+    /// One per transfer function.
     entries: Vec<LinearEntry>,
     /// Scale of the weighted residual of each of `whole` in the objective.
     shares: Vec<f64>,

@@ -67,7 +67,7 @@ pub struct Progress {
 /// Called after every record of every pass, from any thread.
 pub(crate) type OnProgress<'a> = &'a (dyn Fn(Progress) + Sync);
 
-/// Consecutive samples, at most [`BLOCK_ROWS`], one slice a degree of freedom.
+/// Consecutive samples, at most [`BLOCK_ROWS`], one slice per degree of freedom.
 pub(crate) struct Piece<'a> {
     pub motion: Vec<&'a [f64]>,
     pub force: Vec<&'a [f64]>,
@@ -99,7 +99,7 @@ pub(crate) trait Columns {
     fn candidates(&self) -> usize;
     /// Takes the next piece; inputs that are not `active` have been zero so far.
     fn advance(&mut self, piece: &Piece<'_>, active: &[usize]);
-    /// Columns of a candidate for the active inputs, in [`ColumnOrder`], followed by one a force. Called once a piece and
+    /// Columns of a candidate for the active inputs, in [`ColumnOrder`], followed by one per force. Called once per piece and
     /// candidate, with the candidates in order.
     fn columns<'a>(
         &'a mut self,
@@ -138,7 +138,7 @@ pub(crate) struct Stretch {
     start_s: f64,
     /// Inputs that moved.
     pub set: Vec<usize>,
-    /// One factor a candidate, all forces as right-hand sides.
+    /// One factor per candidate, all forces as right-hand sides.
     pub factors: Vec<Factor>,
     /// Weight of each force.
     pub weights: Vec<f64>,
@@ -153,7 +153,7 @@ pub(crate) struct Pass {
     pub order: ColumnOrder,
     /// In the order of the records.
     pub stretches: Vec<Stretch>,
-    /// Samples before the motion starts, one number a record, at the step of the pass.
+    /// Samples before the motion starts, one number per record, at the step of the pass.
     pub still_samples: Vec<usize>,
 }
 
@@ -267,7 +267,7 @@ fn activate(piece: &Piece<'_>, active: &mut Vec<usize>) -> usize {
 
 /// A stretch whose end has not been reached.
 struct OpenStretch {
-    /// Inputs, and one system a candidate with all forces as right-hand sides.
+    /// Inputs, and one system per candidate with all forces as right-hand sides.
     sets: Vec<(Vec<usize>, Vec<StreamingQr>)>,
     squares: Vec<f64>,
     moving_rows: usize,

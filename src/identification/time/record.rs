@@ -30,7 +30,7 @@ pub(crate) struct DimensionlessRecord {
     pub step_s: f64,
 }
 
-/// Dimensionless motions and forces, one vector a degree of freedom, all of one length.
+/// Dimensionless motions and forces, one vector per degree of freedom, all of one length.
 #[derive(Clone)]
 pub(crate) struct Signals {
     pub motion: Vec<Vec<f64>>,
@@ -282,7 +282,7 @@ const PERIODOGRAM: usize = 8192;
 /// Part of the power that is left out at either end of the band.
 const LEFT_OUT: f64 = 0.01;
 
-/// Lower and upper end of the band that holds the power of all motions together, radians a sample, from averaged periodograms
+/// Lower and upper end of the band that holds the power of all motions together, radians per sample, from averaged periodograms
 /// (Welch 1967); `None` for motions that never move.
 fn band(motions: &[Vec<f64>]) -> Option<(f64, f64)> {
     let power = power(motions);

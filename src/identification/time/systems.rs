@@ -96,7 +96,7 @@ impl Systems {
     }
 }
 
-/// The systems that each force is fitted to, one for all forces or one a force, and the columns that its transfer
+/// The systems that each force is fitted to, one for all forces or one per force, and the columns that its transfer
 /// functions have of them: all candidates have as many as the one with the most filters, the others leave their last out.
 pub(crate) struct ForceSystems {
     /// Columns of every transfer function, row by row.

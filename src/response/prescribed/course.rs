@@ -4,7 +4,7 @@
 pub(super) const POINTS: usize = 4;
 /// Numbers of a point: displacement, rate, acceleration, and how many of these three are known.
 pub(super) const NUMBERS: usize = 4;
-/// Coefficients of a course. A quartic gains nothing at twenty points a period and carries three times the noise of the
+/// Coefficients of a course. A quartic gains nothing at twenty points per period and carries three times the noise of the
 /// measured motion into the force.
 pub(super) const COEFFICIENTS: usize = 4;
 

@@ -14,7 +14,7 @@ const MAX_PARTS: f64 = 1e4;
 /// What each of many strips may take of them nevertheless.
 const PARTS_OF_A_STRIP: f64 = 100.0;
 
-/// Where the filters go: along `courses` (one a degree of freedom, dimensionless), whose time begins where they are now.
+/// Where the filters go: along `courses` (one per degree of freedom, dimensionless), whose time begins where they are now.
 pub(super) struct Way<'a> {
     pub courses: &'a [Course],
     pub duration_s: f64,

@@ -147,7 +147,7 @@ impl BridgeStudy {
         }))
     }
 
-    /// A field of a file, one gust a node.
+    /// A field of a file, one gust per node.
     fn turbulence(&self, field: &FieldTable) -> Result<TurbulenceOptions> {
         let field = self.at_nodes(field)?;
         let [u, w] = field.gusts;

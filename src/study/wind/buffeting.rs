@@ -84,7 +84,7 @@ struct AtSpeed {
     forces: GustForces,
 }
 
-/// RMS over the speeds of the file, spectra, and the time domain where it is asked for. `progress` is told records done and
+/// RMS over the speeds of the file, spectra, and the time domain where it is asked for. `progress` gets records done and
 /// all of them.
 pub(crate) fn buffeting_study(
     study: &WindStudy,
@@ -254,8 +254,8 @@ impl<'a> Setting<'a> {
             .iter()
             .enumerate()
             .map(|(i, response)| {
-                let told = |done: usize, _: usize| progress(i * plan.records + done, all);
-                self.both_domains(response, plan, &told)
+                let of_all = |done: usize, _: usize| progress(i * plan.records + done, all);
+                self.both_domains(response, plan, &of_all)
             })
             .collect()
     }

@@ -11,7 +11,7 @@ use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
 
-/// Draws samples. One stream of the generator a sample, so that neither threads nor their order matter.
+/// Draws samples. One stream of the generator per sample, so that neither threads nor their order matter.
 #[derive(Debug, Clone)]
 pub(super) struct Sampler {
     seed: u64,

@@ -79,7 +79,7 @@ pub(crate) struct RecordingBlock {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum RecordingLayout {
-    /// HDF5 of NTNU's tools, one group a run; entries of `channels` replace those of the layout.
+    /// HDF5 of NTNU's tools, one group per run; entries of `channels` replace those of the layout.
     Ntnu,
 }
 

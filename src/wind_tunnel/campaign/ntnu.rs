@@ -1,6 +1,6 @@
 //! The layout of NTNU's tools: as a channel map, and a virtual campaign as such a file.
 //!
-//! One HDF5 group a run: `motion` (n, 3) lateral, vertical, torsion; `forces_global_coord` (n, 24), six channels for each
+//! One HDF5 group per run: `motion` (n, 3) lateral, vertical, torsion; `forces_global_coord` (n, 24), six channels for each
 //! of four cells in fixed axes x downwind, y along the span, z up; `wind_velocity`, `air_density`, `temperature`; the
 //! attribute `sampling frequency`. Cells of the rig take the columns in their order.
 //!

@@ -31,7 +31,7 @@ pub struct CellDrift {
     pub range: [f64; 6],
 }
 
-/// Removes from every cell of `recording` a polynomial of `degree`, told from what follows `motion` in `segments`; `rotation_rad` is
+/// Removes from every cell of `recording` a polynomial of `degree`, separated from what follows `motion` in `segments`; `rotation_rad` is
 /// the rotation of the model at each sample.
 pub(crate) fn remove_cell_drift(
     recording: &mut RawRecording,

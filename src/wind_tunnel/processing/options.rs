@@ -45,9 +45,9 @@ pub struct LowPassOptions {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Ramps {
-    /// One record a run, from rest to rest: models with memory see how every motion began.
+    /// One record per run, from rest to rest: models with memory see how every motion began.
     Keep,
-    /// One record a segment, whole periods at full amplitude.
+    /// One record per segment, whole periods at full amplitude.
     Cut,
 }
 

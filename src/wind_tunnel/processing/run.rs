@@ -28,7 +28,7 @@ pub struct StageSignals {
 /// One run, processed.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct ProcessedRun {
-    /// One record, or one a segment when ramps are cut.
+    /// One record, or one per segment when ramps are cut.
     pub records: Vec<Record>,
     /// What was done.
     pub report: RunReport,

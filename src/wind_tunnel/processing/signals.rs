@@ -65,7 +65,7 @@ pub(crate) fn level(x: &[f64]) -> Level {
     }
 }
 
-/// One record of the run, or one a segment when ramps are cut.
+/// One record of the run, or one per segment when ramps are cut.
 pub(super) fn records(
     campaign: &RawCampaign,
     dofs: &[Dof],

@@ -79,7 +79,7 @@ pub(crate) fn align(
     let inside = |x: &[f64]| x[covered.clone()].to_vec();
     let (a, b) = (inside(&reference), inside(&aligned_motion));
     let dot = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(p, q)| p * q).sum::<f64>();
-    // over what both cover: a recording that ends early is alike, and told to be short where it matters
+    // over what both cover: a recording that ends early is alike, and reported as short where it matters
     let correlation = dot(&a, &b) / (dot(&a, &a) * dot(&b, &b)).sqrt();
     if !correlation.is_finite() || correlation < ALIKE {
         return Err(Error::input(

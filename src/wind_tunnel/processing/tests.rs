@@ -159,7 +159,7 @@ fn cut_ramps_leave_whole_periods() {
     assert_eq!(processed.records.len(), 6);
     for record in &processed.records {
         let [segment] = &record.header.segments[..] else {
-            panic!("one segment a record");
+            panic!("one segment per record");
         };
         let periods = record.force[0].len() as f64 * segment.frequency_hz / 200.0;
         assert!((periods - periods.round()).abs() < 0.01, "{periods}");

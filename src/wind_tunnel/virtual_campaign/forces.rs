@@ -67,7 +67,7 @@ pub(super) fn wind_coefficients(wind: &StaticWind, u: f64, w: f64) -> [f64; 3] {
     ]
 }
 
-/// Downwind and vertical gust over the mean speed, one a sample.
+/// Downwind and vertical gust over the mean speed, one per sample.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Gusts {
     pub u: Vec<f64>,

@@ -27,7 +27,7 @@ pub struct VirtualCampaign {
 }
 
 impl VirtualCampaignPlan {
-    /// A campaign on a deck known by its derivatives, one run a motion among `dofs` and speed group of `table`.
+    /// A campaign on a deck known by its derivatives, one run per motion among `dofs` and speed group of `table`.
     pub fn from_table(&self, table: &DerivativeTable, dofs: &[Dof]) -> Result<VirtualCampaign> {
         self.validate()?;
         let clean = |delay_s| self.tunnel.clean_from_table(table, dofs, delay_s);
@@ -46,7 +46,7 @@ impl VirtualCampaignPlan {
         Ok(self.carry_out(&table.name, records, &late, points))
     }
 
-    /// A campaign on a deck of `width_m` with the forces of `model`, one run a motion and speed of the plan.
+    /// A campaign on a deck of `width_m` with the forces of `model`, one run per motion and speed of the plan.
     pub fn from_model(
         &self,
         model: &dyn Transfer,
@@ -213,7 +213,7 @@ impl<'a> RunInMaking<'a> {
         random_stream(self.plan.tunnel.seed, stream)
     }
 
-    /// Displacement and rates of the run `delay_s` late, one a sample.
+    /// Displacement and rates of the run `delay_s` late, one per sample.
     fn motion(&self, delay_s: f64) -> Vec<Kinematics> {
         let header = &self.record.header;
         let frequencies: Vec<f64> = header.segments.iter().map(|s| s.frequency_hz).collect();

@@ -24,7 +24,7 @@ fn on_jones(plan: &VirtualCampaignPlan) -> VirtualCampaign {
     plan.from_model(&jones, "Jones", 0.5).unwrap()
 }
 
-/// Drag, lift and nose-up moment about the centre of rotation, one a sample: turned by the sine and cosine of the
+/// Drag, lift and nose-up moment about the centre of rotation, one per sample: turned by the sine and cosine of the
 /// rotation, moved by the lever arms in the plane, written out without matrices.
 fn section_forces(rig: &Rig, recording: &RawRecording) -> [Vec<f64>; 3] {
     let mut sums = [(); 3].map(|()| vec![0.0; recording.len()]);

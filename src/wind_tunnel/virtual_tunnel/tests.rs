@@ -54,7 +54,7 @@ fn the_default_plan_is_table_3_2() {
         );
         for (j, channel) in record.motion.iter().enumerate() {
             if j == moving {
-                // The highest frequency has 80 samples a period: the peak is met to 1 − cos(π/80).
+                // The highest frequency has 80 samples per period: the peak is met to 1 − cos(π/80).
                 assert!((peak(channel) / amplitudes[j] - 1.0).abs() < 1e-3);
             } else {
                 assert_eq!(peak(channel), 0.0);

@@ -69,7 +69,7 @@ def write_matlab():
 
 
 def write_hdf5():
-    """The layout of NTNU's tools: one group a run. Forces of two cells of four are zero."""
+    """The layout of NTNU's tools: one group per run. Forces of two cells of four are zero."""
     with h5py.File(HERE / "ntnu.h5", "w", libver="earliest") as f:
         for name, speed, factor in [("in_wind", 8.0, 1.5), ("still_air", 0.0, 1.0)]:
             g = f.create_group(name)

@@ -111,7 +111,7 @@ fn frequencies_that_do_not_fit_are_refused() {
     };
     let message = refused("workbook.xlsx", &options(TABLE_3_2_FREQUENCIES_HZ.to_vec()));
     assert!(
-        message.contains("expected 8 test points a speed"),
+        message.contains("expected 8 test points per speed"),
         "{message}"
     );
     let message = refused("workbook.xlsx", &options(vec![0.5, 1.0, 1.5]));

@@ -94,7 +94,7 @@ fn the_layout_of_ntnu_reads_back_the_same_forces() {
     }
 }
 
-/// Units stand in the file as one a column, and the map has to agree with them.
+/// Units stand in the file as one per column, and the map has to agree with them.
 #[test]
 fn the_layout_of_ntnu_states_its_units() {
     let folder = tempfile::tempdir().unwrap();
