@@ -252,16 +252,12 @@ pub(super) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
         return args.whole_bridge(progress);
     }
     let model = stages::read_model(&args.model)?;
-    let path = args.out.clone().unwrap_or_else(|| {
-        args.model.with_file_name(match args.kind {
-            Kind::Section => stages::FMU_FILE,
-            Kind::Force => "deck_force.fmu",
-        })
-    });
-    let bounds = match args.kind {
-        Kind::Section => saved_bounds(&args.model, &model)?,
-        Kind::Force => None,
+    let (default_name, bounds) = match args.kind {
+        Kind::Section => (stages::FMU_FILE, saved_bounds(&args.model, &model)?),
+        Kind::Force => ("deck_force.fmu", None),
     };
+    let beside_the_model = || args.model.with_file_name(default_name);
+    let path = args.out.clone().unwrap_or_else(beside_the_model);
     let export = Export {
         growing: stages::growing(args.allow_unstable),
         force: args.force(&model)?,

@@ -3,7 +3,8 @@
 use super::dof_names::names_of;
 use super::real::{FIXED, INPUT, OUTPUT, SMALLEST, TUNABLE, constants, real};
 use super::section::{
-    calculated_parameters, capitalized, gust_inputs, onset_bounds, search_limit, status, wind_speed,
+    air_density, calculated_parameters, capitalized, gust_inputs, onset_bounds, search_limit,
+    status, wind_speed,
 };
 use super::{ModeOutput, ModeParameter, Response, Role, SectionParameter, Status, Variable};
 use super::{bridge_states, dependencies};
@@ -63,15 +64,7 @@ fn gusts<'a>(
 
 /// What may change while it runs.
 fn parameters(options: &BridgeOptions, turbulence: bool) -> Vec<Variable> {
-    let density = real(
-        "air_density",
-        Role::Section(SectionParameter::AirDensity),
-        TUNABLE,
-        "Air density rho",
-    )
-    .quantity("Density", Some(&si::KILOGRAM_PER_METRE3))
-    .min(SMALLEST)
-    .start(options.air_density_kg_m3);
+    let density = air_density().start(options.air_density_kg_m3);
     let factor = real(
         "turbulence_factor",
         Role::TurbulenceFactor,

@@ -2,10 +2,8 @@
 
 use super::dof_names::names_of;
 use super::real::{FIXED, INPUT, OUTPUT, SMALLEST, TUNABLE, constants, force_scale, nominal, real};
-use super::section::{capitalized, filter, gust_filter, gust_inputs, wind_speed};
-use super::{
-    ForceOutput, InitialDependency, Response, Role, SectionParameter, StripParameter, Variable,
-};
+use super::section::{air_density, capitalized, filter, gust_filter, gust_inputs, wind_speed};
+use super::{ForceOutput, InitialDependency, Response, Role, StripParameter, Variable};
 use crate::aerodynamics::{GustForce, Realizable, Realization};
 use crate::error::Result;
 use crate::fmu::force_options::{ForceOptions, MAX_PREDICTION};
@@ -32,17 +30,7 @@ pub(super) fn variables(
     for (s, _) in options.strips.iter().enumerate() {
         table.extend(forces(model, &dofs, s, options));
     }
-    table.push(
-        real(
-            "air_density",
-            Role::Section(SectionParameter::AirDensity),
-            TUNABLE,
-            "Air density rho",
-        )
-        .quantity("Density", Some(&si::KILOGRAM_PER_METRE3))
-        .min(SMALLEST)
-        .start(model.section.air_density_kg_m3),
-    );
+    table.push(air_density().start(model.section.air_density_kg_m3));
     for s in 0..options.strips.len() {
         table.extend(strip(s, options));
     }

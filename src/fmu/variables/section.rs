@@ -201,6 +201,18 @@ fn outputs(model: &TrainedModel, dofs: &[Dof]) -> Vec<Variable> {
         .collect()
 }
 
+/// Density of the air, of a unit of any kind; without a start value.
+pub(super) fn air_density() -> Variable {
+    real(
+        "air_density",
+        Role::Section(SectionParameter::AirDensity),
+        TUNABLE,
+        "Air density rho",
+    )
+    .quantity("Density", Some(&si::KILOGRAM_PER_METRE3))
+    .min(SMALLEST)
+}
+
 fn section_parameter(parameter: SectionParameter, section: &SectionModel) -> Variable {
     let variable = |name, text: &str| real(name, Role::Section(parameter), TUNABLE, text);
     let of_support = |dof, i: usize, text: &str| {
@@ -228,9 +240,7 @@ fn section_parameter(parameter: SectionParameter, section: &SectionModel) -> Var
         SectionParameter::Width => variable("width", "Full deck width B")
             .quantity("Length", metre)
             .min(SMALLEST),
-        SectionParameter::AirDensity => variable("air_density", "Air density rho")
-            .quantity("Density", Some(&si::KILOGRAM_PER_METRE3))
-            .min(SMALLEST),
+        SectionParameter::AirDensity => air_density(),
         SectionParameter::Inertia(dof) => {
             let (min, text) = match dof {
                 Dof::Vertical => (SMALLEST, "Mass per unit length of span, vertical motion"),

@@ -42,12 +42,11 @@ impl BridgeStudy {
     /// [`Error::Input`] for nodes and strips that are none, and for gusts on sections without static coefficients;
     /// [`Error::Unstable`] for a bridge that grows below its onset, unless that is allowed.
     pub fn export(&self, wanted: &Wanted) -> Result<BridgeExport> {
-        let bridge = &self.by_model;
         let named = self.named(&wanted.nodes)?;
         let gusts = self.gusts(wanted)?;
         let search = self.search();
         // as the unit itself judges: whatever grows counts, tested or not
-        let found = find_onset("bridge", &coupled(bridge)?, &search, None)?;
+        let found = find_onset("bridge", &coupled(&self.by_model)?, &search, None)?;
         if let (FlutterSearch::UnstableAtOrBelow(_), false) = (&found, wanted.allow_unstable) {
             return Err(Error::Unstable(format!(
                 "the bridge {}: a unit that grows from the lowest wind speed on is exported only with --allow-unstable",
@@ -55,32 +54,58 @@ impl BridgeStudy {
             )));
         }
         let onset = found.critical_speed_m_s().unwrap_or(search.speed_max_m_s);
-        let motion = found
-            .critical()
-            .map(|at| crate::flutter::motion_at_onset(bridge, &bridge.forces(), at));
-        let first = self.sections.first().and_then(|s| s.saved.clone());
-        let first = first
+        Ok(BridgeExport {
+            model: self.first_model(onset)?,
+            bridge: self.options(&found, named, gusts)?,
+            turbulence: wanted
+                .turbulence
+                .as_ref()
+                .map(|field| self.turbulence(field))
+                .transpose()?,
+        })
+    }
+
+    /// The model of the first section, under the name of the bridge.
+    fn first_model(&self, onset_m_s: f64) -> Result<TrainedModel> {
+        let section = &self.sections[0];
+        let model = section
+            .saved
+            .clone()
             .ok_or_else(|| Error::Numerical("FMU: the first section has no force model".into()))?;
-        let model = TrainedModel {
-            schema_version: first.schema_version(),
+        let everywhere = || crate::units::ReducedFrequencyRange {
+            min: crate::units::ReducedFrequency::from_full_width(f64::MIN_POSITIVE),
+            max: crate::units::ReducedFrequency::from_full_width(f64::MAX),
+        };
+        Ok(TrainedModel {
+            schema_version: model.schema_version(),
             name: self.file.name.clone(),
-            section: bridge.equivalent_section(crate::aerodynamics::Transfer::dofs(&first))?,
-            tested_range: self.sections[0]
-                .tested
-                .unwrap_or(crate::units::ReducedFrequencyRange {
-                    min: crate::units::ReducedFrequency::from_full_width(f64::MIN_POSITIVE),
-                    max: crate::units::ReducedFrequency::from_full_width(f64::MAX),
-                }),
+            section: self
+                .by_model
+                .equivalent_section(crate::aerodynamics::Transfer::dofs(&model))?,
+            tested_range: section.tested.unwrap_or_else(everywhere),
             provenance: Provenance {
-                source: self.sections[0].source.clone(),
-                licence: self.sections[0].licence.clone(),
+                source: section.source.clone(),
+                licence: section.licence.clone(),
                 method: "see the files of the sections".to_owned(),
                 aerodeck_version: env!("CARGO_PKG_VERSION").to_owned(),
                 notes: self.notes.clone(),
             },
-            experiment: self.experiment(onset),
-            model: first,
-        };
+            experiment: self.experiment(onset_m_s),
+            model,
+        })
+    }
+
+    /// What the unit holds of the bridge itself, with the forces of every section.
+    fn options(
+        &self,
+        found: &FlutterSearch,
+        named: Vec<usize>,
+        gusts: Option<BridgeGusts>,
+    ) -> Result<BridgeOptions> {
+        let bridge = &self.by_model;
+        let motion = found
+            .critical()
+            .map(|at| crate::flutter::motion_at_onset(bridge, &bridge.forces(), at));
         let groups = bridge.groups.iter().zip(&self.section_of_group);
         let groups = groups.map(|(g, section)| GroupOptions {
             name: g.name.clone(),
@@ -91,31 +116,23 @@ impl BridgeStudy {
         });
         let saved = self.sections.iter().map(|s| s.saved.clone());
         let forces = saved.collect::<Option<Vec<_>>>();
-        Ok(BridgeExport {
-            model,
-            bridge: BridgeOptions {
-                name: self.file.name.clone(),
-                air_density_kg_m3: bridge.air_density_kg_m3,
-                nodes: bridge.nodes.clone(),
-                modes: bridge.modes.clone(),
-                groups: groups.collect(),
-                forces: forces
-                    .ok_or_else(|| Error::Numerical("FMU: a section has no force model".into()))?,
-                named,
-                tested_range: self.tested_range(),
-                initial: self.release(motion.transpose()?.as_ref()),
-                gusts,
-                onset_interval: found.onset().and_then(|onset| {
-                    // a unit without an interval is better than none
-                    let interval = self.onset_interval(onset).ok()?;
-                    OnsetBounds::of(&interval)
-                }),
-            },
-            turbulence: wanted
-                .turbulence
-                .as_ref()
-                .map(|field| self.turbulence(field))
-                .transpose()?,
+        Ok(BridgeOptions {
+            name: self.file.name.clone(),
+            air_density_kg_m3: bridge.air_density_kg_m3,
+            nodes: bridge.nodes.clone(),
+            modes: bridge.modes.clone(),
+            groups: groups.collect(),
+            forces: forces
+                .ok_or_else(|| Error::Numerical("FMU: a section has no force model".into()))?,
+            named,
+            tested_range: self.tested_range(),
+            initial: self.release(motion.transpose()?.as_ref()),
+            gusts,
+            onset_interval: found.onset().and_then(|onset| {
+                // a unit without an interval is better than none
+                let interval = self.onset_interval(onset).ok()?;
+                OnsetBounds::of(&interval)
+            }),
         })
     }
 

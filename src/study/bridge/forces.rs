@@ -5,7 +5,7 @@ use crate::aerodynamics::derivatives::{Extrapolation, InterpolatedTable};
 use crate::aerodynamics::quasi_steady::LinearQuasiSteady;
 use crate::aerodynamics::{Lags, RationalModel, Transfer};
 use crate::error::{Error, Result};
-use crate::files::bridge::SectionBlock;
+use crate::files::bridge::{SectionBlock, StaticBlock};
 use crate::files::derivatives::named_table;
 use crate::identification::{FeedThrough, Fitted, Form, FrequencyFit, FrequencyWeights, fit_table};
 use crate::trained_model::{Model, TrainedModel};
@@ -96,6 +96,11 @@ impl SectionForces {
                 "none",
             ));
         };
+        Ok(Self::quasi_steady(block, statics))
+    }
+
+    /// Forces of a section of which no more than static coefficients are known.
+    fn quasi_steady(block: &SectionBlock, statics: &StaticBlock) -> Self {
         let theory =
             LinearQuasiSteady::new(&block.motions, statics.arms, 0.0, statics.coefficients());
         // rational functions without lags say the same in a form that is saved
@@ -108,7 +113,7 @@ impl SectionForces {
             lags: Lags::Shared(Vec::new()),
             lag_terms: Vec::new(),
         };
-        Ok(Self {
+        Self {
             table: None,
             model: Arc::new(theory),
             saved: Some(Model::Rational(saved)),
@@ -118,7 +123,7 @@ impl SectionForces {
             notes: Vec::new(),
             uncertainty: Ok(None),
             degrees_of_freedom: None,
-        })
+        }
     }
 
     /// The derivatives of the model with their 95 % intervals; none where its covariance is not known.
