@@ -5,7 +5,7 @@
 #[path = "../examples/book_formulas.rs"]
 mod book_formulas;
 #[path = "common/command.rs"]
-#[allow(dead_code)] // each test file needs a part of it
+#[allow(dead_code)] // each room needs a part of it
 mod command;
 #[path = "common/python.rs"]
 mod python;

@@ -1,7 +1,7 @@
 //! Intervals: they hold known truths as often as they say, and every printed onset has one or a reason.
 
 #[path = "common/command.rs"]
-#[allow(dead_code)] // each test file needs a part of it
+#[allow(dead_code)] // each room needs a part of it
 mod command;
 
 use aerodeck::uncertainty::{CoveragePlan, CoverageReport, Truth, coverage};

@@ -94,6 +94,30 @@ fn files_are_short() {
 }
 
 /// Rows stand above the rows that may use them, so that the table has no cycle.
+/// A reader who looks for what tests a room finds it under the name of the room.
+#[test]
+fn tests_carry_the_names_of_rooms() {
+    // the house itself, its shared helpers and files, the manual, and what tests the crate from Python
+    let others = [
+        "architecture",
+        "common",
+        "data",
+        "docs",
+        "fmpy",
+        "python_package",
+    ];
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests");
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_stem().unwrap().to_str().unwrap();
+        let room = ARROWS.iter().any(|row| row.module == name);
+        assert!(
+            room || others.contains(&name),
+            "tests/{name} is named after no room of src"
+        );
+    }
+}
+
 #[test]
 fn the_arrows_run_one_way() {
     for (i, row) in ARROWS.iter().enumerate() {

@@ -1,4 +1,4 @@
-"""Dissipative fits of measured decks, independently of the program: reference figures for tests/dissipative_fits.rs.
+"""Dissipative fits of measured decks, independently of the program: reference figures for tests/identification/dissipative_fits.rs.
 
     python3 dissipative_fit.py        (needs numpy and cvxpy with Clarabel)
 

@@ -1,0 +1,11 @@
+//! Force models and tables of derivatives through the whole chain.
+
+#![cfg(feature = "cli")]
+
+#[path = "../common/command.rs"]
+mod command;
+#[path = "../common/three_dof.rs"]
+mod three_dof;
+
+mod tables;
+mod three_motions;

@@ -1,0 +1,235 @@
+//! The commands on whole bridges: what they print and write, and what they refuse.
+
+use crate::bridges::{TWO, langenuen_text};
+use crate::browser;
+use crate::command::{listing, refused, succeeds};
+use serde_json::Value;
+use std::fs;
+use tempfile::TempDir;
+
+/// The modes that carry the flutter of Langenuen, so that a run takes a second.
+fn folder() -> TempDir {
+    let folder = TempDir::new().unwrap();
+    let text = langenuen_text("LN21-5200", TWO, "modified_akima").replace(
+        "damping_ratio",
+        "select = [2, 3, 5, 12, 14, 16, 17, 23]\ndamping_ratio",
+    );
+    fs::write(folder.path().join("bridge.toml"), text).unwrap();
+    folder
+}
+
+#[test]
+fn flutter_prints_its_card_and_writes_its_figures() {
+    let folder = folder();
+    let text = succeeds(
+        folder.path(),
+        &["bridge", "flutter", "bridge.toml", "--samples", "20"],
+    );
+    for part in [
+        "Onset card: tables between their points",
+        "Onset card: model",
+        "inside the tested range",
+        "of the kinetic energy",
+        "Onset with fewer modes",
+        "Divergence of the model",
+        "Scatter of 20 samples",
+    ] {
+        assert!(text.contains(part), "{part} is not in {text}");
+    }
+    let written = listing(folder.path());
+    for name in [
+        "bridge_flutter.svg",
+        "bridge_curves.csv",
+        "flutter_motion.png",
+        "flutter_motion.csv",
+        "flutter_animation.csv",
+        "report.html",
+        "summary.json",
+    ] {
+        assert!(written.iter().any(|w| w == name), "{name}");
+    }
+    let animation = fs::read_to_string(folder.path().join("flutter_animation.csv")).unwrap();
+    // 24 phases of 63 nodes and the heading
+    assert_eq!(animation.lines().count(), 24 * 63 + 1);
+}
+
+/// The page says the answer first and loads nothing; written again from the folder it is the same.
+#[test]
+fn the_report_of_a_bridge_stands_alone() {
+    let folder = folder();
+    let at = folder.path();
+    let flutter = ["bridge", "flutter", "bridge.toml"];
+    let run = [&flutter[..], &["--out", "r"]].concat();
+    succeeds(at, &run);
+    let page = fs::read_to_string(at.join("r/report.html")).unwrap();
+    let said = succeeds(at, &[&flutter[..], &["--json", "--out", "r"]].concat());
+    let value: Value = serde_json::from_str(&said).unwrap();
+    let answers = value["flutter"]["answers"].as_array().unwrap();
+    let own = answers.last().unwrap();
+    let speed = own["search"]["onset"]["speed_m_s"].as_f64().unwrap();
+    let largest = own["motion"]["modes"][0]["mode"].as_u64().unwrap();
+    for word in [
+        &format!("Flutter onset {speed:.1} m/s"),
+        &format!("<td>{speed:.2} m/s</td>"),
+        "95 % interval",
+        "What limits trust",
+        "Modes that take part in the flutter",
+        &format!("\"label\":\"mode {largest}\""),
+        "Onset with fewer modes",
+        "Motion at flutter",
+        "Modes in still air",
+        "LN21-5200",
+        "aerodeck bridge flutter bridge.toml --out results",
+    ] {
+        assert!(page.contains(word), "`{word}` is not in the report");
+    }
+    let answer = page.find("class=\"answer\"").unwrap();
+    assert!(answer < page.find("What was asked").unwrap());
+    fs::remove_file(at.join("r/report.html")).unwrap();
+    // a unit of other results says nothing of these
+    fs::write(at.join("r/bridge.fmu"), "another").unwrap();
+    succeeds(at, &["report", "r"]);
+    let again = fs::read_to_string(at.join("r/report.html")).unwrap();
+    assert!(again == page, "another page");
+    browser::stands_alone(&at.join("r/report.html"));
+
+    // what a study left in the folder of the bridge file is not lost
+    fs::write(at.join("summary.json"), "{\"study\": \"mine\"}").unwrap();
+    let said = succeeds(at, &[&flutter[..], &["--no-figures"]].concat());
+    assert!(said.contains("report of a study"), "{said}");
+    let left = fs::read_to_string(at.join("summary.json")).unwrap();
+    assert_eq!(left, "{\"study\": \"mine\"}");
+    assert!(!at.join("report.html").exists());
+    assert!(
+        !at.join("bridge_flutter.svg").exists(),
+        "figures in spite of --no-figures"
+    );
+}
+
+#[test]
+fn results_are_json_for_machines() {
+    let folder = folder();
+    let text = succeeds(
+        folder.path(),
+        &["bridge", "flutter", "bridge.toml", "--json"],
+    );
+    let value: Value = serde_json::from_str(&text).unwrap();
+    let answers = value["flutter"]["answers"].as_array().unwrap();
+    assert_eq!(answers.len(), 2);
+    for answer in answers {
+        let speed = answer["search"]["onset"]["speed_m_s"].as_f64().unwrap();
+        // eight modes of 39 stand 1 % above all of them
+        assert!((75.0..80.0).contains(&speed), "{speed}");
+        let shares = answer["motion"]["modes"].as_array().unwrap();
+        assert_eq!(shares.len(), 8);
+    }
+    let text = succeeds(folder.path(), &["bridge", "show", "bridge.toml", "--json"]);
+    let value: Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(value["modes"].as_array().unwrap().len(), 8);
+    let similarity = &value["similarities"][0]["similarity"];
+    assert!((0.0..=1.0).contains(&similarity.as_f64().unwrap()));
+}
+
+#[test]
+fn converted_modes_give_the_same_bridge() {
+    let folder = folder();
+    succeeds(
+        folder.path(),
+        &["bridge", "convert", "bridge.toml", "modes.csv"],
+    );
+    let text = fs::read_to_string(folder.path().join("bridge.toml")).unwrap();
+    let text = text
+        .replace("\"embedded\"", "\"csv\"")
+        .replace("\"langenuen\"", "\"modes.csv\"");
+    fs::write(folder.path().join("again.toml"), text).unwrap();
+    let show = |file: &str| {
+        let text = succeeds(folder.path(), &["bridge", "show", file, "--json"]);
+        let value: Value = serde_json::from_str(&text).unwrap();
+        (value["modes"].clone(), value["similarities"].clone())
+    };
+    assert_eq!(show("bridge.toml"), show("again.toml"));
+}
+
+/// From the records to the onset with its interval and the unit; the folder gives the same answer again, by the model and the
+/// covariance that were saved.
+#[test]
+fn the_demo_says_how_far_its_records_leave_the_onset_open() {
+    let folder = TempDir::new().unwrap();
+    succeeds(
+        folder.path(),
+        &["demo", "--bridge", "--no-figures", "--out", "r"],
+    );
+    let at = folder.path().join("r");
+    assert!(at.join("bridge.fmu").exists());
+    let own = || {
+        let text = fs::read_to_string(at.join("summary.json")).unwrap();
+        let value: Value = serde_json::from_str(&text).unwrap();
+        let onsets = value["onsets"].as_array().unwrap();
+        let own = onsets.iter().find(|o| o["model"] == "model").unwrap();
+        let number = |of: &Value, key: &str| of[key].as_f64().unwrap();
+        let interval = &own["interval"];
+        ["low_m_s", "high_m_s", "standard_error_m_s"]
+            .map(|key| number(interval, key))
+            .into_iter()
+            .chain([number(own, "speed_m_s")])
+            .collect::<Vec<_>>()
+    };
+    let first = own();
+    let [low, high, _, speed] = first[..] else {
+        panic!("{first:?}");
+    };
+    assert!(low < speed && speed < high, "{first:?}");
+    succeeds(&at, &["bridge", "flutter", "bridge.toml", "--no-figures"]);
+    let again = own();
+    // the ends of the interval differ: the covariance on file no longer knows the degrees of freedom of its tests
+    for (a, b) in first.iter().zip(&again).skip(2) {
+        assert!((a - b).abs() < 1e-6 * a, "{first:?}, {again:?}");
+    }
+    assert!(again[0] < speed && speed < again[1], "{again:?}");
+}
+
+#[test]
+fn an_exported_bridge_passes_the_check() {
+    let folder = folder();
+    let export = [
+        "fmu",
+        "export",
+        "bridge.toml",
+        "--bridge",
+        "--nodes",
+        "1156",
+    ];
+    let text = succeeds(folder.path(), &export);
+    assert!(text.contains("8 modes") && text.contains("1156"), "{text}");
+    let text = succeeds(folder.path(), &["fmu", "check", "bridge.fmu"]);
+    assert!(text.ends_with("passed\n"), "{text}");
+    refused(folder.path(), &export, &["expected no file there yet"]);
+    refused(
+        folder.path(),
+        &[
+            "fmu",
+            "export",
+            "bridge.toml",
+            "--bridge",
+            "--nodes",
+            "7",
+            "--force",
+        ],
+        &["nodes: expected nodes of the bridge, 1001 to 1311, found `7`"],
+    );
+}
+
+#[test]
+fn what_is_missing_is_named() {
+    let folder = folder();
+    refused(
+        folder.path(),
+        &["bridge", "buffeting", "bridge.toml", "--speed", "30"],
+        &["bridge.toml", "expected a block [buffeting]"],
+    );
+    refused(
+        folder.path(),
+        &["bridge", "flutter", "nothing.toml"],
+        &["nothing.toml"],
+    );
+}

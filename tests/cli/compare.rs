@@ -1,0 +1,126 @@
+//! The comparisons on the embedded decks from the command line.
+
+use crate::command::{listing, refused, succeeds};
+use serde_json::Value;
+use tempfile::TempDir;
+
+#[test]
+fn models_are_compared_in_both_domains() {
+    let folder = TempDir::new().unwrap();
+    let text = succeeds(folder.path(), &["compare", "models", "--out", "m"]);
+    for word in [
+        "rational functions, one lag",
+        "within ±15 % at",
+        "M_phi",
+        "thesis 3.5.5: rotation",
+        "models_transfer.png",
+    ] {
+        assert!(text.contains(word), "`{word}` is not in:\n{text}");
+    }
+    let files = listing(folder.path());
+    for name in [
+        "m/models_metrics.csv",
+        "m/models_transfer.csv",
+        "m/models_transfer.svg",
+        "m/models_derivatives.png",
+        "m/models_metrics_vertical.svg",
+        "m/models_metrics_torsion.svg",
+        "m/models_history_vertical_0.5_hz.svg",
+        "m/models_history_torsion_2.0_hz.png",
+    ] {
+        assert!(
+            files.iter().any(|f| f == name),
+            "{name} is not in {files:?}"
+        );
+    }
+    let table = std::fs::read_to_string(folder.path().join("m/models_transfer.csv")).unwrap();
+    // four transfer functions, three models, eight test points
+    assert_eq!(table.lines().count(), 1 + 4 * 3 * 8);
+}
+
+#[test]
+fn decks_are_compared_with_the_model_of_one() {
+    let folder = TempDir::new().unwrap();
+    let arguments = [
+        "--json",
+        "compare",
+        "decks",
+        "--decks",
+        "LN21-5200,LN21-5800",
+        "--trained-on",
+        "LN21-5200",
+        "--lateral",
+        "--out",
+        "d",
+    ];
+    let answer: Value = serde_json::from_str(&succeeds(folder.path(), &arguments)).unwrap();
+    let results = &answer["comparison"];
+    // two decks, two speeds, three motions, three forces, eight frequencies
+    assert_eq!(results["scores"].as_array().unwrap().len(), 2 * 2 * 9 * 8);
+    assert_eq!(results["decks"][1]["trained_on"][0], "LN21-5200");
+    assert!(listing(folder.path()).contains(&"d/decks_lateral.svg".to_owned()));
+    refused(
+        folder.path(),
+        &["compare", "decks", "--decks", "LN99"],
+        &["LN20-5500", "LN99"],
+    );
+    refused(
+        folder.path(),
+        &["compare", "models", "--alpha", "1.5"],
+        &["alpha", "1.5"],
+    );
+}
+
+/// A cosine and the same 20 ms late and a tenth larger: what each metric sees is known in closed form.
+#[test]
+fn signals_of_a_file_are_compared_by_all_metrics() {
+    let folder = TempDir::new().unwrap();
+    let mut text = String::from("measured,predicted,other\n");
+    for k in 0..4000 {
+        let t = f64::from(k) * 0.01;
+        let x = |t: f64| (std::f64::consts::TAU * t).cos() + 0.3 * (17.0 * t).sin();
+        text.push_str(&format!("{},{},1\n", x(t), 1.1 * x(t - 0.02)));
+    }
+    std::fs::write(folder.path().join("f.csv"), text).unwrap();
+    let arguments = |compared: &'static str| {
+        let fixed = [
+            "--json",
+            "compare",
+            "signals",
+            "f.csv",
+            "--reference",
+            "measured",
+        ];
+        let rest = [
+            "--compared",
+            compared,
+            "--sampling-hz",
+            "100",
+            "--to-hz",
+            "4",
+            "--levels",
+            "24",
+        ];
+        [&fixed[..], &rest[..]].concat()
+    };
+    let answer: Value =
+        serde_json::from_str(&succeeds(folder.path(), &arguments("predicted"))).unwrap();
+    let value = |symbol: &str| {
+        let lines = answer.as_array().unwrap();
+        let line = lines.iter().find(|l| l["symbol"] == symbol).unwrap();
+        line["value"].as_f64().unwrap()
+    };
+    assert_eq!(answer.as_array().unwrap().len(), 10);
+    // 20 ms against the second that brings the metric to 1/e; a tenth of the power and of the peak
+    assert!((value("M_phi") - (-0.02_f64).exp()).abs() < 1e-3);
+    assert!((value("M_rms") - (-0.1_f64).exp()).abs() < 1e-3);
+    assert!((value("M_p") - (-0.1_f64).exp()).abs() < 1e-2);
+    // the same shape of the distribution; both stationary; nothing coupled
+    assert!(value("M_pdf") > 0.95);
+    assert_eq!((value("M_s"), value("M_b")), (1.0, 1.0));
+    refused(
+        folder.path(),
+        &arguments("forecast"),
+        &["the channels measured, predicted, other"],
+    );
+}

@@ -1,0 +1,200 @@
+//! Tables of derivatives from the command line: shown, converted, stated in a study.
+
+use crate::command::{onset_of, refused, succeeds};
+use aerodeck::aerodynamics::derivatives::Derivative;
+use aerodeck::files::derivatives::embedded;
+use aerodeck::files::derivatives::read_csv;
+use serde_json::Value;
+use std::fs;
+use tempfile::TempDir;
+
+#[test]
+fn tables_are_converted_there_and_back() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    let deck = embedded::deck("LN21-5200").unwrap();
+    for notation in ["classical", "polimi", "starossek"] {
+        let file = format!("{notation}.csv");
+        let text = succeeds(
+            at,
+            &[
+                "derivatives",
+                "convert",
+                "LN21-5200",
+                &file,
+                "--to",
+                notation,
+            ],
+        );
+        assert!(
+            text.contains("wrote") && text.contains("18 derivatives"),
+            "{text}"
+        );
+        let header = fs::read_to_string(at.join(&file)).unwrap();
+        assert!(header.contains(&format!("# notation: {notation}\n")));
+        let back = format!("{notation}-back.csv");
+        succeeds(
+            at,
+            &["derivatives", "convert", &file, &back, "--from", notation],
+        );
+        let again = read_csv(at.join(&back)).unwrap();
+        for d in Derivative::ALL {
+            for (p, q) in deck.points(d).iter().zip(again.points(d)) {
+                assert!((p.value - q.value).abs() <= 1e-12 * p.value.abs());
+                assert!((p.v_hat / q.v_hat - 1.0).abs() < 1e-12);
+            }
+        }
+    }
+    refused(
+        at,
+        &[
+            "derivatives",
+            "convert",
+            "polimi.csv",
+            "x.csv",
+            "--from",
+            "scanlan",
+        ],
+        &[
+            "polimi.csv",
+            "expected `scanlan` as stated on import, found `polimi`",
+        ],
+    );
+    refused(
+        at,
+        &["derivatives", "convert", "LN21-5200", "x.txt"],
+        &["a file name that ends in .csv or .xlsx"],
+    );
+    refused(
+        at,
+        &["derivatives", "show", "LN21-5200", "--to", "milan"],
+        &["scanlan, classical, polimi, starossek"],
+    );
+}
+
+/// A workbook in another notation states it in its notes and comes back without being told.
+#[test]
+fn workbooks_are_written_in_any_notation() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    let convert = |from: &str, to: &str, more: &[&str]| {
+        succeeds(at, &[&["derivatives", "convert", from, to], more].concat())
+    };
+    convert("LN21-5200", "p.xlsx", &["--to", "polimi"]);
+    assert!(convert("p.xlsx", "back.csv", &[]).contains("from PoliMi, over v_star"));
+    let deck = embedded::deck("LN21-5200").unwrap();
+    let again = read_csv(at.join("back.csv")).unwrap();
+    for d in Derivative::ALL {
+        for (p, q) in deck.points(d).iter().zip(again.points(d)) {
+            assert!((p.value - q.value).abs() <= 1e-12 * p.value.abs());
+        }
+    }
+    refused(
+        at,
+        &["derivatives", "show", "p.xlsx", "--from", "classical"],
+        &[
+            "p.xlsx",
+            "expected `classical` as stated on import, found `polimi`",
+        ],
+    );
+}
+
+#[test]
+fn tables_are_shown_in_any_notation() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    let text = succeeds(at, &["derivatives", "show", "LN21-5200", "--to", "polimi"]);
+    for words in [
+        "PoliMi, over v_star = V/(f B)",
+        "h1*",
+        "16 points",
+        "8.18, 10.94 m/s",
+    ] {
+        assert!(text.contains(words), "`{words}` is not in {text}");
+    }
+    let points = succeeds(at, &["derivatives", "show", "LN21-5200", "--points"]);
+    assert!(points.lines().count() > 18 * 16);
+    let json: Value = serde_json::from_str(&succeeds(
+        at,
+        &[
+            "derivatives",
+            "show",
+            "LN21-5200",
+            "--to",
+            "starossek",
+            "--json",
+        ],
+    ))
+    .unwrap();
+    assert_eq!(json["table"]["convention"]["axes"], "heave_down");
+    let first = &json["table"]["derivatives"][0];
+    assert_eq!(first["name"], "c_pp_im");
+    // c″_pp = (2/π) P1*: sway and drag on the diagonal keep their sign
+    let value = first["points"][0]["value"].as_f64().unwrap();
+    let p1 = embedded::deck("LN21-5200").unwrap().points(Derivative::P1)[0].value;
+    assert!((value / (p1 * std::f64::consts::FRAC_2_PI) - 1.0).abs() < 1e-15);
+    let list = succeeds(at, &["derivatives", "notations", "--sketch", "drawn"]);
+    assert!(list.contains("k_semi = omega b/V") && list.contains("heave_down"));
+    assert!(at.join("drawn/axes.svg").is_file() && at.join("drawn/axes.png").is_file());
+}
+
+/// The onset of a study does not depend on the notation its table is kept in; a wrong statement is refused.
+#[test]
+fn a_study_states_the_notation_of_its_table() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    succeeds(
+        at,
+        &[
+            "derivatives",
+            "convert",
+            "LN21-5200",
+            "deck.csv",
+            "--to",
+            "classical",
+        ],
+    );
+    let demo = aerodeck::study::demo_study_text();
+    let blocks: Vec<&str> = demo.split("[[model]]").collect();
+    let rest = &blocks[3][blocks[3].find("[flutter]").unwrap()..];
+    let study = format!("{}[[model]]{}{rest}", blocks[0], blocks[2]);
+    let onset = |source: &str, name: &str| {
+        let text = study.replace("source = \"LN21-5200\"", source);
+        fs::write(at.join(name), text).unwrap();
+        let out = name.trim_end_matches(".toml");
+        succeeds(at, &["study", name, "--out", out]);
+        let summary = fs::read_to_string(at.join(out).join("summary.json")).unwrap();
+        let summary: Value = serde_json::from_str(&summary).unwrap();
+        onset_of(&summary, "rational functions", "eigenvalues")["speed_m_s"]
+            .as_f64()
+            .unwrap()
+    };
+    let embedded = onset("source = \"LN21-5200\"", "a.toml");
+    let stated = onset(
+        "source = \"deck.csv\"\nconvention = { notation = \"classical\", axes = \"heave_down\" }",
+        "b.toml",
+    );
+    // one rounding more in every number
+    assert!(
+        (embedded / stated - 1.0).abs() < 1e-9,
+        "{embedded} {stated}"
+    );
+    let wrong = |convention: &str, source: &str| {
+        let source = format!("source = \"{source}\"\nconvention = {convention}");
+        let text = study.replace("source = \"LN21-5200\"", &source);
+        fs::write(at.join("c.toml"), text).unwrap();
+    };
+    wrong("{ notation = \"scanlan\" }", "deck.csv");
+    refused(
+        at,
+        &["study", "c.toml", "--out", "c"],
+        &[
+            "deck.csv",
+            "expected `scanlan` as stated on import, found `classical`",
+        ],
+    );
+    wrong("{ notation = \"scanlan\" }", "LN21-5200");
+    refused(at, &["study", "c.toml", "--out", "c"], &["deck.convention"]);
+    wrong("{ notation = \"milan\" }", "deck.csv");
+    refused(at, &["study", "c.toml", "--out", "c"], &["c.toml", "milan"]);
+}

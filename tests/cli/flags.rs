@@ -1,0 +1,157 @@
+//! The command line as people expect it: the same flags everywhere, and nothing half-written after Ctrl-C.
+
+use crate::command::{self, listing, succeeds};
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::Duration;
+use tempfile::TempDir;
+
+/// Commands that write nothing, or to standard output, or to a place that is an argument of its own.
+const WITHOUT_OUT: [&str; 11] = [
+    "bridge convert",
+    "campaign check",
+    "compare signals",
+    "completions",
+    "coverage",
+    "derivatives convert",
+    "derivatives notations",
+    "derivatives show",
+    "fmu check",
+    "report",
+    "validate",
+];
+/// Commands that write files which users edit or hand on. What can be computed again is replaced without being asked.
+const WITH_FORCE: [&str; 9] = [
+    "buffeting",
+    "campaign virtual",
+    "demo",
+    "fmu export",
+    "new",
+    "process",
+    "quasi-steady",
+    "select",
+    "study",
+];
+
+/// Every command with its help, from the program itself.
+fn commands(at: &Path, path: &str) -> Vec<(String, String)> {
+    let arguments: Vec<&str> = path
+        .split(' ')
+        .chain(["--help"])
+        .filter(|a| !a.is_empty())
+        .collect();
+    let help = succeeds(at, &arguments);
+    let listed = help.split_once("Commands:\n").map_or("", |(_, rest)| rest);
+    let listed = listed.split("\n\n").next().unwrap_or("");
+    let names = listed
+        .lines()
+        .filter(|l| l.starts_with("  ") && !l.starts_with("   "));
+    let names: Vec<&str> = names.filter_map(|l| l.split_whitespace().next()).collect();
+    if names.is_empty() {
+        return vec![(path.to_owned(), help)];
+    }
+    let below = names.into_iter().filter(|n| *n != "help");
+    below
+        .flat_map(|n| commands(at, format!("{path} {n}").trim()))
+        .collect()
+}
+
+/// What the help says of a flag; `None` where there is none.
+fn said<'a>(help: &'a str, flag: &str) -> Option<&'a str> {
+    let mut lines = help.lines();
+    lines.find(|l| l.split([' ', ',']).any(|word| word == flag))?;
+    lines.next().map(str::trim)
+}
+
+#[test]
+fn flags_mean_the_same_in_every_command() {
+    let folder = TempDir::new().unwrap();
+    let all = commands(folder.path(), "");
+    assert!(all.len() > 25, "{}", all.len());
+    for (name, help) in &all {
+        for flag in ["--json", "--quiet", "--verbose", "--no-figures"] {
+            assert!(said(help, flag).is_some(), "{name} has no {flag}");
+        }
+        let out = said(help, "--out").is_some();
+        assert_eq!(
+            out,
+            !WITHOUT_OUT.contains(&name.as_str()),
+            "--out of {name}"
+        );
+        let force = said(help, "--force");
+        assert_eq!(
+            force.is_some(),
+            WITH_FORCE.contains(&name.as_str()),
+            "--force of {name}"
+        );
+        if let Some(meaning) = force {
+            assert!(meaning.starts_with("Replace a "), "{name}: {meaning}");
+        }
+        for (short, long) in [("-o", "--out"), ("-f", "--force")] {
+            assert!(
+                said(help, short).is_none(),
+                "{name} has {short} for {long}, the others do not"
+            );
+        }
+    }
+}
+
+#[test]
+fn wrong_arguments_are_json_where_json_was_asked_for() {
+    let folder = TempDir::new().unwrap();
+    for (name, _) in commands(folder.path(), "") {
+        let arguments: Vec<&str> = name.split(' ').chain(["--json", "--nonsense"]).collect();
+        let (code, stdout, stderr) = command::aerodeck(folder.path(), &arguments);
+        assert_eq!(code, 2, "{name}");
+        let value: serde_json::Value = serde_json::from_str(&stdout).unwrap();
+        let text = value["error"].as_str().unwrap();
+        assert!(
+            text.contains("--nonsense") && stderr.contains("--nonsense"),
+            "{name}: {text}"
+        );
+    }
+    assert_eq!(listing(folder.path()), Vec::<String>::new());
+}
+
+/// Interrupted at any time, a command leaves all of its results or none, and no temporary file anywhere.
+#[cfg(unix)]
+#[test]
+fn ctrl_c_leaves_nothing_half_written() {
+    let whole = TempDir::new().unwrap();
+    succeeds(whole.path(), &["demo", "--out", "d", "--quiet"]);
+    let whole = listing(whole.path());
+    let mut interrupted = 0;
+    for after_ms in [0, 20, 80, 150, 250, 400, 700, 1000, 1400] {
+        let folder = TempDir::new().unwrap();
+        let temporary = TempDir::new().unwrap();
+        let mut program = Command::new(env!("CARGO_BIN_EXE_aerodeck"))
+            .args(["demo", "--out", "d", "--quiet"])
+            .current_dir(folder.path())
+            .env("TMPDIR", temporary.path())
+            .stdout(Stdio::null())
+            .spawn()
+            .unwrap();
+        std::thread::sleep(Duration::from_millis(after_ms));
+        let pid = program.id().to_string();
+        let _ = Command::new("kill").args(["-INT", &pid]).status();
+        let status = program.wait().unwrap();
+        let left = listing(folder.path());
+        assert!(
+            left.iter().all(|name| !name.contains(".aerodeck")),
+            "after {after_ms} ms: {left:?}"
+        );
+        assert_eq!(
+            listing(temporary.path()),
+            Vec::<String>::new(),
+            "after {after_ms} ms"
+        );
+        interrupted += usize::from(!status.success());
+        // the signal may come after the results and before the end
+        let none = !status.success() && left.iter().all(|name| !name.contains('.'));
+        assert!(none || left == whole, "after {after_ms} ms: {left:?}");
+    }
+    assert!(
+        interrupted >= 2,
+        "the program was too fast to be interrupted"
+    );
+}

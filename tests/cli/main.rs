@@ -1,0 +1,25 @@
+//! The commands: what they print and write, and what they refuse.
+
+#![cfg(feature = "cli")]
+
+#[path = "../common/bridges.rs"]
+#[allow(dead_code)] // each room needs a part of it
+mod bridges;
+#[path = "../common/browser.rs"]
+mod browser;
+#[path = "../common/command.rs"]
+mod command;
+
+mod bridge;
+mod campaign;
+mod compare;
+mod derivatives;
+#[cfg(unix)]
+mod faults;
+mod flags;
+mod newcomer;
+mod onsets;
+mod process;
+mod report;
+mod select;
+mod wind;

@@ -1,0 +1,233 @@
+//! From a raw campaign on disk to an onset, by the command line alone; what is wrong in it is said.
+
+use crate::command::{self, flowing, refused, succeeds};
+use serde_json::Value;
+use std::fs;
+use tempfile::TempDir;
+
+/// Table 4.1 with the width of the deck that was tested.
+const SECTION: &str = "[section]\nwidth_m = 0.5022857142857143\nair_density_kg_m3 = 1.19\n\
+    vertical = { mass_kg_m = 15.0, frequency_hz = 2.0, damping_ratio = 0.003 }\n\
+    torsion = { inertia_kg_m2_m = 0.6, frequency_hz = 5.0, damping_ratio = 0.003 }\n";
+
+fn json(path: impl AsRef<std::path::Path>) -> Value {
+    serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
+}
+
+#[test]
+fn a_campaign_becomes_records_derivatives_and_an_onset() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    succeeds(
+        at,
+        &[
+            "campaign",
+            "virtual",
+            "LN21-5200",
+            "--seed",
+            "4",
+            "--out",
+            "raw",
+        ],
+    );
+    fs::write(at.join("section.toml"), SECTION).unwrap();
+    let with_section = [
+        "process",
+        "raw/campaign.toml",
+        "--out",
+        "results",
+        "--section",
+        "section.toml",
+    ];
+    let text = flowing(&succeeds(at, &with_section));
+    for word in [
+        "lag of the force channels",
+        "test points",
+        "replaced: spike",
+        "8 derivatives",
+    ] {
+        assert!(text.contains(word), "`{word}` is not in:\n{text}");
+    }
+    let out = at.join("results");
+    let report = json(out.join("processing.json"));
+    // 1.7 ms is what the virtual campaign applies
+    assert!((report["lag_s"].as_f64().unwrap() - 1.7e-3).abs() < 5e-5);
+    let runs = report["runs"].as_array().unwrap();
+    assert_eq!(runs.len(), 4);
+    for run in runs {
+        let name = run["run"].as_str().unwrap();
+        for file in [
+            format!("records/{name}.csv"),
+            format!("processing/{name}.svg"),
+            format!("processing/{name}.png"),
+        ] {
+            assert!(out.join(&file).is_file(), "{file}");
+        }
+        assert_eq!(run["segments"].as_array().unwrap().len(), 8);
+    }
+    let derivatives = json(out.join("derivatives.json"));
+    let estimates = derivatives["estimates"].as_array().unwrap();
+    assert_eq!(estimates.len(), 8 * 16);
+    assert!(
+        estimates
+            .iter()
+            .all(|e| e["standard_error"].as_f64().unwrap() > 0.0)
+    );
+    // the workbook is one that the program reads, and the study gives an onset
+    let table = aerodeck::files::derivatives::read_table(out.join("derivatives.csv")).unwrap();
+    let options = aerodeck::files::derivatives::WorkbookOptions {
+        width_m: Some(table.width_m),
+        ..Default::default()
+    };
+    let book = aerodeck::files::derivatives::read_workbook(
+        out.join("AerodynamicDerivatives_LN21-5200.xlsx"),
+        &options,
+    )
+    .unwrap();
+    assert!(book.derivatives().eq(table.derivatives()));
+    succeeds(at, &["study", "results/study.toml"]);
+    let summary = json(out.join("summary.json"));
+    let laguerre = command::onset_of(&summary, "Laguerre", "eigenvalues");
+    // clean records give 37.01 m/s with the width of the model and the air of the runs
+    let speed = laguerre["speed_m_s"].as_f64().unwrap();
+    assert!((speed - 37.01).abs() < 0.6, "{speed}");
+}
+
+#[test]
+fn wrong_options_and_campaigns_are_refused() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    succeeds(
+        at,
+        &[
+            "campaign",
+            "virtual",
+            "LN21-5200",
+            "--clean",
+            "--out",
+            "raw",
+        ],
+    );
+    let process = |more: &[&str], fragments: &[&str]| {
+        let mut args = vec!["process", "raw/campaign.toml", "--out", "results"];
+        args.extend(more);
+        refused(at, &args, fragments);
+    };
+    process(
+        &["--cutoff-hz", "150"],
+        &["run ", "below the Nyquist frequency, 100 Hz at 200 Hz"],
+    );
+    fs::write(at.join("options.toml"), "drift_degree = 99\n").unwrap();
+    process(&["--options", "options.toml"], &["processing.drift_degree"]);
+    fs::write(at.join("options.toml"), "[low_pas]\norder = 2\n").unwrap();
+    process(&["--options", "options.toml"], &["options.toml", "low_pas"]);
+}
+
+/// The worked example of docs/campaigns.md, by its own commands: one motion, forces of a computation.
+#[test]
+fn one_motion_of_a_computation_gives_its_column() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    let repository = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    let docs = fs::read_to_string(repository.join("docs/campaigns.md")).unwrap();
+    let example = "docs/examples/cfd_heave";
+    fs::create_dir_all(at.join(example)).unwrap();
+    for file in ["campaign.toml", "slow.csv", "fast.csv"] {
+        fs::copy(
+            repository.join(example).join(file),
+            at.join(example).join(file),
+        )
+        .unwrap();
+    }
+    let file = fs::read_to_string(at.join(example).join("campaign.toml")).unwrap();
+    assert!(docs.contains(&file), "the page shows another file");
+    for command in [
+        "campaign check docs/examples/cfd_heave/campaign.toml",
+        "process docs/examples/cfd_heave/campaign.toml --out heave",
+    ] {
+        assert!(docs.contains(&format!("aerodeck {command}")), "{command}");
+        succeeds(at, &command.split(' ').collect::<Vec<_>>());
+    }
+    let text = fs::read_to_string(at.join("heave/derivatives.csv")).unwrap();
+    let rows: Vec<Vec<&str>> = text
+        .lines()
+        .filter(|l| !l.starts_with('#'))
+        .skip(1)
+        .map(|l| l.split(',').collect())
+        .collect();
+    // Theodorsen's function at K = 0.48695 and 0.24347, by scipy
+    let expected = [
+        ("H1", [-8.989068008256838, -20.75440897672161]),
+        ("H4", [-0.8276226410544263, -3.089705853545111]),
+        ("A1", [-2.247267002064209, -5.188602244180402]),
+        ("A4", [-0.5996047419623306, -1.1651255450850015]),
+    ];
+    assert_eq!(rows.len(), 8, "{text}");
+    for (name, values) in expected {
+        let number = |text: &str| text.parse::<f64>().unwrap();
+        let mut found: Vec<(f64, f64)> = rows
+            .iter()
+            .filter(|r| r[0] == name)
+            .map(|r| (number(r[3]), number(r[4])))
+            .collect();
+        found.sort_by(|a, b| a.0.total_cmp(&b.0));
+        for ((_, found), expected) in found.iter().zip(values) {
+            // the low-pass at both ends of a series that begins in full motion
+            assert!(
+                (found / expected - 1.0).abs() < 6e-3,
+                "{name}: {found} {expected}"
+            );
+        }
+    }
+}
+
+/// A record that ends before its first period: an error, not zero test points and exit code 0.
+#[test]
+fn a_record_shorter_than_a_period_is_an_error() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    let example = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/examples/cfd_heave");
+    fs::copy(example.join("campaign.toml"), at.join("campaign.toml")).unwrap();
+    fs::copy(example.join("fast.csv"), at.join("fast.csv")).unwrap();
+    let slow = fs::read_to_string(example.join("slow.csv")).unwrap();
+    // 30 of 40 samples of a period
+    let cut: Vec<&str> = slow.lines().take(31).collect();
+    fs::write(at.join("slow.csv"), cut.join("\n")).unwrap();
+    refused(
+        at,
+        &["process", "campaign.toml", "--out", "results"],
+        &[
+            "slow.csv: run `slow`, in wind",
+            "at least 64 samples",
+            "found 30",
+        ],
+    );
+}
+
+/// Three speeds of which neighbours lie within 5 %: sorted, tabled, and no panic.
+#[test]
+fn three_speeds_close_together_are_processed() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    fs::write(
+        at.join("plan.toml"),
+        "[tunnel]\nfrequencies_hz = [0.5, 1.0, 1.5, 2.0]\nspeeds_m_s = [8.0, 8.3, 8.62]\nstill_s = 2.0\nsegment_s = 14.0\nramp_s = 2.0\n",
+    )
+    .unwrap();
+    succeeds(
+        at,
+        &[
+            "campaign",
+            "virtual",
+            "jones",
+            "--plan",
+            "plan.toml",
+            "--out",
+            "raw",
+        ],
+    );
+    succeeds(at, &["process", "raw/campaign.toml", "--out", "results"]);
+    let estimates = json(at.join("results/derivatives.json"));
+    assert_eq!(estimates["estimates"].as_array().unwrap().len(), 8 * 12);
+    assert!(at.join("results/derivatives.csv").is_file());
+}

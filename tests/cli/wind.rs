@@ -1,0 +1,249 @@
+//! The commands on a wind file: what they print and write, and what they refuse.
+
+use crate::command::{flowing, listing, refused, succeeds};
+use serde_json::Value;
+use std::fs;
+use tempfile::TempDir;
+
+fn example() -> String {
+    aerodeck::study::example_wind_study_text().to_owned()
+}
+
+/// Writes the example with a change and a short time domain.
+fn write(folder: &TempDir, old: &str, new: &str) {
+    let text = example();
+    assert!(text.contains(old), "{old}");
+    let text = text
+        .replacen(old, new, 1)
+        .replace("records = 32", "records = 4");
+    fs::write(folder.path().join("wind.toml"), text).unwrap();
+}
+
+#[test]
+fn quasi_steady_runs_the_example() {
+    let folder = TempDir::new().unwrap();
+    let text = succeeds(folder.path(), &["quasi-steady"]);
+    assert!(
+        text.contains("Static equilibrium") && text.contains("Nonlinear run"),
+        "{text}"
+    );
+    for name in [
+        "wind.toml",
+        "coefficients.svg",
+        "equilibrium.png",
+        "quasi_steady_modes.svg",
+        "quasi_steady_run.csv",
+        "gusts.csv",
+        "quasi_steady.json",
+    ] {
+        let path = format!("aerodeck-out/{name}");
+        assert!(listing(folder.path()).contains(&path), "{path}");
+    }
+    let gusts = aerodeck::files::gusts::read_gusts(folder.path().join("aerodeck-out/gusts.csv"));
+    assert!((gusts.unwrap().duration_s() - 300.0).abs() < 1e-9);
+}
+
+/// The gusts that a run leaves behind drive the same run again.
+#[test]
+fn gusts_of_a_file_give_the_same_run() {
+    let folder = TempDir::new().unwrap();
+    write(&folder, "duration_s = 300.0", "duration_s = 60.0");
+    let run = |folder: &TempDir| -> Value {
+        let text = succeeds(folder.path(), &["quasi-steady", "wind.toml", "--json"]);
+        serde_json::from_str(&text).unwrap()
+    };
+    let first = run(&folder);
+    let with_file = fs::read_to_string(folder.path().join("wind.toml"))
+        .unwrap()
+        .replace(
+            "step_s = 0.1\nseed = 1",
+            "step_s = 0.1\ngusts = \"gusts.csv\"",
+        );
+    fs::write(folder.path().join("wind.toml"), with_file).unwrap();
+    let second = run(&folder);
+    let last = |v: &Value| {
+        let rows = v["simulation"]["nonlinear"].as_array().unwrap();
+        rows[rows.len() - 1][0].as_f64().unwrap()
+    };
+    assert!((last(&first) - last(&second)).abs() < 1e-9 * last(&first).abs().max(1.0));
+}
+
+#[test]
+fn buffeting_compares_both_domains() {
+    let folder = TempDir::new().unwrap();
+    write(&folder, "speeds = 56", "speeds = 12");
+    let text = succeeds(folder.path(), &["buffeting", "wind.toml", "--json"]);
+    let json: Value = serde_json::from_str(&text).unwrap();
+    let results = &json["buffeting"];
+    let responses = results["responses"].as_array().unwrap();
+    assert!(responses.len() > 6);
+    let time = results["time"].as_array().unwrap();
+    assert_eq!(time.len(), 2);
+    for comparison in time
+        .iter()
+        .flat_map(|t| t["comparison"].as_array().unwrap())
+    {
+        // four records only: the standard error itself is known to 40 %
+        assert!(
+            comparison["deviations"].as_f64().unwrap().abs() < 8.0,
+            "{comparison}"
+        );
+    }
+    for name in [
+        "buffeting.svg",
+        "buffeting_spectra_20.png",
+        "buffeting.json",
+    ] {
+        assert!(listing(folder.path()).contains(&name.to_owned()), "{name}");
+    }
+}
+
+#[test]
+fn wrong_wind_files_are_refused_with_their_line() {
+    let folder = TempDir::new().unwrap();
+    let cases = [
+        (
+            "length_m = 20.0, intensity = 0.05",
+            "length_m = -20.0, intensity = 0.05",
+            "turbulence.vertical.spectrum.length_m: expected a positive number, found -20",
+        ),
+        ("intensity = 0.05", "intensity = 5", "not per cent"),
+        ("kind = \"von_karman\"", "kind = \"von_karmann\"", "line "),
+        (
+            "kind = \"kaimal\"",
+            "kind = \"general\", a = 1, b = 10.2, c = 1, d = 1.6667",
+            "so that the spectrum integrates to the variance",
+        ),
+        ("schema = 1", "schema = 7", "schema: expected 1, found 7"),
+        (
+            "source = \"synthetic box girder\"",
+            "source = \"no_such.csv\"",
+            "no_such.csv",
+        ),
+        (
+            "source = \"synthetic box girder\"",
+            "source = \"wing\"",
+            "one of the embedded tables flat plate",
+        ),
+        (
+            "aerodynamics = \"quasi-steady\"",
+            "aerodynamics = \"magic\"",
+            "`quasi-steady`, `flat plate`",
+        ),
+        ("speeds = 56", "speeds = 1", "a number from 2 to 10000"),
+        (
+            "torsion = 0.2 }",
+            "torsion = 0.2 }\narms_from = \"LN21-5200\"",
+            "`arms` or `arms_from`",
+        ),
+        ("[time]", "[tmie]", "line "),
+    ];
+    for (old, new, expected) in cases {
+        write(&folder, old, new);
+        refused(folder.path(), &["buffeting", "wind.toml"], &[expected]);
+    }
+}
+
+/// A static table with a mistake is refused with file and line, an angle outside it by its value.
+#[test]
+fn wrong_static_tables_are_refused() {
+    use aerodeck::files::coefficients::embedded;
+    use aerodeck::files::coefficients::write_coefficients;
+    let folder = TempDir::new().unwrap();
+    let mut bytes = Vec::new();
+    let table = embedded::coefficients("synthetic box girder").unwrap();
+    write_coefficients(&table, &mut bytes).unwrap();
+    let good = String::from_utf8(bytes).unwrap();
+    write(
+        &folder,
+        "source = \"synthetic box girder\"",
+        "source = \"deck.csv\"",
+    );
+    let table = folder.path().join("deck.csv");
+    fs::write(&table, good.replacen("\n-8,", "\nNaN,", 1)).unwrap();
+    refused(
+        folder.path(),
+        &["quasi-steady", "wind.toml"],
+        &["deck.csv: line 13: expected finite numbers, found NaN"],
+    );
+    // without the rows above 2 degrees a gust soon leaves the table
+    let short: Vec<&str> = good.lines().take(18).collect();
+    fs::write(&table, short.join("\n")).unwrap();
+    refused(
+        folder.path(),
+        &["quasi-steady", "wind.toml"],
+        &["expected an angle of attack from -16 to 2 deg"],
+    );
+}
+
+/// A trained model brings its section; the forces of gusts are then those of the plate, and the part of the response inside
+/// the tested range is told.
+#[test]
+fn a_trained_model_buffets() {
+    let folder = TempDir::new().unwrap();
+    let model = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/tests/data/models/continuous_laguerre.json"
+    );
+    fs::copy(model, folder.path().join("model.json")).unwrap();
+    let gust = "spectrum = { shape = { kind = \"von_karman\" }, length_m = 2.0, intensity = 0.08 }";
+    let wind = format!(
+        "schema = 1\nname = \"model\"\naerodynamics = \"model.json\"\n[speeds]\nspeed_min_m_s = 10\nspeed_max_m_s = 30\nspeeds = 5\n\
+         [turbulence.vertical]\n{gust}\nadmittance = {{ kind = \"sears\" }}\n[time]\nspeeds_m_s = [20]\nplan = {{ records = 32 }}\n"
+    );
+    fs::write(folder.path().join("wind.toml"), wind).unwrap();
+    let text = succeeds(folder.path(), &["buffeting", "wind.toml"]);
+    assert!(
+        text.contains("variance inside the tested range of K"),
+        "{text}"
+    );
+    let text = succeeds(folder.path(), &["buffeting", "wind.toml", "--json"]);
+    let json: Value = serde_json::from_str(&text).unwrap();
+    let compared = json["buffeting"]["time"][0]["comparison"]
+        .as_array()
+        .unwrap();
+    assert_eq!(compared.len(), 2);
+    for c in compared {
+        assert!(c["deviations"].as_f64().unwrap().abs() < 3.5, "{c}");
+    }
+}
+
+/// Jones's plate on this section flutters at 76.68 m/s: below, every speed is answered; above, every speed is named.
+#[test]
+fn buffeting_answers_stable_speeds_and_names_the_others() {
+    let folder = TempDir::new().unwrap();
+    let lateral =
+        "lateral = { mass_kg_m = 22740.0, frequency_hz = 0.060, damping_ratio = 0.005 }\n";
+    write(&folder, lateral, "");
+    let file = folder.path().join("wind.toml");
+    let text = fs::read_to_string(&file)
+        .unwrap()
+        .replace("\"quasi-steady\"", "\"flat plate (Jones)\"")
+        .replace("speed_max_m_s = 60.0", "speed_max_m_s = 120.0")
+        .replace("speeds_m_s = [20.0, 35.0]", "speeds_m_s = [20.0, 110.0]");
+    fs::write(&file, text).unwrap();
+    let text = succeeds(folder.path(), &["buffeting", "wind.toml"]);
+    let answered: Vec<f64> = text
+        .lines()
+        .filter_map(|line| {
+            let words: Vec<&str> = line.split_whitespace().collect();
+            (words.len() == 5).then(|| words[0].parse().ok()).flatten()
+        })
+        .collect();
+    assert!(answered.len() > 5, "{text}");
+    assert!(answered.iter().all(|speed| *speed < 76.68), "{text}");
+    let said = flowing(&text);
+    let mut before: Vec<&str> = said.split(" m/s: the section is unstable").collect();
+    before.pop();
+    let named: Vec<f64> = before
+        .iter()
+        .flat_map(|words| words.rsplit("at ").next().unwrap().split(", "))
+        .map(|speed| speed.parse().unwrap())
+        .collect();
+    assert!(
+        named.contains(&110.0) && named.iter().all(|speed| *speed > 76.68),
+        "{text}"
+    );
+    assert!(text.contains("time domain at 20 m/s"), "{text}");
+    assert!(!text.contains("time domain at 110 m/s"), "{text}");
+}

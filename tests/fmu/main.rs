@@ -1,0 +1,16 @@
+//! Exported units: their description, what they calculate and answer, and our own importer of any FMU.
+
+#![cfg(feature = "cli")]
+
+#[path = "../common/matrix.rs"]
+#[allow(dead_code)] // each room needs a part of it
+mod matrix;
+#[path = "../common/models.rs"]
+mod models;
+#[path = "../common/three_dof.rs"]
+mod three_dof;
+
+mod calculated_onset;
+mod description;
+mod importer;
+mod stepped_answers;
