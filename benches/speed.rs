@@ -10,7 +10,7 @@ use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::files::derivatives::embedded;
 use aerodeck::flutter::trace_modes;
 use aerodeck::fmu::importer::{Fmu, Slave};
-use aerodeck::fmu::package::{Growing, Overwrite, Runtime, write_fmu};
+use aerodeck::fmu::package::{GrowthPolicy, Overwrite, Runtime, write_fmu};
 use aerodeck::identification::{
     FeedThrough, Fitted, Form, FrequencyFit, PoleSearch, TimeFit, TimeWeights, fit_records,
     fit_table,
@@ -40,7 +40,7 @@ fn main() {
         &model,
         &Runtime::available().expect("a runtime"),
         Overwrite::Replace,
-        Growing::Refuse,
+        GrowthPolicy::Refuse,
     )
     .expect("an FMU");
     println!("medians of {ROUNDS} interleaved rounds, one thread each\n");

@@ -16,7 +16,7 @@ pub use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 #[cfg(feature = "cli")]
 pub use crate::{
     files::derivatives::{named_table, read_table},
-    fmu::package::{Growing, write_fmu},
+    fmu::package::{GrowthPolicy, write_fmu},
     identification::{Fitted, Form, FrequencyFit, TimeFit, fit_records, fit_table},
     study::Study,
     wind_tunnel::{Record, TunnelPlan},

@@ -387,5 +387,5 @@ fn check_substeps(count: f64, step: f64) -> Result<()> {
 }
 
 fn overgrown() -> Error {
-    Error::Numerical("step: the motion has grown beyond the range of numbers".into())
+    Error::Numerical("step: the motion has overflowed".into())
 }

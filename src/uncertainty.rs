@@ -1,5 +1,5 @@
-//! From the scatter of the data to coefficients, derivatives and the onset: covariances, intervals, and the check that they
-//! keep their word.
+//! From the scatter of the data to coefficients, derivatives and the onset: covariances, intervals, and the check that
+//! they are reliable.
 //!
 //! Residuals of a wind-tunnel record are not white: the low-pass colours noise, turbulence and the support have spectra
 //! of their own, and what the model cannot follow repeats in every period. A formula for independent residuals
@@ -34,7 +34,7 @@ mod statistics;
 mod table_covariance;
 
 pub use coefficients::CoefficientUncertainty;
-pub use coverage::{CoveragePlan, CoverageReport, Share, Truth, coverage};
+pub use coverage::{CoveragePlan, CoverageReport, IntervalCoverage, Truth, coverage};
 pub(crate) use draws::ModelDraws;
 pub use model::{DerivativeInterval, ModelUncertainty};
 pub use onset::{OnsetError, ResampledOnset, Resampling};

@@ -28,7 +28,9 @@ mod three_dof;
 use aerodeck::aerodynamics::{GustForce, RationalAdmittance};
 use aerodeck::files::derivatives::embedded;
 use aerodeck::fmu::force_options::ForceOptions;
-use aerodeck::fmu::package::{Export, FmiVersion, Growing, Label, Overwrite, Runtime, write_fmu};
+use aerodeck::fmu::package::{
+    Export, FmiVersion, GrowthPolicy, Label, Overwrite, Runtime, write_fmu,
+};
 use aerodeck::fmu::variables::Listing;
 use aerodeck::identification::{Fitted, Form, FrequencyFit, fit_table};
 use aerodeck::section::{Dof, SectionModel};
@@ -79,7 +81,14 @@ fn export() -> PathBuf {
     let mut expected = Map::new();
     let mut export = |name: &str, model: &TrainedModel, golden: Option<&Path>| {
         let fmu = folder.join(format!("{name}.fmu"));
-        write_fmu(&fmu, model, &runtimes, Overwrite::Refuse, Growing::Allow).unwrap();
+        write_fmu(
+            &fmu,
+            model,
+            &runtimes,
+            Overwrite::Refuse,
+            GrowthPolicy::Allow,
+        )
+        .unwrap();
         expected.insert(name.into(), in_process::expectations(model, golden));
     };
     for kind in models::KINDS {
@@ -96,7 +105,14 @@ fn export() -> PathBuf {
     export("measured_rational", &measured_deck(lag), None);
     let lateral = three_dof::trained(Form::default(), 3.9);
     let fmu = folder.join("three_dof.fmu");
-    write_fmu(&fmu, &lateral, &runtimes, Overwrite::Refuse, Growing::Allow).unwrap();
+    write_fmu(
+        &fmu,
+        &lateral,
+        &runtimes,
+        Overwrite::Refuse,
+        GrowthPolicy::Allow,
+    )
+    .unwrap();
     export_forces(&folder, &runtimes);
     export_gusts(&folder, &runtimes);
     export_reals(&folder, &runtimes);
@@ -117,7 +133,14 @@ fn export_forces(folder: &Path, runtimes: &[Runtime]) {
     let mut model = TrainedModel::from_json(&text).unwrap();
     model.section = SectionModel::iabse_1_1a();
     let fmu = folder.join("full_scale.fmu");
-    write_fmu(&fmu, &model, runtimes, Overwrite::Refuse, Growing::Refuse).unwrap();
+    write_fmu(
+        &fmu,
+        &model,
+        runtimes,
+        Overwrite::Refuse,
+        GrowthPolicy::Refuse,
+    )
+    .unwrap();
     let single = ForceOptions::single(model.section.width_m);
     let strips = ForceOptions {
         strips: vec![single.strips[0].clone(); 3],
@@ -126,7 +149,7 @@ fn export_forces(folder: &Path, runtimes: &[Runtime]) {
     };
     for (name, options) in [("force", single), ("force_strips", strips)] {
         let export = Export {
-            growing: Growing::Refuse,
+            growing: GrowthPolicy::Refuse,
             force: Some(options),
             gusts: None,
             bounds: None,
@@ -154,7 +177,7 @@ fn export_gusts(folder: &Path, runtimes: &[Runtime]) {
     let forces = ForceOptions::single(model.section.width_m);
     for (name, force) in [("gusts_section", None), ("gusts_force", Some(forces))] {
         let export = Export {
-            growing: Growing::Refuse,
+            growing: GrowthPolicy::Refuse,
             force,
             gusts: Some(gusts.clone()),
             bounds: None,
@@ -186,7 +209,7 @@ fn export_fmi3(folder: &Path, runtimes: &[Runtime]) {
             let export = Export {
                 force,
                 version,
-                ..Growing::Allow.into()
+                ..GrowthPolicy::Allow.into()
             };
             let fmu = folder.join(format!("{unit}_{kind}.fmu"));
             write_fmu(&fmu, &model, runtimes, Overwrite::Refuse, export).unwrap();
@@ -202,7 +225,7 @@ fn export_reals(folder: &Path, runtimes: &[Runtime]) {
         let forces = ForceOptions::single(model.section.width_m);
         for (unit, force) in [("section", None), ("force", Some(forces))] {
             let export = Export {
-                growing: Growing::Allow,
+                growing: GrowthPolicy::Allow,
                 force,
                 gusts: None,
                 bounds: None,

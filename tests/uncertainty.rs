@@ -73,7 +73,7 @@ fn bias_is_told_from_scatter_outside_the_class() {
     // noise moves the mean error from the bias by its own error, and by its square: a tenth of the scatter at most
     let difference = (report.mean_error_m_s - report.bias_m_s).abs();
     assert!(difference < 0.3 * report.scatter_m_s, "{report:?}");
-    // intervals that do not keep their word are said to do so
+    // unreliable intervals are reported as such
     let kept = |percent: f64| (93.0..=97.0).contains(&percent);
     let said = |what: &str| report.warnings.iter().any(|w| w.contains(what));
     assert_eq!(said("the onset"), !kept(report.holds_truth.percent));

@@ -11,7 +11,9 @@ use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::files::bridge::BridgeFile;
 use aerodeck::flutter::{find_onset, trace_modes};
 use aerodeck::fmu::package::{FmiVersion, Label, Runtime, package_bridge, write_archive};
-use aerodeck::study::bridge::{BridgeBuffeting, BridgeStudy, Scatter, Wanted, bridge_flutter};
+use aerodeck::study::bridge::{
+    BridgeBuffeting, BridgeExportOptions, BridgeStudy, Scatter, bridge_flutter,
+};
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -291,10 +293,10 @@ impl Bridge {
             generated: None,
         };
         let written = Work::new(None).run(py, || {
-            let export = self.0.export(&Wanted {
+            let export = self.0.export(&BridgeExportOptions {
                 nodes: nodes.unwrap_or_default(),
                 allow_unstable,
-                ..Wanted::default()
+                ..BridgeExportOptions::default()
             })?;
             let (runtimes, label) = (Runtime::available()?, label.dated()?);
             let bytes = package_bridge(&export, &runtimes, &label, FmiVersion::Two)?;

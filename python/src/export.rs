@@ -9,7 +9,9 @@ use aerodeck::files::coefficients::gust_force;
 use aerodeck::flutter::OnsetSearch;
 use aerodeck::fmu::force_options::{ForceOptions, StripOptions};
 use aerodeck::fmu::onset_bounds::OnsetBounds;
-use aerodeck::fmu::package::{Export, FmiVersion, Growing, Label, Overwrite, Runtime, write_fmu};
+use aerodeck::fmu::package::{
+    Export, FmiVersion, GrowthPolicy, Label, Overwrite, Runtime, write_fmu,
+};
 use aerodeck::fmu::variables::Listing;
 use aerodeck::trained_model::TrainedModel;
 use pyo3::prelude::*;
@@ -140,11 +142,11 @@ fn version(fmi: u32) -> PyResult<FmiVersion> {
     }
 }
 
-fn growing(allow_unstable: bool) -> Growing {
+fn growing(allow_unstable: bool) -> GrowthPolicy {
     if allow_unstable {
-        Growing::Allow
+        GrowthPolicy::Allow
     } else {
-        Growing::Refuse
+        GrowthPolicy::Refuse
     }
 }
 

@@ -27,7 +27,7 @@ fn apologise(info: &PanicHookInfo<'_>) {
     // standard error may be closed, which is no reason to fail again
     let _ = writeln!(
         std::io::stderr(),
-        "aerodeck stops because of a fault of its own, not of your input. We are sorry.\n\
+        "aerodeck stopped because of an internal error, not because of your input. We are sorry.\n\
          Please send the maintainers the next line, the command, and its input files if you may:\n  \
          aerodeck {} on {}, {place}: {what}",
         env!("CARGO_PKG_VERSION"),

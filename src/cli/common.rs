@@ -6,7 +6,7 @@ use crate::study::{Study, study_warnings};
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-/// Says at once what is hardly meant in a file, since it may be the cause of a failure to come.
+/// Reports implausible values of a file at once, since they may cause a later failure.
 pub(crate) fn warn(file: &Path, warnings: &[String]) {
     for warning in warnings {
         // standard error may be closed
@@ -45,7 +45,7 @@ pub(crate) fn motion_columns<'a>(
 pub(crate) struct StudyArgs {
     /// The study file; `-` reads standard input.
     pub study: PathBuf,
-    /// Another value for a key of the study, such as `section.torsion.frequency_hz=4.5`; may be said several times.
+    /// Another value for a key of the study, such as `section.torsion.frequency_hz=4.5`; may be given several times.
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub set: Vec<String>,
     /// Folder of the results; by default the folder of the study file.

@@ -1,4 +1,4 @@
-//! `aerodeck coverage`: do the intervals keep their word?
+//! `aerodeck coverage`: are the intervals reliable?
 
 use super::answer::Answer;
 use super::progress::Progress;
@@ -16,7 +16,7 @@ pub(crate) struct Args {
     /// Number of repetitions.
     #[arg(long, default_value_t = 500)]
     repetitions: usize,
-    /// What the forces follow; `theodorsen` lies outside every fitted class.
+    /// True force model; `theodorsen` is outside what every fitted model can represent exactly.
     #[arg(long, value_enum, default_value_t = TruthArg::Jones)]
     truth: TruthArg,
     /// Poles of the fitted filters; by default those of Jones's function, which they span exactly.

@@ -3,10 +3,10 @@
 use super::answer::Answer;
 use super::output::OutputDir;
 use super::progress::Progress;
-use super::ran::Ran;
 use super::study::run_chain;
+use super::study_run::StudyRun;
 use crate::error::Result;
-use crate::fmu::package::Growing;
+use crate::fmu::package::GrowthPolicy;
 use crate::study::{Study, demo_study_text};
 use std::path::PathBuf;
 
@@ -42,10 +42,10 @@ pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     out.refuse_edited(STUDY_FILE, args.force, instead)?;
     // what differs is to be replaced from here on
     out.replace(STUDY_FILE);
-    let ran = Ran {
+    let ran = StudyRun {
         study: &study,
         text: demo_study_text(),
         file: None,
     };
-    run_chain(&ran, out, Growing::Refuse, progress)
+    run_chain(&ran, out, GrowthPolicy::Refuse, progress)
 }

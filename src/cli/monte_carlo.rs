@@ -120,7 +120,7 @@ fn design(r: &MonteCarloResult) -> Vec<String> {
     )];
     if d.undecided > 0 {
         lines.push(format!(
-            "          {} more could be judged above {:.3} m/s only, where they grow: they are in the probability and its upper end",
+            "          {} more can be judged only above {:.3} m/s, where they already grow: they count in the probability and in its upper limit",
             d.undecided, d.speed_m_s
         ));
     }

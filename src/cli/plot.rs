@@ -38,7 +38,7 @@ pub(crate) struct Args {
     /// Abscissa; by default the first column of numbers.
     #[arg(long)]
     x: Option<String>,
-    /// Ordinates, a panel each; by default all other columns of numbers, six at most.
+    /// Columns to plot, one panel per column; by default all other columns of numbers, six at most.
     #[arg(long, value_delimiter = ',')]
     y: Vec<String>,
     /// Folder of the figure; by default that of the file.

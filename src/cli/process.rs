@@ -52,10 +52,10 @@ pub(crate) struct Args {
     /// Options of processing (TOML; see docs/processing.md); left out, the defaults.
     #[arg(long)]
     options: Option<PathBuf>,
-    /// Cut-off of the low-pass, Hz; before the options file.
+    /// Cut-off of the low-pass filter, Hz; overrides the options file.
     #[arg(long)]
     cutoff_hz: Option<f64>,
-    /// Lag of the force channels, s, instead of an estimate; before the options file.
+    /// Lag of the force channels, s, instead of an estimate; overrides the options file.
     #[arg(long, allow_negative_numbers = true)]
     lag_s: Option<f64>,
     /// A study whose section, models and search go into the new one.

@@ -48,12 +48,12 @@ struct Trajectory {
     /// One row per step.
     rows: Vec<Vec<f64>>,
     /// The modes at this wind speed, the least damped first.
-    modes: Vec<ModeSaid>,
+    modes: Vec<ModeSummary>,
 }
 
 /// A mode at the wind speed of the run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-struct ModeSaid {
+struct ModeSummary {
     /// Hz.
     frequency_hz: f64,
     /// 1/s; positive when the motion grows.
@@ -63,13 +63,13 @@ struct ModeSaid {
 }
 
 /// The modes that vibrate, the least damped first.
-fn modes(section: &CoupledSection, speed: f64) -> Result<Vec<ModeSaid>> {
-    let mut modes: Vec<ModeSaid> = section
+fn modes(section: &CoupledSection, speed: f64) -> Result<Vec<ModeSummary>> {
+    let mut modes: Vec<ModeSummary> = section
         .at(speed)?
         .damp()?
         .into_iter()
         .filter(|mode| mode.pole.im > 0.0)
-        .map(|mode| ModeSaid {
+        .map(|mode| ModeSummary {
             frequency_hz: mode.pole.im / std::f64::consts::TAU,
             growth_rate_per_s: mode.pole.re,
             damping_ratio: mode.damping_ratio,
@@ -81,7 +81,7 @@ fn modes(section: &CoupledSection, speed: f64) -> Result<Vec<ModeSaid>> {
 }
 
 /// What the motion comes to.
-fn verdict(modes: &[ModeSaid]) -> String {
+fn verdict(modes: &[ModeSummary]) -> String {
     let Some(m) = modes.first() else {
         return "  no mode vibrates at this wind speed\n".to_owned();
     };

@@ -7,7 +7,7 @@ use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
 use crate::flutter::{FlutterCurves, Onset, OnsetSearch, find_onset};
 use crate::fmu::onset_bounds::OnsetBounds;
-use crate::fmu::package::{Export, Growing, Label, Runtime, package};
+use crate::fmu::package::{Export, GrowthPolicy, Label, Runtime, package};
 use crate::identification;
 use crate::report::{VfVgOptions, vf_vg_figure};
 use crate::study::{
@@ -252,7 +252,7 @@ pub(crate) fn routes_figure(
 pub(crate) fn export(
     (model, known): (&TrainedModel, &KnownUncertainty),
     study: &Study,
-    growing: Growing,
+    growing: GrowthPolicy,
     progress: &Progress,
 ) -> Result<Vec<u8>> {
     let stage = progress.stage("packing the FMU");
@@ -290,11 +290,11 @@ pub(crate) fn onset_bounds(
 }
 
 /// What the flag `--allow-unstable` says.
-pub(crate) fn growing(allowed: bool) -> Growing {
+pub(crate) fn growing(allowed: bool) -> GrowthPolicy {
     if allowed {
-        Growing::Allow
+        GrowthPolicy::Allow
     } else {
-        Growing::Refuse
+        GrowthPolicy::Refuse
     }
 }
 
@@ -302,7 +302,7 @@ pub(crate) fn growing(allowed: bool) -> Growing {
 pub(crate) fn or_allow_unstable(error: Error) -> Error {
     match error {
         Error::Unstable(text) => {
-            Error::Unstable(format!("{text} (--allow-unstable exports it all the same)"))
+            Error::Unstable(format!("{text} (--allow-unstable exports it anyway)"))
         }
         other => other,
     }

@@ -4,12 +4,12 @@ use super::answer::Answer;
 use super::common::StudyArgs;
 use super::output::{OutputDir, Written, list};
 use super::progress::Progress;
-use super::ran::{self, Ran};
 use super::report::{self, REPORT, SUMMARY};
+use super::study_run::{self, StudyRun};
 use super::summary::{FitSummary, Summary};
 use super::{account, evidence, headline, measured_forces, select, stages};
 use crate::error::{Error, Result};
-use crate::fmu::package::Growing;
+use crate::fmu::package::GrowthPolicy;
 use crate::study::{
     Deck, FITS, FlutterStudy, RecordSet, StageFailure, SteppedOnset, Study, TrainedWithReport,
     attempt, interval_of, stepped_onset, study_warnings,
@@ -41,9 +41,9 @@ pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     let (study, text) = args.study.read_with_text()?;
     let mut out = OutputDir::new(&args.study.directory())?;
     if args.force {
-        out.replace(ran::STUDY);
+        out.replace(study_run::STUDY);
     }
-    let ran = Ran {
+    let ran = StudyRun {
         study: &study,
         text: &text,
         file: args.study.file(),
@@ -54,13 +54,13 @@ pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
 /// The whole chain into `out`. A stage that fails is reported in its place and leaves the others as they are; then the
 /// answer did not pass.
 pub(crate) fn run_chain(
-    ran: &Ran<'_>,
+    ran: &StudyRun<'_>,
     mut out: OutputDir,
-    growing: Growing,
+    growing: GrowthPolicy,
     progress: &Progress,
 ) -> Result<Answer> {
     let deck = Deck::load(ran.study)?;
-    let study_file = ran::leave(ran, &mut out)?;
+    let study_file = study_run::leave(ran, &mut out)?;
     let mut chain = Chain {
         study: ran.study.clone(),
         deck,
@@ -142,7 +142,7 @@ impl Chain<'_> {
     fn export(
         &mut self,
         own: Option<&TrainedWithReport>,
-        growing: Growing,
+        growing: GrowthPolicy,
     ) -> Result<Option<PathBuf>> {
         let Some(own) = own else {
             let reason = format!("{} was not trained", self.study.exported()?.name);

@@ -29,7 +29,7 @@ pub(crate) struct Summary {
     pub deck: String,
     /// Licence of the data.
     pub licence: String,
-    /// What was assumed in reading the deck, what looks wrong in it, and values of the study that are hardly meant.
+    /// What was assumed in reading the deck, what looks wrong in it, and values of the study that look implausible.
     pub warnings: Vec<String>,
     /// Wind speeds of curves and searches.
     pub speeds: SpeedRange,

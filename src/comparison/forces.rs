@@ -14,7 +14,7 @@ mod statements;
 mod tested_deck;
 
 pub(crate) use decks::{DecksComparison, compare_decks};
-pub(crate) use entries::{Inside, inside};
+pub(crate) use entries::{BandCheck, inside};
 pub(crate) use models::{History, ModelsComparison, compare_models};
 pub(crate) use options::{CompareOptions, OnRecords, Scoring, THESIS_DECKS};
 pub(crate) use score::{ForceMetrics, Score, ScoreSummary, score_table};

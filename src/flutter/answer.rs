@@ -67,14 +67,14 @@ impl StableRange {
 
 /// Where modes come into the range of reduced frequencies that can be judged, and where they leave it.
 #[derive(Debug, Default)]
-pub(super) struct Reach {
+pub(super) struct RangePassages {
     /// Speed, m/s, and branch.
     pub(super) entries: Vec<(f64, String)>,
     /// The same at the other end.
     pub(super) exits: Vec<(f64, String)>,
 }
 
-impl Reach {
+impl RangePassages {
     /// The speeds up to `highest_m_s` at which every mode was judged.
     pub(super) fn judged(&self, highest_m_s: f64) -> StableRange {
         let last = self.entries.iter().max_by(|a, b| a.0.total_cmp(&b.0));
@@ -100,7 +100,7 @@ impl Reach {
 /// Why nothing is known below the speed at which a mode comes to the end `limit` of the range that can be judged.
 pub(super) fn entry_reason(limit: ReducedFrequency) -> String {
     format!(
-        "there its motion comes into the range that could be judged, whose end is K {:.4}",
+        "there its motion enters the range that can be judged, which ends at K {:.4}",
         limit.full_width()
     )
 }

@@ -5,7 +5,7 @@
 //! section flutters (Theodorsen's method with viscous damping).
 
 use super::answer::{
-    Findings, FlutterSearch, Reach, StableRange, UnstableStart, choose, entry_reason,
+    Findings, FlutterSearch, RangePassages, StableRange, UnstableStart, choose, entry_reason,
 };
 use super::critical_point::OnsetMethod;
 use super::onset::Onset;
@@ -80,7 +80,7 @@ pub fn determinant_onset(
     let width = structure.width_m;
     // each root with its branch, as long as it stays in the right half plane
     let mut roots = problem.named_roots(k_max)?;
-    let mut reach = Reach::default();
+    let mut reach = RangePassages::default();
     let mut findings = Findings::judged(StableRange::up_to(speed_max_m_s));
     for (omega, row) in &roots {
         let (speed, branch) = (omega.re * width / k_max, structure.branch_name(*row));

@@ -39,12 +39,12 @@ pub(super) struct Mode {
     /// Displacements (n): m, rad.
     pub(super) shape: DVector<Complex<f64>>,
     /// How the eigenvalue came here, where the next is predicted by it.
-    pub(super) course: Course,
+    pub(super) course: EigenvalueTrend,
 }
 
 /// How an eigenvalue went over the last wind speeds: the divided differences of Newton's interpolation.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Course {
+pub(super) struct EigenvalueTrend {
     /// The speed before, m/s.
     before: Option<f64>,
     /// First difference, rad/s per m/s.
@@ -53,7 +53,7 @@ pub(super) struct Course {
     bend: Complex<f64>,
 }
 
-impl Course {
+impl EigenvalueTrend {
     /// What an eigenvalue at `speed` is going to change by up to `next`, on a straight line.
     pub(super) fn straight(&self, speed: f64, next: f64) -> Complex<f64> {
         self.slope * (next - speed)
@@ -132,7 +132,7 @@ pub(super) trait Follower {
 }
 
 /// The search for an onset along one route.
-pub(super) struct Watch<'a, F> {
+pub(super) struct OnsetWatch<'a, F> {
     /// Name of the force model.
     pub(super) model: &'a str,
     pub(super) follower: &'a F,
@@ -140,7 +140,7 @@ pub(super) struct Watch<'a, F> {
     pub(super) tested: Option<ReducedFrequencyRange>,
 }
 
-impl<F: Follower> Watch<'_, F> {
+impl<F: Follower> OnsetWatch<'_, F> {
     /// Adds what happens between two neighbouring speeds: modes that lose their damping, and modes that come into the tested
     /// range growing.
     pub(super) fn step(&self, low: &Modes, high: &Modes, found: &mut Findings) -> Result<()> {

@@ -47,7 +47,7 @@ impl Scan<'_> {
                 continue;
             };
             if lambda.re > JUST_GROWING * lambda.norm() {
-                let reason = "there its motion comes into the range that could be judged";
+                let reason = "there its motion enters the range that can be judged";
                 let mut start = self.start(at.speed, lambda, reason);
                 start.in_tested_range = Some(true);
                 found.starts.push(start);

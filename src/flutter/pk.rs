@@ -7,7 +7,7 @@
 
 use super::answer::{Findings, FlutterSearch, StableRange, choose, entry_reason};
 use super::curves::{FlutterCurves, ModePoint, empty_branches};
-use super::following::{Follower, Watch, dimensionless, growing};
+use super::following::{Follower, OnsetWatch, dimensionless, growing};
 use super::pk_following::Iteration;
 use super::search::OnsetSearch;
 use crate::aerodynamics::Transfer;
@@ -117,7 +117,7 @@ pub fn pk_onset(
 ) -> Result<FlutterSearch> {
     let iteration = Iteration { structure, model };
     let known = model.known_range();
-    let watch = Watch {
+    let watch = OnsetWatch {
         model: name,
         follower: &iteration,
         // into the range of a table modes come where they are known first

@@ -1,10 +1,10 @@
 //! Modes of the p-k iteration followed over wind speed by what they are: small changes and like shapes from step to step.
 
-use super::answer::Reach;
+use super::answer::RangePassages;
 use super::critical_point::OnsetMethod;
 use super::determinant::damping_slope;
 use super::following::{
-    Course, Follower, MIN_ASSURANCE, Mode, Modes, SEPARATION, assurance, dimensionless,
+    EigenvalueTrend, Follower, MIN_ASSURANCE, Mode, Modes, SEPARATION, assurance, dimensionless,
 };
 use super::onset::Onset;
 use super::quasi_pk::{pk_mode, pk_mode_at};
@@ -51,10 +51,14 @@ fn same_root(a: &Mode, b: &Mode) -> bool {
 impl Iteration<'_> {
     /// Follows every mode from where it is first known over the rising `speeds`, and further to where it leaves the range
     /// of the model. `on_step` sees both ends of every step, also those where a mode enters or leaves.
-    pub(super) fn march(&self, speeds: &[f64], on_step: OnStep<'_>) -> Result<(Vec<Entry>, Reach)> {
+    pub(super) fn march(
+        &self,
+        speeds: &[f64],
+        on_step: OnStep<'_>,
+    ) -> Result<(Vec<Entry>, RangePassages)> {
         let entries = self.entries(speeds)?;
         let named = |e: &Entry| (e.speed, self.name(e.mode.branch));
-        let mut reach = Reach::default();
+        let mut reach = RangePassages::default();
         if self.model.known_range().is_some() {
             reach.entries = entries.iter().map(named).collect();
         }
@@ -86,7 +90,7 @@ impl Iteration<'_> {
     }
 
     /// The modes at `target`, or where the first of them leaves the range of the model before that.
-    fn step(&self, from: &Modes, target: f64, reach: &mut Reach) -> Result<Modes> {
+    fn step(&self, from: &Modes, target: f64, reach: &mut RangePassages) -> Result<Modes> {
         let next = self.advance(from, target)?;
         let Some(range) = self.model.known_range() else {
             return Ok(next);
@@ -316,6 +320,6 @@ fn still_mode(branch: usize, lambda: Complex<f64>, shape: DVector<Complex<f64>>)
         branch,
         lambda: Complex::new(lambda.re.min(-f64::MIN_POSITIVE), lambda.im),
         shape,
-        course: Course::default(),
+        course: EigenvalueTrend::default(),
     }
 }

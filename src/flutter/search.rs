@@ -1,7 +1,7 @@
 //! Onset by the eigenvalues of the coupled state matrix.
 
 use super::answer::{Findings, FlutterSearch, choose};
-use super::following::{Follower, Watch, growing};
+use super::following::{Follower, OnsetWatch, growing};
 use super::scan::Scan;
 use super::tracking::Tracker;
 use crate::aeroelastic::CoupledSection;
@@ -130,7 +130,7 @@ fn followed(
 /// What the structural modes do between the lowest and the highest speed of a scan.
 fn follow(model: &str, scan: &Scan<'_>, speeds: &[f64], found: &mut Findings) -> Result<()> {
     let tracker = Tracker::new(scan.section);
-    let watch = Watch {
+    let watch = OnsetWatch {
         model,
         follower: &tracker,
         tested: scan.tested,

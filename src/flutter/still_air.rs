@@ -1,6 +1,6 @@
 //! Modes of a structure in still air, where following them over wind speed begins.
 
-use super::following::{Course, Mode, dimensionless, oscillates};
+use super::following::{EigenvalueTrend, Mode, dimensionless, oscillates};
 use crate::aerodynamics::Realization;
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
@@ -42,7 +42,7 @@ pub(super) fn modes_of_many(section: &CoupledSection) -> Option<Vec<Mode>> {
             branch: 0,
             lambda,
             shape: shape.normalize().map(Complex::from),
-            course: Course::default(),
+            course: EigenvalueTrend::default(),
         });
     }
     order_by_dof(section, &mut modes);
@@ -63,7 +63,7 @@ pub(super) fn natural_modes(section: &CoupledSection) -> Result<Vec<Mode>> {
             branch: 0,
             lambda,
             shape: shape.unscale(size),
-            course: Course::default(),
+            course: EigenvalueTrend::default(),
         });
     }
     if modes.len() != n {

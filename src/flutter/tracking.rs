@@ -7,7 +7,8 @@ use super::characteristic::Characteristic;
 use super::clusters::by_shapes;
 use super::critical_point::OnsetMethod;
 use super::following::{
-    Course, Follower, MIN_ASSURANCE, Mode, Modes, SEPARATION, assurance, dimensionless, oscillates,
+    EigenvalueTrend, Follower, MIN_ASSURANCE, Mode, Modes, SEPARATION, assurance, dimensionless,
+    oscillates,
 };
 use super::modal_characteristic::ModalCharacteristic;
 use super::onset::Onset;
@@ -91,7 +92,7 @@ impl<'a> Tracker<'a> {
     fn matched(&self, before: &Modes, speed: f64) -> Result<Option<Modes>> {
         // shapes take a round less from a better start; a root of the small problem costs next to nothing
         let curved = matches!(self.correction, Correction::Shapes(_));
-        let change = |course: &Course| match curved {
+        let change = |course: &EigenvalueTrend| match curved {
             true => course.curved(before.speed, speed),
             false => course.straight(before.speed, speed),
         };

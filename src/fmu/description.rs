@@ -8,8 +8,8 @@ use super::log_categories::LOG_CATEGORIES;
 use super::package::Label;
 use super::resources::Resources;
 use super::si::Unit;
-use super::standard::Word;
-use super::variables::{Causality, Listed, Listing, Value, Variable, VariableTable};
+use super::standard::FmiTerm;
+use super::variables::{Causality, ListedVariables, Listing, Value, Variable, VariableTable};
 use super::xml::Element;
 use crate::error::{Error, Result};
 use crate::trained_model::Experiment;
@@ -23,7 +23,7 @@ const MAX_DEFAULT_STEPS: f64 = 1000.0;
 /// [`Error::Input`] when a number cannot stand in a description (not finite).
 pub fn model_description(resources: &Resources, listing: Listing, label: &Label) -> Result<String> {
     let Resources { model, table, .. } = resources;
-    let Listed { table, references } = &table.listed(listing);
+    let ListedVariables { table, references } = &table.listed(listing);
     let variables = references.iter().zip(table.variables());
     let variables = variables
         .map(|(reference, v)| scalar(*reference, v))
@@ -183,7 +183,7 @@ fn scalar(reference: usize, v: &Variable) -> Result<Element> {
         .with("description", &v.description)
         .with("causality", v.causality.word())
         .with("variability", v.variability.word())
-        .with_any("initial", v.initial.map(Word::word))
+        .with_any("initial", v.initial.map(FmiTerm::word))
         .containing([typed(v)?]))
 }
 

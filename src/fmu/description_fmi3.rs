@@ -5,7 +5,7 @@ use super::groups::{Groups, array_of};
 use super::identity::MODEL_IDENTIFIER;
 use super::package::Label;
 use super::resources::Resources;
-use super::standard::Word;
+use super::standard::FmiTerm;
 use super::variables::{Causality, InitialDependency, Value, Variable, VariableTable};
 use super::xml::Element;
 use crate::error::Result;
@@ -18,7 +18,7 @@ use std::collections::BTreeSet;
 pub fn model_description(resources: &Resources, label: &Label) -> Result<String> {
     let table = &resources.table;
     let groups = Groups::new(table);
-    let listed = Listed { table, groups };
+    let listed = GroupedVariables { table, groups };
     let mut variables = Vec::new();
     for (reference, places) in listed.groups.all().iter().enumerate() {
         variables.push(listed.variable(reference, places)?);
@@ -78,12 +78,12 @@ fn interfaces(table: &VariableTable) -> Vec<Element> {
     model_exchange.into_iter().chain([co_simulation]).collect()
 }
 
-struct Listed<'a> {
+struct GroupedVariables<'a> {
     table: &'a VariableTable,
     groups: Groups,
 }
 
-impl Listed<'_> {
+impl GroupedVariables<'_> {
     fn at(&self, place: u32) -> &Variable {
         &self.table.variables()[place as usize]
     }
@@ -108,7 +108,7 @@ impl Listed<'_> {
             .with("description", description)
             .with("causality", v.causality.word())
             .with("variability", v.variability.word())
-            .with_any("initial", v.initial.map(Word::word));
+            .with_any("initial", v.initial.map(FmiTerm::word));
         let element = match &v.value {
             Value::Real(_) => {
                 let starts = places.iter().filter_map(|p| match self.at(*p).value {

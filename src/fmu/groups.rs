@@ -1,6 +1,6 @@
 //! Variables as FMI 3.0 lists them: what all strips, modes or nodes have is one array.
 
-use super::refusal::{Answer, Refusal};
+use super::refusal::{CallResult, Refusal};
 use super::variables::{Role, VariableTable};
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -65,7 +65,7 @@ impl Groups {
     ///
     /// # Errors
     /// A reference that is none, or that of the time, where only variables are allowed.
-    pub fn places<'a>(&self, references: &'a [u32]) -> Answer<Cow<'a, [u32]>> {
+    pub fn places<'a>(&self, references: &'a [u32]) -> CallResult<Cow<'a, [u32]>> {
         if let Some(wrong) = references.iter().find(|r| **r >= self.time()) {
             return Err(Refusal::error(format!(
                 "value reference {wrong}: there is no such variable to be set or differentiated, the last one is {}",

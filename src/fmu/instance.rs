@@ -36,7 +36,7 @@ pub use layout::DataType;
 pub use saving::Snapshot;
 
 use super::lifecycle::{Call, Interface, State};
-use super::refusal::{Answer, Refusal, Severity};
+use super::refusal::{CallResult, Refusal, Severity};
 use super::resources::Resources;
 use super::variables::VariableTable;
 use crate::error::Result;
@@ -120,7 +120,7 @@ impl Instance {
     ///
     /// # Errors
     /// A [`Refusal`] naming call and state.
-    pub(crate) fn admit(&self, call: Call) -> Answer<()> {
+    pub(crate) fn admit(&self, call: Call) -> CallResult<()> {
         let foreign = call.is_model_exchange() && self.interface != Interface::ModelExchange;
         if call.legal_in().contains(self.memory.state) && !foreign {
             Ok(())
@@ -142,7 +142,7 @@ impl Instance {
     ///
     /// # Errors
     /// Times that are not finite, or a stop before the start.
-    pub fn set_up_experiment(&mut self, start: f64, stop: Option<f64>) -> Answer<()> {
+    pub fn set_up_experiment(&mut self, start: f64, stop: Option<f64>) -> CallResult<()> {
         if !start.is_finite() || stop.is_some_and(|stop| !stop.is_finite() || stop < start) {
             let stop = stop.map_or_else(|| "none".into(), |s| s.to_string());
             return Err(Refusal::error(format!(
@@ -176,7 +176,7 @@ impl Instance {
     ///
     /// # Errors
     /// When parameters and initial values give no section that can move.
-    pub fn exit_initialization(&mut self) -> Answer<()> {
+    pub fn exit_initialization(&mut self) -> CallResult<()> {
         self.unit.prepare(&self.resources, &mut self.memory)?;
         self.watch();
         self.memory.state = match self.interface {

@@ -12,7 +12,7 @@ mod terminals;
 
 pub use super::standard::FmiVersion;
 pub use documentation::documentation;
-pub use growth::Growing;
+pub use growth::GrowthPolicy;
 pub(crate) use growth::growth_of;
 pub use label::Label;
 pub use runtime::Runtime;
@@ -59,7 +59,7 @@ pub enum Overwrite {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Export {
     /// What becomes of a model that makes its own section grow where it should not.
-    pub growing: Growing,
+    pub growing: GrowthPolicy,
     /// Strips for a structure outside; `None` for the coupled section.
     pub force: Option<ForceOptions>,
     /// Forces of gusts, so that gusts are inputs.
@@ -74,8 +74,8 @@ pub struct Export {
     pub version: FmiVersion,
 }
 
-impl From<Growing> for Export {
-    fn from(growing: Growing) -> Self {
+impl From<GrowthPolicy> for Export {
+    fn from(growing: GrowthPolicy) -> Self {
         Self {
             growing,
             force: None,

@@ -24,7 +24,7 @@ pub struct Refusal {
 }
 
 /// Result of what an importer asks.
-pub(crate) type Answer<T> = Result<T, Refusal>;
+pub(crate) type CallResult<T> = Result<T, Refusal>;
 
 impl Refusal {
     /// The run cannot go on.

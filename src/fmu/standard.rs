@@ -59,7 +59,7 @@ pub enum Initial {
 }
 
 /// A word of the standard and what it means.
-pub trait Word: Copy + PartialEq + 'static {
+pub trait FmiTerm: Copy + PartialEq + 'static {
     /// All words.
     const ALL: &'static [(&'static str, Self)];
 
@@ -70,7 +70,7 @@ pub trait Word: Copy + PartialEq + 'static {
     }
 }
 
-impl Word for Causality {
+impl FmiTerm for Causality {
     const ALL: &'static [(&'static str, Self)] = &[
         ("parameter", Self::Parameter),
         ("calculatedParameter", Self::CalculatedParameter),
@@ -81,7 +81,7 @@ impl Word for Causality {
     ];
 }
 
-impl Word for Variability {
+impl FmiTerm for Variability {
     const ALL: &'static [(&'static str, Self)] = &[
         ("constant", Self::Constant),
         ("fixed", Self::Fixed),
@@ -91,7 +91,7 @@ impl Word for Variability {
     ];
 }
 
-impl Word for Initial {
+impl FmiTerm for Initial {
     const ALL: &'static [(&'static str, Self)] = &[
         ("exact", Self::Exact),
         ("approx", Self::Approx),

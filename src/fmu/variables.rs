@@ -20,7 +20,7 @@ mod variable;
 
 pub use super::standard::{Causality, Initial, Variability};
 #[cfg(feature = "cli")]
-pub use listing::{Listed, Listing};
+pub use listing::{ListedVariables, Listing};
 pub use parameters::{ModeParameter, SectionParameter};
 pub use variable::{
     Calculated, ForceOutput, Gust, InitialDependency, ModeOutput, Response, Role, Status,

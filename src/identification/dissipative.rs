@@ -26,9 +26,9 @@ mod tangent;
 use super::basis::Basis;
 use crate::error::{Error, Result};
 use crate::section::Dof;
-use edge::Edge;
+use edge::TestedRangeEnd;
 pub use equations::Constraints;
-pub(crate) use equations::Wishes;
+pub(crate) use equations::FitRequirements;
 use equations::{Equation, equations, satisfy};
 use least_distance::{Inequality, shortest};
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
@@ -96,7 +96,7 @@ struct Cut {
 
 impl Dissipation {
     /// For the bases of all transfer functions, row by row.
-    pub(crate) fn new(bases: &[Basis], wishes: &Wishes) -> Self {
+    pub(crate) fn new(bases: &[Basis], wishes: &FitRequirements) -> Self {
         let k_max = wishes.k_max;
         let n = bases.len().isqrt();
         let feed = bases[0].feed();
@@ -176,8 +176,8 @@ impl Dissipation {
         let width = entries.iter().map(LinearEntry::end).max().unwrap_or(0);
         let alone: Vec<Vec<f64>> = entries.iter().map(|e| e.values.clone()).collect();
         let edge = match self.conditions.first() {
-            Some(_) => Edge::new(self.matrix(0, &alone), &self.dofs),
-            None => Edge::nothing(self.n),
+            Some(_) => TestedRangeEnd::new(self.matrix(0, &alone), &self.dofs),
+            None => TestedRangeEnd::nothing(self.n),
         };
         let (equalities, start) = satisfy(&self.equations, entries, width)?;
         let mut u = start.clone();
@@ -222,7 +222,7 @@ impl Dissipation {
     }
 
     /// Conditions that do not hold and the mode shapes that are fed; of neighbouring reduced frequencies only the worst.
-    fn fed(&self, coefficients: &[Vec<f64>], edge: &Edge) -> Vec<(usize, DVector<f64>)> {
+    fn fed(&self, coefficients: &[Vec<f64>], edge: &TestedRangeEnd) -> Vec<(usize, DVector<f64>)> {
         let eigen: Vec<_> = (0..self.conditions.len())
             .map(|c| self.excesses(c, coefficients, edge))
             .collect();
@@ -249,7 +249,7 @@ impl Dissipation {
         &self,
         condition: usize,
         coefficients: &[Vec<f64>],
-        edge: &Edge,
+        edge: &TestedRangeEnd,
     ) -> (DVector<f64>, DMatrix<f64>) {
         let Condition {
             scale, margin, own, ..
@@ -280,7 +280,7 @@ impl Dissipation {
         &self,
         (condition, v): (usize, &DVector<f64>),
         entries: &[LinearEntry],
-        (start, edge): (&[Vec<f64>], &Edge),
+        (start, edge): (&[Vec<f64>], &TestedRangeEnd),
         equalities: &[DVector<f64>],
     ) -> Inequality {
         let mut gradient = self.gradient(condition, v.as_slice(), entries);
@@ -299,7 +299,7 @@ impl Dissipation {
         &self,
         entries: &[LinearEntry],
         (free, coefficients): (DVector<f64>, Vec<Vec<f64>>),
-        edge: &Edge,
+        edge: &TestedRangeEnd,
         cuts: &[Cut],
         equalities: Vec<DVector<f64>>,
     ) -> Solution {

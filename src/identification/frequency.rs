@@ -6,7 +6,7 @@ mod poles;
 use super::basis::{Basis, assemble};
 use super::constrained::LinearSolution;
 use super::degenerate::note_lags;
-use super::dissipative::{ConstraintReport, Constraints, Wishes};
+use super::dissipative::{ConstraintReport, Constraints, FitRequirements};
 use super::entry_report::EntryReport;
 use super::form::Form;
 use super::frequency_options::{FrequencyFit, FrequencyWeights};
@@ -107,7 +107,7 @@ fn fit_linear(
     let joint = Joint {
         entries,
         form: &fit.form,
-        wishes: Wishes {
+        wishes: FitRequirements {
             dofs: dofs.to_vec(),
             k_max: tested.max.full_width(),
             constraints: fit.constraints,

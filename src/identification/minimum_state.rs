@@ -9,7 +9,7 @@ mod held;
 
 use super::basis::Basis;
 use super::constrained::{LinearProblem, LinearSolution};
-use super::dissipative::{ActiveConstraint, Constraints, Wishes};
+use super::dissipative::{ActiveConstraint, Constraints, FitRequirements};
 use super::entry_report::EntryReport;
 use super::form::{FeedThrough, Form};
 use super::frequency_options::FrequencyFit;
@@ -37,7 +37,7 @@ struct LagSearch<'a> {
     /// Bounds of the search, or the lags that were given.
     lags: SearchedLags,
     /// What is asked besides, once least squares alone are known.
-    wishes: Option<Wishes>,
+    wishes: Option<FitRequirements>,
 }
 
 enum SearchedLags {
@@ -84,7 +84,7 @@ pub(super) fn fit_minimum_state(
     if fit.constraints == Constraints::None {
         return Ok(alone);
     }
-    task.wishes = Some(Wishes {
+    task.wishes = Some(FitRequirements {
         dofs: dofs.to_vec(),
         k_max: tested.max.full_width(),
         constraints: fit.constraints,

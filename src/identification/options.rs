@@ -1,7 +1,7 @@
 //! What a fit is asked to do. The fields are keys of a study file; units are in their names, the rest is
 //! dimensionless.
 
-use super::dissipative::{Constraints, Wishes};
+use super::dissipative::{Constraints, FitRequirements};
 use super::form::{Form, PoleSearch};
 use super::frequency_options::{QuasiSteadyLimit, limits_by_entry, validate_limits};
 use super::own::{OwnFilters, StaticTerm, validate_own};
@@ -68,8 +68,12 @@ impl TimeFit {
     ///
     /// # Errors
     /// [`crate::Error::Input`] for limits of degrees of freedom that are not there.
-    pub(crate) fn wishes(&self, dofs: &[Dof], tested: ReducedFrequencyRange) -> Result<Wishes> {
-        Ok(Wishes {
+    pub(crate) fn wishes(
+        &self,
+        dofs: &[Dof],
+        tested: ReducedFrequencyRange,
+    ) -> Result<FitRequirements> {
+        Ok(FitRequirements {
             dofs: dofs.to_vec(),
             k_max: tested.max.full_width(),
             constraints: self.constraints,

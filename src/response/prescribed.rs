@@ -17,8 +17,8 @@ mod tests;
 use crate::aerodynamics::Realization;
 use crate::error::{Error, Result};
 use crate::section::Dof;
-use course::{Course, NUMBERS, POINTS};
-use filters::{Buffers, Way, advance_continuous, advance_discrete};
+use course::{MotionCubic, NUMBERS, POINTS};
+use filters::{Buffers, MotionInterval, advance_continuous, advance_discrete};
 use nalgebra::{DMatrix, DVector};
 
 /// Numbers of the state that all strips share: points known, wind at the newest, times of the points.
@@ -70,7 +70,7 @@ pub struct PrescribedForces {
     /// Size of the filter matrix, its largest sum over a row.
     size: f64,
     buffers: Buffers,
-    courses: Vec<Course>,
+    courses: Vec<MotionCubic>,
     filters: Vec<f64>,
 }
 
@@ -168,7 +168,7 @@ impl PrescribedForces {
             let from = self.strip(s);
             let (phase, filters) = new[from].split_at_mut(1);
             let filters = &mut filters[..self.realization.states()];
-            let way = Way {
+            let way = MotionInterval {
                 courses: &self.courses,
                 duration_s: now - before,
                 rate_per_s: wind * flow.wind_factor / flow.width_m,
@@ -211,7 +211,7 @@ impl PrescribedForces {
         let mut filters = std::mem::take(&mut self.filters);
         filters.clear();
         filters.extend_from_slice(&strip[1..=self.realization.states()]);
-        let way = Way {
+        let way = MotionInterval {
             courses: &self.courses,
             duration_s: ahead_s,
             rate_per_s: wind / flow.width_m,
@@ -257,7 +257,7 @@ impl PrescribedForces {
         let of_dofs = &strip[1 + self.realization.states()..];
         self.courses.clear();
         for (dof, known) in self.dofs.iter().zip(of_dofs.chunks(POINTS * NUMBERS)) {
-            let course = Course::through(&state[2..2 + points], &known[..points * NUMBERS]);
+            let course = MotionCubic::through(&state[2..2 + points], &known[..points * NUMBERS]);
             let scaled = course.times(dof.motion_scale(flow.width_m));
             self.courses.push(scaled.from(from));
         }
@@ -289,7 +289,7 @@ impl PrescribedForces {
         (wind, width, density): (f64, f64, f64),
         forces: &mut [ForceAhead],
     ) {
-        let motion: Vec<_> = self.courses.iter().map(Course::derivatives).collect();
+        let motion: Vec<_> = self.courses.iter().map(MotionCubic::derivatives).collect();
         let flow_rate = wind / width;
         // q V², and its rate
         let row = |c: &DMatrix<f64>, i: usize, z: &dyn Fn(usize) -> f64| -> f64 {
@@ -333,7 +333,7 @@ fn advance(
     realization: &Realization,
     size: f64,
     (filters, phase): (&mut [f64], &mut f64),
-    way: &Way,
+    way: &MotionInterval,
     buffers: &mut Buffers,
 ) -> Result<()> {
     match realization {

@@ -10,7 +10,7 @@ mod scatter;
 
 pub use answers::{BridgeAnswer, BridgeFlutter, LeftOut, bridge_flutter};
 pub use buffeting::{BridgeBuffeting, BridgeRecord, BuffetingBlock};
-pub use export::Wanted;
+pub use export::BridgeExportOptions;
 pub use forces::SectionForces;
 pub use scatter::{DerivativeScatter, Scatter, ScatteredOnset};
 

@@ -1,4 +1,4 @@
-//! Values that are possible but hardly meant: most of them stand in another unit than the key says.
+//! Values that are possible but implausible: most of them are in another unit than the key says.
 
 use super::Study;
 use crate::section::SectionModel;
@@ -24,7 +24,7 @@ const MOST_AMPLITUDE: f64 = 0.5;
 /// Smallest amplitude of rotation that is driven on purpose, degrees.
 const LEAST_ROTATION_DEG: f64 = 0.05;
 
-/// What is hardly meant in a section: one sentence a key, with the likely reason.
+/// Implausible values of a section: one sentence per key, with the likely reason.
 pub(crate) fn section_warnings(section: &SectionModel) -> Vec<String> {
     let (heave, twist) = (&section.vertical, &section.torsion);
     let sway = section.lateral.as_ref();

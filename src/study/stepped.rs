@@ -148,7 +148,7 @@ fn enters_growing(fmu: &Fmu, model: &TrainedModel, found: &Found) -> Result<Opti
         at = growth_by_stepping(fmu, speed, found.communication_step_s)?;
     }
     let reason = format!(
-        "there its motion comes into the range that could be judged, whose end is K {:.4}; outside, the FMU grows from \
+        "there its motion enters the range that can be judged, which ends at K {:.4}; outside, the FMU grows from \
          {:.3} m/s on",
         limit.full_width(),
         found.speed_m_s

@@ -1,4 +1,4 @@
-//! Do the intervals keep their word? Virtual campaigns whose truth is known, fitted many times over.
+//! Are the intervals reliable? Virtual campaigns whose truth is known, fitted many times over.
 
 use super::coefficients::{CoefficientUncertainty, spread_over};
 use super::model::derivative_intervals;
@@ -25,7 +25,7 @@ const SPEED_MAX_M_S: f64 = 80.0;
 /// Reduced frequencies at which derivatives are compared.
 const DERIVATIVE_POINTS: usize = 8;
 
-/// Shares of held truths with which 95 % intervals keep their word, percent.
+/// Shares of held truths with which 95 % intervals count as reliable, percent.
 const KEPT_PERCENT: std::ops::RangeInclusive<f64> = 93.0..=97.0;
 
 /// What the forces of the virtual tunnel follow.
@@ -118,7 +118,7 @@ impl CoveragePlan {
 
 /// How often intervals held the truth.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Share {
+pub struct IntervalCoverage {
     /// Intervals that held it.
     pub inside: usize,
     /// All intervals.
@@ -127,7 +127,7 @@ pub struct Share {
     pub percent: f64,
 }
 
-impl Share {
+impl IntervalCoverage {
     fn count(verdicts: impl Iterator<Item = bool>) -> Self {
         let (inside, of) =
             verdicts.fold((0, 0), |(inside, of), v| (inside + usize::from(v), of + 1));
@@ -163,16 +163,16 @@ pub struct CoverageReport {
     /// Degrees of freedom that the scatter of the stated variances shows, `2 mean²/variance`.
     pub observed_degrees_of_freedom: f64,
     /// Intervals of the onset that hold the true one.
-    pub holds_truth: Share,
+    pub holds_truth: IntervalCoverage,
     /// Intervals of the onset that hold that of the fit without noise: coverage with the bias taken away.
-    pub holds_fit_without_noise: Share,
+    pub holds_fit_without_noise: IntervalCoverage,
     /// The same as the first for all derivatives at eight `K` over the tested range.
-    pub derivatives_hold_truth: Share,
+    pub derivatives_hold_truth: IntervalCoverage,
     /// Repetitions in which the speeds differed by more than chance, so that their scatter was counted.
-    pub speeds_differ: Share,
+    pub speeds_differ: IntervalCoverage,
     /// Repetitions without an onset.
     pub without_onset: usize,
-    /// What must be said of the intervals; empty if they keep their word.
+    /// Warnings about the intervals; empty if they are reliable.
     pub warnings: Vec<String>,
 }
 
@@ -370,7 +370,7 @@ impl Campaign {
         let scatter = (mean(&|r| (r.onset_m_s - average).powi(2)) * count / (count - 1.0)).sqrt();
         let variance = mean(&|r| r.standard_error_m_s.powi(2));
         let inside = |r: &Run, target: f64| (r.onset_m_s - target).abs() <= r.half_width_m_s;
-        let holds = |target: f64| Share::count(good.iter().map(|r| inside(r, target)));
+        let holds = |target: f64| IntervalCoverage::count(good.iter().map(|r| inside(r, target)));
         let mut report = CoverageReport {
             plan: plan.clone(),
             true_onset_m_s: self.true_onset_m_s,
@@ -385,11 +385,11 @@ impl Campaign {
                 / (mean(&|r| r.standard_error_m_s.powi(4)) - variance * variance),
             holds_truth: holds(self.true_onset_m_s),
             holds_fit_without_noise: holds(self.true_onset_m_s + self.bias_m_s),
-            derivatives_hold_truth: Share::count(
+            derivatives_hold_truth: IntervalCoverage::count(
                 good.iter()
                     .flat_map(|r| r.derivatives_inside.iter().copied()),
             ),
-            speeds_differ: Share::count(good.iter().map(|r| r.speeds_differ)),
+            speeds_differ: IntervalCoverage::count(good.iter().map(|r| r.speeds_differ)),
             without_onset: runs.len() - good.len(),
             warnings: Vec::new(),
         };

@@ -24,9 +24,9 @@ pub(super) struct ScatteredTunnel {
 }
 
 /// `i G(K)`.
-struct Turned<'a>(&'a dyn Transfer);
+struct QuarterTurned<'a>(&'a dyn Transfer);
 
-impl Transfer for Turned<'_> {
+impl Transfer for QuarterTurned<'_> {
     fn dofs(&self) -> &[Dof] {
         self.0.dofs()
     }
@@ -46,7 +46,7 @@ impl ScatteredTunnel {
     ) -> Result<Self> {
         let straight = quiet.records_from_model(model, "truth", width_m)?;
         let turned = if speeds > 0.0 || runs > 0.0 {
-            quiet.records_from_model(&Turned(model), "truth", width_m)?
+            quiet.records_from_model(&QuarterTurned(model), "truth", width_m)?
         } else {
             Vec::new()
         };

@@ -62,7 +62,7 @@ pub struct SpeedOnsets {
 }
 
 /// One speed while it is compared.
-struct Alone {
+struct SpeedEstimate {
     mean_speed_m_s: f64,
     estimate: CoefficientUncertainty,
     error: OnsetError,
@@ -84,7 +84,7 @@ pub(crate) fn speed_onsets(
         });
         let (error, reason) = match judged {
             Ok((estimate, error)) => {
-                alone.push(Alone {
+                alone.push(SpeedEstimate {
                     mean_speed_m_s,
                     estimate,
                     error: error.clone(),
@@ -161,7 +161,7 @@ fn z_of(a: &OnsetError, b: &OnsetError) -> (f64, f64) {
 fn greatest_part(
     estimate: &CoefficientUncertainty,
     gradient: &[f64],
-    (a, b): (&Alone, &Alone),
+    (a, b): (&SpeedEstimate, &SpeedEstimate),
 ) -> (Dof, Dof) {
     let (a, b) = (a.estimate.values(), b.estimate.values());
     let own = estimate.own_coefficients();
@@ -181,7 +181,7 @@ fn greatest_part(
 fn band(
     (force, motion): (Dof, Dof),
     tested: ReducedFrequencyRange,
-    (a, b): (&Alone, &Alone),
+    (a, b): (&SpeedEstimate, &SpeedEstimate),
 ) -> Result<(f64, f64)> {
     let ranges = [a, b].map(|s| s.estimate.tested_range().unwrap_or(tested));
     let low = ranges[0].min.full_width().max(ranges[1].min.full_width());
@@ -194,7 +194,7 @@ fn band(
     let dofs = &a.estimate.dofs;
     let place = |dof| dofs.iter().position(|d| *d == dof).unwrap_or(0);
     let entry = (place(force), place(motion));
-    let model = |s: &Alone| s.estimate.model_at(&s.estimate.values());
+    let model = |s: &SpeedEstimate| s.estimate.model_at(&s.estimate.values());
     let (first, second) = (model(a)?, model(b)?);
     let mut differences = Vec::with_capacity(POINTS);
     let [min, max] = [low, high].map(ReducedFrequency::from_full_width);

@@ -168,7 +168,10 @@ pub(super) fn between_speeds(
     for (i, &force) in dofs.iter().enumerate() {
         let size: f64 = (0..n).map(|j| judge.mean_square((i, j))).sum::<f64>() / n as f64;
         let mut deviations = [0.0; 2];
-        for (turn, deviation) in [Turn::Size, Turn::Phase].into_iter().zip(&mut deviations) {
+        for (turn, deviation) in [ScatterDirection::Size, ScatterDirection::Phase]
+            .into_iter()
+            .zip(&mut deviations)
+        {
             let unit = judge.effect((i, n), turn, (values, own), &mut ratios);
             let Some(unit) = unit.filter(|u| u.excess > 0.0 && size > 0.0) else {
                 continue;
@@ -201,7 +204,7 @@ pub(super) fn between_speeds(
 
 /// In which direction a transfer function is moved.
 #[derive(Clone, Copy, PartialEq)]
-enum Turn {
+enum ScatterDirection {
     Size,
     Phase,
 }
@@ -235,7 +238,7 @@ impl Judge<'_> {
     fn effect(
         &self,
         (i, n): (usize, usize),
-        turn: Turn,
+        turn: ScatterDirection,
         (values, own): (&DVector<f64>, &[Vec<usize>]),
         ratios: &mut Vec<f64>,
     ) -> Option<UnitEffect> {
@@ -278,7 +281,12 @@ impl Judge<'_> {
     }
 
     /// Change of an entry relative to itself with all parameters, one row per common `K`.
-    fn relative_rows(&self, entry: (usize, usize), turn: Turn, size: f64) -> DMatrix<f64> {
+    fn relative_rows(
+        &self,
+        entry: (usize, usize),
+        turn: ScatterDirection,
+        size: f64,
+    ) -> DMatrix<f64> {
         let parameters = self.common[0].slopes.len();
         DMatrix::from_fn(self.common.len(), parameters, |q, p| {
             let s = self.common[q];
@@ -286,8 +294,8 @@ impl Judge<'_> {
             let ratio =
                 s.slopes[p][entry] * own.conj() / own.norm_sqr().max((SMALL * size).powi(2));
             match turn {
-                Turn::Size => ratio.re,
-                Turn::Phase => ratio.im,
+                ScatterDirection::Size => ratio.re,
+                ScatterDirection::Phase => ratio.im,
             }
         })
     }
@@ -297,12 +305,12 @@ impl Judge<'_> {
     fn moved(
         &self,
         entry: (usize, usize),
-        turn: Turn,
+        turn: ScatterDirection,
         (values, own): (&DVector<f64>, &[usize]),
         size: f64,
     ) -> DVector<f64> {
         let as_it_is = || DVector::from_iterator(own.len(), own.iter().map(|p| values[*p]));
-        if turn == Turn::Size {
+        if turn == ScatterDirection::Size {
             return as_it_is();
         }
         let count = self.at.len();

@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 /// Fewest samples that a record may have.
 pub(crate) const SAMPLES_AT_LEAST: usize = 64;
 
-/// Samples a block.
+/// Samples per block.
 const BLOCK_SAMPLES: usize = 4096;
 
 /// A sample may stand off its place by this fraction of the sampling step: time stamps are often rounded.

@@ -165,7 +165,9 @@ fn dofs(entry: &Entry) -> Result<Vec<Dof>> {
     let dofs: Option<Vec<Dof>> = entry.value.split(',').map(one).collect();
     let is_new = |dofs: &[Dof], i: usize| !dofs[..i].contains(&dofs[i]);
     dofs.filter(|dofs| (0..dofs.len()).all(|i| is_new(dofs, i)))
-        .ok_or_else(|| entry.wrong("each once of vertical, lateral, torsion, with commas between"))
+        .ok_or_else(|| {
+            entry.wrong("a list with commas of vertical, lateral, torsion, each at most once")
+        })
 }
 
 fn segment(entry: &Entry) -> Result<Segment> {

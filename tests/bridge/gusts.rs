@@ -10,7 +10,7 @@ use aerodeck::fmu::package::BridgeExport;
 use aerodeck::fmu::resources::Resources;
 use aerodeck::response::{Inputs, SectionState, Stepper};
 use aerodeck::section::Dof;
-use aerodeck::study::bridge::{BridgeStudy, Wanted};
+use aerodeck::study::bridge::{BridgeExportOptions, BridgeStudy};
 
 const WIND: f64 = 35.0;
 
@@ -65,12 +65,12 @@ impl Unit {
     }
 }
 
-fn wanted(strips: usize, admittance: RationalAdmittance) -> Wanted {
-    Wanted {
+fn wanted(strips: usize, admittance: RationalAdmittance) -> BridgeExportOptions {
+    BridgeExportOptions {
         nodes: vec!["1081".into(), "1156".into()],
         gust_strips: Some(strips),
         admittance,
-        ..Wanted::default()
+        ..BridgeExportOptions::default()
     }
 }
 
@@ -287,10 +287,10 @@ fn turbulence_of_the_archive_is_buffeting() {
     };
     let expected = study.buffeting_by(&block, WIND, &field).unwrap();
     let export = study
-        .export(&Wanted {
+        .export(&BridgeExportOptions {
             nodes: block.nodes.clone(),
             turbulence: Some(field),
-            ..Wanted::default()
+            ..BridgeExportOptions::default()
         })
         .unwrap();
     let mut unit = Unit::new(&export).run(WIND);

@@ -6,11 +6,11 @@ use aerodeck::files::bridge::FieldTable;
 use aerodeck::flutter::{OnsetSearch, find_onset, motion_at_onset};
 use aerodeck::fmu::force_options::{ForceOptions, StripOptions};
 use aerodeck::fmu::package::{
-    Export, FmiVersion, Growing, Label, Overwrite, Runtime, package_bridge, write_archive,
+    Export, FmiVersion, GrowthPolicy, Label, Overwrite, Runtime, package_bridge, write_archive,
     write_fmu,
 };
 use aerodeck::fmu::variables::Listing;
-use aerodeck::study::bridge::Wanted;
+use aerodeck::study::bridge::BridgeExportOptions;
 use serde_json::json;
 use std::fs;
 use std::path::Path;
@@ -18,9 +18,9 @@ use std::path::Path;
 /// Writes `bridge.fmu`, `bridge_force.fmu` and, in `bridge.json`, the structure and the onset by eigenvalues.
 pub fn export(folder: &Path, runtimes: &[Runtime]) {
     let study = langenuen("LN21-5200", TWO);
-    let wanted = Wanted {
+    let wanted = BridgeExportOptions {
         nodes: ["1156", "1081"].map(String::from).to_vec(),
-        ..Wanted::default()
+        ..BridgeExportOptions::default()
     };
     let export = study.export(&wanted).unwrap();
     for (name, version) in [
@@ -44,7 +44,7 @@ pub fn export(folder: &Path, runtimes: &[Runtime]) {
         ..ForceOptions::single(bridge.width_m())
     };
     let force = Export {
-        growing: Growing::Refuse,
+        growing: GrowthPolicy::Refuse,
         force: Some(options),
         gusts: None,
         bounds: None,
@@ -94,7 +94,7 @@ fn gusts(folder: &Path, runtimes: &[Runtime]) {
         .iter_mut()
         .flatten()
         .for_each(|row| row.truncate(50));
-    let wanted = Wanted {
+    let wanted = BridgeExportOptions {
         nodes: study
             .by_model
             .nodes
@@ -108,7 +108,7 @@ fn gusts(folder: &Path, runtimes: &[Runtime]) {
             from_middle: false,
             gusts: field.gusts,
         }),
-        ..Wanted::default()
+        ..BridgeExportOptions::default()
     };
     let export = study.export(&wanted).unwrap();
     let bytes = package_bridge(&export, runtimes, &Label::default(), FmiVersion::Two).unwrap();

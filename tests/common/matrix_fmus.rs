@@ -6,7 +6,7 @@ use aerodeck::aerodynamics::{GustForce, RationalAdmittance};
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::flutter::{FlutterSearch, OnsetSearch, find_onset};
 use aerodeck::fmu::force_options::ForceOptions;
-use aerodeck::fmu::package::{Export, FmiVersion, Growing, Overwrite, Runtime, write_fmu};
+use aerodeck::fmu::package::{Export, FmiVersion, GrowthPolicy, Overwrite, Runtime, write_fmu};
 use aerodeck::identification::{Fitted, Form, FrequencyFit, fit_table};
 use aerodeck::trained_model::{Experiment, Provenance, SCHEMA_VERSION, TrainedModel};
 use serde_json::{Value, json};
@@ -63,7 +63,7 @@ fn cell(
         let export = Export {
             gusts: Some(plate_gusts(&model)),
             version,
-            ..Growing::Allow.into()
+            ..GrowthPolicy::Allow.into()
         };
         let fmu = folder.join(format!("{name}_{shell}.fmu"));
         write_fmu(&fmu, &model, runtimes, Overwrite::Refuse, export).unwrap();
@@ -71,7 +71,7 @@ fn cell(
     let forces = Export {
         gusts: Some(plate_gusts(&model)),
         force: Some(ForceOptions::single(model.section.width_m)),
-        ..Growing::Allow.into()
+        ..GrowthPolicy::Allow.into()
     };
     let fmu = folder.join(format!("{name}_force.fmu"));
     write_fmu(&fmu, &model, runtimes, Overwrite::Refuse, forces).unwrap();

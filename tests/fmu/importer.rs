@@ -7,7 +7,9 @@ use aerodeck::flutter::{Onset, OnsetSearch, find_onset};
 use aerodeck::fmu::importer::{
     Fmu, Severity, Simulation, SteppingSearch, Value, onset_by_stepping, simulate,
 };
-use aerodeck::fmu::package::{Export, FmiVersion, Growing, Label, Overwrite, Runtime, write_fmu};
+use aerodeck::fmu::package::{
+    Export, FmiVersion, GrowthPolicy, Label, Overwrite, Runtime, write_fmu,
+};
 use aerodeck::fmu::variables::Listing;
 use aerodeck::trained_model::TrainedModel;
 use std::path::{Path, PathBuf};
@@ -28,7 +30,7 @@ fn exported(folder: &Path, kind: &str) -> PathBuf {
         &model(kind),
         &runtimes,
         Overwrite::Refuse,
-        Growing::Allow,
+        GrowthPolicy::Allow,
     )
     .unwrap();
     path
@@ -49,7 +51,7 @@ fn real_variables_alone_pass_every_check() {
     for kind in KINDS {
         let path = folder.path().join(format!("{kind}.fmu"));
         let export = Export {
-            growing: Growing::Allow,
+            growing: GrowthPolicy::Allow,
             force: None,
             gusts: None,
             bounds: None,

@@ -6,7 +6,7 @@ use aerodeck::aerodynamics::RationalModel;
 use aerodeck::flutter::{FlutterSearch, OnsetSearch, divergence_by_eigenvalues, find_onset};
 use aerodeck::fmu::importer::Fmu;
 use aerodeck::fmu::importer::{SteppedSearch, SteppingSearch, onset_by_stepping};
-use aerodeck::fmu::package::{Growing, Overwrite, Runtime, write_fmu};
+use aerodeck::fmu::package::{GrowthPolicy, Overwrite, Runtime, write_fmu};
 use aerodeck::identification::Form;
 use aerodeck::section::SectionModel;
 use aerodeck::study::{SteppedAnswer, stepped_onset};
@@ -39,7 +39,14 @@ fn answers(model: &TrainedModel, speed_max: f64) -> (FlutterSearch, SteppedAnswe
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("stepped.fmu");
     let runtimes = [Runtime::embedded().unwrap()];
-    write_fmu(&path, model, &runtimes, Overwrite::Refuse, Growing::Allow).unwrap();
+    write_fmu(
+        &path,
+        model,
+        &runtimes,
+        Overwrite::Refuse,
+        GrowthPolicy::Allow,
+    )
+    .unwrap();
     (expected, stepped_onset(model, &path, speed_max).unwrap())
 }
 
@@ -120,7 +127,14 @@ fn growth_at_every_speed_is_an_answer() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("stepped.fmu");
     let runtimes = [Runtime::embedded().unwrap()];
-    write_fmu(&path, &model, &runtimes, Overwrite::Refuse, Growing::Allow).unwrap();
+    write_fmu(
+        &path,
+        &model,
+        &runtimes,
+        Overwrite::Refuse,
+        GrowthPolicy::Allow,
+    )
+    .unwrap();
     let fmu = Fmu::open(&path).unwrap();
     let search = SteppingSearch::between(5.0, 30.0, 0.01);
     let found = onset_by_stepping(&fmu, &search).unwrap();

@@ -7,11 +7,11 @@ use super::super::stages;
 use super::account::card;
 use super::files::BRIDGE_FMU;
 use super::flutter::{computed, staged};
-use super::summary::{self, Ran};
+use super::summary::{self, BridgeRun};
 use crate::error::{Error, Result};
 use crate::files::bridge::BridgeFile;
 use crate::fmu::package::{FmiVersion, Label, Runtime, package_bridge};
-use crate::study::bridge::{BridgeStudy, Wanted, demo_bridge_text};
+use crate::study::bridge::{BridgeExportOptions, BridgeStudy, demo_bridge_text};
 use crate::study::{Deck, KnownUncertainty, RecordSet, StageFailure, Study, demo_study_text};
 use crate::trained_model::TrainedModel;
 use std::fmt::Write as _;
@@ -46,7 +46,7 @@ pub(crate) fn run(directory: &Path, force: bool, progress: &Progress) -> Result<
     for failure in &failed {
         let _ = writeln!(text, "failed: {failure}");
     }
-    let ran = Ran {
+    let ran = BridgeRun {
         text: demo_bridge_text().to_owned(),
         command: "aerodeck demo --bridge --out results".to_owned(),
     };
@@ -61,7 +61,7 @@ pub(crate) fn run(directory: &Path, force: bool, progress: &Progress) -> Result<
 
 /// The FMU of the bridge.
 fn packed(study: &BridgeStudy, out: &mut OutputDir) -> Result<()> {
-    let export = study.export(&Wanted::default())?;
+    let export = study.export(&BridgeExportOptions::default())?;
     let label = Label::default().dated()?;
     let bytes = package_bridge(&export, &Runtime::available()?, &label, FmiVersion::Two)?;
     out.write(BRIDGE_FMU, bytes)

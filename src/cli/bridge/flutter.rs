@@ -76,12 +76,12 @@ pub(super) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
         let _ = writeln!(text, "{line}");
         comparisons.push(line);
     }
-    let ran = summary::Ran {
+    let ran = summary::BridgeRun {
         text: args.bridge.text()?,
         command: args.command(scattered.is_some()),
     };
     if is_of_a_study(&out.target(SUMMARY)) {
-        text.push_str("The folder holds the report of a study, which was left; --out elsewhere writes that of the bridge\n");
+        text.push_str("The folder already holds the report of a study, which was kept; --out with another folder writes the report of the bridge\n");
     } else {
         let said = (&comparisons[..], &failed[..]);
         summary::leave(&ran, (&study, &results), said, &mut out)?;
@@ -239,7 +239,7 @@ fn motion_csv(motion: &BridgeMotion) -> String {
     text
 }
 
-/// One row a phase and node: what a program that animates points reads.
+/// One row per phase and node, for programs that animate points.
 fn animation_csv(motion: &BridgeMotion) -> String {
     let mut text = "phase,node,along_m,vertical,lateral,rotation\n".to_owned();
     for i in 0..PHASES {

@@ -11,7 +11,7 @@ use crate::study::bridge::{BridgeFlutter, BridgeStudy};
 use serde::Serialize;
 
 /// What was run.
-pub(super) struct Ran {
+pub(super) struct BridgeRun {
     /// Text of the bridge file.
     pub(super) text: String,
     /// The command that makes the results again.
@@ -33,7 +33,7 @@ pub(super) struct Summary<'a> {
 
 /// Leaves summary and page; `said` is what else was found, in words.
 pub(super) fn leave<'a>(
-    ran: &Ran,
+    ran: &BridgeRun,
     (study, results): (&'a BridgeStudy, &'a BridgeFlutter),
     (said, failed): (&[String], &'a [String]),
     out: &mut OutputDir,

@@ -53,7 +53,7 @@ pub(crate) struct Args {
 /// How the recordings are written.
 #[derive(Debug, Clone, Copy, clap::ValueEnum)]
 enum Format {
-    /// One CSV file a recording; reads back bit for bit.
+    /// One CSV file per recording; reads back bit for bit.
     Csv,
     /// One HDF5 file in the layout of NTNU's tools.
     Ntnu,

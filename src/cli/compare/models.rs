@@ -8,7 +8,7 @@ use crate::cli::figures;
 use crate::cli::output::OutputDir;
 use crate::cli::progress::Progress;
 use crate::comparison::forces::{
-    History, Inside, ModelsComparison, compare_models, inside, score_table,
+    BandCheck, History, ModelsComparison, compare_models, inside, score_table,
 };
 use crate::error::{Result, counted};
 use crate::report::{
@@ -239,7 +239,7 @@ fn transfer_table(results: &ModelsComparison) -> String {
     for entry in &results.entries {
         for model in &entry.models {
             for (point, off) in entry.points.iter().zip(&model.points) {
-                let Inside { magnitude, phase } = inside(off);
+                let BandCheck { magnitude, phase } = inside(off);
                 let _ = writeln!(
                     text,
                     "{},{},{:.4},{:.5},{:.6},{:.3},\"{}\",{:.3},{:.3},{magnitude},{phase}",

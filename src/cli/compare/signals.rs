@@ -31,7 +31,7 @@ pub(crate) struct Args {
     /// Group (HDF5, TDMS) or struct (MATLAB) of the file to read.
     #[arg(long)]
     group: Option<String>,
-    /// Samples a second; by default what the file states.
+    /// Samples per second; by default the rate that the file states.
     #[arg(long)]
     sampling_hz: Option<f64>,
     /// Lowest frequency of wavelets, Hz.

@@ -17,7 +17,7 @@ use crate::fmu::package::{
     write_fmu,
 };
 use crate::fmu::variables::Listing;
-use crate::study::bridge::{BridgeStudy, Wanted};
+use crate::study::bridge::{BridgeExportOptions, BridgeStudy};
 use crate::study::uncertainty_beside;
 use crate::trained_model::TrainedModel;
 use std::path::{Path, PathBuf};
@@ -41,7 +41,7 @@ pub(crate) struct Args {
     /// What is packed: the section of the model with its forces, or its forces alone.
     #[arg(long, value_enum, default_value_t = Kind::Section)]
     kind: Kind,
-    /// Strips of a force FMU, whose variables are named strip[1].heave …; without, one strip with plain names.
+    /// Number of strips of a force FMU, with variables named strip[1].heave …; by default one strip with plain names.
     #[arg(long)]
     strips: Option<usize>,
     /// Length of each strip, m [default: 1].
@@ -51,7 +51,7 @@ pub(crate) struct Args {
     /// holds them over its next step, 0 for none [default: 1.5].
     #[arg(long)]
     prediction: Option<f64>,
-    /// List real variables only, for importers that take no texts, truth values and integers.
+    /// List real variables only, for importers that do not accept strings, Booleans or integers.
     #[arg(long)]
     reals_only: bool,
     /// Platforms to pack for [default: all whose runtime is here]; arm-linux makes an archive for importers on 64-bit
@@ -62,7 +62,7 @@ pub(crate) struct Args {
     /// `flat plate`.
     #[arg(long, value_name = "TABLE")]
     gusts: Option<String>,
-    /// Take gusts of so many strips of a bridge as inputs, neighbouring nodes together; their forces follow from the
+    /// Add gust inputs for this many strips of a bridge, each a group of neighbouring nodes; their forces follow from the
     /// `static` coefficients of its sections.
     #[arg(long, value_name = "COUNT", requires = "bridge")]
     gust_strips: Option<usize>,
@@ -81,7 +81,7 @@ pub(crate) struct Args {
     /// Who is responsible for the FMU.
     #[arg(long)]
     author: Option<String>,
-    /// Whose it is.
+    /// Copyright holder of the FMU.
     #[arg(long)]
     copyright: Option<String>,
     /// The FMU; by default `deck_section.fmu`, `deck_force.fmu` or `bridge.fmu` beside the model.
@@ -206,7 +206,7 @@ impl Args {
             .unwrap_or_else(|| self.model.with_file_name(BRIDGE_FMU));
         let stage = progress.stage("packing the FMU");
         let turbulence = self.turbulence.as_deref().map(read_field).transpose()?;
-        let export = study.export(&Wanted {
+        let export = study.export(&BridgeExportOptions {
             nodes: self.nodes.clone(),
             allow_unstable: self.allow_unstable,
             gust_strips: self.gust_strips,

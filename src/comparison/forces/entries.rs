@@ -31,7 +31,7 @@ pub(crate) struct TestPoint {
 
 /// What belongs to one model.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub(crate) struct OfModel<P> {
+pub(crate) struct PerModel<P> {
     /// Model.
     pub model: String,
     /// One entry per point.
@@ -48,9 +48,9 @@ pub(crate) struct EntryComparison {
     /// What was measured.
     pub points: Vec<TestPoint>,
     /// The models there: `100 (|G_model|/|G| − 1)` percent and the phase of `G_model/G` in degrees.
-    pub models: Vec<OfModel<(f64, f64)>>,
+    pub models: Vec<PerModel<(f64, f64)>>,
     /// The models in between: frequency (Hz), magnitude, phase (degrees).
-    pub curves: Vec<OfModel<(f64, f64, f64)>>,
+    pub curves: Vec<PerModel<(f64, f64, f64)>>,
 }
 
 /// One derivative over `V̂`.
@@ -65,13 +65,13 @@ pub(crate) struct DerivativeComparison {
 }
 
 /// Which bands a deviation is inside.
-pub(crate) struct Inside {
+pub(crate) struct BandCheck {
     pub magnitude: bool,
     pub phase: bool,
 }
 
-pub(crate) fn inside((percent, degrees): &(f64, f64)) -> Inside {
-    Inside {
+pub(crate) fn inside((percent, degrees): &(f64, f64)) -> BandCheck {
+    BandCheck {
         magnitude: percent.abs() <= MAGNITUDE_BAND_PERCENT,
         phase: degrees.abs() <= PHASE_BAND_DEG,
     }
@@ -135,11 +135,11 @@ pub(super) fn compare_entries(
                     let ratio = at(*k)? / g;
                     deviations.push((100.0 * (ratio.norm() - 1.0), ratio.arg().to_degrees()));
                 }
-                comparison.models.push(OfModel {
+                comparison.models.push(PerModel {
                     model: name.clone(),
                     points: deviations,
                 });
-                comparison.curves.push(OfModel {
+                comparison.curves.push(PerModel {
                     model: name.clone(),
                     points: curve(&comparison.points, &hz, &at)?,
                 });

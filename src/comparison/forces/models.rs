@@ -23,7 +23,7 @@ const SHOWN_PERIODS: f64 = 3.0;
 
 /// A model that takes part.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub(crate) struct Rival {
+pub(crate) struct ComparedModel {
     /// Name in tables and figures.
     pub name: String,
     /// The fit in words.
@@ -63,7 +63,7 @@ pub(crate) struct ModelsComparison {
     /// Mean wind speed, m/s.
     pub speed_m_s: f64,
     /// The models: the thesis's two first.
-    pub models: Vec<Rival>,
+    pub models: Vec<ComparedModel>,
     /// Transfer functions, row by row.
     pub entries: Vec<EntryComparison>,
     /// Derivatives.
@@ -150,9 +150,9 @@ fn fits(
     ])
 }
 
-fn rival(name: &str, report: &FitReport) -> Rival {
+fn rival(name: &str, report: &FitReport) -> ComparedModel {
     let entry = report.entries.first();
-    Rival {
+    ComparedModel {
         name: name.to_owned(),
         method: report.method.clone(),
         coefficients: entry.map_or(0, |e| e.coefficients.len()),

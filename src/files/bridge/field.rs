@@ -18,7 +18,7 @@ pub struct FieldTable {
     pub along_m: Vec<f64>,
     /// Whether places count from the middle of the bridge; else they are those of the girder.
     pub from_middle: bool,
-    /// `u` then `w`: a row of samples a place.
+    /// `u` then `w`: a row of samples per place.
     pub gusts: [Vec<Vec<f64>>; 2],
 }
 

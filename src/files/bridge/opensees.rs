@@ -74,7 +74,7 @@ fn masses(path: &Path, modes: usize) -> Result<Vec<f64>> {
     );
     Err(Error::input(
         "",
-        format!("{modes} positive masses, one an eigenvalue"),
+        format!("{modes} positive masses, one per eigenvalue"),
         found,
     )
     .in_file(path))

@@ -19,7 +19,7 @@ use crate::aerodynamics::derivatives::{
 };
 use crate::error::{Error, Result, positive};
 use crate::files::derivatives::csv_header::TableInConvention;
-use crate::files::derivatives::xlsx_cells::{Book, Cell, Sheet};
+use crate::files::derivatives::xlsx_cells::{Cell, CheckedWorkbook, Sheet};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -34,8 +34,8 @@ pub(super) const NOTES: &str = "Notes";
 const DIMENSIONS: &str = "Dim section model";
 
 /// What is said when nothing gives the width.
-pub(super) const WIDTH_ASSUMED: &str = "the width of the section model is not stated and does not follow from the table: 1 m is taken, on which only the \
-     frequencies of virtual records depend (`width_m` states it)";
+pub(super) const WIDTH_ASSUMED: &str = "the width of the section model is not stated and does not follow from the table: 1 m is assumed, which affects only the \
+     frequencies of virtual records (`width_m` states it)";
 
 /// The same width must follow from every point to within this fraction.
 const WIDTH_TOLERANCE: f64 = 0.01;
@@ -78,7 +78,7 @@ pub(crate) fn read_workbook_in(
 ) -> Result<TableInConvention> {
     let path = path.as_ref();
     let read = || {
-        let mut book = Book::open(path)?;
+        let mut book = CheckedWorkbook::open(path)?;
         let notes = pairs(&book.sheet(NOTES)?.unwrap_or_default());
         let convention = convention_of(options.convention, &notes)?;
         let mut points = read_sheets(&mut book, &convention)?;
@@ -101,7 +101,7 @@ fn pairs(sheet: &Sheet) -> BTreeMap<String, String> {
 
 /// The width that the workbook states, m, and where.
 fn width_in_book(
-    book: &mut Book,
+    book: &mut CheckedWorkbook,
     notes: &BTreeMap<String, String>,
 ) -> Result<Option<(f64, String)>> {
     if let Some(sheet) = book.sheet(DIMENSIONS)? {
@@ -158,7 +158,7 @@ fn parse_note<T: std::str::FromStr<Err = Error>>(
 
 type Points = BTreeMap<Derivative, Vec<DerivativePoint>>;
 
-fn read_sheets(book: &mut Book, convention: &Convention) -> Result<Points> {
+fn read_sheets(book: &mut CheckedWorkbook, convention: &Convention) -> Result<Points> {
     let mut sheet = |kind: (&str, &str)| -> Result<Sheet> {
         book.sheet(kind.0)?.ok_or_else(|| {
             let expected = format!("a sheet `{}`", kind.0);

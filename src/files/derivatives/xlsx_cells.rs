@@ -67,11 +67,11 @@ impl Sheet {
 }
 
 /// A workbook that has been checked to fit into memory.
-pub(super) struct Book {
+pub(super) struct CheckedWorkbook {
     book: Xlsx<BufReader<File>>,
 }
 
-impl Book {
+impl CheckedWorkbook {
     /// Opens a workbook.
     ///
     /// # Errors

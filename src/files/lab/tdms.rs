@@ -1,4 +1,4 @@
-//! NI TDMS, read here: of the readers on offer, `tdms-rs` 2.0 takes one block of samples a segment and knows no
+//! NI TDMS, read here: of the readers on offer, `tdms-rs` 2.0 takes one block of samples per segment and knows no
 //! interleaved data, so that files written by LabVIEW in several blocks come out short without a word, and `tdms` 0.3
 //! calls itself unfinished.
 //!

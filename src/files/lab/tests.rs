@@ -180,7 +180,7 @@ fn tdms_in_several_segments() {
     );
 }
 
-/// A segment of two channels of 32-bit integers, `count` samples each a block.
+/// A segment of two channels of 32-bit integers, `count` samples each per block.
 fn segment(contents: u32, count: u64, big: bool, samples: &[i32]) -> Vec<u8> {
     let word = |x: u32| {
         if big {

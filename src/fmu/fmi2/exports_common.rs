@@ -10,7 +10,7 @@ use super::types::{
 };
 use crate::fmu::instance::Instance;
 use crate::fmu::lifecycle::Call;
-use crate::fmu::refusal::{Answer, Refusal};
+use crate::fmu::refusal::{CallResult, Refusal};
 use crate::fmu::resources::Resources;
 use std::ffi::{CStr, c_char};
 
@@ -76,7 +76,7 @@ pub(in crate::fmu) fn instantiate(
     kind: fmi2Type,
     guid: Option<&CStr>,
     location: Option<&CStr>,
-) -> Answer<Instance> {
+) -> CallResult<Instance> {
     let wrong = |place: &str, expected: &str, found: String| {
         Refusal::from(crate::Error::input(place, expected, found))
     };

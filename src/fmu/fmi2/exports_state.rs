@@ -8,11 +8,11 @@ use super::types::{
 };
 use crate::fmu::instance::Snapshot;
 use crate::fmu::lifecycle::Call;
-use crate::fmu::refusal::{Answer, Refusal};
+use crate::fmu::refusal::{CallResult, Refusal};
 
 /// # Safety
 /// NULL, or a saved state made here and not freed.
-unsafe fn snapshot<'a>(state: fmi2FMUstate) -> Answer<&'a mut Snapshot> {
+unsafe fn snapshot<'a>(state: fmi2FMUstate) -> CallResult<&'a mut Snapshot> {
     // SAFETY: by the contract of this function
     unsafe { place(state.cast::<Snapshot>(), "FMUstate") }
 }

@@ -8,7 +8,7 @@ use super::types::{
     fmi2StatusKind, fmi2String, fmi2Terminated, fmi2ValueReference,
 };
 use crate::fmu::lifecycle::{Call, State};
-use crate::fmu::refusal::{Answer, Refusal};
+use crate::fmu::refusal::{CallResult, Refusal};
 
 /// Sets first rates of inputs. They hold, and carry the inputs on, until they are set anew.
 #[unsafe(no_mangle)]
@@ -152,7 +152,7 @@ pub unsafe extern "C" fn fmi2GetStringStatus(
     }
 }
 
-fn after_discard(asked: fmi2StatusKind, known: fmi2StatusKind, state: State) -> Answer<()> {
+fn after_discard(asked: fmi2StatusKind, known: fmi2StatusKind, state: State) -> CallResult<()> {
     if asked == known && state == State::StepFailed {
         Ok(())
     } else {

@@ -8,7 +8,7 @@ use super::types::{fmi2Component, fmi2Status};
 use crate::fmu::groups::Groups;
 use crate::fmu::instance::Instance;
 use crate::fmu::lifecycle::Call;
-use crate::fmu::refusal::{Answer, Refusal, Severity};
+use crate::fmu::refusal::{CallResult, Refusal, Severity};
 use crate::fmu::variables::Value;
 use std::any::Any;
 use std::ffi::CString;
@@ -91,7 +91,7 @@ pub(in crate::fmu) fn panic_text(panic: &(dyn Any + Send)) -> &str {
 pub(in crate::fmu) unsafe fn guarded(
     handle: fmi2Component,
     call: Call,
-    body: impl FnOnce(&mut Component) -> Answer<()>,
+    body: impl FnOnce(&mut Component) -> CallResult<()>,
 ) -> fmi2Status {
     // SAFETY: by the contract of this function
     unsafe { guarded_as(handle, call, call.name(), body) }
@@ -106,7 +106,7 @@ pub(in crate::fmu) unsafe fn guarded_as(
     handle: fmi2Component,
     call: Call,
     function: &str,
-    body: impl FnOnce(&mut Component) -> Answer<()>,
+    body: impl FnOnce(&mut Component) -> CallResult<()>,
 ) -> fmi2Status {
     // SAFETY: by the contract of this function
     let Some(component) = (unsafe { handle.cast::<Component>().as_mut() }) else {
@@ -233,7 +233,7 @@ pub(in crate::fmu) unsafe fn array<'a, T>(
     pointer: *const T,
     count: usize,
     name: &str,
-) -> Answer<&'a [T]> {
+) -> CallResult<&'a [T]> {
     if count == 0 {
         return Ok(&[]);
     }
@@ -250,7 +250,7 @@ pub(in crate::fmu) unsafe fn array_mut<'a, T>(
     pointer: *mut T,
     count: usize,
     name: &str,
-) -> Answer<&'a mut [T]> {
+) -> CallResult<&'a mut [T]> {
     if count == 0 {
         return Ok(&mut []);
     }
@@ -259,7 +259,7 @@ pub(in crate::fmu) unsafe fn array_mut<'a, T>(
     Ok(unsafe { std::slice::from_raw_parts_mut(pointer, count) })
 }
 
-fn check_array<T>(pointer: *const T, count: usize, name: &str) -> Answer<()> {
+fn check_array<T>(pointer: *const T, count: usize, name: &str) -> CallResult<()> {
     if pointer.is_null() {
         return Err(no_array(count, name));
     }
@@ -283,7 +283,7 @@ fn array_too_long(count: usize, name: &str) -> Refusal {
 ///
 /// # Safety
 /// `pointer` is NULL or points to a value that nobody else uses while the result is in use.
-pub(in crate::fmu) unsafe fn place<'a, T>(pointer: *mut T, name: &str) -> Answer<&'a mut T> {
+pub(in crate::fmu) unsafe fn place<'a, T>(pointer: *mut T, name: &str) -> CallResult<&'a mut T> {
     // SAFETY: by the contract of this function
     unsafe { pointer.as_mut() }
         .ok_or_else(|| Refusal::error(format!("{name}: expected a pointer, found NULL")))

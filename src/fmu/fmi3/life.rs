@@ -14,7 +14,7 @@ use crate::fmu::fmi2::types::{
 use crate::fmu::fmi2::{fmi2FreeInstance, fmi2Reset, fmi2Terminate, instantiate, text};
 use crate::fmu::groups::Groups;
 use crate::fmu::lifecycle::Call;
-use crate::fmu::refusal::{Answer, Refusal};
+use crate::fmu::refusal::{CallResult, Refusal};
 use std::ffi::{c_char, c_void};
 
 /// Version of the standard.
@@ -188,14 +188,14 @@ pub(super) unsafe fn places(
     references: *const fmi2ValueReference,
     count: usize,
     name: &str,
-) -> Answer<Vec<u32>> {
+) -> CallResult<Vec<u32>> {
     // SAFETY: by the contract of this function
     let references = unsafe { array(references, count, name) }?;
     Ok(component.groups.places(references)?.into_owned())
 }
 
 /// Refuses arrays of other lengths than the variables have.
-pub(super) fn check_count(name: &str, expected: usize, found: usize) -> Answer<()> {
+pub(super) fn check_count(name: &str, expected: usize, found: usize) -> CallResult<()> {
     if expected == found {
         return Ok(());
     }

@@ -1,4 +1,4 @@
-//! Rules that the description must keep, beyond what FMPy's validation looks at. One function a rule.
+//! Rules that the description must keep, beyond what FMPy's validation looks at. One function per rule.
 //!
 //! Rules are those of FMI 2.0.5, sections 2.2 and 4.3, with the strictest reading that some importer or checker takes.
 

@@ -5,7 +5,7 @@ use super::description::{
     ScalarVariable, SimpleType, TypeAttributes, Unit, Unknown, Value, Variability,
 };
 use super::findings::Findings;
-use crate::fmu::standard::Word;
+use crate::fmu::standard::FmiTerm;
 use crate::fmu::xml::Element;
 use std::str::FromStr;
 
@@ -169,7 +169,7 @@ impl Reading {
         }
     }
 
-    fn choice<T: Word>(&mut self, e: &Element, name: &str) -> Option<T> {
+    fn choice<T: FmiTerm>(&mut self, e: &Element, name: &str) -> Option<T> {
         let value = e.attribute(name)?;
         let found = T::ALL.iter().find(|(n, _)| *n == value).map(|(_, t)| *t);
         if found.is_none() {

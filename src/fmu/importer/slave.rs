@@ -26,7 +26,7 @@ pub(super) struct LoadedFmu {
 }
 
 /// The C side of an instance; freed with the last handle, so that saved states never outlive it.
-struct Core {
+struct FmuComponent {
     component: Component,
     fatal: Cell<bool>,
     loaded: Arc<LoadedFmu>,
@@ -35,13 +35,13 @@ struct Core {
     log: Box<LogBook>,
 }
 
-impl Core {
+impl FmuComponent {
     fn functions(&self) -> &Functions {
         &self.loaded.binary.functions
     }
 }
 
-impl Drop for Core {
+impl Drop for FmuComponent {
     fn drop(&mut self) {
         if !self.fatal.get() {
             // SAFETY: a live component of this library, freed once
@@ -52,7 +52,7 @@ impl Drop for Core {
 
 /// A running instance. A call that it answers with neither OK nor a warning returns [`Error::Numerical`] with status and log.
 pub struct Slave {
-    core: Rc<Core>,
+    core: Rc<FmuComponent>,
 }
 
 impl Slave {
@@ -95,7 +95,7 @@ impl Slave {
             )));
         }
         Ok(Self {
-            core: Rc::new(Core {
+            core: Rc::new(FmuComponent {
                 component,
                 fatal: Cell::new(false),
                 loaded: Arc::clone(loaded),

@@ -140,9 +140,12 @@ fn a_package_of_our_own_has_no_static_finding() {
             crate::trained_model::TrainedModel::from_json(&std::fs::read_to_string(json).unwrap())
                 .unwrap();
         let runtimes = [crate::fmu::package::Runtime::embedded().unwrap()];
-        let bytes =
-            crate::fmu::package::package(&model, &runtimes, crate::fmu::package::Growing::Refuse)
-                .unwrap();
+        let bytes = crate::fmu::package::package(
+            &model,
+            &runtimes,
+            crate::fmu::package::GrowthPolicy::Refuse,
+        )
+        .unwrap();
         let mut file = tempfile::NamedTempFile::new().unwrap();
         file.write_all(&bytes).unwrap();
         let fmu = Fmu::open(file.path()).unwrap();

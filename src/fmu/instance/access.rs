@@ -3,12 +3,12 @@
 use super::Instance;
 use super::layout::{Access, DataType};
 use crate::fmu::lifecycle::{State, StateSet};
-use crate::fmu::refusal::{Answer, Refusal};
+use crate::fmu::refusal::{CallResult, Refusal};
 use crate::fmu::variables::{Causality, Variability, Variable, VariableTable};
 
 impl Instance {
     /// Access to `reference`, known by the table to be of this type.
-    pub(super) fn typed(&self, reference: u32, wanted: DataType) -> Answer<(usize, Access)> {
+    pub(super) fn typed(&self, reference: u32, wanted: DataType) -> CallResult<(usize, Access)> {
         let place = reference as usize;
         match self.layout.access.get(place) {
             Some(access) if access.data_type == wanted => Ok((place, *access)),
@@ -17,20 +17,20 @@ impl Instance {
     }
 
     /// Access to a variable that may be read now.
-    pub(super) fn readable(&self, reference: u32, wanted: DataType) -> Answer<(usize, Access)> {
+    pub(super) fn readable(&self, reference: u32, wanted: DataType) -> CallResult<(usize, Access)> {
         let (place, access) = self.typed(reference, wanted)?;
         self.check_state(place, ("read", access.gettable))?;
         Ok((place, access))
     }
 
     /// Access to a variable that may be set now.
-    pub(super) fn writable(&self, reference: u32, wanted: DataType) -> Answer<(usize, Access)> {
+    pub(super) fn writable(&self, reference: u32, wanted: DataType) -> CallResult<(usize, Access)> {
         let (place, access) = self.typed(reference, wanted)?;
         self.check_state(place, ("set", access.settable))?;
         Ok((place, access))
     }
 
-    fn check_state(&self, place: usize, (verb, allowed): (&str, StateSet)) -> Answer<()> {
+    fn check_state(&self, place: usize, (verb, allowed): (&str, StateSet)) -> CallResult<()> {
         let state = self.memory.state;
         if allowed.contains(state) {
             return Ok(());
@@ -40,7 +40,7 @@ impl Instance {
     }
 
     /// Whether `value` may be stored at `place`: finite, and within the limits of the variable.
-    pub(super) fn check_value(&self, place: usize, access: Access, value: f64) -> Answer<()> {
+    pub(super) fn check_value(&self, place: usize, access: Access, value: f64) -> CallResult<()> {
         if value.is_finite() && value >= access.min && value <= access.max {
             return Ok(());
         }
@@ -48,7 +48,7 @@ impl Instance {
     }
 
     /// Whether `value` may stand at `place` in a state read from a file.
-    pub(super) fn check_stored(&self, place: usize, value: f64) -> Answer<()> {
+    pub(super) fn check_stored(&self, place: usize, value: f64) -> CallResult<()> {
         self.check_value(place, self.layout.access[place], value)
             .map_err(|refusal| Refusal::call(format!("serialised state: {}", refusal.message)))
     }

@@ -6,18 +6,18 @@ use super::bridge_unit::BridgeUnit;
 use super::layout::Source;
 use super::memory::Memory;
 use super::section::OnsetCard;
-use super::sensitivity::{Instant, add, central_difference, parameter_step};
-use super::trust::{Present, is_of_onset, smallest_damping, without_motion};
+use super::sensitivity::{SectionValues, add, central_difference, parameter_step};
+use super::trust::{MonitoredUnit, is_of_onset, smallest_damping, without_motion};
 use super::unit::{Differentiable, Unit};
 use crate::error::Result;
 use crate::fmu::lifecycle::State;
-use crate::fmu::refusal::Answer;
+use crate::fmu::refusal::CallResult;
 use crate::fmu::resources::Resources;
 use crate::fmu::variables::{Calculated, Role, Status};
 
 impl Differentiable for BridgeUnit {
     /// `ẏ = C ż + D ẇ + (∂y/∂V) V̇`.
-    fn output_rates(&mut self, memory: &mut Memory, outputs: &[Role]) -> Answer<Vec<f64>> {
+    fn output_rates(&mut self, memory: &mut Memory, outputs: &[Role]) -> CallResult<Vec<f64>> {
         self.load_inputs(memory);
         let stepper = &mut self.built.stepper;
         let velocity = stepper.state_derivative(&memory.system, &self.inputs)?;
@@ -42,7 +42,7 @@ impl Differentiable for BridgeUnit {
         memory: &mut Memory,
         known: usize,
         unknowns: &[Role],
-    ) -> Answer<Vec<f64>> {
+    ) -> CallResult<Vec<f64>> {
         let role = resources.table.variables()[known].role;
         let instant = match (Source::of(role), role) {
             (_, Role::WindSpeed) => {
@@ -65,7 +65,7 @@ impl Differentiable for BridgeUnit {
 
 impl BridgeUnit {
     /// What a force, a gust, a state or a coordinate at release of one does.
-    fn by_unit(&mut self, memory: &Memory, known: usize) -> Result<Instant> {
+    fn by_unit(&mut self, memory: &Memory, known: usize) -> Result<SectionValues> {
         let mut unit = memory.clone();
         let inputs = &self.places.inputs[1..];
         for place in inputs.iter().chain(&self.places.initial) {
@@ -120,7 +120,7 @@ impl BridgeUnit {
         memory: &Memory,
         known: usize,
         unknowns: &[Role],
-    ) -> Answer<Vec<f64>> {
+    ) -> CallResult<Vec<f64>> {
         let Some(options) = &resources.bridge else {
             return Ok(vec![0.0; unknowns.len()]);
         };

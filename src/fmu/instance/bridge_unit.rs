@@ -8,14 +8,14 @@ use super::bridge_places::Places;
 use super::layout::Source;
 use super::memory::{Memory, starts};
 use super::section::OnsetCard;
-use super::sensitivity::{Instant, check_finite, finite};
-use super::trust::{LINEAR_ROTATION_RAD, Present, beyond_linear};
+use super::sensitivity::{SectionValues, check_finite, finite};
+use super::trust::{LINEAR_ROTATION_RAD, MonitoredUnit, beyond_linear};
 use super::unit::Unit;
 use crate::aeroelastic::CoupledSection;
 use crate::error::Result;
 use crate::fmu::bridge_options::BridgeOptions;
 use crate::fmu::lifecycle::State;
-use crate::fmu::refusal::Answer;
+use crate::fmu::refusal::CallResult;
 use crate::fmu::resources::Resources;
 use crate::fmu::variables::{ModeOutput, Role};
 use crate::response::{Inputs, Outputs, SectionState};
@@ -133,7 +133,7 @@ impl BridgeUnit {
     }
 
     /// The same with the states and their rates.
-    pub(super) fn pick_of(&self, instant: &Instant, role: Role) -> f64 {
+    pub(super) fn pick_of(&self, instant: &SectionValues, role: Role) -> f64 {
         match role {
             Role::Filter(entry) => instant.of_state(entry),
             Role::FilterRate(entry) => instant.of_rate(entry),
@@ -151,17 +151,17 @@ impl BridgeUnit {
     }
 
     /// All that there is in a state, with the inputs that are loaded.
-    pub(super) fn instant(&mut self, state: &SectionState) -> Result<Instant> {
-        Instant::of(&mut self.built.stepper, state, &self.inputs)
+    pub(super) fn instant(&mut self, state: &SectionState) -> Result<SectionValues> {
+        SectionValues::of(&mut self.built.stepper, state, &self.inputs)
     }
 
     /// `∂/∂V`, per m/s, in the state of `memory` with the inputs that are loaded.
-    pub(super) fn by_wind(&self, memory: &Memory) -> Instant {
-        Instant::by_speed(&self.built.stepper, &memory.system, &self.inputs)
+    pub(super) fn by_wind(&self, memory: &Memory) -> SectionValues {
+        SectionValues::by_speed(&self.built.stepper, &memory.system, &self.inputs)
     }
 }
 
-impl Present for BridgeUnit {
+impl MonitoredUnit for BridgeUnit {
     fn coupled(&self) -> Option<&CoupledSection> {
         Some(self.built.stepper.section())
     }
@@ -273,7 +273,7 @@ impl Unit for BridgeUnit {
         }
     }
 
-    fn advance(&mut self, _: &Resources, memory: &mut Memory, step: f64) -> Answer<bool> {
+    fn advance(&mut self, _: &Resources, memory: &mut Memory, step: f64) -> CallResult<bool> {
         self.load_own_inputs(memory);
         let factor = self.turbulence_factor(memory);
         let span = (memory.time, step);
@@ -282,7 +282,7 @@ impl Unit for BridgeUnit {
         Ok(false)
     }
 
-    fn state_rates(&mut self, _: &Resources, memory: &Memory) -> Answer<Vec<f64>> {
+    fn state_rates(&mut self, _: &Resources, memory: &Memory) -> CallResult<Vec<f64>> {
         self.load_inputs(memory);
         let stepper = &mut self.built.stepper;
         finite(stepper.state_derivative(&memory.system, &self.inputs)?)
@@ -292,7 +292,7 @@ impl Unit for BridgeUnit {
         self.places.state_entry[place]
     }
 
-    fn outputs(&mut self, _: &Resources, memory: &mut Memory) -> Answer<()> {
+    fn outputs(&mut self, _: &Resources, memory: &mut Memory) -> CallResult<()> {
         self.load_inputs(memory);
         let (stepper, inputs) = (&mut self.built.stepper, &self.inputs);
         stepper.outputs(&memory.system, inputs, &mut self.outputs)?;

@@ -4,7 +4,7 @@ use super::Instance;
 use super::layout::{DataType, Source};
 use super::values::check_order;
 use crate::fmu::lifecycle::State;
-use crate::fmu::refusal::{Answer, Refusal};
+use crate::fmu::refusal::{CallResult, Refusal};
 use crate::fmu::variables::{Causality, Role};
 
 impl Instance {
@@ -17,7 +17,7 @@ impl Instance {
         references: &[u32],
         orders: &[i32],
         rates: &mut [f64],
-    ) -> Answer<()> {
+    ) -> CallResult<()> {
         for (reference, order) in references.iter().zip(orders) {
             self.response_of(*reference)?;
             check_order(*order)?;
@@ -28,7 +28,7 @@ impl Instance {
         let outputs = references
             .iter()
             .map(|r| self.response_of(*r))
-            .collect::<Answer<Vec<_>>>()?;
+            .collect::<CallResult<Vec<_>>>()?;
         self.unit.prepare(&self.resources, &mut self.memory)?;
         let found = self.unit.output_rates(&mut self.memory, &outputs)?;
         rates.copy_from_slice(&found);
@@ -47,15 +47,15 @@ impl Instance {
         knowns: &[u32],
         seeds: &[f64],
         results: &mut [f64],
-    ) -> Answer<()> {
+    ) -> CallResult<()> {
         let unknowns = unknowns
             .iter()
             .map(|r| self.unknown(*r))
-            .collect::<Answer<Vec<_>>>()?;
+            .collect::<CallResult<Vec<_>>>()?;
         let knowns = knowns
             .iter()
             .map(|r| self.known(*r))
-            .collect::<Answer<Vec<_>>>()?;
+            .collect::<CallResult<Vec<_>>>()?;
         self.unit.prepare(&self.resources, &mut self.memory)?;
         let mut sums = vec![0.0; unknowns.len()];
         for (known, seed) in knowns.into_iter().zip(seeds) {
@@ -75,7 +75,7 @@ impl Instance {
         Ok(())
     }
 
-    fn response_of(&self, reference: u32) -> Answer<Role> {
+    fn response_of(&self, reference: u32) -> CallResult<Role> {
         let (place, access) = self.typed(reference, DataType::Real)?;
         let variable = &self.table().variables()[place];
         let computed = matches!(access.source, Source::Response | Source::Status);
@@ -86,7 +86,7 @@ impl Instance {
         }
     }
 
-    fn unknown(&self, reference: u32) -> Answer<Role> {
+    fn unknown(&self, reference: u32) -> CallResult<Role> {
         let (place, access) = self.typed(reference, DataType::Real)?;
         let variable = &self.table().variables()[place];
         match access.source {
@@ -97,7 +97,7 @@ impl Instance {
     }
 
     /// Place of a known.
-    fn known(&self, reference: u32) -> Answer<usize> {
+    fn known(&self, reference: u32) -> CallResult<usize> {
         let (place, access) = self.typed(reference, DataType::Real)?;
         let initializing = self.memory.state == State::Initialization;
         match access.source {

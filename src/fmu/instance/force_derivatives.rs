@@ -6,7 +6,7 @@ use super::sensitivity::central_difference;
 use super::unit::Differentiable;
 use crate::error::Result;
 use crate::fmu::lifecycle::State;
-use crate::fmu::refusal::Answer;
+use crate::fmu::refusal::CallResult;
 use crate::fmu::resources::Resources;
 use crate::fmu::variables::Role;
 
@@ -14,7 +14,7 @@ use crate::fmu::variables::Role;
 const RELATIVE_STEP: f64 = 1e-5;
 
 impl Differentiable for ForceUnit {
-    fn output_rates(&mut self, memory: &mut Memory, outputs: &[Role]) -> Answer<Vec<f64>> {
+    fn output_rates(&mut self, memory: &mut Memory, outputs: &[Role]) -> CallResult<Vec<f64>> {
         let forces = self.ahead(memory, self.renewed(memory))?;
         let rate = |role: &Role| self.entry(memory, &forces, *role).rate;
         Ok(outputs.iter().map(rate).collect())
@@ -26,7 +26,7 @@ impl Differentiable for ForceUnit {
         memory: &mut Memory,
         known: usize,
         unknowns: &[Role],
-    ) -> Answer<Vec<f64>> {
+    ) -> CallResult<Vec<f64>> {
         let role = resources.table.variables()[known].role;
         let (index, state) = (self.input_at[known], self.entry_of(role));
         if index > 0 || state.is_some() {

@@ -7,7 +7,7 @@ use super::force_unit::{ForceUnit, NOT_SET, SET};
 use super::memory::Memory;
 use crate::error::{Error, Result};
 use crate::fmu::lifecycle::State;
-use crate::fmu::refusal::{Answer, Refusal};
+use crate::fmu::refusal::{CallResult, Refusal};
 use crate::fmu::variables::{Role, VariableTable};
 use crate::response::ForceAhead;
 
@@ -142,7 +142,7 @@ impl ForceUnit {
         table: &VariableTable,
         memory: &Memory,
         notices: &mut Vec<String>,
-    ) -> Answer<()> {
+    ) -> CallResult<()> {
         if memory.values[self.derivatives] >= 0.0 {
             return Ok(());
         }
@@ -157,7 +157,7 @@ impl ForceUnit {
             if rate && flags[1] == NOT_SET {
                 return Err(Refusal::error(format!(
                     "`{}` moves, but `{}` has never been set: in model exchange the forces of an instant need the rates of \
-                     the motion (set motion_derivatives to 1 where they are zero indeed)",
+                     the motion (set motion_derivatives to 1 where they really are zero)",
                     name(3 * i),
                     name(3 * i + 1)
                 )));

@@ -12,7 +12,7 @@ use crate::aerodynamics::Realizable;
 use crate::error::{Error, Result};
 use crate::fmu::force_options::ForceOptions;
 use crate::fmu::lifecycle::State;
-use crate::fmu::refusal::{Answer, Refusal};
+use crate::fmu::refusal::{CallResult, Refusal};
 use crate::fmu::resources::Resources;
 use crate::fmu::variables::{ForceOutput, Role, SectionParameter, VariableTable};
 use crate::response::{
@@ -225,7 +225,7 @@ impl Unit for ForceUnit {
         table: &VariableTable,
         memory: &Memory,
         notices: &mut Vec<String>,
-    ) -> Answer<()> {
+    ) -> CallResult<()> {
         self.check_moving(table, memory, notices)
     }
 
@@ -278,14 +278,12 @@ impl Unit for ForceUnit {
         Ok(())
     }
 
-    fn state_rates(&mut self, _: &Resources, memory: &Memory) -> Answer<Vec<f64>> {
+    fn state_rates(&mut self, _: &Resources, memory: &Memory) -> CallResult<Vec<f64>> {
         let rates = self.rates_now(memory);
         if rates.iter().all(|x| x.is_finite()) {
             return Ok(rates);
         }
-        Err(Refusal::discard(
-            "derivatives: the filters have grown beyond the range of numbers",
-        ))
+        Err(Refusal::discard("derivatives: the filters have overflowed"))
     }
 
     fn filter_rate(&mut self, memory: &Memory, i: usize) -> Option<f64> {
@@ -297,12 +295,12 @@ impl Unit for ForceUnit {
         self.held[place]
     }
 
-    fn advance(&mut self, _: &Resources, memory: &mut Memory, step: f64) -> Answer<bool> {
+    fn advance(&mut self, _: &Resources, memory: &mut Memory, step: f64) -> CallResult<bool> {
         let wind = memory.values[self.inputs[0]];
         let end = wind + memory.input_rates[0] * step;
         if wind_at_rest(end, wind) < 0.0 {
             return Err(Refusal::discard(format!(
-                "wind_speed: expected a wind that does not blow backwards, found {end} m/s at the end of the step"
+                "wind_speed: expected zero or a positive wind speed, found {end} m/s at the end of the step"
             )));
         }
         let motion = self.motion(memory);
@@ -334,7 +332,7 @@ impl Unit for ForceUnit {
         }
     }
 
-    fn outputs(&mut self, _: &Resources, memory: &mut Memory) -> Answer<()> {
+    fn outputs(&mut self, _: &Resources, memory: &mut Memory) -> CallResult<()> {
         let renewed = self.renewed(memory);
         let forces = self.present(memory, renewed);
         let forces = forces.map_err(|why| Refusal::discard(format!("outputs: {why}")))?;
@@ -348,9 +346,7 @@ pub(super) fn check_forces(found: Vec<ForceAhead>) -> Result<Vec<ForceAhead>> {
     if found.iter().all(|f| f.force.is_finite()) {
         return Ok(found);
     }
-    Err(Error::Numerical(
-        "the forces have grown beyond the range of numbers".into(),
-    ))
+    Err(Error::Numerical("the forces have overflowed".into()))
 }
 
 impl ForceUnit {

@@ -2,7 +2,7 @@
 
 use super::Instance;
 use crate::fmu::lifecycle::{Interface, State};
-use crate::fmu::refusal::{Answer, Refusal};
+use crate::fmu::refusal::{CallResult, Refusal};
 use crate::fmu::variables::Role;
 
 impl Instance {
@@ -10,7 +10,7 @@ impl Instance {
     ///
     /// # Errors
     /// A unit without continuous states: sampled models, and bridges with more than anybody integrates.
-    pub(crate) fn for_model_exchange(mut self) -> Answer<Self> {
+    pub(crate) fn for_model_exchange(mut self) -> CallResult<Self> {
         if !self.offers_model_exchange() {
             return Err(Refusal::error(
                 "type of the unit: expected co-simulation (1), because sampled models have no continuous states and bridges of \
@@ -41,7 +41,7 @@ impl Instance {
     ///
     /// # Errors
     /// A time that is not finite.
-    pub fn set_time(&mut self, time: f64) -> Answer<()> {
+    pub fn set_time(&mut self, time: f64) -> CallResult<()> {
         if !time.is_finite() {
             return Err(Refusal::error(format!(
                 "time: expected a finite number, found {time}"
@@ -57,7 +57,7 @@ impl Instance {
     ///
     /// # Errors
     /// Another number of them; a discard where one is not finite, with everything as it was.
-    pub(crate) fn set_continuous_states(&mut self, states: &[f64]) -> Answer<()> {
+    pub(crate) fn set_continuous_states(&mut self, states: &[f64]) -> CallResult<()> {
         self.check_states("states", states.len())?;
         if !states.iter().all(|x| x.is_finite()) {
             return Err(Refusal::discard("states: expected finite numbers"));
@@ -73,7 +73,7 @@ impl Instance {
     ///
     /// # Errors
     /// Room for another number of them; parameters that give nothing that can be simulated.
-    pub(crate) fn continuous_states(&mut self, states: &mut [f64]) -> Answer<()> {
+    pub(crate) fn continuous_states(&mut self, states: &mut [f64]) -> CallResult<()> {
         self.check_states("states", states.len())?;
         self.unit.prepare(&self.resources, &mut self.memory)?;
         for (state, entry) in states.iter_mut().zip(&self.layout.state_entries) {
@@ -86,7 +86,7 @@ impl Instance {
     ///
     /// # Errors
     /// Room for another number of them; rates that cannot be computed.
-    pub(crate) fn state_rates(&mut self, rates: &mut [f64]) -> Answer<()> {
+    pub(crate) fn state_rates(&mut self, rates: &mut [f64]) -> CallResult<()> {
         self.check_states("derivatives", rates.len())?;
         self.unit.prepare(&self.resources, &mut self.memory)?;
         rates.copy_from_slice(&self.unit.state_rates(&self.resources, &self.memory)?);
@@ -97,7 +97,7 @@ impl Instance {
     ///
     /// # Errors
     /// Room for another number of them.
-    pub(crate) fn state_nominals(&self, nominals: &mut [f64]) -> Answer<()> {
+    pub(crate) fn state_nominals(&self, nominals: &mut [f64]) -> CallResult<()> {
         self.check_states("nominals", nominals.len())?;
         let variables = self.table().variables();
         for (nominal, rate) in nominals.iter_mut().zip(&self.layout.state_rates) {
@@ -111,14 +111,14 @@ impl Instance {
     ///
     /// # Errors
     /// A step that the inputs do not allow.
-    pub(crate) fn step_taken(&mut self) -> Answer<()> {
+    pub(crate) fn step_taken(&mut self) -> CallResult<()> {
         self.watch();
         let (table, notices) = (&self.resources.table, &mut self.notices);
         self.unit.step_taken(table, &self.memory, notices)
     }
 
     /// Rate of the state to which the variable at `place` belongs.
-    pub(super) fn rate_at(&mut self, place: usize) -> Answer<f64> {
+    pub(super) fn rate_at(&mut self, place: usize) -> CallResult<f64> {
         self.unit.prepare(&self.resources, &mut self.memory)?;
         if let Role::FilterRate(i) = self.table().variables()[place].role
             && let Some(rate) = self.unit.filter_rate(&self.memory, i)
@@ -132,7 +132,7 @@ impl Instance {
         Ok(entry.map_or(0.0, |entry| rates[entry]))
     }
 
-    fn check_states(&self, what: &str, found: usize) -> Answer<()> {
+    fn check_states(&self, what: &str, found: usize) -> CallResult<()> {
         let expected = self.layout.state_rates.len();
         if found == expected {
             return Ok(());

@@ -106,7 +106,7 @@ impl Access {
 
 /// Where a real variable that is no part of the state is read at once, without any work.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum AtHand {
+enum ReadableWhen {
     /// Among the stored values.
     Always,
     /// Among them as long as the outputs are those of the present.
@@ -117,24 +117,26 @@ enum AtHand {
 
 /// What reading a variable at every step needs, and no more: between steps, whatever can be read may be read.
 #[derive(Debug, Clone, Copy)]
-struct Glance {
-    /// Its entry in the state of the system; one that no state has where it is none.
+struct QuickAccess {
+    /// Its index in the system state; an invalid index if it is not a state.
     entry: u32,
-    at_hand: AtHand,
+    at_hand: ReadableWhen,
 }
 
-impl Glance {
+impl QuickAccess {
     fn of(access: &Access, held: Option<usize>) -> Self {
         let (at_hand, entry) = match (access.data_type, access.source, held) {
-            (DataType::Real, Source::Response | Source::State, Some(_)) => (AtHand::Never, held),
-            (DataType::Real, Source::Response, None) => (AtHand::WithOutputs, None),
+            (DataType::Real, Source::Response | Source::State, Some(_)) => {
+                (ReadableWhen::Never, held)
+            }
+            (DataType::Real, Source::Response, None) => (ReadableWhen::WithOutputs, None),
             (
                 DataType::Real,
                 Source::Calculated | Source::Status | Source::State | Source::Rate,
                 _,
-            ) => (AtHand::Never, None),
-            (DataType::Real, ..) => (AtHand::Always, None),
-            _ => (AtHand::Never, None),
+            ) => (ReadableWhen::Never, None),
+            (DataType::Real, ..) => (ReadableWhen::Always, None),
+            _ => (ReadableWhen::Never, None),
         };
         let entry = entry.and_then(|entry| u32::try_from(entry).ok());
         Self {
@@ -148,7 +150,7 @@ impl Glance {
 #[derive(Debug, Clone)]
 pub(super) struct VariablePlaces {
     pub access: Vec<Access>,
-    glances: Vec<Glance>,
+    glances: Vec<QuickAccess>,
     wind_speed: usize,
     /// Rates of the continuous states, in their order.
     pub state_rates: Vec<usize>,
@@ -180,7 +182,7 @@ impl VariablePlaces {
                     "variable table: a continuous state is no part of the state".into(),
                 )
             })?,
-            glances: each.map(|(i, a)| Glance::of(a, held(i))).collect(),
+            glances: each.map(|(i, a)| QuickAccess::of(a, held(i))).collect(),
             access,
             wind_speed: place(table, Role::WindSpeed)?,
             state_rates,
@@ -207,9 +209,9 @@ impl VariablePlaces {
             return Some(*held);
         }
         let stored = match glance.at_hand {
-            AtHand::Always => true,
-            AtHand::WithOutputs => outputs_current,
-            AtHand::Never => false,
+            ReadableWhen::Always => true,
+            ReadableWhen::WithOutputs => outputs_current,
+            ReadableWhen::Never => false,
         };
         stored.then(|| memory.values[place])
     }

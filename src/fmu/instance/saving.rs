@@ -3,7 +3,7 @@
 use super::layout::Source;
 use super::memory::Memory;
 use super::{Instance, serialized};
-use crate::fmu::refusal::{Answer, Refusal};
+use crate::fmu::refusal::{CallResult, Refusal};
 use uuid::Uuid;
 
 /// A saved state of an instance.
@@ -32,13 +32,13 @@ impl Instance {
     ///
     /// # Errors
     /// A snapshot of another model.
-    pub fn restore(&mut self, snapshot: &Snapshot) -> Answer<()> {
+    pub fn restore(&mut self, snapshot: &Snapshot) -> CallResult<()> {
         self.check_owner(snapshot)?;
         self.replace_memory(snapshot.memory.clone());
         Ok(())
     }
 
-    pub(super) fn check_owner(&self, snapshot: &Snapshot) -> Answer<()> {
+    pub(super) fn check_owner(&self, snapshot: &Snapshot) -> CallResult<()> {
         let own = self.resources.guid;
         if snapshot.guid != own {
             return Err(Refusal::error(format!(
@@ -86,7 +86,7 @@ impl Instance {
     ///
     /// # Errors
     /// A snapshot of another model.
-    pub(crate) fn serialize(&self, snapshot: &Snapshot) -> Answer<Vec<u8>> {
+    pub(crate) fn serialize(&self, snapshot: &Snapshot) -> CallResult<Vec<u8>> {
         self.check_owner(snapshot)?;
         Ok(serialized::write(&snapshot.memory, &snapshot.guid))
     }
@@ -95,7 +95,7 @@ impl Instance {
     ///
     /// # Errors
     /// Bytes that are no state of this export, or hold a value outside the limits of its variable.
-    pub(crate) fn deserialize(&self, bytes: &[u8]) -> Answer<Snapshot> {
+    pub(crate) fn deserialize(&self, bytes: &[u8]) -> CallResult<Snapshot> {
         let guid = self.resources.guid;
         let mut memory = serialized::read(bytes, &guid, &self.fresh)
             .map_err(|e| Refusal::call(e.to_string()))?;

@@ -6,20 +6,20 @@ use super::layout::Source;
 use super::memory::Memory;
 use super::section_unit::SectionUnit;
 use super::sensitivity::{
-    Instant, add, central_difference, check_finite, parameter_step, pick, speed_sensitivity,
+    SectionValues, add, central_difference, check_finite, parameter_step, pick, speed_sensitivity,
 };
-use super::trust::{Present, is_of_onset, smallest_damping, without_motion};
+use super::trust::{MonitoredUnit, is_of_onset, smallest_damping, without_motion};
 use super::unit::Differentiable;
 use crate::error::Result;
-use crate::fmu::refusal::Answer;
+use crate::fmu::refusal::CallResult;
 use crate::fmu::resources::Resources;
 use crate::fmu::variables::{Role, Status};
 use crate::response::{Inputs, Outputs, Stepper};
 
 impl Differentiable for SectionUnit {
-    fn output_rates(&mut self, memory: &mut Memory, outputs: &[Role]) -> Answer<Vec<f64>> {
+    fn output_rates(&mut self, memory: &mut Memory, outputs: &[Role]) -> CallResult<Vec<f64>> {
         let all = self.time_derivative(memory)?;
-        let rate = |role: &Role| -> Answer<f64> {
+        let rate = |role: &Role| -> CallResult<f64> {
             match role {
                 Role::Status(_) => Ok(self.present_by_wind(memory, *role)? * memory.input_rates[0]),
                 response => Ok(pick(&all, *response)),
@@ -34,7 +34,7 @@ impl Differentiable for SectionUnit {
         memory: &mut Memory,
         known: usize,
         unknowns: &[Role],
-    ) -> Answer<Vec<f64>> {
+    ) -> CallResult<Vec<f64>> {
         let instant = match Source::of(resources.table.variables()[known].role) {
             Source::Input => self.by_input(memory, known)?,
             Source::Release => self.by_release(memory, known)?,
@@ -58,7 +58,7 @@ impl Differentiable for SectionUnit {
 
 impl SectionUnit {
     /// `ẏ = C ż + D ẇ + (∂y/∂V) V̇` of all outputs.
-    pub(super) fn time_derivative(&mut self, memory: &Memory) -> Answer<Outputs> {
+    pub(super) fn time_derivative(&mut self, memory: &Memory) -> CallResult<Outputs> {
         self.load_inputs(memory);
         let Some(stepper) = &mut self.stepper else {
             return Ok(Outputs::default());
@@ -78,14 +78,18 @@ impl SectionUnit {
         Ok(rates)
     }
 
-    fn by_input(&mut self, memory: &Memory, known: usize) -> Result<Instant> {
+    fn by_input(&mut self, memory: &Memory, known: usize) -> Result<SectionValues> {
         self.load_inputs(memory);
         let speed = self.inputs.wind_speed_m_s;
         let Some(stepper) = &mut self.stepper else {
-            return Ok(Instant::default());
+            return Ok(SectionValues::default());
         };
         if known == self.places.wind_speed {
-            return Ok(Instant::by_speed(stepper, &memory.system, &self.inputs));
+            return Ok(SectionValues::by_speed(
+                stepper,
+                &memory.system,
+                &self.inputs,
+            ));
         }
         let mut unit = Inputs::steady(speed, self.places.force.len());
         for (force, place) in unit.force.iter_mut().zip(&self.places.force) {
@@ -96,10 +100,10 @@ impl SectionUnit {
         let at_rest = memory
             .system
             .with_all(&vec![0.0; memory.system.all().len()]);
-        Instant::of(stepper, &at_rest, &unit)
+        SectionValues::of(stepper, &at_rest, &unit)
     }
 
-    fn by_state(&mut self, memory: &Memory, known: usize) -> Result<Instant> {
+    fn by_state(&mut self, memory: &Memory, known: usize) -> Result<SectionValues> {
         let speed = memory.values[self.places.wind_speed];
         let mut unit = vec![0.0; memory.system.all().len()];
         if let Some(entry) = self.places.state_entry[known] {
@@ -109,25 +113,25 @@ impl SectionUnit {
         match &mut self.stepper {
             Some(stepper) => {
                 let still = Inputs::steady(speed, self.places.force.len());
-                Instant::of(stepper, &unit, &still)
+                SectionValues::of(stepper, &unit, &still)
             }
-            None => Ok(Instant::default()),
+            None => Ok(SectionValues::default()),
         }
     }
 
     /// The release is linear in its displacements and rates.
-    fn by_release(&mut self, memory: &Memory, known: usize) -> Result<Instant> {
+    fn by_release(&mut self, memory: &Memory, known: usize) -> Result<SectionValues> {
         let mut unit = vec![0.0; memory.values.len()];
         unit[known] = 1.0;
         let speed = memory.values[self.places.wind_speed];
         let still = Inputs::steady(speed, self.places.force.len());
         let Some(stepper) = &self.stepper else {
-            return Ok(Instant::default());
+            return Ok(SectionValues::default());
         };
         let state = self.release(stepper, &unit)?;
         match &mut self.stepper {
-            Some(stepper) => Instant::of(stepper, &state, &still),
-            None => Ok(Instant::default()),
+            Some(stepper) => SectionValues::of(stepper, &state, &still),
+            None => Ok(SectionValues::default()),
         }
     }
 
@@ -137,10 +141,10 @@ impl SectionUnit {
         resources: &Resources,
         memory: &Memory,
         unknowns: &[Role],
-    ) -> Answer<Vec<f64>> {
+    ) -> CallResult<Vec<f64>> {
         let values = &memory.values;
         let wants = |wanted: fn(&Role) -> bool| unknowns.iter().any(wanted);
-        let mut instant = Instant::default();
+        let mut instant = SectionValues::default();
         let moves = |u: &Role| {
             matches!(
                 u,
@@ -151,7 +155,7 @@ impl SectionUnit {
             let mut stepper: Stepper = self.new_stepper(resources, values)?;
             let state = self.release(&stepper, values)?;
             self.load_inputs(memory);
-            instant = Instant::of(&mut stepper, &state, &self.inputs)?;
+            instant = SectionValues::of(&mut stepper, &state, &self.inputs)?;
         }
         let wind = values[self.places.wind_speed];
         let card = if wants(is_of_onset) {

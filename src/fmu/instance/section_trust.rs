@@ -2,12 +2,12 @@
 
 use super::memory::Memory;
 use super::section_unit::SectionUnit;
-use super::trust::{LINEAR_ROTATION_RAD, Present, beyond_linear};
+use super::trust::{LINEAR_ROTATION_RAD, MonitoredUnit, beyond_linear};
 use crate::aeroelastic::CoupledSection;
 use crate::fmu::resources::Resources;
 use crate::response::Stepper;
 
-impl Present for SectionUnit {
+impl MonitoredUnit for SectionUnit {
     fn coupled(&self) -> Option<&CoupledSection> {
         self.stepper.as_ref().map(Stepper::section)
     }

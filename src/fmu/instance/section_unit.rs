@@ -6,13 +6,13 @@ use super::memory::Memory;
 use super::section::{self, OnsetCard};
 use super::section_places::Places;
 use super::sensitivity::{check_finite, finite};
-use super::trust::{Present, TrustWarnings, tested_winds};
+use super::trust::{MonitoredUnit, TrustWarnings, tested_winds};
 use super::unit::Unit;
 use crate::aerodynamics::{GustForce, Realizable, Realization};
 use crate::error::Result;
 use crate::flutter::UnwantedGrowth;
 use crate::fmu::lifecycle::State;
-use crate::fmu::refusal::Answer;
+use crate::fmu::refusal::CallResult;
 use crate::fmu::resources::Resources;
 use crate::fmu::variables::Role;
 use crate::response::{Inputs, Outputs, RepeatableStep, SectionState, Stepper};
@@ -276,7 +276,7 @@ impl Unit for SectionUnit {
         }
     }
 
-    fn advance(&mut self, _: &Resources, memory: &mut Memory, step: f64) -> Answer<bool> {
+    fn advance(&mut self, _: &Resources, memory: &mut Memory, step: f64) -> CallResult<bool> {
         self.load_own_inputs(memory);
         if let Some(stepper) = &mut self.stepper {
             stepper.advance(&mut memory.system, &self.inputs, step)?;
@@ -298,7 +298,7 @@ impl Unit for SectionUnit {
         taken.then(|| self.rotation_news(memory))
     }
 
-    fn state_rates(&mut self, _: &Resources, memory: &Memory) -> Answer<Vec<f64>> {
+    fn state_rates(&mut self, _: &Resources, memory: &Memory) -> CallResult<Vec<f64>> {
         self.load_inputs(memory);
         let Some(stepper) = &mut self.stepper else {
             return Ok(Vec::new());
@@ -310,7 +310,7 @@ impl Unit for SectionUnit {
         self.places.state_entry[place]
     }
 
-    fn outputs(&mut self, _: &Resources, memory: &mut Memory) -> Answer<()> {
+    fn outputs(&mut self, _: &Resources, memory: &mut Memory) -> CallResult<()> {
         self.load_own_inputs(memory);
         if let Some(stepper) = &mut self.stepper {
             stepper.outputs(&memory.system, &self.inputs, &mut self.outputs)?;

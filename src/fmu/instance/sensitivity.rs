@@ -3,7 +3,7 @@
 use super::memory::Memory;
 use crate::aerodynamics::Realization;
 use crate::error::Result;
-use crate::fmu::refusal::{Answer, Refusal};
+use crate::fmu::refusal::{CallResult, Refusal};
 use crate::fmu::resources::Resources;
 use crate::fmu::variables::Role;
 use crate::response::{Inputs, Outputs, SectionState, Stepper};
@@ -31,7 +31,7 @@ pub(super) fn pick(outputs: &Outputs, role: Role) -> f64 {
 
 /// All that a section has at an instant, or its derivative with respect to one known.
 #[derive(Debug, Default)]
-pub(super) struct Instant {
+pub(super) struct SectionValues {
     pub outputs: Outputs,
     /// `[q, q̇, x]`.
     state: Vec<f64>,
@@ -39,7 +39,7 @@ pub(super) struct Instant {
     rate: Vec<f64>,
 }
 
-impl Instant {
+impl SectionValues {
     pub(super) fn of(stepper: &mut Stepper, state: &SectionState, inputs: &Inputs) -> Result<Self> {
         let mut outputs = Outputs::default();
         stepper.outputs(state, inputs, &mut outputs)?;
@@ -172,8 +172,8 @@ pub(super) fn central_difference(
     resources: &Resources,
     memory: &Memory,
     (known, step): (usize, f64),
-    mut at: impl FnMut(&Memory) -> Answer<Vec<f64>>,
-) -> Answer<Vec<f64>> {
+    mut at: impl FnMut(&Memory) -> CallResult<Vec<f64>>,
+) -> CallResult<Vec<f64>> {
     let variable = &resources.table.variables()[known];
     let mut other = memory.clone();
     let value = memory.values[known];
@@ -188,7 +188,7 @@ pub(super) fn central_difference(
 }
 
 /// Refuses outputs that no number holds any more.
-pub(super) fn check_finite(outputs: &Outputs) -> Answer<()> {
+pub(super) fn check_finite(outputs: &Outputs) -> CallResult<()> {
     if outputs.lists().into_iter().flatten().all(|x| x.is_finite()) {
         return Ok(());
     }
@@ -196,7 +196,7 @@ pub(super) fn check_finite(outputs: &Outputs) -> Answer<()> {
 }
 
 /// The same for rates of states.
-pub(super) fn finite(rates: Vec<f64>) -> Answer<Vec<f64>> {
+pub(super) fn finite(rates: Vec<f64>) -> CallResult<Vec<f64>> {
     if rates.iter().all(|x| x.is_finite()) {
         return Ok(rates);
     }
@@ -204,5 +204,5 @@ pub(super) fn finite(rates: Vec<f64>) -> Answer<Vec<f64>> {
 }
 
 fn overgrown() -> Refusal {
-    Refusal::discard("outputs: the motion has grown beyond the range of numbers")
+    Refusal::discard("outputs: the motion has overflowed")
 }

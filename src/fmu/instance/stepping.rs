@@ -3,7 +3,7 @@
 use super::Instance;
 use super::memory::Experiment;
 use crate::fmu::lifecycle::State;
-use crate::fmu::refusal::{Answer, Refusal};
+use crate::fmu::refusal::{CallResult, Refusal};
 use crate::response::wind_at_rest;
 
 /// How far an importer's clock may have drifted from ours, relative to the time: sums of some 10⁶ steps.
@@ -18,7 +18,7 @@ impl Instance {
     /// An error for a step that is not positive, a point that is not ours, or an end behind the stop time; a discard,
     /// with everything as it was, when the step cannot be computed.
     #[inline]
-    pub fn do_step(&mut self, point: f64, step: f64) -> Answer<()> {
+    pub fn do_step(&mut self, point: f64, step: f64) -> CallResult<()> {
         // most steps need no more
         if self.is_plainly_here(point, step)
             && let Some(news) = self.unit.repeat(&mut self.memory, step)
@@ -34,7 +34,7 @@ impl Instance {
     }
 
     #[inline(never)]
-    fn do_step_anew(&mut self, point: f64, step: f64) -> Answer<()> {
+    fn do_step_anew(&mut self, point: f64, step: f64) -> CallResult<()> {
         self.check_step(point, step)?;
         if let Err(refusal) = self.advance(step) {
             self.memory.state = State::StepFailed;
@@ -45,7 +45,7 @@ impl Instance {
         Ok(())
     }
 
-    fn advance(&mut self, step: f64) -> Answer<()> {
+    fn advance(&mut self, step: f64) -> CallResult<()> {
         self.unit.prepare(&self.resources, &mut self.memory)?;
         self.outputs_current = self.unit.advance(&self.resources, &mut self.memory, step)?;
         // after the step: one that is refused is refused at once
@@ -61,7 +61,7 @@ impl Instance {
             && stop.is_none_or(|stop| point + step <= stop)
     }
 
-    fn check_step(&self, point: f64, step: f64) -> Answer<()> {
+    fn check_step(&self, point: f64, step: f64) -> CallResult<()> {
         let time = self.memory.time;
         if !(step.is_finite() && step > 0.0) {
             return Err(no_step(step));

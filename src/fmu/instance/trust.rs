@@ -55,7 +55,7 @@ pub(super) fn without_motion(
 }
 
 /// What has a present moment.
-pub(super) trait Present: Unit {
+pub(super) trait MonitoredUnit: Unit {
     /// The motion in its forces; `None` while there is none.
     fn coupled(&self) -> Option<&CoupledSection>;
 

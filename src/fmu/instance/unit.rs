@@ -3,7 +3,7 @@
 use super::layout::Source;
 use super::memory::Memory;
 use crate::error::Result;
-use crate::fmu::refusal::Answer;
+use crate::fmu::refusal::CallResult;
 use crate::fmu::resources::Resources;
 use crate::fmu::variables::{Role, VariableTable};
 use crate::response::SectionState;
@@ -38,7 +38,7 @@ pub(super) trait Unit: Debug + Send {
         _table: &VariableTable,
         _memory: &Memory,
         _notices: &mut Vec<String>,
-    ) -> Answer<()> {
+    ) -> CallResult<()> {
         Ok(())
     }
 
@@ -65,7 +65,12 @@ pub(super) trait Unit: Debug + Send {
     ///
     /// # Errors
     /// When the step cannot be computed.
-    fn advance(&mut self, resources: &Resources, memory: &mut Memory, step: f64) -> Answer<bool>;
+    fn advance(
+        &mut self,
+        resources: &Resources,
+        memory: &mut Memory,
+        step: f64,
+    ) -> CallResult<bool>;
 
     /// The last step once more, where nothing has been set since and no input runs on: most steps, without the work that
     /// the others need. Returns whether there may be something to say of it; `None`, with everything as it was, where
@@ -78,7 +83,7 @@ pub(super) trait Unit: Debug + Send {
     ///
     /// # Errors
     /// When they cannot be computed.
-    fn state_rates(&mut self, _resources: &Resources, _memory: &Memory) -> Answer<Vec<f64>> {
+    fn state_rates(&mut self, _resources: &Resources, _memory: &Memory) -> CallResult<Vec<f64>> {
         Ok(Vec::new())
     }
 
@@ -96,7 +101,7 @@ pub(super) trait Unit: Debug + Send {
     ///
     /// # Errors
     /// When they cannot be computed.
-    fn outputs(&mut self, resources: &Resources, memory: &mut Memory) -> Answer<()>;
+    fn outputs(&mut self, resources: &Resources, memory: &mut Memory) -> CallResult<()>;
 
     /// Writes what is calculated from the parameters into the memory.
     fn calculate(
@@ -125,7 +130,7 @@ pub(super) trait Differentiable: Unit {
     ///
     /// # Errors
     /// When they cannot be computed.
-    fn output_rates(&mut self, memory: &mut Memory, outputs: &[Role]) -> Answer<Vec<f64>>;
+    fn output_rates(&mut self, memory: &mut Memory, outputs: &[Role]) -> CallResult<Vec<f64>>;
 
     /// Derivatives of these unknowns with respect to the value at `known`.
     ///
@@ -137,5 +142,5 @@ pub(super) trait Differentiable: Unit {
         memory: &mut Memory,
         known: usize,
         unknowns: &[Role],
-    ) -> Answer<Vec<f64>>;
+    ) -> CallResult<Vec<f64>>;
 }

@@ -3,7 +3,7 @@
 use super::Instance;
 use super::layout::{DataType, Source};
 use crate::fmu::lifecycle::State;
-use crate::fmu::refusal::{Answer, Refusal};
+use crate::fmu::refusal::{CallResult, Refusal};
 
 impl Instance {
     /// Values of real variables.
@@ -11,7 +11,7 @@ impl Instance {
     /// # Errors
     /// A reference that is none, of another type, or not readable now; a value that cannot be computed.
     #[inline(always)]
-    pub fn reals(&mut self, references: &[u32], values: &mut [f64]) -> Answer<()> {
+    pub fn reals(&mut self, references: &[u32], values: &mut [f64]) -> CallResult<()> {
         let read = self.read_at_hand(references, values);
         if read == references.len() {
             return Ok(());
@@ -40,7 +40,7 @@ impl Instance {
 
     /// Reads one that needs work, after which others may need none.
     #[inline(never)]
-    fn read_rest(&mut self, mut references: &[u32], mut values: &mut [f64]) -> Answer<()> {
+    fn read_rest(&mut self, mut references: &[u32], mut values: &mut [f64]) -> CallResult<()> {
         while let ([reference, others @ ..], [value, rest @ ..]) = (references, values) {
             *value = self.number(*reference, DataType::Real)?;
             let read = self.read_at_hand(others, rest);
@@ -50,21 +50,21 @@ impl Instance {
     }
 
     /// Value of an integer variable.
-    pub(crate) fn integer(&mut self, reference: u32) -> Answer<i32> {
+    pub(crate) fn integer(&mut self, reference: u32) -> CallResult<i32> {
         Ok(self.number(reference, DataType::Integer)? as i32)
     }
 
     /// Value of a truth variable.
-    pub(crate) fn boolean(&mut self, reference: u32) -> Answer<bool> {
+    pub(crate) fn boolean(&mut self, reference: u32) -> CallResult<bool> {
         Ok(self.number(reference, DataType::Boolean)? != 0.0)
     }
 
     /// Place in the table of a text that may be read now.
-    pub(crate) fn text_place(&self, reference: u32) -> Answer<usize> {
+    pub(crate) fn text_place(&self, reference: u32) -> CallResult<usize> {
         Ok(self.readable(reference, DataType::String)?.0)
     }
 
-    pub(super) fn number(&mut self, reference: u32, wanted: DataType) -> Answer<f64> {
+    pub(super) fn number(&mut self, reference: u32, wanted: DataType) -> CallResult<f64> {
         let (place, access) = self.readable(reference, wanted)?;
         match access.source {
             Source::Response if !self.outputs_current => {
@@ -102,7 +102,7 @@ impl Instance {
     /// # Errors
     /// An error for a reference that is none, of another type or not settable now, and for a value that is not finite;
     /// a discard for a value outside the limits of its variable.
-    pub fn set_reals(&mut self, references: &[u32], values: &[f64]) -> Answer<()> {
+    pub fn set_reals(&mut self, references: &[u32], values: &[f64]) -> CallResult<()> {
         for (reference, value) in references.iter().zip(values) {
             let (place, access) = self.writable(*reference, DataType::Real)?;
             self.check_value(place, access, self.layout.settled(place, *value))?;
@@ -122,7 +122,7 @@ impl Instance {
     ///
     /// # Errors
     /// For every reference.
-    pub(crate) fn refuse_to_set(&self, references: &[u32], of_type: DataType) -> Answer<()> {
+    pub(crate) fn refuse_to_set(&self, references: &[u32], of_type: DataType) -> CallResult<()> {
         for reference in references {
             self.writable(*reference, of_type)?;
         }
@@ -149,7 +149,7 @@ impl Instance {
         references: &[u32],
         orders: &[i32],
         rates: &[f64],
-    ) -> Answer<()> {
+    ) -> CallResult<()> {
         for ((reference, order), rate) in references.iter().zip(orders).zip(rates) {
             self.input_index(*reference)?;
             check_order(*order)?;
@@ -168,7 +168,7 @@ impl Instance {
     }
 
     /// Place among the inputs.
-    pub(super) fn input_index(&self, reference: u32) -> Answer<usize> {
+    pub(super) fn input_index(&self, reference: u32) -> CallResult<usize> {
         let (place, _) = self.typed(reference, DataType::Real)?;
         let mut inputs = self.unit.inputs().iter();
         inputs.position(|input| *input == place).ok_or_else(|| {
@@ -179,7 +179,7 @@ impl Instance {
 }
 
 /// Rates are known to the first order.
-pub(super) fn check_order(order: i32) -> Answer<()> {
+pub(super) fn check_order(order: i32) -> CallResult<()> {
     if order == 1 {
         Ok(())
     } else {

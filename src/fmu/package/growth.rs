@@ -7,7 +7,7 @@ use crate::trained_model::TrainedModel;
 
 /// What becomes of a model that grows below its onset.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Growing {
+pub enum GrowthPolicy {
     /// It is not packed.
     Refuse,
     /// It is packed; its documentation and its log say at which speeds it grows.
@@ -25,8 +25,8 @@ pub(crate) fn growth_of(model: &TrainedModel) -> Result<UnwantedGrowth> {
 }
 
 /// Refuses a model that grows where it should not, unless that is allowed.
-pub(super) fn check(model: &TrainedModel, growing: Growing) -> Result<()> {
-    if growing == Growing::Allow {
+pub(super) fn check(model: &TrainedModel, growing: GrowthPolicy) -> Result<()> {
+    if growing == GrowthPolicy::Allow {
         return Ok(());
     }
     let growth = growth_of(model)?;

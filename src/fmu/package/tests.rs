@@ -12,10 +12,10 @@ fn embedded() -> Vec<Runtime> {
 
 #[test]
 fn archives_are_reproducible_and_complete() {
-    let bytes = package(&model("rational"), &embedded(), Growing::Refuse).unwrap();
+    let bytes = package(&model("rational"), &embedded(), GrowthPolicy::Refuse).unwrap();
     assert_eq!(
         bytes,
-        package(&model("rational"), &embedded(), Growing::Refuse).unwrap()
+        package(&model("rational"), &embedded(), GrowthPolicy::Refuse).unwrap()
     );
     let mut zip = zip::ZipArchive::new(Cursor::new(&bytes)).unwrap();
     let names: Vec<_> = (0..zip.len())
@@ -80,7 +80,7 @@ fn files_are_replaced_only_on_request() {
         &model,
         &embedded(),
         Overwrite::Refuse,
-        Growing::Refuse,
+        GrowthPolicy::Refuse,
     )
     .unwrap();
     let first = std::fs::read(&path).unwrap();
@@ -90,7 +90,7 @@ fn files_are_replaced_only_on_request() {
         &model,
         &embedded(),
         Overwrite::Refuse,
-        Growing::Refuse,
+        GrowthPolicy::Refuse,
     )
     .unwrap_err();
     assert!(refusal.to_string().contains("left as it is"), "{refusal}");
@@ -100,7 +100,7 @@ fn files_are_replaced_only_on_request() {
         &model,
         &embedded(),
         Overwrite::Replace,
-        Growing::Refuse,
+        GrowthPolicy::Refuse,
     )
     .unwrap();
     assert_eq!(std::fs::read(&path).unwrap(), first);
@@ -112,7 +112,7 @@ fn files_are_replaced_only_on_request() {
             &model,
             &embedded(),
             Overwrite::Replace,
-            Growing::Refuse
+            GrowthPolicy::Refuse
         )
         .is_err()
     );
@@ -121,9 +121,9 @@ fn files_are_replaced_only_on_request() {
 #[test]
 fn impossible_packages_are_refused() {
     let model = model("rational");
-    assert!(package(&model, &[], Growing::Refuse).is_err());
+    assert!(package(&model, &[], GrowthPolicy::Refuse).is_err());
     let twice = [embedded(), embedded()].concat();
-    let message = package(&model, &twice, Growing::Refuse)
+    let message = package(&model, &twice, GrowthPolicy::Refuse)
         .unwrap_err()
         .to_string();
     assert!(
@@ -153,12 +153,12 @@ pub(crate) fn growing_model() -> TrainedModel {
 #[test]
 fn a_model_that_grows_where_nothing_was_tested_is_exported_only_on_request() {
     let model = growing_model();
-    let refusal = package(&model, &embedded(), Growing::Refuse).unwrap_err();
+    let refusal = package(&model, &embedded(), GrowthPolicy::Refuse).unwrap_err();
     let refusal = refusal.to_string();
     for words in ["is not exported", "grows from", "m/s", "were not tested"] {
         assert!(refusal.contains(words), "`{words}` is not in: {refusal}");
     }
-    let bytes = package(&model, &embedded(), Growing::Allow).unwrap();
+    let bytes = package(&model, &embedded(), GrowthPolicy::Allow).unwrap();
     let mut zip = zip::ZipArchive::new(Cursor::new(&bytes)).unwrap();
     let mut page = String::new();
     let mut entry = zip.by_name("documentation/index.html").unwrap();

@@ -197,7 +197,7 @@ fn coupling(options: &ForceOptions) -> [Variable; 2] {
 
 /// What the forces and states of a strip depend on.
 #[derive(Clone, Default)]
-struct OfStrip {
+struct StripDependencies {
     /// Inputs and parameters.
     known: Vec<usize>,
     filters: Vec<usize>,
@@ -207,7 +207,7 @@ struct OfStrip {
 /// Forces follow the wind and the motion of their strip, its states, and everything that is stated of it; a filter's rate
 /// the displacements and all filters, that of a lagging gust the gusts and itself.
 fn fill_dependencies(table: &mut [Variable], strips: usize) {
-    let (mut shared, mut of_strip) = (Vec::new(), vec![OfStrip::default(); strips]);
+    let (mut shared, mut of_strip) = (Vec::new(), vec![StripDependencies::default(); strips]);
     for (place, variable) in table.iter().enumerate() {
         match variable.role {
             Role::WindSpeed | Role::Section(_) | Role::MotionDerivatives => shared.push(place),

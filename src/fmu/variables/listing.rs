@@ -14,7 +14,7 @@ pub enum Listing {
 
 /// The variables that a description lists.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Listed {
+pub struct ListedVariables {
     /// As a table of their own, whose dependencies are places in it.
     pub table: VariableTable,
     /// Their value references: the places in the full table, so that one runtime serves both.
@@ -23,7 +23,7 @@ pub struct Listed {
 
 impl VariableTable {
     /// The variables that are listed.
-    pub fn listed(&self, listing: Listing) -> Listed {
+    pub fn listed(&self, listing: Listing) -> ListedVariables {
         let real = |v: &Variable| matches!(v.value, Value::Real(_));
         let references: Vec<usize> = (0..self.variables.len())
             .filter(|&i| listing == Listing::All || real(&self.variables[i]))
@@ -42,7 +42,7 @@ impl VariableTable {
             variable
         });
         let variables = variables.collect();
-        Listed {
+        ListedVariables {
             table: VariableTable { variables },
             references,
         }

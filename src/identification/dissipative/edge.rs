@@ -4,7 +4,7 @@ use crate::section::Dof;
 use nalgebra::{DMatrix, SymmetricEigen};
 
 /// What the fit that the data alone give says at the end of the tested range.
-pub(super) struct Edge {
+pub(super) struct TestedRangeEnd {
     /// The size against which margins and tolerances are measured: that of `sym Im G/K`, which the data determine.
     pub size: f64,
     /// Its part that feeds energy into heave and torsion, n×n, positive semidefinite; zero for decks that are damped
@@ -12,7 +12,7 @@ pub(super) struct Edge {
     pub own: DMatrix<f64>,
 }
 
-impl Edge {
+impl TestedRangeEnd {
     /// Of the matrix `sym Im G/K` there, n×n in the order of `dofs`.
     pub(crate) fn new(matrix: DMatrix<f64>, dofs: &[Dof]) -> Self {
         let mut edge = Self::nothing(dofs.len());
@@ -53,9 +53,9 @@ mod tests {
     #[test]
     fn growth_of_heave_and_torsion_is_the_decks_own_and_that_of_sway_is_scatter() {
         let damped = DMatrix::from_row_slice(2, 2, &[-3.0, 0.4, 0.4, -0.2]);
-        assert_eq!(Edge::new(damped, &Dof::TWO).own.amax(), 0.0);
+        assert_eq!(TestedRangeEnd::new(damped, &Dof::TWO).own.amax(), 0.0);
         let matrix = DMatrix::from_row_slice(3, 3, &[-3.0, 1.0, 0.4, 1.0, 0.5, 0.1, 0.4, 0.1, 0.2]);
-        let edge = Edge::new(matrix.clone(), &Dof::THREE);
+        let edge = TestedRangeEnd::new(matrix.clone(), &Dof::THREE);
         assert!((edge.size - matrix.norm()).abs() < 1e-15);
         assert_eq!(edge.own.row(1).amax(), 0.0);
         // what is left of heave and torsion is damped: its largest eigenvalue is zero

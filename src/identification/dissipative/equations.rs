@@ -26,7 +26,7 @@ pub enum Constraints {
 
 /// What is asked of a fit besides.
 #[derive(Debug, Clone)]
-pub(crate) struct Wishes {
+pub(crate) struct FitRequirements {
     /// Degrees of freedom, in the order of rows and columns.
     pub dofs: Vec<Dof>,
     /// Highest tested reduced frequency.
@@ -36,7 +36,7 @@ pub(crate) struct Wishes {
     pub limits: Vec<[Option<f64>; 2]>,
 }
 
-impl Wishes {
+impl FitRequirements {
     /// Whether anything is asked.
     pub(crate) fn any(&self) -> bool {
         self.constraints == Constraints::Dissipative || !self.limits.is_empty()
@@ -54,7 +54,7 @@ pub(super) struct Equation {
 }
 
 /// The equations of a model with given bases, row by row.
-pub(super) fn equations(bases: &[Basis], n: usize, wishes: &Wishes) -> Vec<Equation> {
+pub(super) fn equations(bases: &[Basis], n: usize, wishes: &FitRequirements) -> Vec<Equation> {
     let mut all = Vec::new();
     if wishes.constraints == Constraints::Dissipative && bases[0].feed().e2 {
         let row = |e: usize, sign: f64| {

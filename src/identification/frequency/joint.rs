@@ -3,7 +3,7 @@
 use crate::error::Result;
 use crate::identification::basis::Basis;
 use crate::identification::constrained::LinearSolution;
-use crate::identification::dissipative::{Dissipation, LinearEntry, Solution, Wishes};
+use crate::identification::dissipative::{Dissipation, FitRequirements, LinearEntry, Solution};
 use crate::identification::form::Form;
 use crate::identification::samples::{Entry, shares};
 use nalgebra::{DMatrix, DVector};
@@ -15,7 +15,7 @@ const LEAST_SHARE: f64 = 1e-6;
 pub(super) struct Joint<'a> {
     pub entries: &'a [Entry],
     pub form: &'a Form,
-    pub wishes: Wishes,
+    pub wishes: FitRequirements,
 }
 
 /// All entries at given poles: each by itself, and together under the constraints where these bind.

@@ -5,7 +5,7 @@ use super::systems::ForceSystems;
 use crate::error::{Error, Result};
 use crate::identification::basis::Basis;
 use crate::identification::dissipative::{
-    ActiveConstraint, Dissipation, LinearEntry, Solution, Wishes,
+    ActiveConstraint, Dissipation, FitRequirements, LinearEntry, Solution,
 };
 use crate::identification::entry_report::EntryReport;
 use crate::identification::least_squares::Factor;
@@ -66,7 +66,7 @@ impl<'a> FittedSystems<'a> {
     ///
     /// # Errors
     /// Constraints that no coefficients satisfy.
-    pub(crate) fn constrain(&mut self, bases: &[Basis], wishes: &Wishes) -> Result<()> {
+    pub(crate) fn constrain(&mut self, bases: &[Basis], wishes: &FitRequirements) -> Result<()> {
         let joint = Joint::new(&self.systems, bases, wishes)?;
         if joint.held.is_none() {
             return Ok(());
@@ -233,7 +233,11 @@ impl Joint {
     ///
     /// # Errors
     /// Rows that do not determine the coefficients, and constraints that no coefficients satisfy.
-    pub(crate) fn new(systems: &ForceSystems, bases: &[Basis], wishes: &Wishes) -> Result<Self> {
+    pub(crate) fn new(
+        systems: &ForceSystems,
+        bases: &[Basis],
+        wishes: &FitRequirements,
+    ) -> Result<Self> {
         let n = bases.len().isqrt();
         let apart = (0..n).all(|i| (0..n).all(|j| systems.alone(i, j).is_some()))
             && !systems.of_force(0).order.constant;

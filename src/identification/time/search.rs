@@ -5,7 +5,7 @@ use super::fitted::Joint;
 use super::systems::{ForceSystems, Systems};
 use crate::error::{Error, Result};
 use crate::identification::basis::Basis;
-use crate::identification::dissipative::Wishes;
+use crate::identification::dissipative::FitRequirements;
 use crate::identification::form::Form;
 use crate::identification::form::PoleSearch;
 use crate::identification::own::{EntryForm, entry_forms, search_for, searched_together};
@@ -33,7 +33,7 @@ struct Group {
     /// Logarithmic distance of neighbours in the last grid.
     step: f64,
     /// What is asked besides, where the objective is that of the fit under its constraints.
-    held: Option<Wishes>,
+    held: Option<FitRequirements>,
 }
 
 /// Poles of the filters of every transfer function, row by row, and how they were found.
@@ -50,7 +50,7 @@ pub(crate) struct ChosenPoles {
     /// Under the constraints, where some are asked for.
     pub held: Option<Choice>,
     /// The constraints.
-    pub wishes: Wishes,
+    pub wishes: FitRequirements,
 }
 
 /// Poles of every transfer function, by least squares alone and under the constraints of the fit. Both searches

@@ -10,9 +10,9 @@ pub(super) const COEFFICIENTS: usize = 4;
 
 /// `c₀ + c₁ t + c₂ t² + c₃ t³`, with the time `t` from some instant on, s.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Course([f64; COEFFICIENTS]);
+pub(super) struct MotionCubic([f64; COEFFICIENTS]);
 
-impl Course {
+impl MotionCubic {
     /// From what is known at the newest points (newest first, at `times` in s); `t` counts from the newest.
     ///
     /// The highest derivative that is known at the newest point runs through its last values; below it stands what is
@@ -113,7 +113,7 @@ mod tests {
             [2, 2, 3, 3],
             [1, 2, 1, 3],
         ] {
-            let course = Course::through(&times, &points(&times, &known));
+            let course = MotionCubic::through(&times, &points(&times, &known));
             for t in [-0.5, -0.1, 0.0, 0.2] {
                 let found = course.from(t).derivatives();
                 for (found, expected) in found.iter().zip(cubic(1.3 + t)) {
@@ -129,11 +129,11 @@ mod tests {
 
     #[test]
     fn the_first_points_give_what_they_can() {
-        let one = Course::through(&[0.5], &[3.0, 0.0, 0.0, 1.0]);
+        let one = MotionCubic::through(&[0.5], &[3.0, 0.0, 0.0, 1.0]);
         assert_eq!(one.derivatives(), [3.0, 0.0, 0.0, 0.0]);
-        let with_rate = Course::through(&[0.5], &[3.0, 2.0, 0.0, 2.0]);
+        let with_rate = MotionCubic::through(&[0.5], &[3.0, 2.0, 0.0, 2.0]);
         assert_eq!(with_rate.derivatives(), [3.0, 2.0, 0.0, 0.0]);
-        let two = Course::through(&[0.5, 0.25], &[3.0, 0.0, 0.0, 1.0, 2.0, 0.0, 0.0, 1.0]);
+        let two = MotionCubic::through(&[0.5, 0.25], &[3.0, 0.0, 0.0, 1.0, 2.0, 0.0, 0.0, 1.0]);
         assert_eq!(two.derivatives(), [3.0, 4.0, 0.0, 0.0]);
     }
 }

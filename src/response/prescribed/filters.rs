@@ -1,6 +1,6 @@
 //! The aerodynamic filters along a given motion.
 
-use super::course::{COEFFICIENTS, Course};
+use super::course::{COEFFICIENTS, MotionCubic};
 use crate::aerodynamics::{ContinuousRealization, DiscreteRealization};
 use crate::error::{Error, Result};
 use nalgebra::DMatrix;
@@ -15,8 +15,8 @@ const MAX_PARTS: f64 = 1e4;
 const PARTS_OF_A_STRIP: f64 = 100.0;
 
 /// Where the filters go: along `courses` (one per degree of freedom, dimensionless), whose time begins where they are now.
-pub(super) struct Way<'a> {
-    pub courses: &'a [Course],
+pub(super) struct MotionInterval<'a> {
+    pub courses: &'a [MotionCubic],
     pub duration_s: f64,
     /// `V/B`, 1/s.
     pub rate_per_s: f64,
@@ -37,7 +37,7 @@ pub(super) fn advance_continuous(
     c: &ContinuousRealization,
     size: f64,
     state: &mut [f64],
-    way: &Way,
+    way: &MotionInterval,
     buffers: &mut Buffers,
 ) -> Result<()> {
     let parts = parts(way, way.duration_s * way.rate_per_s * size / REACH)?;
@@ -49,7 +49,7 @@ pub(super) fn advance_continuous(
     grown(state)
 }
 
-fn parts(way: &Way, count: f64) -> Result<f64> {
+fn parts(way: &MotionInterval, count: f64) -> Result<f64> {
     let at_most = (MAX_PARTS / way.strips.max(1) as f64).max(PARTS_OF_A_STRIP);
     if count <= at_most {
         return Ok(count.ceil().max(1.0));
@@ -74,7 +74,7 @@ fn grown(state: &[f64]) -> Result<()> {
 fn series(
     c: &ContinuousRealization,
     state: &mut [f64],
-    (way, start, part_s): (&Way, f64, f64),
+    (way, start, part_s): (&MotionInterval, f64, f64),
     buffers: &mut Buffers,
 ) {
     let Buffers { term, next } = buffers;
@@ -130,7 +130,7 @@ fn add_product(matrix: &DMatrix<f64>, vector: &[f64], sum: &mut [f64]) {
 pub(super) fn advance_discrete(
     d: &DiscreteRealization,
     (state, phase): (&mut [f64], &mut f64),
-    way: &Way,
+    way: &MotionInterval,
     buffers: &mut Buffers,
 ) -> Result<()> {
     let passed = way.duration_s * way.rate_per_s / d.delta_s;

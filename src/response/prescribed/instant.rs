@@ -1,6 +1,6 @@
 //! Forces and rates of the filters at one instant, for importers that integrate the filters themselves.
 
-use super::course::Course;
+use super::course::MotionCubic;
 use super::{ForceAhead, PrescribedForces};
 use crate::aerodynamics::Realization;
 use crate::error::Result;
@@ -63,7 +63,7 @@ impl PrescribedForces {
         self.courses.clear();
         for (dof, now) in self.dofs.iter().zip(motion) {
             self.courses
-                .push(Course::now(*now).times(dof.motion_scale(width)));
+                .push(MotionCubic::now(*now).times(dof.motion_scale(width)));
         }
         self.forces(filters, (wind, width, density), forces);
     }

@@ -22,7 +22,7 @@ const STEPS_PER_PERIOD: f64 = 50.0;
 
 /// What is wanted of an FMU.
 #[derive(Debug, Clone, Default)]
-pub struct Wanted {
+pub struct BridgeExportOptions {
     /// Names of the nodes with inputs and outputs; none for mid-span and both quarter points.
     pub nodes: Vec<String>,
     /// Whether a bridge that grows below its onset is exported.
@@ -41,7 +41,7 @@ impl BridgeStudy {
     /// # Errors
     /// [`Error::Input`] for nodes and strips that are none, and for gusts on sections without static coefficients;
     /// [`Error::Unstable`] for a bridge that grows below its onset, unless that is allowed.
-    pub fn export(&self, wanted: &Wanted) -> Result<BridgeExport> {
+    pub fn export(&self, wanted: &BridgeExportOptions) -> Result<BridgeExport> {
         let named = self.named(&wanted.nodes)?;
         let gusts = self.gusts(wanted)?;
         let search = self.search();
@@ -137,7 +137,7 @@ impl BridgeStudy {
     }
 
     /// Gust forces of the sections on strips of neighbouring nodes.
-    fn gusts(&self, wanted: &Wanted) -> Result<Option<BridgeGusts>> {
+    fn gusts(&self, wanted: &BridgeExportOptions) -> Result<Option<BridgeGusts>> {
         if wanted.gust_strips.is_none() && wanted.turbulence.is_none() {
             return Ok(None);
         }

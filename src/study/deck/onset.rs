@@ -106,7 +106,7 @@ fn assumed_at_rest(k: ReducedFrequency) -> Result<String> {
     // ½ρV² times the slope is the stiffness: the speed goes with one over the root
     let excess = (still / slope(k)?).sqrt() - 1.0;
     Ok(format!(
-        "K → 0 was not tested: H3*, A3* at the lowest tested K, {:.3}, stand for the static slopes, and nothing for H4*, \
+        "K → 0 was not tested: H3*, A3* at the lowest tested K, {:.3}, are used as the static slopes; nothing is used for H4*, \
          A4*, which are dynamic there (a flat plate's divergence would come out {:.1} % too high)",
         k.full_width(),
         100.0 * excess

@@ -4,7 +4,7 @@ use super::air::Air;
 use super::channel_map::ChannelMap;
 use super::file::{Campaign, RunBlock};
 use super::findings::{Finding, file_hints, run_findings};
-use super::recording::{Loading, SAME_RATE};
+use super::recording::{LoadedRecording, SAME_RATE};
 use super::section_forces::SectionForces;
 use crate::error::{Error, Result, all_or_errors, positive};
 use crate::section::Dof;
@@ -122,9 +122,15 @@ impl Campaign {
         run: &RunBlock,
     ) -> Result<(RawRun, RunSummary, Vec<Finding>)> {
         let place = format!("run `{}`", run.name);
-        let wind = Loading::new((self, rig), map, run, &run.in_wind, "in wind")?;
+        let wind = LoadedRecording::new((self, rig), map, run, &run.in_wind, "in wind")?;
         let still = match &run.still_air {
-            Some(file) => Some(Loading::new((self, rig), map, run, file, "still air")?),
+            Some(file) => Some(LoadedRecording::new(
+                (self, rig),
+                map,
+                run,
+                file,
+                "still air",
+            )?),
             None => None,
         };
         let wind_hz = wind.recording.sampling_hz;
@@ -166,7 +172,7 @@ impl Campaign {
     }
 
     /// The air: what the run states, else what its file in wind holds, else what holds for all.
-    fn density(&self, map: &ChannelMap, run: &RunBlock, wind: &Loading) -> Result<f64> {
+    fn density(&self, map: &ChannelMap, run: &RunBlock, wind: &LoadedRecording) -> Result<f64> {
         let by_file = Air {
             density_kg_m3: wind.air[0],
             temperature_c: wind.air[1],

@@ -14,7 +14,7 @@ use crate::wind_tunnel::{CELL_CHANNELS, RawRecording, Rig, SAMPLES_AT_LEAST};
 pub(super) const SAME_RATE: f64 = 1e-3;
 
 /// One recording with what was found on the way.
-pub(super) struct Loading {
+pub(super) struct LoadedRecording {
     pub recording: RawRecording,
     pub channels: Vec<String>,
     /// Density, temperature, pressure as the file has them.
@@ -22,7 +22,7 @@ pub(super) struct Loading {
     pub findings: Vec<Finding>,
 }
 
-impl Loading {
+impl LoadedRecording {
     /// Reads the file, or the group of it.
     pub(crate) fn new(
         (campaign, rig): (&Campaign, &Rig),
@@ -35,7 +35,7 @@ impl Loading {
         let place = format!("run `{}`, {what}", run.name);
         let read = || {
             let set = ChannelSet::read(&path, file.group()).map_err(|e| below(&place, e))?;
-            let mut taking = Taking {
+            let mut taking = ChannelExtraction {
                 map,
                 set: &set,
                 place: &place,
@@ -66,7 +66,7 @@ fn below(place: &str, error: Error) -> Error {
 }
 
 /// Channels being taken out of a file.
-struct Taking<'a> {
+struct ChannelExtraction<'a> {
     map: &'a ChannelMap,
     set: &'a ChannelSet,
     place: &'a str,
@@ -77,7 +77,7 @@ struct Taking<'a> {
     findings: Vec<Finding>,
 }
 
-impl Taking<'_> {
+impl ChannelExtraction<'_> {
     fn recording(
         &mut self,
         campaign: &Campaign,
@@ -161,7 +161,7 @@ impl Taking<'_> {
                     channel: Some(channel.name.clone()),
                     sample: first_gap(&c.samples).map(|gap| gap.0),
                     samples: first_gap(&c.samples).map(|gap| gap.1),
-                    what: "wind speed that is no number or of another length, not used".to_owned(),
+                    what: "wind speed is not a number or of another length; ignored".to_owned(),
                 });
                 Ok(Vec::new())
             }

@@ -21,7 +21,7 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum FileFormat {
-    /// One CSV file a recording, channels as the cells have them: reads back bit for bit.
+    /// One CSV file per recording, channels as the cells have them: reads back bit for bit.
     Csv,
     /// One HDF5 file in the layout of NTNU's tools, forces in fixed axes.
     Ntnu,

@@ -68,14 +68,14 @@ impl Regressors {
         values
     }
 
-    /// Least squares over the samples that are not `wild`.
-    pub(crate) fn fit(&self, force: &[f64], wild: &[bool]) -> Result<Parts> {
+    /// Least squares over the samples that are no `outliers`.
+    pub(crate) fn fit(&self, force: &[f64], outliers: &[bool]) -> Result<Parts> {
         let smooth = self.degree + 1;
         let unknowns = smooth + 2 * self.stretches.len();
         let mut gram = DMatrix::<f64>::zeros(unknowns, unknowns);
         let mut moments = DVector::<f64>::zeros(unknowns);
         let mut entries: Vec<(usize, f64)> = Vec::new();
-        for k in (0..self.count).filter(|k| !wild[*k]) {
+        for k in (0..self.count).filter(|k| !outliers[*k]) {
             self.row(k, &mut entries);
             for (i, a) in &entries {
                 for (j, b) in &entries {

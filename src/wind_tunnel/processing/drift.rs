@@ -20,7 +20,7 @@ use crate::wind_tunnel::{CELL_CHANNELS, LoadCell, RawRecording, Rig};
 use serde::{Deserialize, Serialize};
 
 /// Samples that stand this many robust standard deviations off do not count: a knock is no drift.
-const WILD: f64 = 6.0;
+const OUTLIER: f64 = 6.0;
 
 /// What one cell drifted by over a recording.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -101,10 +101,10 @@ fn drift_of(channel: &[f64], regressors: &Regressors, ramps: &[bool]) -> Result<
         .filter(|k| !ramps[*k])
         .map(residual)
         .collect();
-    let limit = WILD * robust_deviation(&counted);
+    let limit = OUTLIER * robust_deviation(&counted);
     let far = |k: usize| limit > 0.0 && residual(k).abs() > limit;
-    let wild: Vec<bool> = (0..channel.len()).map(|k| ramps[k] || far(k)).collect();
-    let mut drift = regressors.fit(channel, &wild)?.drift;
+    let outliers: Vec<bool> = (0..channel.len()).map(|k| ramps[k] || far(k)).collect();
+    let mut drift = regressors.fit(channel, &outliers)?.drift;
     let zero = drift.first().copied().unwrap_or(0.0);
     drift.iter_mut().for_each(|d| *d -= zero);
     Ok(drift)

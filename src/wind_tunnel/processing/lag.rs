@@ -108,7 +108,7 @@ fn wrong_sign(run: &str, what: &str, dof: Dof, found: &StillAirInertia) -> Error
             dof.name()
         ),
         format!(
-            "one in phase (inertia {:.4} ± {:.4}): the sign of a force or motion channel is turned round, or channels are exchanged",
+            "one in phase (inertia {:.4} ± {:.4}): the sign of a force or motion channel is reversed, or channels are swapped",
             found.inertia, found.inertia_standard_error
         ),
     )

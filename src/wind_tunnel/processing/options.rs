@@ -68,13 +68,13 @@ pub struct SegmentOptions {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct SpikeOptions {
-    /// A sample is wild when its residual exceeds this many robust standard deviations (of the segment), default 6: of
+    /// A sample is an outlier when its residual exceeds this many robust standard deviations (of the segment), default 6: of
     /// 40 000 normal samples none is; 0 switches the search off.
     pub deviations: f64,
     /// … and this part of the greatest force that follows the motion in the segment, default 0.25: the ramps of a force with
     /// memory are no spikes in a noiseless record.
     pub least_part: f64,
-    /// Time before and after a wild sample that goes with it, s; default 0.1: the model rings for a while after a knock.
+    /// Time before and after an outlier that goes with it, s; default 0.1: the model rings for a while after a knock.
     pub guard_s: f64,
 }
 

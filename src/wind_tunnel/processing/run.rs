@@ -37,7 +37,7 @@ pub(crate) struct ProcessedRun {
 }
 
 /// Both recordings in step, in global axes, about the centre of rotation.
-struct InStep {
+struct AlignedRecordings {
     wind: SectionSignals,
     still_air: SectionSignals,
     shares: Vec<CellShare>,
@@ -55,7 +55,7 @@ pub(super) fn process_run(
     lag_s: f64,
     options: &ProcessingOptions,
 ) -> Result<ProcessedRun> {
-    let mut run = UnderWay::in_step(prepared, &campaign.rig, lag_s, options)?;
+    let mut run = RunInProgress::in_step(prepared, &campaign.rig, lag_s, options)?;
     run.remove_means();
     run.subtract_still_air();
     run.clean_and_filter()?;
@@ -77,7 +77,7 @@ pub(super) fn process_run(
 }
 
 /// A run on its way: every stage changes the signals and enters in the report what it did.
-struct UnderWay<'a> {
+struct RunInProgress<'a> {
     prepared: &'a Prepared<'a>,
     rig: &'a Rig,
     options: &'a ProcessingOptions,
@@ -89,7 +89,7 @@ struct UnderWay<'a> {
     stages: Vec<StageSignals>,
 }
 
-impl<'a> UnderWay<'a> {
+impl<'a> RunInProgress<'a> {
     /// Stages 3 to 6.
     fn in_step(
         prepared: &'a Prepared<'a>,
@@ -242,7 +242,12 @@ impl<'a> UnderWay<'a> {
 }
 
 /// Stages 3 to 6: lag, drift of the cells, alignment, axes, cells.
-fn in_step(prepared: &Prepared<'_>, rig: &Rig, lag_s: f64, degree: usize) -> Result<InStep> {
+fn in_step(
+    prepared: &Prepared<'_>,
+    rig: &Rig,
+    lag_s: f64,
+    degree: usize,
+) -> Result<AlignedRecordings> {
     let run = prepared.run;
     let ready = |recording: &RawRecording, segments: &[HarmonicSegment]| {
         let mut recording = without_lag(recording, lag_s);
@@ -256,7 +261,7 @@ fn in_step(prepared: &Prepared<'_>, rig: &Rig, lag_s: f64, degree: usize) -> Res
     let Some(still) = &run.still_air else {
         let (wind, shares) = on_the_model(&wind, rig);
         let nothing = wind.force.each_ref().map(|f| vec![0.0; f.len()]);
-        return Ok(InStep {
+        return Ok(AlignedRecordings {
             still_air: SectionSignals {
                 force: nothing,
                 ..wind.clone()
@@ -273,7 +278,7 @@ fn in_step(prepared: &Prepared<'_>, rig: &Rig, lag_s: f64, degree: usize) -> Res
     let covered = aligned.covered;
     let (wind, shares) = on_the_model(&wind.map(|x| x[covered.clone()].to_vec()), rig);
     let (still_air, _) = on_the_model(&aligned.still_air.map(|x| x[covered.clone()].to_vec()), rig);
-    Ok(InStep {
+    Ok(AlignedRecordings {
         wind,
         still_air,
         shares,

@@ -1,9 +1,9 @@
 //! Spikes: what neither follows the motion nor drifts nor is noise.
 //!
 //! The residual of the [coherent regression](super::coherent) is looked at twice, as it is and behind the low-pass, where a knock
-//! that is low but long stands out of the noise. A sample is wild when it exceeds so many robust standard deviations of its
-//! segment and a part of the greatest force there. Wild samples leave the regression, which is repeated until none is added.
-//! A knock meets all forces, so what is wild in one is replaced in all, with a guard before and after: by what follows the motion
+//! that is low but long stands out of the noise. A sample is an outlier when it exceeds so many robust standard deviations of its
+//! segment and a part of the greatest force there. Outliers are removed from the regression, which is repeated until none is added.
+//! A knock meets all forces, so an outlier in one is replaced in all, with a guard before and after: by what follows the motion
 //! and drifts, so that the filters do not ring.
 
 use super::coherent::{Parts, Regressors};
@@ -45,7 +45,7 @@ pub(crate) struct Cleaned {
     pub replaced: Vec<Replaced>,
 }
 
-/// Finds wild samples and replaces them in `signals`; `clipped` are known to be wild.
+/// Finds outliers and replaces them in `signals`; `clipped` are known outliers.
 pub(crate) fn remove_spikes(
     signals: &mut SectionSignals,
     regressors: &Regressors,
@@ -75,7 +75,7 @@ pub(crate) fn remove_spikes(
                 views.push(filter.zero_phase(&residual)?);
             }
             for view in &views {
-                for k in wild(view, part, regressors, options, least) {
+                for k in outliers(view, part, regressors, options, least) {
                     if reasons[k].is_none() {
                         mark(&mut reasons, k, k + 1, guard, "spike");
                         added = true;
@@ -110,16 +110,16 @@ fn fit_all(
     regressors: &Regressors,
     reasons: &[Option<&'static str>],
 ) -> Result<[Parts; 3]> {
-    let wild: Vec<bool> = reasons.iter().map(Option::is_some).collect();
+    let outliers: Vec<bool> = reasons.iter().map(Option::is_some).collect();
     let [a, b, c] = &signals.force;
     Ok([
-        regressors.fit(a, &wild)?,
-        regressors.fit(b, &wild)?,
-        regressors.fit(c, &wild)?,
+        regressors.fit(a, &outliers)?,
+        regressors.fit(b, &outliers)?,
+        regressors.fit(c, &outliers)?,
     ])
 }
 
-/// What is left of a force; zero where it is already known to be wild.
+/// What is left of a force; zero where it is already known to be an outlier.
 fn residual(force: &[f64], part: &Parts, reasons: &[Option<&'static str>]) -> Vec<f64> {
     (0..force.len())
         .map(|k| match reasons[k] {
@@ -130,7 +130,7 @@ fn residual(force: &[f64], part: &Parts, reasons: &[Option<&'static str>]) -> Ve
 }
 
 /// Samples of `residual` that are too far out, segment by segment and in between.
-fn wild(
+fn outliers(
     residual: &[f64],
     part: &Parts,
     regressors: &Regressors,

@@ -228,7 +228,7 @@ fn channels_of_the_wrong_sign_or_place_are_named() {
         message.contains("sum of the cells: expected a vertical force in antiphase"),
         "{message}"
     );
-    assert!(message.contains("turned round"), "{message}");
+    assert!(message.contains("is reversed"), "{message}");
     // lift and drag exchanged
     let message = with(&|raw| {
         both(raw, |r| {

@@ -113,7 +113,7 @@ fn bad_headers_are_explained() {
         (
             "# dofs: vertical, torsion",
             "# dofs: vertical, pitch",
-            "line 3 (dofs): expected each once of vertical, lateral, torsion",
+            "line 3 (dofs): expected a list with commas of vertical, lateral, torsion",
         ),
         (
             "lift up",

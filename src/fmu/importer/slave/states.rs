@@ -1,6 +1,6 @@
 //! Saving, restoring and serialising the state of an instance.
 
-use super::{Core, Slave};
+use super::{FmuComponent, Slave};
 use crate::error::{Error, Result};
 use crate::fmu::importer::library::StatePointer;
 use std::rc::Rc;
@@ -8,7 +8,7 @@ use std::rc::Rc;
 /// A saved state of an instance.
 pub struct FmuState {
     pointer: StatePointer,
-    core: Rc<Core>,
+    core: Rc<FmuComponent>,
 }
 
 impl Drop for FmuState {

@@ -39,7 +39,7 @@ fn what_does_not_stop_reading_is_a_finding() {
             })
         ),
         [
-            "run `one`, still air, `v`, sample 91: wind speed that is no number or of another length, not used"
+            "run `one`, still air, `v`, sample 91: wind speed is not a number or of another length; ignored"
         ]
     );
     let found = findings(&a, &a);

@@ -15,7 +15,7 @@ const INPUTS: &str = "inputs";
 
 /// A study with the file it was read from.
 #[derive(Debug, Clone)]
-pub(crate) struct Ran<'a> {
+pub(crate) struct StudyRun<'a> {
     pub(crate) study: &'a Study,
     /// Text of the file.
     pub(crate) text: &'a str,
@@ -24,7 +24,7 @@ pub(crate) struct Ran<'a> {
 }
 
 /// Leaves the study in the folder of results, with the files that it names; the name under which it stands there.
-pub(crate) fn leave(ran: &Ran<'_>, out: &mut OutputDir) -> Result<String> {
+pub(crate) fn leave(ran: &StudyRun<'_>, out: &mut OutputDir) -> Result<String> {
     let same = |a: &Path, b: &Path| match (a.canonicalize(), b.canonicalize()) {
         (Ok(a), Ok(b)) => a == b,
         _ => false,
@@ -44,7 +44,7 @@ pub(crate) fn leave(ran: &Ran<'_>, out: &mut OutputDir) -> Result<String> {
 }
 
 /// The text, with copies of what it reads; as it is where it reads nothing.
-fn self_contained(ran: &Ran<'_>, out: &mut OutputDir) -> Result<String> {
+fn self_contained(ran: &StudyRun<'_>, out: &mut OutputDir) -> Result<String> {
     let mut study = ran.study.clone();
     let mut copied = 0;
     let mut copy = |path: &Path| -> Result<PathBuf> {
