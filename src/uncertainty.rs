@@ -43,7 +43,7 @@ pub(crate) use record_covariance::discrete_uncertainty;
 pub use record_covariance::record_uncertainty;
 pub use speed_onsets::{Contradiction, SpeedOnset, SpeedOnsets};
 pub use speed_scatter::{ForceScatter, SpeedScatter};
-pub(crate) use statistics::{moments, sample_quantile};
+pub(crate) use statistics::sample_quantile;
 pub use table_covariance::table_uncertainty;
 
 #[cfg(test)]

@@ -3,6 +3,17 @@
 //! `G_yy = K²(H4* + iH1*)`, `G_yθ = K²(H3* + iH2*)`, `G_θy = K²(A4* + iA1*)`, `G_θθ = K²(A3* + iA2*)`, likewise
 //! `P*` and the pairs 5, 6 of `H*`, `A*` for sway (equation 1.17).
 
+/// `Display` of a type that has a name.
+macro_rules! displayed_by_name {
+    ($type:ty) => {
+        impl std::fmt::Display for $type {
+            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.pad(self.name())
+            }
+        }
+    };
+}
+
 mod derivative;
 mod interpolated;
 mod interpolation;

@@ -23,9 +23,9 @@ const WHOLE: f64 = 0.2;
 impl BuffetingProblem<'_> {
     /// Lowest and highest still-air frequency, Hz.
     pub(super) fn natural_range_hz(&self) -> (f64, f64) {
-        let s = self.structure;
-        (0..s.dofs.len())
-            .map(|i| (s.stiffness[(i, i)] / s.mass[(i, i)]).sqrt() / TAU)
+        self.structure
+            .still_air_rad_s()
+            .map(|omega| omega / TAU)
             .filter(|f| *f > 0.0)
             .fold((f64::INFINITY, 0.0), |(low, high), f| {
                 (f.min(low), f.max(high))

@@ -10,11 +10,10 @@ use super::problem::BuffetingProblem;
 use super::spectrum::GustComponent;
 use crate::aerodynamics::GustSeries;
 use crate::error::{Error, Result, positive};
-use crate::signal::random_stream;
+use crate::signal::{Fourier, random_stream};
 use nalgebra::Complex;
 use rand::Rng;
 use rand_distr::StandardNormal;
-use rustfft::FftPlanner;
 
 /// Samples of one record.
 const SAMPLES: std::ops::RangeInclusive<usize> = 16..=1 << 24;
@@ -84,11 +83,8 @@ pub(crate) fn synthesise(
             }
         }
     }
-    let inverse = FftPlanner::new().plan_fft_inverse(samples);
-    let to_time = |mut x: Vec<Complex<f64>>| -> Vec<f64> {
-        inverse.process(&mut x);
-        x.iter().map(|z| z.re).collect()
-    };
+    let fourier = Fourier::new(samples);
+    let to_time = |spectrum| fourier.sums(spectrum);
     let [along, vertical] = gusts.map(to_time);
     Ok(GustSample {
         gusts: GustSeries::new(step_s, along, vertical)?,

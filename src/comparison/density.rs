@@ -8,8 +8,7 @@
 
 use super::{Metric, SignalPair};
 use crate::error::{Error, Result};
-use crate::signal::extremes;
-use rustfft::FftPlanner;
+use crate::signal::{Fourier, extremes, mean_and_deviation};
 use rustfft::num_complex::Complex64;
 use serde::Serialize;
 use std::f64::consts::PI;
@@ -81,10 +80,7 @@ pub fn probability_density(
 
 /// The values themselves or their standard scores.
 fn values(place: &str, signal: &[f64], parameters: &DensityParameters) -> Result<Vec<f64>> {
-    let n = signal.len() as f64;
-    let mean = signal.iter().sum::<f64>() / n;
-    let variance = signal.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / (n - 1.0);
-    let deviation = variance.sqrt();
+    let (mean, deviation) = mean_and_deviation(signal.iter().copied());
     let largest = signal.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     // The deviation of a constant is the rounding error of its mean.
     if deviation <= 1e-12 * largest {
@@ -157,15 +153,8 @@ fn distinct(sample: &[f64]) -> usize {
 /// `a_0 = Σ p_j`, `a_k = 2 Σ p_j cos(πk(j + ½)/n)`.
 fn cosine_transform(p: &[f64]) -> Vec<f64> {
     let n = p.len();
-    let mut buffer: Vec<Complex64> = p
-        .iter()
-        .chain(p.iter().rev())
-        .map(|&x| Complex64::from(x))
-        .collect();
-    FftPlanner::new()
-        .plan_fft_forward(2 * n)
-        .process(&mut buffer);
-    let mut coefficients: Vec<f64> = buffer[..n]
+    let spectrum = Fourier::new(2 * n).spectrum(p.iter().chain(p.iter().rev()).copied());
+    let mut coefficients: Vec<f64> = spectrum[..n]
         .iter()
         .enumerate()
         .map(|(k, z)| (z * Complex64::from_polar(1.0, -PI * k as f64 / (2 * n) as f64)).re)
@@ -181,10 +170,8 @@ fn cosine_sum(a: &[f64]) -> Vec<f64> {
     for (k, (z, &value)) in buffer.iter_mut().zip(a).enumerate() {
         *z = Complex64::from_polar(value, PI * k as f64 / (2 * n) as f64);
     }
-    FftPlanner::new()
-        .plan_fft_inverse(2 * n)
-        .process(&mut buffer);
-    buffer[..n].iter().map(|z| z.re / n as f64).collect()
+    let sums = Fourier::new(2 * n).sums(buffer);
+    sums[..n].iter().map(|x| x / n as f64).collect()
 }
 
 /// `‖f⁽ˢ⁾‖²` of the density smoothed for `time`, on a range of 1:

@@ -1,13 +1,12 @@
 //! Continuous Morlet transform on chosen frequencies.
 
 use crate::error::{Error, Result, positive};
+use crate::signal::Fourier;
 use rayon::prelude::*;
 use rustfft::num_complex::Complex64;
-use rustfft::{Fft, FftPlanner};
 use serde::Serialize;
 use std::f64::consts::{PI, SQRT_2, TAU};
 use std::ops::Range;
-use std::sync::Arc;
 
 /// Parameters of the wavelet transform.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -49,9 +48,7 @@ pub(super) struct Morlet {
     parameters: WaveletParameters,
     sample_count: usize,
     time_step_s: f64,
-    size: usize,
-    forward: Arc<dyn Fft<f64>>,
-    inverse: Arc<dyn Fft<f64>>,
+    fourier: Fourier,
 }
 
 impl Morlet {
@@ -69,14 +66,11 @@ impl Morlet {
         let longest = half_width(parameters, parameters.frequency_min_hz, time_step_s);
         // Kernels beyond the record multiply nothing; with this size the ends do not wrap into it.
         let size = (sample_count + longest.min(sample_count - 1)).next_power_of_two();
-        let mut planner = FftPlanner::new();
         let plan = Self {
             parameters: *parameters,
             sample_count,
             time_step_s,
-            size,
-            forward: planner.plan_fft_forward(size),
-            inverse: planner.plan_fft_inverse(size),
+            fourier: Fourier::new(size),
         };
         if plan.inside(plan.level_count() - 1).is_empty() {
             return Err(Error::input(
@@ -133,12 +127,7 @@ impl Morlet {
 
     /// Spectrum of a signal, as [`Self::rows`] wants it.
     pub(super) fn spectrum(&self, signal: &[f64]) -> Vec<Complex64> {
-        let mut buffer = vec![Complex64::default(); self.size];
-        for (z, &value) in buffer.iter_mut().zip(signal) {
-            z.re = value;
-        }
-        self.forward.process(&mut buffer);
-        buffer
+        self.fourier.spectrum(signal.iter().copied())
     }
 
     /// Coefficients of several signals at one level: one row of `sample_count` values per spectrum.
@@ -148,10 +137,10 @@ impl Morlet {
         spectra: [&[Complex64]; N],
     ) -> [Vec<Complex64>; N] {
         let mut kernel = self.kernel(level);
-        self.forward.process(&mut kernel);
+        self.fourier.forward.process(&mut kernel);
         spectra.map(|spectrum| {
             let mut row: Vec<Complex64> = kernel.iter().zip(spectrum).map(|(k, x)| k * x).collect();
-            self.inverse.process(&mut row);
+            self.fourier.inverse.process(&mut row);
             row.truncate(self.sample_count);
             row
         })
@@ -163,15 +152,16 @@ impl Morlet {
         let f = self.frequency_hz(level);
         let scale = self.parameters.central_frequency / f;
         let half = half_width(&self.parameters, f, self.time_step_s).min(self.sample_count - 1);
-        let factor = PI.powf(-0.25) * self.time_step_s / scale.sqrt() / self.size as f64;
-        let mut kernel = vec![Complex64::default(); self.size];
+        let factor =
+            PI.powf(-0.25) * self.time_step_s / scale.sqrt() / self.fourier.length() as f64;
+        let mut kernel = vec![Complex64::default(); self.fourier.length()];
         for k in 0..=half {
             let time = k as f64 * self.time_step_s;
             let envelope = factor * (-0.5 * (time / scale).powi(2)).exp();
             let value = Complex64::from_polar(envelope, TAU * f * time);
             kernel[k] = value;
             if k > 0 {
-                kernel[self.size - k] = value.conj();
+                kernel[self.fourier.length() - k] = value.conj();
             }
         }
         kernel

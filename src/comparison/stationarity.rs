@@ -5,6 +5,7 @@ use super::morlet::{Morlet, WaveletParameters};
 use super::surrogates::{Gamma, phase_randomised};
 use super::{Metric, SignalPair};
 use crate::error::{Error, Result, non_negative};
+use crate::signal::mean_and_deviation;
 use rayon::prelude::*;
 use rustfft::num_complex::Complex64;
 use serde::Serialize;
@@ -273,14 +274,6 @@ fn spread(plan: &Morlet, spectrum: &[Complex64]) -> f64 {
     let (_, divergence_spread) = mean_and_deviation(divergence);
     let (_, log_spread) = mean_and_deviation(log_deviation);
     divergence_spread.powi(2) * (1.0 + log_spread.powi(2))
-}
-
-/// Mean and standard deviation with n − 1.
-fn mean_and_deviation(values: impl ExactSizeIterator<Item = f64> + Clone) -> (f64, f64) {
-    let n = values.len() as f64;
-    let mean = values.clone().sum::<f64>() / n;
-    let squares: f64 = values.map(|x| (x - mean).powi(2)).sum();
-    (mean, (squares / (n - 1.0)).sqrt())
 }
 
 #[cfg(test)]

@@ -1,9 +1,8 @@
 //! Stationary companions of a signal, its spectrum with random phases; and the gamma distribution of what is found of them, by
 //! maximum likelihood.
 
-use crate::signal::random_stream;
+use crate::signal::{Fourier, random_stream};
 use rand::Rng;
-use rustfft::FftPlanner;
 use rustfft::num_complex::Complex64;
 use statrs::function::gamma::checked_gamma_lr;
 use std::f64::consts::TAU;
@@ -12,10 +11,8 @@ use std::f64::consts::TAU;
 /// Nyquist term are kept.
 pub(super) fn phase_randomised(signal: &[f64], count: usize, seed: u64) -> Vec<Vec<f64>> {
     let n = signal.len();
-    let mut planner = FftPlanner::new();
-    let inverse = planner.plan_fft_inverse(n);
-    let mut spectrum: Vec<Complex64> = signal.iter().map(|&x| Complex64::from(x)).collect();
-    planner.plan_fft_forward(n).process(&mut spectrum);
+    let fourier = Fourier::new(n);
+    let spectrum = fourier.spectrum(signal.iter().copied());
     (0..count)
         .map(|index| {
             let mut random = random_stream(seed, index as u64);
@@ -25,8 +22,7 @@ pub(super) fn phase_randomised(signal: &[f64], count: usize, seed: u64) -> Vec<V
                 buffer[k] = Complex64::from_polar(spectrum[k].norm(), phase);
                 buffer[n - k] = buffer[k].conj();
             }
-            inverse.process(&mut buffer);
-            buffer.iter().map(|z| z.re / n as f64).collect()
+            fourier.sums(buffer).iter().map(|x| x / n as f64).collect()
         })
         .collect()
 }

@@ -135,8 +135,9 @@ impl<'a> Scan<'a> {
     /// Lowest speed of a scan from still air, m/s.
     pub(super) fn lowest(&self, to_m_s: f64) -> Result<f64> {
         let s = self.section.structure();
-        let slowest_hz = (0..s.dofs.len())
-            .map(|i| (s.stiffness[(i, i)] / s.mass[(i, i)]).sqrt() / TAU)
+        let slowest_hz = s
+            .still_air_rad_s()
+            .map(|omega| omega / TAU)
             .filter(|f| *f > 0.0)
             .fold(f64::INFINITY, f64::min);
         let nearly_still = (NEARLY_STILL * slowest_hz * s.width_m).min(1e-3 * to_m_s);

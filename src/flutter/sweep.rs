@@ -109,9 +109,7 @@ impl OnsetSweep {
                 Dof::names(&forces.dofs),
             ));
         }
-        let slowest = (0..nominal.dofs.len())
-            .map(|i| (nominal.stiffness[(i, i)] / nominal.mass[(i, i)]).sqrt())
-            .fold(f64::INFINITY, f64::min);
+        let slowest = nominal.still_air_rad_s().fold(f64::INFINITY, f64::min);
         let k_min = (LOWEST_PART * slowest * nominal.width_m / speed_max).clamp(1e-3, 0.5 * K_MAX);
         let grid = grid(k_min, forces.tested.map(|range| range.max.full_width()));
         let count = forces.count();

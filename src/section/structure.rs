@@ -51,6 +51,11 @@ impl Structure {
         !self.mode_names.is_empty()
     }
 
+    /// `√(K_ii/M_ii)` of every coordinate, rad/s: its frequency in still air where nothing couples it to another.
+    pub(crate) fn still_air_rad_s(&self) -> impl Iterator<Item = f64> + '_ {
+        (0..self.dofs.len()).map(|i| (self.stiffness[(i, i)] / self.mass[(i, i)]).sqrt())
+    }
+
     /// Name of the branch that starts as the mode of row `i`.
     pub(crate) fn branch_name(&self, i: usize) -> String {
         let name = self.mode_names.get(i).cloned();

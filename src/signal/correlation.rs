@@ -1,6 +1,6 @@
 //! Full cross-correlation of two real signals, and the energies of the parts that overlap.
 
-use rustfft::FftPlanner;
+use super::fourier::Fourier;
 use rustfft::num_complex::Complex64;
 
 /// `c(n) = Σ_k X₂[k+n] X₁[k]`, `|n| < N`: a positive lag means that `X₂` comes later.
@@ -14,12 +14,10 @@ pub(crate) struct CrossCorrelation {
 impl CrossCorrelation {
     /// Of two signals of equal length.
     pub(crate) fn new(reference: &[f64], compared: &[f64]) -> Self {
-        let mut product = cross_spectrum(reference, compared);
+        let product = cross_spectrum(reference, compared);
         let size = product.len();
-        FftPlanner::new()
-            .plan_fft_inverse(size)
-            .process(&mut product);
-        let values = product.iter().map(|z| z.re / size as f64).collect();
+        let sums = Fourier::new(size).sums(product);
+        let values = sums.iter().map(|x| x / size as f64).collect();
         Self {
             values,
             cumulated_energy: [cumulated_energy(reference), cumulated_energy(compared)],
@@ -80,14 +78,8 @@ impl CrossCorrelation {
 /// Transform of `compared` times the conjugate of that of `reference`, both padded with zeros to a power of two of at least
 /// twice the samples.
 pub(super) fn cross_spectrum(reference: &[f64], compared: &[f64]) -> Vec<Complex64> {
-    let size = (2 * reference.len()).next_power_of_two();
-    let forward = FftPlanner::new().plan_fft_forward(size);
-    let transform = |x: &[f64]| {
-        let mut z: Vec<Complex64> = x.iter().map(|v| (*v).into()).collect();
-        z.resize(size, Complex64::default());
-        forward.process(&mut z);
-        z
-    };
+    let fourier = Fourier::new((2 * reference.len()).next_power_of_two());
+    let transform = |x: &[f64]| fourier.spectrum(x.iter().copied());
     let mut product = transform(compared);
     for (z, w) in product.iter_mut().zip(transform(reference)) {
         *z *= w.conj();

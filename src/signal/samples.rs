@@ -18,6 +18,14 @@ pub(crate) fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len().max(1) as f64
 }
 
+/// Mean and standard deviation with n − 1; no numbers where there are too few.
+pub(crate) fn mean_and_deviation(values: impl ExactSizeIterator<Item = f64> + Clone) -> (f64, f64) {
+    let count = values.len() as f64;
+    let mean = values.clone().sum::<f64>() / count;
+    let squares: f64 = values.map(|v| (v - mean).powi(2)).sum();
+    (mean, (squares / (count - 1.0)).sqrt())
+}
+
 /// Largest distance of a value from the mean of all.
 pub(crate) fn largest_about_mean(values: &[f64]) -> f64 {
     let mean = mean(values);

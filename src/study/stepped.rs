@@ -92,10 +92,7 @@ pub fn stepped_onset(
 ) -> Result<SteppedAnswer> {
     let fmu = Fmu::open(path)?;
     let structure = model.section.structure()?;
-    let fastest_hz = (0..structure.dofs.len())
-        .map(|i| (structure.stiffness[(i, i)] / structure.mass[(i, i)]).sqrt())
-        .fold(0.0, f64::max)
-        / TAU;
+    let fastest_hz = structure.still_air_rad_s().fold(0.0, f64::max) / TAU;
     let mut found: Vec<Found> = Vec::with_capacity(STEPS_PER_PERIOD.len());
     for steps in STEPS_PER_PERIOD {
         let step = 1.0 / (steps * fastest_hz);

@@ -6,13 +6,13 @@
 
 use super::coefficients::CoefficientUncertainty;
 use super::draws::ModelDraws;
-use super::statistics::{moments, sample_quantile, two_sided_quantile};
+use super::statistics::{sample_quantile, two_sided_quantile};
 use crate::aerodynamics::Realizable;
 use crate::aeroelastic::{CoupledSection, CoupledSystem};
 use crate::error::{Error, Result};
 use crate::flutter::{FlutterSearch, Onset, OnsetInterval, OnsetSearch, find_onset};
 use crate::section::Structure;
-use crate::signal::random_stream;
+use crate::signal::{mean_and_deviation, random_stream};
 use crate::state_space::{complex, eigenvector};
 use crate::units::ReducedFrequencyRange;
 use nalgebra::{Complex, DMatrix, DVector};
@@ -191,7 +191,7 @@ pub(crate) fn resample_onset(
     }
     let mut speeds: Vec<f64> = found.iter().filter_map(|d| d.flatten()).collect();
     speeds.sort_by(f64::total_cmp);
-    let (mean_m_s, standard_deviation_m_s) = moments(&speeds);
+    let (mean_m_s, standard_deviation_m_s) = mean_and_deviation(speeds.iter().copied());
     let quantile = |part| sample_quantile(&speeds, speeds.len(), part).unwrap_or(f64::NAN);
     Ok(Some(ResampledOnset {
         resampling: plan.resampling,

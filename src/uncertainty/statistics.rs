@@ -61,14 +61,6 @@ fn beta_quantile(probability: f64, a: f64, b: f64) -> f64 {
     found.middle()
 }
 
-/// Mean and standard deviation with n − 1; no numbers where there are too few.
-pub(crate) fn moments(values: &[f64]) -> (f64, f64) {
-    let count = values.len() as f64;
-    let mean = values.iter().sum::<f64>() / count;
-    let squares: f64 = values.iter().map(|v| (v - mean).powi(2)).sum();
-    (mean, (squares / (count - 1.0)).sqrt())
-}
-
 /// Quantile of `count` values of which the lowest are `sorted`: linear between the order statistics, `(n − 1)p` from the first
 /// (Hyndman and Fan's type 7). `None` beyond the sorted ones.
 pub(crate) fn sample_quantile(sorted: &[f64], count: usize, probability: f64) -> Option<f64> {

@@ -7,11 +7,10 @@ use crate::aerodynamics::derivatives::{
 use crate::aerodynamics::{Transfer, TransferMatrix};
 use crate::error::{Error, Result};
 use crate::section::Dof;
+use crate::signal::Fourier;
 use crate::units::ReducedFrequency;
 use nalgebra::Complex;
-use rustfft::{Fft, FftPlanner};
 use std::f64::consts::TAU;
-use std::sync::Arc;
 
 /// Derivatives of one motion at one test point may differ by this fraction in `K` and still be one run.
 const SAME_K: f64 = 0.02;
@@ -149,32 +148,21 @@ pub(super) fn response(
 /// Fourier transforms of records of one length, padded with at least as many zeros.
 struct Transforms {
     samples: usize,
-    length: usize,
-    forward: Arc<dyn Fft<f64>>,
-    inverse: Arc<dyn Fft<f64>>,
+    fourier: Fourier,
 }
 
 impl Transforms {
     fn new(samples: usize) -> Self {
-        let length = (2 * samples.max(1)).next_power_of_two();
-        let mut planner = FftPlanner::new();
-        Self {
-            samples,
-            length,
-            forward: planner.plan_fft_forward(length),
-            inverse: planner.plan_fft_inverse(length),
-        }
+        let fourier = Fourier::new((2 * samples.max(1)).next_power_of_two());
+        Self { samples, fourier }
     }
 
     fn nothing(&self) -> Vec<Complex<f64>> {
-        vec![Complex::default(); self.length]
+        vec![Complex::default(); self.fourier.length()]
     }
 
     fn spectrum(&self, samples: &[f64]) -> Vec<Complex<f64>> {
-        let mut spectrum: Vec<Complex<f64>> = samples.iter().map(|x| (*x).into()).collect();
-        spectrum.resize(self.length, Complex::default());
-        self.forward.process(&mut spectrum);
-        spectrum
+        self.fourier.spectrum(samples.iter().copied())
     }
 
     /// Calls `f` with every bin from zero to half the sampling frequency and `G` there.
@@ -185,8 +173,9 @@ impl Transforms {
         scale_s: f64,
         f: &mut dyn FnMut(usize, &TransferMatrix),
     ) -> Result<()> {
-        for bin in 0..=self.length / 2 {
-            let omega = TAU * sampling_hz * bin as f64 / self.length as f64;
+        let length = self.fourier.length();
+        for bin in 0..=length / 2 {
+            let omega = TAU * sampling_hz * bin as f64 / length as f64;
             f(
                 bin,
                 &model.transfer(ReducedFrequency::from_full_width(omega * scale_s))?,
@@ -197,17 +186,14 @@ impl Transforms {
 
     /// Real motions give real forces: the other half of the spectrum is the conjugate.
     fn set(&self, spectrum: &mut [Complex<f64>], bin: usize, q: Complex<f64>) {
-        spectrum[(self.length - bin) % self.length] = q.conj();
+        let length = self.fourier.length();
+        spectrum[(length - bin) % length] = q.conj();
         spectrum[bin] = q;
     }
 
-    fn in_time(&self, mut spectrum: Vec<Complex<f64>>) -> Vec<f64> {
-        self.inverse.process(&mut spectrum);
-        let scale = 1.0 / self.length as f64;
-        spectrum
-            .iter()
-            .take(self.samples)
-            .map(|x| scale * x.re)
-            .collect()
+    fn in_time(&self, spectrum: Vec<Complex<f64>>) -> Vec<f64> {
+        let scale = 1.0 / self.fourier.length() as f64;
+        let sums = self.fourier.sums(spectrum).into_iter();
+        sums.take(self.samples).map(|x| scale * x).collect()
     }
 }

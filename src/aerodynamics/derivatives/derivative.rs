@@ -3,7 +3,6 @@
 use crate::error::{Error, Result};
 use crate::section::Dof;
 use serde::{Deserialize, Serialize};
-use std::fmt;
 use std::str::FromStr;
 
 /// One of the 18 aerodynamic derivatives.
@@ -102,11 +101,7 @@ impl Derivative {
     }
 }
 
-impl fmt::Display for Derivative {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(self.name())
-    }
-}
+displayed_by_name!(Derivative);
 
 impl FromStr for Derivative {
     type Err = Error;

@@ -10,7 +10,6 @@ use crate::aerodynamics::spline::{POINTS_AT_LEAST, Spline};
 use crate::error::{Error, Result};
 use crate::units::ReducedFrequency;
 use serde::{Deserialize, Serialize};
-use std::fmt;
 
 /// Points of different speed groups closer than this in `ln K` count as one test point.
 const NEARLY_EQUAL: f64 = 0.1;
@@ -98,11 +97,7 @@ impl Interpolation {
     }
 }
 
-impl fmt::Display for Interpolation {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(self.name())
-    }
-}
+displayed_by_name!(Interpolation);
 
 impl std::str::FromStr for Interpolation {
     type Err = Error;

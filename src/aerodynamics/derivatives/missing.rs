@@ -4,7 +4,6 @@ use super::{Derivative, DerivativePoint};
 use crate::error::{Error, Result};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::fmt;
 use std::str::FromStr;
 
 /// What is taken for `H4*`, `A4*` when a table does not hold them.
@@ -29,11 +28,7 @@ impl Missing {
     }
 }
 
-impl fmt::Display for Missing {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(self.name())
-    }
-}
+displayed_by_name!(Missing);
 
 impl FromStr for Missing {
     type Err = Error;

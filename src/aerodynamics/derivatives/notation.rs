@@ -29,7 +29,6 @@ use crate::section::Dof;
 use crate::units::ReducedFrequency;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
-use std::fmt;
 use std::str::FromStr;
 
 /// A way of writing the 18 numbers of a deck.
@@ -137,11 +136,7 @@ impl Notation {
     }
 }
 
-impl fmt::Display for Notation {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(self.name())
-    }
-}
+displayed_by_name!(Notation);
 
 impl FromStr for Notation {
     type Err = Error;

@@ -7,11 +7,10 @@
 use super::SpanProblem;
 use crate::buffeting::spectrum::GustComponent;
 use crate::error::{Error, Result, positive};
-use crate::signal::random_stream;
+use crate::signal::{Fourier, random_stream};
 use nalgebra::Complex;
 use rand::Rng;
 use rand_distr::StandardNormal;
-use rustfft::FftPlanner;
 
 /// Samples of a field at each node.
 const SAMPLES: std::ops::RangeInclusive<usize> = 16..=1 << 22;
@@ -64,7 +63,7 @@ pub fn turbulence_field(
         ));
     }
     let factors = problem.wind_factors();
-    let inverse = FftPlanner::new().plan_fft_inverse(samples);
+    let fourier = Fourier::new(samples);
     let gusts = GustComponent::BOTH.map(|component| {
         let coefficients = coefficients(
             problem,
@@ -74,13 +73,8 @@ pub fn turbulence_field(
             seed,
             &factors,
         );
-        coefficients
-            .into_iter()
-            .map(|mut x| {
-                inverse.process(&mut x);
-                x.iter().map(|z| z.re).collect()
-            })
-            .collect()
+        let in_time = coefficients.into_iter().map(|x| fourier.sums(x));
+        in_time.collect()
     });
     Ok(TurbulenceField {
         step_s,

@@ -5,8 +5,8 @@ use crate::aeroelastic::CoupledSection;
 use crate::buffeting::spectrum::GustComponent;
 use crate::error::{Error, Result, counted, positive};
 use crate::response::{Inputs, SectionState, Stepper};
+use crate::signal::Fourier;
 use nalgebra::{Complex, DMatrix, DVector, Dyn, LU};
-use rustfft::FftPlanner;
 use serde::{Deserialize, Serialize};
 
 /// How many records, how long, how fine.
@@ -181,25 +181,15 @@ pub(crate) fn modal_forces(
             counted(field.gusts[0].len(), "node"),
         ));
     }
-    let mut planner = FftPlanner::new();
-    let (forward, inverse) = (
-        planner.plan_fft_forward(samples),
-        planner.plan_fft_inverse(samples),
-    );
+    let fourier = Fourier::new(samples);
     let modes = problem.bridge.modes.len();
     let mut spectrum = DMatrix::<Complex<f64>>::zeros(modes, samples);
     for (component, rows) in GustComponent::BOTH.into_iter().zip(&field.gusts) {
         if problem.turbulence.component(component).is_none() {
             continue;
         }
-        let transformed: Vec<Vec<Complex<f64>>> = rows
-            .iter()
-            .map(|row| {
-                let mut x: Vec<Complex<f64>> = row.iter().map(|v| Complex::from(*v)).collect();
-                forward.process(&mut x);
-                x
-            })
-            .collect();
+        let transform = |row: &Vec<f64>| fourier.spectrum(row.iter().copied());
+        let transformed: Vec<_> = rows.iter().map(transform).collect();
         for k in 0..=samples / 2 {
             let frequency = k as f64 / (samples as f64 * field.step_s);
             let forces = problem.force_of_gusts(component, frequency, speed_m_s);
@@ -216,8 +206,7 @@ pub(crate) fn modal_forces(
         let mut x: Vec<Complex<f64>> = spectrum.row(m).iter().copied().collect();
         // the negative frequencies are the conjugates: twice the real part of the positive ones
         x[1..samples.div_ceil(2)].iter_mut().for_each(|z| *z *= 2.0);
-        inverse.process(&mut x);
-        x.iter().map(|z| z.re * scale).collect()
+        fourier.sums(x).iter().map(|x| x * scale).collect()
     };
     Ok((0..modes).map(to_time).collect())
 }

@@ -126,8 +126,9 @@ pub(super) trait MonitoredUnit: Unit {
 /// are none.
 pub(super) fn tested_winds(stepper: &Stepper, resources: &Resources) -> Option<[f64; 2]> {
     let s = stepper.section().structure();
-    let omega = (0..s.dofs.len()).map(|i| (s.stiffness[(i, i)] / s.mass[(i, i)]).sqrt());
-    let (slowest, fastest) = omega.fold((f64::INFINITY, 0.0_f64), |(a, b), w| (a.min(w), b.max(w)));
+    let (slowest, fastest) = s
+        .still_air_rad_s()
+        .fold((f64::INFINITY, 0.0_f64), |(a, b), w| (a.min(w), b.max(w)));
     let range = resources.model.tested_range;
     let low = fastest * s.width_m / range.max.full_width();
     let high = slowest * s.width_m / range.min.full_width();

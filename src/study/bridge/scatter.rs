@@ -8,8 +8,8 @@ use crate::bridge::Bridge;
 use crate::error::{Error, Result, non_negative};
 use crate::files::bridge::SectionBlock;
 use crate::flutter::{NearbyOnset, Onset, find_onset_of_modes};
-use crate::signal::random_stream;
-use crate::uncertainty::{ModelDraws, moments, sample_quantile};
+use crate::signal::{mean_and_deviation, random_stream};
+use crate::uncertainty::{ModelDraws, sample_quantile};
 use nalgebra::DMatrix;
 use rand::Rng;
 use rand_distr::StandardNormal;
@@ -140,7 +140,7 @@ impl BridgeStudy {
             ));
         }
         speeds.sort_by(f64::total_cmp);
-        let (mean_m_s, standard_deviation_m_s) = moments(&speeds);
+        let (mean_m_s, standard_deviation_m_s) = mean_and_deviation(speeds.iter().copied());
         let quantile = |p| sample_quantile(&speeds, speeds.len(), p).unwrap_or(f64::NAN);
         Ok(ScatteredOnset {
             scatter: *scatter,

@@ -2,7 +2,8 @@
 
 use super::plan::MonteCarloPlan;
 use crate::flutter::{SweepOutcome, SweptOnset};
-use crate::uncertainty::statistics::{clopper_pearson, moments, sample_quantile};
+use crate::signal::mean_and_deviation;
+use crate::uncertainty::statistics::{clopper_pearson, sample_quantile};
 use serde::Serialize;
 
 /// Failed samples that are named one by one; of more, their number is given.
@@ -172,7 +173,7 @@ impl Tally {
         let mut unsafe_speeds: Vec<(f64, bool)> = self.onsets.iter().map(|v| (*v, false)).collect();
         unsafe_speeds.extend(self.starts.iter().map(|v| (*v, true)));
         unsafe_speeds.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let (mean, deviation) = moments(&self.onsets);
+        let (mean, deviation) = mean_and_deviation(self.onsets.iter().copied());
         MonteCarloResult {
             model: model.to_owned(),
             seed: plan.seed,

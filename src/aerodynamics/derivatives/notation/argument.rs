@@ -3,7 +3,6 @@
 use crate::error::{Error, Result};
 use crate::units::{ReducedFrequency, ReducedVelocity};
 use serde::{Deserialize, Serialize};
-use std::fmt;
 use std::str::FromStr;
 
 /// Reduced velocity or reduced frequency of a test point.
@@ -67,11 +66,7 @@ impl Argument {
     }
 }
 
-impl fmt::Display for Argument {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(self.name())
-    }
-}
+displayed_by_name!(Argument);
 
 impl FromStr for Argument {
     type Err = Error;

@@ -4,7 +4,6 @@ use crate::aerodynamics::derivatives::Derivative;
 use crate::error::{Error, Result};
 use crate::section::Dof;
 use serde::{Deserialize, Serialize};
-use std::fmt;
 use std::str::FromStr;
 
 /// Which way heave and lift point. Rotation and moment are nose-up (windward edge up), sway and drag downwind in both.
@@ -55,11 +54,7 @@ impl Axes {
     }
 }
 
-impl fmt::Display for Axes {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(self.name())
-    }
-}
+displayed_by_name!(Axes);
 
 impl FromStr for Axes {
     type Err = Error;
