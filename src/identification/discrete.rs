@@ -142,7 +142,7 @@ pub(crate) fn fit_discrete(
         orders: if shared { fitted.orders(0) } else { Vec::new() },
         alpha_guideline: Some(guideline(&parameters, tested, delta_s, &records)),
         static_terms: [records.removed_means.clone(), fitted.constants()?].concat(),
-        memory: memory(&parameters, &records, delta_s, &pass.still_samples),
+        memory: memory(&parameters, &records, delta_s),
         constraints: None,
         covariance_assumption: "white residuals, exact motions".into(),
         notes: Vec::new(),
@@ -279,22 +279,16 @@ fn model(
 }
 
 /// Memory of the slowest chain against the rest before the motion, at the step of the model.
-fn memory(
-    parameters: &[(f64, usize)],
-    records: &Records,
-    delta_s: f64,
-    still_samples: &[usize],
-) -> Vec<MemoryReport> {
+fn memory(parameters: &[(f64, usize)], records: &Records, delta_s: f64) -> Vec<MemoryReport> {
     let memories = parameters.iter().map(|(a, l)| discrete_memory(*a, *l));
     let longest = memories.max().unwrap_or(0);
-    let account = |(record, still): (&DimensionlessRecord, &usize)| MemoryReport {
+    let account = |record: &DimensionlessRecord| MemoryReport {
         record: record.name().to_owned(),
         memory_samples: longest,
-        available_samples: *still,
+        available_samples: record.at_step(Some(delta_s)).0.still_samples(),
         step_s: delta_s / record.rate,
     };
-    let each = records.each.iter().zip(still_samples);
-    each.map(account).collect()
+    records.each.iter().map(account).collect()
 }
 
 /// (2.36) at the highest reduced frequency: `f_max/f_s = K Δs/2π`, whatever the speed; for the smallest `α` in use.

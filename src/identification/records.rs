@@ -147,7 +147,6 @@ impl<'a> RecordFit<'a> {
                     self.noise_ratio(),
                     &filters,
                 )?,
-                still_samples: pass.still_samples.clone(),
             })
         };
         sets.into_iter().zip(counts).map(fit).collect()
@@ -160,7 +159,6 @@ struct AtPoles<'a> {
     /// Poles of the filters of every transfer function, row by row.
     chains: Vec<Vec<f64>>,
     fitted: FittedSystems<'a>,
-    still_samples: Vec<usize>,
 }
 
 impl AtPoles<'_> {
@@ -191,7 +189,7 @@ impl AtPoles<'_> {
 
     /// Memory of the slowest chain against the rest, or what is discarded, before the motion.
     fn memory(&self) -> Result<Vec<MemoryReport>> {
-        let account = |(record, still): (&DimensionlessRecord, &usize)| {
+        let account = |record: &DimensionlessRecord| {
             let mut memory_samples = 0;
             for chain in &self.chains {
                 let own = FilterBank::new(chain.clone())?.memory(record.delta_s())?;
@@ -201,12 +199,11 @@ impl AtPoles<'_> {
             Ok(MemoryReport {
                 record: record.name().to_owned(),
                 memory_samples,
-                available_samples: discarded.max(*still),
+                available_samples: discarded.max(record.signals.still_samples()),
                 step_s: record.step_s,
             })
         };
-        let each = self.task.records.each.iter().zip(&self.still_samples);
-        each.map(account).collect()
+        self.task.records.each.iter().map(account).collect()
     }
 
     /// Fewer filters (shared poles only).

@@ -153,8 +153,6 @@ pub(crate) struct Pass {
     pub order: ColumnOrder,
     /// In the order of the records.
     pub stretches: Vec<Stretch>,
-    /// Samples before the motion starts, one number per record, at the step of the pass.
-    pub still_samples: Vec<usize>,
 }
 
 /// One pass over all records, in parallel. `make` builds the columns of a record.
@@ -179,20 +177,18 @@ pub(crate) fn pass<C: Columns>(
             part
         })
         .collect::<Result<Vec<_>>>()?;
-    let (stretches, still_samples): (Vec<_>, Vec<_>) = parts.into_iter().unzip();
     Ok(Pass {
         order: plan.order,
-        stretches: stretches.into_iter().flatten().collect(),
-        still_samples,
+        stretches: parts.into_iter().flatten().collect(),
     })
 }
 
-/// The stretches of one record, and the samples before its motion starts.
+/// The stretches of one record.
 fn one_record<C: Columns>(
     (index, record): (usize, &DimensionlessRecord),
     plan: &PassPlan,
     make: &mut C,
-) -> Result<(Vec<Stretch>, usize)> {
+) -> Result<Vec<Stretch>> {
     let (signals, step_s) = record.at_step(plan.delta_s);
     let sample = |t: &f64| (t / step_s).ceil().max(0.0) as usize;
     let ends: Vec<usize> = boundaries_s(record, plan).iter().map(sample).collect();
@@ -227,7 +223,7 @@ fn one_record<C: Columns>(
         ));
     }
     weigh(&mut closed, record, plan.weights);
-    Ok((closed, signals.still_samples()))
+    Ok(closed)
 }
 
 /// Where stretches end: at the beginning of every segment and at even distances in it, or at even distances without
