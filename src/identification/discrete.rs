@@ -6,7 +6,7 @@ use super::options::TimeWeights;
 use super::own::{OwnDecay, StaticTerm, describe_own, each_once, place_of};
 use super::report::{AlphaGuideline, FitReport, Fitted, MemoryReport};
 use super::time::fitted::FittedSystems;
-use super::time::pass::{ColumnOrder, Columns, OnProgress, Pass, PassPlan, Piece, pass};
+use super::time::pass::{ColumnOrder, Columns, OnProgress, Pass, PassPlan, Piece, pass_over};
 use super::time::record::{DimensionlessRecord, Records};
 use super::time::systems::ForceSystems;
 use crate::aerodynamics::DiscreteLaguerre;
@@ -168,7 +168,7 @@ pub(crate) fn discrete_pass(
         discard_s: 0.0,
         stride: 1,
         stretches,
-        pass: (1, 1),
+        number: (1, 1),
     };
     let columns = |_: &_| {
         Ok(DiscreteColumns::new(
@@ -177,7 +177,7 @@ pub(crate) fn discrete_pass(
             order.constant,
         ))
     };
-    pass(&records.each, &plan, progress, columns)
+    pass_over(&records.each, &plan, progress, columns)
 }
 
 /// Columns of the discrete model by the recursion (2.33); a candidate is a decay factor for each input.

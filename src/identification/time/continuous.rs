@@ -1,7 +1,7 @@
 //! Passes over records with the columns of continuous filters.
 
 use super::filters::{ContinuousColumns, NOISE_BANDWIDTH};
-use super::pass::{ColumnOrder, OnProgress, Pass, PassPlan, pass};
+use super::pass::{ColumnOrder, OnProgress, Pass, PassPlan, pass_over};
 use super::record::{DimensionlessRecord, Records};
 use crate::error::Result;
 use crate::identification::basis::Basis;
@@ -75,9 +75,9 @@ impl RecordFit<'_> {
             discard_s: self.fit.discard_s,
             stride: if rows.thinned { self.thinning() } else { 1 },
             stretches: rows.stretches,
-            pass: number,
+            number,
         };
-        pass(&self.records.each, &plan, self.progress, |record| {
+        pass_over(&self.records.each, &plan, self.progress, |record| {
             ContinuousColumns::new(record, &bases, self.cutoff_hz(record), constant)
         })
     }
