@@ -44,6 +44,14 @@ impl Rows {
     };
 }
 
+/// A chain made as long as the longest of a pass (see [`RecordFit::pass`]); its first filters stay what they are.
+pub(crate) fn padded(chain: &[f64], longest: usize) -> Vec<f64> {
+    let last = chain.last().copied().unwrap_or(1.0);
+    let mut padded = chain.to_vec();
+    padded.resize(longest, last);
+    padded
+}
+
 impl RecordFit<'_> {
     /// One pass with the given candidates, a chain of filters for each input, all of one length.
     pub(crate) fn pass(

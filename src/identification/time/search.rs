@@ -1,6 +1,6 @@
 //! Search of poles over records: every pass evaluates many candidates, the grid shrinks around the best.
 
-use super::continuous::{RecordFit, Rows};
+use super::continuous::{RecordFit, Rows, padded};
 use super::fitted::Joint;
 use super::systems::{ForceSystems, Systems};
 use crate::error::{Error, Result};
@@ -149,14 +149,6 @@ fn choice(entries: &[EntryForm], dofs: &[Dof], groups: Vec<Group>) -> Result<Cho
         chains: chains.map(|(p, e)| e.form.expand(p)).collect(),
         search,
     })
-}
-
-/// A chain made as long as the longest; its first filters stay what they are.
-pub(crate) fn padded(chain: &[f64], longest: usize) -> Vec<f64> {
-    let last = chain.last().copied().unwrap_or(1.0);
-    let mut padded = chain.to_vec();
-    padded.resize(longest, last);
-    padded
 }
 
 impl Group {
