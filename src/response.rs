@@ -31,8 +31,7 @@ use nalgebra::{DMatrix, DVector};
 use packed::{advanced, apply, settled};
 use sampling::Sampling;
 use series::{Drive, Moving, Series};
-use step_cache::StepCache;
-use values::{active_columns, load};
+use step_cache::{StepCache, active_columns, load};
 
 /// Samples of the force, or parts of a changing wind, that one step may take: beyond, it is refused at once. Each costs
 /// about a microsecond.
@@ -50,7 +49,7 @@ pub(crate) struct RepeatableStep {
     /// Its size, s.
     pub step_s: f64,
     /// Columns of the matrix that meet something other than zero.
-    columns: usize,
+    pub columns: usize,
 }
 
 /// Steps a coupled section.
@@ -177,8 +176,8 @@ impl Stepper {
         inputs: &Inputs,
         step_s: f64,
     ) -> Result<()> {
-        if let Some(standing) = self.standing(state, inputs, step_s)
-            && self.advance_as_before(state, inputs, &standing)
+        if let Some(step) = self.repeatable(state, inputs, step_s)
+            && self.repeat(state, inputs, step.columns)
         {
             return Ok(());
         }
@@ -236,7 +235,7 @@ impl Stepper {
 
     /// The step if wind and size are those of the last one by a matrix, and so are known to be right.
     #[inline]
-    pub(crate) fn standing(
+    pub(crate) fn repeatable(
         &self,
         state: &SectionState,
         inputs: &Inputs,
@@ -244,31 +243,31 @@ impl Stepper {
     ) -> Option<RepeatableStep> {
         let wind = inputs.wind_speed_m_s;
         let forces = [inputs.force.len(), inputs.force_rate.len()];
-        let stands = inputs.wind_speed_rate_m_s2 == 0.0
+        let repeatable = inputs.wind_speed_rate_m_s2 == 0.0
             && self.sampling.is_none()
             && state.values.len() == self.next.len()
             && forces == [(self.operand.len() - self.next.len()) / 2; 2]
             && state.last_wind_m_s == Some(wind)
             && self.cache.is_newest(wind, step_s)
             && !self.gusts_act(state, inputs);
-        stands.then(|| RepeatableStep {
+        repeatable.then(|| RepeatableStep {
             step_s,
             columns: active_columns(inputs, state.values.len()),
         })
     }
 
-    /// Takes a step that stands. Whatever is wrong with the forces leaves the state as it was.
+    /// Takes the newest step of the cache with so many columns of its matrix, see [`RepeatableStep`]. Whatever is wrong
+    /// with the forces leaves the state as it was.
     #[inline(always)]
-    pub(crate) fn advance_as_before(
+    pub(crate) fn repeat(
         &mut self,
         state: &mut SectionState,
         inputs: &Inputs,
-        standing: &RepeatableStep,
+        columns: usize,
     ) -> bool {
         let Some(step) = self.cache.newest() else {
             return false;
         };
-        let columns = standing.columns;
         let operand = if columns == state.values.len() {
             &state.values
         } else {
@@ -290,11 +289,8 @@ impl Stepper {
     ) -> Result<()> {
         self.cache
             .full_system(&self.section, inputs.wind_speed_m_s, step)?;
-        let standing = RepeatableStep {
-            step_s: step,
-            columns: active_columns(inputs, state.values.len()),
-        };
-        if self.advance_as_before(state, inputs, &standing) {
+        let columns = active_columns(inputs, state.values.len());
+        if self.repeat(state, inputs, columns) {
             return Ok(());
         }
         Err(overgrown())

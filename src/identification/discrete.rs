@@ -6,7 +6,7 @@ use super::options::TimeWeights;
 use super::own::{OwnDecay, StaticTerm, describe_own, each_once, place_of};
 use super::report::{AlphaGuideline, FitReport, Fitted, MemoryReport};
 use super::time::fitted::FittedSystems;
-use super::time::pass::{ColumnOrder, Columns, OnProgress, Pass, PassPlan, Piece, pass};
+use super::time::pass::{ColumnOrder, Columns, OnProgress, Pass, PassPlan, Piece, pass_over};
 use super::time::record::{DimensionlessRecord, Records};
 use super::time::systems::ForceSystems;
 use crate::aerodynamics::DiscreteLaguerre;
@@ -142,7 +142,7 @@ pub(crate) fn fit_discrete(
         orders: if shared { fitted.orders(0) } else { Vec::new() },
         alpha_guideline: Some(guideline(&parameters, tested, delta_s, &records)),
         static_terms: [records.removed_means.clone(), fitted.constants()?].concat(),
-        memory: memory(&parameters, &records, delta_s, &pass.still_samples),
+        memory: memory(&parameters, &records, delta_s),
         constraints: None,
         covariance_assumption: "white residuals, exact motions".into(),
         notes: Vec::new(),
@@ -168,7 +168,7 @@ pub(crate) fn discrete_pass(
         discard_s: 0.0,
         stride: 1,
         stretches,
-        pass: (1, 1),
+        number: (1, 1),
     };
     let columns = |_: &_| {
         Ok(DiscreteColumns::new(
@@ -177,7 +177,7 @@ pub(crate) fn discrete_pass(
             order.constant,
         ))
     };
-    pass(&records.each, &plan, progress, columns)
+    pass_over(&records.each, &plan, progress, columns)
 }
 
 /// Columns of the discrete model by the recursion (2.33); a candidate is a decay factor for each input.
@@ -279,22 +279,16 @@ fn model(
 }
 
 /// Memory of the slowest chain against the rest before the motion, at the step of the model.
-fn memory(
-    parameters: &[(f64, usize)],
-    records: &Records,
-    delta_s: f64,
-    still_samples: &[usize],
-) -> Vec<MemoryReport> {
+fn memory(parameters: &[(f64, usize)], records: &Records, delta_s: f64) -> Vec<MemoryReport> {
     let memories = parameters.iter().map(|(a, l)| discrete_memory(*a, *l));
     let longest = memories.max().unwrap_or(0);
-    let account = |(record, still): (&DimensionlessRecord, &usize)| MemoryReport {
+    let account = |record: &DimensionlessRecord| MemoryReport {
         record: record.name().to_owned(),
         memory_samples: longest,
-        available_samples: *still,
+        available_samples: record.at_step(Some(delta_s)).0.still_samples(),
         step_s: delta_s / record.rate,
     };
-    let each = records.each.iter().zip(still_samples);
-    each.map(account).collect()
+    records.each.iter().map(account).collect()
 }
 
 /// (2.36) at the highest reduced frequency: `f_max/f_s = K Δs/2π`, whatever the speed; for the smallest `α` in use.

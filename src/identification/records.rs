@@ -1,4 +1,6 @@
-//! Continuous models fitted to forced-vibration records: [`fit_records`] has the steps.
+//! Continuous models fitted to forced-vibration records: [`fit_records`] has the steps. Records are read, poles chosen by
+//! passes over thinned rows, every sample fitted at these poles in one more pass, the fit put under constraints where they
+//! bind, and written down as model and report.
 
 use super::basis::{Basis, assemble};
 use super::degenerate::note_lags;
@@ -8,11 +10,11 @@ use super::form::Form;
 use super::options::TimeFit;
 use super::own::describe_own;
 use super::report::{FitReport, Fitted, MemoryReport, OrderReport, SearchReport};
-use super::time::continuous::{RecordFit, Rows};
+use super::time::continuous::{RecordFit, Rows, padded};
 use super::time::fitted::FittedSystems;
 use super::time::pass::OnProgress;
 use super::time::record::{DimensionlessRecord, Records};
-use super::time::search::{ChosenPoles, PASSES, choose_poles, padded};
+use super::time::search::{ChosenPoles, PASSES, choose_poles};
 use super::time::systems::ForceSystems;
 use crate::aerodynamics::FilterBank;
 use crate::error::{Error, Result};
@@ -41,8 +43,10 @@ pub fn fit_records(
         progress,
     };
     let poles = choose_poles(&task, tested)?;
-    let (at_poles, search, constraints) = task.fit_at(poles)?;
-    let model = at_poles.model()?;
+    let fits = task.least_squares_at(&poles)?;
+    let (found, search, constraints) = task.under_constraints(fits, poles)?;
+    let model = found.model()?;
+    let entries = found.reports()?;
     let mut report = FitReport {
         method: format!(
             "{}{}, fitted to {} record(s) in the time domain",
@@ -51,15 +55,15 @@ pub fn fit_records(
             records.each.len()
         ),
         weights: fit.weights.describe().into(),
-        samples: at_poles.fitted.systems.whole(0).rows(),
+        samples: found.fitted.systems.whole(0).rows(),
         tested_range: tested,
-        condition: 1.0,
-        entries: at_poles.reports()?,
+        condition: entries.iter().map(|e| e.condition).fold(1.0, f64::max),
+        entries,
         search,
-        orders: at_poles.orders(),
+        orders: found.orders(),
         alpha_guideline: None,
-        static_terms: [records.removed_means.clone(), at_poles.fitted.constants()?].concat(),
-        memory: at_poles.memory()?,
+        static_terms: [records.removed_means.clone(), found.fitted.constants()?].concat(),
+        memory: found.memory()?,
         constraints,
         covariance_assumption:
             "noise of the forces is white before the low-pass, motions are exact, the poles count \
@@ -67,52 +71,18 @@ pub fn fit_records(
                 .into(),
         notes: Vec::new(),
     };
-    let conditions = report.entries.iter().map(|e| e.condition);
-    report.condition = conditions.fold(1.0, f64::max);
     report.judge(&fit.poles);
     note_lags(&model, &mut report.notes);
     Ok(Fitted { model, report })
 }
 
 impl<'a> RecordFit<'a> {
-    /// The last pass: least squares alone, and under the constraints where these are asked for and bind; with the search
-    /// that led there and what the constraints cost.
-    fn fit_at(
-        &'a self,
-        poles: ChosenPoles,
-    ) -> Result<(AtPoles<'a>, Vec<SearchReport>, Option<ConstraintReport>)> {
-        let ChosenPoles {
-            alone,
-            held,
-            wishes,
-        } = poles;
-        let mut sets = vec![alone.chains];
-        sets.extend(held.as_ref().map(|h| h.chains.clone()));
+    /// The pass over every sample, then least squares: a fit at the unconstrained poles and, where the constrained ones
+    /// are others, one at those.
+    fn least_squares_at(&'a self, poles: &ChosenPoles) -> Result<Vec<FitAtPoles<'a>>> {
+        let mut sets = vec![poles.unconstrained.chains.clone()];
+        sets.extend(poles.constrained.as_ref().map(|c| c.chains.clone()));
         sets.dedup();
-        let mut fits = self.at_poles(sets)?.into_iter();
-        let none = || Error::Numerical("fit to records: no fit".into());
-        let mut found = fits.next().ok_or_else(none)?;
-        let (reports, model, bases) = (found.reports()?, found.model()?, found.bases()?);
-        if held.is_some() {
-            found.fitted.constrain(&bases, &wishes)?;
-        }
-        let Some(held) = held.filter(|_| found.fitted.active().is_some()) else {
-            return Ok((found, alone.search, None));
-        };
-        if let Some(other) = fits.next() {
-            found = other;
-            found.fitted.constrain(&found.bases()?, &wishes)?;
-        }
-        let active = found.fitted.active().unwrap_or_default();
-        let with = found.reports()?;
-        let compared = (reports.as_slice(), bases.as_slice());
-        let dofs = &self.records.dofs;
-        let constraints = ConstraintReport::new(active, dofs, compared, &with, model);
-        Ok((found, held.search, Some(constraints)))
-    }
-
-    /// One fit by least squares for each set of chains, from one pass.
-    fn at_poles(&'a self, sets: Vec<Vec<Vec<f64>>>) -> Result<Vec<AtPoles<'a>>> {
         let feed = self.fit.form.feed_through().count();
         let longest = sets.iter().flatten().map(Vec::len).max().unwrap_or(0);
         let padded_row = |row: &[Vec<f64>]| row.iter().map(|c| padded(c, longest)).collect();
@@ -138,7 +108,7 @@ impl<'a> RecordFit<'a> {
                 systems: systems.by_ref().take(count).collect(),
             };
             let filters = self.fit.form.describe();
-            Ok(AtPoles {
+            Ok(FitAtPoles {
                 task: self,
                 chains,
                 fitted: FittedSystems::new(
@@ -147,23 +117,55 @@ impl<'a> RecordFit<'a> {
                     self.noise_ratio(),
                     &filters,
                 )?,
-                still_samples: pass.still_samples.clone(),
             })
         };
         sets.into_iter().zip(counts).map(fit).collect()
     }
+
+    /// The fit that is wanted, made of those of [`RecordFit::least_squares_at`]: by least squares alone or, where
+    /// constraints are asked for and bind, under them; with the search that led there and what the constraints cost.
+    fn under_constraints(
+        &self,
+        fits: Vec<FitAtPoles<'a>>,
+        poles: ChosenPoles,
+    ) -> Result<(FitAtPoles<'a>, Vec<SearchReport>, Option<ConstraintReport>)> {
+        let ChosenPoles {
+            unconstrained,
+            constrained,
+            wishes,
+        } = poles;
+        let mut fits = fits.into_iter();
+        let none = || Error::Numerical("fit to records: no fit".into());
+        let mut found = fits.next().ok_or_else(none)?;
+        let (reports, model, bases) = (found.reports()?, found.model()?, found.bases()?);
+        if constrained.is_some() {
+            found.fitted.constrain(&bases, &wishes)?;
+        }
+        let Some(constrained) = constrained.filter(|_| found.fitted.active().is_some()) else {
+            return Ok((found, unconstrained.search, None));
+        };
+        if let Some(other) = fits.next() {
+            found = other;
+            found.fitted.constrain(&found.bases()?, &wishes)?;
+        }
+        let active = found.fitted.active().unwrap_or_default();
+        let with = found.reports()?;
+        let compared = (reports.as_slice(), bases.as_slice());
+        let dofs = &self.records.dofs;
+        let constraints = ConstraintReport::new(active, dofs, compared, &with, model);
+        Ok((found, constrained.search, Some(constraints)))
+    }
 }
 
 /// A fit at given poles.
-struct AtPoles<'a> {
+struct FitAtPoles<'a> {
     task: &'a RecordFit<'a>,
     /// Poles of the filters of every transfer function, row by row.
     chains: Vec<Vec<f64>>,
     fitted: FittedSystems<'a>,
-    still_samples: Vec<usize>,
 }
 
-impl AtPoles<'_> {
+impl FitAtPoles<'_> {
     fn bases(&self) -> Result<Vec<Basis>> {
         let form = &self.task.fit.form;
         self.chains.iter().map(|c| Basis::new(form, c)).collect()
@@ -191,7 +193,7 @@ impl AtPoles<'_> {
 
     /// Memory of the slowest chain against the rest, or what is discarded, before the motion.
     fn memory(&self) -> Result<Vec<MemoryReport>> {
-        let account = |(record, still): (&DimensionlessRecord, &usize)| {
+        let account = |record: &DimensionlessRecord| {
             let mut memory_samples = 0;
             for chain in &self.chains {
                 let own = FilterBank::new(chain.clone())?.memory(record.delta_s())?;
@@ -201,12 +203,11 @@ impl AtPoles<'_> {
             Ok(MemoryReport {
                 record: record.name().to_owned(),
                 memory_samples,
-                available_samples: discarded.max(*still),
+                available_samples: discarded.max(record.signals.still_samples()),
                 step_s: record.step_s,
             })
         };
-        let each = self.task.records.each.iter().zip(&self.still_samples);
-        each.map(account).collect()
+        self.task.records.each.iter().map(account).collect()
     }
 
     /// Fewer filters (shared poles only).

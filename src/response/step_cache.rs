@@ -1,6 +1,7 @@
 //! Step and output matrices, kept per wind speed and step size.
 
 use super::packed::Packed;
+use super::values::Inputs;
 use crate::aeroelastic::CoupledSection;
 use crate::error::Result;
 use crate::state_space::{StepMatrices, c2d};
@@ -94,6 +95,7 @@ impl StepCache {
     }
 }
 
+/// Columns of a step: `[Φ, Γ₀, Γ₁]`.
 fn pack(s: &StepMatrices) -> Packed {
     let (n, m) = s.gamma_0.shape();
     Packed::new(n, n + 2 * m, |i, j| {
@@ -105,4 +107,26 @@ fn pack(s: &StepMatrices) -> Packed {
             s.gamma_1[(i, j - n - m)]
         }
     })
+}
+
+/// Writes `[z, w, ẇ]`, what the columns of a step meet. Apart, so that steps without a force need no room for it.
+#[inline(never)]
+pub(super) fn load(operand: &mut [f64], values: &[f64], inputs: &Inputs) {
+    let (z, rest) = operand.split_at_mut(values.len());
+    let (w, rate) = rest.split_at_mut(inputs.force.len());
+    z.copy_from_slice(values);
+    w.copy_from_slice(&inputs.force);
+    rate.copy_from_slice(&inputs.force_rate);
+}
+
+/// Columns of `[Φ, Γ₀, Γ₁]` that meet something other than zero.
+pub(super) fn active_columns(inputs: &Inputs, states: usize) -> usize {
+    // without a branch for each
+    let zero = |v: &[f64]| v.iter().fold(0, |bits, x| bits | (x.to_bits() << 1)) == 0;
+    let n = inputs.force.len();
+    match (zero(&inputs.force), zero(&inputs.force_rate)) {
+        (_, false) => states + 2 * n,
+        (false, true) => states + n,
+        (true, true) => states,
+    }
 }

@@ -158,25 +158,3 @@ impl Outputs {
         ]
     }
 }
-
-/// Writes `[z, w, ẇ]`. Apart, so that steps without a force need no room for it.
-#[inline(never)]
-pub(super) fn load(operand: &mut [f64], values: &[f64], inputs: &Inputs) {
-    let (z, rest) = operand.split_at_mut(values.len());
-    let (w, rate) = rest.split_at_mut(inputs.force.len());
-    z.copy_from_slice(values);
-    w.copy_from_slice(&inputs.force);
-    rate.copy_from_slice(&inputs.force_rate);
-}
-
-/// Columns of `[Φ, Γ₀, Γ₁]` that meet something other than zero.
-pub(super) fn active_columns(inputs: &Inputs, states: usize) -> usize {
-    // without a branch for each
-    let zero = |v: &[f64]| v.iter().fold(0, |bits, x| bits | (x.to_bits() << 1)) == 0;
-    let n = inputs.force.len();
-    match (zero(&inputs.force), zero(&inputs.force_rate)) {
-        (_, false) => states + 2 * n,
-        (false, true) => states + n,
-        (true, true) => states,
-    }
-}

@@ -84,30 +84,39 @@ pub(in crate::fmu) fn panic_text(panic: &(dyn Any + Send)) -> &str {
         .unwrap_or("without a message")
 }
 
-/// Carries out `body` on the instance behind `handle`, if `call` is legal there.
+/// A call, and the function of the interface that makes it, as messages name it.
+pub(in crate::fmu) struct Named<'a> {
+    call: Call,
+    function: &'a str,
+}
+
+impl From<Call> for Named<'_> {
+    #[inline]
+    fn from(call: Call) -> Self {
+        let function = call.name();
+        Self { call, function }
+    }
+}
+
+impl<'a> From<(Call, &'a str)> for Named<'a> {
+    #[inline]
+    fn from((call, function): (Call, &'a str)) -> Self {
+        Self { call, function }
+    }
+}
+
+/// Carries out `body` on the instance behind `handle`, if `call` is legal there. A function whose name in the interface
+/// is another than that of the call gives both.
 ///
 /// # Safety
 /// `handle` is NULL or was returned by `fmi2Instantiate`, has not been freed, and is not in use by another thread.
-pub(in crate::fmu) unsafe fn guarded(
-    handle: fmi2Component,
-    call: Call,
-    body: impl FnOnce(&mut Component) -> CallResult<()>,
-) -> fmi2Status {
-    // SAFETY: by the contract of this function
-    unsafe { guarded_as(handle, call, call.name(), body) }
-}
-
-/// The same for a function whose name in the interface is another than that of the call.
-///
-/// # Safety
-/// As [`guarded`].
 #[inline]
-pub(in crate::fmu) unsafe fn guarded_as(
+pub(in crate::fmu) unsafe fn guarded<'a>(
     handle: fmi2Component,
-    call: Call,
-    function: &str,
+    call: impl Into<Named<'a>>,
     body: impl FnOnce(&mut Component) -> CallResult<()>,
 ) -> fmi2Status {
+    let Named { call, function } = call.into();
     // SAFETY: by the contract of this function
     let Some(component) = (unsafe { handle.cast::<Component>().as_mut() }) else {
         return fmi2Status::fmi2Error;

@@ -3,7 +3,7 @@
 #![allow(non_snake_case, clippy::missing_safety_doc)]
 
 use super::Fmi3Boolean;
-use crate::fmu::fmi2::guard::{guarded_as, place};
+use crate::fmu::fmi2::guard::{guarded, place};
 use crate::fmu::fmi2::types::{fmi2Component, fmi2Status};
 use crate::fmu::fmi2::{
     fmi2EnterContinuousTimeMode, fmi2EnterEventMode, fmi2GetContinuousStates, fmi2GetDerivatives,
@@ -32,7 +32,7 @@ pub unsafe extern "C" fn fmi3UpdateDiscreteStates(
 ) -> fmi2Status {
     // SAFETY: handle and pointers are valid by the contract of the interface
     unsafe {
-        guarded_as(c, Call::NewDiscreteStates, "UpdateDiscreteStates", |_| {
+        guarded(c, (Call::NewDiscreteStates, "UpdateDiscreteStates"), |_| {
             for flag in [
                 discreteStatesNeedUpdate,
                 terminateSimulation,
@@ -66,10 +66,9 @@ pub unsafe extern "C" fn fmi3CompletedIntegratorStep(
 ) -> fmi2Status {
     // SAFETY: handle and pointers are valid by the contract of the interface
     unsafe {
-        guarded_as(
+        guarded(
             c,
-            Call::CompletedIntegratorStep,
-            "CompletedIntegratorStep",
+            (Call::CompletedIntegratorStep, "CompletedIntegratorStep"),
             |component| {
                 *place(enterEventMode.cast::<u8>(), "enterEventMode")? = 0;
                 *place(terminateSimulation.cast::<u8>(), "terminateSimulation")? = 0;
@@ -150,7 +149,7 @@ pub unsafe extern "C" fn fmi3GetNumberOfEventIndicators(
     // SAFETY: handle and pointer are valid by the contract of the interface
     unsafe {
         let call = Call::GetNominalsOfContinuousStates;
-        guarded_as(c, call, "GetNumberOfEventIndicators", |_| {
+        guarded(c, (call, "GetNumberOfEventIndicators"), |_| {
             *place(nEventIndicators, "nEventIndicators")? = 0;
             Ok(())
         })
@@ -166,7 +165,7 @@ pub unsafe extern "C" fn fmi3GetNumberOfContinuousStates(
     // SAFETY: handle and pointer are valid by the contract of the interface
     unsafe {
         let call = Call::GetNominalsOfContinuousStates;
-        guarded_as(c, call, "GetNumberOfContinuousStates", |component| {
+        guarded(c, (call, "GetNumberOfContinuousStates"), |component| {
             *place(nContinuousStates, "nContinuousStates")? = component.instance.state_count();
             Ok(())
         })

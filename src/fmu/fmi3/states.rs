@@ -3,7 +3,7 @@
 #![allow(non_snake_case, clippy::missing_safety_doc)]
 
 use super::life::{check_count, places};
-use crate::fmu::fmi2::guard::{array, array_mut, guarded, guarded_as};
+use crate::fmu::fmi2::guard::{array, array_mut, guarded};
 use crate::fmu::fmi2::types::{fmi2Component, fmi2FMUstate, fmi2Status, fmi2ValueReference};
 use crate::fmu::fmi2::{
     fmi2DeSerializeFMUstate, fmi2FreeFMUstate, fmi2GetFMUstate, fmi2SerializeFMUstate,
@@ -115,10 +115,9 @@ pub unsafe extern "C" fn fmi3GetAdjointDerivative(
 ) -> fmi2Status {
     // SAFETY: handle and arrays are valid by the contract of the interface
     unsafe {
-        guarded_as(
+        guarded(
             c,
-            Call::GetDirectionalDerivative,
-            "GetAdjointDerivative",
+            (Call::GetDirectionalDerivative, "GetAdjointDerivative"),
             |component| {
                 let unknowns = places(component, unknowns, nUnknowns, "unknowns")?;
                 let knowns = places(component, knowns, nKnowns, "knowns")?;

@@ -4,7 +4,7 @@
 
 use super::Fmi3Boolean;
 use super::life::{check_count, places};
-use crate::fmu::fmi2::guard::{array, array_mut, guarded, guarded_as};
+use crate::fmu::fmi2::guard::{array, array_mut, guarded};
 use crate::fmu::fmi2::types::{fmi2Component, fmi2Status, fmi2ValueReference};
 use crate::fmu::lifecycle::Call;
 
@@ -55,10 +55,9 @@ pub unsafe extern "C" fn fmi3GetOutputDerivatives(
 ) -> fmi2Status {
     // SAFETY: handle and arrays are valid by the contract of the interface
     unsafe {
-        guarded_as(
+        guarded(
             c,
-            Call::GetRealOutputDerivatives,
-            "GetOutputDerivatives",
+            (Call::GetRealOutputDerivatives, "GetOutputDerivatives"),
             |component| {
                 let references = array(vr, nvr, "valueReferences")?;
                 let orders = array(orders, nvr, "orders")?;

@@ -3,7 +3,7 @@
 #![allow(non_snake_case, clippy::missing_safety_doc)]
 
 use super::life::{check_count, places};
-use crate::fmu::fmi2::guard::{array, array_mut, guarded_as};
+use crate::fmu::fmi2::guard::{array, array_mut, guarded};
 use crate::fmu::fmi2::types::{fmi2Component, fmi2Status, fmi2String, fmi2ValueReference};
 use crate::fmu::instance::DataType;
 use crate::fmu::lifecycle::Call;
@@ -20,7 +20,7 @@ pub unsafe extern "C" fn fmi3GetFloat64(
 ) -> fmi2Status {
     // SAFETY: handle and arrays are valid by the contract of the interface
     unsafe {
-        guarded_as(c, Call::GetReal, "GetFloat64", |component| {
+        guarded(c, (Call::GetReal, "GetFloat64"), |component| {
             let references = array(vr, nvr, "valueReferences")?;
             let values = array_mut(values, nValues, "values")?;
             let time = component.groups.time();
@@ -64,7 +64,7 @@ pub unsafe extern "C" fn fmi3SetFloat64(
 ) -> fmi2Status {
     // SAFETY: handle and arrays are valid by the contract of the interface
     unsafe {
-        guarded_as(c, Call::SetReal, "SetFloat64", |component| {
+        guarded(c, (Call::SetReal, "SetFloat64"), |component| {
             let references = array(vr, nvr, "valueReferences")?;
             let values = array(values, nValues, "values")?;
             let places = component.groups.places(references)?;
@@ -85,7 +85,7 @@ pub unsafe extern "C" fn fmi3GetInt32(
 ) -> fmi2Status {
     // SAFETY: handle and arrays are valid by the contract of the interface
     unsafe {
-        guarded_as(c, Call::GetInteger, "GetInt32", |component| {
+        guarded(c, (Call::GetInteger, "GetInt32"), |component| {
             let places = places(component, vr, nvr, "valueReferences")?;
             check_count("values", places.len(), nValues)?;
             for (place, value) in places.iter().zip(array_mut(values, nValues, "values")?) {
@@ -107,7 +107,7 @@ pub unsafe extern "C" fn fmi3GetBoolean(
 ) -> fmi2Status {
     // SAFETY: handle and arrays are valid by the contract of the interface
     unsafe {
-        guarded_as(c, Call::GetBoolean, "GetBoolean", |component| {
+        guarded(c, (Call::GetBoolean, "GetBoolean"), |component| {
             let places = places(component, vr, nvr, "valueReferences")?;
             check_count("values", places.len(), nValues)?;
             // what the importer has there need not be a truth value yet
@@ -134,7 +134,7 @@ pub unsafe extern "C" fn fmi3GetString(
 ) -> fmi2Status {
     // SAFETY: handle and arrays are valid by the contract of the interface
     unsafe {
-        guarded_as(c, Call::GetString, "GetString", |component| {
+        guarded(c, (Call::GetString, "GetString"), |component| {
             let places = places(component, vr, nvr, "valueReferences")?;
             check_count("values", places.len(), nValues)?;
             for (place, value) in places.iter().zip(array_mut(values, nValues, "values")?) {
@@ -155,7 +155,7 @@ unsafe fn none_to_set(
 ) -> fmi2Status {
     // SAFETY: by the contract of this function
     unsafe {
-        guarded_as(c, call, name, |component| {
+        guarded(c, (call, name), |component| {
             let places = places(component, vr, nvr, "valueReferences")?;
             component.instance.refuse_to_set(&places, of_type)
         })
@@ -163,11 +163,11 @@ unsafe fn none_to_set(
 }
 
 /// # Safety
-/// As [`guarded_as`].
+/// As [`guarded`].
 unsafe fn none_of_type(c: fmi2Component, call: Call, name: &str, nvr: usize) -> fmi2Status {
     // SAFETY: by the contract of this function
     unsafe {
-        guarded_as(c, call, name, |_| match nvr {
+        guarded(c, (call, name), |_| match nvr {
             0 => Ok(()),
             found => Err(Refusal::error(format!(
                 "there are no variables of this type, found {found} references"

@@ -281,20 +281,20 @@ impl Unit for SectionUnit {
         if let Some(stepper) = &mut self.stepper {
             stepper.advance(&mut memory.system, &self.inputs, step)?;
             if !matches!(self.loaded, LoadedInputs::Stale) {
-                let standing = stepper.standing(&memory.system, &self.inputs, step);
-                self.loaded = standing.map_or(LoadedInputs::Current, LoadedInputs::Repeatable);
+                let repeatable = stepper.repeatable(&memory.system, &self.inputs, step);
+                self.loaded = repeatable.map_or(LoadedInputs::Current, LoadedInputs::Repeatable);
             }
         }
         Ok(false)
     }
 
     fn repeat(&mut self, memory: &mut Memory, step: f64) -> Option<bool> {
-        let (LoadedInputs::Repeatable(standing), Some(stepper)) = (&self.loaded, &mut self.stepper)
+        let (LoadedInputs::Repeatable(last), Some(stepper)) = (&self.loaded, &mut self.stepper)
         else {
             return None;
         };
-        let taken = standing.step_s == step
-            && stepper.advance_as_before(&mut memory.system, &self.inputs, standing);
+        let taken =
+            last.step_s == step && stepper.repeat(&mut memory.system, &self.inputs, last.columns);
         taken.then(|| self.rotation_news(memory))
     }
 

@@ -36,20 +36,17 @@ impl Instance {
     #[inline(never)]
     fn do_step_anew(&mut self, point: f64, step: f64) -> CallResult<()> {
         self.check_step(point, step)?;
-        if let Err(refusal) = self.advance(step) {
+        let (resources, memory) = (&self.resources, &mut self.memory);
+        let prepared = self.unit.prepare(resources, memory).map_err(Refusal::from);
+        let advanced = prepared.and_then(|()| self.unit.advance(resources, memory, step));
+        self.outputs_current = advanced.map_err(|refusal| {
             self.memory.state = State::StepFailed;
-            return Err(Refusal::discard(refusal.message));
-        }
-        self.run_inputs_on(step);
-        self.memory.time = point + step;
-        Ok(())
-    }
-
-    fn advance(&mut self, step: f64) -> CallResult<()> {
-        self.unit.prepare(&self.resources, &mut self.memory)?;
-        self.outputs_current = self.unit.advance(&self.resources, &mut self.memory, step)?;
+            Refusal::discard(refusal.message)
+        })?;
         // after the step: one that is refused is refused at once
         self.watch();
+        self.run_inputs_on(step);
+        self.memory.time = point + step;
         Ok(())
     }
 

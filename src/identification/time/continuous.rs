@@ -1,7 +1,7 @@
 //! Passes over records with the columns of continuous filters.
 
 use super::filters::{ContinuousColumns, NOISE_BANDWIDTH};
-use super::pass::{ColumnOrder, OnProgress, Pass, PassPlan, pass};
+use super::pass::{ColumnOrder, OnProgress, Pass, PassPlan, pass_over};
 use super::record::{DimensionlessRecord, Records};
 use crate::error::Result;
 use crate::identification::basis::Basis;
@@ -44,6 +44,14 @@ impl Rows {
     };
 }
 
+/// A chain made as long as the longest of a pass (see [`RecordFit::pass`]); its first filters stay what they are.
+pub(crate) fn padded(chain: &[f64], longest: usize) -> Vec<f64> {
+    let last = chain.last().copied().unwrap_or(1.0);
+    let mut padded = chain.to_vec();
+    padded.resize(longest, last);
+    padded
+}
+
 impl RecordFit<'_> {
     /// One pass with the given candidates, a chain of filters for each input, all of one length.
     pub(crate) fn pass(
@@ -75,9 +83,9 @@ impl RecordFit<'_> {
             discard_s: self.fit.discard_s,
             stride: if rows.thinned { self.thinning() } else { 1 },
             stretches: rows.stretches,
-            pass: number,
+            number,
         };
-        pass(&self.records.each, &plan, self.progress, |record| {
+        pass_over(&self.records.each, &plan, self.progress, |record| {
             ContinuousColumns::new(record, &bases, self.cutoff_hz(record), constant)
         })
     }

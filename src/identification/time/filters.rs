@@ -183,8 +183,6 @@ pub(crate) struct ContinuousColumns<'a> {
     filters: Vec<Vec<f64>>,
     /// The constant, if there is one.
     ones: Option<Vec<f64>>,
-    starting: Vec<bool>,
-    rows: usize,
 }
 
 impl<'a> ContinuousColumns<'a> {
@@ -236,8 +234,6 @@ impl<'a> ContinuousColumns<'a> {
             force: (0..inputs).map(|_| Filtered::new()).collect(),
             filters: vec![vec![0.0; longest * BLOCK_ROWS]; inputs],
             ones: constant.then(|| vec![1.0; BLOCK_ROWS]),
-            starting: vec![false; inputs],
-            rows: 0,
         })
     }
 }
@@ -290,31 +286,27 @@ impl Columns for ContinuousColumns<'_> {
     }
 
     fn advance(&mut self, piece: &Piece<'_>, active: &[usize]) {
-        self.rows = piece.rows();
         for &j in active {
             // an input that was zero so far has started from rest, unless the record begins with it
             if piece.first > 0 {
                 self.motion[j].started = true;
             }
-            self.starting[j] = !self.motion[j].started;
+            if !self.motion[j].started {
+                let first = piece.motion[j][0];
+                for (steps, states) in self.steps.iter().zip(&mut self.states) {
+                    states[j] = steps[j].rest.iter().map(|x| x * first).collect();
+                }
+            }
             self.motion[j].advance(&self.low_pass, piece.motion[j]);
         }
         for (filter, samples) in self.force.iter_mut().zip(&piece.force) {
             filter.advance(&self.low_pass, samples);
         }
-        for (steps, states) in self.steps.iter().zip(&mut self.states) {
-            for &j in active {
-                if self.starting[j] {
-                    let first = piece.motion[j][0];
-                    states[j] = steps[j].rest.iter().map(|x| x * first).collect();
-                }
-            }
-        }
     }
 
     fn columns<'a>(
         &'a mut self,
-        _: &Piece<'a>,
+        piece: &Piece<'a>,
         candidate: usize,
         active: &[usize],
     ) -> Vec<&'a [f64]> {
@@ -322,7 +314,7 @@ impl Columns for ContinuousColumns<'_> {
             let state = &mut self.states[candidate][j];
             self.steps[candidate][j].advance(&self.motion[j], state, &mut self.filters[j]);
         }
-        let rows = self.rows;
+        let rows = piece.rows();
         let (feed, count) = self.bases[candidate]
             .first()
             .map_or((FeedThrough::none(), 0), |b| (b.feed(), b.poles().len()));

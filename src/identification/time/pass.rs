@@ -123,7 +123,7 @@ pub(crate) struct PassPlan {
     /// Into how many stretches every segment is cut; 0 cuts where the weights change only.
     pub stretches: usize,
     /// Number of the pass, and of all passes, for the progress.
-    pub pass: (usize, usize),
+    pub number: (usize, usize),
 }
 
 /// A stretch of one record between two boundaries, factored by itself.
@@ -153,12 +153,10 @@ pub(crate) struct Pass {
     pub order: ColumnOrder,
     /// In the order of the records.
     pub stretches: Vec<Stretch>,
-    /// Samples before the motion starts, one number per record, at the step of the pass.
-    pub still_samples: Vec<usize>,
 }
 
 /// One pass over all records, in parallel. `make` builds the columns of a record.
-pub(crate) fn pass<C: Columns>(
+pub(crate) fn pass_over<C: Columns>(
     records: &[DimensionlessRecord],
     plan: &PassPlan,
     progress: OnProgress<'_>,
@@ -171,28 +169,26 @@ pub(crate) fn pass<C: Columns>(
         .map(|(r, record)| {
             let part = one_record((r, record), plan, &mut make(record)?);
             progress(Progress {
-                pass: plan.pass.0,
-                passes: plan.pass.1,
+                pass: plan.number.0,
+                passes: plan.number.1,
                 records_done: 1 + finished.fetch_add(1, Ordering::Relaxed),
                 records: records.len(),
             });
             part
         })
         .collect::<Result<Vec<_>>>()?;
-    let (stretches, still_samples): (Vec<_>, Vec<_>) = parts.into_iter().unzip();
     Ok(Pass {
         order: plan.order,
-        stretches: stretches.into_iter().flatten().collect(),
-        still_samples,
+        stretches: parts.into_iter().flatten().collect(),
     })
 }
 
-/// The stretches of one record, and the samples before its motion starts.
+/// The stretches of one record.
 fn one_record<C: Columns>(
     (index, record): (usize, &DimensionlessRecord),
     plan: &PassPlan,
-    make: &mut C,
-) -> Result<(Vec<Stretch>, usize)> {
+    maker: &mut C,
+) -> Result<Vec<Stretch>> {
     let (signals, step_s) = record.at_step(plan.delta_s);
     let sample = |t: &f64| (t / step_s).ceil().max(0.0) as usize;
     let ends: Vec<usize> = boundaries_s(record, plan).iter().map(sample).collect();
@@ -210,9 +206,9 @@ fn one_record<C: Columns>(
         let range = at..end.min(signals.len());
         let piece = signals.piece(range.clone());
         let moving = activate(&piece, &mut active);
-        make.advance(&piece, &active);
+        maker.advance(&piece, &active);
         if at >= discard {
-            open.take(&piece, moving, plan, &active, make, at as f64 * step_s);
+            open.take(&piece, moving, plan, &active, maker, at as f64 * step_s);
             rows += piece.rows();
         }
         at = range.end;
@@ -227,7 +223,7 @@ fn one_record<C: Columns>(
         ));
     }
     weigh(&mut closed, record, plan.weights);
-    Ok((closed, signals.still_samples()))
+    Ok(closed)
 }
 
 /// Where stretches end: at the beginning of every segment and at even distances in it, or at even distances without
@@ -236,7 +232,7 @@ fn boundaries_s(record: &DimensionlessRecord, plan: &PassPlan) -> Vec<f64> {
     let segments = record.segments();
     let mut ends = vec![plan.discard_s];
     if plan.stretches > 0 || plan.weights == TimeWeights::PerSegment {
-        ends.extend(record.segment_starts());
+        ends.extend(segments.iter().skip(1).map(|s| s.start_s));
     }
     if plan.stretches > 0 && segments.is_empty() {
         ends.extend((1..MAX_STRETCHES).map(|i| i as f64 * STRETCH_S));
@@ -290,7 +286,7 @@ impl OpenStretch {
         moving: usize,
         plan: &PassPlan,
         active: &[usize],
-        make: &mut C,
+        maker: &mut C,
         time_s: f64,
     ) {
         let forces = plan.order.inputs;
@@ -299,12 +295,12 @@ impl OpenStretch {
         }
         if self.sets.last().is_none_or(|(set, _)| set != active) {
             let empty = StreamingQr::new(plan.order.width(active.len()), forces);
-            let systems = vec![empty; make.candidates()];
+            let systems = vec![empty; maker.candidates()];
             self.sets.push((active.to_vec(), systems));
         }
         let systems = self.sets.last_mut().into_iter().flat_map(|(_, s)| s);
         for (candidate, system) in systems.enumerate() {
-            let columns = make.columns(piece, candidate, active);
+            let columns = maker.columns(piece, candidate, active);
             if candidate == 0 {
                 let filtered = &columns[columns.len() - forces..];
                 for (sum, force) in self.squares.iter_mut().zip(filtered) {

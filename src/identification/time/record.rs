@@ -192,11 +192,6 @@ impl DimensionlessRecord {
         &self.header.segments
     }
 
-    /// Instants (s) at which one segment gives way to the next.
-    pub(crate) fn segment_starts(&self) -> Vec<f64> {
-        self.segments().iter().skip(1).map(|s| s.start_s).collect()
-    }
-
     /// Reduced frequencies of the segments; for other motions the band that holds their power.
     fn tested_range(&self) -> Option<ReducedFrequencyRange> {
         let k = |per_sample: f64| ReducedFrequency::from_full_width(per_sample / self.delta_s());

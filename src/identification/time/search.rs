@@ -1,6 +1,6 @@
 //! Search of poles over records: every pass evaluates many candidates, the grid shrinks around the best.
 
-use super::continuous::{RecordFit, Rows};
+use super::continuous::{RecordFit, Rows, padded};
 use super::fitted::Joint;
 use super::systems::{ForceSystems, Systems};
 use crate::error::{Error, Result};
@@ -45,10 +45,10 @@ pub(crate) struct Choice {
 
 /// What [`choose_poles`] finds.
 pub(crate) struct ChosenPoles {
-    /// By least squares.
-    pub alone: Choice,
+    /// By least squares alone.
+    pub unconstrained: Choice,
     /// Under the constraints, where some are asked for.
-    pub held: Option<Choice>,
+    pub constrained: Option<Choice>,
     /// The constraints.
     pub wishes: FitRequirements,
 }
@@ -73,8 +73,8 @@ pub(crate) fn choose_poles(
         .into_iter()
         .map(group)
         .collect::<Result<Vec<_>>>()?;
-    let alone = groups.len();
-    if wishes.any() && alone == 1 && groups[0].members.len() == entries.len() {
+    let unconstrained = groups.len();
+    if wishes.any() && unconstrained == 1 && groups[0].members.len() == entries.len() {
         let members = groups[0].members.clone();
         groups.push(Group {
             held: Some(wishes.clone()),
@@ -89,16 +89,16 @@ pub(crate) fn choose_poles(
         }
         task.evaluate(&mut groups, pass, longest)?;
     }
-    let held = groups.split_off(alone);
-    let alone = choice(&entries, dofs, groups)?;
-    let held = match (wishes.any(), held.is_empty()) {
+    let constrained = groups.split_off(unconstrained);
+    let unconstrained = choice(&entries, dofs, groups)?;
+    let constrained = match (wishes.any(), constrained.is_empty()) {
         (false, _) => None,
-        (true, true) => Some(alone.clone()),
-        (true, false) => Some(choice(&entries, dofs, held)?),
+        (true, true) => Some(unconstrained.clone()),
+        (true, false) => Some(choice(&entries, dofs, constrained)?),
     };
     Ok(ChosenPoles {
-        alone,
-        held,
+        unconstrained,
+        constrained,
         wishes,
     })
 }
@@ -149,14 +149,6 @@ fn choice(entries: &[EntryForm], dofs: &[Dof], groups: Vec<Group>) -> Result<Cho
         chains: chains.map(|(p, e)| e.form.expand(p)).collect(),
         search,
     })
-}
-
-/// A chain made as long as the longest; its first filters stay what they are.
-pub(crate) fn padded(chain: &[f64], longest: usize) -> Vec<f64> {
-    let last = chain.last().copied().unwrap_or(1.0);
-    let mut padded = chain.to_vec();
-    padded.resize(longest, last);
-    padded
 }
 
 impl Group {
