@@ -12,7 +12,7 @@ use crate::error::{Error, Result, counted};
 use crate::files::gusts::write_gusts;
 use crate::flutter::FlutterSearch;
 use crate::report::{
-    DerivativePlot, DerivativesPlot, PlottedSeries, TimePanel, VfVgOptions, derivatives_figure,
+    DerivativePlot, DerivativesPlot, PlottedSeries, TimePanel, derivatives_figure,
     equilibrium_figure, time_history_figure, vf_vg_figure,
 };
 use crate::study::{
@@ -66,12 +66,9 @@ fn draw(study: &WindStudy, results: &QuasiSteadyStudy, out: &mut OutputDir) -> R
         equilibrium_figure(&study.name, &results.dofs, &results.equilibria)
     })?;
     let onsets: Vec<_> = results.onset.search.onset().cloned().into_iter().collect();
-    let options = VfVgOptions {
-        title: Some(study.name.clone()),
-        ..VfVgOptions::default()
-    };
+    let curves = std::slice::from_ref(&results.curves);
     figures::write("quasi_steady_modes", out, || {
-        vf_vg_figure(std::slice::from_ref(&results.curves), &onsets, &options)
+        vf_vg_figure(curves, &onsets, Some(&study.name), None)
     })
 }
 
