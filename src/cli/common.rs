@@ -3,6 +3,9 @@
 use crate::error::{Error, Result};
 use crate::section::Dof;
 use crate::study::{Study, study_warnings};
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use serde::de::value::Error as NotOne;
+use serde::de::{DeserializeOwned, IntoDeserializer};
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -12,6 +15,17 @@ pub(crate) fn warn(file: &Path, warnings: &[String]) {
         // standard error may be closed
         let _ = writeln!(std::io::stderr(), "warning: {}: {warning}", file.display());
     }
+}
+
+/// The words of an argument, each a value of `T` as files spell it.
+pub(crate) fn spelt<T>(
+    words: impl Into<PossibleValuesParser>,
+) -> impl TypedValueParser<Value = T>
+where
+    T: DeserializeOwned + Clone + Send + Sync + 'static,
+{
+    let value = |word: String| T::deserialize(IntoDeserializer::<NotOne>::into_deserializer(word));
+    words.into().try_map(value)
 }
 
 /// The folder of a file.
