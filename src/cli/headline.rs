@@ -55,24 +55,30 @@ pub(super) fn limits(
 ) -> Vec<String> {
     let mut limits = Vec::new();
     if let Some(onset) = own_onset(results, name).or(of_model(&results.undetermined, name)) {
-        if onset.in_tested_range == Some(false) {
-            limits.push(
-                "The onset lies outside the tested range: the model is extrapolated.".to_owned(),
-            );
-        }
-        match &onset.interval {
-            OnsetInterval::None { reason } | OnsetInterval::Undetermined { reason, .. } => {
-                limits.push(format!("No interval of the onset: {reason}"));
-            }
-            OnsetInterval::Known { .. } | OnsetInterval::Spread { .. } => {}
-        }
-        limits.extend(onset.warnings.iter().cloned());
+        limits.extend(limits_of(onset, "the model is"));
     }
     let growth = results.growth.iter().filter(|g| g.model == name);
     let growth = growth.filter(|g| !g.growth.is_none());
     limits.extend(growth.map(|g| g.growth.explain()));
     limits.extend(deck.warnings());
     limits.extend(failed.iter().map(StageFailure::explain));
+    limits
+}
+
+/// What limits trust in an onset; what is extrapolated beyond the tested range, with its verb.
+pub(super) fn limits_of(onset: &Onset, extrapolated: &str) -> Vec<String> {
+    let mut limits = Vec::new();
+    if onset.in_tested_range == Some(false) {
+        limits.push(format!(
+            "The onset lies outside the tested range: {extrapolated} extrapolated."
+        ));
+    }
+    if let OnsetInterval::None { reason } | OnsetInterval::Undetermined { reason, .. } =
+        &onset.interval
+    {
+        limits.push(format!("No interval of the onset: {reason}"));
+    }
+    limits.extend(onset.warnings.iter().cloned());
     limits
 }
 

@@ -3,12 +3,12 @@
 use crate::aerodynamics::{GustForce, RationalAdmittance};
 use crate::cli::account;
 use crate::cli::answer::Answer;
-use crate::cli::bridge::BRIDGE_FMU;
-use crate::cli::common::{spelt, warn};
+use crate::cli::bridge::{self, BRIDGE_FMU};
+use crate::cli::common::spelt;
 use crate::cli::progress::Progress;
 use crate::cli::stages;
 use crate::error::{Error, Result, counted};
-use crate::files::bridge::{BridgeFile, read_field};
+use crate::files::bridge::read_field;
 use crate::files::coefficients::gust_force;
 use crate::fmu::force_options::{ForceOptions, MAX_STRIPS};
 use crate::fmu::onset_bounds::OnsetBounds;
@@ -17,7 +17,7 @@ use crate::fmu::package::{
     write_fmu,
 };
 use crate::fmu::variables::Listing;
-use crate::study::bridge::{BridgeExportOptions, BridgeStudy};
+use crate::study::bridge::BridgeExportOptions;
 use crate::study::uncertainty_beside;
 use crate::trained_model::TrainedModel;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -168,10 +168,7 @@ impl Args {
 impl Args {
     /// Packs a whole bridge.
     fn whole_bridge(&self, progress: &Progress) -> Result<Answer> {
-        let stage = progress.stage("reading the bridge");
-        let study = BridgeStudy::new(BridgeFile::read(&self.model)?)?;
-        drop(stage);
-        warn(&self.model, &study.notes);
+        let study = bridge::read(&self.model, progress)?;
         let path = self
             .out
             .clone()
