@@ -80,9 +80,8 @@ fn coefficients(results: &QuasiSteadyStudy) -> DerivativesPlot {
         DerivativePlot {
             name: name.to_owned(),
             measured: vec![PlottedSeries::new("table", table.collect())],
-            bars: Vec::new(),
             fitted: vec![PlottedSeries::new("spline", spline.collect())],
-            reference: Vec::new(),
+            ..DerivativePlot::default()
         }
     };
     DerivativesPlot {

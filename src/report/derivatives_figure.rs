@@ -10,7 +10,7 @@ use super::style::{BLACK, GREY, Ink, Shape, colour, dash};
 use crate::error::{Error, Result};
 
 /// One derivative (or any other quantity that is measured and fitted).
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct DerivativePlot {
     /// Name, e.g. `H1`: written as H₁*. Any other name stands as it is.
     pub name: String,

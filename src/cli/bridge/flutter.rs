@@ -216,7 +216,7 @@ fn write_derivatives(study: &BridgeStudy, number: usize, out: &mut OutputDir) ->
             "model".to_owned(),
             derivative_lines(model, tested.min.v_hat())?,
         )],
-        exact: None,
+        exact: Vec::new(),
         intervals: ("the model", &forces.derivative_intervals()?),
     };
     let stem = format!("{DERIVATIVES_FIGURE}{}", number + 1);

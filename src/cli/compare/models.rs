@@ -117,13 +117,12 @@ fn derivatives(results: &ModelsComparison) -> Result<Figure> {
             .map(|d| DerivativePlot {
                 name: d.name.to_owned(),
                 measured: vec![PlottedSeries::new("measured", d.measured.clone())],
-                bars: Vec::new(),
                 fitted: d
                     .models
                     .iter()
                     .map(|(model, points)| PlottedSeries::new(model, points.clone()))
                     .collect(),
-                reference: Vec::new(),
+                ..DerivativePlot::default()
             })
             .collect(),
     })
