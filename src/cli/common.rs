@@ -34,14 +34,6 @@ pub(crate) fn folder_of(file: &Path) -> &Path {
     parent.unwrap_or(Path::new("."))
 }
 
-/// Factor and unit in which people read a motion: degrees, or m.
-pub(crate) fn shown_in(dof: Dof) -> (f64, &'static str) {
-    match dof {
-        Dof::Torsion => (1f64.to_degrees(), "deg"),
-        Dof::Vertical | Dof::Lateral => (1.0, "m"),
-    }
-}
-
 /// Columns of the motion of degrees of freedom: `vertical_m`, `torsion_rad`; `what` and the units stand behind the name.
 pub(crate) fn motion_columns<'a>(
     dofs: &'a [Dof],

@@ -16,10 +16,7 @@ const GUSTS: [&str; 2] = ["u", "w"];
 
 /// Name, symbol and unit of an ordinate, and the factor to that unit from m and rad.
 fn ordinate(dof: Dof, before: &str) -> (String, f64) {
-    let (unit, factor) = match dof {
-        Dof::Torsion => ("deg", 1f64.to_degrees()),
-        _ => ("m", 1.0),
-    };
+    let (factor, unit) = dof.shown_in();
     (
         format!("{before}{} {} ({unit})", dof.name(), dof.symbol()),
         factor,
