@@ -3,14 +3,14 @@
 
 use super::figures;
 use super::output::OutputDir;
-use super::simulate::simulated;
+use super::simulate::{motion_panels, simulated};
 use super::stages::MAX_CURVES;
 use crate::aerodynamics::Transfer;
 use crate::aerodynamics::derivatives::{Derivative, DerivativeTable};
 use crate::error::Result;
 use crate::flutter::FlutterCurves;
 use crate::report::{
-    DerivativePlot, DerivativesPlot, PlottedSeries, TimePanel, derivatives_figure,
+    DerivativePlot, DerivativesPlot, PlottedSeries, derivatives_figure,
     root_locus_figure, time_history_figure,
 };
 use crate::section::Dof;
@@ -219,7 +219,7 @@ pub(super) fn write_response(
 ) -> Result<()> {
     let (speed_m_s, frequency_hz) = onset;
     let step = 1.0 / (PERIODS.1 * frequency_hz);
-    let mut panels: Vec<TimePanel> = Vec::new();
+    let mut runs = Vec::with_capacity(AROUND_ONSET.len());
     for factor in AROUND_ONSET {
         let speed = factor * speed_m_s;
         let percent = (100.0 * (factor - 1.0_f64)).round();
@@ -229,25 +229,9 @@ pub(super) fn write_response(
             format!("{speed:.1} m/s ({percent:+} %)")
         };
         let rows = simulated(model, speed, (PERIODS.0 / frequency_hz, step))?;
-        for (i, dof) in model.model.dofs().iter().enumerate() {
-            let (unit, scale) = match dof {
-                Dof::Torsion => ("deg", 1f64.to_degrees()),
-                Dof::Vertical | Dof::Lateral => ("mm", 1e3),
-            };
-            let points = rows
-                .iter()
-                .map(|row| (row[0], scale * row[1 + i]))
-                .collect();
-            let series = PlottedSeries::new(label.clone(), points);
-            match panels.get_mut(i) {
-                Some(panel) => panel.series.push(series),
-                None => panels.push(TimePanel {
-                    y_label: format!("{} {} ({unit})", dof.name(), dof.symbol()),
-                    series: vec![series],
-                }),
-            }
-        }
+        runs.push((label, rows));
     }
+    let panels = motion_panels(model.model.dofs(), &runs);
     let title = format!("{}: released below, at and above the onset", model.name);
     figures::write(RESPONSE, out, || {
         time_history_figure(&title, &panels, "Time t (s)")
