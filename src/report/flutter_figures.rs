@@ -8,7 +8,7 @@ use super::panel::{Note, Panel};
 use super::series::index_of;
 use super::style::{BLACK, GREY, Ink, PALE_GREY, Shape, branch_width, colour, dash, pale};
 use crate::error::{Error, Result};
-use crate::flutter::{FlutterCurves, ModePoint, Onset, OnsetInterval, OnsetMethod};
+use crate::flutter::{FlutterCurves, ModePoint, Onset, OnsetMethod};
 
 /// Frequencies (Hz) and damping ratios (per cent of critical) of all modes over wind speed (m/s).
 ///
@@ -136,13 +136,7 @@ impl VfVg {
 
     /// The bar of the interval below the zero line; the onset of the FMU has that of its model, which is drawn already.
     fn draw_interval(&mut self, onset: &Onset, colour: &'static str) {
-        let (OnsetInterval::Known {
-            low_m_s, high_m_s, ..
-        }
-        | OnsetInterval::Spread {
-            low_m_s, high_m_s, ..
-        }) = onset.interval
-        else {
+        let Some((low_m_s, high_m_s)) = onset.interval.ends() else {
             return;
         };
         if onset.at.method == OnsetMethod::FmuStepping {
