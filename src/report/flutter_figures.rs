@@ -5,7 +5,7 @@ use super::drawing::Drawing;
 use super::figure::Figure;
 use super::legend::Entry;
 use super::panel::{Note, Panel};
-use super::series::index_of;
+use super::series::{distinct, index_of};
 use super::style::{BLACK, GREY, Ink, PALE_GREY, Shape, branch_width, colour, dash, pale};
 use crate::error::{Error, Result};
 use crate::flutter::{FlutterCurves, ModePoint, Onset, OnsetMethod};
@@ -250,12 +250,7 @@ fn near_zero(points: &[(f64, f64)]) -> Vec<Vec<(f64, f64)>> {
 
 /// Names of the branches of all models, each once, in the order of their first appearance.
 pub(super) fn branch_names(curves: &[FlutterCurves]) -> Result<Vec<String>> {
-    let mut names: Vec<String> = Vec::new();
-    for branch in curves.iter().flat_map(|c| &c.branches) {
-        if !names.contains(&branch.name) {
-            names.push(branch.name.clone());
-        }
-    }
+    let names = distinct(curves.iter().flat_map(|c| &c.branches).map(|b| &b.name));
     if names.is_empty() {
         return Err(Error::input("flutter curves", "at least one mode", "none"));
     }

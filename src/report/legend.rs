@@ -3,6 +3,7 @@
 use super::font::text_width;
 use super::style::{BLACK, Ink, draw_marker};
 use super::text::text;
+use crate::error::Result;
 use kuva::render::color::Color;
 use kuva::render::render::{Primitive, Scene};
 
@@ -25,6 +26,17 @@ impl Entry {
             ink,
         }
     }
+}
+
+/// An entry for each label, in the ink of its place.
+pub(super) fn entries(
+    labels: &[String],
+    ink: impl Fn(usize) -> Result<Ink>,
+) -> Result<Vec<Entry>> {
+    let labels = labels.iter().enumerate();
+    labels
+        .map(|(i, label)| Ok(Entry::new(label, ink(i)?)))
+        .collect()
 }
 
 /// The entries with their places relative to the upper left corner.

@@ -1,7 +1,7 @@
 //! Static equilibria, spectra and root mean squares of the response to turbulence.
 
 use super::axis::Axis;
-use super::drawing::Drawing;
+use super::drawing::{Drawing, titled};
 use super::figure::Figure;
 use super::legend::Entry;
 use super::panel::Panel;
@@ -21,10 +21,6 @@ fn ordinate(dof: Dof, before: &str) -> (String, f64) {
         format!("{before}{} {} ({unit})", dof.name(), dof.symbol()),
         factor,
     )
-}
-
-fn titled(title: &str) -> Option<String> {
-    Some(title.to_owned()).filter(|t| !t.is_empty())
 }
 
 /// Static displacements over wind speed, one panel per degree of freedom; the end of the branch is an upright.
