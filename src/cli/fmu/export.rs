@@ -181,7 +181,8 @@ impl Args {
             gust_strips: self.gust_strips,
             admittance: self.admittance.unwrap_or_default(),
             turbulence,
-        })?;
+        });
+        let export = export.map_err(named_by_its_flag)?;
         let bytes = package_bridge(&export, &self.runtimes()?, &self.label()?, self.fmi)?;
         let overwrite = if self.force {
             Overwrite::Replace
@@ -204,6 +205,16 @@ impl Args {
         let json =
             serde_json::json!({ "fmu": path, "nodes": named, "modes": export.bridge.modes.len() });
         Answer::new(text, &json)
+    }
+}
+
+/// A refused bridge, with the flag instead of the option of the library.
+fn named_by_its_flag(error: Error) -> Error {
+    match error {
+        Error::Unstable(text) => {
+            Error::Unstable(text.replace("allow_unstable", "--allow-unstable"))
+        }
+        other => other,
     }
 }
 
