@@ -173,6 +173,14 @@ pub fn finite(place: impl Into<Place>, value: f64) -> Result<f64> {
     Err(Error::input(place, "a finite number", value.to_string()))
 }
 
+/// Nothing if the schema that a file states is the one that is read.
+pub(crate) fn of_schema(expected: u32, found: u32) -> Result<()> {
+    if found == expected {
+        return Ok(());
+    }
+    Err(Error::input("schema", expected.to_string(), found.to_string()))
+}
+
 /// Nothing if `values` are `count` finite numbers.
 pub(crate) fn finite_numbers(place: impl Into<Place>, values: &[f64], count: usize) -> Result<()> {
     if values.len() == count && values.iter().all(|x| x.is_finite()) {

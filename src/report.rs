@@ -39,7 +39,7 @@ pub(crate) use bridge_figures::modes_figure;
 pub use derivatives_figure::{DerivativePlot, DerivativesPlot, derivatives_figure};
 pub use figure::{Figure, PNG_SCALE};
 pub use first_order_figures::{ThesisFigure, first_order_figures};
-pub use flutter_figures::{VfVgOptions, vf_vg_figure};
+pub use flutter_figures::vf_vg_figure;
 pub(crate) use heat_map::{HeatMap, heat_map_figure};
 pub(crate) use metrics_figure::{MetricPanel, metrics_figure};
 pub(crate) use processing_figures::processing_figure;

@@ -60,6 +60,21 @@ impl Dof {
     pub(crate) fn names(dofs: &[Dof]) -> String {
         dofs.iter().map(|d| d.name()).collect::<Vec<_>>().join(", ")
     }
+    /// Factor and unit in which people read a motion: degrees, or m.
+    pub(crate) fn shown_in(self) -> (f64, &'static str) {
+        match self {
+            Dof::Torsion => (1f64.to_degrees(), "deg"),
+            Dof::Vertical | Dof::Lateral => (1.0, "m"),
+        }
+    }
+    /// Name of the force in words.
+    pub(crate) fn force_name(self) -> &'static str {
+        match self {
+            Dof::Vertical => "lift",
+            Dof::Lateral => "drag",
+            Dof::Torsion => "moment",
+        }
+    }
     /// Name of the motion in words.
     pub(crate) fn name(self) -> &'static str {
         match self {

@@ -44,7 +44,7 @@ pub use wind::{CoefficientsBlock, example_wind_study_text};
 
 use crate::aerodynamics::derivatives::notation::StatedConvention;
 use crate::aerodynamics::derivatives::{Interpolation, Missing};
-use crate::error::{Error, Place, Result, positive};
+use crate::error::{Error, Place, Result, finite, of_schema, positive};
 use crate::files::toml_lines;
 use crate::identification::{DiscreteFit, FrequencyFit, TimeFit};
 use crate::section::SectionModel;
@@ -204,13 +204,7 @@ impl Study {
     }
 
     fn validate(&self) -> Result<()> {
-        if self.schema != STUDY_SCHEMA {
-            return Err(Error::input(
-                "schema",
-                STUDY_SCHEMA.to_string(),
-                self.schema.to_string(),
-            ));
-        }
+        of_schema(STUDY_SCHEMA, self.schema)?;
         self.section.structure()?;
         self.tunnel.validate()?;
         if self.models.is_empty() {
@@ -325,14 +319,8 @@ impl ExportBlock {
         positive("export.part_of_onset", self.part_of_onset)?;
         positive("export.stop_time_s", self.stop_time_s)?;
         positive("export.step_size_s", self.step_size_s)?;
-        for (key, value) in [
-            ("export.initial_vertical_m", self.initial_vertical_m),
-            ("export.initial_rotation_deg", self.initial_rotation_deg),
-        ] {
-            if !value.is_finite() {
-                return Err(Error::input(key, "a finite number", value.to_string()));
-            }
-        }
+        finite("export.initial_vertical_m", self.initial_vertical_m)?;
+        finite("export.initial_rotation_deg", self.initial_rotation_deg)?;
         Ok(())
     }
 }

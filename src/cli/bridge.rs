@@ -10,6 +10,7 @@ mod flutter;
 mod show;
 mod summary;
 
+pub(crate) use args::read;
 pub(crate) use files::{
     BRIDGE_FMU, CURVES, DERIVATIVES_FIGURE, FLUTTER_FIGURE, MOTION_FIGURE, ROOTS_FIGURE,
     shown_modes,

@@ -1,7 +1,6 @@
 //! `aerodeck buffeting`: response to turbulence over wind speed.
 
 use super::answer::Answer;
-use super::common::shown_in;
 use super::figures;
 use super::progress::Progress;
 use super::wind::WindArgs;
@@ -57,7 +56,7 @@ fn account(study: &WindStudy, results: &BuffetingStudy) -> String {
         let _ = write!(
             text,
             "{:>15}",
-            format!("RMS {} {}", dof.symbol(), shown_in(*dof).1)
+            format!("RMS {} {}", dof.symbol(), dof.shown_in().1)
         );
     }
     for dof in &results.dofs {
@@ -68,7 +67,7 @@ fn account(study: &WindStudy, results: &BuffetingStudy) -> String {
     for response in results.responses.iter().step_by(every) {
         let _ = write!(text, "{:>8.2}", response.speed_m_s);
         for (dof, rms) in results.dofs.iter().zip(&response.rms) {
-            let _ = write!(text, "{:>15.5}", shown_in(*dof).0 * rms);
+            let _ = write!(text, "{:>15.5}", dof.shown_in().0 * rms);
         }
         for frequency in &response.crossing_frequency_hz {
             let _ = write!(text, "{frequency:>12.4}");
@@ -118,7 +117,7 @@ fn time_domain(results: &BuffetingStudy) -> String {
             e.warm_up_s
         );
         for c in &domain.comparison {
-            let (factor, unit) = shown_in(c.dof);
+            let (factor, unit) = c.dof.shown_in();
             let _ = writeln!(
                 text,
                 "  {} RMS {:.5} ± {:.5} {}, frequency domain {:.5}: {:+.1} standard errors",

@@ -3,6 +3,9 @@
 use crate::error::{Error, Result};
 use crate::section::Dof;
 use crate::study::{Study, study_warnings};
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use serde::de::value::Error as NotOne;
+use serde::de::{DeserializeOwned, IntoDeserializer};
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -14,18 +17,21 @@ pub(crate) fn warn(file: &Path, warnings: &[String]) {
     }
 }
 
+/// The words of an argument, each a value of `T` as files spell it.
+pub(crate) fn spelt<T>(
+    words: impl Into<PossibleValuesParser>,
+) -> impl TypedValueParser<Value = T>
+where
+    T: DeserializeOwned + Clone + Send + Sync + 'static,
+{
+    let value = |word: String| T::deserialize(IntoDeserializer::<NotOne>::into_deserializer(word));
+    words.into().try_map(value)
+}
+
 /// The folder of a file.
 pub(crate) fn folder_of(file: &Path) -> &Path {
     let parent = file.parent().filter(|p| !p.as_os_str().is_empty());
     parent.unwrap_or(Path::new("."))
-}
-
-/// Factor and unit in which people read a motion: degrees, or m.
-pub(crate) fn shown_in(dof: Dof) -> (f64, &'static str) {
-    match dof {
-        Dof::Torsion => (1f64.to_degrees(), "deg"),
-        Dof::Vertical | Dof::Lateral => (1.0, "m"),
-    }
 }
 
 /// Columns of the motion of degrees of freedom: `vertical_m`, `torsion_rad`; `what` and the units stand behind the name.

@@ -1,6 +1,7 @@
 //! `aerodeck coverage`: are the intervals reliable?
 
 use super::answer::Answer;
+use super::common::spelt;
 use super::progress::Progress;
 use crate::error::Result;
 use crate::uncertainty::{CoveragePlan, CoverageReport, Truth, coverage};
@@ -17,8 +18,8 @@ pub(crate) struct Args {
     #[arg(long, default_value_t = 500)]
     repetitions: usize,
     /// True force model; `theodorsen` is outside what every fitted model can represent exactly.
-    #[arg(long, value_enum, default_value_t = TruthArg::Jones)]
-    truth: TruthArg,
+    #[arg(long, default_value = "jones", value_parser = spelt::<Truth>(["jones", "theodorsen"]))]
+    truth: Truth,
     /// Poles of the fitted filters; by default those of Jones's function, which they span exactly.
     #[arg(long, value_delimiter = ',', default_values_t = [0.091, 0.6])]
     poles: Vec<f64>,
@@ -45,19 +46,10 @@ pub(crate) struct Args {
     seed: u64,
 }
 
-#[derive(Clone, Copy, clap::ValueEnum)]
-enum TruthArg {
-    Jones,
-    Theodorsen,
-}
-
 /// Runs the command.
 pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     let plan = CoveragePlan {
-        truth: match args.truth {
-            TruthArg::Jones => Truth::Jones,
-            TruthArg::Theodorsen => Truth::Theodorsen,
-        },
+        truth: args.truth,
         poles: args.poles.clone(),
         search_poles: args.search,
         repetitions: args.repetitions,

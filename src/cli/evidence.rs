@@ -3,14 +3,14 @@
 
 use super::figures;
 use super::output::OutputDir;
-use super::simulate::simulated;
+use super::simulate::{motion_panels, simulated};
 use super::stages::MAX_CURVES;
 use crate::aerodynamics::Transfer;
 use crate::aerodynamics::derivatives::{Derivative, DerivativeTable};
 use crate::error::Result;
 use crate::flutter::FlutterCurves;
 use crate::report::{
-    DerivativePlot, DerivativesPlot, PlottedSeries, TimePanel, derivatives_figure,
+    DerivativePlot, DerivativesPlot, PlottedSeries, derivatives_figure,
     root_locus_figure, time_history_figure,
 };
 use crate::section::Dof;
@@ -89,8 +89,8 @@ fn quoted(text: &str) -> String {
     }
 }
 
-/// Lines of all derivatives: `V̂` and value.
-type Lines = BTreeMap<Derivative, Vec<(f64, f64)>>;
+/// Lines of all derivatives by their names: `V̂` and value.
+pub(super) type NamedLines = Vec<(String, BTreeMap<Derivative, Vec<(f64, f64)>>)>;
 
 /// Measured derivatives and the models that were fitted to them.
 pub(super) struct DerivativesShown<'a> {
@@ -98,9 +98,9 @@ pub(super) struct DerivativesShown<'a> {
     pub(super) table: Option<&'a DerivativeTable>,
     pub(super) dofs: &'a [Dof],
     /// Models with their names.
-    pub(super) fitted: Vec<(String, Lines)>,
+    pub(super) fitted: NamedLines,
     /// Those that the deck has by theory.
-    pub(super) exact: Option<Lines>,
+    pub(super) exact: NamedLines,
     /// The model that the intervals are of, and they.
     pub(super) intervals: (&'a str, &'a [DerivativeInterval]),
 }
@@ -108,39 +108,47 @@ pub(super) struct DerivativesShown<'a> {
 impl DerivativesShown<'_> {
     /// What is drawn.
     pub(super) fn plot(&self) -> DerivativesPlot {
-        let all = Derivative::ALL.into_iter().map(|d| self.one(d));
-        DerivativesPlot {
-            title: self.title.clone(),
-            velocity_label: "V̂ = V/(ωB)".to_owned(),
-            bars_label: format!("95 % interval of {}", self.intervals.0),
-            derivatives: all
-                .filter(|d| !(d.measured.is_empty() && d.fitted.is_empty()))
-                .collect(),
-        }
+        let bars = format!("95 % interval of {}", self.intervals.0);
+        over_v_hat(self.title.clone(), bars, |d| self.one(d))
     }
 
     fn one(&self, d: Derivative) -> DerivativePlot {
         let own = self.intervals.1.iter().filter(|i| i.derivative == d);
-        let line =
-            |name: &str, lines: &Lines| Some(PlottedSeries::new(name, lines.get(&d)?.clone()));
         let inside = self.dofs.contains(&d.force()) && self.dofs.contains(&d.motion());
         let table = self.table.filter(|_| inside);
         DerivativePlot {
             name: d.name().to_owned(),
             measured: table.map_or(vec![], |table| measured(table, d)),
             bars: own.map(|i| (1.0 / i.k, i.low, i.high)).collect(),
-            fitted: self
-                .fitted
-                .iter()
-                .filter_map(|(name, lines)| line(name, lines))
-                .collect(),
-            reference: self
-                .exact
-                .iter()
-                .filter_map(|lines| line("exact", lines))
-                .collect(),
+            fitted: lines_of(&self.fitted, d),
+            reference: lines_of(&self.exact, d),
         }
     }
+}
+
+/// Plots of the derivatives that are measured or fitted, over `V̂`.
+pub(super) fn over_v_hat(
+    title: String,
+    bars_label: String,
+    one: impl FnMut(Derivative) -> DerivativePlot,
+) -> DerivativesPlot {
+    let all = Derivative::ALL.into_iter().map(one);
+    DerivativesPlot {
+        title,
+        velocity_label: "V̂ = V/(ωB)".to_owned(),
+        bars_label,
+        derivatives: all
+            .filter(|d| !(d.measured.is_empty() && d.fitted.is_empty()))
+            .collect(),
+    }
+}
+
+/// The lines of one derivative.
+pub(super) fn lines_of(all: &NamedLines, d: Derivative) -> Vec<PlottedSeries> {
+    let named = all.iter();
+    named
+        .filter_map(|(name, lines)| Some(PlottedSeries::new(name, lines.get(&d)?.clone())))
+        .collect()
 }
 
 /// The models beside the derivatives they were fitted to, with the intervals of the exported one.
@@ -160,11 +168,12 @@ pub(super) fn write_derivatives(
     }
     let (exact, range) = deck.model()?;
     let exact = match (range, trained.first()) {
-        (None, Some(first)) => Some(derivative_lines(
-            exact.as_ref(),
-            first.model.tested_range.min.v_hat(),
-        )?),
-        _ => None,
+        (None, Some(first)) => {
+            let v_hat = first.model.tested_range.min.v_hat();
+            let lines = derivative_lines(exact.as_ref(), v_hat)?;
+            vec![("exact".to_owned(), lines)]
+        }
+        _ => Vec::new(),
     };
     let exported = &study.exported()?.name;
     let known = trained.iter().find(|t| t.model.name == *exported);
@@ -210,7 +219,7 @@ pub(super) fn write_response(
 ) -> Result<()> {
     let (speed_m_s, frequency_hz) = onset;
     let step = 1.0 / (PERIODS.1 * frequency_hz);
-    let mut panels: Vec<TimePanel> = Vec::new();
+    let mut runs = Vec::with_capacity(AROUND_ONSET.len());
     for factor in AROUND_ONSET {
         let speed = factor * speed_m_s;
         let percent = (100.0 * (factor - 1.0_f64)).round();
@@ -220,25 +229,9 @@ pub(super) fn write_response(
             format!("{speed:.1} m/s ({percent:+} %)")
         };
         let rows = simulated(model, speed, (PERIODS.0 / frequency_hz, step))?;
-        for (i, dof) in model.model.dofs().iter().enumerate() {
-            let (unit, scale) = match dof {
-                Dof::Torsion => ("deg", 1f64.to_degrees()),
-                Dof::Vertical | Dof::Lateral => ("mm", 1e3),
-            };
-            let points = rows
-                .iter()
-                .map(|row| (row[0], scale * row[1 + i]))
-                .collect();
-            let series = PlottedSeries::new(label.clone(), points);
-            match panels.get_mut(i) {
-                Some(panel) => panel.series.push(series),
-                None => panels.push(TimePanel {
-                    y_label: format!("{} {} ({unit})", dof.name(), dof.symbol()),
-                    series: vec![series],
-                }),
-            }
-        }
+        runs.push((label, rows));
     }
+    let panels = motion_panels(model.model.dofs(), &runs);
     let title = format!("{}: released below, at and above the onset", model.name);
     figures::write(RESPONSE, out, || {
         time_history_figure(&title, &panels, "Time t (s)")

@@ -1,7 +1,7 @@
 //! The answer of a study before its details: one line, what limits trust in it, how the other models compare.
 
 use super::report::AnswerView;
-use crate::flutter::{Onset, OnsetInterval, OnsetMethod};
+use crate::flutter::{Onset, OnsetMethod};
 use crate::study::{Deck, FlutterStudy, StageFailure, SteppedOnset, Study};
 
 /// The onset of the model `name` by eigenvalues, if the data determine it.
@@ -27,10 +27,7 @@ pub(super) fn answer(study: &Study, results: &FlutterStudy, name: &str) -> Answe
         (None, None, None) => format!("no answer: {name} was not trained or not searched"),
     };
     let required = study.flutter.required_speed_m_s;
-    let lowest = own.map(|o| match &o.interval {
-        OnsetInterval::Known { low_m_s, .. } | OnsetInterval::Spread { low_m_s, .. } => *low_m_s,
-        OnsetInterval::Undetermined { .. } | OnsetInterval::None { .. } => o.at.speed_m_s,
-    });
+    let lowest = own.map(|o| o.interval.ends().map_or(o.at.speed_m_s, |(low, _)| low));
     // growth from the lowest speed on is below any requirement; a stable section is judged as far as it was searched
     let lowest = lowest.or(unstable.map(|_| 0.0)).or(stable
         .filter(|s| s.stable_from_m_s <= 0.0)
@@ -55,24 +52,27 @@ pub(super) fn limits(
 ) -> Vec<String> {
     let mut limits = Vec::new();
     if let Some(onset) = own_onset(results, name).or(of_model(&results.undetermined, name)) {
-        if onset.in_tested_range == Some(false) {
-            limits.push(
-                "The onset lies outside the tested range: the model is extrapolated.".to_owned(),
-            );
-        }
-        match &onset.interval {
-            OnsetInterval::None { reason } | OnsetInterval::Undetermined { reason, .. } => {
-                limits.push(format!("No interval of the onset: {reason}"));
-            }
-            OnsetInterval::Known { .. } | OnsetInterval::Spread { .. } => {}
-        }
-        limits.extend(onset.warnings.iter().cloned());
+        limits.extend(limits_of(onset, "the model is"));
     }
     let growth = results.growth.iter().filter(|g| g.model == name);
     let growth = growth.filter(|g| !g.growth.is_none());
     limits.extend(growth.map(|g| g.growth.explain()));
     limits.extend(deck.warnings());
     limits.extend(failed.iter().map(StageFailure::explain));
+    limits
+}
+
+/// What limits trust in an onset; what is extrapolated beyond the tested range, with its verb.
+pub(super) fn limits_of(onset: &Onset, extrapolated: &str) -> Vec<String> {
+    let mut limits = Vec::new();
+    if onset.in_tested_range == Some(false) {
+        limits.push(format!(
+            "The onset lies outside the tested range: {extrapolated} extrapolated."
+        ));
+    }
+    let no_interval = onset.interval.reason();
+    limits.extend(no_interval.map(|why| format!("No interval of the onset: {why}")));
+    limits.extend(onset.warnings.iter().cloned());
     limits
 }
 

@@ -128,12 +128,10 @@ impl Stretch {
     }
 
     fn label(&self, header: &RecordHeader, force: usize) -> String {
-        let (name, unit) = match header.dofs[force] {
-            Dof::Vertical => ("lift", "N/m"),
-            Dof::Lateral => ("drag", "N/m"),
-            Dof::Torsion => ("moment", "N"),
-        };
-        format!("{name} by {} ({unit})", self.motion.name())
+        let force = header.dofs[force];
+        let unit = if force == Dof::Torsion { "N" } else { "N/m" };
+        let (force, motion) = (force.force_name(), self.motion.name());
+        format!("{force} by {motion} ({unit})")
     }
 }
 

@@ -1,12 +1,13 @@
 //! `aerodeck process`: from the raw runs of a campaign to records, derivatives and a study.
 
 use super::answer::Answer;
+use super::evidence::{lines_of, over_v_hat};
 use super::figures;
 use super::laboratory::{file_name, laboratory_page, line};
 use super::output::OutputDir;
 use super::progress::Progress;
 use super::stages::RECORDS;
-use crate::aerodynamics::FlatPlate;
+use crate::aerodynamics::{FlatPlate, Transfer};
 use crate::aerodynamics::derivatives::{Derivative, TableHeader};
 use crate::aerodynamics::quasi_steady::{Arms, LinearQuasiSteady, QuasiSteady};
 use crate::error::{Error, Result};
@@ -14,7 +15,7 @@ use crate::files::coefficients::named_coefficients;
 use crate::files::derivatives::{workbook_bytes, write_csv, write_points};
 use crate::files::toml_lines;
 use crate::identification::derivatives::{
-    DerivativeOptions, IdentifiedDerivatives, identify_derivatives,
+    DerivativeEstimate, DerivativeOptions, IdentifiedDerivatives, identify_derivatives,
 };
 use crate::report::{
     DerivativePlot, DerivativesPlot, PlottedSeries, derivatives_figure, processing_figure,
@@ -26,12 +27,8 @@ use crate::units::group_of;
 use crate::wind_tunnel::campaign::Campaign;
 use crate::wind_tunnel::processing::{Processed, ProcessingOptions, process};
 use crate::wind_tunnel::{RawCampaign, RecordSource};
-use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
-
-/// Points of a line over V̂, for each derivative.
-type Lines = BTreeMap<Derivative, Vec<(f64, f64)>>;
 
 /// File of the table of derivatives.
 const TABLE: &str = "derivatives.csv";
@@ -267,59 +264,51 @@ fn plot(
     quasi_steady: Option<&LinearQuasiSteady>,
 ) -> Result<DerivativesPlot> {
     let largest = found.estimates.iter().map(|e| e.v_hat).fold(0.0, f64::max);
-    let mut theories = vec![(
-        "flat plate",
-        derivative_lines(&FlatPlate::default(), largest)?,
-    )];
+    let lines = |name: &str, model: &dyn Transfer| -> Result<_> {
+        Ok((name.to_owned(), derivative_lines(model, largest)?))
+    };
+    let mut theories = vec![lines("flat plate", &FlatPlate::default())?];
     if let Some(model) = quasi_steady {
-        theories.push(("quasi-steady", derivative_lines(model, largest)?));
+        theories.push(lines("quasi-steady", model)?);
     }
     let groups = found.speed_groups();
-    let mut derivatives = Vec::new();
-    for d in Derivative::ALL {
-        let mut measured: Vec<PlottedSeries> = Vec::new();
-        let mut last = None;
-        for e in found.of(d) {
-            let group = group_of(&groups, e.mean_speed_m_s);
-            if last.replace(group) != Some(group) {
-                measured.push(PlottedSeries::new(speeds_label(&groups[group]), Vec::new()));
-            }
-            if let Some(series) = measured.last_mut() {
-                series.points.push((e.v_hat, e.value));
-            }
-        }
-        if measured.is_empty() {
-            continue;
-        }
-        let line = |(name, lines): &(&str, Lines)| {
-            lines
-                .get(&d)
-                .map(|points| PlottedSeries::new(*name, points.clone()))
-        };
-        derivatives.push(DerivativePlot {
+    let title = format!("{}: aerodynamic derivatives", raw.section);
+    Ok(over_v_hat(title, "95 % interval".to_owned(), |d| {
+        DerivativePlot {
             name: d.name().to_owned(),
-            measured,
-            bars: found
-                .of(d)
-                .map(|e| bar(e.v_hat, e.value, e.standard_error))
-                .collect(),
-            fitted: Vec::new(),
-            reference: theories.iter().filter_map(line).collect(),
-        });
+            measured: measured(found, &groups, d),
+            bars: found.of(d).map(bar).collect(),
+            reference: lines_of(&theories, d),
+            ..DerivativePlot::default()
+        }
+    }))
+}
+
+/// The estimates of a derivative, one series per mean speed.
+fn measured(
+    found: &IdentifiedDerivatives,
+    groups: &[Vec<f64>],
+    d: Derivative,
+) -> Vec<PlottedSeries> {
+    let mut series: Vec<PlottedSeries> = Vec::new();
+    let mut last = None;
+    for e in found.of(d) {
+        let group = group_of(groups, e.mean_speed_m_s);
+        if last.replace(group) != Some(group) {
+            series.push(PlottedSeries::new(speeds_label(&groups[group]), Vec::new()));
+        }
+        if let Some(series) = series.last_mut() {
+            series.points.push((e.v_hat, e.value));
+        }
     }
-    Ok(DerivativesPlot {
-        title: format!("{}: aerodynamic derivatives", raw.section),
-        velocity_label: "V̂ = V/(ωB)".to_owned(),
-        bars_label: "95 % interval".to_owned(),
-        derivatives,
-    })
+    series
 }
 
 /// A 95 % interval from many samples.
-fn bar(v_hat: f64, value: f64, standard_error: f64) -> (f64, f64, f64) {
+fn bar(e: &DerivativeEstimate) -> (f64, f64, f64) {
     const NORMAL_QUANTILE: f64 = 1.96;
-    let half = NORMAL_QUANTILE * standard_error;
-    (v_hat, value - half, value + half)
+    let half = NORMAL_QUANTILE * e.standard_error;
+    (e.v_hat, e.value - half, e.value + half)
 }
 
 /// Speeds of one group of test points in words.

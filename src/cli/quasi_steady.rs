@@ -1,7 +1,7 @@
 //! `aerodeck quasi-steady`: equilibrium, linear model, onset and a nonlinear run from static coefficients.
 
 use super::answer::Answer;
-use super::common::{motion_columns, shown_in};
+use super::common::motion_columns;
 use super::output::OutputDir;
 use super::progress::Progress;
 use super::wind::WindArgs;
@@ -12,7 +12,7 @@ use crate::error::{Error, Result, counted};
 use crate::files::gusts::write_gusts;
 use crate::flutter::FlutterSearch;
 use crate::report::{
-    DerivativePlot, DerivativesPlot, PlottedSeries, TimePanel, VfVgOptions, derivatives_figure,
+    DerivativePlot, DerivativesPlot, PlottedSeries, TimePanel, derivatives_figure,
     equilibrium_figure, time_history_figure, vf_vg_figure,
 };
 use crate::study::{
@@ -66,12 +66,9 @@ fn draw(study: &WindStudy, results: &QuasiSteadyStudy, out: &mut OutputDir) -> R
         equilibrium_figure(&study.name, &results.dofs, &results.equilibria)
     })?;
     let onsets: Vec<_> = results.onset.search.onset().cloned().into_iter().collect();
-    let options = VfVgOptions {
-        title: Some(study.name.clone()),
-        ..VfVgOptions::default()
-    };
+    let curves = std::slice::from_ref(&results.curves);
     figures::write("quasi_steady_modes", out, || {
-        vf_vg_figure(std::slice::from_ref(&results.curves), &onsets, &options)
+        vf_vg_figure(curves, &onsets, Some(&study.name), None)
     })
 }
 
@@ -83,9 +80,8 @@ fn coefficients(results: &QuasiSteadyStudy) -> DerivativesPlot {
         DerivativePlot {
             name: name.to_owned(),
             measured: vec![PlottedSeries::new("table", table.collect())],
-            bars: Vec::new(),
             fitted: vec![PlottedSeries::new("spline", spline.collect())],
-            reference: Vec::new(),
+            ..DerivativePlot::default()
         }
     };
     DerivativesPlot {
@@ -116,7 +112,7 @@ fn in_words(study: &WindStudy, results: &QuasiSteadyStudy) -> String {
     }
     let _ = write!(text, "\nStatic equilibrium\n{:>8}", "V m/s");
     for dof in &results.dofs {
-        let name = format!("{} {}", dof.symbol(), shown_in(*dof).1);
+        let name = format!("{} {}", dof.symbol(), dof.shown_in().1);
         let _ = write!(text, "{name:>12}");
     }
     let _ = writeln!(text, "{:>16}", "stiffness left");
@@ -127,7 +123,7 @@ fn in_words(study: &WindStudy, results: &QuasiSteadyStudy) -> String {
     {
         let _ = write!(text, "{:>8.2}", point.speed_m_s);
         for (dof, value) in results.dofs.iter().zip(&point.displacement) {
-            let _ = write!(text, "{:>12.5}", shown_in(*dof).0 * value);
+            let _ = write!(text, "{:>12.5}", dof.shown_in().0 * value);
         }
         let _ = writeln!(text, "{:>14.1} %", 100.0 * point.stiffness_left);
     }
@@ -169,7 +165,7 @@ fn run_in_words(run: &SimulatedMotion) -> String {
         (mean, square.sqrt())
     };
     for (i, dof) in run.dofs.iter().enumerate().take(n) {
-        let (factor, unit) = shown_in(*dof);
+        let (factor, unit) = dof.shown_in();
         let (mean, rms) = spread(&run.nonlinear, i);
         let (linear_mean, linear_rms) = spread(&run.linear, i);
         let _ = writeln!(
@@ -232,7 +228,7 @@ fn panels(run: &SimulatedMotion) -> Vec<TimePanel> {
     };
     let mut panels = Vec::with_capacity(run.dofs.len() + 1);
     for (i, dof) in run.dofs.iter().enumerate() {
-        let (factor, unit) = shown_in(*dof);
+        let (factor, unit) = dof.shown_in();
         let of = |rows: &[Vec<f64>]| rows.iter().map(|r| factor * r[i]).collect::<Vec<_>>();
         panels.push(TimePanel {
             y_label: format!("{} {} ({unit})", dof.name(), dof.symbol()),

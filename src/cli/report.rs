@@ -94,7 +94,7 @@ fn of_summary(summary: &SummaryView, study: &Study) -> StudyPage {
     let own = summary
         .onsets
         .iter()
-        .find(|o| o.model == answer.model && Some(o.speed_m_s) == answer.speed_m_s);
+        .find(|o| o.at.model == answer.model && Some(o.at.speed_m_s) == answer.speed_m_s);
     let all = summary.onsets.iter().chain(&summary.undetermined);
     StudyPage {
         title: summary.study.clone(),

@@ -6,7 +6,6 @@ use super::output::{OutputDir, list};
 use super::{figures, stages};
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, counted, positive};
-
 use crate::report::{PlottedSeries, TimePanel, time_history_figure};
 use crate::response::{Inputs, Outputs, Stepper};
 use crate::section::Dof;
@@ -116,8 +115,10 @@ pub(crate) fn run(args: &Args) -> Result<Answer> {
     let mut out = OutputDir::new(args.out.as_deref().unwrap_or(folder_of(&args.model)))?;
     out.write("simulation.csv", csv(&model, speed, &trajectory))?;
     let title = format!("{} at {speed} m/s", model.name);
+    let runs = [(model.name.clone(), trajectory.rows.clone())];
+    let panels = motion_panels(&model.section.dofs(), &runs);
     figures::write("simulation", &mut out, || {
-        time_history_figure(&title, &panels(&model, &trajectory), "Time t (s)")
+        time_history_figure(&title, &panels, "Time t (s)")
     })?;
     let written = out.commit()?;
     let text = format!(
@@ -200,23 +201,21 @@ fn csv(model: &TrainedModel, speed: f64, trajectory: &Trajectory) -> String {
     text
 }
 
-/// Displacements over time, one panel per degree of freedom; rotations in degrees.
-fn panels(model: &TrainedModel, trajectory: &Trajectory) -> Vec<TimePanel> {
-    let dofs = model.section.dofs();
+/// Displacements over time of runs with their labels, rows as `simulation.csv` has them: one panel per degree of freedom,
+/// lengths in mm, rotations in degrees.
+pub(super) fn motion_panels(dofs: &[Dof], runs: &[(String, Vec<Vec<f64>>)]) -> Vec<TimePanel> {
     let panel = |(i, dof): (usize, &Dof)| {
-        let (unit, scale) = if *dof == Dof::Torsion {
-            ("deg", 1f64.to_degrees())
-        } else {
-            ("mm", 1e3)
+        let (scale, unit) = match dof {
+            Dof::Torsion => dof.shown_in(),
+            Dof::Vertical | Dof::Lateral => (1e3, "mm"),
         };
-        let points = trajectory
-            .rows
-            .iter()
-            .map(|row| (row[0], scale * row[1 + i]))
-            .collect();
+        let series = runs.iter().map(|(label, rows)| {
+            let points = rows.iter().map(|row| (row[0], scale * row[1 + i]));
+            PlottedSeries::new(label, points.collect())
+        });
         TimePanel {
             y_label: format!("{} {} ({unit})", dof.name(), dof.symbol()),
-            series: vec![PlottedSeries::new(model.name.as_str(), points)],
+            series: series.collect(),
         }
     };
     dofs.iter().enumerate().map(panel).collect()

@@ -9,7 +9,7 @@ use crate::flutter::{FlutterCurves, Onset, OnsetSearch, find_onset};
 use crate::fmu::onset_bounds::OnsetBounds;
 use crate::fmu::package::{Export, GrowthPolicy, Label, Runtime, package};
 use crate::identification;
-use crate::report::{VfVgOptions, vf_vg_figure};
+use crate::report::vf_vg_figure;
 use crate::study::{
     Deck, FITS, FlutterStudy, KnownUncertainty, ModelBlock, RecordSet, StageFailure, Study,
     TrainedWithReport, UNCERTAINTY, flutter_study, interval_of, is_of_a_file, saved_uncertainty,
@@ -221,13 +221,10 @@ pub(crate) fn flutter_figure(
     if results.curves.is_empty() {
         return Err(Error::Numerical("no modes to draw".into()));
     }
-    let options = VfVgOptions {
-        title: Some(study.name.clone()),
-        required_speed_m_s: study.flutter.required_speed_m_s,
-        ..VfVgOptions::default()
-    };
+    let required = study.flutter.required_speed_m_s;
     figures::write(FIGURE, out, || {
-        vf_vg_figure(&results.curves, &results.onsets, &options)
+        let (curves, onsets) = (&results.curves, &results.onsets);
+        vf_vg_figure(curves, onsets, Some(&study.name), required)
     })
 }
 
@@ -241,11 +238,10 @@ pub(crate) fn routes_figure(
     let curves = &curves[..curves.len().min(MAX_CURVES)];
     let drawn = |o: &&Onset| curves.iter().any(|c| c.model == o.at.model);
     let onsets: Vec<Onset> = onsets.iter().filter(drawn).cloned().collect();
-    let options = VfVgOptions {
-        title: Some(format!("{}: all routes", study.name)),
-        ..VfVgOptions::default()
-    };
-    figures::write("routes", out, || vf_vg_figure(curves, &onsets, &options))
+    let title = format!("{}: all routes", study.name);
+    figures::write("routes", out, || {
+        vf_vg_figure(curves, &onsets, Some(&title), None)
+    })
 }
 
 /// Packs a model of a study with all runtimes that are there.

@@ -9,6 +9,7 @@ use super::study_run::{self, StudyRun};
 use super::summary::{FitSummary, Summary};
 use super::{account, evidence, headline, measured_forces, select, stages};
 use crate::error::{Error, Result};
+use crate::flutter::{FlutterSearch, OnsetMethod};
 use crate::fmu::package::GrowthPolicy;
 use crate::study::{
     Deck, FITS, FlutterStudy, RecordSet, StageFailure, SteppedOnset, Study, TrainedWithReport,
@@ -172,19 +173,25 @@ impl Chain<'_> {
         let stage = self.progress.stage(STEPPING);
         let found = stepped_onset(model, &path, self.study.speeds().speed_max_m_s);
         drop(stage);
-        let answer = self.attempt(STEPPING, found)?;
-        let stepped = answer.and_then(|answer| results.take_stepped(answer, &model.name));
-        let Some(mut stepped) = stepped else {
+        let Some(answer) = self.attempt(STEPPING, found)? else {
             return Ok(None);
         };
+        let mut onset = match answer.search {
+            FlutterSearch::Onset(onset) => *onset,
+            none => {
+                results.take(none, &model.name, OnsetMethod::FmuStepping);
+                return Ok(None);
+            }
+        };
         let structure = self.study.section.structure()?;
-        stepped.onset.interval = interval_of(&structure, model, known, &stepped.onset);
-        let to = match stepped.onset.headline_m_s() {
+        onset.interval = interval_of(&structure, model, known, &onset);
+        let to = match onset.headline_m_s() {
             Ok(_) => &mut results.onsets,
             Err(_) => &mut results.undetermined,
         };
-        to.push(stepped.onset.clone());
-        Ok(Some(stepped))
+        to.push(onset.clone());
+        let runs = answer.runs;
+        Ok(Some(SteppedOnset { onset, runs }))
     }
 
     /// Figures and curves of all models.

@@ -30,7 +30,7 @@ impl OnsetMethod {
 }
 
 /// Speed and frequency of a motion that loses its damping or has lost it, by one route for one force model.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CriticalPoint {
     /// Force model.
     pub model: String,

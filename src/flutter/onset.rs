@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
 /// A flutter onset.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Onset {
     /// Onset speed `V_F` and the frequency there.
     #[serde(flatten)]
@@ -110,6 +110,27 @@ impl OnsetInterval {
         }
     }
 
+    /// Lower and upper end, m/s, of the interval or the spread of a speed that is a result.
+    pub fn ends(&self) -> Option<(f64, f64)> {
+        match *self {
+            Self::Known {
+                low_m_s, high_m_s, ..
+            }
+            | Self::Spread {
+                low_m_s, high_m_s, ..
+            } => Some((low_m_s, high_m_s)),
+            Self::Undetermined { .. } | Self::None { .. } => None,
+        }
+    }
+
+    /// Why there are none.
+    pub fn reason(&self) -> Option<&str> {
+        match self {
+            Self::Undetermined { reason, .. } | Self::None { reason } => Some(reason),
+            Self::Known { .. } | Self::Spread { .. } => None,
+        }
+    }
+
     /// No interval, for this reason.
     pub(crate) fn none(reason: impl Into<String>) -> Self {
         Self::None {
@@ -137,16 +158,11 @@ impl Onset {
             Ok(speed) => speed,
             Err(reason) => return format!("flutter onset {reason}"),
         };
-        let interval = match &self.interval {
-            OnsetInterval::Known {
-                low_m_s, high_m_s, ..
-            } => format!(", {}–{}", short(*low_m_s), short(*high_m_s)),
-            OnsetInterval::Spread {
-                low_m_s, high_m_s, ..
-            } => format!(" [{}–{}]", short(*low_m_s), short(*high_m_s)),
-            OnsetInterval::None { .. } | OnsetInterval::Undetermined { .. } => {
-                ", interval not known".to_owned()
-            }
+        let spread = matches!(self.interval, OnsetInterval::Spread { .. });
+        let interval = match self.interval.ends() {
+            Some((low, high)) if spread => format!(" [{}–{}]", short(low), short(high)),
+            Some((low, high)) => format!(", {}–{}", short(low), short(high)),
+            None => ", interval not known".to_owned(),
         };
         let tested = match self.in_tested_range {
             Some(true) => ", inside the tested range",

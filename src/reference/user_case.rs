@@ -3,7 +3,7 @@
 mod evaluate;
 
 use crate::aerodynamics::derivatives::Interpolation;
-use crate::error::{Error, Result, non_negative, positive};
+use crate::error::{Error, Result, non_negative, of_schema, positive};
 use crate::files::toml_lines;
 use crate::flutter::OnsetMethod;
 use crate::section::{Dof, SectionModel};
@@ -183,10 +183,7 @@ impl UserCase {
     }
 
     fn validate(&self) -> Result<()> {
-        if self.schema != CASE_SCHEMA {
-            let (expected, found) = (CASE_SCHEMA.to_string(), self.schema.to_string());
-            return Err(Error::input("schema", expected, found));
-        }
+        of_schema(CASE_SCHEMA, self.schema)?;
         positive("speed_max_m_s", self.speed_max_m_s)?;
         let a = &self.aerodynamics;
         let kinds = [

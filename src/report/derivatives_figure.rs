@@ -1,16 +1,16 @@
 //! Aerodynamic derivatives over the reduced velocity: measured points and fitted lines.
 
 use super::axis::Axis;
-use super::drawing::Drawing;
+use super::drawing::{Drawing, titled};
 use super::figure::Figure;
-use super::legend::Entry;
+use super::legend::{Entry, entries};
 use super::panel::Panel;
 use super::series::{PlottedSeries, index_of, labels_of};
 use super::style::{BLACK, GREY, Ink, Shape, colour, dash};
 use crate::error::{Error, Result};
 
 /// One derivative (or any other quantity that is measured and fitted).
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct DerivativePlot {
     /// Name, e.g. `H1`: written as H₁*. Any other name stands as it is.
     pub name: String,
@@ -80,7 +80,7 @@ pub fn derivatives_figure(plot: &DerivativesPlot) -> Result<Figure> {
     }
     Drawing {
         name: PLACE,
-        title: Some(plot.title.clone()).filter(|t| !t.is_empty()),
+        title: titled(&plot.title),
         panels,
         columns,
         axes: if columns == 6 {
@@ -97,20 +97,14 @@ fn legend(
     plot: &DerivativesPlot,
     (measured, fitted, reference): (&[String], &[String], &[String]),
 ) -> Result<Vec<Entry>> {
-    let mut entries = Vec::new();
+    let mut all = Vec::new();
     if plot.derivatives.iter().any(|d| !d.bars.is_empty()) {
-        entries.push(Entry::new(&plot.bars_label, BAR));
+        all.push(Entry::new(&plot.bars_label, BAR));
     }
-    for (i, label) in measured.iter().enumerate() {
-        entries.push(Entry::new(label, measured_ink(i, measured.len())?));
-    }
-    for (i, label) in fitted.iter().enumerate() {
-        entries.push(Entry::new(label, fitted_ink(i)?));
-    }
-    for (i, label) in reference.iter().enumerate() {
-        entries.push(Entry::new(label, reference_ink(i)));
-    }
-    Ok(entries)
+    all.extend(entries(measured, |i| measured_ink(i, measured.len()))?);
+    all.extend(entries(fitted, fitted_ink)?);
+    all.extend(entries(reference, |i| Ok(reference_ink(i)))?);
+    Ok(all)
 }
 
 const PLACE: &str = "aerodynamic derivatives";

@@ -16,6 +16,11 @@ const TITLE_HEIGHT: f64 = 30.0;
 const EDGE: f64 = 12.0;
 const RIGHT: f64 = 16.0;
 
+/// The line above a figure; none for an empty one.
+pub(super) fn titled(title: &str) -> Option<String> {
+    Some(title.to_owned()).filter(|t| !t.is_empty())
+}
+
 /// A whole figure before it is drawn.
 #[derive(Debug)]
 pub(super) struct Drawing {

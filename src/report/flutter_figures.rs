@@ -5,24 +5,10 @@ use super::drawing::Drawing;
 use super::figure::Figure;
 use super::legend::Entry;
 use super::panel::{Note, Panel};
-use super::series::index_of;
+use super::series::{distinct, index_of};
 use super::style::{BLACK, GREY, Ink, PALE_GREY, Shape, branch_width, colour, dash, pale};
 use crate::error::{Error, Result};
-use crate::flutter::{FlutterCurves, ModePoint, Onset, OnsetInterval, OnsetMethod};
-
-/// What may be added to the V-f and V-g diagrams.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct VfVgOptions {
-    /// Line above the figure.
-    pub title: Option<String>,
-    /// Wind speeds between which the models rest on tests, m/s; outside, the panels are shaded.
-    pub tested_speeds_m_s: Option<(f64, f64)>,
-    /// Ends of the axis of the damping ratio, per cent; without them the data between −10 and 20, because beyond, the
-    /// heavily damped heaving branch would hide the crossing.
-    pub damping_range_percent: Option<(f64, f64)>,
-    /// Wind speed that the onset has to exceed, m/s, as a full upright line.
-    pub required_speed_m_s: Option<f64>,
-}
+use crate::flutter::{FlutterCurves, ModePoint, Onset, OnsetMethod};
 
 /// Frequencies (Hz) and damping ratios (per cent of critical) of all modes over wind speed (m/s).
 ///
@@ -30,30 +16,28 @@ pub struct VfVgOptions {
 /// bars of their intervals are marked on both panels and stated in the legend. An onset is
 /// drawn in the colour of the curves of the same model, hollow when it lies outside the tested range; crossings
 /// suspected to be spurious are crosses on the zero line. Where the reduced frequency of a mode lies outside the tested
-/// range its curves are pale.
+/// range its curves are pale. `required_m_s` is the wind speed that the onset has to exceed, as a full upright line.
 ///
 /// # Errors
 /// [`Error::Input`] for no curves or non-finite ones, and for more models than colours.
 pub fn vf_vg_figure(
     curves: &[FlutterCurves],
     onsets: &[Onset],
-    options: &VfVgOptions,
+    title: Option<&str>,
+    required_m_s: Option<f64>,
 ) -> Result<Figure> {
-    let mut diagram = VfVg::new(branch_names(curves)?, options);
+    let mut diagram = VfVg::new(branch_names(curves)?);
     for (i, model) in curves.iter().enumerate() {
         diagram.draw_curves(model, i)?;
     }
     for onset in onsets {
         diagram.mark_onset(onset, colour_of(&onset.at.model, curves)?);
     }
-    if let Some(required) = options.required_speed_m_s {
+    if let Some(required) = required_m_s {
         diagram.draw_required(required);
     }
     diagram.explain_kinds(onsets);
-    if let Some(tested) = options.tested_speeds_m_s {
-        diagram.shade_untested(tested)?;
-    }
-    diagram.into_drawing(options.title.clone()).draw()
+    diagram.into_drawing(title.map(str::to_owned)).draw()
 }
 
 /// The panels of the diagrams, one below the other, and the groups of their legend.
@@ -72,11 +56,10 @@ struct VfVg {
 }
 
 impl VfVg {
-    fn new(branches: Vec<String>, options: &VfVgOptions) -> Self {
+    fn new(branches: Vec<String>) -> Self {
         let speed = |label: &str| Axis::new(label).tight();
         let damping = Axis {
             within: Some(DAMPING_WINDOW_PERCENT),
-            range: options.damping_range_percent,
             ..Axis::new("Damping ratio ζ (%)")
         };
         let close = Axis {
@@ -153,13 +136,7 @@ impl VfVg {
 
     /// The bar of the interval below the zero line; the onset of the FMU has that of its model, which is drawn already.
     fn draw_interval(&mut self, onset: &Onset, colour: &'static str) {
-        let (OnsetInterval::Known {
-            low_m_s, high_m_s, ..
-        }
-        | OnsetInterval::Spread {
-            low_m_s, high_m_s, ..
-        }) = onset.interval
-        else {
+        let Some((low_m_s, high_m_s)) = onset.interval.ends() else {
             return;
         };
         if onset.at.method == OnsetMethod::FmuStepping {
@@ -228,22 +205,6 @@ impl VfVg {
         }
     }
 
-    fn shade_untested(&mut self, (low, high): (f64, f64)) -> Result<()> {
-        if !(low.is_finite() && high.is_finite() && low < high) {
-            return Err(Error::input(
-                "tested wind speeds",
-                "a lower and a higher one",
-                format!("{low} to {high}"),
-            ));
-        }
-        for panel in self.panels() {
-            panel.shaded = vec![(f64::MIN, low), (high, f64::MAX)];
-        }
-        self.kinds
-            .push(Entry::new("wind speed outside the tests", Ink::Shade));
-        Ok(())
-    }
-
     /// The panel near zero is left out when no curve comes there.
     fn into_drawing(self, title: Option<String>) -> Drawing {
         let mut panels = vec![self.frequency, self.damping];
@@ -261,6 +222,7 @@ impl VfVg {
 
 const PLACE: &str = "V-f and V-g diagram";
 const REQUIRED: Ink = Ink::stroke(BLACK, None, 1.6);
+/// Beyond, the heavily damped heaving branch would hide the crossing.
 const DAMPING_WINDOW_PERCENT: (f64, f64) = (-10.0, 20.0);
 /// A growth of half a per cent below the onset is a finding, and a hair's breadth in the panel above.
 const NEAR_ZERO_PERCENT: (f64, f64) = (-1.0, 1.0);
@@ -288,12 +250,7 @@ fn near_zero(points: &[(f64, f64)]) -> Vec<Vec<(f64, f64)>> {
 
 /// Names of the branches of all models, each once, in the order of their first appearance.
 pub(super) fn branch_names(curves: &[FlutterCurves]) -> Result<Vec<String>> {
-    let mut names: Vec<String> = Vec::new();
-    for branch in curves.iter().flat_map(|c| &c.branches) {
-        if !names.contains(&branch.name) {
-            names.push(branch.name.clone());
-        }
-    }
+    let names = distinct(curves.iter().flat_map(|c| &c.branches).map(|b| &b.name));
     if names.is_empty() {
         return Err(Error::input("flutter curves", "at least one mode", "none"));
     }

@@ -1,8 +1,9 @@
 //! The legend below the panels: rows of samples and names, never over a curve.
 
 use super::font::text_width;
-use super::style::{BLACK, Ink, SHADE, SHADE_OPACITY, draw_marker};
+use super::style::{BLACK, Ink, draw_marker};
 use super::text::text;
+use crate::error::Result;
 use kuva::render::color::Color;
 use kuva::render::render::{Primitive, Scene};
 
@@ -25,6 +26,17 @@ impl Entry {
             ink,
         }
     }
+}
+
+/// An entry for each label, in the ink of its place.
+pub(super) fn entries(
+    labels: &[String],
+    ink: impl Fn(usize) -> Result<Ink>,
+) -> Result<Vec<Entry>> {
+    let labels = labels.iter().enumerate();
+    labels
+        .map(|(i, label)| Ok(Entry::new(label, ink(i)?)))
+        .collect()
 }
 
 /// The entries with their places relative to the upper left corner.
@@ -115,15 +127,5 @@ fn draw_sample(scene: &mut Scene, (x, y): (f64, f64), ink: Ink) {
             (x + 0.5 * SAMPLE, y),
             (colour, shape, radius, hollow),
         ),
-        Ink::Shade => scene.add(Primitive::Rect {
-            x: x + 4.0,
-            y: y - 6.0,
-            width: SAMPLE - 8.0,
-            height: 12.0,
-            fill: Color::from(SHADE),
-            stroke: None,
-            stroke_width: None,
-            opacity: Some(SHADE_OPACITY),
-        }),
     }
 }

@@ -1,9 +1,9 @@
 //! Metrics of goodness of fit over the frequency of the motion, side by side.
 
 use super::axis::Axis;
-use super::drawing::Drawing;
+use super::drawing::{Drawing, titled};
 use super::figure::Figure;
-use super::legend::Entry;
+use super::legend::entries;
 use super::panel::Panel;
 use super::series::{PlottedSeries, index_of, labels_of};
 use super::style::{Ink, Shape, colour, dash};
@@ -49,17 +49,13 @@ pub(crate) fn metrics_figure(
         }
         drawn.push(drawing);
     }
-    let mut legend = Vec::with_capacity(labels.len());
-    for (i, label) in labels.iter().enumerate() {
-        legend.push(Entry::new(label, line(i)?));
-    }
     Drawing {
         name: PLACE,
-        title: Some(title.to_owned()).filter(|t| !t.is_empty()),
+        title: titled(title),
         panels: drawn,
         columns: columns.max(1),
         axes: (230.0, 160.0),
-        legend: vec![legend],
+        legend: vec![entries(&labels, line)?],
     }
     .draw()
 }

@@ -118,15 +118,6 @@ impl Panel {
                 }
             }
         }
-        for (low, high) in &self.shaded {
-            if !(low.is_finite() && high.is_finite() && low <= high) {
-                return Err(Error::input(
-                    place("shaded region"),
-                    "a lower and an upper end",
-                    format!("{low} to {high}"),
-                ));
-            }
-        }
         Ok(())
     }
 

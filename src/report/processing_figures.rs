@@ -45,7 +45,7 @@ pub(crate) fn processing_figure(
     let mut panels = Vec::with_capacity(2 * stages.len() + 2);
     for stage in stages {
         let signal = (&stage.stage[..], points(&stage.signals.force[force]));
-        let label = force_name(dof);
+        let label = force_label(dof);
         let [mut left, right] = pair(columns, &shaded, ("", label), signal, force_ink);
         left.title = Some(stage_title(run, &stage.stage, dof));
         panels.extend([left, right]);
@@ -59,13 +59,14 @@ pub(crate) fn processing_figure(
     let starts = run.segments.iter().map(|s| s.segment.start_s);
     left.uprights = starts.map(|t| (t, BLACK)).collect();
     panels.extend([left, right]);
+    let force_name = format!("{} on the model", dof.force_name());
     let legend = vec![
-        Entry::new(force_of(dof), force_ink),
+        Entry::new(&force_name, force_ink),
         Entry::new(motion_name, motion_ink),
     ];
     Drawing {
         name: PLACE,
-        title: Some(format!("{}: {}, stage by stage", run.run, force_of(dof))),
+        title: Some(format!("{}: {force_name}, stage by stage", run.run)),
         panels,
         columns: 2,
         axes: (400.0, 84.0),
@@ -114,19 +115,11 @@ fn panel(t: &str, label: String, range: (f64, f64), shaded: &[(f64, f64)]) -> Pa
     panel
 }
 
-fn force_of(dof: Dof) -> &'static str {
-    match dof {
-        Dof::Vertical => "lift on the model",
-        Dof::Lateral => "drag on the model",
-        Dof::Torsion => "moment on the model",
-    }
-}
-
 fn force_unit(dof: Dof) -> &'static str {
     if dof == Dof::Torsion { "N·m" } else { "N" }
 }
 
-fn force_name(dof: Dof) -> String {
+fn force_label(dof: Dof) -> String {
     let symbol = match dof {
         Dof::Vertical => "F_y",
         Dof::Lateral => "F_x",

@@ -21,13 +21,18 @@ impl PlottedSeries {
 
 /// The labels, each once, in the order of their first appearance.
 pub(super) fn labels_of<'a>(series: impl IntoIterator<Item = &'a PlottedSeries>) -> Vec<String> {
-    let mut labels: Vec<String> = Vec::new();
-    for one in series {
-        if !labels.contains(&one.label) {
-            labels.push(one.label.clone());
+    distinct(series.into_iter().map(|one| &one.label))
+}
+
+/// The names, each once, in the order of their first appearance.
+pub(super) fn distinct<'a>(all: impl IntoIterator<Item = &'a String>) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    for name in all {
+        if !names.contains(name) {
+            names.push(name.clone());
         }
     }
-    labels
+    names
 }
 
 /// Place of a name among `names`; 0 for one that is not there.

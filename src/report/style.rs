@@ -82,8 +82,6 @@ pub(super) enum Ink {
         radius: f64,
         hollow: bool,
     },
-    /// A shaded region.
-    Shade,
 }
 
 /// Width of the lines of the i-th branch, px.

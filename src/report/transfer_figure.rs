@@ -1,11 +1,11 @@
 //! Transfer functions over frequency: magnitude and phase, models against a reference with its tolerance bands.
 
 use super::axis::Axis;
-use super::drawing::Drawing;
+use super::drawing::{Drawing, titled};
 use super::figure::Figure;
-use super::legend::Entry;
+use super::legend::{Entry, entries};
 use super::panel::Panel;
-use super::series::index_of;
+use super::series::{distinct, index_of};
 use super::style::{BLACK, GREY, Ink, Shape, colour, dash};
 use crate::error::Result;
 
@@ -45,16 +45,8 @@ pub(crate) fn transfer_figure(
     plots: &[TransferPlot],
 ) -> Result<Figure> {
     const PLACE: &str = "transfer functions";
-    let mut labels: Vec<String> = Vec::new();
-    for curve in plots.iter().flat_map(|p| &p.models) {
-        if !labels.contains(&curve.label) {
-            labels.push(curve.label.clone());
-        }
-    }
-    let ink = |label: &str| -> Result<Ink> {
-        let i = index_of(&labels, label);
-        Ok(Ink::line(colour(PLACE, i)?, dash(i)))
-    };
+    let labels = distinct(plots.iter().flat_map(|p| &p.models).map(|c| &c.label));
+    let ink = |i: usize| -> Result<Ink> { Ok(Ink::line(colour(PLACE, i)?, dash(i))) };
     let mut panels = Vec::with_capacity(2 * plots.len());
     for (row, plot) in plots.iter().enumerate() {
         let last = row + 1 == plots.len();
@@ -62,7 +54,7 @@ pub(crate) fn transfer_figure(
             let mut panel = reference_panel(plot, phase, if last { x_label } else { "" });
             for curve in &plot.models {
                 let points = points(curve, phase);
-                panel.add(&curve.label, points, ink(&curve.label)?);
+                panel.add(&curve.label, points, ink(index_of(&labels, &curve.label))?);
             }
             panels.push(panel);
         }
@@ -75,12 +67,10 @@ pub(crate) fn transfer_figure(
             legend.push(Entry::new(band, BAND));
         }
     }
-    for label in &labels {
-        legend.push(Entry::new(label, ink(label)?));
-    }
+    legend.extend(entries(&labels, ink)?);
     Drawing {
         name: PLACE,
-        title: Some(title.to_owned()).filter(|t| !t.is_empty()),
+        title: titled(title),
         panels,
         columns: 2,
         axes: (330.0, if plots.len() > 2 { 150.0 } else { 240.0 }),

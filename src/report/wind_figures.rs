@@ -1,7 +1,7 @@
 //! Static equilibria, spectra and root mean squares of the response to turbulence.
 
 use super::axis::Axis;
-use super::drawing::Drawing;
+use super::drawing::{Drawing, titled};
 use super::figure::Figure;
 use super::legend::Entry;
 use super::panel::Panel;
@@ -16,18 +16,11 @@ const GUSTS: [&str; 2] = ["u", "w"];
 
 /// Name, symbol and unit of an ordinate, and the factor to that unit from m and rad.
 fn ordinate(dof: Dof, before: &str) -> (String, f64) {
-    let (unit, factor) = match dof {
-        Dof::Torsion => ("deg", 1f64.to_degrees()),
-        _ => ("m", 1.0),
-    };
+    let (factor, unit) = dof.shown_in();
     (
         format!("{before}{} {} ({unit})", dof.name(), dof.symbol()),
         factor,
     )
-}
-
-fn titled(title: &str) -> Option<String> {
-    Some(title.to_owned()).filter(|t| !t.is_empty())
 }
 
 /// Static displacements over wind speed, one panel per degree of freedom; the end of the branch is an upright.

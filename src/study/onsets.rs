@@ -1,6 +1,6 @@
 //! Curves, onsets and divergence of all models of a study, side by side.
 
-use super::{Deck, StageFailure, SteppedAnswer, SteppedOnset, Study, attempt};
+use super::{Deck, StageFailure, Study, attempt};
 use crate::aerodynamics::{Realizable, Realization, Transfer};
 use crate::aeroelastic::CoupledSection;
 use crate::error::Result;
@@ -203,22 +203,8 @@ impl FlutterStudy {
         self.undetermined.extend(undetermined);
     }
 
-    /// Puts the answer of the stepped FMU of `model` beside the others; returns the onset, if it was found.
-    pub(crate) fn take_stepped(
-        &mut self,
-        answer: SteppedAnswer,
-        model: &str,
-    ) -> Option<SteppedOnset> {
-        let search = match answer {
-            SteppedAnswer::Onset(onset) => return Some(*onset),
-            SteppedAnswer::UnstableAtOrBelow(start) => FlutterSearch::UnstableAtOrBelow(start),
-            SteppedAnswer::StableUpTo(range) => FlutterSearch::StableUpTo(range),
-        };
-        self.take(search, model, OnsetMethod::FmuStepping);
-        None
-    }
-
-    fn take(&mut self, search: FlutterSearch, model: &str, method: OnsetMethod) {
+    /// Puts the answer of a search beside the others.
+    pub(crate) fn take(&mut self, search: FlutterSearch, model: &str, method: OnsetMethod) {
         match search {
             FlutterSearch::Onset(onset) => self.onsets.push(*onset),
             FlutterSearch::UnstableAtOrBelow(start) => self.unstable.push(*start),

@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result, counted};
 use crate::flutter::{
-    CriticalPoint, Onset, OnsetInterval, OnsetMethod, StableRange, UnstableStart,
+    CriticalPoint, FlutterSearch, Onset, OnsetInterval, OnsetMethod, UnstableStart,
 };
 use crate::fmu::importer::{
     Fmu, GrowthPoint, SteppedOnset as Found, SteppedSearch, SteppingSearch, growth_by_stepping,
@@ -62,24 +62,19 @@ impl SteppedOnset {
 }
 
 /// Answer of stepping an FMU.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum SteppedAnswer {
-    /// It flutters.
-    Onset(Box<SteppedOnset>),
-    /// It grows at the lowest speed stepped, or where its motion comes into the tested range.
-    UnstableAtOrBelow(Box<UnstableStart>),
-    /// It does not between these speeds.
-    StableUpTo(StableRange),
+#[derive(Debug, Clone, PartialEq)]
+pub struct SteppedAnswer {
+    /// What was found with the shorter communication step; growth counts at the lowest speed stepped, or where the motion
+    /// comes into the tested range.
+    pub search: FlutterSearch,
+    /// The search with each communication step; none where there is no onset.
+    pub runs: Vec<SteppedRun>,
 }
 
-impl SteppedAnswer {
-    /// The onset, if it was found.
-    pub fn onset(&self) -> Option<&SteppedOnset> {
-        match self {
-            Self::Onset(onset) => Some(onset),
-            Self::UnstableAtOrBelow(_) | Self::StableUpTo(_) => None,
-        }
+impl From<FlutterSearch> for SteppedAnswer {
+    fn from(search: FlutterSearch) -> Self {
+        let runs = Vec::new();
+        Self { search, runs }
     }
 }
 
@@ -101,9 +96,11 @@ pub fn stepped_onset(
             SteppedSearch::Onset(onset) => found.push(*onset),
             SteppedSearch::UnstableAtOrBelow(at) => {
                 let reason = "the lowest speed stepped".to_owned();
-                return Ok(unstable(model, at, reason));
+                return Ok(unstable(model, at, reason).into());
             }
-            SteppedSearch::StableUpTo(range) => return Ok(SteppedAnswer::StableUpTo(range)),
+            SteppedSearch::StableUpTo(range) => {
+                return Ok(FlutterSearch::StableUpTo(range).into());
+            }
         }
     }
     let runs = found
@@ -118,16 +115,14 @@ pub fn stepped_onset(
         return Err(Error::Numerical("FMU stepped: no run".into()));
     };
     if let Some(start) = enters_growing(&fmu, model, first)? {
-        return Ok(start);
+        return Ok(start.into());
     }
-    Ok(SteppedAnswer::Onset(Box::new(SteppedOnset {
-        onset: as_onset(model, first),
-        runs,
-    })))
+    let search = FlutterSearch::Onset(Box::new(as_onset(model, first)));
+    Ok(SteppedAnswer { search, runs })
 }
 
 /// An onset above the tested `K` whose motion still grows where it comes into the tested range, stepped there.
-fn enters_growing(fmu: &Fmu, model: &TrainedModel, found: &Found) -> Result<Option<SteppedAnswer>> {
+fn enters_growing(fmu: &Fmu, model: &TrainedModel, found: &Found) -> Result<Option<FlutterSearch>> {
     let limit = model.tested_range.max;
     let width = model.section.width_m;
     if ReducedFrequency::from_hertz(found.frequency_hz, width, found.speed_m_s) <= limit {
@@ -152,17 +147,17 @@ fn enters_growing(fmu: &Fmu, model: &TrainedModel, found: &Found) -> Result<Opti
     );
     Ok((at.growth_rate_per_s > 0.0).then(|| {
         let mut answer = unstable(model, at, reason);
-        if let SteppedAnswer::UnstableAtOrBelow(start) = &mut answer {
+        if let FlutterSearch::UnstableAtOrBelow(start) = &mut answer {
             start.in_tested_range = Some(true);
         }
         answer
     }))
 }
 
-fn unstable(model: &TrainedModel, at: GrowthPoint, reason: String) -> SteppedAnswer {
+fn unstable(model: &TrainedModel, at: GrowthPoint, reason: String) -> FlutterSearch {
     let speed_m_s = at.speed_m_s;
     let k = ReducedFrequency::from_hertz(at.frequency_hz, model.section.width_m, speed_m_s);
-    SteppedAnswer::UnstableAtOrBelow(Box::new(UnstableStart {
+    FlutterSearch::UnstableAtOrBelow(Box::new(UnstableStart {
         at: CriticalPoint::new(
             &model.name,
             OnsetMethod::FmuStepping,

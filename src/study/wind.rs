@@ -12,7 +12,7 @@ use super::{FlutterBlock, SpeedRange};
 use crate::aerodynamics::derivatives::{Extrapolation, InterpolatedTable};
 use crate::aerodynamics::quasi_steady::{Arms, QuasiSteady, StaticCoefficients};
 use crate::buffeting::{TimePlan, Turbulence};
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result, finite, of_schema, positive};
 use crate::files::coefficients::named_coefficients;
 use crate::files::derivatives::named_table;
 use crate::files::toml_lines;
@@ -132,13 +132,7 @@ impl WindStudy {
     }
 
     fn validate(&self) -> Result<()> {
-        if self.schema != WIND_SCHEMA {
-            return Err(Error::input(
-                "schema",
-                WIND_SCHEMA.to_string(),
-                self.schema.to_string(),
-            ));
-        }
+        of_schema(WIND_SCHEMA, self.schema)?;
         if let Some(section) = &self.section {
             section.structure()?;
         }
@@ -156,15 +150,8 @@ impl WindStudy {
             positive("simulation.wind_speed_m_s", run.wind_speed_m_s)?;
             positive("simulation.duration_s", run.duration_s)?;
             positive("simulation.step_s", run.step_s)?;
-            for (key, value) in [
-                ("initial_vertical_m", run.initial_vertical_m),
-                ("initial_rotation_deg", run.initial_rotation_deg),
-            ] {
-                if !value.is_finite() {
-                    let place = format!("simulation.{key}");
-                    return Err(Error::input(place, "a finite number", value.to_string()));
-                }
-            }
+            finite("simulation.initial_vertical_m", run.initial_vertical_m)?;
+            finite("simulation.initial_rotation_deg", run.initial_rotation_deg)?;
         }
         Ok(())
     }

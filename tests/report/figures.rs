@@ -9,7 +9,7 @@ use aerodeck::flutter::{
     FlutterCurves, Onset, OnsetSearch, determinant_onset, find_onset, trace_modes,
 };
 use aerodeck::report::{
-    DerivativePlot, DerivativesPlot, Figure, PNG_SCALE, PlottedSeries, TimePanel, VfVgOptions,
+    DerivativePlot, DerivativesPlot, Figure, PNG_SCALE, PlottedSeries, TimePanel,
     derivatives_figure, time_history_figure, vf_vg_figure,
 };
 use aerodeck::response::{Inputs, Outputs, Stepper};
@@ -134,12 +134,8 @@ fn vf_vg_of_the_iabse_deck() {
         plate_onset(&section),
         outside,
     ];
-    let options = VfVgOptions {
-        title: Some("IABSE TG 3.1, step 1.1a".into()),
-        tested_speeds_m_s: Some((5.0, 70.0)),
-        ..VfVgOptions::default()
-    };
-    let draw = || vf_vg_figure(&curves, &onsets, &options).unwrap();
+    let title = Some("IABSE TG 3.1, step 1.1a");
+    let draw = || vf_vg_figure(&curves, &onsets, title, Some(80.0)).unwrap();
     check(
         &draw(),
         &draw(),
@@ -153,7 +149,7 @@ fn vf_vg_of_the_iabse_deck() {
             names[1],
             "vertical branch",
             "torsion branch",
-            "wind speed outside the tests",
+            "required onset above 80.00 m/s",
             "onset outside the tested range",
             "probably spurious crossing",
             "77.48 m/s",
@@ -167,7 +163,7 @@ fn vf_vg_of_table_4_1() {
     let section = SectionModel::table_4_1();
     let curves = [jones_curves("flat plate, Jones", &section, 45.0)];
     let onsets = [jones_onset("flat plate, Jones", &section, 60.0)];
-    let draw = || vf_vg_figure(&curves, &onsets, &VfVgOptions::default()).unwrap();
+    let draw = || vf_vg_figure(&curves, &onsets, None, None).unwrap();
     check(
         &draw(),
         &draw(),
@@ -178,14 +174,14 @@ fn vf_vg_of_table_4_1() {
 
 #[test]
 fn what_cannot_be_drawn_is_refused() {
-    let none = vf_vg_figure(&[], &[], &VfVgOptions::default()).unwrap_err();
+    let none = vf_vg_figure(&[], &[], None, None).unwrap_err();
     assert_eq!(
         none.to_string(),
         "flutter curves: expected at least one mode, found none"
     );
     let mut curves = [jones_curves("Jones", &SectionModel::table_4_1(), 30.0)];
     curves[0].branches[1].points[2].damping_ratio = f64::NAN;
-    let message = vf_vg_figure(&curves, &[], &VfVgOptions::default())
+    let message = vf_vg_figure(&curves, &[], None, None)
         .unwrap_err()
         .to_string();
     assert_eq!(
@@ -193,14 +189,15 @@ fn what_cannot_be_drawn_is_refused() {
         "V-f and V-g diagram, Jones, torsion branch: expected finite numbers, found (0.5, NaN) at point 3"
     );
     curves[0].branches[1].points.clear();
-    let message = vf_vg_figure(&curves, &[], &VfVgOptions::default())
+    let message = vf_vg_figure(&curves, &[], None, None)
         .unwrap_err()
         .to_string();
     assert!(message.ends_with("torsion branch: expected points, found none"));
     let figure = vf_vg_figure(
         &[jones_curves("Jones", &SectionModel::table_4_1(), 30.0)],
         &[],
-        &VfVgOptions::default(),
+        None,
+        None,
     )
     .unwrap();
     for scale in [0.0, -1.0, f64::NAN, 1e6] {

@@ -43,20 +43,25 @@ pub(crate) fn card(study: &BridgeStudy, results: &BridgeFlutter) -> String {
             100.0 * left.below_share
         );
     }
-    let divergence = results
-        .divergence_m_s
-        .map_or("none".to_owned(), |v| format!("{v:.3} m/s"));
-    let _ = writeln!(text, "Divergence of the model: {divergence}");
-    if let Some(rotation) = results.mean_rotation_deg {
-        let _ = writeln!(
-            text,
-            "Greatest mean rotation at the onset: {rotation:.3}° (nose-up positive)"
-        );
+    for sentence in beside_the_onset(results) {
+        let _ = writeln!(text, "{sentence}");
     }
     if let Some(why) = &results.curves.ended {
         let _ = writeln!(text, "curves end early: {why}");
     }
     text
+}
+
+/// Divergence, and rotation in the mean wind where it was computed.
+pub(super) fn beside_the_onset(results: &BridgeFlutter) -> Vec<String> {
+    let divergence = results
+        .divergence_m_s
+        .map_or("none".to_owned(), |v| format!("{v:.3} m/s"));
+    let rotation = results.mean_rotation_deg.map(|rotation| {
+        format!("Greatest mean rotation at the onset: {rotation:.3}° (nose-up positive)")
+    });
+    let divergence = format!("Divergence of the model: {divergence}");
+    std::iter::once(divergence).chain(rotation).collect()
 }
 
 fn interval(of: &OnsetInterval) -> String {

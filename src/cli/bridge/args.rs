@@ -1,6 +1,6 @@
 //! A bridge file on the command line.
 
-use crate::cli::common::warn;
+use crate::cli::common::{folder_of, warn};
 use crate::cli::output::OutputDir;
 use crate::cli::progress::Progress;
 use crate::error::{Error, Result};
@@ -24,20 +24,22 @@ impl BridgeArgs {
         std::fs::read_to_string(&self.bridge).map_err(|e| Error::io(&self.bridge, e))
     }
 
-    /// The bridge, with what a reader should know of it on the terminal.
+    /// The bridge.
     pub(super) fn study(&self, progress: &Progress) -> Result<BridgeStudy> {
-        let stage = progress.stage("reading the bridge");
-        let study = BridgeStudy::new(BridgeFile::read(&self.bridge)?);
-        drop(stage);
-        let study = study?;
-        warn(&self.bridge, &study.notes);
-        Ok(study)
+        read(&self.bridge, progress)
     }
 
     /// Where its results go.
     pub(super) fn out(&self) -> Result<OutputDir> {
-        let parent = self.bridge.parent().filter(|p| !p.as_os_str().is_empty());
-        let beside = parent.unwrap_or(Path::new("."));
-        OutputDir::new(self.out.as_deref().unwrap_or(beside))
+        OutputDir::new(self.out.as_deref().unwrap_or(folder_of(&self.bridge)))
     }
+}
+
+/// The bridge of a file, with what a reader should know of it on the terminal.
+pub(crate) fn read(file: &Path, progress: &Progress) -> Result<BridgeStudy> {
+    let stage = progress.stage("reading the bridge");
+    let study = BridgeStudy::new(BridgeFile::read(file)?)?;
+    drop(stage);
+    warn(file, &study.notes);
+    Ok(study)
 }

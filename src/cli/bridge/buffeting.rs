@@ -1,7 +1,6 @@
 //! `aerodeck bridge buffeting`: RMS and peak factors at named nodes.
 
 use super::super::answer::Answer;
-use super::super::output::list;
 use super::super::progress::Progress;
 use super::args::BridgeArgs;
 use crate::buffeting::TurbulenceField;
@@ -46,9 +45,7 @@ pub(super) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     });
     drop(stage);
     let results = results?;
-    let json = serde_json::to_string_pretty(&results)
-        .map_err(|e| crate::Error::Numerical(e.to_string()))?;
-    out.write("bridge_buffeting.json", json + "\n")?;
+    out.write_json("bridge_buffeting.json", &results)?;
     out.write("bridge_spectra.csv", spectra_csv(&results))?;
     if args.field {
         out.write(
@@ -56,14 +53,9 @@ pub(super) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
             field_csv(&study.first_field(&block, args.speed)?),
         )?;
     }
-    let written = out.commit()?;
-    let mut text = format!("{} at {} m/s\n", study.file.name, args.speed);
-    text.push_str(&table(&results));
-    text.push_str(&list(&written));
-    Answer::new(
-        text,
-        &serde_json::json!({ "buffeting": results, "notes": study.notes, "files": written }),
-    )
+    let head = format!("{} at {} m/s\n", study.file.name, args.speed);
+    let json = serde_json::json!({ "buffeting": results, "notes": study.notes });
+    out.answer(head + &table(&results), json)
 }
 
 /// The response to the turbulence of a file.

@@ -6,7 +6,7 @@ use super::super::progress::Progress;
 use super::super::stages;
 use super::account::card;
 use super::files::BRIDGE_FMU;
-use super::flutter::{computed, staged};
+use super::flutter::computed;
 use super::summary::{self, BridgeRun};
 use crate::error::{Error, Result};
 use crate::files::bridge::BridgeFile;
@@ -32,11 +32,7 @@ pub(crate) fn run(directory: &Path, force: bool, progress: &Progress) -> Result<
     let at_hand = trained(&section, &deck, &mut out, progress)?;
     let file = BridgeFile::from_toml(demo_bridge_text(), directory.to_path_buf())?;
     let study = BridgeStudy::with_trained(file, |_| Some(at_hand.clone()))?;
-    let results = computed(&study, progress)?;
-    let mut failed = results.failed.clone();
-    if let Err(e) = staged(&study, &results, &mut out) {
-        failed.push(format!("figures: {e}"));
-    }
+    let (results, mut failed) = computed(&study, &mut out, progress)?;
     let stage = progress.stage("packing the FMU");
     if let Err(e) = packed(&study, &mut out) {
         failed.push(format!("FMU: {e}"));

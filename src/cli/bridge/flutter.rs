@@ -3,7 +3,7 @@
 use super::super::answer::Answer;
 use super::super::evidence::{DerivativesShown, curves_csv};
 use super::super::figures;
-use super::super::output::{OutputDir, list};
+use super::super::output::OutputDir;
 use super::super::progress::Progress;
 use super::super::report::{SUMMARY, is_of_a_study};
 use super::args::BridgeArgs;
@@ -58,11 +58,7 @@ pub(crate) struct Args {
 pub(super) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     let study = args.bridge.study(progress)?;
     let mut out = args.bridge.out()?;
-    let results = computed(&study, progress)?;
-    let mut failed = results.failed.clone();
-    if let Err(e) = staged(&study, &results, &mut out) {
-        failed.push(format!("figures: {e}"));
-    }
+    let (results, mut failed) = computed(&study, &mut out, progress)?;
     let scattered = args
         .scattered(&study, &results, progress)
         .unwrap_or_else(|e| {
@@ -86,15 +82,13 @@ pub(super) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
         let said = (&comparisons[..], &failed[..]);
         summary::leave(&ran, (&study, &results), said, &mut out)?;
     }
-    let written = out.commit()?;
     for failure in &failed {
         let _ = writeln!(text, "failed: {failure}");
     }
-    text.push_str(&list(&written));
     let json = serde_json::json!({
-        "bridge": study.file.name, "onsets": results.onsets().collect::<Vec<_>>(), "flutter": results, "scatter": scattered, "notes": study.notes, "failed": failed, "files": written
+        "bridge": study.file.name, "onsets": results.onsets().collect::<Vec<_>>(), "flutter": results, "scatter": scattered, "notes": study.notes, "failed": failed
     });
-    Ok(Answer::new(text, &json)?.with_verdict(failed.is_empty()))
+    Ok(out.answer(text, json)?.with_verdict(failed.is_empty()))
 }
 
 impl Args {
@@ -152,20 +146,25 @@ fn scatter_line(of: &ScatteredOnset) -> String {
     )
 }
 
-/// The results, with progress.
-pub(crate) fn computed(study: &BridgeStudy, progress: &Progress) -> Result<BridgeFlutter> {
+/// The results, with figures and tables in `out`, and what failed.
+pub(super) fn computed(
+    study: &BridgeStudy,
+    out: &mut OutputDir,
+    progress: &Progress,
+) -> Result<(BridgeFlutter, Vec<String>)> {
     let stage = progress.stage("flutter of the bridge");
     let results = bridge_flutter(study);
     drop(stage);
-    results
+    let results = results?;
+    let mut failed = results.failed.clone();
+    if let Err(e) = staged(study, &results, out) {
+        failed.push(format!("figures: {e}"));
+    }
+    Ok((results, failed))
 }
 
 /// Stages figures and tables.
-pub(crate) fn staged(
-    study: &BridgeStudy,
-    results: &BridgeFlutter,
-    out: &mut OutputDir,
-) -> Result<()> {
+fn staged(study: &BridgeStudy, results: &BridgeFlutter, out: &mut OutputDir) -> Result<()> {
     let answer = results.answers.last();
     let motion = answer.and_then(|a| a.motion.as_ref());
     let onset = answer.and_then(|a| a.search.onset());
@@ -217,7 +216,7 @@ fn write_derivatives(study: &BridgeStudy, number: usize, out: &mut OutputDir) ->
             "model".to_owned(),
             derivative_lines(model, tested.min.v_hat())?,
         )],
-        exact: None,
+        exact: Vec::new(),
         intervals: ("the model", &forces.derivative_intervals()?),
     };
     let stem = format!("{DERIVATIVES_FIGURE}{}", number + 1);

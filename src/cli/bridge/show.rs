@@ -2,7 +2,6 @@
 
 use super::super::answer::Answer;
 use super::super::figures;
-use super::super::output::list;
 use super::super::progress::Progress;
 use super::args::BridgeArgs;
 use crate::error::{Result, counted};
@@ -33,7 +32,6 @@ pub(super) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
         study.file.name
     );
     figures::write("modes", &mut out, || modes_figure(bridge, &title))?;
-    let written = out.commit()?;
     let length: f64 = bridge.nodes.iter().map(|n| n.length_m).sum();
     let mut text = format!(
         "{}: {} over {length:.1} m, {}, {} of strips\n\n{:>5} {:>10} {:>14} {:>8}  main motion\n",
@@ -66,7 +64,6 @@ pub(super) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
             s.vertical_mode, s.torsional_mode, s.similarity
         );
     }
-    text.push_str(&list(&written));
     let modes: Vec<_> = bridge
         .modes
         .iter()
@@ -79,7 +76,7 @@ pub(super) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
         .collect();
     let json = serde_json::json!({
         "name": study.file.name, "nodes": bridge.nodes.len(), "modes": modes, "similarities": similarities,
-        "notes": study.notes, "files": written
+        "notes": study.notes
     });
-    Answer::new(text, &json)
+    out.answer(text, json)
 }

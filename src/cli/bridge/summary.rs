@@ -1,11 +1,13 @@
 //! `summary.json` of a bridge and the page that is made from it.
 
+use super::super::headline;
 use super::super::output::OutputDir;
 use super::super::report::{
     self, AnswerView, BridgeFacts, ModeFacts, REPORT, SUMMARY, SectionFacts,
 };
+use super::account::beside_the_onset;
 use crate::error::Result;
-use crate::flutter::{FlutterSearch, Onset, OnsetInterval};
+use crate::flutter::{FlutterSearch, Onset};
 use crate::section::Dof;
 use crate::study::bridge::{BridgeFlutter, BridgeStudy};
 use serde::Serialize;
@@ -48,7 +50,7 @@ pub(super) fn leave<'a>(
             command: ran.command.clone(),
             answer: answer(results),
             limits: limits(study, results, failed),
-            comparisons: [comparisons(results), said.to_vec()].concat(),
+            comparisons: [beside_the_onset(results), said.to_vec()].concat(),
             nodes: study.by_model.nodes.len(),
             length_m: study.by_model.nodes.iter().map(|n| n.length_m).sum(),
             width_m: study.by_model.width_m(),
@@ -94,17 +96,7 @@ fn answer(results: &BridgeFlutter) -> AnswerView {
 fn limits(study: &BridgeStudy, results: &BridgeFlutter, failed: &[String]) -> Vec<String> {
     let mut limits = Vec::new();
     if let Some(onset) = own(results).and_then(FlutterSearch::onset) {
-        if onset.in_tested_range == Some(false) {
-            limits.push(
-                "The onset lies outside the tested range: the models are extrapolated.".to_owned(),
-            );
-        }
-        if let OnsetInterval::None { reason } | OnsetInterval::Undetermined { reason, .. } =
-            &onset.interval
-        {
-            limits.push(format!("No interval of the onset: {reason}"));
-        }
-        limits.extend(onset.warnings.iter().cloned());
+        limits.extend(headline::limits_of(onset, "the models are"));
     }
     limits.extend(study.notes.iter().cloned());
     if let Some(why) = &results.curves.ended {
@@ -112,17 +104,6 @@ fn limits(study: &BridgeStudy, results: &BridgeFlutter, failed: &[String]) -> Ve
     }
     limits.extend(failed.iter().map(|f| format!("failed: {f}")));
     limits
-}
-
-fn comparisons(results: &BridgeFlutter) -> Vec<String> {
-    let divergence = results
-        .divergence_m_s
-        .map_or("none".to_owned(), |v| format!("{v:.3} m/s"));
-    let rotation = results.mean_rotation_deg.map(|rotation| {
-        format!("Greatest mean rotation at the onset: {rotation:.3}° (nose-up positive)")
-    });
-    let divergence = format!("Divergence of the model: {divergence}");
-    std::iter::once(divergence).chain(rotation).collect()
 }
 
 fn sections(study: &BridgeStudy) -> Vec<SectionFacts> {

@@ -2,6 +2,7 @@
 
 use crate::aerodynamics::{FlatPlate, RationalModel};
 use crate::cli::answer::Answer;
+use crate::cli::common::spelt;
 use crate::cli::output::OutputDir;
 use crate::cli::progress::Progress;
 use crate::error::{Error, Result};
@@ -9,6 +10,7 @@ use crate::files::derivatives::named_table;
 use crate::section::Dof;
 use crate::wind_tunnel::campaign::{FileFormat, write_virtual_campaign};
 use crate::wind_tunnel::virtual_campaign::{VirtualCampaign, VirtualCampaignPlan};
+use clap::builder::PossibleValue;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -43,20 +45,19 @@ pub(crate) struct Args {
     #[arg(long, default_value_t = 0.5)]
     width: f64,
     /// How the recordings are written.
-    #[arg(long, value_enum, default_value_t = Format::Csv)]
-    format: Format,
+    #[arg(long, default_value = "csv", value_parser = spelt::<FileFormat>(formats()))]
+    format: FileFormat,
     /// Replace a campaign file and a plan that differ from what is written.
     #[arg(long)]
     force: bool,
 }
 
 /// How the recordings are written.
-#[derive(Debug, Clone, Copy, clap::ValueEnum)]
-enum Format {
-    /// One CSV file per recording; reads back bit for bit.
-    Csv,
-    /// One HDF5 file in the layout of NTNU's tools.
-    Ntnu,
+fn formats() -> [PossibleValue; 2] {
+    [
+        PossibleValue::new("csv").help("One CSV file per recording; reads back bit for bit"),
+        PossibleValue::new("ntnu").help("One HDF5 file in the layout of NTNU's tools"),
+    ]
 }
 
 /// Runs the command.
@@ -68,11 +69,7 @@ pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     let mut out = OutputDir::new(&args.out)?;
     let stage = progress.stage("writing the recordings");
     out.write("plan.toml", plan.to_toml()?)?;
-    let format = match args.format {
-        Format::Csv => FileFormat::Csv,
-        Format::Ntnu => FileFormat::Ntnu,
-    };
-    write_virtual_campaign(&made, format, &mut |name| out.stage(name))?;
+    write_virtual_campaign(&made, args.format, &mut |name| out.stage(name))?;
     for name in ["plan.toml", "campaign.toml"] {
         out.refuse_edited(name, args.force, "choose another --out")?;
     }

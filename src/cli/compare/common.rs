@@ -98,20 +98,12 @@ pub(super) fn metrics_of(
                 }
             }
             panels.push(MetricPanel {
-                title: format!("{}: {name}", force_name(force)),
+                title: format!("{}: {name}", force.force_name()),
                 series,
             });
         }
     }
     metrics_figure(title, &panels, 3)
-}
-
-pub(super) fn force_name(force: Dof) -> &'static str {
-    match force {
-        Dof::Vertical => "lift",
-        Dof::Lateral => "drag",
-        Dof::Torsion => "moment",
-    }
 }
 
 /// A section of the page of the thesis.

@@ -1,7 +1,7 @@
 //! `aerodeck compare models`: Laguerre models against rational functions on one girder.
 
 use super::common::{
-    self, Common, beside_the_thesis, compared, force_name, metrics_of, metrics_table,
+    self, Common, beside_the_thesis, compared, metrics_of, metrics_table,
 };
 use crate::cli::answer::Answer;
 use crate::cli::figures;
@@ -72,7 +72,7 @@ fn transfer_functions(results: &ModelsComparison) -> Result<Figure> {
         .map(|entry| TransferPlot {
             name: format!(
                 "{} due to {} motion",
-                force_name(entry.force),
+                entry.force.force_name(),
                 entry.motion.name()
             ),
             reference: TransferCurve {
@@ -117,13 +117,12 @@ fn derivatives(results: &ModelsComparison) -> Result<Figure> {
             .map(|d| DerivativePlot {
                 name: d.name.to_owned(),
                 measured: vec![PlottedSeries::new("measured", d.measured.clone())],
-                bars: Vec::new(),
                 fitted: d
                     .models
                     .iter()
                     .map(|(model, points)| PlottedSeries::new(model, points.clone()))
                     .collect(),
-                reference: Vec::new(),
+                ..DerivativePlot::default()
             })
             .collect(),
     })
@@ -158,7 +157,7 @@ fn panel(results: &ModelsComparison, history: &History) -> TimePanel {
     let measured = [series("measured", &history.measured)];
     let models = results.models.iter().zip(&history.predicted);
     TimePanel {
-        y_label: format!("{} ({unit})", force_name(history.force)),
+        y_label: format!("{} ({unit})", history.force.force_name()),
         series: measured
             .into_iter()
             .chain(models.map(|(m, values)| series(&m.name, values)))

@@ -3,12 +3,12 @@
 use crate::aerodynamics::{GustForce, RationalAdmittance};
 use crate::cli::account;
 use crate::cli::answer::Answer;
-use crate::cli::bridge::BRIDGE_FMU;
-use crate::cli::common::warn;
+use crate::cli::bridge::{self, BRIDGE_FMU};
+use crate::cli::common::spelt;
 use crate::cli::progress::Progress;
 use crate::cli::stages;
 use crate::error::{Error, Result, counted};
-use crate::files::bridge::{BridgeFile, read_field};
+use crate::files::bridge::read_field;
 use crate::files::coefficients::gust_force;
 use crate::fmu::force_options::{ForceOptions, MAX_STRIPS};
 use crate::fmu::onset_bounds::OnsetBounds;
@@ -17,9 +17,10 @@ use crate::fmu::package::{
     write_fmu,
 };
 use crate::fmu::variables::Listing;
-use crate::study::bridge::{BridgeExportOptions, BridgeStudy};
+use crate::study::bridge::BridgeExportOptions;
 use crate::study::uncertainty_beside;
 use crate::trained_model::TrainedModel;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use std::path::{Path, PathBuf};
 
 /// Pack a trained model (`model.json`) as an FMI 2.0 co-simulation FMU: its section, or its forces alone
@@ -70,11 +71,11 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE", requires = "bridge")]
     turbulence: Option<PathBuf>,
     /// Admittance of the gusts [default: none].
-    #[arg(long, value_enum)]
-    admittance: Option<Admittance>,
+    #[arg(long, value_parser = spelt::<RationalAdmittance>(["none", "sears", "liepmann"]))]
+    admittance: Option<RationalAdmittance>,
     /// Version of FMI.
-    #[arg(long, value_enum, default_value_t = Version::Two)]
-    fmi: Version,
+    #[arg(long, default_value = "2", value_parser = PossibleValuesParser::new(["2", "3"]).map(version))]
+    fmi: FmiVersion,
     /// Name of the model to the importer [default: that of the trained model].
     #[arg(long)]
     name: Option<String>,
@@ -102,39 +103,10 @@ enum Kind {
     Force,
 }
 
-/// Version of the standard.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-enum Version {
-    #[value(name = "2")]
-    Two,
-    #[value(name = "3")]
-    Three,
-}
-
-impl From<Version> for FmiVersion {
-    fn from(version: Version) -> Self {
-        match version {
-            Version::Two => Self::Two,
-            Version::Three => Self::Three,
-        }
-    }
-}
-
-/// Part of the quasi-steady gust force that a gust of finite length exerts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-enum Admittance {
-    None,
-    Sears,
-    Liepmann,
-}
-
-impl From<Admittance> for RationalAdmittance {
-    fn from(admittance: Admittance) -> Self {
-        match admittance {
-            Admittance::None => Self::None,
-            Admittance::Sears => Self::Sears,
-            Admittance::Liepmann => Self::Liepmann,
-        }
+fn version(number: String) -> FmiVersion {
+    match number.as_str() {
+        "3" => FmiVersion::Three,
+        _ => FmiVersion::Two,
     }
 }
 
@@ -159,8 +131,8 @@ impl Args {
 
     /// The forces of gusts.
     fn gusts(&self, model: &TrainedModel) -> Result<Option<GustForce>> {
-        let admittance = self.admittance.map(Into::into);
-        gust_force(self.gusts.as_deref(), admittance, &model.section.dofs())
+        let dofs = model.section.dofs();
+        gust_force(self.gusts.as_deref(), self.admittance, &dofs)
     }
 
     /// The options of a force FMU.
@@ -196,10 +168,7 @@ impl Args {
 impl Args {
     /// Packs a whole bridge.
     fn whole_bridge(&self, progress: &Progress) -> Result<Answer> {
-        let stage = progress.stage("reading the bridge");
-        let study = BridgeStudy::new(BridgeFile::read(&self.model)?)?;
-        drop(stage);
-        warn(&self.model, &study.notes);
+        let study = bridge::read(&self.model, progress)?;
         let path = self
             .out
             .clone()
@@ -210,10 +179,11 @@ impl Args {
             nodes: self.nodes.clone(),
             allow_unstable: self.allow_unstable,
             gust_strips: self.gust_strips,
-            admittance: self.admittance.map_or_else(Default::default, Into::into),
+            admittance: self.admittance.unwrap_or_default(),
             turbulence,
-        })?;
-        let bytes = package_bridge(&export, &self.runtimes()?, &self.label()?, self.fmi.into())?;
+        });
+        let export = export.map_err(named_by_its_flag)?;
+        let bytes = package_bridge(&export, &self.runtimes()?, &self.label()?, self.fmi)?;
         let overwrite = if self.force {
             Overwrite::Replace
         } else {
@@ -235,6 +205,16 @@ impl Args {
         let json =
             serde_json::json!({ "fmu": path, "nodes": named, "modes": export.bridge.modes.len() });
         Answer::new(text, &json)
+    }
+}
+
+/// A refused bridge, with the flag instead of the option of the library.
+fn named_by_its_flag(error: Error) -> Error {
+    match error {
+        Error::Unstable(text) => {
+            Error::Unstable(text.replace("allow_unstable", "--allow-unstable"))
+        }
+        other => other,
     }
 }
 
@@ -264,7 +244,7 @@ pub(super) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
         gusts: args.gusts(&model)?,
         bounds,
         label: args.label()?,
-        version: args.fmi.into(),
+        version: args.fmi,
         listing: if args.reals_only {
             Listing::Reals
         } else {

@@ -4,14 +4,14 @@ use super::curves::curves_of;
 use super::folder::{SUMMARY, digest, parsed};
 use super::parts::{capital, card, known, of_svg, round, row};
 use super::variables::variables_of;
-use super::view::{AnswerView, OnsetView};
+use super::view::AnswerView;
 use crate::cli::bridge::{
     BRIDGE_FMU, CURVES, DERIVATIVES_FIGURE, FLUTTER_FIGURE, MOTION_FIGURE, ROOTS_FIGURE,
     shown_modes,
 };
 use crate::error::Result;
 use crate::files::bridge::{BridgeFile, DampingRatios};
-use crate::flutter::ModeShare;
+use crate::flutter::{ModeShare, Onset};
 use crate::report::{PageCurve, PageFigure, PageSection, StudyPage, study_page};
 use crate::study::bridge::LeftOut;
 use crate::units::ReducedFrequencyRange;
@@ -78,7 +78,7 @@ pub(crate) struct ModeFacts {
 struct BridgeView {
     #[serde(flatten)]
     facts: BridgeFacts,
-    onsets: Vec<OnsetView>,
+    onsets: Vec<Onset>,
     flutter: FlutterView,
 }
 

@@ -1,8 +1,7 @@
 //! Parts that the pages of a section and of a bridge share.
 
-use super::view::OnsetView;
 use crate::cli::account::interval;
-use crate::flutter::OnsetInterval;
+use crate::flutter::{Onset, OnsetInterval};
 use crate::report::PageFigure;
 
 /// `text` with a capital first letter.
@@ -23,7 +22,7 @@ pub(super) fn known(interval: &OnsetInterval) -> Option<(f64, f64)> {
 }
 
 /// The onset in words, line by line.
-pub(super) fn card(onset: &OnsetView) -> Vec<(String, String)> {
+pub(super) fn card(onset: &Onset) -> Vec<(String, String)> {
     let interval = match &onset.interval {
         OnsetInterval::Known {
             low_m_s,
@@ -50,12 +49,12 @@ pub(super) fn card(onset: &OnsetView) -> Vec<(String, String)> {
         }
     };
     [
-        ("onset speed V", format!("{:.2} m/s", onset.speed_m_s)),
+        ("onset speed V", format!("{:.2} m/s", onset.at.speed_m_s)),
         ("95 % interval", interval),
-        ("frequency f", format!("{:.4} Hz", onset.frequency_hz)),
+        ("frequency f", format!("{:.4} Hz", onset.at.frequency_hz)),
         (
             "reduced velocity V/(fB)",
-            format!("{:.3}", onset.reduced_velocity),
+            format!("{:.3}", onset.at.reduced_velocity.v_star()),
         ),
         (
             "motion",
@@ -79,14 +78,14 @@ fn tested(inside: Option<bool>) -> &'static str {
 }
 
 /// The onset as a row of the table of onsets.
-pub(super) fn row(onset: &OnsetView) -> Vec<String> {
+pub(super) fn row(onset: &Onset) -> Vec<String> {
     vec![
-        onset.model.clone(),
-        onset.method.name().to_owned(),
-        format!("{:.3}", onset.speed_m_s),
+        onset.at.model.clone(),
+        onset.at.method.name().to_owned(),
+        format!("{:.3}", onset.at.speed_m_s),
         interval(&onset.interval),
-        format!("{:.4}", onset.frequency_hz),
-        format!("{:.3}", onset.reduced_velocity),
+        format!("{:.4}", onset.at.frequency_hz),
+        format!("{:.3}", onset.at.reduced_velocity.v_star()),
         onset.branch.clone(),
         tested(onset.in_tested_range).to_owned(),
     ]

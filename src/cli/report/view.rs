@@ -1,6 +1,6 @@
 //! What a report reads of `summary.json`.
 
-use crate::flutter::{OnsetInterval, OnsetMethod};
+use crate::flutter::Onset;
 use crate::section::Dof;
 use crate::study::SpeedRange;
 use crate::units::ReducedFrequencyRange;
@@ -17,8 +17,8 @@ pub(super) struct SummaryView {
     pub(super) answer: AnswerView,
     pub(super) limits: Vec<String>,
     pub(super) comparisons: Vec<String>,
-    pub(super) onsets: Vec<OnsetView>,
-    pub(super) undetermined: Vec<OnsetView>,
+    pub(super) onsets: Vec<Onset>,
+    pub(super) undetermined: Vec<Onset>,
     pub(super) fits: Vec<FitView>,
     pub(super) speeds: SpeedRange,
 }
@@ -36,20 +36,6 @@ pub(crate) struct AnswerView {
     pub(crate) required_speed_m_s: Option<f64>,
     /// Whether the lower end of the interval (the onset itself where there is none) lies above it.
     pub(crate) required_speed_met: Option<bool>,
-}
-
-#[derive(Deserialize)]
-pub(super) struct OnsetView {
-    pub(super) model: String,
-    pub(super) method: OnsetMethod,
-    pub(super) speed_m_s: f64,
-    pub(super) frequency_hz: f64,
-    pub(super) reduced_velocity: f64,
-    pub(super) mode_ratio: f64,
-    pub(super) phase_deg: f64,
-    pub(super) branch: String,
-    pub(super) in_tested_range: Option<bool>,
-    pub(super) interval: OnsetInterval,
 }
 
 #[derive(Deserialize)]

@@ -7,7 +7,7 @@ use super::{Axes, abaqus, embedded, matlab, opensees, single_file, tables, wawi}
 use crate::aerodynamics::derivatives::Interpolation;
 use crate::aerodynamics::quasi_steady::{Arms, CoefficientsAt};
 use crate::bridge::BridgeMode;
-use crate::error::{Error, Result, non_negative, positive};
+use crate::error::{Error, Result, non_negative, of_schema, positive};
 use crate::files::toml_lines;
 use crate::section::Dof;
 use serde::{Deserialize, Serialize};
@@ -245,13 +245,7 @@ impl BridgeFile {
     }
 
     fn validate(&self) -> Result<()> {
-        if self.schema != SCHEMA {
-            return Err(Error::input(
-                "schema",
-                SCHEMA.to_string(),
-                self.schema.to_string(),
-            ));
-        }
+        of_schema(SCHEMA, self.schema)?;
         positive("air_density_kg_m3", self.air_density_kg_m3)?;
         positive("flutter.speed_max_m_s", self.flutter.speed_max_m_s)?;
         if self.sections.is_empty() {

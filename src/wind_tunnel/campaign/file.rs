@@ -5,7 +5,7 @@ use super::channel::ChannelRef;
 use super::channel_map::ChannelMap;
 use super::ntnu;
 use super::section_forces::{self, SectionForces};
-use crate::error::{Error, Result, at_most, positive};
+use crate::error::{Error, Result, at_most, of_schema, positive};
 use crate::files::toml_lines;
 use crate::section::Dof;
 use crate::wind_tunnel::Rig;
@@ -242,13 +242,7 @@ impl Campaign {
     }
 
     fn validate(&self) -> Result<()> {
-        if self.schema != CAMPAIGN_SCHEMA {
-            return Err(Error::input(
-                "schema",
-                CAMPAIGN_SCHEMA.to_string(),
-                self.schema.to_string(),
-            ));
-        }
+        of_schema(CAMPAIGN_SCHEMA, self.schema)?;
         if self.section.name.trim().is_empty() {
             return Err(Error::input("section.name", "a name", "none"));
         }
