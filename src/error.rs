@@ -178,7 +178,11 @@ pub(crate) fn of_schema(expected: u32, found: u32) -> Result<()> {
     if found == expected {
         return Ok(());
     }
-    Err(Error::input("schema", expected.to_string(), found.to_string()))
+    Err(Error::input(
+        "schema",
+        expected.to_string(),
+        found.to_string(),
+    ))
 }
 
 /// Nothing if `values` are `count` finite numbers.

@@ -18,9 +18,7 @@ pub(crate) fn warn(file: &Path, warnings: &[String]) {
 }
 
 /// The words of an argument, each a value of `T` as files spell it.
-pub(crate) fn spelt<T>(
-    words: impl Into<PossibleValuesParser>,
-) -> impl TypedValueParser<Value = T>
+pub(crate) fn spelt<T>(words: impl Into<PossibleValuesParser>) -> impl TypedValueParser<Value = T>
 where
     T: DeserializeOwned + Clone + Send + Sync + 'static,
 {

@@ -10,8 +10,8 @@ use crate::aerodynamics::derivatives::{Derivative, DerivativeTable};
 use crate::error::Result;
 use crate::flutter::FlutterCurves;
 use crate::report::{
-    DerivativePlot, DerivativesPlot, PlottedSeries, derivatives_figure,
-    root_locus_figure, time_history_figure,
+    DerivativePlot, DerivativesPlot, PlottedSeries, derivatives_figure, root_locus_figure,
+    time_history_figure,
 };
 use crate::section::Dof;
 use crate::study::{Deck, Study, TrainedWithReport, derivative_lines};

@@ -29,10 +29,7 @@ impl Entry {
 }
 
 /// An entry for each label, in the ink of its place.
-pub(super) fn entries(
-    labels: &[String],
-    ink: impl Fn(usize) -> Result<Ink>,
-) -> Result<Vec<Entry>> {
+pub(super) fn entries(labels: &[String], ink: impl Fn(usize) -> Result<Ink>) -> Result<Vec<Entry>> {
     let labels = labels.iter().enumerate();
     labels
         .map(|(i, label)| Ok(Entry::new(label, ink(i)?)))

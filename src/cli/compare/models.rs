@@ -1,8 +1,6 @@
 //! `aerodeck compare models`: Laguerre models against rational functions on one girder.
 
-use super::common::{
-    self, Common, beside_the_thesis, compared, metrics_of, metrics_table,
-};
+use super::common::{self, Common, beside_the_thesis, compared, metrics_of, metrics_table};
 use crate::cli::answer::Answer;
 use crate::cli::figures;
 use crate::cli::output::OutputDir;
