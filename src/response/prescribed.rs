@@ -139,7 +139,7 @@ impl PrescribedForces {
     /// # Errors
     /// [`Error::Input`] for a point that is not later than the newest and for a step of more than ten thousand parts over
     /// all strips (a hundred of each at least);
-    /// [`Error::Numerical`] for a filter that does not settle, and beyond the range of numbers.
+    /// [`Error::Numerical`] for a filter that does not settle, and where numbers overflow.
     pub fn take(
         &mut self,
         state: &mut [f64],

@@ -81,7 +81,7 @@ fn a_wide_table_without_speeds_goes_through_the_chain() {
     let said = flowing(&succeeds(at, &["study", "study.toml", "--out", "."]));
     for part in [
         "H4* = K H2*, A4* = K A2* taken, quasi-steady, as stated",
-        "1 m is taken",
+        "1 m is assumed",
         "the table states no mean wind speeds: records of the virtual tunnel take 8.17 m/s",
         "spread between interpolations: modified Akima over ln K",
         "K → 0 was not tested: H3*, A3* at the lowest tested K, 0.071",

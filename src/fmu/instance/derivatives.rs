@@ -67,9 +67,7 @@ impl Instance {
             }
         }
         if !sums.iter().all(|x| x.is_finite()) {
-            return Err(Refusal::discard(
-                "directional derivative: beyond the range of numbers",
-            ));
+            return Err(Refusal::discard("directional derivative: overflow"));
         }
         results.copy_from_slice(&sums);
         Ok(())

@@ -65,9 +65,7 @@ fn grown(state: &[f64]) -> Result<()> {
     if state.iter().all(|z| z.is_finite()) {
         Ok(())
     } else {
-        Err(Error::Numerical(
-            "the motion has grown beyond the range of numbers".into(),
-        ))
+        Err(Error::Numerical("the motion has overflowed".into()))
     }
 }
 

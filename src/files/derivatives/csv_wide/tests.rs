@@ -28,7 +28,7 @@ fn a_table_of_a_paper_is_read_with_notes() {
     assert_eq!(table.points(Derivative::A3)[1].v_hat, 4.0);
     assert!(table.speed_groups().is_empty());
     let notes = table.header.notes.join("; ");
-    for part in ["H4*, A4*: taken as zero", "not read: run", "1 m is taken"] {
+    for part in ["H4*, A4*: taken as zero", "not read: run", "1 m is assumed"] {
         assert!(notes.contains(part), "{notes}");
     }
     let stated = ReadOptions {

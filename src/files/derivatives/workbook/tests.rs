@@ -127,7 +127,7 @@ fn other_frequencies_are_read_with_a_note_on_the_width() {
         panic!("{:?}", table.header.notes)
     };
     assert!(
-        note.contains("1 m is taken") && note.contains("found 6"),
+        note.contains("1 m is assumed") && note.contains("found 6"),
         "{note}"
     );
 }

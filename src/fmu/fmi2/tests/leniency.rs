@@ -163,7 +163,7 @@ fn no_output_is_ever_infinite() {
         match unit.try_get(&names, &mut values) {
             fmi2OK => assert!(values.iter().all(|x| x.is_finite()), "{time}: {values:?}"),
             status => {
-                unit.refused(status, fmi2Discard, &["range of numbers"]);
+                unit.refused(status, fmi2Discard, &["overflowed"]);
                 discarded = true;
             }
         }
