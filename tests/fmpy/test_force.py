@@ -187,7 +187,7 @@ def test_wrong_input_is_refused_and_nothing_is_lost(single):
             force.fmu.doStep(0.1, 0.1)
         assert "parts" in force.said(DISCARD)[-1]
     for values, ramp, words in [
-        ({}, {"wind_speed": -400.0}, "backwards"),
+        ({}, {"wind_speed": -400.0}, "zero or a positive wind speed"),
         ({"heave": 1e305, "wind_speed": 1e5}, {}, "overflow"),
     ]:
         with single.start(wind_speed=20.0) as force:
