@@ -264,12 +264,15 @@ fn without_interval(o: &Onset) -> Option<String> {
 
 /// The ends of an interval.
 pub(crate) fn interval(of: &OnsetInterval) -> String {
-    let ends = of.ends();
-    let ends = ends.map(|(low, high)| format!("{low:.3} – {high:.3}"));
-    let ends = ends.unwrap_or_default();
     match of {
-        OnsetInterval::Known { .. } => ends,
-        OnsetInterval::Spread { .. } => format!("[{ends}]"),
+        OnsetInterval::Spread {
+            low_m_s, high_m_s, ..
+        } => format!("[{low_m_s:.3} – {high_m_s:.3}]"),
+        OnsetInterval::Known {
+            low_m_s, high_m_s, ..
+        } => {
+            format!("{low_m_s:.3} – {high_m_s:.3}")
+        }
         OnsetInterval::Undetermined { .. } => "not determined".to_owned(),
         OnsetInterval::None { .. } => "none".to_owned(),
     }

@@ -231,6 +231,10 @@ pub(super) fn write_response(
         let rows = simulated(model, speed, (PERIODS.0 / frequency_hz, step))?;
         runs.push((label, rows));
     }
+    let runs: Vec<_> = runs
+        .iter()
+        .map(|(label, rows)| (&label[..], &rows[..]))
+        .collect();
     let panels = motion_panels(model.model.dofs(), &runs);
     let title = format!("{}: released below, at and above the onset", model.name);
     figures::write(RESPONSE, out, || {

@@ -68,7 +68,7 @@ fn draw(study: &WindStudy, results: &QuasiSteadyStudy, out: &mut OutputDir) -> R
     let onsets: Vec<_> = results.onset.search.onset().cloned().into_iter().collect();
     let curves = std::slice::from_ref(&results.curves);
     figures::write("quasi_steady_modes", out, || {
-        vf_vg_figure(curves, &onsets, Some(&study.name), None)
+        vf_vg_figure(curves, &onsets, &study.name, None)
     })
 }
 

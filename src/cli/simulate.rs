@@ -115,9 +115,9 @@ pub(crate) fn run(args: &Args) -> Result<Answer> {
     let mut out = OutputDir::new(args.out.as_deref().unwrap_or(folder_of(&args.model)))?;
     out.write("simulation.csv", csv(&model, speed, &trajectory))?;
     let title = format!("{} at {speed} m/s", model.name);
-    let runs = [(model.name.clone(), trajectory.rows.clone())];
-    let panels = motion_panels(&model.section.dofs(), &runs);
     figures::write("simulation", &mut out, || {
+        let runs = [(&model.name[..], &trajectory.rows[..])];
+        let panels = motion_panels(&model.section.dofs(), &runs);
         time_history_figure(&title, &panels, "Time t (s)")
     })?;
     let written = out.commit()?;
@@ -203,7 +203,7 @@ fn csv(model: &TrainedModel, speed: f64, trajectory: &Trajectory) -> String {
 
 /// Displacements over time of runs with their labels, rows as `simulation.csv` has them: one panel per degree of freedom,
 /// lengths in mm, rotations in degrees.
-pub(super) fn motion_panels(dofs: &[Dof], runs: &[(String, Vec<Vec<f64>>)]) -> Vec<TimePanel> {
+pub(super) fn motion_panels(dofs: &[Dof], runs: &[(&str, &[Vec<f64>])]) -> Vec<TimePanel> {
     let panel = |(i, dof): (usize, &Dof)| {
         let (scale, unit) = match dof {
             Dof::Torsion => dof.shown_in(),
@@ -211,7 +211,7 @@ pub(super) fn motion_panels(dofs: &[Dof], runs: &[(String, Vec<Vec<f64>>)]) -> V
         };
         let series = runs.iter().map(|(label, rows)| {
             let points = rows.iter().map(|row| (row[0], scale * row[1 + i]));
-            PlottedSeries::new(label, points.collect())
+            PlottedSeries::new(*label, points.collect())
         });
         TimePanel {
             y_label: format!("{} {} ({unit})", dof.name(), dof.symbol()),

@@ -224,7 +224,7 @@ pub(crate) fn flutter_figure(
     let required = study.flutter.required_speed_m_s;
     figures::write(FIGURE, out, || {
         let (curves, onsets) = (&results.curves, &results.onsets);
-        vf_vg_figure(curves, onsets, Some(&study.name), required)
+        vf_vg_figure(curves, onsets, &study.name, required)
     })
 }
 
@@ -240,7 +240,7 @@ pub(crate) fn routes_figure(
     let onsets: Vec<Onset> = onsets.iter().filter(drawn).cloned().collect();
     let title = format!("{}: all routes", study.name);
     figures::write("routes", out, || {
-        vf_vg_figure(curves, &onsets, Some(&title), None)
+        vf_vg_figure(curves, &onsets, &title, None)
     })
 }
 

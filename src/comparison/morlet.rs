@@ -137,10 +137,10 @@ impl Morlet {
         spectra: [&[Complex64]; N],
     ) -> [Vec<Complex64>; N] {
         let mut kernel = self.kernel(level);
-        self.fourier.forward.process(&mut kernel);
+        self.fourier.forward(&mut kernel);
         spectra.map(|spectrum| {
             let mut row: Vec<Complex64> = kernel.iter().zip(spectrum).map(|(k, x)| k * x).collect();
-            self.fourier.inverse.process(&mut row);
+            self.fourier.inverse(&mut row);
             row.truncate(self.sample_count);
             row
         })

@@ -1,7 +1,7 @@
 //! Frequencies and damping ratios over wind speed, with the onsets.
 
 use super::axis::{Axis, significant};
-use super::drawing::Drawing;
+use super::drawing::{Drawing, titled};
 use super::figure::Figure;
 use super::legend::Entry;
 use super::panel::{Note, Panel};
@@ -12,7 +12,7 @@ use crate::flutter::{FlutterCurves, ModePoint, Onset, OnsetMethod};
 
 /// Frequencies (Hz) and damping ratios (per cent of critical) of all modes over wind speed (m/s).
 ///
-/// A colour and a line style a model, a line width per branch, so that print without colours tells them apart; onsets with the
+/// A colour and a line style per model, a line width per branch, so that print without colours tells them apart; onsets with the
 /// bars of their intervals are marked on both panels and stated in the legend. An onset is
 /// drawn in the colour of the curves of the same model, hollow when it lies outside the tested range; crossings
 /// suspected to be spurious are crosses on the zero line. Where the reduced frequency of a mode lies outside the tested
@@ -23,7 +23,7 @@ use crate::flutter::{FlutterCurves, ModePoint, Onset, OnsetMethod};
 pub fn vf_vg_figure(
     curves: &[FlutterCurves],
     onsets: &[Onset],
-    title: Option<&str>,
+    title: &str,
     required_m_s: Option<f64>,
 ) -> Result<Figure> {
     let mut diagram = VfVg::new(branch_names(curves)?);
@@ -37,7 +37,7 @@ pub fn vf_vg_figure(
         diagram.draw_required(required);
     }
     diagram.explain_kinds(onsets);
-    diagram.into_drawing(title.map(str::to_owned)).draw()
+    diagram.into_drawing(title).draw()
 }
 
 /// The panels of the diagrams, one below the other, and the groups of their legend.
@@ -206,12 +206,12 @@ impl VfVg {
     }
 
     /// The panel near zero is left out when no curve comes there.
-    fn into_drawing(self, title: Option<String>) -> Drawing {
+    fn into_drawing(self, title: &str) -> Drawing {
         let mut panels = vec![self.frequency, self.damping];
         panels.extend(Some(self.close).filter(|p| !p.series.is_empty()));
         Drawing {
             name: PLACE,
-            title,
+            title: titled(title),
             panels,
             columns: 1,
             axes: (640.0, 210.0),

@@ -2,23 +2,22 @@
 
 use rustfft::num_complex::Complex64;
 use rustfft::{Fft, FftPlanner};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
-/// Transforms of one length `N`, there and back.
+/// Transforms of one length `N`, there and back; each is planned when it is first asked for.
 pub(crate) struct Fourier {
     length: usize,
-    pub(crate) forward: Arc<dyn Fft<f64>>,
-    pub(crate) inverse: Arc<dyn Fft<f64>>,
+    forward: OnceLock<Arc<dyn Fft<f64>>>,
+    inverse: OnceLock<Arc<dyn Fft<f64>>>,
 }
 
 impl Fourier {
     /// For signals of at most `length` samples.
     pub(crate) fn new(length: usize) -> Self {
-        let mut planner = FftPlanner::new();
         Self {
             length,
-            forward: planner.plan_fft_forward(length),
-            inverse: planner.plan_fft_inverse(length),
+            forward: OnceLock::new(),
+            inverse: OnceLock::new(),
         }
     }
 
@@ -27,17 +26,29 @@ impl Fourier {
         self.length
     }
 
-    /// `X_n = Σ_k x_k exp(−2πi kn/N)`; a shorter signal is followed by zeros.
+    /// Replaces `x_k` by `X_n = Σ_k x_k exp(−2πi kn/N)`.
+    pub(crate) fn forward(&self, values: &mut [Complex64]) {
+        let plan = || FftPlanner::new().plan_fft_forward(self.length);
+        self.forward.get_or_init(plan).process(values);
+    }
+
+    /// Replaces `X_n` by `Σ_n X_n exp(2πi kn/N)`, which is `N x_k`.
+    pub(crate) fn inverse(&self, values: &mut [Complex64]) {
+        let plan = || FftPlanner::new().plan_fft_inverse(self.length);
+        self.inverse.get_or_init(plan).process(values);
+    }
+
+    /// The spectrum of a signal; a shorter one is followed by zeros.
     pub(crate) fn spectrum(&self, signal: impl IntoIterator<Item = f64>) -> Vec<Complex64> {
         let mut spectrum: Vec<Complex64> = signal.into_iter().map(Complex64::from).collect();
         spectrum.resize(self.length, Complex64::default());
-        self.forward.process(&mut spectrum);
+        self.forward(&mut spectrum);
         spectrum
     }
 
-    /// Real part of `Σ_n X_n exp(2πi kn/N)`: a signal times `N` from its spectrum.
+    /// A real signal times `N` from its spectrum.
     pub(crate) fn sums(&self, mut spectrum: Vec<Complex64>) -> Vec<f64> {
-        self.inverse.process(&mut spectrum);
+        self.inverse(&mut spectrum);
         spectrum.iter().map(|z| z.re).collect()
     }
 }

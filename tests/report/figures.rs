@@ -134,7 +134,7 @@ fn vf_vg_of_the_iabse_deck() {
         plate_onset(&section),
         outside,
     ];
-    let title = Some("IABSE TG 3.1, step 1.1a");
+    let title = "IABSE TG 3.1, step 1.1a";
     let draw = || vf_vg_figure(&curves, &onsets, title, Some(80.0)).unwrap();
     check(
         &draw(),
@@ -163,7 +163,7 @@ fn vf_vg_of_table_4_1() {
     let section = SectionModel::table_4_1();
     let curves = [jones_curves("flat plate, Jones", &section, 45.0)];
     let onsets = [jones_onset("flat plate, Jones", &section, 60.0)];
-    let draw = || vf_vg_figure(&curves, &onsets, None, None).unwrap();
+    let draw = || vf_vg_figure(&curves, &onsets, "", None).unwrap();
     check(
         &draw(),
         &draw(),
@@ -174,14 +174,14 @@ fn vf_vg_of_table_4_1() {
 
 #[test]
 fn what_cannot_be_drawn_is_refused() {
-    let none = vf_vg_figure(&[], &[], None, None).unwrap_err();
+    let none = vf_vg_figure(&[], &[], "", None).unwrap_err();
     assert_eq!(
         none.to_string(),
         "flutter curves: expected at least one mode, found none"
     );
     let mut curves = [jones_curves("Jones", &SectionModel::table_4_1(), 30.0)];
     curves[0].branches[1].points[2].damping_ratio = f64::NAN;
-    let message = vf_vg_figure(&curves, &[], None, None)
+    let message = vf_vg_figure(&curves, &[], "", None)
         .unwrap_err()
         .to_string();
     assert_eq!(
@@ -189,14 +189,14 @@ fn what_cannot_be_drawn_is_refused() {
         "V-f and V-g diagram, Jones, torsion branch: expected finite numbers, found (0.5, NaN) at point 3"
     );
     curves[0].branches[1].points.clear();
-    let message = vf_vg_figure(&curves, &[], None, None)
+    let message = vf_vg_figure(&curves, &[], "", None)
         .unwrap_err()
         .to_string();
     assert!(message.ends_with("torsion branch: expected points, found none"));
     let figure = vf_vg_figure(
         &[jones_curves("Jones", &SectionModel::table_4_1(), 30.0)],
         &[],
-        None,
+        "",
         None,
     )
     .unwrap();

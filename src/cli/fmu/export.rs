@@ -182,7 +182,7 @@ impl Args {
             admittance: self.admittance.unwrap_or_default(),
             turbulence,
         });
-        let export = export.map_err(named_by_its_flag)?;
+        let export = export.map_err(stages::or_allow_unstable)?;
         let bytes = package_bridge(&export, &self.runtimes()?, &self.label()?, self.fmi)?;
         let overwrite = if self.force {
             Overwrite::Replace
@@ -205,16 +205,6 @@ impl Args {
         let json =
             serde_json::json!({ "fmu": path, "nodes": named, "modes": export.bridge.modes.len() });
         Answer::new(text, &json)
-    }
-}
-
-/// A refused bridge, with the flag instead of the option of the library.
-fn named_by_its_flag(error: Error) -> Error {
-    match error {
-        Error::Unstable(text) => {
-            Error::Unstable(text.replace("allow_unstable", "--allow-unstable"))
-        }
-        other => other,
     }
 }
 

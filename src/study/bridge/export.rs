@@ -49,7 +49,7 @@ impl BridgeStudy {
         let found = find_onset("bridge", &coupled(&self.by_model)?, &search, None)?;
         if let (FlutterSearch::UnstableAtOrBelow(_), false) = (&found, wanted.allow_unstable) {
             return Err(Error::Unstable(format!(
-                "the bridge {}: a unit that grows from the lowest wind speed on is exported only with allow_unstable",
+                "the bridge is not exported: it {}",
                 found.explain()
             )));
         }
