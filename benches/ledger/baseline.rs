@@ -114,7 +114,13 @@ fn folder() -> PathBuf {
 fn interpreter() -> Result<PathBuf, String> {
     let python = python::interpreter()?;
     let output = Command::new(&python)
-        .args(["-m", "pip", "install", "--disable-pip-version-check", "--no-input"])
+        .args([
+            "-m",
+            "pip",
+            "install",
+            "--disable-pip-version-check",
+            "--no-input",
+        ])
         .args(["--quiet", "--only-binary=:all:", "-r"])
         .arg(folder().join("requirements.txt"))
         .output()

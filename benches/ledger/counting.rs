@@ -27,7 +27,12 @@ pub(crate) fn judge(entries: &[&Entry]) -> Result<(), String> {
     let mut wrong = Vec::new();
     for (entry, used) in entries.iter().zip(&found) {
         let figures = [
-            ("instructions", used.instructions, &stored.instructions, COUNT_AT_MOST),
+            (
+                "instructions",
+                used.instructions,
+                &stored.instructions,
+                COUNT_AT_MOST,
+            ),
             ("MiB at most", used.peak_mib, &stored.peak_mib, PEAK_AT_MOST),
         ];
         for (unit, now, before, factor) in figures {
@@ -60,7 +65,10 @@ fn line(entry: &Entry, unit: &str, now: f64, before: Option<&Figure>) -> String 
         None => "nothing stored".to_owned(),
         Some(f) => {
             let change = 100.0 * (now / f.value - 1.0);
-            let reason = f.reason.as_ref().map_or(String::new(), |r| format!(" ({r})"));
+            let reason = f
+                .reason
+                .as_ref()
+                .map_or(String::new(), |r| format!(" ({r})"));
             format!("stored {}{reason}: {change:+.1} %", f.value)
         }
     };
@@ -78,7 +86,12 @@ pub(crate) fn store() -> Result<(), String> {
     };
     for (entry, used) in all.iter().zip(&found) {
         let name = entry.name;
-        keep(&mut stored.instructions, &before.instructions, name, used.instructions);
+        keep(
+            &mut stored.instructions,
+            &before.instructions,
+            name,
+            used.instructions,
+        );
         keep(&mut stored.peak_mib, &before.peak_mib, name, used.peak_mib);
     }
     stored.write()
@@ -108,7 +121,10 @@ fn measured(entries: &[&Entry]) -> Result<Vec<Used>, String> {
             true => peak::measured(entry)?,
             false => None,
         };
-        found.push(Used { instructions: None, peak_mib });
+        found.push(Used {
+            instructions: None,
+            peak_mib,
+        });
     }
     let next = AtomicUsize::new(0);
     let results = Mutex::new(vec![Ok(None); entries.len()]);

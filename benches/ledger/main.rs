@@ -29,7 +29,10 @@ use entry::Entry;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    let words: Vec<String> = std::env::args().skip(1).filter(|w| w != "--bench").collect();
+    let words: Vec<String> = std::env::args()
+        .skip(1)
+        .filter(|w| w != "--bench")
+        .collect();
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
     match run(&words) {
         Ok(()) => ExitCode::SUCCESS,
@@ -65,8 +68,13 @@ fn run(words: &[&str]) -> Result<(), String> {
 
 /// The entries whose names begin with one of these; all where there is none.
 fn chosen(names: &[&str]) -> Result<Vec<&'static Entry>, String> {
-    if let Some(name) = names.iter().find(|n| !registry::all().any(|e| e.name.starts_with(*n))) {
-        return Err(format!("no entry begins with `{name}`; `cargo bench -- --list` names all"));
+    if let Some(name) = names
+        .iter()
+        .find(|n| !registry::all().any(|e| e.name.starts_with(*n)))
+    {
+        return Err(format!(
+            "no entry begins with `{name}`; `cargo bench -- --list` names all"
+        ));
     }
     let wanted = |e: &&Entry| names.is_empty() || names.iter().any(|n| e.name.starts_with(n));
     Ok(registry::all().filter(wanted).collect())

@@ -39,7 +39,11 @@ fn peak_mib() -> Option<f64> {
         fn getrusage(who: c_int, usage: *mut Usage) -> c_int;
     }
     // KiB, but bytes on macOS
-    let mib = if cfg!(target_os = "macos") { 1048576.0 } else { 1024.0 };
+    let mib = if cfg!(target_os = "macos") {
+        1048576.0
+    } else {
+        1024.0
+    };
     const SELF: c_int = 0;
     const CHILDREN: c_int = -1;
     let most = [SELF, CHILDREN].map(|who| {

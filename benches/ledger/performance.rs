@@ -26,9 +26,18 @@ fn head() -> String {
     let name = cpus
         .lines()
         .find_map(|line| line.strip_prefix("model name"))
-        .map_or("a processor that does not say its name", |rest| rest.trim_start_matches([' ', '\t', ':']));
+        .map_or("a processor that does not say its name", |rest| {
+            rest.trim_start_matches([' ', '\t', ':'])
+        });
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let day = Command::new("date").arg("+%Y-%m-%d").output();
-    let day = day.map_or(String::new(), |o| String::from_utf8_lossy(&o.stdout).trim().to_owned());
-    format!("{day}, {name}, {cores} cores, {} ({}), {}.", std::env::consts::OS, std::env::consts::ARCH, compiler())
+    let day = day.map_or(String::new(), |o| {
+        String::from_utf8_lossy(&o.stdout).trim().to_owned()
+    });
+    format!(
+        "{day}, {name}, {cores} cores, {} ({}), {}.",
+        std::env::consts::OS,
+        std::env::consts::ARCH,
+        compiler()
+    )
 }

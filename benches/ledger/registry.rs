@@ -9,7 +9,12 @@ use crate::entry::{Baseline, Entry, Threads};
 
 /// All entries.
 pub(crate) fn all() -> impl Iterator<Item = &'static Entry> {
-    let lists = [steps::ENTRIES, onsets::ENTRIES, bridges::ENTRIES, records::ENTRIES];
+    let lists = [
+        steps::ENTRIES,
+        onsets::ENTRIES,
+        bridges::ENTRIES,
+        records::ENTRIES,
+    ];
     lists.into_iter().flatten()
 }
 
@@ -39,5 +44,4 @@ const NOBODY: Baseline =
 
 const OWN_FORMAT: Baseline = Baseline::None("the files and the steps are ours alone");
 
-const NO_FMU: Baseline =
-    Baseline::None("the reference FMUs have other equations, no aerodynamics");
+const NO_FMU: Baseline = Baseline::None("the reference FMUs have other equations, no aerodynamics");

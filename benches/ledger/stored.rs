@@ -34,7 +34,9 @@ impl Stored {
     /// Empty where there is no file yet.
     pub(crate) fn read() -> Result<Self, String> {
         match std::fs::read_to_string(path()) {
-            Ok(text) => serde_json::from_str(&text).map_err(|e| format!("{}: {e}", path().display())),
+            Ok(text) => {
+                serde_json::from_str(&text).map_err(|e| format!("{}: {e}", path().display()))
+            }
             Err(_) => Ok(Self::default()),
         }
     }

@@ -5,7 +5,16 @@ use crate::peak;
 use crate::stored::Stored;
 use crate::timing::{Rival, Seconds, timed};
 
-const HEAD: [&str; 8] = ["what", "size", "threads", "ours", "baseline", "ratio", "instructions", "peak memory"];
+const HEAD: [&str; 8] = [
+    "what",
+    "size",
+    "threads",
+    "ours",
+    "baseline",
+    "ratio",
+    "instructions",
+    "peak memory",
+];
 
 /// Runs the entries, prints each as it is done, and gives the table as Markdown.
 pub(crate) fn print(entries: &[&Entry]) -> Result<String, String> {
@@ -34,7 +43,14 @@ pub(crate) fn print(entries: &[&Entry]) -> Result<String, String> {
 fn cells(entry: &Entry, stored: &Stored) -> Result<[String; 8], String> {
     let found = timed(entry)?;
     let (baseline, ratio, theirs) = match (&found.baseline, &entry.baseline) {
-        (Some(Rival { name, seconds, peak_mib }), _) => {
+        (
+            Some(Rival {
+                name,
+                seconds,
+                peak_mib,
+            }),
+            _,
+        ) => {
             let ratio = format!("{:.2}", seconds.median / found.ours.median);
             (format!("{name}: {}", words(*seconds)), ratio, *peak_mib)
         }
@@ -80,7 +96,12 @@ fn words(s: Seconds) -> String {
         let decimals = 2_usize.saturating_sub(x.abs().log10().floor().max(0.0) as usize);
         format!("{x:.decimals$}")
     };
-    format!("{} {unit} ({} to {})", number(s.median), number(s.least), number(s.most))
+    format!(
+        "{} {unit} ({} to {})",
+        number(s.median),
+        number(s.least),
+        number(s.most)
+    )
 }
 
 /// Digits by threes.

@@ -94,7 +94,12 @@ fn seconds(job: &mut Job, times: u32, units: u32) -> f64 {
 
 /// The baseline as it runs.
 enum Opponent {
-    Here { name: String, job: Job, units: u32, times: u32 },
+    Here {
+        name: String,
+        job: Job,
+        units: u32,
+        times: u32,
+    },
     Python(Box<Running>),
     None,
 }
@@ -102,12 +107,23 @@ enum Opponent {
 impl Opponent {
     fn new(entry: &Entry) -> Result<Self, String> {
         Ok(match &entry.baseline {
-            Baseline::Here { name, package, job, units, times } => {
+            Baseline::Here {
+                name,
+                package,
+                job,
+                units,
+                times,
+            } => {
                 let mut job = job();
                 job.run(1);
                 let version = package.map(|p| format!(" {}", version_of(p)));
                 let name = format!("{name}{}", version.unwrap_or_default());
-                Self::Here { name, job, units: *units, times: *times }
+                Self::Here {
+                    name,
+                    job,
+                    units: *units,
+                    times: *times,
+                }
             }
             Baseline::Python(script) => {
                 Self::Python(Box::new(Running::start(script, entry.threads)?))
@@ -118,7 +134,9 @@ impl Opponent {
 
     fn round(&mut self) -> Result<Option<f64>, String> {
         Ok(match self {
-            Self::Here { job, units, times, .. } => Some(seconds(job, *times, *units)),
+            Self::Here {
+                job, units, times, ..
+            } => Some(seconds(job, *times, *units)),
             Self::Python(running) => Some(running.round()?),
             Self::None => None,
         })
@@ -138,7 +156,11 @@ impl Opponent {
             Self::None => return None,
         };
         let seconds = Seconds::of(rounds);
-        Some(Rival { name, seconds, peak_mib })
+        Some(Rival {
+            name,
+            seconds,
+            peak_mib,
+        })
     }
 }
 

@@ -47,7 +47,10 @@ fn unit(folder: &Path) -> Unit {
 pub(crate) fn prepare_whole() {
     static ONCE: Once = Once::new();
     ONCE.call_once(|| {
-        write_unit(&folder("bridge"), &bridges::langenuen("LN21-5200", bridges::TWO));
+        write_unit(
+            &folder("bridge"),
+            &bridges::langenuen("LN21-5200", bridges::TWO),
+        );
     });
 }
 
@@ -145,7 +148,11 @@ pub(crate) fn buffeting() -> Job {
     let study = bridges::read(&text);
     let block = study.buffeting_block().expect("a block");
     Job::new(move || {
-        black_box(study.buffeting(&block, 35.0, &|_, _| {}).expect("a response"));
+        black_box(
+            study
+                .buffeting(&block, 35.0, &|_, _| {})
+                .expect("a response"),
+        );
     })
 }
 
@@ -237,6 +244,8 @@ pub(crate) fn thousand_nodes() -> Job {
         let release = stepper.released(&[1.0; 100], &[0.0; 100]);
         let mut state = release.expect("a release");
         let inputs = Inputs::steady(30.0, 100);
-        stepper.advance(&mut state, &inputs, STEP_S).expect("a step");
+        stepper
+            .advance(&mut state, &inputs, STEP_S)
+            .expect("a step");
     })
 }

@@ -46,7 +46,10 @@ impl Archive {
             ..OptionFiles::default()
         };
         let resources = Resources::from_bytes(json.as_bytes(), options).expect("resources");
-        Self::new(resources, &[("model.json", Some(json)), ("gusts.json", gusts)])
+        Self::new(
+            resources,
+            &[("model.json", Some(json)), ("gusts.json", gusts)],
+        )
     }
 
     /// Of a bridge, from its two files.
@@ -153,7 +156,10 @@ impl Unit {
 
     fn plain(&self, name: &[u8]) {
         // SAFETY: the handle is alive
-        assert_eq!(unsafe { self.archive.function::<Plain>(name)(self.handle) }, 0);
+        assert_eq!(
+            unsafe { self.archive.function::<Plain>(name)(self.handle) },
+            0
+        );
     }
 
     pub(crate) fn reference(&self, name: &str) -> u32 {
@@ -174,14 +180,20 @@ impl Unit {
         assert_eq!(references.len(), values.len());
         let (of, into) = (references.as_ptr(), values.as_mut_ptr());
         // SAFETY: the handle is alive and the arrays are of this length
-        assert_eq!(unsafe { (self.get)(self.handle, of, values.len(), into) }, 0);
+        assert_eq!(
+            unsafe { (self.get)(self.handle, of, values.len(), into) },
+            0
+        );
     }
 
     pub(crate) fn set(&self, references: &[u32], values: &[f64]) {
         assert_eq!(references.len(), values.len());
         let (of, from) = (references.as_ptr(), values.as_ptr());
         // SAFETY: the handle is alive and the arrays are of this length
-        assert_eq!(unsafe { (self.set)(self.handle, of, values.len(), from) }, 0);
+        assert_eq!(
+            unsafe { (self.set)(self.handle, of, values.len(), from) },
+            0
+        );
     }
 
     /// The importer integrates from here on.

@@ -36,10 +36,14 @@ fn stepped(kind: &str, inputs: fn(usize) -> Inputs, release: f64) -> Job {
 }
 
 fn driven(mut stepper: Stepper, inputs: fn(usize) -> Inputs, release: f64) -> Job {
-    let mut state = stepper.released(&[release, 0.0], &[0.0; 2]).expect("a release");
+    let mut state = stepper
+        .released(&[release, 0.0], &[0.0; 2])
+        .expect("a release");
     let mut i = 0;
     Job::new(move || {
-        stepper.advance(&mut state, &inputs(i), STEP_S).expect("a step");
+        stepper
+            .advance(&mut state, &inputs(i), STEP_S)
+            .expect("a step");
         i += 1;
     })
 }

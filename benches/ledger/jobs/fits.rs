@@ -81,7 +81,12 @@ fn aerodeck(command: &str) {
         .stdout(Stdio::null())
         .status();
     // a verdict on the models is no failure of the run
-    assert!(status.expect("the program").code().is_some_and(|code| code < 2));
+    assert!(
+        status
+            .expect("the program")
+            .code()
+            .is_some_and(|code| code < 2)
+    );
 }
 
 fn values(low: f64, high: f64) -> Vec<f64> {

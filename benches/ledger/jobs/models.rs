@@ -15,7 +15,9 @@ pub(crate) const SPEED_MAX_M_S: f64 = 60.0;
 
 /// A folder of this program's own below the target directory.
 pub(crate) fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("ledger").join(name);
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"))
+        .join("ledger")
+        .join(name);
     std::fs::create_dir_all(&folder).expect("a folder");
     folder
 }

@@ -45,8 +45,14 @@ pub(crate) fn pk() -> Job {
 pub(crate) fn sweep_argument() -> Value {
     let trained = four_filters();
     let structure = trained.section.structure().expect("a structure");
-    let Realization::Continuous(ContinuousRealization { a, b, c, e0, e1, e2 }) =
-        trained.model.realize()
+    let Realization::Continuous(ContinuousRealization {
+        a,
+        b,
+        c,
+        e0,
+        e1,
+        e2,
+    }) = trained.model.realize()
     else {
         panic!("not continuous");
     };

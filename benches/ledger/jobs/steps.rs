@@ -141,7 +141,11 @@ pub(crate) fn strips() -> Job {
     options.strips = vec![options.strips[0].clone(); STRIPS as usize];
     options.named_strips = true;
     let mut unit = running(Some(&options.to_json().expect("options")));
-    let names = |of: &str| (1..=STRIPS).map(|i| format!("strip[{i}].{of}")).collect::<Vec<_>>();
+    let names = |of: &str| {
+        (1..=STRIPS)
+            .map(|i| format!("strip[{i}].{of}"))
+            .collect::<Vec<_>>()
+    };
     let motion = places(&unit, &[names("heave"), names("rotation")].concat());
     let forces = places(&unit, &[names("lift"), names("moment")].concat());
     let (mut moved, mut found) = (vec![0.0; motion.len()], vec![0.0; forces.len()]);
@@ -166,7 +170,9 @@ pub(crate) fn as_many_sections() -> Job {
     let mut n = 0.0;
     Job::new(move || {
         for section in &mut sections {
-            section.do_step(n * STRIP_STEP_S, STRIP_STEP_S).expect("a step");
+            section
+                .do_step(n * STRIP_STEP_S, STRIP_STEP_S)
+                .expect("a step");
             section.reals(&outputs, &mut [0.0; 2]).expect("forces");
         }
         n += 1.0;

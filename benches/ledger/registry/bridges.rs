@@ -1,6 +1,6 @@
 //! Whole bridges.
 
-use super::{NOBODY, NO_FMU, OWN_FORMAT, PLAIN};
+use super::{NO_FMU, NOBODY, OWN_FORMAT, PLAIN};
 use crate::entry::{Baseline, Entry, Script, Threads};
 use crate::jobs::bridge;
 
