@@ -206,11 +206,6 @@ impl Unit {
         self.plain(b"fmi2EnterContinuousTimeMode");
     }
 
-    /// Number of continuous states.
-    pub(crate) fn states(&self) -> usize {
-        self.archive.resources.table.state_rates().len()
-    }
-
     /// Rates of the states at an instant.
     pub(crate) fn rates_at(&self, time_s: f64, states: &mut [f64], rates: &mut [f64]) {
         // SAFETY: the handle is alive and the arrays are of this length

@@ -120,9 +120,11 @@ fn replaced(model: &LaguerreModel, c: &[f64]) -> LaguerreModel {
 
 pub(crate) fn onsets_argument() -> Value {
     let model = laguerre();
-    let realised = |model: &LaguerreModel| match model.realize() {
-        Realization::Continuous(r) => r,
-        Realization::Sampled(_) => panic!("not continuous"),
+    let realised = |model: &LaguerreModel| {
+        let Realization::Continuous(r) = model.realize() else {
+            panic!("not continuous")
+        };
+        r
     };
     let one = |(section, coefficients): &(SectionModel, Vec<f64>)| {
         let s = section.structure().expect("a structure");

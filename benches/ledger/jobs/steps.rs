@@ -12,6 +12,8 @@ use std::f64::consts::TAU;
 use std::hint::black_box;
 
 const STEP_S: f64 = 0.01;
+/// Of the continuous model with its section; another number is refused.
+const STATES: usize = 12;
 const MOTION: [&str; 4] = ["heave", "heave_rate", "rotation", "rotation_rate"];
 
 /// Under a steady lift, in which the motion does not die out.
@@ -93,7 +95,7 @@ pub(crate) fn derivative() -> Job {
     let archive = Archive::of_section(&text("continuous_laguerre"), None);
     let unit = blown(archive, Kind::ModelExchange);
     unit.integrate();
-    let mut states = vec![0.01; unit.states()];
+    let mut states = vec![0.01; STATES];
     let (mut rates, mut n) = (states.clone(), 0.0);
     Job::new(move || {
         n += 1.0;
