@@ -5,6 +5,8 @@ use crate::peak;
 use crate::registry;
 use crate::stored::{Figure, Stored, compiler};
 use std::collections::BTreeMap;
+use std::path::Path;
+use std::process::Command;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -13,11 +15,19 @@ const COUNT_AT_MOST: f64 = 1.03;
 /// The same of a peak, which pages and threads move.
 const PEAK_AT_MOST: f64 = 1.10;
 
+/// How much more than the median of its like a single step may cost, once its kind of change has been seen.
+const STEP_AT_MOST: f64 = 3.0;
+/// Steps that are looked at one by one, and those before them.
+const SINGLE_STEPS: u32 = 100;
+const FIRST_STEPS: usize = 12;
+
 /// What one entry uses.
 #[derive(Clone, Copy, Default)]
 struct Used {
     instructions: Option<f64>,
     peak_mib: Option<f64>,
+    /// The dearest single step over the median.
+    dearest: Option<f64>,
 }
 
 /// Counts again and fails where more is used than is stored.
@@ -35,6 +45,13 @@ pub(crate) fn judge(entries: &[&Entry]) -> Result<(), String> {
             ),
             ("MiB at most", used.peak_mib, &stored.peak_mib, PEAK_AT_MOST),
         ];
+        if let Some(dearest) = used.dearest {
+            let line = format!("{:24} {dearest:>14.2} times the median step", entry.name);
+            println!("{line}");
+            if dearest > STEP_AT_MOST {
+                wrong.push(line);
+            }
+        }
         for (unit, now, before, factor) in figures {
             let Some(now) = now else { continue };
             let line = line(entry, unit, now, before.get(entry.name));
@@ -122,18 +139,18 @@ fn measured(entries: &[&Entry]) -> Result<Vec<Used>, String> {
             false => None,
         };
         found.push(Used {
-            instructions: None,
             peak_mib,
+            ..Used::default()
         });
     }
     let next = AtomicUsize::new(0);
-    let results = Mutex::new(vec![Ok(None); entries.len()]);
+    let results = Mutex::new(vec![Ok((None, None)); entries.len()]);
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     std::thread::scope(|scope| {
         for _ in 0..cores {
             scope.spawn(|| {
                 while let Some((i, entry)) = next_of(&next, entries) {
-                    let count = instructions(entry);
+                    let count = instructions(entry).and_then(|n| Ok((n, dearest_step(entry)?)));
                     if let Ok(mut results) = results.lock() {
                         results[i] = count;
                     }
@@ -143,7 +160,7 @@ fn measured(entries: &[&Entry]) -> Result<Vec<Used>, String> {
     });
     let results = results.into_inner().map_err(|e| e.to_string())?;
     for (used, count) in found.iter_mut().zip(results) {
-        used.instructions = count?;
+        (used.instructions, used.dearest) = count?;
     }
     Ok(found)
 }
@@ -163,11 +180,48 @@ fn instructions(entry: &Entry) -> Result<Option<f64>, String> {
     Ok(Some(each.round()))
 }
 
+/// The dearest of many single steps over their median, each from one call of `fmi2DoStep` to the next.
+fn dearest_step(entry: &Entry) -> Result<Option<f64>, String> {
+    if !entry.is_step {
+        return Ok(None);
+    }
+    let folder = tempfile::tempdir().map_err(|e| e.to_string())?;
+    let file = folder.path().join("part");
+    let options = ["--dump-before=fmi2DoStep".to_owned(), out_file(&file)];
+    under_valgrind(entry, SINGLE_STEPS, &options)?;
+    // part n ends with the call n; what follows the last call is not a step
+    let part = |n: u32| {
+        let text = std::fs::read_to_string(file.with_extension(n.to_string())).ok()?;
+        let line = text
+            .lines()
+            .find_map(|line| line.strip_prefix("totals: "))?;
+        line.trim().parse::<f64>().ok()
+    };
+    let parts: Option<Vec<f64>> = (2..=SINGLE_STEPS).map(part).collect();
+    let parts = parts.ok_or_else(|| format!("{}: callgrind saw no steps", entry.name))?;
+    let mut steps = parts[FIRST_STEPS..].to_vec();
+    steps.sort_by(f64::total_cmp);
+    Ok(Some(steps[steps.len() - 1] / steps[steps.len() / 2]))
+}
+
+fn out_file(path: &Path) -> String {
+    format!("--callgrind-out-file={}", path.display())
+}
+
 /// Instructions of a process that does the job so often.
 fn of_whole_run(entry: &Entry, times: u32) -> Result<f64, String> {
+    let said = under_valgrind(entry, times, &[out_file(Path::new("/dev/null"))])?;
+    let line = said.lines().find(|line| line.contains("Collected :"));
+    line.and_then(|line| line.rsplit(' ').next()?.parse().ok())
+        .ok_or_else(|| format!("{}: {said}", entry.name))
+}
+
+/// What callgrind says about it.
+fn under_valgrind(entry: &Entry, times: u32, options: &[String]) -> Result<String, String> {
     let own = entry.process("--do")?;
-    let output = std::process::Command::new("valgrind")
-        .args(["--tool=callgrind", "--callgrind-out-file=/dev/null"])
+    let output = Command::new("valgrind")
+        .arg("--tool=callgrind")
+        .args(options)
         .arg(own.get_program())
         .args(own.get_args())
         .arg(times.to_string())
@@ -175,8 +229,9 @@ fn of_whole_run(entry: &Entry, times: u32) -> Result<f64, String> {
         .output()
         .map_err(|e| format!("valgrind: {e}"))?;
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    let line = said.lines().find(|line| line.contains("Collected :"));
-    line.filter(|_| output.status.success())
-        .and_then(|line| line.rsplit(' ').next()?.parse().ok())
-        .ok_or_else(|| format!("{} under valgrind:\n{said}", entry.name))
+    if output.status.success() {
+        Ok(said)
+    } else {
+        Err(format!("{} under valgrind:\n{said}", entry.name))
+    }
 }

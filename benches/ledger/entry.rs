@@ -21,6 +21,8 @@ pub(crate) struct Entry {
     pub(crate) baseline: Baseline,
     /// How often in the two runs whose difference is counted; `None` for what is not counted.
     pub(crate) count: Option<[u32; 2]>,
+    /// Whether it is one communication step, of which none may cost much more than the others.
+    pub(crate) is_step: bool,
     /// Whether the peak of its process is stored and judged.
     pub(crate) judged_peak: bool,
 }

@@ -2,7 +2,7 @@
 //!
 //! - `cargo bench` runs every entry of `registry.rs` and prints the table; `-- --write` also writes it to
 //!   `docs/performance.md`.
-//! - `cargo bench -- NAME …` runs the entries whose names begin so; `-- --list` names them.
+//! - `cargo bench -- NAME …` runs the entry of this name, or all whose names begin so; `-- --list` names them.
 //! - `cargo bench -- --count` counts instructions under valgrind and peak memory, and fails where more is used than
 //!   `benches/instructions.json` has; `-- --count --store` writes that file, `-- --count NAME` counts some.
 //!
@@ -66,16 +66,23 @@ fn run(words: &[&str]) -> Result<(), String> {
     }
 }
 
-/// The entries whose names begin with one of these; all where there is none.
+/// The entries of these names, or whose names begin so; all where there is none.
 fn chosen(names: &[&str]) -> Result<Vec<&'static Entry>, String> {
-    if let Some(name) = names
-        .iter()
-        .find(|n| !registry::all().any(|e| e.name.starts_with(*n)))
-    {
-        return Err(format!(
-            "no entry begins with `{name}`; `cargo bench -- --list` names all"
-        ));
+    if names.is_empty() {
+        return Ok(registry::all().collect());
     }
-    let wanted = |e: &&Entry| names.is_empty() || names.iter().any(|n| e.name.starts_with(n));
-    Ok(registry::all().filter(wanted).collect())
+    let mut all = Vec::new();
+    for name in names {
+        let before = all.len();
+        match registry::named(name) {
+            Ok(entry) => all.push(entry),
+            Err(_) => all.extend(registry::all().filter(|e| e.name.starts_with(name))),
+        }
+        if all.len() == before {
+            return Err(format!(
+                "no entry begins with `{name}`; `cargo bench -- --list` names all"
+            ));
+        }
+    }
+    Ok(all)
 }

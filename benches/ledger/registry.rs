@@ -36,6 +36,7 @@ const PLAIN: Entry = Entry {
     times: 1,
     baseline: Baseline::None(""),
     count: None,
+    is_step: false,
     judged_peak: false,
 };
 

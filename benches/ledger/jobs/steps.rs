@@ -23,7 +23,10 @@ fn blown(archive: Archive, kind: Kind) -> Unit {
 
 /// A step with what `before` sets, and readings of four variables.
 fn stepped(archive: Archive, names: [&str; 4], before: impl Fn(&Unit, f64) + 'static) -> Job {
-    let unit = blown(archive, Kind::CoSimulation);
+    calls(blown(archive, Kind::CoSimulation), names, before)
+}
+
+fn calls(unit: Unit, names: [&str; 4], before: impl Fn(&Unit, f64) + 'static) -> Job {
     let references = unit.references(names);
     let (mut n, mut values) = (0.0, [0.0; 4]);
     Job::new(move || {
@@ -37,6 +40,13 @@ fn stepped(archive: Archive, names: [&str; 4], before: impl Fn(&Unit, f64) + 'st
 pub(crate) fn motion() -> Job {
     let archive = Archive::of_section(&text("continuous_laguerre"), None);
     stepped(archive, MOTION, |_, _| ())
+}
+
+/// The calls of [`motion`] with nothing behind them.
+pub(crate) fn caller() -> Job {
+    let archive = Archive::of_section(&text("continuous_laguerre"), None);
+    let unit = blown(archive, Kind::CoSimulation).that_does_nothing();
+    calls(unit, MOTION, |_, _| ())
 }
 
 pub(crate) fn forces() -> Job {

@@ -24,6 +24,7 @@ pub(crate) static ENTRIES: &[Entry] = &[
             times: 2000,
         },
         count: Some([50, 550]),
+        is_step: true,
         ..BRIDGE
     },
     Entry {
@@ -39,6 +40,7 @@ pub(crate) static ENTRIES: &[Entry] = &[
             times: 2000,
         },
         count: Some([10, 60]),
+        is_step: true,
         ..BRIDGE
     },
     Entry {

@@ -19,6 +19,7 @@ const STEP: Entry = Entry {
     times: 50_000,
     baseline: PRODUCT,
     count: Some([2_000, 12_000]),
+    is_step: true,
     ..PLAIN
 };
 
@@ -56,14 +57,25 @@ pub(crate) static ENTRIES: &[Entry] = &[
         ..STEP
     },
     Entry {
+        name: "caller",
+        what: "the calls of doStep and getReal alone, part of every step above",
+        size: "two calls",
+        job: steps::caller,
+        is_step: false,
+        baseline: Baseline::None("it is the overhead of this program"),
+        ..STEP
+    },
+    Entry {
         name: "derivative",
         what: "model exchange, rates of all states",
         job: steps::derivative,
+        is_step: false,
         ..STEP
     },
     Entry {
         name: "instance",
         what: "FMU, an instance made and freed",
+        size: "12 states",
         job: steps::instance,
         times: 500,
         baseline: NO_FMU,
@@ -73,6 +85,7 @@ pub(crate) static ENTRIES: &[Entry] = &[
     Entry {
         name: "instance-rational",
         what: "the same of rational functions",
+        size: "10 states",
         job: steps::instance_rational,
         times: 500,
         baseline: NO_FMU,
@@ -82,6 +95,7 @@ pub(crate) static ENTRIES: &[Entry] = &[
     Entry {
         name: "instance-discrete",
         what: "the same of the discrete model",
+        size: "10 states",
         job: steps::instance_discrete,
         times: 500,
         baseline: NO_FMU,
