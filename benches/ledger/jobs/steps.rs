@@ -16,14 +16,14 @@ const STEP_S: f64 = 0.01;
 const STATES: usize = 12;
 const MOTION: [&str; 4] = ["heave", "heave_rate", "rotation", "rotation_rate"];
 
-/// Under a steady lift, in which the motion does not die out.
-fn blown(archive: Archive, kind: Kind) -> Unit {
-    Unit::new(archive, kind, &[("external_lift", 1.0)])
+/// Released; what dies out becomes zero, not a denormal number that would be slow on its own account.
+fn released(archive: Archive, kind: Kind) -> Unit {
+    Unit::new(archive, kind, &[])
 }
 
 /// A step with what `before` sets, and readings of four variables.
 fn stepped(archive: Archive, names: [&str; 4], before: impl Fn(&Unit, f64) + 'static) -> Job {
-    calls(blown(archive, Kind::CoSimulation), names, before)
+    calls(released(archive, Kind::CoSimulation), names, before)
 }
 
 fn calls(unit: Unit, names: [&str; 4], before: impl Fn(&Unit, f64) + 'static) -> Job {
@@ -45,7 +45,7 @@ pub(crate) fn motion() -> Job {
 /// The calls of [`motion`] with nothing behind them.
 pub(crate) fn caller() -> Job {
     let archive = Archive::of_section(&text("continuous_laguerre"), None);
-    let unit = blown(archive, Kind::CoSimulation).that_does_nothing();
+    let unit = released(archive, Kind::CoSimulation).that_does_nothing();
     calls(unit, MOTION, |_, _| ())
 }
 
@@ -103,7 +103,7 @@ pub(crate) fn gust_force() -> GustForce {
 /// Rates of all states at an instant, for an importer that integrates.
 pub(crate) fn derivative() -> Job {
     let archive = Archive::of_section(&text("continuous_laguerre"), None);
-    let unit = blown(archive, Kind::ModelExchange);
+    let unit = released(archive, Kind::ModelExchange);
     unit.integrate();
     let mut states = vec![0.01; STATES];
     let (mut rates, mut n) = (states.clone(), 0.0);
