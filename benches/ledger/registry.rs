@@ -40,8 +40,7 @@ const PLAIN: Entry = Entry {
     judged_peak: false,
 };
 
-const NOBODY: Baseline =
-    Baseline::None("no package computes it; its definition is tested against NumPy");
+const NOBODY: Baseline = Baseline::None("no package known that has it in this definition");
 
 const OWN_FORMAT: Baseline = Baseline::None("the files and the steps are ours alone");
 
