@@ -385,4 +385,4 @@ fn check_monotone(points: &[DerivativePoint]) -> Option<PointProblem> {
 }
 
 #[cfg(test)]
-pub(super) mod tests;
+pub(crate) mod tests;
