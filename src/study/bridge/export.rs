@@ -72,9 +72,11 @@ impl BridgeStudy {
             .saved
             .clone()
             .ok_or_else(|| Error::Numerical("FMU: the first section has no force model".into()))?;
-        let everywhere = || crate::units::ReducedFrequencyRange {
-            min: crate::units::ReducedFrequency::from_full_width(f64::MIN_POSITIVE),
-            max: crate::units::ReducedFrequency::from_full_width(f64::MAX),
+        let everywhere = || {
+            crate::units::ReducedFrequencyRange::between(
+                crate::units::ReducedFrequency::from_full_width(f64::MIN_POSITIVE),
+                crate::units::ReducedFrequency::from_full_width(f64::MAX),
+            )
         };
         Ok(TrainedModel {
             schema_version: model.schema_version(),
