@@ -381,4 +381,4 @@ fn check_monotone(points: &[DerivativePoint]) -> Option<PointProblem> {
 }
 
 #[cfg(test)]
-pub(super) mod tests;
+pub(crate) mod tests;

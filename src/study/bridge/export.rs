@@ -90,7 +90,7 @@ impl BridgeStudy {
                 licence: section.licence.clone(),
                 method: "see the files of the sections".to_owned(),
                 aerodeck_version: env!("CARGO_PKG_VERSION").to_owned(),
-                notes: self.notes.clone(),
+                notes: self.warnings(),
             },
             experiment: self.experiment(onset_m_s),
             model,
