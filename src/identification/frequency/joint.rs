@@ -3,7 +3,9 @@
 use crate::error::Result;
 use crate::identification::basis::Basis;
 use crate::identification::constrained::LinearSolution;
-use crate::identification::dissipative::{Dissipation, FitRequirements, LinearEntry, Solution};
+use crate::identification::dissipative::{
+    Dissipation, FitRequirements, LinearEntry, Solution, Strictness,
+};
 use crate::identification::form::Form;
 use crate::identification::samples::{Entry, shares};
 use nalgebra::{DMatrix, DVector};
@@ -31,17 +33,21 @@ pub(super) struct JointFit<'a> {
 impl<'a> Joint<'a> {
     /// The constrained fit in the columns of the model.
     pub(crate) fn at(&self, poles: &[Vec<f64>]) -> Result<JointFit<'a>> {
-        self.fit(poles, true)
+        self.fit(poles, (true, Strictness::Everywhere))
     }
 
     /// Weighted residuals of all entries, as the search of poles takes them.
     pub(crate) fn residuals(&self, poles: &[Vec<f64>]) -> Result<DVector<f64>> {
         // a ridge weighs the terms of the model themselves, else only the space counts
         let native = self.entries.iter().any(|e| e.ridge > 0.0);
-        Ok(self.fit(poles, native)?.residuals())
+        Ok(self.fit(poles, (native, Strictness::Sampled))?.residuals())
     }
 
-    fn fit(&self, poles: &[Vec<f64>], native: bool) -> Result<JointFit<'a>> {
+    fn fit(
+        &self,
+        poles: &[Vec<f64>],
+        (native, strictness): (bool, Strictness),
+    ) -> Result<JointFit<'a>> {
         let basis = |poles: &Vec<f64>| {
             if native {
                 Basis::new(self.form, poles)
@@ -64,7 +70,7 @@ impl<'a> Joint<'a> {
             at += solution.unknowns;
             solutions.push(solution);
         }
-        let held = Dissipation::new(&bases, &self.wishes).solve(&linear)?;
+        let held = Dissipation::new(&bases, &self.wishes).solve(&linear, strictness)?;
         Ok(JointFit {
             entries: self.entries,
             shares,

@@ -5,7 +5,7 @@ use super::systems::ForceSystems;
 use crate::error::{Error, Result};
 use crate::identification::basis::Basis;
 use crate::identification::dissipative::{
-    ActiveConstraint, Dissipation, FitRequirements, LinearEntry, Solution,
+    ActiveConstraint, Dissipation, FitRequirements, LinearEntry, Solution, Strictness,
 };
 use crate::identification::entry_report::EntryReport;
 use crate::identification::least_squares::Factor;
@@ -67,7 +67,7 @@ impl<'a> FittedSystems<'a> {
     /// # Errors
     /// Constraints that no coefficients satisfy.
     pub(crate) fn constrain(&mut self, bases: &[Basis], wishes: &FitRequirements) -> Result<()> {
-        let joint = Joint::new(&self.systems, bases, wishes)?;
+        let joint = Joint::new(&self.systems, bases, wishes, Strictness::Everywhere)?;
         if joint.held.is_none() {
             return Ok(());
         }
@@ -237,6 +237,7 @@ impl Joint {
         systems: &ForceSystems,
         bases: &[Basis],
         wishes: &FitRequirements,
+        strictness: Strictness,
     ) -> Result<Self> {
         let n = bases.len().isqrt();
         let apart = (0..n).all(|i| (0..n).all(|j| systems.alone(i, j).is_some()))
@@ -272,7 +273,7 @@ impl Joint {
                 joint.whole.push(linear);
             }
         }
-        joint.held = Dissipation::new(bases, wishes).solve(&joint.entries)?;
+        joint.held = Dissipation::new(bases, wishes).solve(&joint.entries, strictness)?;
         Ok(joint)
     }
 
