@@ -42,6 +42,7 @@ pub use determinant::{determinant_onset, impedance};
 pub(crate) use divergence::static_part;
 pub use divergence::{divergence_by_eigenvalues, divergence_speed};
 pub use instability::{Instability, ModeAtOnset, Participation, classify};
+pub(crate) use onset::shown_m_s;
 pub use onset::{Onset, OnsetInterval};
 pub use pk::{pk_curves, pk_onset, quasi_pk_mode};
 pub use quasi_steady::quasi_steady_modes;
