@@ -2,6 +2,8 @@
 
 mod onset;
 
+pub(super) use onset::AssumedAtRest;
+
 use super::Study;
 use super::plausibility::WIDEST_MODEL_M;
 use crate::aerodynamics::derivatives::notation::Convention;

@@ -12,16 +12,6 @@ pub enum Severity {
     Severe,
 }
 
-impl Severity {
-    /// In a word.
-    pub(crate) fn name(self) -> &'static str {
-        match self {
-            Self::Minor => "to be known",
-            Self::Severe => "severe",
-        }
-    }
-}
-
 /// One reason to doubt.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Doubt {

@@ -320,11 +320,11 @@ fn contradiction(first: &FlutterReading, second: &FlutterReading) -> Doubt {
         second_m_s: second.best_m_s(),
     };
     let text = format!(
-        "Contradiction: {} says {}, {} says {}",
-        first.forces,
+        "Contradiction: {} by {}, {} by {}",
         found(first),
-        second.forces,
-        found(second)
+        first.forces,
+        found(second),
+        second.forces
     );
     let mut doubt = Doubt::new(Severity::Severe, kind, text);
     let at = [first, second].map(|r| {

@@ -13,7 +13,7 @@ pub struct Reach {
     /// The mode that leaves the tests first, and the speed up to which it was followed.
     pub leaves: Option<String>,
     /// Lowest reduced frequency of any mode over the wind speed, in rising order of the speed: m/s, `K`.
-    lowest: Vec<(f64, f64)>,
+    pub(super) lowest: Vec<(f64, f64)>,
 }
 
 impl Reach {
@@ -24,6 +24,14 @@ impl Reach {
             to_m_s: f64::INFINITY,
             leaves: None,
             lowest: Vec::new(),
+        }
+    }
+
+    /// Tests of which it is not known at which speeds modes are among them.
+    pub fn nowhere() -> Self {
+        Self {
+            to_m_s: 0.0,
+            ..Self::everywhere()
         }
     }
 

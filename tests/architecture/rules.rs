@@ -120,6 +120,7 @@ const BELOW_STUDY: &[&str] = &[
     "buffeting+",
     "uncertainty",
     "selection",
+    "verdict",
 ];
 
 /// Every module may use these.
