@@ -44,6 +44,7 @@ pub(crate) use divergence::static_part;
 pub use divergence::{divergence_by_eigenvalues, divergence_speed};
 pub use instability::{Instability, ModeAtOnset, Participation, classify};
 pub use judged::StableRange;
+pub(crate) use onset::shown_m_s;
 pub use onset::{Onset, OnsetInterval};
 pub use pk::{pk_curves, pk_onset, quasi_pk_mode};
 pub use quasi_steady::quasi_steady_modes;
