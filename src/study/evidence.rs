@@ -8,7 +8,7 @@ use crate::identification::FitReport;
 use crate::trained_model::TrainedModel;
 use crate::verdict::{
     Basis, DivergenceReading, Evidence, Failure, FlutterReading, GallopingReading, MeanRotation,
-    MovedOnset, Reach, RequiredSpeed,
+    MovedOnset, Reach,
 };
 
 /// The rotation to which derivatives belong, deg: tables do not state another.
