@@ -23,7 +23,7 @@ pub(super) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     let report = Fmu::open(&args.fmu)?.check();
     drop(stage);
     let passed = report.passed();
-    Ok(Answer::new(text(&report), &report)?.with_verdict(passed))
+    Ok(Answer::new(text(&report), &report)?.passed_if(passed))
 }
 
 fn text(report: &CheckReport) -> String {

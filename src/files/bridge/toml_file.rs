@@ -213,6 +213,9 @@ pub struct SearchBlock {
     pub speed_max_m_s: f64,
     /// Speeds between still air and the highest.
     pub speeds: usize,
+    /// Nothing critical may begin below this wind speed, m/s: the criterion of a code. The search always reaches it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub required_speed_m_s: Option<f64>,
 }
 
 impl Default for SearchBlock {
@@ -220,6 +223,7 @@ impl Default for SearchBlock {
         Self {
             speed_max_m_s: 120.0,
             speeds: 60,
+            required_speed_m_s: None,
         }
     }
 }
@@ -248,6 +252,9 @@ impl BridgeFile {
         of_schema(SCHEMA, self.schema)?;
         positive("air_density_kg_m3", self.air_density_kg_m3)?;
         positive("flutter.speed_max_m_s", self.flutter.speed_max_m_s)?;
+        if let Some(required) = self.flutter.required_speed_m_s {
+            positive("flutter.required_speed_m_s", required)?;
+        }
         if self.sections.is_empty() {
             return Err(Error::input("section", "at least one [[section]]", "none"));
         }
