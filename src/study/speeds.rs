@@ -26,7 +26,7 @@ const WITHOUT_SPRINGS_M_S: f64 = 60.0;
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct FlutterBlock {
-    /// Highest wind speed of curves and search, m/s.
+    /// Highest wind speed of curves and search, m/s; they reach the required speed in any case.
     pub speed_max_m_s: Option<f64>,
     /// Lowest wind speed of the curves, m/s.
     pub speed_min_m_s: Option<f64>,
@@ -63,10 +63,15 @@ pub struct SpeedRange {
 impl FlutterBlock {
     /// The range for a section.
     pub fn range(&self, section: &SectionModel) -> SpeedRange {
-        let speed_max_m_s = self.speed_max_m_s.unwrap_or_else(|| {
-            let usual = usual_highest_m_s(section).max(self.speed_min_m_s.unwrap_or(0.0) * 2.0);
-            rounded_up(usual).min(HIGHEST_SPEED_M_S)
-        });
+        let required = self.required_speed_m_s.unwrap_or(0.0);
+        // whatever ends below the required speed cannot tell whether that is met
+        let speed_max_m_s = self.speed_max_m_s.map_or_else(
+            || {
+                let usual = usual_highest_m_s(section).max(self.speed_min_m_s.unwrap_or(0.0) * 2.0);
+                rounded_up(usual.max(required)).min(HIGHEST_SPEED_M_S)
+            },
+            |stated| stated.max(required),
+        );
         SpeedRange {
             speed_min_m_s: self.speed_min_m_s.unwrap_or(LOWEST_PART * speed_max_m_s),
             speed_max_m_s,
@@ -191,6 +196,23 @@ mod tests {
         assert!(!range.from_section);
         assert_eq!(range.curve_speeds_m_s().len(), 120);
         assert_eq!(range.curve_speeds_m_s().last(), Some(&60.0));
+    }
+
+    #[test]
+    fn the_search_reaches_what_is_required() {
+        let reach = |stated, required| {
+            let block = FlutterBlock {
+                speed_max_m_s: stated,
+                required_speed_m_s: Some(required),
+                ..FlutterBlock::default()
+            };
+            block.range(&SectionModel::table_4_1()).speed_max_m_s
+        };
+        assert_eq!(reach(Some(54.0), 62.0), 62.0);
+        assert_eq!(reach(Some(70.0), 62.0), 70.0);
+        assert_eq!(reach(None, 62.0), 74.0);
+        assert_eq!(reach(None, 101.0), 110.0);
+        assert_eq!(reach(None, 340.0), 340.0);
     }
 
     #[test]
