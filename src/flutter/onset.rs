@@ -2,7 +2,7 @@
 
 use super::critical_point::{CriticalPoint, OnsetMethod};
 use crate::section::Structure;
-use crate::units::ReducedFrequency;
+use crate::units::{ReducedFrequency, ReducedFrequencyGap};
 use nalgebra::{Complex, DVector};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -23,6 +23,9 @@ pub struct Onset {
     pub branch: String,
     /// Whether `K` lies in the range in which the model was tested; `None` when there is no such range.
     pub in_tested_range: Option<bool>,
+    /// The gap between tests in which `K` lies, where that is why it is not inside.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gap: Option<ReducedFrequencyGap>,
     /// Further crossings below this one that lie outside the tested range, m/s: signs of an over-fitted model.
     pub spurious_speeds_m_s: Vec<f64>,
     /// What a reader must know before using the number.
@@ -150,7 +153,6 @@ impl Onset {
         }
     }
 
-    /// The onset at speed and frequency with a mode shape; nothing about ranges yet.
     /// The answer in one line: speed, interval, and whether the data reach it, such as
     /// `flutter onset 36.9 m/s, 36.6–37.3, inside the tested range`.
     pub fn headline(&self) -> String {
@@ -160,18 +162,20 @@ impl Onset {
         };
         let spread = matches!(self.interval, OnsetInterval::Spread { .. });
         let interval = match self.interval.ends() {
-            Some((low, high)) if spread => format!(" [{}–{}]", short(low), short(high)),
-            Some((low, high)) => format!(", {}–{}", short(low), short(high)),
+            Some((low, high)) if spread => format!(" [{}–{}]", shown_m_s(low), shown_m_s(high)),
+            Some((low, high)) => format!(", {}–{}", shown_m_s(low), shown_m_s(high)),
             None => ", interval not known".to_owned(),
         };
-        let tested = match self.in_tested_range {
-            Some(true) => ", inside the tested range",
-            Some(false) => ", OUTSIDE the tested range",
-            None => "",
+        let tested = match (self.gap, self.in_tested_range) {
+            (Some(gap), _) => format!(", {}", gap.explain()),
+            (None, Some(true)) => ", inside the tested range".to_owned(),
+            (None, Some(false)) => ", OUTSIDE the tested range".to_owned(),
+            (None, None) => String::new(),
         };
-        format!("flutter onset {} m/s{interval}{tested}", short(speed))
+        format!("flutter onset {} m/s{interval}{tested}", shown_m_s(speed))
     }
 
+    /// The onset at speed and frequency with a mode shape; nothing about ranges yet.
     pub(super) fn new(
         model: &str,
         method: OnsetMethod,
@@ -191,6 +195,7 @@ impl Onset {
             damping_slope_s_m: None,
             branch,
             in_tested_range: None,
+            gap: None,
             spurious_speeds_m_s: Vec::new(),
             warnings: Vec::new(),
             interval: OnsetInterval::none("the data behind the model are not known here"),
@@ -199,7 +204,7 @@ impl Onset {
 }
 
 /// A wind speed for people, m/s: a tenth, below 10 m/s a hundredth, which no measurement surpasses.
-fn short(speed_m_s: f64) -> String {
+pub(crate) fn shown_m_s(speed_m_s: f64) -> String {
     let digits = if speed_m_s.abs() < 10.0 { 2 } else { 1 };
     format!("{speed_m_s:.digits$}")
 }
