@@ -177,7 +177,7 @@ impl SectionUnit {
                 let plain = section::plain_onset(model, table, &self.aerodynamics, (values, limit));
                 OnsetCard::search(model, &section, limit, plain)
             }
-            Err(why) => OnsetCard::unknown(limit, &why),
+            Err(why) => OnsetCard::unknown(&why),
         }
     }
 
@@ -276,8 +276,7 @@ impl Unit for SectionUnit {
 
     fn cannot_calculate(&mut self, memory: &mut Memory, why: &Error, notices: &mut Vec<String>) {
         if !self.onset_current {
-            let limit = memory.values[self.places.search_limit];
-            self.write(OnsetCard::unknown(limit, why), memory, notices);
+            self.write(OnsetCard::unknown(why), memory, notices);
         }
     }
 
