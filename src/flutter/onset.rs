@@ -31,6 +31,16 @@ pub struct Onset {
     pub interval: OnsetInterval,
 }
 
+/// Where the variance between mean speeds is from that an interval holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum BetweenSpeeds {
+    /// Tests at two mean speeds or more, and measured decks.
+    Tests,
+    /// Measured decks alone: the tests are at one mean speed, or do not state it.
+    Prior,
+}
+
 /// 95 % interval of an onset speed, or why there is none.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]

@@ -3,6 +3,7 @@
 use super::columns::LinearModel;
 use super::design::Design;
 use super::parameters::{Coordinates, Parameter, per_chain};
+use super::speed_prior::SpeedPrior;
 use super::speed_scatter::{self, Effect, POINTS, Slopes, SpeedScatter};
 use crate::aerodynamics::{DiscreteLaguerre, Transfer, TransferMatrix};
 use crate::error::{Error, Result};
@@ -36,7 +37,7 @@ pub struct CoefficientUncertainty {
     pub covariance: DMatrix<f64>,
     /// The independent blocks of data.
     pub blocks: Vec<String>,
-    /// Scatter between mean speeds; none for tests at one speed.
+    /// Scatter between mean speeds.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub speeds: Option<SpeedScatter>,
     #[serde(skip)]
@@ -82,15 +83,10 @@ impl CoefficientUncertainty {
         let at = self.slopes_over(tested)?;
         let values = DVector::from_vec(self.values());
         let own = self.own_coefficients();
-        let found = speed_scatter::between_speeds(design, &self.dofs, (&values, &own), &at)?;
-        let text = match &found {
-            Some((scatter, _)) => scatter.describe(),
-            None => "one mean speed: what another speed would change is not known and not in the intervals".into(),
-        };
-        self.assumption = format!("{}; {text}", self.assumption);
-        let Some((scatter, effects)) = found else {
-            return Ok(());
-        };
+        let prior = SpeedPrior::measured(None);
+        let (scatter, effects) =
+            speed_scatter::between_speeds((design, prior), &self.dofs, (&values, &own), &at)?;
+        self.assumption = format!("{}; {}", self.assumption, scatter.describe());
         for effect in &effects {
             self.covariance += &effect.columns * effect.columns.transpose();
         }

@@ -103,32 +103,32 @@ fn different(seed: u64) -> Vec<TransferSample> {
     samples
 }
 
-/// Intervals hold the truth when speeds differ; those of the blocks alone do not. If 95 % of 200 hold it, fewer than 180 do so
-/// once in 500 times, and all 200 once in 28 000.
+/// Intervals hold the truth when speeds differ, and, wider than they need be, when speeds agree. If 95 % of 200 hold it, fewer
+/// than 180 do so once in 500 times.
 #[test]
 fn intervals_hold_a_truth_that_differs_between_speeds() {
     let fit = two_poles(PoleSearch::fixed(&[0.091, 0.6]));
     let jones = Model::Rational(RationalModel::jones_flat_plate());
     let truth = onset(&jones).at.speed_m_s;
-    let (mut held, mut counted) = (0, 0);
-    for seed in 0..200 {
-        let (model, estimate) = fitted(&different(seed), &fit);
-        let found = onset(&model);
-        let error = onset_error(&estimate, &structure(), &found, None).unwrap();
-        held += usize::from((found.at.speed_m_s - truth).abs() <= error.half_width_m_s());
-        let speeds = estimate.speeds.clone().unwrap();
-        counted += usize::from(speeds.counted);
-        assert!(error.degrees_of_freedom < 12.0, "{error:?}");
-    }
+    let judged = |samples: fn(u64) -> Vec<TransferSample>, count: u64| {
+        let (mut held, mut ratio) = (0, 0.0);
+        for seed in 0..count {
+            let (model, estimate) = fitted(&samples(seed), &fit);
+            let found = onset(&model);
+            let error = onset_error(&estimate, &structure(), &found, None).unwrap();
+            held += usize::from((found.at.speed_m_s - truth).abs() <= error.half_width_m_s());
+            ratio += estimate.speeds.unwrap().ratio.unwrap() / count as f64;
+        }
+        (held, ratio)
+    };
+    let (held, ratio) = judged(different, 200);
+    println!("{held} {ratio}");
     assert!((180..200).contains(&held), "{held} of 200");
-    assert!(counted >= 195, "{counted} of 200");
-    // without scatter the ratio is near one and seldom counted
-    let quiet = (0..60).filter(|seed| {
-        let (_, estimate) = fitted(&scattered(*seed), &fit);
-        estimate.speeds.unwrap().counted
-    });
-    let quiet = quiet.count();
-    assert!(quiet <= 15, "{quiet} of 60");
+    let (held, ratio) = judged(scattered, 60);
+    println!("{held} {ratio}");
+    assert!(held >= 54, "{held} of 60");
+    // the mean of a ratio that is one without scatter, over 60 times 4 ratios of two degrees of freedom
+    assert!((ratio - 1.0).abs() < 0.3, "{ratio}");
 }
 
 /// On every measured deck the joint interval holds the onset of each mean speed alone, and speeds that contradict each other
@@ -336,4 +336,64 @@ fn saved_uncertainty_gives_the_same_interval() {
             .to_string()
             .contains("line 1")
     );
+}
+
+#[test]
+fn explore_ratios() {
+    use crate::identification::Constraints;
+    for (dofs, constraints, filters) in [
+        (&Dof::TWO[..], Constraints::None, 3),
+        (&Dof::TWO[..], Constraints::Dissipative, 3),
+        (&Dof::TWO[..], Constraints::None, 2),
+        (&Dof::THREE[..], Constraints::None, 3),
+    ] {
+        println!("{} motions {constraints:?} L {filters}", dofs.len());
+        for name in embedded::names() {
+            let table = embedded::deck(name).unwrap();
+            let fit = FrequencyFit {
+                constraints,
+                form: Form::Laguerre {
+                    filters,
+                    feed_through: FeedThrough::default(),
+                    pole_per_transfer_function: false,
+                },
+                ..FrequencyFit::default()
+            };
+            let samples = table.samples(dofs);
+            let Fitted { report, .. } = fit_table(&samples, dofs, &fit).unwrap();
+            let estimate = match table_uncertainty(&samples, dofs, &fit, &report) {
+                Ok(e) => e,
+                Err(e) => {
+                    println!("{name} {e}");
+                    continue;
+                }
+            };
+            let s = estimate.speeds.unwrap();
+            println!("{name} {:?}", s);
+        }
+    }
+}
+
+#[test]
+fn explore_forms() {
+    for dofs in [&Dof::TWO[..], &Dof::THREE[..]] {
+        for name in embedded::names() {
+            let table = embedded::deck(name).unwrap();
+            let start = std::time::Instant::now();
+            let ensemble = FormEnsemble::new(&table.samples(dofs), dofs).unwrap();
+            let fit_time = start.elapsed();
+            let mut section = SectionModel::table_4_1();
+            if dofs.len() == 3 {
+                section.lateral = Some(crate::section::SectionModel::table_4_1().vertical);
+            }
+            let start = std::time::Instant::now();
+            let spread = ensemble
+                .spread(&section.structure().unwrap(), &OnsetSearch::default())
+                .unwrap();
+            println!("{name} {} fit {fit_time:?} spread {:?} {:?} {:?}", dofs.len(), start.elapsed(), spread.half_range_m_s, spread.standard_deviation_m_s);
+            for f in &spread.forms {
+                println!("   {f:?}");
+            }
+        }
+    }
 }
