@@ -42,7 +42,7 @@ pub use determinant::{determinant_onset, impedance};
 pub(crate) use divergence::static_part;
 pub use divergence::{divergence_by_eigenvalues, divergence_speed};
 pub use instability::{Instability, ModeAtOnset, Participation, classify};
-pub use onset::{BetweenSpeeds, Onset, OnsetInterval};
+pub use onset::{BetweenSpeeds, ErrorParts, Onset, OnsetInterval};
 pub use pk::{pk_curves, pk_onset, quasi_pk_mode};
 pub use quasi_steady::quasi_steady_modes;
 pub(crate) use quasi_steady::{QuasiSteadyOnset, quasi_steady_onset};

@@ -42,8 +42,11 @@ pub struct CoefficientUncertainty {
     pub speeds: Option<SpeedScatter>,
     #[serde(skip)]
     pub(super) design: Option<Design>,
+    /// Reduced frequencies over which the scatter between mean speeds was asked.
     #[serde(skip)]
-    effects: Vec<Effect>,
+    tested: Option<ReducedFrequencyRange>,
+    #[serde(skip)]
+    pub(super) effects: Vec<Effect>,
 }
 
 impl CoefficientUncertainty {
@@ -66,24 +69,55 @@ impl CoefficientUncertainty {
             blocks: design.names(),
             speeds: None,
             design: None,
+            tested,
             effects: Vec::new(),
         };
         if let Some(tested) = tested {
-            estimate.add_speeds(&design, tested)?;
+            estimate.add_speeds(&design, tested, SpeedPrior::measured(None))?;
         }
-        for (i, parameter) in estimate.parameters.iter_mut().enumerate() {
-            parameter.standard_error = estimate.covariance[(i, i)].max(0.0).sqrt();
-        }
+        estimate.state_errors();
         estimate.design = Some(design);
         Ok(estimate)
     }
 
+    /// The same without what an embedded measured deck says of the scatter between mean speeds: for that deck itself.
+    ///
+    /// # Errors
+    /// [`Error::Numerical`] when the covariance cannot be made again.
+    pub(crate) fn leaving_out(mut self, deck: &str) -> Result<Self> {
+        let (Some(design), Some(speeds), Some(tested)) =
+            (self.design.take(), &self.speeds, self.tested)
+        else {
+            return Ok(self);
+        };
+        let said = format!("; {}", speeds.describe());
+        if let Some(without) = self.assumption.strip_suffix(&said) {
+            self.assumption = without.to_owned();
+        }
+        let contributions = design.contributions();
+        self.covariance = &contributions * contributions.transpose();
+        self.add_speeds(&design, tested, SpeedPrior::measured(Some(deck)))?;
+        self.state_errors();
+        self.design = Some(design);
+        Ok(self)
+    }
+
+    fn state_errors(&mut self) {
+        for (i, parameter) in self.parameters.iter_mut().enumerate() {
+            parameter.standard_error = self.covariance[(i, i)].max(0.0).sqrt();
+        }
+    }
+
     /// Adds the scatter between mean speeds.
-    fn add_speeds(&mut self, design: &Design, tested: ReducedFrequencyRange) -> Result<()> {
+    fn add_speeds(
+        &mut self,
+        design: &Design,
+        tested: ReducedFrequencyRange,
+        prior: SpeedPrior,
+    ) -> Result<()> {
         let at = self.slopes_over(tested)?;
         let values = DVector::from_vec(self.values());
         let own = self.own_coefficients();
-        let prior = SpeedPrior::measured(None);
         let (scatter, effects) =
             speed_scatter::between_speeds((design, prior), &self.dofs, (&values, &own), &at)?;
         self.assumption = format!("{}; {}", self.assumption, scatter.describe());

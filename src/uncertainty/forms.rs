@@ -146,7 +146,10 @@ impl FormEnsemble {
         };
         let read: Vec<_> = INTERPOLATIONS.iter().zip(&self.read).collect();
         // a table whose roots cannot be told apart says nothing
-        let read = read.into_par_iter().filter_map(|r| by_table(r).ok()).collect();
+        let read = read
+            .into_par_iter()
+            .filter_map(|r| by_table(r).ok())
+            .collect();
         forms.extend(told(read, &forms));
         Ok(FormSpread::of(forms))
     }
@@ -155,8 +158,11 @@ impl FormEnsemble {
 /// Interpolated tables that say something of the onset: those that have one, and those that are stable where others flutter.
 fn told(read: Vec<FormOnset>, fits: &[FormOnset]) -> Vec<FormOnset> {
     let lowest = lowest(fits);
-    let contradicts =
-        |f: &FormOnset| f.stable_up_to_m_s.zip(lowest).is_some_and(|(to, onset)| to > onset);
+    let contradicts = |f: &FormOnset| {
+        f.stable_up_to_m_s
+            .zip(lowest)
+            .is_some_and(|(to, onset)| to > onset)
+    };
     read.into_iter()
         .filter(|f| f.onset_m_s.is_some() || contradicts(f))
         .collect()
@@ -278,7 +284,9 @@ impl FittedForm {
     fn ratio(&self, best: &Self) -> f64 {
         let floor = AS_GOOD.powi(2);
         let ratios = self.variances.iter().zip(&best.variances);
-        let sum: f64 = ratios.map(|(own, best)| (own + floor) / (best + floor)).sum();
+        let sum: f64 = ratios
+            .map(|(own, best)| (own + floor) / (best + floor))
+            .sum();
         sum / self.variances.len() as f64
     }
 }

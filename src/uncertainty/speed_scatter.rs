@@ -65,6 +65,12 @@ pub struct ForceScatter {
     pub size: f64,
     /// In quadrature to it, rad.
     pub phase: f64,
+    /// Variance between speeds over that of independent blocks by these tests alone, of the first; none with one speed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub size_ratio: Option<f64>,
+    /// The same of the second.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub phase_ratio: Option<f64>,
 }
 
 /// Transfer matrix at one reduced frequency with its derivatives with respect to all parameters.
@@ -80,8 +86,8 @@ pub(super) struct Effect {
     /// Each column times an independent standard normal number, P×m.
     pub columns: DMatrix<f64>,
     /// Variance between speeds over that part of it which exceeds the blocks'.
-    total: f64,
-    degrees_of_freedom: f64,
+    pub total: f64,
+    pub degrees_of_freedom: f64,
 }
 
 impl Effect {
@@ -207,38 +213,42 @@ pub(super) fn between_speeds(
         degrees_of_freedom: prior.degrees_of_freedom + spare,
         forces: Vec::new(),
     };
-    let (mut ratios, mut effects) = (Vec::new(), Vec::new());
-    for (i, &force) in dofs.iter().enumerate() {
-        let size: f64 = (0..n).map(|j| judge.mean_square((i, j))).sum::<f64>() / n as f64;
-        let mut deviations = [0.0; 2];
-        for (turn, deviation) in [ScatterDirection::Size, ScatterDirection::Phase]
-            .into_iter()
-            .zip(&mut deviations)
-        {
-            let Some(unit) = judge.effect((i, n), turn, (values, own)) else {
-                continue;
-            };
-            let of_force = match unit.ratio {
-                Some(ratio) => prior.after(ratio, spare),
-                None => prior,
-            };
-            ratios.extend(unit.ratio);
-            let variance = (of_force.ratio - 1.0) * unit.of_blocks;
-            if !(variance > 0.0 && size > 0.0) {
-                continue;
-            }
-            *deviation = (variance / size).sqrt();
-            effects.push(Effect {
-                columns: unit.columns * variance.sqrt(),
-                total: of_force.ratio / (of_force.ratio - 1.0),
-                degrees_of_freedom: of_force.degrees_of_freedom,
-            });
-        }
-        let [size, phase] = deviations;
-        scatter.forces.push(ForceScatter { force, size, phase });
-    }
+    let turns = [ScatterDirection::Size, ScatterDirection::Phase];
+    let units: Vec<[Option<UnitEffect>; 2]> = (0..n)
+        .map(|i| turns.map(|turn| judge.effect((i, n), turn, (values, own))))
+        .collect();
+    let ratios: Vec<f64> = units
+        .iter()
+        .flatten()
+        .flatten()
+        .filter_map(|u| u.ratio)
+        .collect();
+    let mut of_deck = prior;
     if !ratios.is_empty() {
-        scatter.ratio = Some(ratios.iter().sum::<f64>() / ratios.len() as f64);
+        let mean = ratios.iter().sum::<f64>() / ratios.len() as f64;
+        of_deck = prior.for_deck(mean, spare * ratios.len() as f64);
+        scatter.ratio = Some(mean);
+        scatter.degrees_of_freedom = of_deck.degrees_of_freedom + spare;
+    }
+    let mut effects = Vec::new();
+    for (i, (&force, units)) in dofs.iter().zip(units).enumerate() {
+        let size: f64 = (0..n).map(|j| judge.mean_square((i, j))).sum::<f64>() / n as f64;
+        let [size_ratio, phase_ratio] = [0, 1].map(|t| units[t].as_ref().and_then(|u| u.ratio));
+        let [size, phase] = units.map(|unit| {
+            let effect = unit.and_then(|u| u.drawn(of_deck, spare));
+            let Some((variance, effect)) = effect.filter(|_| size > 0.0) else {
+                return 0.0;
+            };
+            effects.push(effect);
+            (variance / size).sqrt()
+        });
+        scatter.forces.push(ForceScatter {
+            force,
+            size,
+            phase,
+            size_ratio,
+            phase_ratio,
+        });
     }
     Ok((scatter, effects))
 }
@@ -268,6 +278,25 @@ struct UnitEffect {
     of_blocks: f64,
     /// Variance between speeds over that, where there are several.
     ratio: Option<f64>,
+}
+
+impl UnitEffect {
+    /// Its variance and the effect, drawn towards a prior; none where the speeds scatter no more than the blocks.
+    fn drawn(self, prior: SpeedPrior, spare: f64) -> Option<(f64, Effect)> {
+        let known = match self.ratio {
+            Some(ratio) => prior.after(ratio, spare),
+            None => prior,
+        };
+        let variance = (known.ratio - 1.0) * self.of_blocks;
+        (variance > 0.0).then(|| {
+            let effect = Effect {
+                columns: self.columns * variance.sqrt(),
+                total: known.ratio / (known.ratio - 1.0),
+                degrees_of_freedom: known.degrees_of_freedom,
+            };
+            (variance, effect)
+        })
+    }
 }
 
 /// What the scatter of all forces is judged by.

@@ -7,10 +7,10 @@ use crate::aerodynamics::derivatives::TransferSample;
 use crate::aerodynamics::{FlatPlate, RationalModel};
 use crate::aeroelastic::CoupledSection;
 use crate::files::derivatives::embedded;
-use crate::flutter::{Onset, OnsetSearch, find_onset};
+use crate::flutter::{BetweenSpeeds, Onset, OnsetSearch, find_onset};
 use crate::identification::{
-    DiscreteFit, FeedThrough, Fitted, Form, FrequencyFit, FrequencyWeights, PoleSearch,
-    fit_discrete, fit_table, sample_model,
+    Constraints, DiscreteFit, FeedThrough, Fitted, Form, FrequencyFit, FrequencyWeights,
+    PoleSearch, fit_discrete, fit_table, sample_model,
 };
 use crate::section::{Dof, SectionModel, Structure};
 use crate::trained_model::Model;
@@ -48,6 +48,14 @@ fn two_poles(poles: PoleSearch) -> FrequencyFit {
     }
 }
 
+/// The covariance of the blocks alone, for truths that do not differ between speeds.
+fn by_blocks(mut estimate: CoefficientUncertainty) -> CoefficientUncertainty {
+    let contributions = estimate.design.as_ref().unwrap().contributions();
+    estimate.covariance = &contributions * contributions.transpose();
+    estimate.effects.clear();
+    estimate
+}
+
 fn fitted(samples: &[TransferSample], fit: &FrequencyFit) -> (Model, CoefficientUncertainty) {
     let Fitted { model, report } = fit_table(samples, &Dof::TWO, fit).unwrap();
     let estimate = table_uncertainty(samples, &Dof::TWO, fit, &report).unwrap();
@@ -80,14 +88,17 @@ fn scattered(seed: u64) -> Vec<TransferSample> {
     samples
 }
 
-/// The same tables whose transfer functions differ between the two speeds by 3 % in size and in phase.
+/// The same tables whose transfer functions differ between the two speeds, by 1.5 % in size and in phase: as much against their
+/// noise as those of measured decks.
 fn different(seed: u64) -> Vec<TransferSample> {
     let mut samples = scattered(seed);
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     random.set_stream(7);
     let mut normal = || -> f64 { StandardNormal.sample(&mut random) };
     for speed in [8.17, 4.0] {
-        let factors: Vec<(f64, f64)> = (0..4).map(|_| (0.03 * normal(), 0.03 * normal())).collect();
+        let factors: Vec<(f64, f64)> = (0..4)
+            .map(|_| (0.015 * normal(), 0.015 * normal()))
+            .collect();
         let own = samples
             .iter_mut()
             .filter(|s| s.mean_speed_m_s == Some(speed));
@@ -131,29 +142,88 @@ fn intervals_hold_a_truth_that_differs_between_speeds() {
     assert!((ratio - 1.0).abs() < 0.3, "{ratio}");
 }
 
-/// On every measured deck the joint interval holds the onset of each mean speed alone, and speeds that contradict each other
-/// are named with what to test again.
+/// The stored ratios of the prior are what the embedded decks give. Two decimals are stored.
 #[test]
-fn joint_intervals_of_decks_hold_the_onset_of_each_speed() {
+fn ratios_are_those_of_the_embedded_decks() {
+    for (name, stored) in speed_prior::MEASURED {
+        let table = embedded::deck(name).unwrap();
+        let fit = FrequencyFit {
+            form: Form::default().with_filters(3).unwrap(),
+            constraints: Constraints::Dissipative,
+            ..FrequencyFit::default()
+        };
+        let (_, estimate) = fitted(&table.samples(&Dof::TWO), &fit);
+        let forces = estimate.speeds.unwrap().forces;
+        let found: Vec<f64> = forces
+            .iter()
+            .flat_map(|f| [f.size_ratio.unwrap(), f.phase_ratio.unwrap()])
+            .collect();
+        for (found, stored) in found.iter().zip(stored) {
+            assert!((found - stored).abs() < 0.006, "{name}: {found} {stored}");
+        }
+    }
+}
+
+/// What the prior is worth on decks that it was not made of: every deck is judged by the other four. The joint interval holds
+/// the onset of each mean speed alone, half of them are narrower than 5 % of the onset, and two models of one speed each, which know
+/// the scatter between speeds from the prior alone, differ by what they say: 1.2 standard errors or less, root mean square.
+#[test]
+fn the_prior_of_four_decks_serves_the_fifth() {
+    let structure = structure();
+    let judge = |name: &str, samples: &[TransferSample], fit: &FrequencyFit| {
+        let (model, estimate) = fitted(samples, fit);
+        let tested = estimate.tested_range().unwrap();
+        let estimate = estimate.leaving_out(name).unwrap();
+        let at = onset_within(&model, Some(tested));
+        onset_error(&estimate, &structure, &at, None).unwrap()
+    };
+    let (mut halves, mut squares, mut held, mut all) = (Vec::new(), 0.0, 0, 0);
+    for constraints in [Constraints::None, Constraints::Dissipative] {
+        for name in embedded::names() {
+            let fit = FrequencyFit {
+                constraints,
+                ..FrequencyFit::default()
+            };
+            let table = embedded::deck(name).unwrap();
+            let joint = judge(name, &table.samples(&Dof::TWO), &fit);
+            assert_eq!(joint.between_speeds, Some(BetweenSpeeds::Tests));
+            halves.push(joint.half_width_m_s() / joint.speed_m_s);
+            let alone = [0, 1].map(|group| {
+                let own = table.at_speed_group(group).unwrap();
+                judge(name, &own.samples(&Dof::TWO), &fit)
+            });
+            for own in &alone {
+                assert_eq!(own.between_speeds, Some(BetweenSpeeds::Prior));
+                let off = (own.speed_m_s - joint.speed_m_s).abs();
+                held += usize::from(off <= joint.half_width_m_s());
+                all += 1;
+            }
+            let [a, b] = alone;
+            let error = a.standard_error_m_s.hypot(b.standard_error_m_s);
+            squares += ((a.speed_m_s - b.speed_m_s) / error).powi(2);
+        }
+    }
+    halves.sort_by(f64::total_cmp);
+    let rms = (squares / halves.len() as f64).sqrt();
+    let median = 0.5 * (halves[4] + halves[5]);
+    println!("{held} of {all}, half widths {halves:?}, median {median}, rms {rms}");
+    assert_eq!((held, all), (20, 20));
+    assert!(median < 0.05, "{median}");
+    assert!(rms < 1.2, "{rms}");
+}
+
+/// Mean speeds that contradict each other are named with what to test again.
+#[test]
+fn speeds_that_contradict_each_other_are_named() {
     let mut contradictions = 0;
     for name in embedded::names() {
         let table = embedded::deck(name).unwrap();
         let (model, estimate) = fitted(&table.samples(&Dof::TWO), &FrequencyFit::default());
         let tested = table.tested_range(&Dof::TWO);
         let at = onset_within(&model, Some(tested));
-        let error = onset_error(&estimate, &structure(), &at, None).unwrap();
-        let half = error.half_width_m_s();
         let search = OnsetSearch::default();
         let speeds = speed_onsets(&estimate, &structure(), &at, (&search, tested)).unwrap();
         assert_eq!(speeds.each.len(), 2, "{name}");
-        for speed in &speeds.each {
-            let own = speed.onset.as_ref().unwrap();
-            assert!(
-                (own.speed_m_s - at.at.speed_m_s).abs() <= half,
-                "{name}: {own:?} outside {:.3} ± {half:.3}",
-                at.at.speed_m_s
-            );
-        }
         if let Some(c) = &speeds.contradiction {
             contradictions += 1;
             assert!(
@@ -263,6 +333,7 @@ fn stated_errors_are_the_scatter_of_repeated_tables() {
         for seed in 0..runs {
             let (model, estimate) = fitted(&scattered(seed), &fit);
             let found = onset(&model);
+            let estimate = by_blocks(estimate);
             let error = onset_error(&estimate, &structure(), &found, None).unwrap();
             speeds.push(found.at.speed_m_s);
             stated += error.standard_error_m_s.powi(2) / runs as f64;
@@ -336,64 +407,4 @@ fn saved_uncertainty_gives_the_same_interval() {
             .to_string()
             .contains("line 1")
     );
-}
-
-#[test]
-fn explore_ratios() {
-    use crate::identification::Constraints;
-    for (dofs, constraints, filters) in [
-        (&Dof::TWO[..], Constraints::None, 3),
-        (&Dof::TWO[..], Constraints::Dissipative, 3),
-        (&Dof::TWO[..], Constraints::None, 2),
-        (&Dof::THREE[..], Constraints::None, 3),
-    ] {
-        println!("{} motions {constraints:?} L {filters}", dofs.len());
-        for name in embedded::names() {
-            let table = embedded::deck(name).unwrap();
-            let fit = FrequencyFit {
-                constraints,
-                form: Form::Laguerre {
-                    filters,
-                    feed_through: FeedThrough::default(),
-                    pole_per_transfer_function: false,
-                },
-                ..FrequencyFit::default()
-            };
-            let samples = table.samples(dofs);
-            let Fitted { report, .. } = fit_table(&samples, dofs, &fit).unwrap();
-            let estimate = match table_uncertainty(&samples, dofs, &fit, &report) {
-                Ok(e) => e,
-                Err(e) => {
-                    println!("{name} {e}");
-                    continue;
-                }
-            };
-            let s = estimate.speeds.unwrap();
-            println!("{name} {:?}", s);
-        }
-    }
-}
-
-#[test]
-fn explore_forms() {
-    for dofs in [&Dof::TWO[..], &Dof::THREE[..]] {
-        for name in embedded::names() {
-            let table = embedded::deck(name).unwrap();
-            let start = std::time::Instant::now();
-            let ensemble = FormEnsemble::new(&table.samples(dofs), dofs).unwrap();
-            let fit_time = start.elapsed();
-            let mut section = SectionModel::table_4_1();
-            if dofs.len() == 3 {
-                section.lateral = Some(crate::section::SectionModel::table_4_1().vertical);
-            }
-            let start = std::time::Instant::now();
-            let spread = ensemble
-                .spread(&section.structure().unwrap(), &OnsetSearch::default())
-                .unwrap();
-            println!("{name} {} fit {fit_time:?} spread {:?} {:?} {:?}", dofs.len(), start.elapsed(), spread.half_range_m_s, spread.standard_deviation_m_s);
-            for f in &spread.forms {
-                println!("   {f:?}");
-            }
-        }
-    }
 }
