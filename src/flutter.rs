@@ -46,7 +46,7 @@ pub use divergence::{divergence_by_eigenvalues, divergence_speed};
 pub use instability::{Instability, ModeAtOnset, Participation, classify};
 pub use judged::StableRange;
 pub(crate) use onset::shown_m_s;
-pub use onset::{Onset, OnsetInterval};
+pub use onset::{BetweenSpeeds, ErrorParts, Onset, OnsetInterval};
 pub use pk::{pk_curves, pk_onset, quasi_pk_mode};
 pub use quasi_steady::quasi_steady_modes;
 pub(crate) use quasi_steady::{QuasiSteadyOnset, quasi_steady_onset};
