@@ -11,9 +11,10 @@ use super::{account, evidence, headline, measured_forces, select, stages};
 use crate::error::{Error, Result};
 use crate::flutter::{FlutterSearch, OnsetMethod};
 use crate::fmu::package::GrowthPolicy;
+use crate::plausibility::sentences;
 use crate::study::{
     Deck, FITS, FlutterStudy, OwnModel, RecordSet, StageFailure, SteppedOnset, Study,
-    TrainedWithReport, attempt, interval_of, section_evidence, stepped_onset, study_warnings,
+    TrainedWithReport, attempt, interval_of, section_evidence, stepped_onset, study_findings,
 };
 use crate::verdict::Verdict;
 use std::path::PathBuf;
@@ -258,6 +259,7 @@ impl Chain<'_> {
         let (study, deck) = (&self.study, &self.deck);
         let name = &study.exported()?.name;
         let failed = std::mem::take(&mut self.failed);
+        let of_study = study_findings(study);
         Ok(Summary {
             model: name.clone(),
             verdict,
@@ -266,7 +268,8 @@ impl Chain<'_> {
             generator: format!("aerodeck {}", env!("CARGO_PKG_VERSION")),
             study: study.name.clone(),
             deck: deck.description(),
-            warnings: [deck.warnings(), study_warnings(study)].concat(),
+            warnings: [deck.warnings(), sentences(&of_study)].concat(),
+            findings: [deck.findings(), &of_study[..]].concat(),
             licence: deck.licence(),
             speeds: study.speeds(),
             onsets: results.onsets,

@@ -19,7 +19,7 @@ use crate::error::{Error, Result};
 use crate::section::Dof;
 use crate::trained_model::Model;
 use crate::units::ReducedFrequencyRange;
-use joint::{Joint, JointFit};
+use joint::{Joint, JointFit, by_noise};
 use poles::{choose_poles, choose_poles_together};
 
 /// Fits a continuous model to samples of `G`: real and imaginary parts, each at its own `K`.
@@ -107,6 +107,7 @@ fn fit_linear(
     let joint = Joint {
         entries,
         form: &fit.form,
+        shares: by_noise(entries, &fit.form, &poles)?,
         wishes: FitRequirements {
             dofs: dofs.to_vec(),
             k_max: tested.max.full_width(),

@@ -226,6 +226,23 @@ pub(crate) fn variance(residual_sum: f64, rows: usize, unknowns: usize) -> Optio
     (rows > unknowns).then(|| residual_sum / (rows - unknowns) as f64)
 }
 
+/// Relative scatter below which no measurement is known: what is left of a better fit is not told from the form of the model.
+pub(crate) const LEAST_NOISE: f64 = 0.01;
+
+/// Root mean square of the noise of weighted data, relative to the data, from the sum of the squares of `rows` residuals after
+/// `unknowns` coefficients were fitted to them; one where that leaves nothing to judge by.
+pub(crate) fn relative_noise(
+    residual_sum: f64,
+    total_sum: f64,
+    (rows, unknowns): (usize, usize),
+) -> f64 {
+    let relative = |v: f64| (v * rows as f64 / total_sum).sqrt().max(LEAST_NOISE);
+    match variance(residual_sum, rows, unknowns) {
+        Some(v) if total_sum > 0.0 => relative(v),
+        _ => 1.0,
+    }
+}
+
 /// Fewer equations than unknowns cannot be fitted.
 pub(crate) fn enough_rows(place: &str, rows: usize, unknowns: usize) -> Result<()> {
     if rows < unknowns {

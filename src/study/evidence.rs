@@ -1,9 +1,9 @@
 //! What is known of the section of a study, as evidence for its verdict.
 
-use super::{Deck, FlutterStudy, KnownUncertainty, StageFailure, Study, study_warnings};
-use crate::aeroelastic::{EquilibriumEnd, static_equilibria};
-use crate::error::Result;
-use crate::flutter::{FlutterSearch, Instability, OnsetMethod, StableRange};
+use super::{Deck, FlutterStudy, KnownUncertainty, StageFailure, Study, study_findings};
+use crate::aeroelastic::{CoupledSection, EquilibriumEnd, static_equilibria};
+use crate::error::{Error, Result};
+use crate::flutter::{FlutterSearch, Instability, OnsetMethod, StableRange, judged_speeds};
 use crate::identification::FitReport;
 use crate::trained_model::TrainedModel;
 use crate::verdict::{
@@ -50,8 +50,8 @@ pub(crate) fn section_evidence(
         failures: failures(study, failed, name),
         constraints: own.fit.and_then(moved),
         test_speeds: own.uncertainty.and_then(one_test_speed),
-        implausible: study_warnings(study),
-        remarks: deck.warnings(),
+        implausible: [deck.findings(), &study_findings(study)[..]].concat(),
+        remarks: deck.notes(),
         ..Evidence::default()
     };
     let table = deck.own_model_name();
@@ -84,10 +84,7 @@ fn forces(model: &str, table: &str) -> String {
 }
 
 fn of_model(study: &Study, results: &FlutterStudy, model: &TrainedModel) -> Option<FlutterReading> {
-    let curves = results.curves.iter().find(|c| c.model == model.name);
-    let reach = curves.map_or_else(Reach::nowhere, |c| {
-        Reach::of(c, study.section.width_m, model.tested_range)
-    });
+    let reach = reach(study, results, model).unwrap_or_else(|_| Reach::nowhere());
     Some(FlutterReading {
         forces: forces(&model.name, ""),
         search: results.search_of(&model.name, OnsetMethod::Eigenvalues)?,
@@ -96,6 +93,16 @@ fn of_model(study: &Study, results: &FlutterStudy, model: &TrainedModel) -> Opti
             reach,
         },
     })
+}
+
+/// The speeds at which every mode of the section is among the tests of the model.
+fn reach(study: &Study, results: &FlutterStudy, model: &TrainedModel) -> Result<Reach> {
+    let section = CoupledSection::with_model(&study.section.structure()?, &model.model)?;
+    let search = study.speeds().search();
+    let judged = judged_speeds(&section, &search, Some(model.tested_range))?;
+    let curves = results.curves.iter().find(|c| c.model == model.name);
+    let curves = curves.ok_or_else(|| Error::Numerical("no modes".to_owned()))?;
+    Ok(Reach::of(judged, curves, study.section.width_m))
 }
 
 fn of_deck(deck: &Deck, results: &FlutterStudy, name: &str) -> Option<FlutterReading> {

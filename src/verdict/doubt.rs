@@ -111,7 +111,12 @@ pub enum DoubtKind {
         second_m_s: Option<f64>,
     },
     /// Input that does not look right.
-    ImplausibleInput,
+    ImplausibleInput {
+        /// Key, mode, run or column.
+        place: String,
+        /// The number there; `None` where several are meant.
+        value: Option<f64>,
+    },
     /// The forces are those of a theory that was not tested.
     Untested,
     /// The structure turns in the mean wind beyond what was tested.

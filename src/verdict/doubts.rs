@@ -5,6 +5,7 @@ use super::doubt::{Doubt, DoubtKind, Severity};
 use super::evidence::{Basis, Evidence, FlutterReading};
 use super::words::{found, k_range, speed};
 use crate::flutter::{FlutterSearch, OnsetInterval};
+use crate::plausibility;
 
 /// Mean rotation away from the tests from which it is to be known, and from which derivatives are others, deg: decks are
 /// tested at steps of two to three degrees.
@@ -47,6 +48,14 @@ impl Weighed<'_> {
             .is_some_and(|r| speed_m_s >= r.speed_m_s)
     }
 
+    /// As far as every mode was tested nothing grows: that may be all that is asked for.
+    fn unless_cleared(&self) -> Severity {
+        match self.clears(self.critical.judged_to_m_s) {
+            false => Severity::Severe,
+            true => Severity::Minor,
+        }
+    }
+
     fn of_answer(&self, first: &FlutterReading, all: &mut Vec<Doubt>) {
         all.extend(self.tests(first));
         all.extend(self.judged(first));
@@ -85,16 +94,27 @@ impl Weighed<'_> {
         };
         let at = first.search.critical().filter(|_| first.extrapolated())?;
         let (k, tested) = (at.reduced_frequency, range);
+        if let Some(gap) = first.onset().and_then(|o| o.gap) {
+            let kind = DoubtKind::GapInTests {
+                k: k.full_width(),
+                gap_from_k: gap.from.full_width(),
+                gap_to_k: gap.to.full_width(),
+            };
+            let text = format!(
+                "The onset lies at K {:.3}, {}",
+                k.full_width(),
+                gap.explain()
+            );
+            let missing = k_range(gap.from, gap.to);
+            let doubt = Doubt::new(self.unless_cleared(), kind, text);
+            return Some(doubt.settled_by(format!("tests at K {missing}")));
+        }
         let kind = DoubtKind::OutsideTestedRange {
             k: k.full_width(),
             tested_from_k: tested.min.full_width(),
             tested_to_k: tested.max.full_width(),
         };
-        // as far as every mode was tested, nothing grows: that may be all that is asked for
-        let severity = match self.clears(self.critical.judged_to_m_s) {
-            false => Severity::Severe,
-            true => Severity::Minor,
-        };
+        let severity = self.unless_cleared();
         let text = format!(
             "The onset lies outside the tested range, at K {:.3} (tests: {}): {} extrapolated",
             k.full_width(),
@@ -148,19 +168,23 @@ impl Weighed<'_> {
             speed_m_s: to,
             asked_m_s: asked,
         };
-        let mut missing = None;
-        let mut why = String::new();
-        if let Basis::Tested { range, reach } = &first.basis {
-            missing = reach.missing_up_to(asked, *range);
-            if let Some(branch) = reach.leaves.as_ref().filter(|_| reach.to_m_s <= to) {
-                why = format!("; there the {branch} branch leaves the tested range");
+        let (missing, of_tests) = match &first.basis {
+            Basis::Tested { range, reach } => {
+                let binds = reach.to_m_s <= to;
+                (
+                    reach.missing_up_to(asked, *range),
+                    reach.why.as_ref().filter(|_| binds),
+                )
             }
-        }
-        if let (FlutterSearch::StableUpTo(range), true) = (&first.search, why.is_empty())
-            && let Some(reason) = &range.not_judged
-        {
-            why = format!(" ({reason})");
-        }
+            Basis::Exact | Basis::Stated => (None, None),
+        };
+        let of_search = match &first.search {
+            FlutterSearch::StableUpTo(range) => range.not_judged.as_ref(),
+            _ => None,
+        };
+        let why = of_tests
+            .or(of_search)
+            .map_or(String::new(), |w| format!(": {w}"));
         let text = format!("Nothing is judged by data above {}{why}", speed(to));
         let settled = match missing {
             Some(range) => format!("tests at K {}", k_range(range.min, range.max)),
@@ -282,9 +306,17 @@ impl Weighed<'_> {
             let text = format!("FAILED {}: {}", f.stage, f.reason);
             Doubt::new(severity, kind, text).settled_by(format!("{} without a failure", f.stage))
         }));
-        all.extend(evidence.implausible.iter().map(|text| {
-            Doubt::new(Severity::Severe, DoubtKind::ImplausibleInput, text)
-                .settled_by("that input confirmed or corrected")
+        all.extend(evidence.implausible.iter().map(|finding| {
+            let severity = match finding.severity {
+                plausibility::Severity::Doubt => Severity::Severe,
+                plausibility::Severity::Note => Severity::Minor,
+            };
+            let kind = DoubtKind::ImplausibleInput {
+                place: finding.place.clone(),
+                value: finding.value,
+            };
+            Doubt::new(severity, kind, finding.to_string())
+                .settled_by(format!("{} confirmed or corrected", finding.place))
         }));
         all.extend(rotation(evidence));
         let assumed = evidence.divergence.iter().filter_map(|d| {

@@ -3,6 +3,7 @@
 use super::outcome::RequiredSpeed;
 use super::reach::Reach;
 use crate::flutter::{FlutterSearch, Onset, OnsetInterval, UnwantedGrowth};
+use crate::plausibility::Finding;
 use crate::units::ReducedFrequencyRange;
 
 /// What the searches, fits and checks of one structure have found.
@@ -24,8 +25,8 @@ pub struct Evidence {
     pub constraints: Option<MovedOnset>,
     /// Number of mean wind speeds of the tests; `None` where it is not known or there are no tests.
     pub test_speeds: Option<usize>,
-    /// Input that does not look right, in sentences.
-    pub implausible: Vec<String>,
+    /// Input that does not look right.
+    pub implausible: Vec<Finding>,
     /// Rotation in the mean wind.
     pub mean_rotation: Option<MeanRotation>,
     /// Largest rotation of the tests, deg; `None` where it is not known.

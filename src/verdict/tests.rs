@@ -5,7 +5,8 @@ use crate::flutter::{
     CriticalPoint, FlutterSearch, GrowthBand, Onset, OnsetInterval, OnsetMethod, StableRange,
     UnstableStart, UnwantedGrowth,
 };
-use crate::units::{ReducedFrequency, ReducedFrequencyRange};
+use crate::plausibility::Finding;
+use crate::units::{ReducedFrequency, ReducedFrequencyGap, ReducedFrequencyRange};
 
 fn k(value: f64) -> ReducedFrequency {
     ReducedFrequency::from_full_width(value)
@@ -15,10 +16,7 @@ const TESTED: (f64, f64) = (0.3, 2.0);
 
 fn tests(to_m_s: f64) -> Basis {
     Basis::Tested {
-        range: ReducedFrequencyRange {
-            min: k(TESTED.0),
-            max: k(TESTED.1),
-        },
+        range: ReducedFrequencyRange::between(k(TESTED.0), k(TESTED.1)),
         reach: Reach {
             to_m_s,
             ..Reach::everywhere()
@@ -39,6 +37,7 @@ fn onset(speed_m_s: f64, half_m_s: f64) -> Onset {
         damping_slope_s_m: None,
         branch: "torsion".to_owned(),
         in_tested_range: Some(true),
+        gap: None,
         spurious_speeds_m_s: Vec::new(),
         warnings: Vec::new(),
         interval: match half_m_s > 0.0 {
@@ -239,6 +238,32 @@ fn an_extrapolated_onset_counts_as_far_as_tests_reach() {
 }
 
 #[test]
+fn an_onset_in_a_gap_between_tests_is_a_doubt() {
+    let mut first = onset(60.0, 1.0);
+    first.in_tested_range = Some(false);
+    first.gap = Some(ReducedFrequencyGap {
+        from: k(0.4),
+        to: k(1.1),
+    });
+    let mut evidence = of(
+        58.0,
+        vec![reading("the model", FlutterSearch::Onset(Box::new(first)))],
+    );
+    evidence.flutter[0].basis = tests(50.0);
+    let kinds = severe(&evidence);
+    assert!(
+        kinds.contains(&DoubtKind::GapInTests {
+            k: 0.5,
+            gap_from_k: 0.4,
+            gap_to_k: 1.1
+        }),
+        "{kinds:?}"
+    );
+    let settled = Verdict::of(&evidence).explanation;
+    assert!(settled.contains("tests at K 0.40–1.10"), "{settled}");
+}
+
+#[test]
 fn an_interval_that_is_not_known_or_too_wide_is_a_doubt() {
     let evidence = of(30.0, vec![found("the model", 36.9, 0.0)]);
     assert_eq!(words(&evidence), "CANNOT BE JUDGED");
@@ -362,10 +387,7 @@ fn growth_where_nothing_was_tested_cannot_be_judged() {
     // nobody looked: as bad
     evidence.growth = None;
     evidence.flutter[0].basis = Basis::Tested {
-        range: ReducedFrequencyRange {
-            min: k(0.3),
-            max: k(2.0),
-        },
+        range: ReducedFrequencyRange::between(k(0.3), k(2.0)),
         reach: Reach {
             from_m_s: 5.0,
             ..Reach::everywhere()
@@ -422,7 +444,11 @@ fn failures_input_and_rotation_are_weighed() {
     assert_eq!(words(&failed(true)), "CANNOT BE JUDGED");
     assert_eq!(words(&failed(false)), "MET");
     let implausible = Evidence {
-        implausible: vec!["section.width_m = 22000: in millimetres?".to_owned()],
+        implausible: vec![Finding::unit(
+            "section.width_m",
+            22e3,
+            "no deck is that wide",
+        )],
         ..clean.clone()
     };
     assert_eq!(words(&implausible), "CANNOT BE JUDGED");

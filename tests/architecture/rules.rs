@@ -30,8 +30,8 @@ pub const ARROWS: &[Row] = &[
     row("section", &["units"]),
     row("aerodynamics", &["units", "section", "state_space"]),
     row("bridge", &["aerodynamics+"]),
-    row("files", &["aerodynamics+", "bridge"]),
-    row("plausibility", &[]),
+    row("plausibility", &["aerodynamics+", "bridge"]),
+    row("files", &["aerodynamics+", "bridge", "plausibility"]),
     row(
         "wind_tunnel",
         &[
@@ -67,7 +67,7 @@ pub const ARROWS: &[Row] = &[
     row("response", &["aeroelastic+"]),
     row("buffeting", &["flutter+", "response+", "signal"]),
     row("live", &["flutter+", "trained_model+"]),
-    row("verdict", &["flutter+"]),
+    row("verdict", &["flutter+", "plausibility"]),
     row(
         "fmu",
         &["flutter+", "response+", "trained_model+", "verdict"],

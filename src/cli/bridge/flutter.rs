@@ -85,7 +85,7 @@ pub(super) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
         summary::leave(&ran, (&study, &results, &verdict), said, &mut out)?;
     }
     let json = serde_json::json!({
-        "bridge": study.file.name, "verdict": verdict, "onsets": results.onsets().collect::<Vec<_>>(), "flutter": results, "scatter": scattered, "notes": study.notes, "failed": failed
+        "bridge": study.file.name, "verdict": verdict, "onsets": results.onsets().collect::<Vec<_>>(), "flutter": results, "scatter": scattered, "notes": study.warnings(), "findings": study.findings, "failed": failed
     });
     Ok(out
         .answer(text, json)?

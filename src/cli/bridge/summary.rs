@@ -5,6 +5,7 @@ use super::super::report::{self, BridgeFacts, ModeFacts, REPORT, SUMMARY, Sectio
 use super::account::beside_the_onset;
 use crate::error::Result;
 use crate::flutter::Onset;
+use crate::plausibility::Finding;
 use crate::section::Dof;
 use crate::study::bridge::{BridgeFlutter, BridgeStudy};
 use crate::verdict::Verdict;
@@ -23,7 +24,8 @@ pub(super) struct BridgeRun {
 pub(super) struct Summary<'a> {
     #[serde(flatten)]
     facts: BridgeFacts,
-    warnings: &'a [String],
+    warnings: Vec<String>,
+    findings: &'a [Finding],
     /// All onsets found, one entry per route.
     onsets: Vec<&'a Onset>,
     /// The full answer.
@@ -55,7 +57,8 @@ pub(super) fn leave<'a>(
             modes: modes(study),
             files: out.targets(),
         },
-        warnings: &study.notes,
+        warnings: study.warnings(),
+        findings: &study.findings,
         onsets: results.onsets().collect(),
         flutter: results,
         failed,

@@ -8,7 +8,7 @@ use super::memory::Memory;
 use super::section::OnsetCard;
 use super::sensitivity::{SectionValues, add, central_difference, parameter_step};
 use super::trust::{MonitoredUnit, is_of_onset, smallest_damping, without_motion};
-use super::unit::{Differentiable, Unit};
+use super::unit::{Differentiable, Prepared};
 use crate::error::Result;
 use crate::fmu::lifecycle::State;
 use crate::fmu::refusal::CallResult;

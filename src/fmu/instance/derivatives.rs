@@ -29,8 +29,9 @@ impl Instance {
             .iter()
             .map(|r| self.response_of(*r))
             .collect::<CallResult<Vec<_>>>()?;
-        self.unit.prepare(&self.resources, &mut self.memory)?;
-        let found = self.unit.output_rates(&mut self.memory, &outputs)?;
+        let (resources, memory) = (&self.resources, &mut self.memory);
+        let unit = self.unit.prepared(resources, memory)?;
+        let found = unit.output_rates(memory, &outputs)?;
         rates.copy_from_slice(&found);
         Ok(())
     }
@@ -56,12 +57,11 @@ impl Instance {
             .iter()
             .map(|r| self.known(*r))
             .collect::<CallResult<Vec<_>>>()?;
-        self.unit.prepare(&self.resources, &mut self.memory)?;
+        let (resources, memory) = (&self.resources, &mut self.memory);
+        let unit = self.unit.prepared(resources, memory)?;
         let mut sums = vec![0.0; unknowns.len()];
         for (known, seed) in knowns.into_iter().zip(seeds) {
-            let column =
-                self.unit
-                    .derivatives(&self.resources, &mut self.memory, known, &unknowns)?;
+            let column = unit.derivatives(resources, memory, known, &unknowns)?;
             for (sum, derivative) in sums.iter_mut().zip(column) {
                 *sum += seed * derivative;
             }

@@ -1,7 +1,10 @@
 //! What is known of a bridge, as evidence for its verdict.
 
 use super::BridgeStudy;
-use super::answers::{BridgeAnswer, BridgeFlutter};
+use super::answers::{BridgeAnswer, BridgeFlutter, coupled};
+use crate::error::Result;
+use crate::flutter::judged_speeds;
+use crate::units::ReducedFrequencyRange;
 use crate::verdict::{
     Basis, DivergenceReading, Evidence, Failure, FlutterReading, MeanRotation, Reach, RequiredSpeed,
 };
@@ -46,23 +49,34 @@ impl BridgeStudy {
                 at_onset_deg,
                 tested_deg: TESTED_ROTATION_DEG,
             }),
+            implausible: self.findings.clone(),
             remarks,
             ..Evidence::default()
         }
     }
 
+    /// The speeds at which every mode is among the tests of every section.
+    fn reach(&self, results: &BridgeFlutter, tested: ReducedFrequencyRange) -> Result<Reach> {
+        let section = coupled(&self.by_model)?;
+        let judged = judged_speeds(&section, &self.search(), Some(tested))?;
+        Ok(Reach::of(judged, &results.curves, self.by_model.width_m()))
+    }
+
     /// By the tables, where there are some, then by the models.
     fn readings(&self, results: &BridgeFlutter) -> Vec<FlutterReading> {
+        let basis = match self.tested_range() {
+            None => Basis::Stated,
+            Some(range) => Basis::Tested {
+                range,
+                reach: self
+                    .reach(results, range)
+                    .unwrap_or_else(|_| Reach::nowhere()),
+            },
+        };
         let reading = |forces: &str, answer: &BridgeAnswer| FlutterReading {
             forces: forces.to_owned(),
             search: answer.search.clone(),
-            basis: match self.tested_range() {
-                None => Basis::Stated,
-                Some(range) => Basis::Tested {
-                    range,
-                    reach: Reach::of(&results.curves, self.by_model.width_m(), range),
-                },
-            },
+            basis: basis.clone(),
         };
         match &results.answers[..] {
             [tables, models] => vec![reading(TABLES, tables), reading(MODELS, models)],

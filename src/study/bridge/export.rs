@@ -72,9 +72,11 @@ impl BridgeStudy {
             .saved
             .clone()
             .ok_or_else(|| Error::Numerical("FMU: the first section has no force model".into()))?;
-        let everywhere = || crate::units::ReducedFrequencyRange {
-            min: crate::units::ReducedFrequency::from_full_width(f64::MIN_POSITIVE),
-            max: crate::units::ReducedFrequency::from_full_width(f64::MAX),
+        let everywhere = || {
+            crate::units::ReducedFrequencyRange::between(
+                crate::units::ReducedFrequency::from_full_width(f64::MIN_POSITIVE),
+                crate::units::ReducedFrequency::from_full_width(f64::MAX),
+            )
         };
         Ok(TrainedModel {
             schema_version: model.schema_version(),
@@ -88,7 +90,7 @@ impl BridgeStudy {
                 licence: section.licence.clone(),
                 method: "see the files of the sections".to_owned(),
                 aerodeck_version: env!("CARGO_PKG_VERSION").to_owned(),
-                notes: self.notes.clone(),
+                notes: self.warnings(),
             },
             experiment: self.experiment(onset_m_s),
             model,
