@@ -40,7 +40,7 @@ pub use bridge_motion::{
 pub use critical_point::{CriticalPoint, OnsetMethod};
 pub use curves::{FlutterCurves, ModeBranch, ModePoint, trace_modes};
 pub use determinant::{determinant_onset, impedance};
-pub(crate) use divergence::static_part;
+pub(crate) use divergence::{AssumedAtRest, static_part};
 pub use divergence::{divergence_by_eigenvalues, divergence_speed};
 pub use instability::{Instability, ModeAtOnset, Participation, classify};
 pub use judged::StableRange;

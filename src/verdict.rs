@@ -20,6 +20,7 @@ mod doubts;
 mod evidence;
 mod outcome;
 mod reach;
+mod searched;
 mod words;
 
 #[cfg(test)]

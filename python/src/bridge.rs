@@ -14,6 +14,7 @@ use aerodeck::fmu::package::{FmiVersion, Label, Runtime, package_bridge, write_a
 use aerodeck::study::bridge::{
     BridgeBuffeting, BridgeExportOptions, BridgeStudy, Scatter, bridge_flutter,
 };
+use aerodeck::verdict::Verdict;
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -137,7 +138,8 @@ impl Bridge {
             "search": answer.search, "motion": answer.motion, "left_out": found.left_out,
             "divergence_m_s": found.divergence_m_s, "mean_rotation_deg": found.mean_rotation_deg, "failed": found.failed,
         });
-        Onset::with_card(&answer.search, method, &card)
+        let verdict = Verdict::of(&self.0.evidence(&found, &found.failed));
+        Onset::with_card(&answer.search, method, &verdict, &card)
     }
 
     /// Follow the modes over wind speed, with the force models.

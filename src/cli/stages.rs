@@ -249,6 +249,7 @@ pub(crate) fn routes_figure(
 pub(crate) fn export(
     (model, known): (&TrainedModel, &KnownUncertainty),
     study: &Study,
+    verdict: &Verdict,
     growing: GrowthPolicy,
     progress: &Progress,
 ) -> Result<Vec<u8>> {
@@ -262,6 +263,7 @@ pub(crate) fn export(
     let export = Export {
         label: label.dated()?,
         bounds: onset_bounds(model, known)?,
+        verdict: Some(verdict.clone()),
         ..growing.into()
     };
     let bytes = package(model, &Runtime::available()?, export).map_err(or_allow_unstable)?;

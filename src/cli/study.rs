@@ -77,7 +77,8 @@ pub(crate) fn run_chain(
     let failed = &mut chain.failed;
     let mut results = stages::flutter_of(&chain.study, &chain.deck, &trained, failed, progress)?;
     let own = chain.own(&trained)?;
-    let fmu = chain.export(own, growing)?;
+    let verdict = chain.verdict(own, &results);
+    let fmu = chain.export(own, &verdict, growing)?;
     let stepped = chain.step(own, fmu, &mut results)?;
     let verdict = chain.verdict(own, &results);
     chain.draw(&trained, &results, &verdict)?;
@@ -146,6 +147,7 @@ impl Chain<'_> {
     fn export(
         &mut self,
         own: Option<&TrainedWithReport>,
+        verdict: &Verdict,
         growing: GrowthPolicy,
     ) -> Result<Option<PathBuf>> {
         let Some(own) = own else {
@@ -154,7 +156,7 @@ impl Chain<'_> {
             return Ok(None);
         };
         let known = (&own.model, &own.uncertainty);
-        let bytes = stages::export(known, &self.study, growing, self.progress);
+        let bytes = stages::export(known, &self.study, verdict, growing, self.progress);
         let Some(bytes) = self.attempt("export", bytes)? else {
             return Ok(None);
         };

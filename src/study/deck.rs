@@ -2,8 +2,6 @@
 
 mod onset;
 
-pub(super) use onset::AssumedAtRest;
-
 use super::Study;
 use crate::aerodynamics::derivatives::notation::Convention;
 use crate::aerodynamics::derivatives::{

@@ -1,15 +1,14 @@
 //! Curves, onsets and divergence of all models of a study, side by side.
 
-use super::deck::AssumedAtRest;
 use super::routes::THEORY;
 use super::{Deck, StageFailure, Study, attempt};
 use crate::aerodynamics::{Realizable, Realization, Transfer};
 use crate::aeroelastic::CoupledSection;
 use crate::error::Result;
 use crate::flutter::{
-    FlutterCurves, FlutterSearch, Onset, OnsetMethod, QuasiSteadyOnset, StableRange, UnstableStart,
-    UnwantedGrowth, determinant_onset, divergence_speed, find_onset, quasi_steady_onset,
-    trace_modes, unwanted_growth,
+    AssumedAtRest, FlutterCurves, FlutterSearch, Onset, OnsetMethod, QuasiSteadyOnset, StableRange,
+    UnstableStart, UnwantedGrowth, determinant_onset, divergence_speed, find_onset,
+    quasi_steady_onset, trace_modes, unwanted_growth,
 };
 use crate::section::Structure;
 use crate::trained_model::TrainedModel;

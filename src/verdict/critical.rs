@@ -101,7 +101,12 @@ impl Critical {
         }
     }
 
-    /// The best estimate and the lower end of what governs, m/s.
+    /// Everything, in rising order of the lower ends.
+    pub fn all(&self) -> impl Iterator<Item = &CriticalSpeed> {
+        self.governs.iter().chain(&self.others)
+    }
+
+    /// The lower end of what governs, m/s.
     pub fn least_m_s(&self) -> Option<f64> {
         self.governs.as_ref().map(CriticalSpeed::least_m_s)
     }

@@ -243,22 +243,24 @@ impl Weighed<'_> {
         found
     }
 
-    fn growth(&self) -> Vec<Doubt> {
-        let bands = self.evidence.growth.iter().flat_map(|g| &g.bands);
-        bands
-            .map(|band| {
-                let k = band.reduced_frequency.full_width();
-                let kind = DoubtKind::GrowthBelowOnset {
-                    from_m_s: band.from_m_s,
-                    to_m_s: band.to_m_s,
-                    k,
-                };
-                let text = format!("The model {}", band.explain());
-                Doubt::new(Severity::Severe, kind, text).settled_by(format!(
-                    "tests at K {k:.2}, or a fit that feeds no energy there"
-                ))
-            })
-            .collect()
+    fn growth(&self) -> Option<Doubt> {
+        let growth = self.evidence.growth.as_ref()?;
+        let bands = growth.bands.iter();
+        let fastest = bands
+            .clone()
+            .max_by(|a, b| a.fastest_growth_per_s.total_cmp(&b.fastest_growth_per_s))?;
+        let k = fastest.reduced_frequency.full_width();
+        let kind = DoubtKind::GrowthBelowOnset {
+            from_m_s: bands
+                .clone()
+                .map(|b| b.from_m_s)
+                .fold(f64::INFINITY, f64::min),
+            to_m_s: bands.map(|b| b.to_m_s).fold(0.0, f64::max),
+            k,
+        };
+        let text = format!("The model {}", growth.explain());
+        let settled = format!("tests at K {k:.2}, or a fit that feeds no energy there");
+        Some(Doubt::new(Severity::Severe, kind, text).settled_by(settled))
     }
 
     fn constraints(&self, first: &FlutterReading) -> Option<Doubt> {

@@ -43,7 +43,7 @@ pub enum Below {
 
 impl Outcome {
     pub(super) fn of(required: RequiredSpeed, critical: &Critical, doubts: &[Doubt]) -> Self {
-        let found = || critical.governs.iter().chain(&critical.others);
+        let found = || critical.all();
         let open = |d: &Doubt| matches!(d.kind, DoubtKind::IntervalUndetermined { .. });
         let undetermined = doubts.iter().any(open);
         // growth that forces make up where nothing was tested, and an onset that the data do not determine, say neither

@@ -178,7 +178,7 @@ fn met(critical: &Critical) -> String {
 }
 
 fn not_met(critical: &Critical, below: Below, required_m_s: f64) -> String {
-    let all = || critical.governs.iter().chain(&critical.others);
+    let all = || critical.all();
     let which = |c: &&CriticalSpeed| match below {
         Below::BestEstimate => c.best_m_s < required_m_s,
         Below::LowerEnd => c.least_m_s() < required_m_s,

@@ -1,13 +1,12 @@
 //! Flutter and divergence of a bridge, with the modes behind them.
 
-use super::super::deck::AssumedAtRest;
 use super::BridgeStudy;
 use crate::aerodynamics::{Lags, RationalModel, Transfer};
 use crate::aeroelastic::CoupledSection;
 use crate::bridge::Bridge;
 use crate::error::Result;
 use crate::flutter::{
-    BridgeMotion, FlutterCurves, FlutterSearch, Onset, OnsetSearch, UnwantedGrowth,
+    AssumedAtRest, BridgeMotion, FlutterCurves, FlutterSearch, Onset, OnsetSearch, UnwantedGrowth,
     divergence_speed, find_onset, motion_at_onset, pk_onset, static_deflection, static_part,
     trace_modes, unwanted_growth,
 };

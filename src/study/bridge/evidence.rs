@@ -19,7 +19,7 @@ const BESIDE: [&str; 4] = ["figures", "fewer modes", "scatter", "FMU"];
 
 impl BridgeStudy {
     /// Everything that was found on the bridge; `failed` are the failures, those of the search among them.
-    pub(crate) fn evidence(&self, results: &BridgeFlutter, failed: &[String]) -> Evidence {
+    pub fn evidence(&self, results: &BridgeFlutter, failed: &[String]) -> Evidence {
         let required = self.file.flutter.required_speed_m_s;
         let mut flutter = self.readings(results);
         // the table is the answer where it is inside its range, the models where it ends before they flutter
