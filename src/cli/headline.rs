@@ -16,7 +16,8 @@ pub(super) fn account(name: &str, verdict: &Verdict, elsewhere: &[String]) -> St
     let mut text = format!("{name}: {}\n\n", verdict.headline);
     let _ = writeln!(text, "Verdict   {}", verdict.explanation);
     for doubt in &verdict.doubts {
-        if elsewhere.contains(&doubt.text) {
+        // what the explanation says already is not said again
+        if elsewhere.contains(&doubt.text) || verdict.explanation.contains(&doubt.text) {
             continue;
         }
         let mark = match doubt.severity {
