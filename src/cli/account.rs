@@ -246,7 +246,7 @@ fn figures(o: &Onset) -> String {
     )
 }
 
-/// Why there is no 95 % interval, or none at all.
+/// What the interval is made of, or why there is no 95 % interval, or none at all.
 fn without_interval(o: &Onset) -> Option<String> {
     let place = format!("{} ({})", o.at.model, o.at.method.name());
     match &o.interval {
@@ -255,7 +255,9 @@ fn without_interval(o: &Onset) -> Option<String> {
             Some(format!("in brackets, no 95 % interval: {place}: {of}\n"))
         }
         OnsetInterval::Undetermined { reason, .. } => Some(format!("{place}: {reason}\n")),
-        OnsetInterval::Known { .. } => None,
+        OnsetInterval::Known { parts, .. } => {
+            Some(format!("standard error: {place}: {}\n", parts.explain()))
+        }
     }
 }
 

@@ -10,9 +10,10 @@ mod scaled_forces;
 mod scatter;
 
 pub use answers::{BridgeAnswer, BridgeFlutter, LeftOut, TableDivergence, bridge_flutter};
-pub use buffeting::{BridgeBuffeting, BridgeRecord, BuffetingBlock};
+pub use buffeting::{BridgeBuffeting, BridgeRecord, BuffetingBlock, ModelsBesideTables};
 pub use export::BridgeExportOptions;
 pub use forces::SectionForces;
+pub(crate) use forces::block_table;
 pub use scatter::{DerivativeScatter, Scatter, ScatteredOnset};
 
 use super::KnownUncertainty;

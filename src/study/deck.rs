@@ -140,6 +140,14 @@ impl Deck {
         }
     }
 
+    /// Name of its table; none for a closed formula.
+    pub(crate) fn table_name(&self) -> Option<&str> {
+        match &self.source {
+            Source::Table(table) => Some(&table.name),
+            Source::FlatPlate => None,
+        }
+    }
+
     /// Name of the deck's own model, searched by the determinant.
     pub(crate) fn own_model_name(&self) -> String {
         match &self.source {

@@ -58,6 +58,10 @@ pub fn train_one(
         });
     }
     let uncertainty = estimate
+        .and_then(|estimate| match deck.table_name() {
+            Some(name) => estimate.leaving_out(name),
+            None => Ok(estimate),
+        })
         .and_then(|estimate| model_uncertainty(study, estimate, &mut report, &search))
         .map(Box::new)
         .map_err(|e| e.to_string());

@@ -335,7 +335,10 @@ impl Campaign {
             half_width_m_s: error.half_width_m_s(),
             degrees_of_freedom: error.degrees_of_freedom,
             derivatives_inside: self.derivatives(&estimate)?,
-            speeds_differ: estimate.speeds.as_ref().is_some_and(|s| s.counted),
+            speeds_differ: estimate
+                .speeds
+                .as_ref()
+                .is_some_and(|s| s.ratio.is_some_and(|r| r > 1.0)),
         }))
     }
 

@@ -7,10 +7,10 @@ use crate::aerodynamics::derivatives::TransferSample;
 use crate::aerodynamics::{FlatPlate, RationalModel};
 use crate::aeroelastic::CoupledSection;
 use crate::files::derivatives::embedded;
-use crate::flutter::{Onset, OnsetSearch, find_onset};
+use crate::flutter::{BetweenSpeeds, Onset, OnsetSearch, find_onset};
 use crate::identification::{
-    DiscreteFit, FeedThrough, Fitted, Form, FrequencyFit, FrequencyWeights, PoleSearch,
-    fit_discrete, fit_table, sample_model,
+    Constraints, DiscreteFit, FeedThrough, Fitted, Form, FrequencyFit, FrequencyWeights,
+    PoleSearch, fit_discrete, fit_table, sample_model,
 };
 use crate::section::{Dof, SectionModel, Structure};
 use crate::trained_model::Model;
@@ -48,6 +48,14 @@ fn two_poles(poles: PoleSearch) -> FrequencyFit {
     }
 }
 
+/// The covariance of the blocks alone, for truths that do not differ between speeds.
+fn by_blocks(mut estimate: CoefficientUncertainty) -> CoefficientUncertainty {
+    let contributions = estimate.design.as_ref().unwrap().contributions();
+    estimate.covariance = &contributions * contributions.transpose();
+    estimate.effects.clear();
+    estimate
+}
+
 fn fitted(samples: &[TransferSample], fit: &FrequencyFit) -> (Model, CoefficientUncertainty) {
     let Fitted { model, report } = fit_table(samples, &Dof::TWO, fit).unwrap();
     let estimate = table_uncertainty(samples, &Dof::TWO, fit, &report).unwrap();
@@ -80,14 +88,17 @@ fn scattered(seed: u64) -> Vec<TransferSample> {
     samples
 }
 
-/// The same tables whose transfer functions differ between the two speeds by 3 % in size and in phase.
+/// The same tables whose transfer functions differ between the two speeds, by 1.5 % in size and in phase: as much against their
+/// noise as those of measured decks.
 fn different(seed: u64) -> Vec<TransferSample> {
     let mut samples = scattered(seed);
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     random.set_stream(7);
     let mut normal = || -> f64 { StandardNormal.sample(&mut random) };
     for speed in [8.17, 4.0] {
-        let factors: Vec<(f64, f64)> = (0..4).map(|_| (0.03 * normal(), 0.03 * normal())).collect();
+        let factors: Vec<(f64, f64)> = (0..4)
+            .map(|_| (0.015 * normal(), 0.015 * normal()))
+            .collect();
         let own = samples
             .iter_mut()
             .filter(|s| s.mean_speed_m_s == Some(speed));
@@ -103,57 +114,116 @@ fn different(seed: u64) -> Vec<TransferSample> {
     samples
 }
 
-/// Intervals hold the truth when speeds differ; those of the blocks alone do not. If 95 % of 200 hold it, fewer than 180 do so
-/// once in 500 times, and all 200 once in 28 000.
+/// Intervals hold the truth when speeds differ, and, wider than they need be, when speeds agree. If 95 % of 200 hold it, fewer
+/// than 180 do so once in 500 times.
 #[test]
 fn intervals_hold_a_truth_that_differs_between_speeds() {
     let fit = two_poles(PoleSearch::fixed(&[0.091, 0.6]));
     let jones = Model::Rational(RationalModel::jones_flat_plate());
     let truth = onset(&jones).at.speed_m_s;
-    let (mut held, mut counted) = (0, 0);
-    for seed in 0..200 {
-        let (model, estimate) = fitted(&different(seed), &fit);
-        let found = onset(&model);
-        let error = onset_error(&estimate, &structure(), &found, None).unwrap();
-        held += usize::from((found.at.speed_m_s - truth).abs() <= error.half_width_m_s());
-        let speeds = estimate.speeds.clone().unwrap();
-        counted += usize::from(speeds.counted);
-        assert!(error.degrees_of_freedom < 12.0, "{error:?}");
-    }
+    let judged = |samples: fn(u64) -> Vec<TransferSample>, count: u64| {
+        let (mut held, mut ratio) = (0, 0.0);
+        for seed in 0..count {
+            let (model, estimate) = fitted(&samples(seed), &fit);
+            let found = onset(&model);
+            let error = onset_error(&estimate, &structure(), &found, None).unwrap();
+            held += usize::from((found.at.speed_m_s - truth).abs() <= error.half_width_m_s());
+            ratio += estimate.speeds.unwrap().ratio.unwrap() / count as f64;
+        }
+        (held, ratio)
+    };
+    let (held, ratio) = judged(different, 200);
+    println!("{held} {ratio}");
     assert!((180..200).contains(&held), "{held} of 200");
-    assert!(counted >= 195, "{counted} of 200");
-    // without scatter the ratio is near one and seldom counted
-    let quiet = (0..60).filter(|seed| {
-        let (_, estimate) = fitted(&scattered(*seed), &fit);
-        estimate.speeds.unwrap().counted
-    });
-    let quiet = quiet.count();
-    assert!(quiet <= 15, "{quiet} of 60");
+    let (held, ratio) = judged(scattered, 60);
+    println!("{held} {ratio}");
+    assert!(held >= 54, "{held} of 60");
+    // the mean of a ratio that is one without scatter, over 60 times 4 ratios of two degrees of freedom
+    assert!((ratio - 1.0).abs() < 0.3, "{ratio}");
 }
 
-/// On every measured deck the joint interval holds the onset of each mean speed alone, and speeds that contradict each other
-/// are named with what to test again.
+/// The stored ratios of the prior are what the embedded decks give. Two decimals are stored.
 #[test]
-fn joint_intervals_of_decks_hold_the_onset_of_each_speed() {
+fn ratios_are_those_of_the_embedded_decks() {
+    for (name, stored) in speed_prior::MEASURED {
+        let table = embedded::deck(name).unwrap();
+        let fit = FrequencyFit {
+            form: Form::default().with_filters(3).unwrap(),
+            constraints: Constraints::Dissipative,
+            ..FrequencyFit::default()
+        };
+        let (_, estimate) = fitted(&table.samples(&Dof::TWO), &fit);
+        let forces = estimate.speeds.unwrap().forces;
+        let found: Vec<f64> = forces
+            .iter()
+            .flat_map(|f| [f.size_ratio.unwrap(), f.phase_ratio.unwrap()])
+            .collect();
+        for (found, stored) in found.iter().zip(stored) {
+            assert!((found - stored).abs() < 0.006, "{name}: {found} {stored}");
+        }
+    }
+}
+
+/// What the prior is worth on decks that it was not made of: every deck is judged by the other four. The joint interval holds
+/// the onset of each mean speed alone, half of them are narrower than 5 % of the onset, and two models of one speed each, which know
+/// the scatter between speeds from the prior alone, differ by what they say: 1.2 standard errors or less, root mean square.
+#[test]
+fn the_prior_of_four_decks_serves_the_fifth() {
+    let structure = structure();
+    let judge = |name: &str, samples: &[TransferSample], fit: &FrequencyFit| {
+        let (model, estimate) = fitted(samples, fit);
+        let tested = estimate.tested_range().unwrap();
+        let estimate = estimate.leaving_out(name).unwrap();
+        let at = onset_within(&model, Some(tested));
+        onset_error(&estimate, &structure, &at, None).unwrap()
+    };
+    let (mut halves, mut squares, mut held, mut all) = (Vec::new(), 0.0, 0, 0);
+    for constraints in [Constraints::None, Constraints::Dissipative] {
+        for name in embedded::names() {
+            let fit = FrequencyFit {
+                constraints,
+                ..FrequencyFit::default()
+            };
+            let table = embedded::deck(name).unwrap();
+            let joint = judge(name, &table.samples(&Dof::TWO), &fit);
+            assert_eq!(joint.between_speeds, Some(BetweenSpeeds::Tests));
+            halves.push(joint.half_width_m_s() / joint.speed_m_s);
+            let alone = [0, 1].map(|group| {
+                let own = table.at_speed_group(group).unwrap();
+                judge(name, &own.samples(&Dof::TWO), &fit)
+            });
+            for own in &alone {
+                assert_eq!(own.between_speeds, Some(BetweenSpeeds::Prior));
+                let off = (own.speed_m_s - joint.speed_m_s).abs();
+                held += usize::from(off <= joint.half_width_m_s());
+                all += 1;
+            }
+            let [a, b] = alone;
+            let error = a.standard_error_m_s.hypot(b.standard_error_m_s);
+            squares += ((a.speed_m_s - b.speed_m_s) / error).powi(2);
+        }
+    }
+    halves.sort_by(f64::total_cmp);
+    let rms = (squares / halves.len() as f64).sqrt();
+    let median = 0.5 * (halves[4] + halves[5]);
+    println!("{held} of {all}, half widths {halves:?}, median {median}, rms {rms}");
+    assert_eq!((held, all), (20, 20));
+    assert!(median < 0.05, "{median}");
+    assert!(rms < 1.2, "{rms}");
+}
+
+/// Mean speeds that contradict each other are named with what to test again.
+#[test]
+fn speeds_that_contradict_each_other_are_named() {
     let mut contradictions = 0;
     for name in embedded::names() {
         let table = embedded::deck(name).unwrap();
         let (model, estimate) = fitted(&table.samples(&Dof::TWO), &FrequencyFit::default());
         let tested = table.tested_range(&Dof::TWO);
         let at = onset_within(&model, Some(tested));
-        let error = onset_error(&estimate, &structure(), &at, None).unwrap();
-        let half = error.half_width_m_s();
         let search = OnsetSearch::default();
         let speeds = speed_onsets(&estimate, &structure(), &at, (&search, tested)).unwrap();
         assert_eq!(speeds.each.len(), 2, "{name}");
-        for speed in &speeds.each {
-            let own = speed.onset.as_ref().unwrap();
-            assert!(
-                (own.speed_m_s - at.at.speed_m_s).abs() <= half,
-                "{name}: {own:?} outside {:.3} ± {half:.3}",
-                at.at.speed_m_s
-            );
-        }
         if let Some(c) = &speeds.contradiction {
             contradictions += 1;
             assert!(
@@ -263,6 +333,7 @@ fn stated_errors_are_the_scatter_of_repeated_tables() {
         for seed in 0..runs {
             let (model, estimate) = fitted(&scattered(seed), &fit);
             let found = onset(&model);
+            let estimate = by_blocks(estimate);
             let error = onset_error(&estimate, &structure(), &found, None).unwrap();
             speeds.push(found.at.speed_m_s);
             stated += error.standard_error_m_s.powi(2) / runs as f64;

@@ -4,7 +4,7 @@ use super::critical::{Critical, contradict};
 use super::doubt::{Doubt, DoubtKind, Severity};
 use super::evidence::{Basis, Evidence, FlutterReading};
 use super::words::{found, k_range, speed};
-use crate::flutter::{FlutterSearch, OnsetInterval};
+use crate::flutter::{BetweenSpeeds, FlutterSearch, OnsetInterval};
 use crate::plausibility;
 
 /// Mean rotation away from the tests from which it is to be known, and from which derivatives are others, deg: decks are
@@ -232,11 +232,18 @@ impl Weighed<'_> {
                 );
             }
         }
-        if self.evidence.test_speeds == Some(1) {
+        // with the scatter that decks show between speeds in the interval, it is known after all
+        let prior =
+            onset.interval.parts().and_then(|p| p.between_speeds) == Some(BetweenSpeeds::Prior);
+        if prior || self.evidence.test_speeds == Some(1) {
+            let (severity, how) = match prior {
+                true => (Severity::Minor, "is taken from other decks"),
+                false => (Severity::Severe, "is not known"),
+            };
             let text =
-                "Tests at one mean wind speed: how results scatter between speeds is not known";
+                format!("Tests at one mean wind speed: how results scatter between speeds {how}");
             found.push(
-                Doubt::new(Severity::Severe, DoubtKind::OneTestSpeed, text)
+                Doubt::new(severity, DoubtKind::OneTestSpeed, text)
                     .settled_by("tests at a second mean wind speed"),
             );
         }

@@ -64,6 +64,6 @@ impl Reach {
         let within = self.lowest.iter().take_while(|(v, _)| *v <= speed_m_s);
         let (_, least) = within.last()?;
         let min = ReducedFrequency::from_full_width(*least);
-        (min < tested.min).then_some(ReducedFrequencyRange::between(min, tested.min))
+        (min < tested.min).then(|| ReducedFrequencyRange::between(min, tested.min))
     }
 }

@@ -2,8 +2,8 @@
 
 use super::*;
 use crate::flutter::{
-    CriticalPoint, FlutterSearch, GrowthBand, Onset, OnsetInterval, OnsetMethod, StableRange,
-    UnstableStart, UnwantedGrowth,
+    BetweenSpeeds, CriticalPoint, ErrorParts, FlutterSearch, GrowthBand, Onset, OnsetInterval,
+    OnsetMethod, StableRange, UnstableStart, UnwantedGrowth,
 };
 use crate::plausibility::Finding;
 use crate::units::{ReducedFrequency, ReducedFrequencyGap, ReducedFrequencyRange};
@@ -41,9 +41,16 @@ fn onset(speed_m_s: f64, half_m_s: f64) -> Onset {
         spurious_speeds_m_s: Vec::new(),
         warnings: Vec::new(),
         interval: match half_m_s > 0.0 {
-            true => OnsetInterval::about(speed_m_s, half_m_s, half_m_s / 2.0, 20.0),
+            true => OnsetInterval::about(speed_m_s, half_m_s, 20.0, parts(half_m_s)),
             false => OnsetInterval::none("no tests"),
         },
+    }
+}
+
+fn parts(half_m_s: f64) -> ErrorParts {
+    ErrorParts {
+        scatter_m_s: half_m_s / 2.0,
+        ..ErrorParts::default()
     }
 }
 
@@ -284,6 +291,17 @@ fn an_interval_that_is_not_known_or_too_wide_is_a_doubt() {
     let mut one = of(30.0, vec![found("the model", 36.9, 0.3)]);
     one.test_speeds = Some(1);
     assert_eq!(severe(&one), [DoubtKind::OneTestSpeed]);
+    // the scatter of other decks in the interval makes it one to be known
+    let mut first = onset(36.9, 0.3);
+    let between = ErrorParts {
+        between_speeds: Some(BetweenSpeeds::Prior),
+        ..parts(0.3)
+    };
+    first.interval = OnsetInterval::about(36.9, 0.3, 20.0, between);
+    one.flutter[0].search = FlutterSearch::Onset(Box::new(first));
+    assert_eq!(words(&one), "MET");
+    assert_eq!(Verdict::of(&one).doubts[0].kind, DoubtKind::OneTestSpeed);
+    one.flutter = vec![found("the model", 36.9, 0.3)];
     one.test_speeds = Some(2);
     assert_eq!(words(&one), "MET");
 }

@@ -12,13 +12,13 @@ use super::files::{
 };
 use super::{account, summary};
 use crate::error::Result;
-use crate::files::derivatives::named_table;
 use crate::flutter::BridgeMotion;
 use crate::report::{
     bridge_curves_figure, bridge_roots_figure, derivatives_figure, flutter_motion_figure,
 };
 use crate::study::bridge::{
-    BridgeFlutter, BridgeStudy, DerivativeScatter, Scatter, ScatteredOnset, bridge_flutter,
+    BridgeFlutter, BridgeStudy, DerivativeScatter, Scatter, ScatteredOnset, block_table,
+    bridge_flutter,
 };
 use crate::study::derivative_lines;
 use crate::verdict::Verdict;
@@ -207,7 +207,7 @@ fn write_derivatives(study: &BridgeStudy, number: usize, out: &mut OutputDir) ->
         return Ok(());
     };
     let table = block.derivatives.as_ref();
-    let table = table.map(|name| named_table(name, &study.file.directory));
+    let table = table.map(|name| block_table(block, name, &study.file.directory));
     let table = table.transpose()?;
     let model = forces.model.as_ref();
     let shown = DerivativesShown {

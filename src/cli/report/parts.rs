@@ -22,8 +22,10 @@ pub(super) fn card(onset: &Onset) -> Vec<(String, String)> {
             high_m_s,
             standard_error_m_s,
             degrees_of_freedom,
+            parts,
         } => format!(
-            "{low_m_s:.2} to {high_m_s:.2} m/s (standard error {standard_error_m_s:.2} m/s, {degrees_of_freedom:.0} {} of freedom)",
+            "{low_m_s:.2} to {high_m_s:.2} m/s (standard error {standard_error_m_s:.2} m/s: {}; {degrees_of_freedom:.0} {} of freedom)",
+            parts.explain(),
             if degrees_of_freedom.round_ties_even() == 1.0 {
                 "degree"
             } else {

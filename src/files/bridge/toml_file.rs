@@ -5,6 +5,7 @@ use super::modal_data::Modes;
 use super::wind_block::WindBlock;
 use super::{Axes, abaqus, embedded, matlab, opensees, single_file, tables, wawi};
 use crate::aerodynamics::derivatives::Interpolation;
+use crate::aerodynamics::derivatives::notation::StatedConvention;
 use crate::aerodynamics::quasi_steady::{Arms, CoefficientsAt};
 use crate::bridge::BridgeMode;
 use crate::error::{Error, Result, non_negative, of_schema, positive};
@@ -143,6 +144,9 @@ pub struct SectionBlock {
     /// Embedded deck or file of a derivative table.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub derivatives: Option<String>,
+    /// Notation, argument and axes of the table, as far as it does not state them itself.
+    #[serde(default, skip_serializing_if = "StatedConvention::is_empty")]
+    pub convention: StatedConvention,
     /// How the table is read between its points.
     #[serde(default)]
     pub interpolation: Interpolation,
