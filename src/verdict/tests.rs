@@ -98,6 +98,7 @@ fn of(required_m_s: f64, flutter: Vec<FlutterReading>) -> Evidence {
             scanned_to_m_s: 100.0,
             bands: Vec::new(),
             instability_from_m_s: None,
+            proved: false,
         }),
         ..Evidence::default()
     }
