@@ -177,7 +177,8 @@ fn usual_highest_m_s(section: &SectionModel) -> f64 {
 /// The next number with two digits.
 fn rounded_up(value: f64) -> f64 {
     let unit = 10f64.powf(value.log10().floor() - 1.0);
-    (value / unit).ceil() * unit
+    // what is a number of two digits but for rounding stays one
+    (value / unit - 1e-9).ceil() * unit
 }
 
 #[cfg(test)]
