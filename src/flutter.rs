@@ -8,6 +8,7 @@ mod bridge_motion;
 mod characteristic;
 mod clusters;
 mod columns;
+mod critical;
 mod critical_point;
 mod curves;
 mod determinant;

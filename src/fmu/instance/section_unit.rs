@@ -147,11 +147,7 @@ impl SectionUnit {
         let section = section::coupled_section(model, table, &self.aerodynamics, values)?;
         let asked = (values, speed_max_m_s);
         if let Some(speed) = section::plainly_stable_to(model, table, &self.aerodynamics, asked) {
-            return Ok(UnwantedGrowth {
-                scanned_to_m_s: speed,
-                instability_from_m_s: None,
-                bands: Vec::new(),
-            });
+            return Ok(UnwantedGrowth::none_up_to(speed));
         }
         section::growth_of(model, &section, speed_max_m_s)
     }
