@@ -15,10 +15,7 @@ const TESTED: (f64, f64) = (0.3, 2.0);
 
 fn tests(to_m_s: f64) -> Basis {
     Basis::Tested {
-        range: ReducedFrequencyRange {
-            min: k(TESTED.0),
-            max: k(TESTED.1),
-        },
+        range: ReducedFrequencyRange::between(k(TESTED.0), k(TESTED.1)),
         reach: Reach {
             to_m_s,
             ..Reach::everywhere()
@@ -39,6 +36,7 @@ fn onset(speed_m_s: f64, half_m_s: f64) -> Onset {
         damping_slope_s_m: None,
         branch: "torsion".to_owned(),
         in_tested_range: Some(true),
+        gap: None,
         spurious_speeds_m_s: Vec::new(),
         warnings: Vec::new(),
         interval: match half_m_s > 0.0 {
@@ -362,10 +360,7 @@ fn growth_where_nothing_was_tested_cannot_be_judged() {
     // nobody looked: as bad
     evidence.growth = None;
     evidence.flutter[0].basis = Basis::Tested {
-        range: ReducedFrequencyRange {
-            min: k(0.3),
-            max: k(2.0),
-        },
+        range: ReducedFrequencyRange::between(k(0.3), k(2.0)),
         reach: Reach {
             from_m_s: 5.0,
             ..Reach::everywhere()
