@@ -5,7 +5,9 @@
 //!
 //! Filters live on modal coordinates, not on strips: the filter states of node `i` are `x_i = Φ_i X` with
 //! `X' = (V/B)(A X + b η)`, exact, modes × filters states for a group and a set of poles instead of nodes × filters × motions.
+//! Groups of one section in different winds share filters (`banks`).
 
+use super::banks::{ModalBank, merged};
 use super::sums::GroupSums;
 use super::{Bridge, StripGroup};
 use crate::aerodynamics::{ContinuousRealization, Realization, Transfer, TransferMatrix};
@@ -117,11 +119,18 @@ impl ModalForces {
             total.e2 += sums.modal(group.width_m, &aero.e2) * (pressure * k * k);
             for chain in section_chains(&aero) {
                 // filters run with the wind of their own group
-                let (a, b) = (&chain.a / k, &chain.b / k);
-                let alike = banks.iter().position(|bank| bank.a == a && bank.b == b);
-                let at = alike.unwrap_or_else(|| {
-                    let outputs = vec![DMatrix::zeros(n, n); b.len()];
-                    banks.push(ModalBank { a, b, outputs });
+                let rate = 1.0 / k;
+                let alike =
+                    |bank: &ModalBank| bank.rate == rate && bank.a == chain.a && bank.b == chain.b;
+                let at = banks.iter().position(alike).unwrap_or_else(|| {
+                    let outputs = vec![DMatrix::zeros(n, n); chain.b.len()];
+                    let (a, b) = (chain.a.clone(), chain.b.clone());
+                    banks.push(ModalBank {
+                        a,
+                        b,
+                        rate,
+                        outputs,
+                    });
                     banks.len() - 1
                 });
                 for (l, output) in banks[at].outputs.iter_mut().enumerate() {
@@ -130,17 +139,9 @@ impl ModalForces {
                 }
             }
         }
-        assemble(&mut total, &banks);
+        assemble(&mut total, &merged(banks));
         Ok(Realization::Continuous(total))
     }
-}
-
-/// Filters of the whole bridge with one set of poles: `L` for every mode.
-struct ModalBank {
-    a: DMatrix<f64>,
-    b: DVector<f64>,
-    /// What filter `l` of mode `m` does to every mode: column `m`.
-    outputs: Vec<DMatrix<f64>>,
 }
 
 /// The filters that one motion of a section drives.
@@ -195,11 +196,11 @@ fn assemble(total: &mut ContinuousRealization, banks: &[ModalBank]) {
             total
                 .a
                 .view_mut((at, at), (filters, filters))
-                .copy_from(&bank.a);
+                .copy_from(&(&bank.a * bank.rate));
             total
                 .b
                 .view_mut((at, mode), (filters, 1))
-                .copy_from(&bank.b);
+                .copy_from(&(&bank.b * bank.rate));
             for (l, output) in bank.outputs.iter().enumerate() {
                 total.c.column_mut(at + l).copy_from(&output.column(mode));
             }

@@ -39,11 +39,21 @@ pub struct Modes {
     pub nodes: Vec<Node>,
     /// Modes; the damping ratio is zero where the file does not state it.
     pub modes: Vec<BridgeMode>,
+    /// Whether the files have the nodes in the opposite order: places along the girder count along up × downwind.
+    pub reversed: bool,
 }
 
 impl ModalData {
-    /// The modes in vertical, lateral and rotation, with tributary lengths by the trapezoidal rule.
-    pub(super) fn in_frame(self, frame: &Frame, source: String) -> Result<Modes> {
+    /// The modes in vertical, lateral and rotation, with tributary lengths by the trapezoidal rule. Nodes that all run against
+    /// up × downwind, since the wind blows from the other side, are taken in the opposite order.
+    pub(super) fn in_frame(mut self, frame: &Frame, source: String) -> Result<Modes> {
+        let mut pairs = self.nodes.windows(2);
+        let reversed = self.nodes.len() > 1
+            && pairs.all(|pair| frame.along(&pair[1].1) < frame.along(&pair[0].1));
+        if reversed {
+            self.nodes.reverse();
+            self.modes.iter_mut().for_each(|m| m.shape.reverse());
+        }
         let along: Vec<f64> = self.nodes.iter().map(|(_, p)| frame.along(p)).collect();
         let lengths = tributary_lengths(&along);
         let nodes = self.nodes.iter().zip(along.iter().zip(lengths));
@@ -66,6 +76,7 @@ impl ModalData {
             source,
             modes: modes.collect(),
             nodes,
+            reversed,
         })
     }
 }
@@ -108,6 +119,7 @@ impl Modes {
             source: self.source.clone(),
             nodes: nodes.collect(),
             modes: modes.collect(),
+            reversed: self.reversed,
         }
     }
 
@@ -116,6 +128,13 @@ impl Modes {
         let greatest =
             |m: &BridgeMode, i: usize| m.shape.iter().map(|s| s[i].abs()).fold(0.0, f64::max);
         let mut hints = Vec::new();
+        if let (true, [first, .., last]) = (self.reversed, &self.nodes[..]) {
+            hints.push(format!(
+                "the nodes are taken in the opposite order, since places along the girder (wind profile, turbulence) count along \
+                 up × downwind: from {} m at node {} to {} m at node {}",
+                first.along_m, first.name, last.along_m, last.name
+            ));
+        }
         let in_degrees = |m: &&BridgeMode| {
             let moved = greatest(m, 0).max(greatest(m, 1));
             greatest(m, 2) > PI && moved <= 2.0
