@@ -216,15 +216,21 @@ impl Transfer for ModalForces {
 
     fn transfer(&self, k: ReducedFrequency) -> Result<TransferMatrix> {
         let n = self.dofs.len();
-        let mut total = TransferMatrix::zeros(n, n);
+        let (mut real, mut imaginary) = (vec![0.0; n * n], vec![0.0; n * n]);
         for (group, sums) in &self.groups {
             let of_group = k.full_width() * self.frequency_ratio(group);
             let g = group
                 .forces
                 .transfer(ReducedFrequency::from_full_width(of_group))?;
-            total += sums.modal(group.width_m, &g) * Complex::from(self.pressure_ratio(group));
+            let pressure = self.pressure_ratio(group);
+            sums.add_modal(group.width_m, &g, pressure, &mut real, &mut imaginary);
         }
-        Ok(total)
+        let parts = real.into_iter().zip(imaginary);
+        Ok(TransferMatrix::from_iterator(
+            n,
+            n,
+            parts.map(|(re, im)| Complex::new(re, im)),
+        ))
     }
 
     fn known_range(&self) -> Option<ReducedFrequencyRange> {
