@@ -108,6 +108,8 @@ pub mod trained_model;
 pub mod uncertainty;
 pub mod units;
 #[cfg(feature = "cli")]
+pub mod verdict;
+#[cfg(feature = "cli")]
 pub mod wind_tunnel;
 
 #[cfg(all(test, feature = "cli"))]

@@ -1,5 +1,6 @@
 //! Results in words and tables, for people.
 
+use super::headline;
 use super::summary::Summary;
 use super::wrapping::beside;
 use crate::error::counted;
@@ -17,18 +18,14 @@ pub(crate) fn chain(
     summary: &Summary,
     (files, verbose): (&str, bool),
 ) -> String {
-    let mut text = format!("{}: {}\n\n", study.name, summary.answer.headline);
+    // what was assumed in reading the deck stands beside the deck
+    let mut text = headline::account(&study.name, &summary.verdict, &deck.warnings());
     let _ = writeln!(
         text,
         "Answer    of the model {}, which the FMU holds; everything on one page: {}",
-        summary.answer.model,
+        summary.model,
         super::report::REPORT
     );
-    // what was assumed in reading the deck stands beside the deck
-    let with_deck = deck.warnings();
-    for limit in summary.limits.iter().filter(|l| !with_deck.contains(l)) {
-        let _ = writeln!(text, "          but: {limit}");
-    }
     let s = &study.section;
     let _ = writeln!(text, "Deck      {}", deck.description());
     text.push_str(&deck_warnings(deck));

@@ -2,6 +2,7 @@
 
 use super::wrapping::wrapped;
 use crate::error::{Error, Result};
+use crate::verdict::Verdict;
 use serde::Serialize;
 
 /// Result of a command.
@@ -10,6 +11,7 @@ pub struct Answer {
     text: String,
     json: serde_json::Value,
     passed: bool,
+    refused: bool,
     verbatim: bool,
 }
 
@@ -24,14 +26,22 @@ impl Answer {
             text,
             json,
             passed: true,
+            refused: false,
             verbatim: false,
         })
     }
 
     /// The same answer of a check that did or did not pass.
     #[must_use]
-    pub(crate) fn with_verdict(mut self, passed: bool) -> Self {
+    pub(crate) fn passed_if(mut self, passed: bool) -> Self {
         self.passed = passed;
+        self
+    }
+
+    /// The same answer to a question that states a required speed, if it does.
+    #[must_use]
+    pub(crate) fn with_outcome_of(mut self, verdict: &Verdict) -> Self {
+        self.refused = verdict.refuses();
         self
     }
 
@@ -53,6 +63,11 @@ impl Answer {
     /// The same as indented JSON.
     pub(crate) fn json(&self) -> String {
         format!("{:#}", self.json)
+    }
+
+    /// Whether a speed is required and not known to be met.
+    pub(crate) fn refused(&self) -> bool {
+        self.refused
     }
 
     /// Whether every check passed.

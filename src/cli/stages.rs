@@ -16,6 +16,7 @@ use crate::study::{
     state_intervals, train_one,
 };
 use crate::trained_model::TrainedModel;
+use crate::verdict::Verdict;
 use crate::wind_tunnel::Record;
 use std::path::{Path, PathBuf};
 
@@ -216,15 +217,15 @@ pub(crate) fn flutter_of(
 pub(crate) fn flutter_figure(
     study: &Study,
     results: &FlutterStudy,
+    verdict: Option<&Verdict>,
     out: &mut OutputDir,
 ) -> Result<()> {
     if results.curves.is_empty() {
         return Err(Error::Numerical("no modes to draw".into()));
     }
-    let required = study.flutter.required_speed_m_s;
     figures::write(FIGURE, out, || {
         let (curves, onsets) = (&results.curves, &results.onsets);
-        vf_vg_figure(curves, onsets, &study.name, required)
+        vf_vg_figure(curves, onsets, &study.name, verdict)
     })
 }
 

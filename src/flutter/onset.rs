@@ -230,7 +230,6 @@ impl Onset {
         }
     }
 
-    /// The onset at speed and frequency with a mode shape; nothing about ranges yet.
     /// The answer in one line: speed, interval, and whether the data reach it, such as
     /// `flutter onset 36.9 m/s, 36.6–37.3, inside the tested range`.
     pub fn headline(&self) -> String {
@@ -240,8 +239,8 @@ impl Onset {
         };
         let spread = matches!(self.interval, OnsetInterval::Spread { .. });
         let interval = match self.interval.ends() {
-            Some((low, high)) if spread => format!(" [{}–{}]", short(low), short(high)),
-            Some((low, high)) => format!(", {}–{}", short(low), short(high)),
+            Some((low, high)) if spread => format!(" [{}–{}]", shown_m_s(low), shown_m_s(high)),
+            Some((low, high)) => format!(", {}–{}", shown_m_s(low), shown_m_s(high)),
             None => ", interval not known".to_owned(),
         };
         let tested = match (self.gap, self.in_tested_range) {
@@ -250,9 +249,10 @@ impl Onset {
             (None, Some(false)) => ", OUTSIDE the tested range".to_owned(),
             (None, None) => String::new(),
         };
-        format!("flutter onset {} m/s{interval}{tested}", short(speed))
+        format!("flutter onset {} m/s{interval}{tested}", shown_m_s(speed))
     }
 
+    /// The onset at speed and frequency with a mode shape; nothing about ranges yet.
     pub(super) fn new(
         model: &str,
         method: OnsetMethod,
@@ -281,7 +281,7 @@ impl Onset {
 }
 
 /// A wind speed for people, m/s: a tenth, below 10 m/s a hundredth, which no measurement surpasses.
-fn short(speed_m_s: f64) -> String {
+pub(crate) fn shown_m_s(speed_m_s: f64) -> String {
     let digits = if speed_m_s.abs() < 10.0 { 2 } else { 1 };
     format!("{speed_m_s:.digits$}")
 }

@@ -11,7 +11,7 @@ mod bridge_derivatives;
 mod bridge_places;
 mod bridge_search;
 mod bridge_unit;
-mod derivatives;
+pub(in crate::fmu) mod derivatives;
 mod force_ahead;
 mod force_derivatives;
 mod force_exchange;
@@ -180,6 +180,10 @@ impl Instance {
     /// When parameters and initial values give no section that can move.
     pub fn exit_initialization(&mut self) -> CallResult<()> {
         self.unit.prepared(&self.resources, &mut self.memory)?;
+        // whatever is read between steps is read without a further look
+        if !self.memory.system.all().iter().all(|x| x.is_finite()) {
+            return Err(sensitivity::overgrown());
+        }
         self.watch();
         self.memory.state = match self.interface {
             Interface::CoSimulation => State::StepComplete,

@@ -2,19 +2,22 @@
 
 mod answers;
 mod buffeting;
+mod evidence;
 mod export;
 mod forces;
 mod interval;
 mod scaled_forces;
 mod scatter;
 
-pub use answers::{BridgeAnswer, BridgeFlutter, LeftOut, bridge_flutter};
-pub use buffeting::{BridgeBuffeting, BridgeRecord, BuffetingBlock};
+pub use answers::{BridgeAnswer, BridgeFlutter, LeftOut, TableDivergence, bridge_flutter};
+pub use buffeting::{BridgeBuffeting, BridgeRecord, BuffetingBlock, ModelsBesideTables};
 pub use export::BridgeExportOptions;
 pub use forces::SectionForces;
+pub(crate) use forces::block_table;
 pub use scatter::{DerivativeScatter, Scatter, ScatteredOnset};
 
 use super::KnownUncertainty;
+use super::speeds::reaching;
 use crate::bridge::{Bridge, Similarity, StripGroup, similarities};
 use crate::error::{Error, Result};
 use crate::files::bridge::{BridgeFile, Modes, SectionBlock};
@@ -116,7 +119,10 @@ impl BridgeStudy {
     /// Where an onset is searched.
     pub fn search(&self) -> OnsetSearch {
         OnsetSearch {
-            speed_max_m_s: self.file.flutter.speed_max_m_s,
+            speed_max_m_s: reaching(
+                self.file.flutter.speed_max_m_s,
+                self.file.flutter.required_speed_m_s,
+            ),
             speeds: self.file.flutter.speeds,
         }
     }

@@ -2,6 +2,8 @@
 
 mod onset;
 
+pub(super) use onset::AssumedAtRest;
+
 use super::Study;
 use crate::aerodynamics::derivatives::notation::Convention;
 use crate::aerodynamics::derivatives::{

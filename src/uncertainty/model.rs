@@ -141,9 +141,14 @@ impl ModelUncertainty {
             ));
         }
         let known = self.onset.as_ref().map(|o| o.degrees_of_freedom);
-        let spread = self.spread_of(structure, onset)?;
-        self.coefficients
-            .interval_knowing(structure, onset, known, spread.as_ref())
+        if self.coefficients.known_bias().is_some() {
+            return self.coefficients.interval_knowing(structure, onset, known);
+        }
+        let error = onset_error(&self.coefficients, structure, onset, known)?;
+        Ok(match self.spread_of(structure, onset)? {
+            Some(spread) => interval_with_forms(&error, &spread),
+            None => error.interval(),
+        })
     }
 
     /// Reads what was saved.
@@ -174,10 +179,20 @@ impl ModelUncertainty {
     /// The onset's interval with its two checks, in words.
     pub(crate) fn explain(&self) -> Option<String> {
         let onset = self.onset.as_ref()?;
-        if let OnsetInterval::Undetermined { reason, .. } = onset.interval() {
-            return Some(format!("onset {reason}"));
-        }
-        let half = onset.half_width_m_s();
+        let stated = match &self.form_spread {
+            Some(spread) => interval_with_forms(onset, spread),
+            None => onset.interval(),
+        };
+        let OnsetInterval::Known {
+            low_m_s,
+            high_m_s,
+            degrees_of_freedom,
+            parts,
+            ..
+        } = stated
+        else {
+            return stated.reason().map(|reason| format!("onset {reason}"));
+        };
         let other = |r: &Option<ResampledOnset>| {
             r.as_ref().map_or_else(
                 || "–".to_owned(),
@@ -187,14 +202,12 @@ impl ModelUncertainty {
         let interval = match self.coefficients.known_bias() {
             Some(bias) => format!("no 95 % interval, since {bias}"),
             None => format!(
-                "95 % interval {:.3} to {:.3} ({:.1} degrees of freedom)",
-                onset.speed_m_s - half,
-                onset.speed_m_s + half,
-                onset.degrees_of_freedom
+                "95 % interval {low_m_s:.3} to {high_m_s:.3} ({degrees_of_freedom:.1} degrees of freedom; {})",
+                parts.explain()
             ),
         };
         Some(format!(
-            "onset {:.3} m/s, {interval}; standard error by sensitivities \
+            "onset {:.3} m/s, {interval}; standard error of the scatter by sensitivities \
              {:.3}, by block bootstrap {}, by drawn coefficients {} m/s",
             onset.speed_m_s,
             onset.standard_error_m_s,

@@ -95,10 +95,13 @@ fn different(seed: u64) -> Vec<TransferSample> {
     // eight samples per test point: real and imaginary part of four transfer functions
     // seen over the reduced frequencies that both speeds have, as they are judged
     let ends = |speed: f64| {
-        let own = samples.iter().filter(move |s| s.mean_speed_m_s == Some(speed));
-        own.map(|s| s.k.full_width()).fold((f64::INFINITY, 0.0_f64), |(low, high), k| {
-            (low.min(k), high.max(k))
-        })
+        let own = samples
+            .iter()
+            .filter(move |s| s.mean_speed_m_s == Some(speed));
+        own.map(|s| s.k.full_width())
+            .fold((f64::INFINITY, 0.0_f64), |(low, high), k| {
+                (low.min(k), high.max(k))
+            })
     };
     let common = ends(4.0).0..=ends(8.17).1;
     let size = |entry: usize| -> f64 {

@@ -4,13 +4,6 @@ use crate::cli::account::interval;
 use crate::flutter::{Onset, OnsetInterval};
 use crate::report::PageFigure;
 
-/// `text` with a capital first letter.
-pub(super) fn capital(text: &str) -> String {
-    let mut characters = text.chars();
-    let first = characters.next().map(|c| c.to_uppercase().to_string());
-    first.unwrap_or_default() + characters.as_str()
-}
-
 /// The ends of an interval that is known.
 pub(super) fn known(interval: &OnsetInterval) -> Option<(f64, f64)> {
     match interval {

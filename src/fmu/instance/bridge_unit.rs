@@ -276,8 +276,7 @@ impl Unit for BridgeUnit {
 
     fn cannot_calculate(&mut self, memory: &mut Memory, why: &Error, notices: &mut Vec<String>) {
         if !self.onset_current {
-            let limit = memory.values[self.places.limit];
-            self.write(OnsetCard::unknown(limit, why), memory, notices);
+            self.write(OnsetCard::unknown(why), memory, notices);
         }
     }
 

@@ -7,6 +7,24 @@ use crate::fmu::lifecycle::State;
 use crate::fmu::refusal::{CallResult, Refusal};
 use crate::fmu::variables::{Causality, Role};
 
+/// Refuses directions that are none.
+pub(in crate::fmu) fn check_seed(seed: &[f64]) -> CallResult<()> {
+    match seed.iter().find(|s| !s.is_finite()) {
+        None => Ok(()),
+        Some(found) => Err(Refusal::error(format!(
+            "seed: expected finite numbers, found {found}"
+        ))),
+    }
+}
+
+/// Refuses derivatives that no number holds.
+pub(in crate::fmu) fn check_derivatives(found: &[f64]) -> CallResult<()> {
+    if found.iter().all(|x| x.is_finite()) {
+        return Ok(());
+    }
+    Err(Refusal::discard("derivative: overflow"))
+}
+
 impl Instance {
     /// First time derivatives of outputs, per second, with the current input rates.
     ///
@@ -57,6 +75,7 @@ impl Instance {
             .iter()
             .map(|r| self.known(*r))
             .collect::<CallResult<Vec<_>>>()?;
+        check_seed(seeds)?;
         let (resources, memory) = (&self.resources, &mut self.memory);
         let unit = self.unit.prepared(resources, memory)?;
         let mut sums = vec![0.0; unknowns.len()];
@@ -66,9 +85,7 @@ impl Instance {
                 *sum += seed * derivative;
             }
         }
-        if !sums.iter().all(|x| x.is_finite()) {
-            return Err(Refusal::discard("directional derivative: overflow"));
-        }
+        check_derivatives(&sums)?;
         results.copy_from_slice(&sums);
         Ok(())
     }

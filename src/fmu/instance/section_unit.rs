@@ -144,11 +144,7 @@ impl SectionUnit {
         let section = section::coupled_section(model, table, &self.aerodynamics, values)?;
         let asked = (values, speed_max_m_s);
         if let Some(speed) = section::plainly_stable_to(model, table, &self.aerodynamics, asked) {
-            return Ok(UnwantedGrowth {
-                scanned_to_m_s: speed,
-                instability_from_m_s: None,
-                bands: Vec::new(),
-            });
+            return Ok(UnwantedGrowth::none_up_to(speed));
         }
         section::growth_of(model, &section, speed_max_m_s)
     }
@@ -181,7 +177,7 @@ impl SectionUnit {
                 let plain = section::plain_onset(model, table, &self.aerodynamics, (values, limit));
                 OnsetCard::search(model, &section, limit, plain)
             }
-            Err(why) => OnsetCard::unknown(limit, &why),
+            Err(why) => OnsetCard::unknown(&why),
         }
     }
 
@@ -280,8 +276,7 @@ impl Unit for SectionUnit {
 
     fn cannot_calculate(&mut self, memory: &mut Memory, why: &Error, notices: &mut Vec<String>) {
         if !self.onset_current {
-            let limit = memory.values[self.places.search_limit];
-            self.write(OnsetCard::unknown(limit, why), memory, notices);
+            self.write(OnsetCard::unknown(why), memory, notices);
         }
     }
 

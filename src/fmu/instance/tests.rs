@@ -1,6 +1,7 @@
 //! Every kind of unit, driven without a shell.
 
 mod after_changes;
+mod unknown;
 
 use super::Instance;
 use crate::bridge::Bridge;

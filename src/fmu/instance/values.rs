@@ -2,6 +2,8 @@
 
 use super::Instance;
 use super::layout::{DataType, Source};
+use super::memory::Memory;
+use super::sensitivity::overgrown;
 use crate::fmu::lifecycle::State;
 use crate::fmu::refusal::{CallResult, Refusal};
 
@@ -72,7 +74,7 @@ impl Instance {
                 let unit = self.unit.prepared(resources, memory)?;
                 // what is part of the state needs no output equation
                 if let Some(entry) = self.layout.held(place) {
-                    return Ok(memory.system.number(entry));
+                    return state_number(memory, entry);
                 }
                 unit.outputs(resources, memory)?;
                 self.outputs_current = true;
@@ -85,7 +87,7 @@ impl Instance {
             Source::State => {
                 self.unit.prepared(resources, memory)?;
                 let entry = self.layout.held(place);
-                return Ok(entry.map_or(0.0, |entry| memory.system.number(entry)));
+                return entry.map_or(Ok(0.0), |entry| state_number(memory, entry));
             }
             Source::Rate => return self.rate_at(place),
             Source::Calculated => match self.unit.prepared(resources, memory) {
@@ -175,6 +177,16 @@ impl Instance {
             let name = &self.table().variables()[place].name;
             Refusal::error(format!("`{name}` is no input"))
         })
+    }
+}
+
+/// A number of the state, which may have overflowed at the release or in the hands of an importer that integrates.
+fn state_number(memory: &Memory, entry: usize) -> CallResult<f64> {
+    let number = memory.system.number(entry);
+    if number.is_finite() {
+        Ok(number)
+    } else {
+        Err(overgrown())
     }
 }
 

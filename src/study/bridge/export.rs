@@ -10,6 +10,7 @@ use crate::fmu::bridge_gusts::{BridgeGusts, TurbulenceOptions};
 use crate::fmu::bridge_options::{BridgeOptions, GroupOptions};
 use crate::fmu::onset_bounds::OnsetBounds;
 use crate::fmu::package::BridgeExport;
+use crate::fmu::variables::Listing;
 use crate::trained_model::{Experiment, Provenance, TrainedModel};
 
 /// Amplitude of the default release where the girder moves most, of half the width.
@@ -62,6 +63,7 @@ impl BridgeStudy {
                 .as_ref()
                 .map(|field| self.turbulence(field))
                 .transpose()?,
+            listing: Listing::All,
         })
     }
 

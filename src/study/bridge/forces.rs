@@ -1,12 +1,12 @@
 //! The self-excited forces of one section of a bridge file.
 
 use super::super::{KnownUncertainty, uncertainty_beside};
-use crate::aerodynamics::derivatives::{Extrapolation, InterpolatedTable};
+use crate::aerodynamics::derivatives::{DerivativeTable, Extrapolation, InterpolatedTable};
 use crate::aerodynamics::quasi_steady::LinearQuasiSteady;
 use crate::aerodynamics::{Lags, RationalModel, Transfer};
 use crate::error::{Error, Result};
 use crate::files::bridge::{SectionBlock, StaticBlock};
-use crate::files::derivatives::named_table;
+use crate::files::derivatives::TableWords;
 use crate::identification::{FeedThrough, Fitted, Form, FrequencyFit, FrequencyWeights, fit_table};
 use crate::trained_model::{Model, TrainedModel};
 use crate::uncertainty::{CoefficientUncertainty, DerivativeInterval, table_uncertainty};
@@ -24,6 +24,8 @@ pub struct SectionForces {
     pub model: Arc<dyn Transfer>,
     /// What it is saved as.
     pub saved: Option<Model>,
+    /// How the model was made, in words.
+    pub method: String,
     /// Where the data come from.
     pub source: String,
     /// Licence of the data.
@@ -75,6 +77,7 @@ impl SectionForces {
                 table,
                 model,
                 saved: Some(trained.model),
+                method: trained.provenance.method,
                 source: trained.provenance.source,
                 licence: trained.provenance.licence,
                 tested: Some(trained.tested_range),
@@ -117,6 +120,7 @@ impl SectionForces {
             table: None,
             model: Arc::new(theory),
             saved: Some(Model::Rational(saved)),
+            method: "quasi-steady theory".to_owned(),
             source: format!("static coefficients of {}", block.name),
             licence: "that of the bridge file".to_owned(),
             tested: None,
@@ -146,6 +150,20 @@ impl SectionForces {
     }
 }
 
+/// The table of a section, in the convention of this project.
+pub(crate) fn block_table(
+    block: &SectionBlock,
+    name: &str,
+    directory: &Path,
+) -> Result<DerivativeTable> {
+    let words = TableWords {
+        name,
+        directory,
+        convention: block.convention,
+    };
+    words.read(&format!("section {}: convention", block.name))
+}
+
 /// The table between its points, and the model fitted to it.
 fn by_table(
     block: &SectionBlock,
@@ -153,7 +171,7 @@ fn by_table(
     directory: &Path,
     fit: bool,
 ) -> Result<(InterpolatedTable, Option<SectionForces>)> {
-    let table = named_table(name, directory)?;
+    let table = block_table(block, name, directory)?;
     let between = InterpolatedTable::by(
         block.interpolation,
         &table,
@@ -187,6 +205,7 @@ fn by_table(
         table: None,
         model: Arc::new(model.clone()),
         saved: Some(model),
+        method: report.method.clone(),
         source: table.header.source.clone(),
         licence: table.header.licence.clone(),
         tested: Some(between.tested_range()),

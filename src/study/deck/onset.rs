@@ -13,14 +13,14 @@ use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 impl Deck {
     /// The forces on a section that is held, `G` at `K → 0` (n×n), and what a table does not say about them and was
     /// assumed.
-    pub(crate) fn static_transfer(&self) -> Result<(TransferMatrix, Option<String>)> {
+    pub(crate) fn static_transfer(&self) -> Result<(TransferMatrix, Option<AssumedAtRest>)> {
         let (model, tested) = self.model()?;
         let Some(range) = tested else {
             let still = ReducedFrequency::from_full_width(0.0);
             return Ok((model.transfer(still)?, None));
         };
         let slopes = static_part(&self.dofs, &model.transfer(range.min)?);
-        Ok((slopes, Some(assumed_at_rest(range.min)?)))
+        Ok((slopes, Some(AssumedAtRest::below(range.min)?)))
     }
 
     /// Onset of the deck itself by the determinant; for a table with the spread between ways of interpolation.
@@ -99,16 +99,37 @@ impl Deck {
     }
 }
 
-/// What stands for steady flow when nothing below `k` was tested, with what it costs on a flat plate.
-fn assumed_at_rest(k: ReducedFrequency) -> Result<String> {
-    let slope = |k| FlatPlate::default().transfer(k).map(|g| g[(1, 1)].re);
-    let still = slope(ReducedFrequency::from_full_width(0.0))?;
-    // ½ρV² times the slope is the stiffness: the speed goes with one over the root
-    let excess = (still / slope(k)?).sqrt() - 1.0;
-    Ok(format!(
-        "K → 0 was not tested: H3*, A3* at the lowest tested K, {:.3}, are used as the static slopes; nothing is used for H4*, \
-         A4*, which are dynamic there (a flat plate's divergence would come out {:.1} % too high)",
-        k.full_width(),
-        100.0 * excess
-    ))
+/// What stands for steady flow when nothing below a reduced frequency was tested, with what it costs on a flat plate.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct AssumedAtRest {
+    /// Lowest tested reduced frequency, whose slopes are used.
+    k: ReducedFrequency,
+    /// How much too high the divergence of a flat plate comes out, relatively.
+    excess: f64,
+}
+
+impl AssumedAtRest {
+    /// With the slopes at `k`.
+    pub(crate) fn below(k: ReducedFrequency) -> Result<Self> {
+        let slope = |k| FlatPlate::default().transfer(k).map(|g| g[(1, 1)].re);
+        let still = slope(ReducedFrequency::from_full_width(0.0))?;
+        // ½ρV² times the slope is the stiffness: the speed goes with one over the root
+        let excess = (still / slope(k)?).sqrt() - 1.0;
+        Ok(Self { k, excess })
+    }
+
+    /// What is left of a divergence speed when the deck behaves as a plate does, m/s.
+    pub(crate) fn lower_m_s(self, speed_m_s: f64) -> f64 {
+        speed_m_s / (1.0 + self.excess.max(0.0))
+    }
+
+    /// In words.
+    pub(crate) fn explain(self) -> String {
+        format!(
+            "K → 0 was not tested: H3*, A3* at the lowest tested K, {:.3}, are used as the static slopes; nothing is used for \
+             H4*, A4*, which are dynamic there (a flat plate's divergence would come out {:.1} % too high)",
+            self.k.full_width(),
+            100.0 * self.excess
+        )
+    }
 }
