@@ -2,8 +2,8 @@
 
 use super::*;
 use crate::flutter::{
-    CriticalPoint, FlutterSearch, GrowthBand, Onset, OnsetInterval, OnsetMethod, StableRange,
-    UnstableStart, UnwantedGrowth,
+    CriticalPoint, ErrorParts, FlutterSearch, GrowthBand, Onset, OnsetInterval, OnsetMethod,
+    StableRange, UnstableStart, UnwantedGrowth,
 };
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 
@@ -15,10 +15,7 @@ const TESTED: (f64, f64) = (0.3, 2.0);
 
 fn tests(to_m_s: f64) -> Basis {
     Basis::Tested {
-        range: ReducedFrequencyRange {
-            min: k(TESTED.0),
-            max: k(TESTED.1),
-        },
+        range: ReducedFrequencyRange::between(k(TESTED.0), k(TESTED.1)),
         reach: Reach {
             to_m_s,
             ..Reach::everywhere()
@@ -39,10 +36,17 @@ fn onset(speed_m_s: f64, half_m_s: f64) -> Onset {
         damping_slope_s_m: None,
         branch: "torsion".to_owned(),
         in_tested_range: Some(true),
+        gap: None,
         spurious_speeds_m_s: Vec::new(),
         warnings: Vec::new(),
         interval: match half_m_s > 0.0 {
-            true => OnsetInterval::about(speed_m_s, half_m_s, half_m_s / 2.0, 20.0),
+            true => {
+                let parts = ErrorParts {
+                    scatter_m_s: half_m_s / 2.0,
+                    ..ErrorParts::default()
+                };
+                OnsetInterval::about(speed_m_s, half_m_s, 20.0, parts)
+            }
             false => OnsetInterval::none("no tests"),
         },
     }
@@ -92,6 +96,7 @@ fn of(required_m_s: f64, flutter: Vec<FlutterReading>) -> Evidence {
             scanned_to_m_s: 100.0,
             bands: Vec::new(),
             instability_from_m_s: None,
+            proved: false,
         }),
         ..Evidence::default()
     }
@@ -362,10 +367,7 @@ fn growth_where_nothing_was_tested_cannot_be_judged() {
     // nobody looked: as bad
     evidence.growth = None;
     evidence.flutter[0].basis = Basis::Tested {
-        range: ReducedFrequencyRange {
-            min: k(0.3),
-            max: k(2.0),
-        },
+        range: ReducedFrequencyRange::between(k(0.3), k(2.0)),
         reach: Reach {
             from_m_s: 5.0,
             ..Reach::everywhere()
