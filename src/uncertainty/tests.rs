@@ -141,7 +141,17 @@ fn different(seed: u64) -> Vec<TransferSample> {
 /// than 180 do so once in 500 times.
 #[test]
 fn intervals_hold_a_truth_that_differs_between_speeds() {
-    let fit = two_poles(PoleSearch::fixed(&[0.091, 0.6]));
+    // −(e₁ + e₁ᵀ) of a flat plate is singular: the truth lies on a constraint, which would bind now and then
+    let fit = FrequencyFit {
+        constraints: Constraints::None,
+        ..two_poles(PoleSearch::fixed(&[0.091, 0.6]))
+    };
+    let constrained = two_poles(PoleSearch::fixed(&[0.091, 0.6]));
+    for seed in 0..200 {
+        if let Err(e) = fit_table(&different(seed), &Dof::TWO, &constrained) {
+            println!("SEED {seed}: {e}");
+        }
+    }
     let jones = Model::Rational(RationalModel::jones_flat_plate());
     let truth = onset(&jones).at.speed_m_s;
     let judged = |samples: fn(u64) -> Vec<TransferSample>, count: u64| {
@@ -165,27 +175,31 @@ fn intervals_hold_a_truth_that_differs_between_speeds() {
     assert!((ratio - 1.0).abs() < 0.3, "{ratio}");
 }
 
-/// The stored ratios of the prior are what the embedded decks give. Two decimals are stored.
+/// The stored ratios of the prior are what the embedded decks give; where they are not, the message is what to store.
 #[test]
 fn ratios_are_those_of_the_embedded_decks() {
-    for (name, stored) in speed_prior::MEASURED {
+    let fit = FrequencyFit {
+        form: Form::default().with_filters(3).unwrap(),
+        constraints: Constraints::Dissipative,
+        ..FrequencyFit::default()
+    };
+    let found = speed_prior::MEASURED.map(|(name, _)| {
         let table = embedded::deck(name).unwrap();
-        let fit = FrequencyFit {
-            form: Form::default().with_filters(3).unwrap(),
-            constraints: Constraints::Dissipative,
-            ..FrequencyFit::default()
-        };
         let (_, estimate) = fitted(&table.samples(&Dof::TWO), &fit);
         let forces = estimate.speeds.unwrap().forces;
-        let found: Vec<f64> = forces
-            .iter()
-            .flat_map(|f| [f.size_ratio.unwrap(), f.phase_ratio.unwrap()])
-            .collect();
-        let all = found.iter().zip(stored);
-        let same = all.map(|(found, stored)| (found - stored).abs() < 0.006);
-        // what is to be stored, where it is not
-        assert!(same.into_iter().all(|x| x), "{name}: {found:.2?}");
-    }
+        let of_force = |i: usize| {
+            [
+                forces[i].size_ratio.unwrap(),
+                forces[i].phase_ratio.unwrap(),
+            ]
+        };
+        let ([a, b], [c, d]) = (of_force(0), of_force(1));
+        [a, b, c, d]
+    });
+    let stored = speed_prior::MEASURED.map(|(_, ratios)| ratios);
+    let mut pairs = found.iter().flatten().zip(stored.iter().flatten());
+    // two decimals are stored
+    assert!(pairs.all(|(a, b)| (a - b).abs() < 0.006), "{found:.2?}");
 }
 
 /// What the prior is worth on decks that it was not made of: every deck is judged by the other four. The joint interval holds
