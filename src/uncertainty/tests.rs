@@ -146,12 +146,6 @@ fn intervals_hold_a_truth_that_differs_between_speeds() {
         constraints: Constraints::None,
         ..two_poles(PoleSearch::fixed(&[0.091, 0.6]))
     };
-    let constrained = two_poles(PoleSearch::fixed(&[0.091, 0.6]));
-    for seed in 0..200 {
-        if let Err(e) = fit_table(&different(seed), &Dof::TWO, &constrained) {
-            println!("SEED {seed}: {e}");
-        }
-    }
     let jones = Model::Rational(RationalModel::jones_flat_plate());
     let truth = onset(&jones).at.speed_m_s;
     let judged = |samples: fn(u64) -> Vec<TransferSample>, count: u64| {
