@@ -11,6 +11,7 @@ use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::flutter::{
     FlutterSearch, OnsetInterval, OnsetSearch, determinant_onset, find_onset, pk_onset,
 };
+use aerodeck::plausibility::of_section;
 use aerodeck::section::SectionModel;
 use aerodeck::study::{FlutterBlock, SpeedRange};
 use aerodeck::units::{ReducedFrequency, ReducedFrequencyRange};
@@ -55,7 +56,7 @@ pub fn flutter(
         let method = method.unwrap_or("eigenvalues");
         let model = model.get();
         let found = py.detach(|| of_model(section, model, &search, method));
-        return Onset::new(found?, method);
+        return Ok(Onset::new(found?, method)?.doubted(&of_section(section)));
     }
     let exact = |range| FixedForces { range, search };
     let method = method.unwrap_or("determinant");
@@ -87,7 +88,9 @@ pub fn flutter(
             found,
         ));
     };
-    Onset::new(found?, method)
+    let of_deck = model.cast::<Derivatives>().ok();
+    let of_deck = of_deck.iter().flat_map(|table| &table.get().1);
+    Ok(Onset::new(found?, method)?.doubted(of_section(section).iter().chain(of_deck)))
 }
 
 /// The answer of forces that hold at every reduced frequency.
