@@ -217,22 +217,35 @@ impl Bridge {
     }
 
     /// The section that a study of two modes would take: the first mode that moves mainly up and down, the first that mainly
-    /// turns and, where `dofs` has it, the first that moves mainly sideways, each with its mass per length `M/∫φ²`.
+    /// turns and, where `dofs` has it, the first that moves mainly sideways, each with its mass per length `M/∫φ²`. A motion without a
+    /// mode of its own takes that of another, with the mass or inertia of a plate of one thickness, `I = mB²/12`.
     ///
     /// # Errors
-    /// [`Error::Input`] when there is no such mode.
+    /// [`Error::Input`] when nothing moves.
     pub fn equivalent_section(&self, dofs: &[Dof]) -> Result<SectionModel> {
-        let support = |dof: Dof| {
+        let own = |dof: Dof| {
             let i = motion_index(dof);
             let mode = (0..self.modes.len()).find(|m| self.main_motion(*m) == i);
-            let mode = mode.map(|m| &self.modes[m]).ok_or_else(|| {
-                let expected = format!("a mode that moves mainly in {} motion", dof.name());
-                Error::input("modes", expected, "none")
-            })?;
+            let mode = mode.map(|m| &self.modes[m])?;
             let nodes = self.nodes.iter().zip(&mode.shape);
             let square: f64 = nodes.map(|(n, s)| n.length_m * s[i] * s[i]).sum();
             let inertia = mode.generalised_mass / square;
-            Ok::<_, Error>((inertia, mode.frequency_hz, mode.damping_ratio))
+            Some((inertia, mode.frequency_hz, mode.damping_ratio))
+        };
+        // mass per moment of inertia of a plate of one thickness
+        let per_inertia = 12.0 / (self.width_m() * self.width_m());
+        let support = |dof: Dof| {
+            let other = |of: Dof| {
+                let (inertia, hertz, damping) = own(of)?;
+                let factor = match (of, dof) {
+                    (Dof::Torsion, Dof::Vertical | Dof::Lateral) => per_inertia,
+                    (Dof::Vertical | Dof::Lateral, Dof::Torsion) => 1.0 / per_inertia,
+                    _ => 1.0,
+                };
+                Some((inertia * factor, hertz, damping))
+            };
+            let found = own(dof).or_else(|| Dof::THREE.into_iter().find_map(other));
+            found.ok_or_else(|| Error::input("modes", "modes that move", "none"))
         };
         let (vertical, torsion) = (support(Dof::Vertical)?, support(Dof::Torsion)?);
         let mut section =

@@ -16,6 +16,7 @@ mod dynamic_stiffness;
 mod elimination;
 mod following;
 mod instability;
+mod judged;
 mod missed;
 mod modal_characteristic;
 mod onset;
@@ -31,7 +32,7 @@ mod sweep;
 mod tracking;
 mod unwanted;
 
-pub use answer::{FlutterSearch, StableRange, UnstableStart};
+pub use answer::{FlutterSearch, UnstableStart};
 pub use bridge_motion::{
     BridgeMotion, FoundOnset, ModeRatio, ModeShare, NearbyOnset, NodeMotion, motion_at_onset,
     static_deflection,
@@ -42,6 +43,7 @@ pub use determinant::{determinant_onset, impedance};
 pub(crate) use divergence::static_part;
 pub use divergence::{divergence_by_eigenvalues, divergence_speed};
 pub use instability::{Instability, ModeAtOnset, Participation, classify};
+pub use judged::StableRange;
 pub use onset::{Onset, OnsetInterval};
 pub use pk::{pk_curves, pk_onset, quasi_pk_mode};
 pub use quasi_steady::quasi_steady_modes;
@@ -49,7 +51,7 @@ pub(crate) use quasi_steady::{QuasiSteadyOnset, quasi_steady_onset};
 pub(crate) use sanity::{SanityLines, sanity_lines};
 pub use scan::{GrowthBand, growth_scan};
 pub use search::{OnsetSearch, find_onset};
-pub(crate) use search::{curve_speeds_m_s, find_onset_of_modes};
+pub(crate) use search::{curve_speeds_m_s, find_onset_of_modes, judged_speeds};
 pub(crate) use sweep::at_samples;
 pub(crate) use sweep::stands_at_samples;
 pub use sweep::{LinearForces, OnsetSweep, SweepOutcome, SweptOnset};

@@ -41,7 +41,7 @@
 //!
 //! # Map
 //!
-//! [`aerodynamics`] holds the force models, [`section`] the structure, [`bridge`] the modes of a whole one, [`aeroelastic`] their coupling, [`flutter`] modes and
+//! [`plausibility`] judges what is given, [`aerodynamics`] holds the force models, [`section`] the structure, [`bridge`] the modes of a whole one, [`aeroelastic`] their coupling, [`flutter`] modes and
 //! onsets, [`response`] the exact steps, [`trained_model`] what is saved, [`fmu`] the co-simulation slave with its
 //! packing and importer. `wind_tunnel` leads from load cells to records, `identification` from records and tables to
 //! derivatives and models, `uncertainty` from their scatter, and that of the section, to intervals, `selection` to one model among many;
@@ -88,8 +88,7 @@ pub mod fmu;
 #[cfg(feature = "cli")]
 pub mod identification;
 pub mod live;
-#[cfg(feature = "cli")]
-mod plausibility;
+pub mod plausibility;
 pub mod prelude;
 #[cfg(feature = "cli")]
 pub mod reference;

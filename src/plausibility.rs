@@ -1,118 +1,124 @@
-//! Plausible limits of the field. A number beyond them is not wrong, but most often it stands in another unit: it is said with its
-//! key and the unit that was likely meant. Nothing is refused or changed here.
+//! Whether what is given looks like what it is said to be: sections, tables, modes, coefficients, records.
+//!
+//! A number beyond the limits of the field is not wrong, but most often it stands in another unit, axis or notation. Nothing is
+//! refused or changed here: every oddity is a [`Finding`] with its place, its reason and what the number would be if it was meant
+//! otherwise. Whoever gives an answer shows the findings of what the answer rests on; none of them may vanish on the way.
 
-use std::f64::consts::TAU;
+#[cfg(feature = "cli")]
+mod bridge;
+mod limits;
+mod section;
+#[cfg(feature = "cli")]
+mod table;
 
-/// What is usual for one kind of number, and the units in which it is often written instead.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Limits {
-    /// Unit that is expected.
-    pub unit: &'static str,
-    /// Least and greatest usual value.
-    pub usual: (f64, f64),
-    /// Other units and their factor to the expected one, the likeliest first.
-    pub meant: &'static [(&'static str, f64)],
+#[cfg(feature = "cli")]
+pub use bridge::{Girder, of_bridge, of_modes};
+pub(crate) use limits::{
+    DECK_WIDTH, MODEL_LENGTH, MODEL_WIDTH, MOTION_FREQUENCY, SAMPLING, WIND_SPEED, beyond,
+    ratio_hint,
+};
+pub(crate) use section::WIDEST_MODEL_M;
+pub use section::of_section;
+#[cfg(feature = "cli")]
+pub use table::of_table;
+
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// Something given that is possible but implausible.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Finding {
+    /// Key, mode, run or column: `section.width_m`, `mode 3`.
+    pub place: String,
+    /// The number found there; `None` where several are meant.
+    pub value: Option<f64>,
+    /// What was probably mistaken.
+    pub kind: Kind,
+    /// How much it weighs.
+    pub severity: Severity,
+    /// Why it is odd.
+    pub text: String,
+    /// What it would be if it was meant otherwise: `in rad/s it would be 0.13 Hz`.
+    pub otherwise: Option<String>,
 }
 
-const LENGTHS: &[(&str, f64)] = &[("mm", 1e-3), ("cm", 1e-2), ("m", 1e3)];
+/// What was probably mistaken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Kind {
+    /// The unit of a number, or a factor as between semi-chord and width.
+    Unit,
+    /// Signs, notation or argument of a table.
+    Convention,
+    /// Directions of a finite-element model.
+    Axes,
+    /// The same thing given twice.
+    Duplicate,
+    /// Two statements that cannot both be true.
+    Contradiction,
+}
 
-/// Width or depth of a section model, m.
-pub(crate) const MODEL_WIDTH: Limits = Limits {
-    unit: "m",
-    usual: (0.02, 5.0),
-    meant: LENGTHS,
-};
-/// Length of a section model, and places on its rig, m.
-pub(crate) const MODEL_LENGTH: Limits = Limits {
-    unit: "m",
-    usual: (0.05, 20.0),
-    meant: LENGTHS,
-};
-/// Width of a deck, model or bridge, m.
-pub(crate) const DECK_WIDTH: Limits = Limits {
-    unit: "m",
-    usual: (0.02, 100.0),
-    meant: LENGTHS,
-};
-/// Mean wind speed, m/s.
-pub(crate) const WIND_SPEED: Limits = Limits {
-    unit: "m/s",
-    usual: (0.2, 100.0),
-    meant: &[("km/h", 1.0 / 3.6), ("mm/s", 1e-3), ("cm/s", 1e-2)],
-};
-/// Frequency of a forced motion, Hz.
-pub(crate) const MOTION_FREQUENCY: Limits = Limits {
-    unit: "Hz",
-    usual: (0.01, 20.0),
-    meant: &[("rad/s", 1.0 / TAU), ("mHz", 1e-3)],
-};
-/// Sampling frequency, Hz.
-pub(crate) const SAMPLING: Limits = Limits {
-    unit: "Hz",
-    usual: (5.0, 50_000.0),
-    meant: &[("kHz", 1e3), ("mHz", 1e-3)],
-};
+/// How much a finding weighs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Severity {
+    /// Rare, or on the safe side: worth a look.
+    Note,
+    /// An answer that rests on it cannot be relied on before it is cleared.
+    Doubt,
+}
 
-/// What to say of a value beyond its limits; `None` for one within them.
-pub(crate) fn hint(key: &str, value: f64, limits: &Limits) -> Option<String> {
-    let (low, high) = limits.usual;
-    let is_usual = |x: f64| (low..=high).contains(&x);
-    if is_usual(value) {
-        return None;
+impl Finding {
+    /// A doubt about what stands at `place`.
+    pub(crate) fn doubt(kind: Kind, place: impl Into<String>, text: impl Into<String>) -> Self {
+        Self {
+            place: place.into(),
+            value: None,
+            kind,
+            severity: Severity::Doubt,
+            text: text.into(),
+            otherwise: None,
+        }
     }
-    let unit = limits.unit;
-    let meant = limits.meant.iter().find(|(_, f)| is_usual(f * value));
-    let instead = meant.map_or_else(String::new, |(name, factor)| {
-        format!(
-            "; was {value} {name} meant, which is {:.4} {unit}?",
-            factor * value
-        )
-    });
-    Some(format!(
-        "{key} = {value} {unit} is beyond what is usual ({low} to {high} {unit}){instead}"
-    ))
-}
 
-/// What the ratio of a stated to a measured value suggests, as the end of a sentence; empty when nothing.
-pub(crate) fn ratio_hint(ratio: f64) -> &'static str {
-    const KNOWN: [(f64, &str); 8] = [
-        (10.0, " (ten times that: a decimal place?)"),
-        (0.1, " (a tenth of that: a decimal place?)"),
-        (3.6, " (3.6 times that: km/h for m/s?)"),
-        (1.0 / 3.6, " (3.6 times less: m/s for km/h?)"),
-        (1e3, " (1000 times that: a unit?)"),
-        (1e-3, " (1000 times less: a unit?)"),
-        (TAU, " (2\u{3c0} times that: rad/s for Hz?)"),
-        (1.0 / TAU, " (2\u{3c0} times less: Hz for rad/s?)"),
-    ];
-    // a mean speed is known to some per cent
-    let near = |known: f64| (ratio / known - 1.0).abs() < 0.05;
-    KNOWN
-        .iter()
-        .find(|(known, _)| near(*known))
-        .map_or("", |(_, words)| *words)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_likely_unit_is_named() {
-        let said = |key, x, limits| hint(key, x, &limits).unwrap();
-        assert_eq!(
-            said("rig.model_width_m", 502.3, MODEL_WIDTH),
-            "rig.model_width_m = 502.3 m is beyond what is usual (0.02 to 5 m); was 502.3 mm meant, which is 0.5023 m?"
-        );
-        assert!(said("rig.model_length_m", 2680.0, MODEL_LENGTH).contains("2680 mm meant"));
-        assert!(
-            said("tunnel.frequencies_hz", 31.4, MOTION_FREQUENCY)
-                .contains("31.4 rad/s meant, which is 4.9975 Hz")
-        );
-        assert!(hint("b", 0.5, &MODEL_WIDTH).is_none());
-        assert!(hint("b", 31.0, &DECK_WIDTH).is_none());
-        assert!(said("b", f64::NAN, MODEL_WIDTH).ends_with("(0.02 to 5 m)"));
-        assert!(ratio_hint(10.1).contains("decimal"));
-        assert_eq!(ratio_hint(1.3), "");
+    /// A doubt about the unit of a number.
+    pub(crate) fn unit(place: impl Into<String>, value: f64, text: impl Into<String>) -> Self {
+        Self {
+            value: Some(value),
+            ..Self::doubt(Kind::Unit, place, text)
+        }
     }
+
+    /// The same with what it would be otherwise.
+    #[must_use]
+    pub(crate) fn otherwise(mut self, meant: impl Into<Option<String>>) -> Self {
+        self.otherwise = meant.into();
+        self
+    }
+
+    /// The same as no more than a note.
+    #[must_use]
+    pub(crate) fn into_note(mut self) -> Self {
+        self.severity = Severity::Note;
+        self
+    }
+}
+
+impl fmt::Display for Finding {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.place)?;
+        if let Some(value) = self.value {
+            write!(f, " = {value}")?;
+        }
+        write!(f, ": {}", self.text)?;
+        if let Some(otherwise) = &self.otherwise {
+            write!(f, "; {otherwise}")?;
+        }
+        Ok(())
+    }
+}
+
+/// The findings as sentences.
+pub fn sentences(findings: &[Finding]) -> Vec<String> {
+    findings.iter().map(ToString::to_string).collect()
 }

@@ -29,7 +29,7 @@ pub(crate) use intervals::{
 };
 pub use models::{TrainedWithReport, train_one};
 pub use onsets::{Deviation, Divergence, FlutterStudy, ModelGrowth, OnsetSummary, flutter_study};
-pub(crate) use plausibility::{section_warnings, study_warnings};
+pub(crate) use plausibility::study_findings;
 pub(crate) use processed::{processed_study_text, read_section};
 pub(crate) use reference_lines::derivative_lines;
 pub use routes::low_frequency_limit;

@@ -281,10 +281,10 @@ mod tests {
             name: "flat plate".into(),
             section: SectionModel::table_4_1(),
             model: Model::Rational(RationalModel::jones_flat_plate()),
-            tested_range: ReducedFrequencyRange {
-                min: K::from_full_width(0.07),
-                max: K::from_full_width(1.5),
-            },
+            tested_range: ReducedFrequencyRange::between(
+                K::from_full_width(0.07),
+                K::from_full_width(1.5),
+            ),
             provenance: Provenance {
                 source: "R. T. Jones".into(),
                 licence: "public".into(),

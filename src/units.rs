@@ -4,6 +4,11 @@
 //! `K = ωB/V`, `k = ωb/V = K/2` (semi-chord), `V̂ = V/(ωB) = 1/K` and `V* = V/(fB) = 2π/K`.
 //! They are made and read here by name, so that no bare number has to be guessed.
 
+mod range;
+
+pub(crate) use range::LowerEnd;
+pub use range::{ReducedFrequencyGap, ReducedFrequencyRange};
+
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
@@ -95,31 +100,6 @@ impl From<ReducedFrequency> for ReducedVelocity {
 impl From<ReducedVelocity> for ReducedFrequency {
     fn from(v: ReducedVelocity) -> Self {
         Self(TAU / v.0)
-    }
-}
-
-/// A closed range of reduced frequencies, e.g. the one in which a model was tested.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct ReducedFrequencyRange {
-    /// Lowest `K`.
-    pub min: ReducedFrequency,
-    /// Highest `K`.
-    pub max: ReducedFrequency,
-}
-
-impl ReducedFrequencyRange {
-    /// The smallest range holding all of `values`; `None` when there are none.
-    pub(crate) fn spanning(values: impl IntoIterator<Item = ReducedFrequency>) -> Option<Self> {
-        values.into_iter().fold(None, |range: Option<Self>, k| {
-            Some(range.map_or(Self { min: k, max: k }, |r| Self {
-                min: if k < r.min { k } else { r.min },
-                max: if k > r.max { k } else { r.max },
-            }))
-        })
-    }
-    /// Whether `k` lies inside, ends included.
-    pub fn contains(&self, k: ReducedFrequency) -> bool {
-        self.min <= k && k <= self.max
     }
 }
 

@@ -94,7 +94,7 @@ impl Bridge {
     /// What a reader should know: hints about units, simplifications.
     #[getter]
     fn notes(&self) -> Vec<String> {
-        self.0.notes.clone()
+        self.0.warnings()
     }
 
     /// Find the flutter onset.

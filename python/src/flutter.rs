@@ -72,10 +72,7 @@ pub fn flutter(
         .is_ok_and(|name| name == "flat plate")
     {
         let k = ReducedFrequency::from_full_width;
-        let range = ReducedFrequencyRange {
-            min: k(PLATE_K.0),
-            max: k(PLATE_K.1),
-        };
+        let range = ReducedFrequencyRange::between(k(PLATE_K.0), k(PLATE_K.1));
         let found =
             py.detach(|| exact(range).find("flat plate", section, &FlatPlate::default(), method));
         found.map(exactly)

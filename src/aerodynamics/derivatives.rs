@@ -21,8 +21,6 @@ mod interpolation;
 pub(crate) mod missing;
 #[cfg(feature = "cli")]
 pub mod notation;
-#[cfg(feature = "cli")]
-mod plausibility;
 pub(crate) mod table;
 
 pub use derivative::{Derivative, Part};

@@ -75,15 +75,10 @@ impl ModalForces {
         of: impl Fn(&StripGroup) -> Option<ReducedFrequencyRange>,
     ) -> Option<ReducedFrequencyRange> {
         let ranges = self.groups.iter().filter_map(|(group, _)| {
-            let ratio = self.frequency_ratio(group);
-            let of_bridge = |k: ReducedFrequency| k.full_width() / ratio;
-            of(group).map(|r| (of_bridge(r.min), of_bridge(r.max)))
+            let to_bridge = self.frequency_ratio(group).recip();
+            of(group).map(|range| range.scaled(to_bridge))
         });
-        let common = ranges.reduce(|a, b| (a.0.max(b.0), a.1.min(b.1)))?;
-        Some(ReducedFrequencyRange {
-            min: ReducedFrequency::from_full_width(common.0),
-            max: ReducedFrequency::from_full_width(common.1),
-        })
+        ranges.reduce(ReducedFrequencyRange::intersection)
     }
 
     /// Filters and feed-through on the modal coordinates.

@@ -1,8 +1,9 @@
 //! Arguments that several commands share.
 
 use crate::error::{Error, Result};
+use crate::plausibility::sentences;
 use crate::section::Dof;
-use crate::study::{Study, study_warnings};
+use crate::study::{Study, study_findings};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use serde::de::value::Error as NotOne;
 use serde::de::{DeserializeOwned, IntoDeserializer};
@@ -75,7 +76,7 @@ impl StudyArgs {
         let directory = self.study.parent().unwrap_or(Path::new(""));
         let study = Study::from_toml(&text, directory.to_path_buf());
         let study = study.map_err(|e| e.in_file(&self.study))?;
-        warn(&self.study, &study_warnings(&study));
+        warn(&self.study, &sentences(&study_findings(&study)));
         Ok((study, text))
     }
 

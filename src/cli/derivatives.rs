@@ -13,6 +13,7 @@ use crate::files::derivatives::{
     ReadOptions, TableInConvention, embedded, is_table_file, read_table_with, workbook_bytes_in,
     write_csv_in,
 };
+use crate::plausibility::{of_table, sentences};
 use crate::report::{PNG_SCALE, axes_sketch};
 use crate::signal::extremes;
 use clap::Subcommand;
@@ -177,7 +178,7 @@ fn show(args: &ShowArgs) -> Result<Answer> {
         .notes
         .iter()
         .cloned()
-        .chain(table.hints(&from))
+        .chain(sentences(&of_table(&table, &from)))
         .collect();
     for warning in &warnings {
         let _ = writeln!(text, "  warning: {warning}");

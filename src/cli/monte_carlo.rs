@@ -120,7 +120,7 @@ fn design(r: &MonteCarloResult) -> Vec<String> {
     )];
     if d.undecided > 0 {
         lines.push(format!(
-            "          {} more can be judged only above {:.3} m/s, where they already grow: they count in the probability and in its upper limit",
+            "          {} more cannot be judged at {:.3} m/s, which the tests do not reach or reach only above: they count in the probability and in its upper limit",
             d.undecided, d.speed_m_s
         ));
     }
@@ -133,6 +133,12 @@ fn warnings(r: &MonteCarloResult) -> Vec<String> {
         lines.push(format!(
             "warning: outside the tested range of the model: {}",
             counted(r.outside_tested_range, "onset")
+        ));
+    }
+    if let Some(lowest) = r.judged_up_to_m_s {
+        lines.push(format!(
+            "warning: no flutter, but judged only up to {lowest:.3} m/s or somewhat more, where a mode leaves the tested range of the model: {}",
+            counted(r.not_judged, "sample")
         ));
     }
     if r.with_spurious_crossings > 0 {

@@ -11,9 +11,10 @@ use super::{account, evidence, headline, measured_forces, select, stages};
 use crate::error::{Error, Result};
 use crate::flutter::{FlutterSearch, OnsetMethod};
 use crate::fmu::package::GrowthPolicy;
+use crate::plausibility::sentences;
 use crate::study::{
     Deck, FITS, FlutterStudy, RecordSet, StageFailure, SteppedOnset, Study, TrainedWithReport,
-    attempt, interval_of, stepped_onset, study_warnings,
+    attempt, interval_of, stepped_onset, study_findings,
 };
 use std::path::PathBuf;
 
@@ -238,15 +239,18 @@ impl Chain<'_> {
         let (study, deck) = (&self.study, &self.deck);
         let name = &study.exported()?.name;
         let failed = std::mem::take(&mut self.failed);
+        let of_study = study_findings(study);
+        let limits = headline::limits(deck, &results, name, &failed);
         Ok(Summary {
             answer: headline::answer(study, &results, name),
-            limits: headline::limits(deck, &results, name, &failed),
+            limits: [limits, sentences(&of_study)].concat(),
             comparisons: headline::comparisons(&results, stepped.as_ref(), name),
             study_file,
             generator: format!("aerodeck {}", env!("CARGO_PKG_VERSION")),
             study: study.name.clone(),
             deck: deck.description(),
-            warnings: [deck.warnings(), study_warnings(study)].concat(),
+            warnings: [deck.warnings(), sentences(&of_study)].concat(),
+            findings: [deck.findings(), &of_study[..]].concat(),
             licence: deck.licence(),
             speeds: study.speeds(),
             onsets: results.onsets,

@@ -3,6 +3,7 @@
 use super::report::AnswerView;
 use crate::flutter::{Onset, UnstableStart};
 use crate::identification::FitReport;
+use crate::plausibility::Finding;
 use crate::study::{
     Deviation, Divergence, KnownUncertainty, ModelGrowth, OnsetSummary, SpeedRange, StageFailure,
     SteppedOnset, TrainedWithReport,
@@ -31,6 +32,8 @@ pub(crate) struct Summary {
     pub licence: String,
     /// What was assumed in reading the deck, what looks wrong in it, and values of the study that look implausible.
     pub warnings: Vec<String>,
+    /// The implausible ones among these, each with its place, value and reason.
+    pub findings: Vec<Finding>,
     /// Wind speeds of curves and searches.
     pub speeds: SpeedRange,
     /// All onsets found, one entry per model and method.

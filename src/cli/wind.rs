@@ -3,7 +3,8 @@
 use super::common::{folder_of, warn};
 use super::output::OutputDir;
 use crate::error::Result;
-use crate::study::{WindStudy, example_wind_study_text, section_warnings};
+use crate::plausibility::{of_section, sentences};
+use crate::study::{WindStudy, example_wind_study_text};
 use std::path::{Path, PathBuf};
 
 /// Name under which the example is left with the user.
@@ -37,7 +38,7 @@ impl WindArgs {
         };
         let study = WindStudy::read(file)?;
         let section = study.section.as_ref();
-        warn(file, &section.map_or_else(Vec::new, section_warnings));
+        warn(file, &sentences(&section.map_or_else(Vec::new, of_section)));
         let directory = self.out.as_deref().unwrap_or(folder_of(file));
         Ok((study, OutputDir::new(directory)?))
     }

@@ -1,6 +1,7 @@
 //! What a search for flutter answers: an onset, growth from the lowest speed that could be judged, or none.
 
 use super::critical_point::{CriticalPoint, OnsetMethod};
+use super::judged::{RangePassages, StableRange};
 use super::onset::Onset;
 use crate::section::Structure;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
@@ -41,68 +42,6 @@ pub struct UnstableStart {
     pub warnings: Vec<String>,
     /// The first onset above that, where all modes that grew are damped again.
     pub onset_above: Option<Box<Onset>>,
-}
-
-/// Speeds between which every mode was looked at and none grows.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct StableRange {
-    /// Lowest speed at which all modes could be judged, m/s; 0 from still air.
-    pub from_m_s: f64,
-    /// Highest speed at which all modes could be judged, m/s.
-    pub to_m_s: f64,
-    /// Why nothing is known outside, where a speed that was asked for is.
-    pub not_judged: Option<String>,
-}
-
-impl StableRange {
-    /// Every speed from still air to this one, m/s.
-    pub fn up_to(to_m_s: f64) -> Self {
-        Self {
-            from_m_s: 0.0,
-            to_m_s,
-            not_judged: None,
-        }
-    }
-}
-
-/// Where modes come into the range of reduced frequencies that can be judged, and where they leave it.
-#[derive(Debug, Default)]
-pub(super) struct RangePassages {
-    /// Speed, m/s, and branch.
-    pub(super) entries: Vec<(f64, String)>,
-    /// The same at the other end.
-    pub(super) exits: Vec<(f64, String)>,
-}
-
-impl RangePassages {
-    /// The speeds up to `highest_m_s` at which every mode was judged.
-    pub(super) fn judged(&self, highest_m_s: f64) -> StableRange {
-        let last = self.entries.iter().max_by(|a, b| a.0.total_cmp(&b.0));
-        let first = self.exits.iter().min_by(|a, b| a.0.total_cmp(&b.0));
-        let first = first.filter(|(speed, _)| *speed < highest_m_s);
-        let mut why: Vec<String> = last
-            .iter()
-            .map(|(speed, branch)| {
-                format!("the {branch} branch can be judged from {speed:.3} m/s on")
-            })
-            .collect();
-        why.extend(first.iter().map(|(speed, branch)| {
-            format!("the {branch} branch can be judged up to {speed:.3} m/s")
-        }));
-        StableRange {
-            from_m_s: last.map_or(0.0, |l| l.0),
-            to_m_s: first.map_or(highest_m_s, |f| f.0),
-            not_judged: (!why.is_empty()).then(|| why.join(", ")),
-        }
-    }
-}
-
-/// Why nothing is known below the speed at which a mode comes to the end `limit` of the range that can be judged.
-pub(super) fn entry_reason(limit: ReducedFrequency) -> String {
-    format!(
-        "there its motion enters the range that can be judged, which ends at K {:.4}",
-        limit.full_width()
-    )
 }
 
 impl FlutterSearch {
@@ -188,27 +127,6 @@ impl UnstableStart {
     }
 }
 
-impl StableRange {
-    /// The answer in words.
-    pub(crate) fn explain(&self) -> String {
-        if self.from_m_s > self.to_m_s {
-            let why = self
-                .not_judged
-                .as_deref()
-                .unwrap_or("no speed was looked at");
-            return format!("not judged: {why}");
-        }
-        let mut text = format!("no flutter up to {:.3} m/s", self.to_m_s);
-        if self.from_m_s > 0.0 {
-            text.push_str(&format!(", judged from {:.3} m/s", self.from_m_s));
-        }
-        if let Some(why) = &self.not_judged {
-            text.push_str(&format!(" ({why})"));
-        }
-        text
-    }
-}
-
 /// Everything that a search came across.
 #[derive(Debug)]
 pub(super) struct Findings {
@@ -218,14 +136,18 @@ pub(super) struct Findings {
     pub(super) starts: Vec<UnstableStart>,
     /// Speeds, m/s, at which a mode that grew is damped again, and its branch.
     pub(super) recoveries: Vec<(f64, String)>,
-    /// The speeds that were judged.
-    pub(super) judged: StableRange,
+    /// The speeds that were looked at.
+    pub(super) looked_at: StableRange,
+    /// Highest speed to which modes could be followed, m/s.
+    pub(super) followed_to_m_s: f64,
+    /// Where modes come into what can be judged, and where they leave it.
+    pub(super) reach: RangePassages,
     /// What a reader of an onset must know.
     pub(super) warnings: Vec<String>,
 }
 
-/// Picks the answer: the lowest crossing inside the tested range, or growth where a mode enters it if that is lower;
-/// crossings below are named as suspicious. Without either, the lowest outside, with a warning.
+/// Picks the answer: the lowest crossing between the lowest and the highest tested `K`, be it in a gap, or growth where a mode
+/// enters them if that is lower; crossings below are named as suspicious. Without either, the lowest outside, with a warning.
 pub(super) fn choose(mut found: Findings, tested: Option<ReducedFrequencyRange>) -> FlutterSearch {
     found
         .crossings
@@ -233,16 +155,18 @@ pub(super) fn choose(mut found: Findings, tested: Option<ReducedFrequencyRange>)
     found
         .starts
         .sort_by(|a, b| a.at.speed_m_s.total_cmp(&b.at.speed_m_s));
-    let inside = |k: ReducedFrequency| tested.map(|range| range.contains(k));
     for onset in &mut found.crossings {
-        onset.in_tested_range = inside(onset.at.reduced_frequency);
+        let k = onset.at.reduced_frequency;
+        onset.in_tested_range = tested.map(|range| range.contains(k));
+        onset.gap = tested.and_then(|range| range.gap_at(k));
     }
+    let spanned = |at: &CriticalPoint| tested.is_none_or(|r| r.spans(at.reduced_frequency));
     let (crossings, starts) = (&found.crossings, &found.starts);
-    let onset = crossings
+    let onset = crossings.iter().position(|o| spanned(&o.at));
+    let start = starts
         .iter()
-        .position(|o| o.in_tested_range != Some(false));
-    let start = starts.iter().position(|s| s.in_tested_range != Some(false));
-    // what lies outside the tested range is an answer only where there is none inside
+        .position(|s| s.in_tested_range == Some(true) || spanned(&s.at));
+    // what lies outside all that was tested is an answer only where there is none inside
     let (onset, start) = match (onset, start) {
         (None, None) => (
             (!crossings.is_empty()).then_some(0),
@@ -251,23 +175,32 @@ pub(super) fn choose(mut found: Findings, tested: Option<ReducedFrequencyRange>)
         trusted => trusted,
     };
     match (onset, start) {
-        (Some(o), Some(s)) if starts[s].at.speed_m_s <= crossings[o].at.speed_m_s => found.start(s),
-        (Some(o), _) => found.onset(o),
-        (None, Some(s)) => found.start(s),
-        (None, None) => FlutterSearch::StableUpTo(found.judged),
+        (Some(o), Some(s)) if starts[s].at.speed_m_s <= crossings[o].at.speed_m_s => {
+            found.start(s, tested)
+        }
+        (Some(o), _) => found.onset(o, tested),
+        (None, Some(s)) => found.start(s, tested),
+        (None, None) => FlutterSearch::StableUpTo(found.reach.judged(found.looked_at)),
     }
 }
 
 impl Findings {
-    /// Nothing yet.
-    pub(super) fn judged(judged: StableRange) -> Self {
+    /// Nothing yet between these speeds.
+    pub(super) fn between(looked_at: StableRange) -> Self {
         Self {
             crossings: Vec::new(),
             starts: Vec::new(),
             recoveries: Vec::new(),
-            judged,
+            looked_at,
+            followed_to_m_s: 0.0,
+            reach: RangePassages::default(),
             warnings: Vec::new(),
         }
+    }
+
+    /// Whether nothing grows.
+    pub(super) fn is_empty(&self) -> bool {
+        self.crossings.is_empty() && self.starts.is_empty()
     }
 
     /// Whether an onset or growth at this speed is among them.
@@ -277,30 +210,40 @@ impl Findings {
             || self.starts.iter().any(|s| same(s.at.speed_m_s))
     }
 
-    fn onset(mut self, chosen: usize) -> FlutterSearch {
+    fn onset(mut self, chosen: usize, tested: Option<ReducedFrequencyRange>) -> FlutterSearch {
         let mut onset = self.crossings.swap_remove(chosen);
         let (spurious, warnings) = self.below(
             onset.at.speed_m_s,
+            tested,
             "probably spurious, a sign of over-fitting",
         );
         onset.spurious_speeds_m_s.extend(spurious);
         onset.warnings.extend(warnings);
         onset.warnings.append(&mut self.warnings);
-        if onset.in_tested_range == Some(false) {
+        let (k, v_star) = (
+            onset.at.reduced_frequency,
+            onset.at.reduced_velocity.v_star(),
+        );
+        if let Some(gap) = onset.gap {
             onset.warnings.push(format!(
-                "V* {:.2} at this onset lies outside the tested range: the model is extrapolating, the onset may be \
-                 spurious",
-                onset.at.reduced_velocity.v_star()
+                "K {:.3} of this onset lies {}: what the forces are there is the model's guess",
+                k.full_width(),
+                gap.explain()
+            ));
+        } else if onset.in_tested_range == Some(false) {
+            onset.warnings.push(format!(
+                "V* {v_star:.2} at this onset lies outside the tested range: the model is extrapolating, the onset may be \
+                 spurious"
             ));
         }
         FlutterSearch::Onset(Box::new(onset))
     }
 
-    fn start(mut self, chosen: usize) -> FlutterSearch {
+    fn start(mut self, chosen: usize, tested: Option<ReducedFrequencyRange>) -> FlutterSearch {
         let above = self.onset_above(self.starts[chosen].at.speed_m_s);
         let mut start = self.starts.swap_remove(chosen);
         start.onset_above = above;
-        let (_, warnings) = self.below(start.at.speed_m_s, "an extrapolation");
+        let (_, warnings) = self.below(start.at.speed_m_s, tested, "an extrapolation");
         start.warnings.extend(warnings);
         start.warnings.append(&mut self.warnings);
         FlutterSearch::UnstableAtOrBelow(Box::new(start))
@@ -327,8 +270,14 @@ impl Findings {
         self.crossings.iter().find(clear).cloned().map(Box::new)
     }
 
-    /// Growth below a speed, all of it outside the tested range.
-    fn below(&self, speed_m_s: f64, verdict: &str) -> (Vec<f64>, Vec<String>) {
+    /// Growth below a speed, all of it outside the tested range: what is said of that at higher `K` than was tested is
+    /// `verdict`.
+    fn below(
+        &self,
+        speed_m_s: f64,
+        tested: Option<ReducedFrequencyRange>,
+        verdict: &str,
+    ) -> (Vec<f64>, Vec<String>) {
         let crossings = self
             .crossings
             .iter()
@@ -340,6 +289,13 @@ impl Findings {
             .collect();
         below.sort_by(|a, b| a.0.speed_m_s.total_cmp(&b.0.speed_m_s));
         let warning = |(at, branch, what): &(&CriticalPoint, &String, &str)| {
+            let slower = tested.is_some_and(|range| at.reduced_frequency < range.min);
+            // slow motion is no place where a fit makes up growth: the deck may do it
+            let verdict = if slower {
+                "an extrapolation below the lowest tested K, which only tests there can confirm or refute"
+            } else {
+                verdict
+            };
             format!(
                 "the model also {what} at {:.3} m/s (V* {:.2}, {branch} branch), outside the tested range: {verdict}",
                 at.speed_m_s,

@@ -4,16 +4,15 @@
 //! problem `ω² (M + ½ρB²/K² P(G)) − iωR − K_s = 0`. Its roots are followed over `K`; where one becomes real, the
 //! section flutters (Theodorsen's method with viscous damping).
 
-use super::answer::{
-    Findings, FlutterSearch, RangePassages, StableRange, UnstableStart, choose, entry_reason,
-};
+use super::answer::{Findings, FlutterSearch, UnstableStart, choose};
 use super::critical_point::OnsetMethod;
+use super::judged::{Exit, StableRange, entry_reason};
 use super::onset::Onset;
 use crate::aerodynamics::{Transfer, TransferMatrix};
 use crate::error::{Error, Result, positive};
 use crate::section::{Dof, Structure};
 use crate::state_space::{complex, first_order, root};
-use crate::units::{ReducedFrequency, ReducedFrequencyRange};
+use crate::units::{LowerEnd, ReducedFrequency, ReducedFrequencyRange};
 use nalgebra::{Complex, DMatrix, DVector, Schur};
 
 /// Reduced frequencies at which the roots are looked at, logarithmically spaced over the range.
@@ -78,13 +77,18 @@ pub fn determinant_onset(
         }
     };
     let width = structure.width_m;
+    let exits = |roots: &[(Complex<f64>, usize)], end: LowerEnd| {
+        let speed = |omega: &Complex<f64>| omega.re * width / end.0.full_width();
+        let exit = |(omega, row)| (speed(omega), structure.branch_name(row), Exit::at(end));
+        let all = roots.iter().map(|(omega, row)| (omega, *row));
+        all.map(exit).collect::<Vec<_>>()
+    };
     // each root with its branch, as long as it stays in the right half plane
     let mut roots = problem.named_roots(k_max)?;
-    let mut reach = RangePassages::default();
-    let mut findings = Findings::judged(StableRange::up_to(speed_max_m_s));
+    let mut findings = Findings::between(StableRange::up_to(speed_max_m_s));
     for (omega, row) in &roots {
         let (speed, branch) = (omega.re * width / k_max, structure.branch_name(*row));
-        reach.entries.push((speed, branch.clone()));
+        findings.reach.entries.push((speed, branch.clone()));
         if omega.im < -ROUNDING * omega.norm() {
             let at = (speed, omega * Complex::i());
             let (method, why) = (OnsetMethod::Determinant, entry_reason(range.max));
@@ -96,6 +100,12 @@ pub fn determinant_onset(
     for i in 1..=GRID {
         let current = problem.frequencies(at(i))?;
         let before: Vec<_> = roots.iter().map(|r| r.0).collect();
+        let into_gap = |(k, gap): &LowerEnd| {
+            gap.is_some() && at(i) < k.full_width() && k.full_width() <= at(i - 1)
+        };
+        for end in range.lower_ends().filter(into_gap) {
+            findings.reach.exits.extend(exits(&roots, end));
+        }
         let mut next = Vec::with_capacity(roots.len());
         for ((root, row), after) in roots.into_iter().zip(paired(&before, &current)) {
             let Some(after) = after else {
@@ -113,11 +123,10 @@ pub fn determinant_onset(
         roots = next;
     }
     // at the lowest K each root has come to a speed of its own; beyond the slowest nothing was looked at
-    let exit = |(root, row): &(Complex<f64>, usize)| {
-        (root.re * width / k_min, structure.branch_name(*row))
-    };
-    reach.exits = roots.iter().map(exit).collect();
-    findings.judged = reach.judged(speed_max_m_s);
+    findings
+        .reach
+        .exits
+        .extend(exits(&roots, (range.min, None)));
     Ok(choose(findings, Some(range)))
 }
 

@@ -1,7 +1,8 @@
 //! What the routes that follow modes over wind speed share: the modes, and what is watched from one speed to the next.
 
-use super::answer::{Findings, UnstableStart, entry_reason};
+use super::answer::{Findings, UnstableStart};
 use super::critical_point::OnsetMethod;
+use super::judged::{Exit, entry_reason};
 use super::onset::Onset;
 use crate::error::{Error, Result};
 use crate::section::Structure;
@@ -138,12 +139,15 @@ pub(super) struct OnsetWatch<'a, F> {
     pub(super) follower: &'a F,
     /// Reduced frequencies into which modes may come with rising speed.
     pub(super) tested: Option<ReducedFrequencyRange>,
+    /// Reduced frequencies in which a mode can be judged; `None` everywhere.
+    pub(super) judged: Option<ReducedFrequencyRange>,
 }
 
 impl<F: Follower> OnsetWatch<'_, F> {
-    /// Adds what happens between two neighbouring speeds: modes that lose their damping, and modes that come into the tested
-    /// range growing.
+    /// Adds what happens between two neighbouring speeds: modes that lose their damping, modes that come into the tested
+    /// range growing, and where modes can no longer be judged.
     pub(super) fn step(&self, low: &Modes, high: &Modes, found: &mut Findings) -> Result<()> {
+        self.look(low, high, found);
         for after in &high.all {
             let Some(before) = low.mode(after.branch) else {
                 continue;
@@ -167,6 +171,22 @@ impl<F: Follower> OnsetWatch<'_, F> {
                 .extend(self.entry((low, before), (high, after))?);
         }
         Ok(())
+    }
+
+    /// Adds the ends of what can be judged that modes pass between two speeds.
+    fn look(&self, low: &Modes, high: &Modes, found: &mut Findings) {
+        let Some(range) = self.judged else { return };
+        let k = |modes: &Modes, mode: &Mode| (modes.speed, self.follower.k(modes.speed, mode));
+        for before in &low.all {
+            let branch = self.follower.name(before.branch);
+            match high.mode(before.branch) {
+                Some(after) => {
+                    let reach = &mut found.reach;
+                    reach.look(range, &branch, k(low, before), k(high, after));
+                }
+                None => found.reach.exits.push((low.speed, branch, Exit::Lost)),
+            }
+        }
     }
 
     /// Growth of a mode where it can be judged first.

@@ -27,7 +27,7 @@ impl Scan<'_> {
             .iter()
             .map(|o| (o.at.speed_m_s, o.at.reduced_frequency));
         let to_m_s = speeds
-            .filter(|(_, k)| self.tested.is_none_or(|range| range.contains(*k)))
+            .filter(|(_, k)| self.tested.is_none_or(|range| range.spans(*k)))
             .map(|(speed, _)| speed)
             .fold(to_m_s, f64::min);
         for band in self.bands(0.0, to_m_s, density)? {

@@ -5,9 +5,10 @@
 //! to the highest `K` and leaves at that of the lowest. Needs no realisation, so it draws measured tables and Theodorsen's function. Exact at an onset; between onsets its damping
 //! means what measured derivatives mean.
 
-use super::answer::{Findings, FlutterSearch, StableRange, choose, entry_reason};
+use super::answer::{Findings, FlutterSearch, choose};
 use super::curves::{FlutterCurves, ModePoint, empty_branches};
 use super::following::{Follower, OnsetWatch, dimensionless, growing};
+use super::judged::{StableRange, damps_fast_motion, entry_reason};
 use super::pk_following::Iteration;
 use super::search::OnsetSearch;
 use crate::aerodynamics::Transfer;
@@ -122,12 +123,20 @@ pub fn pk_onset(
         follower: &iteration,
         // into the range of a table modes come where they are known first
         tested: tested.filter(|_| known.is_none()),
+        judged: tested.or(known),
     };
-    let mut found = Findings::judged(StableRange::up_to(search.speed_max_m_s));
+    let mut found = Findings::between(StableRange::up_to(search.speed_max_m_s));
     let (entries, reach) = iteration.march(&search.speeds_m_s()?, &mut |low, high| {
         watch.step(low, high, &mut found)
     })?;
-    found.judged = reach.judged(search.speed_max_m_s);
+    match tested.filter(|_| known.is_none()) {
+        Some(range) => {
+            let damps = damps_fast_motion(&structure.dofs, range.max, |k| model.transfer(k))?;
+            found.reach.entries.retain(|_| !damps);
+        }
+        None => found.reach.entries = reach.entries,
+    }
+    found.reach.exits.extend(reach.exits);
     for entry in entries.iter().filter(|e| growing(&e.mode.lambda)) {
         let reason = known.map_or("the lowest speed looked at".to_owned(), |range| {
             entry_reason(range.max)

@@ -1,11 +1,11 @@
 //! Modes of the p-k iteration followed over wind speed by what they are: small changes and like shapes from step to step.
 
-use super::answer::RangePassages;
 use super::critical_point::OnsetMethod;
 use super::determinant::damping_slope;
 use super::following::{
     EigenvalueTrend, Follower, MIN_ASSURANCE, Mode, Modes, SEPARATION, assurance, dimensionless,
 };
+use super::judged::{Exit, RangePassages};
 use super::onset::Onset;
 use super::quasi_pk::{pk_mode, pk_mode_at};
 use crate::aerodynamics::Transfer;
@@ -119,7 +119,8 @@ impl Iteration<'_> {
         let Some((speed, branch)) = first.filter(|f| f.0 > from.speed) else {
             return Ok(next);
         };
-        reach.exits.push((speed, self.name(branch)));
+        let exit = Exit::Below(range.min);
+        reach.exits.push((speed, self.name(branch), exit));
         self.advance(from, speed)
     }
 

@@ -1,11 +1,12 @@
 //! Modes and onset of quasi-steady theory (1.31)–(1.32): at every wind speed the forces are linear about the static
 //! equilibrium of that speed, so that the linear model itself changes with the speed.
 
-use super::answer::{FlutterSearch, StableRange, UnstableStart};
+use super::answer::{FlutterSearch, UnstableStart};
 use super::critical_point::OnsetMethod;
 use super::curves::{FlutterCurves, empty_branches, trace_modes};
 use super::following::{Mode, oscillates};
 use super::instability::{ModeAtOnset, classify};
+use super::judged::StableRange;
 use super::onset::Onset;
 use super::search::OnsetSearch;
 use super::tracking::{SLOPE_STEP, Tracker};
@@ -21,10 +22,10 @@ use serde::Serialize;
 const LEAST_REDUCED_VELOCITY: f64 = 10.0;
 
 /// Reduced frequencies in which single degrees of freedom are searched for an onset of their own.
-const SEARCHED: ReducedFrequencyRange = ReducedFrequencyRange {
-    min: ReducedFrequency::from_full_width(0.02),
-    max: ReducedFrequency::from_full_width(10.0),
-};
+const SEARCHED: ReducedFrequencyRange = ReducedFrequencyRange::between(
+    ReducedFrequency::from_full_width(0.02),
+    ReducedFrequency::from_full_width(10.0),
+);
 
 /// The first speed looked at, as a part of the first that is asked for.
 const NEARLY_STILL: f64 = 1e-3;
@@ -226,10 +227,10 @@ mod tests {
         assert!((onset.mode_ratio / eigenvalues.mode_ratio - 1.0).abs() < 1e-6);
         let slopes = (onset.damping_slope_s_m, eigenvalues.damping_slope_s_m);
         assert!((slopes.0.unwrap() / slopes.1.unwrap() - 1.0).abs() < 1e-3);
-        let range = ReducedFrequencyRange {
-            min: ReducedFrequency::from_full_width(0.02),
-            max: ReducedFrequency::from_full_width(10.0),
-        };
+        let range = ReducedFrequencyRange::between(
+            ReducedFrequency::from_full_width(0.02),
+            ReducedFrequency::from_full_width(10.0),
+        );
         let determinant =
             crate::flutter::determinant_onset("plate", &structure, &linear, range, 80.0).unwrap();
         let determinant = determinant.onset().unwrap();

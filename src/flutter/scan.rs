@@ -1,7 +1,7 @@
 //! All eigenvalues over wind speed: the speeds at which any oscillation grows, found without following modes.
 
-use super::answer::StableRange;
 use super::following::{dimensionless, growing, oscillates};
+use super::judged::StableRange;
 use super::still_air::lowest_speed;
 use super::tracking::{Tracker, mode_shape};
 use crate::aeroelastic::CoupledSection;
@@ -145,7 +145,7 @@ impl<'a> Scan<'a> {
     }
 
     /// What a scan from still air covers.
-    pub(super) fn judged(&self, to_m_s: f64) -> Result<StableRange> {
+    pub(super) fn looked_at(&self, to_m_s: f64) -> Result<StableRange> {
         let lowest = lowest_speed(self.section)?;
         if lowest >= to_m_s {
             return Err(Error::input(
@@ -209,11 +209,11 @@ impl<'a> Scan<'a> {
         Ok(bands)
     }
 
-    /// Whether the motion with this eigenvalue lies in the tested range; `None` when there is none.
+    /// Whether the motion with this eigenvalue lies between the lowest and the highest tested `K`; `None` when there are none.
     pub(super) fn inside(&self, speed: f64, lambda: Complex<f64>) -> Option<bool> {
         let width = self.section.structure().width_m;
         let k = ReducedFrequency::from_circular(lambda.im, width, speed);
-        self.tested.map(|range| range.contains(k))
+        self.tested.map(|range| range.spans(k))
     }
 
     pub(super) fn at(&self, speed: f64) -> Result<Point> {

@@ -1,12 +1,13 @@
 //! Onset by the eigenvalues of the coupled state matrix.
 
 use super::answer::{Findings, FlutterSearch, choose};
-use super::following::{Follower, OnsetWatch, growing};
+use super::following::{Follower, OnsetWatch, growing, oscillates};
+use super::judged::{Exit, StableRange, damps_fast_motion};
 use super::scan::Scan;
 use super::tracking::Tracker;
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, positive};
-use crate::units::ReducedFrequencyRange;
+use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use serde::{Deserialize, Serialize};
 
 /// States at most of which all eigenvalues are looked at, a hundred times or more: those of some 700 take a second each.
@@ -76,6 +77,7 @@ pub fn find_onset(
 ) -> Result<FlutterSearch> {
     let scan = Scan::new(model, section, tested);
     let (mut found, ended) = followed(model, &scan, search)?;
+    let lost = ended.is_some();
     if let Some(why) = ended {
         // without names the answer still stands
         found.warnings.push(format!(
@@ -91,7 +93,26 @@ pub fn find_onset(
             section.structure().dofs.len()
         ));
     }
+    if found.is_empty() {
+        scan.bound(&mut found, lost, &search.speeds_m_s()?)?;
+    }
     Ok(choose(found, tested))
+}
+
+/// The speeds at which every mode of `section` is inside what was tested, as [`find_onset`] judges them, whether anything
+/// grows or not.
+///
+/// # Errors
+/// As [`find_onset`].
+pub(crate) fn judged_speeds(
+    section: &CoupledSection,
+    search: &OnsetSearch,
+    tested: Option<ReducedFrequencyRange>,
+) -> Result<StableRange> {
+    let scan = Scan::new("", section, tested);
+    let (mut found, ended) = followed("", &scan, search)?;
+    scan.bound(&mut found, ended.is_some(), &search.speeds_m_s()?)?;
+    Ok(found.reach.judged(found.looked_at))
 }
 
 /// The same by the modes that are followed alone, without all eigenvalues: for one of many sections of which another was searched
@@ -107,7 +128,12 @@ pub(crate) fn find_onset_of_modes(
 ) -> Result<FlutterSearch> {
     let scan = Scan::new(model, section, tested);
     match followed(model, &scan, search)? {
-        (found, None) => Ok(choose(found, tested)),
+        (mut found, None) => {
+            if found.is_empty() {
+                scan.bound(&mut found, false, &search.speeds_m_s()?)?;
+            }
+            Ok(choose(found, tested))
+        }
         (_, Some(_)) => find_onset(model, section, search, tested),
     }
 }
@@ -119,7 +145,7 @@ fn followed(
     search: &OnsetSearch,
 ) -> Result<(Findings, Option<String>)> {
     let speeds = search.speeds_m_s()?;
-    let mut found = Findings::judged(scan.judged(search.speed_max_m_s)?);
+    let mut found = Findings::between(scan.looked_at(search.speed_max_m_s)?);
     let ended = match follow(model, scan, &speeds, &mut found) {
         Err(Error::NotDistinct(why) | Error::Numerical(why)) => Some(why),
         other => other.map(|()| None)?,
@@ -134,6 +160,7 @@ fn follow(model: &str, scan: &Scan<'_>, speeds: &[f64], found: &mut Findings) ->
         model,
         follower: &tracker,
         tested: scan.tested,
+        judged: scan.tested,
     };
     let highest = speeds[speeds.len() - 1];
     let lowest = scan.lowest(highest)?;
@@ -142,10 +169,47 @@ fn follow(model: &str, scan: &Scan<'_>, speeds: &[f64], found: &mut Findings) ->
         let reason = "the lowest speed looked at".to_owned();
         found.starts.push(watch.start(lowest, mode, reason));
     }
+    found.followed_to_m_s = lowest;
     for &speed in speeds.iter().filter(|v| **v > lowest) {
         let next = tracker.advance(&modes, speed)?;
         watch.step(&modes, &next, found)?;
         modes = next;
+        found.followed_to_m_s = speed;
     }
     Ok(())
+}
+
+impl Scan<'_> {
+    /// Completes what is known of the speeds that can be judged: beyond where modes were `lost` by all eigenvalues, each of
+    /// which has to lie inside the tested range or above it; in slow wind by what the forces do to fast motion.
+    fn bound(&self, found: &mut Findings, lost: bool, speeds: &[f64]) -> Result<()> {
+        let Some(range) = self.tested else {
+            return Ok(());
+        };
+        let s = self.section.structure();
+        // of a whole bridge the forces of each strip would have to be asked
+        let damps = s.is_modal() || {
+            let forces = self.section.aerodynamics();
+            damps_fast_motion(&s.dofs, range.max, |k| forces.transfer(k))?
+        };
+        found.reach.entries.retain(|_| !damps);
+        let beyond = speeds
+            .iter()
+            .filter(|v| lost && **v > found.followed_to_m_s);
+        for &speed in beyond {
+            let all = self.section.at(speed)?.eigenvalues()?;
+            let ks = all
+                .iter()
+                .filter(|z| oscillates(z))
+                .map(|z| ReducedFrequency::from_circular(z.im, s.width_m, speed));
+            let known = ks.map(|k| range.contains(k) || k > range.max);
+            let known: Vec<bool> = known.collect();
+            if known.len() < s.dofs.len() || known.contains(&false) {
+                let nameless = "slowest".to_owned();
+                found.reach.exits.push((speed, nameless, Exit::Lost));
+                break;
+            }
+        }
+        Ok(())
+    }
 }

@@ -8,6 +8,7 @@
 //! answer is "not resolved", for [`find_onset`](super::find_onset) to decide.
 
 mod basis;
+mod choice;
 mod crossing;
 mod pencil;
 mod samples;
@@ -50,7 +51,10 @@ pub enum SweepOutcome {
     /// this speed or below.
     UnstableAtOrBelow(SweptOnset),
     /// No flutter up to the highest speed.
-    Stable,
+    Stable {
+        /// Highest speed at which every mode was inside the tested range, m/s: the highest of all, or less.
+        judged_to_m_s: f64,
+    },
     /// Two roots come too close, or Newton's method fails: to be searched in full.
     Unresolved,
 }
@@ -111,7 +115,11 @@ impl OnsetSweep {
         }
         let slowest = nominal.still_air_rad_s().fold(f64::INFINITY, f64::min);
         let k_min = (LOWEST_PART * slowest * nominal.width_m / speed_max).clamp(1e-3, 0.5 * K_MAX);
-        let grid = grid(k_min, forces.tested.map(|range| range.max.full_width()));
+        let ends = forces.tested.iter().flat_map(|range| {
+            let lower = range.lower_ends().map(|(k, _)| k);
+            lower.chain([range.max]).map(ReducedFrequency::full_width)
+        });
+        let grid = grid(k_min, ends);
         let count = forces.count();
         let mut table = vec![Complex64::new(0.0, 0.0); count * grid.len()];
         for (k, row) in grid.iter().zip(table.chunks_mut(count)) {
@@ -168,6 +176,8 @@ struct Sweep<'a, const N: usize> {
     /// circular frequency.
     still: Option<(f64, f64)>,
     entered: Option<(f64, f64)>,
+    /// Lowest speed at which a mode leaves the tested range, at its lower end or into a gap.
+    left: f64,
 }
 
 impl<'a, const N: usize> Sweep<'a, N> {
@@ -180,6 +190,7 @@ impl<'a, const N: usize> Sweep<'a, N> {
             found: 0,
             still: None,
             entered: None,
+            left: f64::INFINITY,
         }
     }
 
@@ -208,6 +219,7 @@ impl<'a, const N: usize> Sweep<'a, N> {
             if tested_max == Some(k) {
                 self.entered = self.slowest_growth(&roots);
             }
+            self.leave(&roots);
             let limit = BEYOND * self.lowest().min(self.sweep.speed_max) * k / self.supports.width;
             let beyond = |i: usize| !roots.alive[i] || roots.omega[i].re > limit;
             if (0..N).all(beyond) {
@@ -341,56 +353,6 @@ impl<'a, const N: usize> Sweep<'a, N> {
             }
         }
         Some(())
-    }
-
-    /// Speed of the lowest crossing inside the tested range so far: nothing above it can be the answer.
-    fn lowest(&self) -> f64 {
-        let found = self.crossings[..self.found].iter().flatten();
-        found
-            .filter(|c| c.destabilises && self.inside(c))
-            .map(|c| c.speed)
-            .chain(self.unstable().map(|(speed, _)| speed))
-            .fold(f64::INFINITY, f64::min)
-    }
-
-    /// Growth where a mode was first judged, of those that are no extrapolation.
-    fn unstable(&self) -> Option<(f64, f64)> {
-        let is_tested = self.sweep.forces.tested.is_some();
-        if is_tested { self.entered } else { self.still }
-    }
-
-    fn inside(&self, c: &Crossing) -> bool {
-        let k = ReducedFrequency::from_circular(c.omega, self.supports.width, c.speed);
-        let tested = self.sweep.forces.tested;
-        tested.is_none_or(|range| range.contains(k))
-    }
-
-    /// The lowest crossing inside the tested range or growth where a mode enters it, else the lowest outside.
-    fn choose(&self) -> SweepOutcome {
-        let all = || {
-            let found = self.crossings[..self.found].iter().flatten();
-            found.filter(|c| c.destabilises)
-        };
-        let by_speed = |a: &&Crossing, b: &&Crossing| a.speed.total_cmp(&b.speed);
-        let trusted = all().filter(|c| self.inside(c)).min_by(by_speed);
-        let swept = |(speed, omega): (f64, f64), in_tested_range| SweptOnset {
-            speed_m_s: speed,
-            frequency_hz: omega / std::f64::consts::TAU,
-            in_tested_range,
-            spurious: all().filter(|c| c.speed < speed).count()
-                + usize::from(self.still.is_some_and(|s| s.0 < speed)),
-        };
-        let below = |start: &(f64, f64)| trusted.is_none_or(|c| start.0 <= c.speed);
-        if let Some(start) = self.unstable().filter(below) {
-            return SweepOutcome::UnstableAtOrBelow(swept(start, true));
-        }
-        match (trusted.or_else(|| all().min_by(by_speed)), self.still) {
-            (Some(chosen), _) => {
-                SweepOutcome::Onset(swept((chosen.speed, chosen.omega), self.inside(chosen)))
-            }
-            (None, Some(still)) => SweepOutcome::UnstableAtOrBelow(swept(still, false)),
-            (None, None) => SweepOutcome::Stable,
-        }
     }
 }
 

@@ -91,10 +91,10 @@ mod tests {
     use crate::units::ReducedFrequency;
 
     fn range(min: f64, max: f64) -> ReducedFrequencyRange {
-        ReducedFrequencyRange {
-            min: ReducedFrequency::from_full_width(min),
-            max: ReducedFrequency::from_full_width(max),
-        }
+        ReducedFrequencyRange::between(
+            ReducedFrequency::from_full_width(min),
+            ReducedFrequency::from_full_width(max),
+        )
     }
 
     fn found(model: &RationalModel, tested: ReducedFrequencyRange) -> UnwantedGrowth {

@@ -16,6 +16,8 @@ use crate::trained_model::Experiment;
 
 /// More communication points than this make FMPy double the step of the default experiment.
 const MAX_DEFAULT_STEPS: f64 = 1000.0;
+/// Relative tolerance for importers that integrate: with the defaults of some, a growing motion is a sixth off after a second.
+const TOLERANCE: f64 = 1e-6;
 
 /// The description of an exported model with the variables that are to be listed.
 ///
@@ -210,6 +212,7 @@ pub(super) fn experiment(e: &Experiment) -> Result<Element> {
     Ok(Element::new("DefaultExperiment")
         .with("startTime", number(0.0)?)
         .with("stopTime", number(e.stop_time_s)?)
+        .with("tolerance", number(TOLERANCE)?)
         .with("stepSize", number(default_step_s(e))?))
 }
 

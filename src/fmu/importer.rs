@@ -113,6 +113,13 @@ impl Fmu {
             .and_then(|text| Element::parse(&text))
             .map_err(|e| e.in_file(FILE))
             .map_err(|e| Error::input("archive", "a readable description", e.to_string()))?;
+        if let Some(version) = root.attribute("fmiVersion").filter(|v| v.starts_with('3')) {
+            return Err(Error::input(
+                format!("{FILE}, fmiVersion"),
+                "2.0: archives of FMI 3.0 are neither read nor run here (FMPy does both)",
+                version,
+            ));
+        }
         let (description, reading) = reading::read(&root);
         findings.0.extend(reading.0);
         Ok(Self {

@@ -11,7 +11,7 @@ mod bridge_derivatives;
 mod bridge_places;
 mod bridge_search;
 mod bridge_unit;
-mod derivatives;
+pub(in crate::fmu) mod derivatives;
 mod force_ahead;
 mod force_derivatives;
 mod force_exchange;
@@ -28,6 +28,8 @@ mod section_unit;
 mod sensitivity;
 mod serialized;
 mod stepping;
+#[cfg(test)]
+mod tests;
 mod trust;
 mod unit;
 mod values;
@@ -45,7 +47,7 @@ use force_unit::ForceUnit;
 use layout::VariablePlaces;
 use memory::{Experiment, Memory};
 use section_unit::SectionUnit;
-use unit::Differentiable;
+use unit::Unit;
 
 /// One instance; instances share nothing.
 #[derive(Debug)]
@@ -53,7 +55,7 @@ pub struct Instance {
     resources: Resources,
     interface: Interface,
     layout: VariablePlaces,
-    unit: Box<dyn Differentiable>,
+    unit: Box<dyn Unit>,
     memory: Memory,
     /// The memory at the beginning.
     fresh: Memory,
@@ -67,7 +69,7 @@ impl Instance {
     /// # Errors
     /// [`crate::Error::Input`] for a model without a realisation, or whose section cannot be coupled with it.
     pub fn new(resources: Resources) -> Result<Self> {
-        let mut unit: Box<dyn Differentiable> = match (&resources.bridge, &resources.force) {
+        let mut unit: Box<dyn Unit> = match (&resources.bridge, &resources.force) {
             (Some(options), _) => Box::new(BridgeUnit::new(&resources, options)?),
             (None, Some(options)) => Box::new(ForceUnit::new(&resources, options)?),
             (None, None) => Box::new(SectionUnit::new(&resources)?),
@@ -76,7 +78,7 @@ impl Instance {
         let fresh = Memory::new(&resources.table, unit.inputs().len(), unit.at_rest());
         let mut memory = fresh.clone();
         // a section that cannot be coupled is no model to run: say so now
-        unit.prepare(&resources, &mut memory)?;
+        unit.prepared(&resources, &mut memory)?;
         let mut instance = Self {
             memory: fresh.clone(),
             fresh,
@@ -177,7 +179,11 @@ impl Instance {
     /// # Errors
     /// When parameters and initial values give no section that can move.
     pub fn exit_initialization(&mut self) -> CallResult<()> {
-        self.unit.prepare(&self.resources, &mut self.memory)?;
+        self.unit.prepared(&self.resources, &mut self.memory)?;
+        // whatever is read between steps is read without a further look
+        if !self.memory.system.all().iter().all(|x| x.is_finite()) {
+            return Err(sensitivity::overgrown());
+        }
         self.watch();
         self.memory.state = match self.interface {
             Interface::CoSimulation => State::StepComplete,

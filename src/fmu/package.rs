@@ -107,9 +107,7 @@ pub fn package(
         label,
         version,
     } = export.into();
-    if (listing, version) == (Listing::Reals, FmiVersion::Three) {
-        return Err(Error::input("real variables only", "FMI 2.0", "FMI 3.0"));
-    }
+    check_listing(listing, version)?;
     growth::check(model, growing)?;
     let force = force.map(|force| force.to_json()).transpose()?;
     let gusts = gusts.as_ref().map(as_json).transpose()?;
@@ -143,6 +141,15 @@ pub fn package(
     )
 }
 
+fn check_listing(listing: Listing, version: FmiVersion) -> Result<()> {
+    match (listing, version) {
+        (Listing::Reals, FmiVersion::Three) => {
+            Err(Error::input("real variables only", "FMI 2.0", "FMI 3.0"))
+        }
+        _ => Ok(()),
+    }
+}
+
 fn as_json(options: &impl Serialize) -> Result<String> {
     serde_json::to_string_pretty(options).map_err(|e| Error::Numerical(e.to_string()))
 }
@@ -156,6 +163,8 @@ pub struct BridgeExport {
     pub bridge: BridgeOptions,
     /// Turbulence that blows on it.
     pub turbulence: Option<TurbulenceOptions>,
+    /// Which variables its description lists.
+    pub listing: Listing,
 }
 
 /// The FMU of a whole bridge as the bytes of its archive, with these runtimes in it.
@@ -173,6 +182,7 @@ pub fn package_bridge(
         let expected = "a runtime for at least one platform";
         return Err(Error::input("FMU", expected, "none"));
     }
+    check_listing(export.listing, version)?;
     let (json, options) = (export.model.to_json()?, export.bridge.to_json()?);
     let field = export.turbulence.as_ref().map(serde_json::to_string);
     let field = field
@@ -188,7 +198,7 @@ pub fn package_bridge(
     let files = files.chain(field.map(|field| (TURBULENCE_FILE, field)));
     assembled(
         &resources,
-        (Listing::All, label, version),
+        (export.listing, label, version),
         files,
         page,
         runtimes,

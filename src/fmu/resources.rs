@@ -9,12 +9,14 @@ use super::onset_bounds::{BOUNDS_FILE, OnsetBounds};
 use super::variables::VariableTable;
 use crate::aerodynamics::{GustForce, Transfer};
 use crate::error::{Error, Result};
-use crate::trained_model::TrainedModel;
+use crate::trained_model::{Model, TrainedModel};
 use std::path::Path;
 use uuid::Uuid;
 
 /// The file of the gust forces in `resources/`; an archive without it takes no gusts.
 pub(crate) const GUST_FILE: &str = "gusts.json";
+/// Shortest step of a sampled model, in widths that the wind passes: a thousandth of the finest of wind tunnels.
+const SHORTEST_SAMPLE: f64 = 1e-6;
 
 /// Files beside the model that say what is exported of it, as bytes.
 #[derive(Debug, Clone, Copy, Default)]
@@ -95,6 +97,7 @@ impl Resources {
     /// [`Error::Input`] for bytes that are no trained model, or no options that fit it.
     pub fn from_bytes(bytes: &[u8], options: OptionFiles<'_>) -> Result<Self> {
         let model = TrainedModel::from_json(text(bytes)?)?;
+        check_sampling(&model)?;
         let force = options
             .force
             .map(|options| ForceOptions::from_json(text(options)?).map_err(|e| e.at(FORCE_FILE)))
@@ -148,6 +151,19 @@ impl Resources {
             table,
             guid,
         })
+    }
+}
+
+/// A model that samples the motion so often is none that can be stepped: its step is cut into more samples than a step may
+/// have, and its eigenvalues are rounding.
+fn check_sampling(model: &TrainedModel) -> Result<()> {
+    match &model.model {
+        Model::DiscreteLaguerre(m) if m.delta_s < SHORTEST_SAMPLE => Err(Error::input(
+            "model: delta_s",
+            format!("at least {SHORTEST_SAMPLE} widths from sample to sample in an FMU"),
+            m.delta_s.to_string(),
+        )),
+        _ => Ok(()),
     }
 }
 

@@ -1,5 +1,6 @@
 //! A small tree of XML elements: read with line numbers, so that every finding can name its place, and written.
 
+use super::standard::{is_printable, printable};
 use crate::error::{Error, Place, Result};
 use quick_xml::XmlVersion;
 use quick_xml::escape::partial_escape;
@@ -66,7 +67,8 @@ impl Element {
         let indent = "  ".repeat(depth);
         text.push_str(&format!("{indent}<{}", self.name));
         for (name, value) in &self.attributes {
-            let value = partial_escape(value.as_str()).replace('"', "&quot;");
+            // whatever a name or a source brings along, the document is XML
+            let value = partial_escape(printable(value)).replace('"', "&quot;");
             text.push_str(&format!(" {name}=\"{value}\""));
         }
         if self.children.is_empty() {
@@ -85,6 +87,11 @@ impl Element {
     /// # Errors
     /// [`Error::Input`] with the line where the text stops being XML.
     pub(super) fn parse(text: &str) -> Result<Self> {
+        let mut strange = text.char_indices().filter(|(_, c)| !is_printable(*c));
+        if let Some((at, c)) = strange.next() {
+            let line = 1 + text[..at].matches('\n').count();
+            return Err(malformed(line, &forbidden(c)));
+        }
         let mut reader = Reader::from_str(text);
         let mut lines = Lines::new(text);
         let mut open: Vec<Element> = Vec::new();
@@ -148,6 +155,9 @@ fn element(tag: &BytesStart<'_>, line: usize) -> Result<Element> {
         let value = attribute
             .normalized_value(XmlVersion::Implicit1_0)
             .map_err(|e| malformed(line, &e))?;
+        if let Some(c) = value.chars().find(|c| !is_printable(*c)) {
+            return Err(malformed(line, &forbidden(c)));
+        }
         attributes.push((attribute.key.as_ref().to_owned(), value.into_owned()));
     }
     Ok(Element {
@@ -156,6 +166,13 @@ fn element(tag: &BytesStart<'_>, line: usize) -> Result<Element> {
         attributes,
         children: Vec::new(),
     })
+}
+
+fn forbidden(c: char) -> String {
+    format!(
+        "the character U+{:04X}, which XML cannot hold",
+        u32::from(c)
+    )
 }
 
 fn malformed(line: usize, found: &dyn std::fmt::Display) -> Error {
@@ -206,7 +223,12 @@ mod tests {
 
     #[test]
     fn what_is_written_reads_back() {
+        // control characters are left out
+        let mut given = Element::new("b").with("d", "1 < \"2\u{1b}\" & 3\u{0} > 2");
         let child = Element::new("b").with("d", "1 < \"2\" & 3 > 2");
+        assert!(Element::parse(&given.document()).is_ok());
+        given.attributes[0].1 = "1 < \"2\" & 3 > 2".into();
+        assert_eq!(given, child);
         let root = Element::new("a")
             .with("x", 0.1)
             .with_any("y", None::<f64>)
@@ -227,6 +249,8 @@ mod tests {
             ("<a x=1/>", 1),
             ("<a>\n\n&unknown;<b y='&no;'/></a>", 3),
             ("not xml at all", 1),
+            ("<a>\n<b c='\u{1}'/></a>", 2),
+            ("<a>\n\n<b c='&#27;'/></a>", 3),
         ] {
             let message = Element::parse(text).unwrap_err().to_string();
             assert!(

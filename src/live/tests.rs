@@ -13,10 +13,10 @@ fn plate() -> TrainedModel {
         name: "plate".into(),
         section: SectionModel::table_4_1(),
         model: Model::Rational(RationalModel::jones_flat_plate()),
-        tested_range: ReducedFrequencyRange {
-            min: ReducedFrequency::from_full_width(0.2),
-            max: ReducedFrequency::from_full_width(3.0),
-        },
+        tested_range: ReducedFrequencyRange::between(
+            ReducedFrequency::from_full_width(0.2),
+            ReducedFrequency::from_full_width(3.0),
+        ),
         provenance: Provenance {
             source: text.clone(),
             licence: text.clone(),

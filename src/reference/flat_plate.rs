@@ -16,10 +16,10 @@ use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use std::f64::consts::{PI, TAU};
 
 /// Reduced frequencies far on both sides of any onset here.
-pub(super) const WIDE: ReducedFrequencyRange = ReducedFrequencyRange {
-    min: ReducedFrequency::from_full_width(0.02),
-    max: ReducedFrequency::from_full_width(10.0),
-};
+pub(super) const WIDE: ReducedFrequencyRange = ReducedFrequencyRange::between(
+    ReducedFrequency::from_full_width(0.02),
+    ReducedFrequency::from_full_width(10.0),
+);
 
 pub(super) const WITHOUT_ROTARY: FlatPlate = FlatPlate {
     rotary_inertia: false,

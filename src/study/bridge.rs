@@ -19,6 +19,7 @@ use crate::bridge::{Bridge, Similarity, StripGroup, similarities};
 use crate::error::{Error, Result};
 use crate::files::bridge::{BridgeFile, Modes, SectionBlock};
 use crate::flutter::OnsetSearch;
+use crate::plausibility::{Finding, of_bridge, sentences};
 use crate::trained_model::TrainedModel;
 use crate::units::ReducedFrequencyRange;
 use std::collections::BTreeMap;
@@ -46,8 +47,10 @@ pub struct BridgeStudy {
     pub sections: Vec<SectionForces>,
     /// Section of each group.
     section_of_group: Vec<usize>,
-    /// What a reader should know: hints about units, simplifications.
+    /// What a reader should know: simplifications, what was assumed.
     pub notes: Vec<String>,
+    /// What is odd about modes, sections and tables.
+    pub findings: Vec<Finding>,
 }
 
 impl BridgeStudy {
@@ -65,7 +68,8 @@ impl BridgeStudy {
         trained: impl Fn(&SectionBlock) -> Option<(TrainedModel, KnownUncertainty)>,
     ) -> Result<Self> {
         let modes = file.read_modes()?;
-        let mut notes = modes.hints();
+        let mut notes = Vec::new();
+        let mut findings = modes.findings();
         let section =
             |block: &SectionBlock| SectionForces::of(block, trained(block), &file.directory);
         let sections: Vec<SectionForces> =
@@ -91,14 +95,22 @@ impl BridgeStudy {
             )
         };
         let has_table = sections.iter().any(|s| s.table.is_some());
+        let by_model = bridge(false)?;
+        findings.extend(of_bridge(&by_model));
         Ok(Self {
-            by_model: bridge(false)?,
+            by_model,
             by_table: has_table.then(|| bridge(true)).transpose()?,
             section_of_group: parts.iter().map(|p| p.section).collect(),
             sections,
             notes,
+            findings,
             file,
         })
+    }
+
+    /// Notes and findings in words.
+    pub fn warnings(&self) -> Vec<String> {
+        [self.notes.clone(), sentences(&self.findings)].concat()
     }
 
     /// Where an onset is searched.

@@ -3,7 +3,6 @@
 mod onset;
 
 use super::Study;
-use super::plausibility::WIDEST_MODEL_M;
 use crate::aerodynamics::derivatives::notation::Convention;
 use crate::aerodynamics::derivatives::{
     DerivativeTable, Extrapolation, InterpolatedTable, Interpolation, TransferSample,
@@ -12,6 +11,7 @@ use crate::aerodynamics::{FlatPlate, Transfer};
 use crate::error::{Error, Result};
 use crate::files::derivatives::{ReadOptions, embedded, is_table_file, read_table_with};
 use crate::identification::sample_model;
+use crate::plausibility::{Finding, WIDEST_MODEL_M, of_table};
 use crate::section::Dof;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange, SAME_SPEED, group_of, near_groups};
 use crate::wind_tunnel::{Record, RecordFile, RecordSource};
@@ -30,7 +30,10 @@ const EXACT_RANGE: (f64, f64) = (0.02, 10.0);
 pub struct Deck {
     source: Source,
     interpolation: Interpolation,
-    warnings: Vec<String>,
+    /// What was assumed in reading the table.
+    notes: Vec<String>,
+    /// What is odd about it.
+    findings: Vec<Finding>,
     /// Whether the table is part of this program.
     built_in: bool,
     dofs: Vec<Dof>,
@@ -100,18 +103,19 @@ impl Deck {
                 FLAT_PLATE,
             ));
         }
-        let mut warnings = Vec::new();
+        let (mut notes, mut findings) = (Vec::new(), Vec::new());
         if let (Source::Table(table), true) = (&source, is_file) {
-            warnings.extend(table.header.notes.iter().cloned());
-            warnings.extend(table.hints(&convention));
+            notes.extend(table.header.notes.iter().cloned());
+            findings.extend(of_table(table, &convention));
             if study.deck.records.is_empty() && study.models.iter().any(|m| m.table.is_none()) {
-                warnings.extend(study.tunnel.assumption(table));
+                notes.extend(study.tunnel.assumption(table));
             }
         }
         let built_in = matches!(source, Source::Table(_)) && !is_file;
         Ok(Self {
             source,
-            warnings,
+            notes,
+            findings,
             interpolation: study.deck.interpolation,
             built_in,
             dofs,
@@ -202,7 +206,13 @@ impl Deck {
 
     /// What was assumed in reading the table, and what looks wrong in it.
     pub(crate) fn warnings(&self) -> Vec<String> {
-        self.warnings.clone()
+        let found = self.findings.iter().map(ToString::to_string);
+        self.notes.iter().cloned().chain(found).collect()
+    }
+
+    /// What looks wrong in the table.
+    pub(crate) fn findings(&self) -> &[Finding] {
+        &self.findings
     }
 
     /// The deck as a force model that answers at every reduced frequency, and where it was tested (everywhere when

@@ -328,10 +328,10 @@ fn beyond(forces: &Forces<'_>) -> f64 {
 impl Forces<'_> {
     /// Where the determinant may be searched.
     fn range(&self) -> ReducedFrequencyRange {
-        self.tested.unwrap_or(ReducedFrequencyRange {
-            min: ReducedFrequency::from_full_width(WIDE.0),
-            max: ReducedFrequency::from_full_width(WIDE.1),
-        })
+        self.tested.unwrap_or(ReducedFrequencyRange::between(
+            ReducedFrequency::from_full_width(WIDE.0),
+            ReducedFrequency::from_full_width(WIDE.1),
+        ))
     }
 
     fn route(

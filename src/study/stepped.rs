@@ -1,8 +1,10 @@
 //! Onset of an exported FMU, found by stepping it through its C interface: the third route.
 
+use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, counted};
 use crate::flutter::{
-    CriticalPoint, FlutterSearch, Onset, OnsetInterval, OnsetMethod, UnstableStart,
+    CriticalPoint, FlutterSearch, Onset, OnsetInterval, OnsetMethod, OnsetSearch, UnstableStart,
+    judged_speeds,
 };
 use crate::fmu::importer::{
     Fmu, GrowthPoint, SteppedOnset as Found, SteppedSearch, SteppingSearch, growth_by_stepping,
@@ -99,7 +101,14 @@ pub fn stepped_onset(
                 return Ok(unstable(model, at, reason).into());
             }
             SteppedSearch::StableUpTo(range) => {
-                return Ok(FlutterSearch::StableUpTo(range).into());
+                // what is stepped knows nothing of tests; where its modes leave them is asked of the model
+                let section = CoupledSection::with_model(&structure, &model.model)?;
+                let search = OnsetSearch {
+                    speed_max_m_s,
+                    ..OnsetSearch::default()
+                };
+                let judged = judged_speeds(&section, &search, Some(model.tested_range))?;
+                return Ok(FlutterSearch::StableUpTo(range.and(judged)).into());
             }
         }
     }
@@ -190,6 +199,7 @@ fn as_onset(model: &TrainedModel, found: &Found) -> Onset {
         damping_slope_s_m: None,
         branch: "dominant".to_owned(),
         in_tested_range: Some(model.tested_range.contains(k)),
+        gap: model.tested_range.gap_at(k),
         spurious_speeds_m_s: Vec::new(),
         warnings: Vec::new(),
         interval: OnsetInterval::none("that of the model in it"),

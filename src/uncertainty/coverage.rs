@@ -271,10 +271,10 @@ impl Campaign {
             records,
             tunnel: plan.tunnel.clone(),
             fit: plan.time_fit(),
-            tested: ReducedFrequencyRange {
-                min: ReducedFrequency::from_full_width(0.02),
-                max: ReducedFrequency::from_full_width(10.0),
-            },
+            tested: ReducedFrequencyRange::between(
+                ReducedFrequency::from_full_width(0.02),
+                ReducedFrequency::from_full_width(10.0),
+            ),
         };
         let structure = campaign.section.structure()?;
         let found = determinant_onset(

@@ -198,7 +198,7 @@ fn band(
     let (first, second) = (model(a)?, model(b)?);
     let mut differences = Vec::with_capacity(POINTS);
     let [min, max] = [low, high].map(ReducedFrequency::from_full_width);
-    for k in spread_over(ReducedFrequencyRange { min, max }, POINTS) {
+    for k in spread_over(ReducedFrequencyRange::between(min, max), POINTS) {
         let (x, y) = (first.transfer(k)?[entry], second.transfer(k)?[entry]);
         let difference = 2.0 * (x - y).norm() / (x.norm() + y.norm());
         differences.push((k.full_width(), difference));

@@ -312,10 +312,10 @@ fn three_routes_give_one_standard_error() {
 fn saved_uncertainty_gives_the_same_interval() {
     let (model, estimate) = fitted(&scattered(3), &two_poles(PoleSearch::fixed(&[0.091, 0.6])));
     let at = onset(&model);
-    let tested = ReducedFrequencyRange {
-        min: ReducedFrequency::from_full_width(0.1),
-        max: ReducedFrequency::from_full_width(1.9),
-    };
+    let tested = ReducedFrequencyRange::between(
+        ReducedFrequency::from_full_width(0.1),
+        ReducedFrequency::from_full_width(1.9),
+    );
     let all = ModelUncertainty::new(
         estimate,
         &structure(),

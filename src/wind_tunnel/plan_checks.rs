@@ -2,7 +2,7 @@
 
 use super::TunnelPlan;
 use crate::error::{Error, Result, non_negative, positive};
-use crate::plausibility::{MOTION_FREQUENCY, SAMPLING, WIND_SPEED, hint};
+use crate::plausibility::{Finding, MOTION_FREQUENCY, SAMPLING, WIND_SPEED, beyond};
 
 /// Faster than any load cell of a wind tunnel is read, Hz.
 const MOST_HERTZ: f64 = 1e5;
@@ -45,14 +45,14 @@ impl TunnelPlan {
         self.check_sampling(&self.frequencies_hz)
     }
 
-    /// Numbers that were likely meant in another unit, in words; the plan can be carried out all the same.
-    pub(crate) fn hints(&self) -> Vec<String> {
+    /// Numbers that were likely meant in another unit; the plan can be carried out all the same.
+    pub(crate) fn findings(&self) -> Vec<Finding> {
         let frequencies = self.frequencies_hz.iter();
         let speeds = self.speeds_m_s.iter();
         frequencies
-            .map(|f| hint("tunnel.frequencies_hz", *f, &MOTION_FREQUENCY))
-            .chain(speeds.map(|v| hint("tunnel.speeds_m_s", *v, &WIND_SPEED)))
-            .chain([hint("tunnel.sampling_hz", self.sampling_hz, &SAMPLING)])
+            .map(|f| beyond("tunnel.frequencies_hz", *f, &MOTION_FREQUENCY))
+            .chain(speeds.map(|v| beyond("tunnel.speeds_m_s", *v, &WIND_SPEED)))
+            .chain([beyond("tunnel.sampling_hz", self.sampling_hz, &SAMPLING)])
             .flatten()
             .collect()
     }

@@ -161,10 +161,10 @@ fn both_descriptions_of_a_body_have_the_same_eigenvalues() {
 #[test]
 fn every_route_gives_one_onset() {
     let jones = RationalModel::jones_flat_plate();
-    let range = ReducedFrequencyRange {
-        min: ReducedFrequency::from_full_width(0.02),
-        max: ReducedFrequency::from_full_width(10.0),
-    };
+    let range = ReducedFrequencyRange::between(
+        ReducedFrequency::from_full_width(0.02),
+        ReducedFrequency::from_full_width(10.0),
+    );
     for named in matrix::sections_of_two() {
         let mut onsets = Vec::new();
         for offsets in OFFSETS {

@@ -30,8 +30,8 @@ pub const ARROWS: &[Row] = &[
     row("section", &["units"]),
     row("aerodynamics", &["units", "section", "state_space"]),
     row("bridge", &["aerodynamics+"]),
-    row("files", &["aerodynamics+", "bridge"]),
-    row("plausibility", &[]),
+    row("plausibility", &["aerodynamics+", "bridge"]),
+    row("files", &["aerodynamics+", "bridge", "plausibility"]),
     row(
         "wind_tunnel",
         &[

@@ -96,10 +96,10 @@ fn uniform_shapes_are_the_section() {
 fn uniform_shapes_are_the_section_by_transfer() {
     let section = SectionModel::iabse_1_1a();
     let structure = section.structure().unwrap();
-    let range = ReducedFrequencyRange {
-        min: ReducedFrequency::from_full_width(0.05),
-        max: ReducedFrequency::from_full_width(10.0),
-    };
+    let range = ReducedFrequencyRange::between(
+        ReducedFrequency::from_full_width(0.05),
+        ReducedFrequency::from_full_width(10.0),
+    );
     let plate = FlatPlate::default();
     let expected = onset(determinant_onset("plate", &structure, &plate, range, 200.0).unwrap());
     let bridge = uniform(&section, Arc::new(plate));

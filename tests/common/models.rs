@@ -32,10 +32,7 @@ pub fn generate(kind: &str) -> TrainedModel {
         name: "Flat plate, section of Table 4.1".into(),
         section: SectionModel::table_4_1(),
         model,
-        tested_range: ReducedFrequencyRange {
-            min: first,
-            max: last,
-        },
+        tested_range: ReducedFrequencyRange::between(first, last),
         provenance: Provenance {
             source: "flat plate in potential flow, Theodorsen, NACA Report 496 (1935)".into(),
             licence: "none needed: closed form".into(),

@@ -165,10 +165,10 @@ fn a_section_unstable_at_rest_has_no_onset() {
     let mut fed = SectionModel::table_4_1().structure().unwrap();
     fed.damping[(1, 1)] *= -1.0;
     let coupled = CoupledSection::with_model(&fed, &jones).unwrap();
-    let tested = ReducedFrequencyRange {
-        min: ReducedFrequency::from_full_width(0.1),
-        max: ReducedFrequency::from_full_width(1.0),
-    };
+    let tested = ReducedFrequencyRange::between(
+        ReducedFrequency::from_full_width(0.1),
+        ReducedFrequency::from_full_width(1.0),
+    );
     let found = find_onset("", &coupled, &SEARCH, None).unwrap();
     assert!(unstable(&found).at.speed_m_s < 0.1, "{found:?}");
     let found = find_onset("", &coupled, &SEARCH, Some(tested)).unwrap();

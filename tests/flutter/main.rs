@@ -13,6 +13,7 @@ mod matrix;
 mod three_dof;
 
 mod answers;
+mod gaps;
 mod growth_bands;
 mod reference_onsets;
 mod routes;

@@ -10,10 +10,10 @@ use aerodeck::section::SectionModel;
 use aerodeck::units::{ReducedFrequency, ReducedFrequencyRange};
 
 fn wide_range() -> ReducedFrequencyRange {
-    ReducedFrequencyRange {
-        min: ReducedFrequency::from_full_width(0.02),
-        max: ReducedFrequency::from_full_width(10.0),
-    }
+    ReducedFrequencyRange::between(
+        ReducedFrequency::from_full_width(0.02),
+        ReducedFrequency::from_full_width(10.0),
+    )
 }
 
 fn jones_onset(section: &SectionModel) -> Onset {

@@ -24,10 +24,10 @@ use std::f64::consts::TAU;
 use std::fs;
 use tempfile::TempDir;
 
-const WIDE: ReducedFrequencyRange = ReducedFrequencyRange {
-    min: ReducedFrequency::from_full_width(0.02),
-    max: ReducedFrequency::from_full_width(10.0),
-};
+const WIDE: ReducedFrequencyRange = ReducedFrequencyRange::between(
+    ReducedFrequency::from_full_width(0.02),
+    ReducedFrequency::from_full_width(10.0),
+);
 
 #[track_caller]
 fn near(found: f64, expected: f64, tolerance: f64) {

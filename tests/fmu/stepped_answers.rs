@@ -14,10 +14,10 @@ use aerodeck::trained_model::{Model, TrainedModel};
 use aerodeck::units::{ReducedFrequency, ReducedFrequencyRange};
 
 fn wide() -> ReducedFrequencyRange {
-    ReducedFrequencyRange {
-        min: ReducedFrequency::from_full_width(0.01),
-        max: ReducedFrequency::from_full_width(100.0),
-    }
+    ReducedFrequencyRange::between(
+        ReducedFrequency::from_full_width(0.01),
+        ReducedFrequency::from_full_width(100.0),
+    )
 }
 
 fn rational(model: RationalModel, section: SectionModel) -> TrainedModel {

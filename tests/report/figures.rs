@@ -42,10 +42,10 @@ fn jones_onset(name: &str, section: &SectionModel, speed_max_m_s: f64) -> Onset 
 }
 
 fn plate_onset(section: &SectionModel) -> Onset {
-    let range = ReducedFrequencyRange {
-        min: ReducedFrequency::from_full_width(0.02),
-        max: ReducedFrequency::from_full_width(10.0),
-    };
+    let range = ReducedFrequencyRange::between(
+        ReducedFrequency::from_full_width(0.02),
+        ReducedFrequency::from_full_width(10.0),
+    );
     let plate = FlatPlate {
         rotary_inertia: false,
     };

@@ -92,7 +92,7 @@ impl Transfer for InterpolatedTable {
     fn transfer(&self, k: ReducedFrequency) -> Result<TransferMatrix> {
         let k_full = k.full_width();
         let allowed = match self.extrapolation {
-            Extrapolation::Refuse => self.tested_range.contains(k),
+            Extrapolation::Refuse => self.tested_range.spans(k),
             Extrapolation::Hold => k_full.is_finite() && k_full >= 0.0,
         };
         if !allowed {

@@ -200,23 +200,19 @@ impl DerivativeTable {
             .collect()
     }
 
-    /// The range of `K` in which every derivative among `dofs` was tested.
+    /// The range of `K` in which every derivative among `dofs` was tested, with the gaps of any of them.
     pub fn tested_range(&self, dofs: &[Dof]) -> ReducedFrequencyRange {
         let ranges = |d: Derivative| {
             ReducedFrequencyRange::spanning(self.points(d).iter().map(DerivativePoint::k))
         };
-        let common = |a: ReducedFrequencyRange, b: ReducedFrequencyRange| ReducedFrequencyRange {
-            min: if a.min > b.min { a.min } else { b.min },
-            max: if a.max < b.max { a.max } else { b.max },
-        };
         coupling(dofs)
             .filter_map(ranges)
-            .reduce(common)
+            .reduce(ReducedFrequencyRange::intersection)
             // Nothing asked for was tested: an empty range, which contains no K.
-            .unwrap_or(ReducedFrequencyRange {
-                min: ReducedFrequency::from_full_width(f64::INFINITY),
-                max: ReducedFrequency::from_full_width(f64::NEG_INFINITY),
-            })
+            .unwrap_or(ReducedFrequencyRange::between(
+                ReducedFrequency::from_full_width(f64::INFINITY),
+                ReducedFrequency::from_full_width(f64::NEG_INFINITY),
+            ))
     }
 
     /// Mean wind speed of each group of test points, m/s, rising; empty when the source does not give speeds.
@@ -385,4 +381,4 @@ fn check_monotone(points: &[DerivativePoint]) -> Option<PointProblem> {
 }
 
 #[cfg(test)]
-pub(super) mod tests;
+pub(crate) mod tests;

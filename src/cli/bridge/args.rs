@@ -40,6 +40,6 @@ pub(crate) fn read(file: &Path, progress: &Progress) -> Result<BridgeStudy> {
     let stage = progress.stage("reading the bridge");
     let study = BridgeStudy::new(BridgeFile::read(file)?)?;
     drop(stage);
-    warn(file, &study.notes);
+    warn(file, &study.warnings());
     Ok(study)
 }

@@ -54,7 +54,7 @@ pub(super) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
         )?;
     }
     let head = format!("{} at {} m/s\n", study.file.name, args.speed);
-    let json = serde_json::json!({ "buffeting": results, "notes": study.notes });
+    let json = serde_json::json!({ "buffeting": results, "notes": study.warnings(), "findings": study.findings });
     out.answer(head + &table(&results), json)
 }
 
@@ -86,7 +86,7 @@ fn by_file(
     }
     Answer::new(
         text,
-        &serde_json::json!({ "buffeting": found, "notes": study.notes }),
+        &serde_json::json!({ "buffeting": found, "notes": study.warnings(), "findings": study.findings }),
     )
 }
 

@@ -4,6 +4,7 @@ use super::super::answer::Answer;
 use super::super::common::warn;
 use crate::error::{Error, Result, counted};
 use crate::files::bridge::{BridgeFile, write_modes};
+use crate::plausibility::sentences;
 use std::path::PathBuf;
 
 /// Write the modes that a bridge file names as one compact CSV file, in the signs of this program
@@ -34,7 +35,7 @@ pub(super) fn run(args: &Args) -> Result<Answer> {
     }
     let file = BridgeFile::read(&args.bridge)?;
     let mut modes = file.read_modes()?.thinned(args.every);
-    warn(&args.bridge, &modes.hints());
+    warn(&args.bridge, &sentences(&modes.findings()));
     if let Some(source) = &args.source {
         modes.source.clone_from(source);
     }

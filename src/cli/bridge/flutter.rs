@@ -86,7 +86,7 @@ pub(super) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
         let _ = writeln!(text, "failed: {failure}");
     }
     let json = serde_json::json!({
-        "bridge": study.file.name, "onsets": results.onsets().collect::<Vec<_>>(), "flutter": results, "scatter": scattered, "notes": study.notes, "failed": failed
+        "bridge": study.file.name, "onsets": results.onsets().collect::<Vec<_>>(), "flutter": results, "scatter": scattered, "notes": study.warnings(), "findings": study.findings, "failed": failed
     });
     Ok(out.answer(text, json)?.with_verdict(failed.is_empty()))
 }

@@ -76,7 +76,7 @@ pub(super) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
         .collect();
     let json = serde_json::json!({
         "name": study.file.name, "nodes": bridge.nodes.len(), "modes": modes, "similarities": similarities,
-        "notes": study.notes
+        "notes": study.warnings(), "findings": study.findings
     });
     out.answer(text, json)
 }

@@ -8,6 +8,7 @@ use super::super::report::{
 use super::account::beside_the_onset;
 use crate::error::Result;
 use crate::flutter::{FlutterSearch, Onset};
+use crate::plausibility::Finding;
 use crate::section::Dof;
 use crate::study::bridge::{BridgeFlutter, BridgeStudy};
 use serde::Serialize;
@@ -25,7 +26,8 @@ pub(super) struct BridgeRun {
 pub(super) struct Summary<'a> {
     #[serde(flatten)]
     facts: BridgeFacts,
-    warnings: &'a [String],
+    warnings: Vec<String>,
+    findings: &'a [Finding],
     /// All onsets found, one entry per route.
     onsets: Vec<&'a Onset>,
     /// The full answer.
@@ -58,7 +60,8 @@ pub(super) fn leave<'a>(
             modes: modes(study),
             files: out.targets(),
         },
-        warnings: &study.notes,
+        warnings: study.warnings(),
+        findings: &study.findings,
         onsets: results.onsets().collect(),
         flutter: results,
         failed,
@@ -98,7 +101,7 @@ fn limits(study: &BridgeStudy, results: &BridgeFlutter, failed: &[String]) -> Ve
     if let Some(onset) = own(results).and_then(FlutterSearch::onset) {
         limits.extend(headline::limits_of(onset, "the models are"));
     }
-    limits.extend(study.notes.iter().cloned());
+    limits.extend(study.warnings());
     if let Some(why) = &results.curves.ended {
         limits.push(format!("The curves end early: {why}"));
     }

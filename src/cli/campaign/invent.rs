@@ -85,8 +85,8 @@ pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
             run.in_wind.sampling_hz
         );
     }
-    for hint in plan.tunnel.hints() {
-        let _ = writeln!(text, "  note: {hint}");
+    for finding in plan.tunnel.findings() {
+        let _ = writeln!(text, "  note: {finding}");
     }
     let value = serde_json::json!({
         "section": made.raw.section,

@@ -9,18 +9,28 @@ use std::path::PathBuf;
 
 /// Check any FMI 2.0 co-simulation FMU and step it; fails when something is wrong
 ///
+/// The code of the FMU runs in this process, with all your rights: check an archive that you do not trust with --no-run.
+///
 /// Example: aerodeck fmu check deck_section.fmu
+/// Example: aerodeck fmu check foreign.fmu --no-run
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
 pub(crate) struct Args {
     /// The FMU.
     fmu: PathBuf,
+    /// Check archive and description alone; no code of the FMU is loaded.
+    #[arg(long)]
+    no_run: bool,
 }
 
 /// Runs the command.
 pub(super) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     let stage = progress.stage("checking the FMU");
-    let report = Fmu::open(&args.fmu)?.check();
+    let fmu = Fmu::open(&args.fmu)?;
+    let report = match args.no_run {
+        true => fmu.check_without_running(),
+        false => fmu.check(),
+    };
     drop(stage);
     let passed = report.passed();
     Ok(Answer::new(text(&report), &report)?.with_verdict(passed))
@@ -35,6 +45,10 @@ fn text(report: &CheckReport) -> String {
         report.variables,
         report.platforms.join(", ")
     );
+    let _ = match &report.ran {
+        Some(binary) => writeln!(text, "its code was run in this process: {binary}"),
+        None => writeln!(text, "none of its code was run"),
+    };
     for f in &report.findings {
         let _ = writeln!(
             text,

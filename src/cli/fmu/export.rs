@@ -34,7 +34,7 @@ pub(crate) struct Args {
     /// The trained model, or the bridge file with --bridge.
     model: PathBuf,
     /// Pack a whole bridge: the file is a bridge file (see docs/bridge.md).
-    #[arg(long, conflicts_with_all = ["kind", "strips", "strip_length", "prediction", "gusts", "reals_only"])]
+    #[arg(long)]
     bridge: bool,
     /// Nodes of a bridge with inputs and outputs; left out, mid-span and both quarter points.
     #[arg(long, value_delimiter = ',', requires = "bridge")]
@@ -166,8 +166,34 @@ impl Args {
 }
 
 impl Args {
+    fn listing(&self) -> Listing {
+        match self.reals_only {
+            true => Listing::Reals,
+            false => Listing::All,
+        }
+    }
+
+    /// Refuses what a whole bridge does not have.
+    fn check_bridge(&self) -> Result<()> {
+        let alone = "no --bridge with it: the forces of a bridge alone are those of strips of its girder, which `fmu export \
+                     model.json --kind force --strips N` packs";
+        let strips = "--gust-strips and the `static` coefficients of the bridge file";
+        let given = [
+            ("--kind force", self.kind == Kind::Force, alone),
+            ("--strips", self.strips.is_some(), alone),
+            ("--strip-length", self.strip_length.is_some(), alone),
+            ("--prediction", self.prediction.is_some(), alone),
+            ("--gusts", self.gusts.is_some(), strips),
+        ];
+        match given.into_iter().find(|(_, given, _)| *given) {
+            None => Ok(()),
+            Some((flag, _, expected)) => Err(Error::input(flag, expected, "--bridge")),
+        }
+    }
+
     /// Packs a whole bridge.
     fn whole_bridge(&self, progress: &Progress) -> Result<Answer> {
+        self.check_bridge()?;
         let study = bridge::read(&self.model, progress)?;
         let path = self
             .out
@@ -182,7 +208,8 @@ impl Args {
             admittance: self.admittance.unwrap_or_default(),
             turbulence,
         });
-        let export = export.map_err(stages::or_allow_unstable)?;
+        let mut export = export.map_err(stages::or_allow_unstable)?;
+        export.listing = self.listing();
         let bytes = package_bridge(&export, &self.runtimes()?, &self.label()?, self.fmi)?;
         let overwrite = if self.force {
             Overwrite::Replace
@@ -235,11 +262,7 @@ pub(super) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
         bounds,
         label: args.label()?,
         version: args.fmi,
-        listing: if args.reals_only {
-            Listing::Reals
-        } else {
-            Listing::All
-        },
+        listing: args.listing(),
     };
     let strips = export.force.as_ref().map(|f| f.strips.len());
     let runtimes = args.runtimes()?;

@@ -113,6 +113,11 @@ impl Frame {
     pub(super) fn along(&self, point: &[f64; 3]) -> f64 {
         dot(self.nose_up, *point)
     }
+
+    /// Place of a point downwind and up, m.
+    pub(super) fn across(&self, point: &[f64; 3]) -> [f64; 2] {
+        [dot(self.downwind, *point), dot(self.up, *point)]
+    }
 }
 
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {

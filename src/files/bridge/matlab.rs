@@ -85,6 +85,7 @@ fn parse(bytes: Vec<u8>, span: &SpanBlock) -> Result<Modes> {
         source: "MATLAB wn and phi".to_owned(),
         nodes: nodes.collect(),
         modes: all,
+        offsets_m: Vec::new(),
     })
 }
 

@@ -3,11 +3,7 @@
 use super::axes::Frame;
 use crate::bridge::{BridgeMode, Node, tributary_lengths};
 use crate::error::{Error, Result};
-use std::f64::consts::PI;
-
-/// Unit-norm shapes of one bridge and a generalised mass of 1: the greatest displacement of a mass-normalised shape of
-/// anything as heavy as a bridge is far below this.
-const MASS_NORMALISED_AT_MOST: f64 = 0.1;
+use crate::plausibility::{Finding, Girder, of_modes};
 
 /// A mode with displacements and rotations along the axes of its program.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,6 +33,8 @@ pub struct Modes {
     pub source: String,
     /// Nodes, rising along the girder.
     pub nodes: Vec<Node>,
+    /// Places of the nodes downwind and up, m, from the origin of the file; empty where it knows only places along the girder.
+    pub offsets_m: Vec<[f64; 2]>,
     /// Modes; the damping ratio is zero where the file does not state it.
     pub modes: Vec<BridgeMode>,
 }
@@ -55,6 +53,7 @@ impl ModalData {
             })
             .collect();
         check_order(&nodes)?;
+        let offsets_m = self.nodes.iter().map(|(_, p)| frame.across(p)).collect();
         let modes = self.modes.into_iter().map(|m| BridgeMode {
             number: m.number,
             frequency_hz: m.frequency_hz,
@@ -66,6 +65,7 @@ impl ModalData {
             source,
             modes: modes.collect(),
             nodes,
+            offsets_m,
         })
     }
 }
@@ -107,39 +107,20 @@ impl Modes {
         Self {
             source: self.source.clone(),
             nodes: nodes.collect(),
+            offsets_m: kept
+                .iter()
+                .filter_map(|i| self.offsets_m.get(*i).copied())
+                .collect(),
             modes: modes.collect(),
         }
     }
 
-    /// What is probably not meant: rotations in degrees, masses of one with shapes that are not mass-normalised.
-    pub fn hints(&self) -> Vec<String> {
-        let greatest =
-            |m: &BridgeMode, i: usize| m.shape.iter().map(|s| s[i].abs()).fold(0.0, f64::max);
-        let mut hints = Vec::new();
-        let in_degrees = |m: &&BridgeMode| {
-            let moved = greatest(m, 0).max(greatest(m, 1));
-            greatest(m, 2) > PI && moved <= 2.0
-        };
-        if let Some(m) = self.modes.iter().find(in_degrees) {
-            hints.push(format!(
-                "mode {} turns by {:.3} where it moves by {:.3} m at most: rotations are in radians; are these degrees?",
-                m.number,
-                greatest(m, 2),
-                greatest(m, 0).max(greatest(m, 1))
-            ));
-        }
-        let unit = |m: &&BridgeMode| {
-            (m.generalised_mass - 1.0).abs() < 1e-9
-                && greatest(m, 0).max(greatest(m, 1)).max(greatest(m, 2)) > MASS_NORMALISED_AT_MOST
-        };
-        if let Some(m) = self.modes.iter().find(unit) {
-            hints.push(format!(
-                "mode {} has a generalised mass of 1 and moves by up to {:.3}: is the shape mass-normalised (then it would move \
-                 by about 1e-3), or is the mass that of a shape of another norm?",
-                m.number,
-                greatest(m, 0).max(greatest(m, 1)).max(greatest(m, 2))
-            ));
-        }
-        hints
+    /// What is odd about them.
+    pub fn findings(&self) -> Vec<Finding> {
+        of_modes(&Girder {
+            nodes: &self.nodes,
+            offsets_m: &self.offsets_m,
+            modes: &self.modes,
+        })
     }
 }

@@ -80,6 +80,7 @@ pub(super) fn parse(text: &str) -> Result<Modes> {
         source: header.text("source"),
         modes: modes.collect::<Result<_>>()?,
         nodes,
+        offsets_m: Vec::new(),
     })
 }
 

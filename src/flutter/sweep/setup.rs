@@ -11,8 +11,8 @@ pub(super) const K_MAX: f64 = 10.0;
 /// Points of the grid for a factor e of `K`, above and below that.
 const POINTS_PER_E: (f64, f64) = (3.0, 10.0);
 
-/// Reduced frequencies from still air down to `k_min`, with the upper end of the tested range among them.
-pub(super) fn grid(k_min: f64, tested_max: Option<f64>) -> Vec<f64> {
+/// Reduced frequencies from still air down to `k_min`, with the ends of the tested range among them.
+pub(super) fn grid(k_min: f64, ends: impl Iterator<Item = f64>) -> Vec<f64> {
     let part = |from: f64, to: f64, points_per_e: f64| {
         let steps = (points_per_e * (from / to).ln()).ceil();
         (0..steps as usize).map(move |i| from * (to / from).powf(i as f64 / steps))
@@ -20,7 +20,7 @@ pub(super) fn grid(k_min: f64, tested_max: Option<f64>) -> Vec<f64> {
     let mut grid: Vec<f64> = part(K_STILL, K_MAX, POINTS_PER_E.0)
         .chain(part(K_MAX, k_min, POINTS_PER_E.1))
         .chain([k_min])
-        .chain(tested_max.filter(|k| (k_min..K_STILL).contains(k)))
+        .chain(ends.filter(|k| (k_min..K_STILL).contains(k)))
         .collect();
     grid.sort_by(|a, b| b.total_cmp(a));
     grid.dedup();

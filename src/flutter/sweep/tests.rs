@@ -103,7 +103,7 @@ fn compare(
                     "{sample}"
                 );
             }
-            (SweepOutcome::Stable, None) => assert_eq!(full.critical_speed_m_s(), None),
+            (SweepOutcome::Stable { .. }, None) => assert_eq!(full.critical_speed_m_s(), None),
             (SweepOutcome::UnstableAtOrBelow(_), None) => {
                 assert!(full.critical_speed_m_s().is_some(), "{sample}: {full:?}");
             }

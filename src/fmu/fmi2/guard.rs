@@ -72,7 +72,7 @@ impl Component {
     fn report_notices(&mut self) {
         for notice in self.instance.take_notices() {
             self.logger
-                .log(fmi2Status::fmi2OK, Category::Warning, &notice);
+                .log(fmi2Status::fmi2Warning, Category::Warning, &notice);
         }
     }
 }

@@ -7,6 +7,7 @@ mod leniency;
 mod logging;
 mod model_exchange;
 mod offsets;
+mod overflow;
 mod refusals;
 mod run;
 mod state;

@@ -9,6 +9,7 @@ use crate::fmu::fmi2::{
     fmi2DeSerializeFMUstate, fmi2FreeFMUstate, fmi2GetFMUstate, fmi2SerializeFMUstate,
     fmi2SerializedFMUstateSize, fmi2SetFMUstate,
 };
+use crate::fmu::instance::derivatives::{check_derivatives, check_seed};
 use crate::fmu::lifecycle::Call;
 
 /// Saves the state, into the given one or, where that is NULL, a new one.
@@ -124,6 +125,7 @@ pub unsafe extern "C" fn fmi3GetAdjointDerivative(
                 check_count("seed", unknowns.len(), nSeed)?;
                 check_count("sensitivity", knowns.len(), nSensitivity)?;
                 let seed = array(seed, nSeed, "seed")?;
+                check_seed(seed)?;
                 let mut column = vec![0.0; unknowns.len()];
                 let mut found = Vec::with_capacity(knowns.len());
                 for known in &knowns {
@@ -131,6 +133,7 @@ pub unsafe extern "C" fn fmi3GetAdjointDerivative(
                     instance.directional_derivative(&unknowns, &[*known], &[1.0], &mut column)?;
                     found.push(seed.iter().zip(&column).map(|(s, x)| s * x).sum());
                 }
+                check_derivatives(&found)?;
                 array_mut(sensitivity, nSensitivity, "sensitivity")?.copy_from_slice(&found);
                 Ok(())
             },

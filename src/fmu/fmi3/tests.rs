@@ -270,6 +270,32 @@ fn adjoints_are_transposed_directions() {
     assert!(rates.iter().all(|x| x.is_finite() && *x != 0.0));
 }
 
+/// What is no direction has no derivative.
+#[test]
+fn seeds_that_are_no_numbers_are_refused() {
+    for seed in [f64::NAN, f64::INFINITY] {
+        let unit = Unit::of("rational", None, false);
+        unit.start();
+        let (unknown, known) = ([unit.reference("moment")], [unit.reference("rotation")]);
+        let mut found = [7.0];
+        let status = unsafe {
+            fmi3GetAdjointDerivative(
+                unit.handle,
+                unknown.as_ptr(),
+                1,
+                known.as_ptr(),
+                1,
+                &raw const seed,
+                1,
+                found.as_mut_ptr(),
+                1,
+            )
+        };
+        unit.refused(status, "seed: expected finite numbers");
+        assert_eq!(found, [7.0]);
+    }
+}
+
 #[test]
 fn an_importer_may_integrate() {
     let unit = Unit::of("continuous_laguerre", None, true);

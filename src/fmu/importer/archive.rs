@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 use zip::{CompressionMethod, ZipArchive};
 
-/// Most bytes that an FMU may unpack to, 4 GiB.
-const MAX_BYTES: u64 = 4 << 30;
+/// Most bytes that an FMU may unpack to, 256 MiB.
+const MAX_BYTES: u64 = 256 << 20;
 /// Most entries.
 const MAX_ENTRIES: usize = 100_000;
 
@@ -49,7 +49,8 @@ pub(super) fn unpack(path: &Path) -> Result<(TempDir, Vec<String>, Findings)> {
             std::fs::create_dir_all(&target).map_err(|e| Error::io(&target, e))?;
             continue;
         }
-        left = write(&mut entry, &name, &target, left)?;
+        let stated = entry.size();
+        left = write(&mut entry, &name, &target, Room { stated, left })?;
         names.push(name.replace('\\', "/"));
     }
     Ok((folder, names, findings))
@@ -97,19 +98,31 @@ fn method(name: &str, method: CompressionMethod, findings: &mut Findings) {
     }
 }
 
-fn write(entry: &mut impl Read, name: &str, target: &Path, left: u64) -> Result<u64> {
+/// How many bytes an entry may have.
+struct Room {
+    /// By its own statement.
+    stated: u64,
+    /// By the limit of the archive.
+    left: u64,
+}
+
+/// Returns how many bytes are left for other entries.
+fn write(entry: &mut impl Read, name: &str, target: &Path, room: Room) -> Result<u64> {
+    let Room { stated, left } = room;
+    if stated > left {
+        let expected = format!("at most {MAX_BYTES} bytes unpacked in all");
+        return Err(refused(name, expected, "more"));
+    }
     if let Some(parent) = target.parent() {
         std::fs::create_dir_all(parent).map_err(|e| Error::io(parent, e))?;
     }
     let mut file = File::create_new(target).map_err(|e| Error::io(target, e))?;
-    // the size in the header is only a claim
-    let written = std::io::copy(&mut entry.take(left + 1), &mut file)
+    // the size in the directory is only a claim
+    let written = std::io::copy(&mut entry.take(stated + 1), &mut file)
         .map_err(|e| refused(name, "an entry that unpacks", e.to_string()))?;
-    left.checked_sub(written).ok_or_else(|| {
-        refused(
-            name,
-            format!("at most {MAX_BYTES} bytes unpacked in all"),
-            "more",
-        )
-    })
+    if written > stated {
+        let expected = format!("the {stated} bytes that the archive states");
+        return Err(refused(name, expected, "more"));
+    }
+    Ok(left - written)
 }

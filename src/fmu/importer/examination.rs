@@ -4,15 +4,27 @@ use super::findings::{CheckReport, Findings, Severity};
 use super::{Fmu, checks, library, trials};
 
 impl Fmu {
-    /// Checks archive, description and binary, then runs the FMU if nothing stands against it.
+    /// Checks archive, description and binary, then runs the FMU if nothing stands against it: its code runs in this process,
+    /// with all rights of it.
     pub fn check(&self) -> CheckReport {
+        self.examined(true)
+    }
+
+    /// Checks archive and description without loading any code of the FMU.
+    pub fn check_without_running(&self) -> CheckReport {
+        self.examined(false)
+    }
+
+    fn examined(&self, running: bool) -> CheckReport {
         let mut findings = self.findings.clone();
         findings.0.extend(checks::check(&self.description).0);
         self.check_files(&mut findings);
         let mut trials = Vec::new();
         let mut messages = Vec::new();
+        let mut ran = None;
         match self.binary() {
             Err(e) => findings.error("archive", "a binary for this machine", e.to_string()),
+            Ok(_) if !running => {}
             Ok(binary) => {
                 let place = binary
                     .strip_prefix(self.folder.path())
@@ -20,6 +32,7 @@ impl Fmu {
                     .display()
                     .to_string();
                 let before = findings.0.len();
+                ran = Some(place.clone());
                 library::check_symbols(&binary, &place, &mut findings);
                 if findings.0.len() == before {
                     (trials, messages) = trials::run(self, &mut findings);
@@ -33,6 +46,7 @@ impl Fmu {
             platforms: self.platforms(),
             variables: self.description.variables.len(),
             findings: findings.0,
+            ran,
             trials,
             messages,
         }

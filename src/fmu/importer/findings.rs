@@ -132,6 +132,8 @@ pub struct CheckReport {
     pub variables: usize,
     /// Everything that was found.
     pub findings: Vec<Finding>,
+    /// The binary whose code was loaded and run in this process; `None` where none was.
+    pub ran: Option<String>,
     /// What was tried by running it; empty when it could not be loaded.
     pub trials: Vec<Trial>,
     /// Messages the FMU logged during the trials, at most a few hundred.

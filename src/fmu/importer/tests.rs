@@ -157,3 +157,68 @@ fn a_package_of_our_own_has_no_static_finding() {
         assert!(fmu.binary().unwrap().is_file());
     }
 }
+
+/// A description with a control character is no XML, whatever a lenient reader makes of it.
+#[test]
+fn control_characters_are_found() {
+    for name in ["a\u{1b}[31mb", "a&#1;b"] {
+        let text = DESCRIPTION.replace("modelName=\"m\"", &format!("modelName=\"{name}\""));
+        let file = archive_of(&[("modelDescription.xml", text.as_bytes())]);
+        let message = refusal(file.path());
+        assert!(message.contains("which XML cannot hold"), "{message}");
+    }
+}
+
+#[test]
+fn another_version_of_the_standard_is_named() {
+    let text = DESCRIPTION
+        .replace("\"2.0\"", "\"3.0\"")
+        .replace("guid", "instantiationToken");
+    let file = archive_of(&[("modelDescription.xml", text.as_bytes())]);
+    let message = refusal(file.path());
+    assert!(
+        message.contains("fmiVersion: expected 2.0: archives of FMI 3.0"),
+        "{message}"
+    );
+}
+
+/// Nothing of an archive is loaded unless that is wanted, and the report says which.
+#[test]
+fn a_check_says_whether_it_ran_anything() {
+    let file = archive_of(&[("modelDescription.xml", DESCRIPTION.as_bytes())]);
+    let report = Fmu::open(file.path()).unwrap().check_without_running();
+    assert_eq!(report.ran, None);
+    assert!(report.trials.is_empty());
+}
+
+/// Entries may not unpack to more than the archive states, nor all together to more than the limit.
+#[test]
+fn archives_that_grow_are_refused() {
+    let zeros = vec![0; 20_000_000];
+    let entries: Vec<(String, &[u8])> = (0..14)
+        .map(|i| (format!("extra/{i}"), &zeros[..]))
+        .collect();
+    let entries: Vec<(&str, &[u8])> = entries.iter().map(|(n, b)| (n.as_str(), *b)).collect();
+    let message = refusal(archive_of(&entries).path());
+    assert!(
+        message.contains("at most 268435456 bytes unpacked in all"),
+        "{message}"
+    );
+
+    // the directory at the end states a tenth of what is there
+    let file = archive_of(&[("modelDescription.xml", &zeros[..1000])]);
+    let mut bytes = std::fs::read(file.path()).unwrap();
+    let stated = 1000_u32.to_le_bytes();
+    let places: Vec<usize> = (0..bytes.len() - 4)
+        .filter(|i| bytes[*i..*i + 4] == stated)
+        .collect();
+    for place in places {
+        bytes[place..place + 4].copy_from_slice(&100_u32.to_le_bytes());
+    }
+    std::fs::write(file.path(), bytes).unwrap();
+    let message = refusal(file.path());
+    assert!(
+        message.contains("modelDescription.xml") && message.contains("expected"),
+        "{message}"
+    );
+}

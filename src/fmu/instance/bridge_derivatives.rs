@@ -8,7 +8,7 @@ use super::memory::Memory;
 use super::section::OnsetCard;
 use super::sensitivity::{SectionValues, add, central_difference, parameter_step};
 use super::trust::{MonitoredUnit, is_of_onset, smallest_damping, without_motion};
-use super::unit::{Differentiable, Unit};
+use super::unit::{Differentiable, Prepared};
 use crate::error::Result;
 use crate::fmu::lifecycle::State;
 use crate::fmu::refusal::CallResult;
@@ -99,13 +99,19 @@ impl BridgeUnit {
     ) -> Vec<f64> {
         self.calculate(resources, memory, &mut Vec::new());
         let place = |which| resources.table.find(Role::Calculated(which));
-        let none = |which| place(which).is_some_and(|p| memory.values[p] == 0.0);
+        let limit = memory.values[self.places.limit];
+        let none = |found, speed| {
+            let is = |which, value| place(which).is_some_and(|p| memory.values[p] == value);
+            is(found, 0.0) && is(speed, limit)
+        };
         let slope = |role: &Role| match role {
             Role::Calculated(Calculated::OnsetSpeed)
             | Role::Status(Status::FlutterSpeed | Status::FlutterMargin) => {
-                none(Calculated::OnsetFound)
+                none(Calculated::OnsetFound, Calculated::OnsetSpeed)
             }
-            Role::Calculated(Calculated::DivergenceSpeed) => none(Calculated::DivergenceFound),
+            Role::Calculated(Calculated::DivergenceSpeed) => {
+                none(Calculated::DivergenceFound, Calculated::DivergenceSpeed)
+            }
             _ => false,
         };
         unknowns

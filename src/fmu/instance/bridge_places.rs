@@ -1,6 +1,6 @@
 //! Where the variables of a bridge stand in the table.
 
-use super::layout::place;
+use super::layout::{calculated, place};
 use crate::error::Result;
 use crate::fmu::bridge_options::BridgeOptions;
 use crate::fmu::variables::{Calculated, Gust, Role, Variable, VariableTable};
@@ -55,12 +55,7 @@ impl Places {
                 .map(|m| place(table, Role::InitialMode(m)))
                 .collect::<Result<_>>()?,
             limit: place(table, Role::OnsetSearchLimit)?,
-            calculated: all()
-                .filter_map(|(i, v)| match v.role {
-                    Role::Calculated(which) => Some((i, which)),
-                    _ => None,
-                })
-                .collect(),
+            calculated: calculated(table),
             onset_speed: found(Calculated::OnsetSpeed)?,
             onset_frequency: found(Calculated::OnsetFrequency)?,
             onset_found: found(Calculated::OnsetFound)?,

@@ -22,7 +22,7 @@ impl OnsetCard {
         let mut card = Self::nothing_found(limit, Vec::new());
         match divergence_of(built) {
             Ok(speed) => card.set_divergence(speed, limit),
-            Err(why) => card.unknown_part("divergence", &why),
+            Err(why) => card.unknown_part(Calculated::DivergenceSpeed, &why),
         }
         let search = OnsetSearch {
             speed_max_m_s: limit,
@@ -33,11 +33,11 @@ impl OnsetCard {
                 let stable = !matches!(found, FlutterSearch::UnstableAtOrBelow(_));
                 let k = found.onset().map(|o| o.at.reduced_frequency);
                 let inside = k.zip(tested).is_some_and(|(k, range)| range.contains(k));
-                card.take(found);
+                card.take(found, limit);
                 card.set_flag(Calculated::OnsetInTestedRange, inside);
                 card.set_flag(Calculated::StableBelowOnset, stable);
             }
-            Err(why) => card.unknown_part("flutter onset", &why),
+            Err(why) => card.unknown_part(Calculated::OnsetSpeed, &why),
         }
         card
     }

@@ -10,9 +10,9 @@ use super::memory::{Memory, starts};
 use super::section::OnsetCard;
 use super::sensitivity::{SectionValues, check_finite, finite};
 use super::trust::{LINEAR_ROTATION_RAD, MonitoredUnit, beyond_linear};
-use super::unit::Unit;
+use super::unit::{Differentiable, Prepared, Unit};
 use crate::aeroelastic::CoupledSection;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::fmu::bridge_options::BridgeOptions;
 use crate::fmu::lifecycle::State;
 use crate::fmu::refusal::CallResult;
@@ -155,6 +155,14 @@ impl BridgeUnit {
         SectionValues::of(&mut self.built.stepper, state, &self.inputs)
     }
 
+    fn write(&mut self, card: OnsetCard, memory: &mut Memory, notices: &mut Vec<String>) {
+        for (place, which) in &self.places.calculated {
+            memory.values[*place] = card.value(*which);
+        }
+        notices.extend(card.warnings);
+        self.onset_current = true;
+    }
+
     /// `∂/∂V`, per m/s, in the state of `memory` with the inputs that are loaded.
     pub(super) fn by_wind(&self, memory: &Memory) -> SectionValues {
         SectionValues::by_speed(&self.built.stepper, &memory.system, &self.inputs)
@@ -249,7 +257,11 @@ impl Unit for BridgeUnit {
         self.release_pending = true;
     }
 
-    fn prepare(&mut self, resources: &Resources, memory: &mut Memory) -> Result<()> {
+    fn prepared(
+        &mut self,
+        resources: &Resources,
+        memory: &mut Memory,
+    ) -> Result<&mut dyn Differentiable> {
         if let (true, Some(options)) = (self.stale, &resources.bridge) {
             self.built = Built::new(resources, options, &memory.values)?;
             self.stale = false;
@@ -259,7 +271,13 @@ impl Unit for BridgeUnit {
             memory.system = self.release(&memory.values)?;
             self.release_pending = false;
         }
-        Ok(())
+        Ok(self)
+    }
+
+    fn cannot_calculate(&mut self, memory: &mut Memory, why: &Error, notices: &mut Vec<String>) {
+        if !self.onset_current {
+            self.write(OnsetCard::unknown(why), memory, notices);
+        }
     }
 
     fn watch(&mut self, _: &Resources, memory: &Memory, notices: &mut Vec<String>) {
@@ -273,6 +291,12 @@ impl Unit for BridgeUnit {
         }
     }
 
+    fn held_output(&self, place: usize) -> Option<usize> {
+        self.places.state_entry[place]
+    }
+}
+
+impl Prepared for BridgeUnit {
     fn advance(&mut self, _: &Resources, memory: &mut Memory, step: f64) -> CallResult<bool> {
         self.load_own_inputs(memory);
         let factor = self.turbulence_factor(memory);
@@ -286,10 +310,6 @@ impl Unit for BridgeUnit {
         self.load_inputs(memory);
         let stepper = &mut self.built.stepper;
         finite(stepper.state_derivative(&memory.system, &self.inputs)?)
-    }
-
-    fn held_output(&self, place: usize) -> Option<usize> {
-        self.places.state_entry[place]
     }
 
     fn outputs(&mut self, _: &Resources, memory: &mut Memory) -> CallResult<()> {
@@ -309,11 +329,7 @@ impl Unit for BridgeUnit {
         }
         let limit = memory.values[self.places.limit];
         let card = OnsetCard::of_bridge(&self.built, self.tested, limit);
-        for (place, which) in &self.places.calculated {
-            memory.values[*place] = card.value(*which);
-        }
-        notices.extend(card.warnings);
-        self.onset_current = true;
+        self.write(card, memory, notices);
     }
 
     fn status(

@@ -7,6 +7,24 @@ use crate::fmu::lifecycle::State;
 use crate::fmu::refusal::{CallResult, Refusal};
 use crate::fmu::variables::{Causality, Role};
 
+/// Refuses directions that are none.
+pub(in crate::fmu) fn check_seed(seed: &[f64]) -> CallResult<()> {
+    match seed.iter().find(|s| !s.is_finite()) {
+        None => Ok(()),
+        Some(found) => Err(Refusal::error(format!(
+            "seed: expected finite numbers, found {found}"
+        ))),
+    }
+}
+
+/// Refuses derivatives that no number holds.
+pub(in crate::fmu) fn check_derivatives(found: &[f64]) -> CallResult<()> {
+    if found.iter().all(|x| x.is_finite()) {
+        return Ok(());
+    }
+    Err(Refusal::discard("derivative: overflow"))
+}
+
 impl Instance {
     /// First time derivatives of outputs, per second, with the current input rates.
     ///
@@ -29,8 +47,9 @@ impl Instance {
             .iter()
             .map(|r| self.response_of(*r))
             .collect::<CallResult<Vec<_>>>()?;
-        self.unit.prepare(&self.resources, &mut self.memory)?;
-        let found = self.unit.output_rates(&mut self.memory, &outputs)?;
+        let (resources, memory) = (&self.resources, &mut self.memory);
+        let unit = self.unit.prepared(resources, memory)?;
+        let found = unit.output_rates(memory, &outputs)?;
         rates.copy_from_slice(&found);
         Ok(())
     }
@@ -56,19 +75,17 @@ impl Instance {
             .iter()
             .map(|r| self.known(*r))
             .collect::<CallResult<Vec<_>>>()?;
-        self.unit.prepare(&self.resources, &mut self.memory)?;
+        check_seed(seeds)?;
+        let (resources, memory) = (&self.resources, &mut self.memory);
+        let unit = self.unit.prepared(resources, memory)?;
         let mut sums = vec![0.0; unknowns.len()];
         for (known, seed) in knowns.into_iter().zip(seeds) {
-            let column =
-                self.unit
-                    .derivatives(&self.resources, &mut self.memory, known, &unknowns)?;
+            let column = unit.derivatives(resources, memory, known, &unknowns)?;
             for (sum, derivative) in sums.iter_mut().zip(column) {
                 *sum += seed * derivative;
             }
         }
-        if !sums.iter().all(|x| x.is_finite()) {
-            return Err(Refusal::discard("directional derivative: overflow"));
-        }
+        check_derivatives(&sums)?;
         results.copy_from_slice(&sums);
         Ok(())
     }

@@ -7,7 +7,7 @@
 use super::layout::{Source, place};
 use super::memory::Memory;
 use super::trust::{LINEAR_ROTATION_RAD, beyond_linear};
-use super::unit::Unit;
+use super::unit::{Differentiable, Prepared, Unit};
 use crate::aerodynamics::Realizable;
 use crate::error::{Error, Result};
 use crate::fmu::force_options::ForceOptions;
@@ -266,7 +266,7 @@ impl Unit for ForceUnit {
         self.settle_pending = true;
     }
 
-    fn prepare(&mut self, _: &Resources, memory: &mut Memory) -> Result<()> {
+    fn prepared(&mut self, _: &Resources, memory: &mut Memory) -> Result<&mut dyn Differentiable> {
         if memory.state == State::Initialization && self.settle_pending {
             if self.integrated {
                 self.check_stated(memory)?;
@@ -275,9 +275,15 @@ impl Unit for ForceUnit {
             self.settle(memory)?;
             self.settle_pending = false;
         }
-        Ok(())
+        Ok(self)
     }
 
+    fn held_output(&self, place: usize) -> Option<usize> {
+        self.held[place]
+    }
+}
+
+impl Prepared for ForceUnit {
     fn state_rates(&mut self, _: &Resources, memory: &Memory) -> CallResult<Vec<f64>> {
         let rates = self.rates_now(memory);
         if rates.iter().all(|x| x.is_finite()) {
@@ -289,10 +295,6 @@ impl Unit for ForceUnit {
     fn filter_rate(&mut self, memory: &Memory, i: usize) -> Option<f64> {
         let strips = self.strips();
         self.rates_of(memory, i % strips).get(i / strips).copied()
-    }
-
-    fn held_output(&self, place: usize) -> Option<usize> {
-        self.held[place]
     }
 
     fn advance(&mut self, _: &Resources, memory: &mut Memory, step: f64) -> CallResult<bool> {

@@ -75,7 +75,7 @@ impl Instance {
     /// Room for another number of them; parameters that give nothing that can be simulated.
     pub(crate) fn continuous_states(&mut self, states: &mut [f64]) -> CallResult<()> {
         self.check_states("states", states.len())?;
-        self.unit.prepare(&self.resources, &mut self.memory)?;
+        self.unit.prepared(&self.resources, &mut self.memory)?;
         for (state, entry) in states.iter_mut().zip(&self.layout.state_entries) {
             *state = self.memory.system.number(*entry);
         }
@@ -88,8 +88,9 @@ impl Instance {
     /// Room for another number of them; rates that cannot be computed.
     pub(crate) fn state_rates(&mut self, rates: &mut [f64]) -> CallResult<()> {
         self.check_states("derivatives", rates.len())?;
-        self.unit.prepare(&self.resources, &mut self.memory)?;
-        rates.copy_from_slice(&self.unit.state_rates(&self.resources, &self.memory)?);
+        let (resources, memory) = (&self.resources, &mut self.memory);
+        let unit = self.unit.prepared(resources, memory)?;
+        rates.copy_from_slice(&unit.state_rates(resources, memory)?);
         Ok(())
     }
 
@@ -119,9 +120,10 @@ impl Instance {
 
     /// Rate of the state to which the variable at `place` belongs.
     pub(super) fn rate_at(&mut self, place: usize) -> CallResult<f64> {
-        self.unit.prepare(&self.resources, &mut self.memory)?;
-        if let Role::FilterRate(i) = self.table().variables()[place].role
-            && let Some(rate) = self.unit.filter_rate(&self.memory, i)
+        let role = self.table().variables()[place].role;
+        let unit = self.unit.prepared(&self.resources, &mut self.memory)?;
+        if let Role::FilterRate(i) = role
+            && let Some(rate) = unit.filter_rate(&self.memory, i)
             && rate.is_finite()
         {
             return Ok(rate);

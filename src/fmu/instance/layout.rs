@@ -3,7 +3,7 @@
 use super::memory::Memory;
 use crate::error::{Error, Result};
 use crate::fmu::lifecycle::{StateSet, gettable_in, settable_in};
-use crate::fmu::variables::{Role, Value, Variable, VariableTable};
+use crate::fmu::variables::{Calculated, Role, Value, Variable, VariableTable};
 use crate::response::wind_at_rest;
 
 /// Type of a variable.
@@ -163,6 +163,16 @@ pub(super) fn place(table: &VariableTable, role: Role) -> Result<usize> {
     table
         .find(role)
         .ok_or_else(|| Error::Numerical(format!("variable table: nothing stands for {role:?}")))
+}
+
+/// Places of what is calculated from the parameters.
+pub(super) fn calculated(table: &VariableTable) -> Vec<(usize, Calculated)> {
+    let each = table.variables().iter().enumerate();
+    each.filter_map(|(place, v)| match v.role {
+        Role::Calculated(which) => Some((place, which)),
+        _ => None,
+    })
+    .collect()
 }
 
 impl VariablePlaces {

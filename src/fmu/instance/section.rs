@@ -161,8 +161,9 @@ pub(super) struct OnsetCard {
 }
 
 impl OnsetCard {
-    /// Searches up to `limit` m/s. What is not found is the limit itself, with frequency and reduced velocity zero; so is
-    /// what cannot be searched for, with a warning: parameters that are legal must not make a getter fail.
+    /// Searches up to `limit` m/s. What is not found is the limit itself, with frequency and reduced velocity zero. What cannot be
+    /// searched for is zero, with a warning: parameters that are legal must not make a getter fail, and no speed that is not
+    /// known may read as a safe one, in a log or without.
     pub(super) fn search(
         model: &TrainedModel,
         section: &CoupledSection,
@@ -172,7 +173,7 @@ impl OnsetCard {
         let mut card = Self::nothing_found(limit, Vec::new());
         match divergence_of(model, section) {
             Ok(speed) => card.set_divergence(speed, limit),
-            Err(why) => card.unknown_part("divergence", &why),
+            Err(why) => card.unknown_part(Calculated::DivergenceSpeed, &why),
         }
         if let Some(onset) = plain {
             let width = section.structure().width_m;
@@ -186,8 +187,8 @@ impl OnsetCard {
             return card;
         }
         match onset_of(model, section, limit) {
-            Ok(found) => card.take(found),
-            Err(why) => card.unknown_part("flutter onset", &why),
+            Ok(found) => card.take(found, limit),
+            Err(why) => card.unknown_part(Calculated::OnsetSpeed, &why),
         }
         // what cannot be judged is not called stable
         let stable = growth_of(model, section, limit).is_ok_and(|growth| growth.is_none());
@@ -196,9 +197,12 @@ impl OnsetCard {
     }
 
     /// The card of parameters that give no section at all.
-    pub(super) fn unknown(limit: f64, why: &Error) -> Self {
+    pub(super) fn unknown(why: &Error) -> Self {
         let why = format!("flutter onset and divergence are not known for these parameters: {why}");
-        Self::nothing_found(limit, vec![why])
+        Self {
+            values: [0.0; Calculated::COUNT],
+            warnings: vec![why],
+        }
     }
 
     pub(super) fn nothing_found(limit: f64, warnings: Vec<String>) -> Self {
@@ -211,8 +215,9 @@ impl OnsetCard {
         card
     }
 
-    /// Enters the answer of a search. Growth from the lowest speed on is an onset at that speed or lower.
-    pub(super) fn take(&mut self, found: FlutterSearch) {
+    /// Enters the answer of a search up to `limit` m/s. Growth from the lowest speed on is an onset at that speed or lower; what
+    /// was judged up to a lower speed is stable up to there.
+    pub(super) fn take(&mut self, found: FlutterSearch, limit: f64) {
         let (at, tested, warnings) = match found {
             FlutterSearch::Onset(o) => (
                 (o.at.speed_m_s, o.at.frequency_hz, o.at.reduced_velocity),
@@ -229,7 +234,18 @@ impl OnsetCard {
                     start.warnings,
                 )
             }
-            FlutterSearch::StableUpTo(_) => return,
+            FlutterSearch::StableUpTo(range) => {
+                let judged = range.from_m_s <= range.to_m_s;
+                let to = if judged { range.to_m_s.min(limit) } else { 0.0 };
+                self.set(Calculated::OnsetSpeed, to);
+                if to < limit {
+                    self.warnings.push(format!(
+                        "the onset is not known beyond {to} m/s: {}",
+                        range.explain()
+                    ));
+                }
+                return;
+            }
         };
         self.set_onset(at.0, at.1, at.2, tested == Some(true));
         self.warnings.extend(warnings);
@@ -251,8 +267,13 @@ impl OnsetCard {
         }
     }
 
-    /// Says what could not be searched for.
-    pub(super) fn unknown_part(&mut self, what: &str, why: &Error) {
+    /// A speed that could not be searched for is zero.
+    pub(super) fn unknown_part(&mut self, speed: Calculated, why: &Error) {
+        self.set(speed, 0.0);
+        let what = match speed {
+            Calculated::DivergenceSpeed => "divergence",
+            _ => "flutter onset",
+        };
         let warning = format!("{what} is not known for these parameters: {why}");
         self.warnings.push(warning);
     }

@@ -1,6 +1,6 @@
 //! Where the variables of a section stand in the table.
 
-use super::layout::place;
+use super::layout::{calculated, place};
 use crate::error::Result;
 use crate::fmu::variables::{Calculated, Gust, Response, Role, VariableTable};
 use crate::section::Dof;
@@ -23,7 +23,7 @@ pub(super) struct Places {
     pub initial_rate: Vec<usize>,
     pub search_limit: usize,
     /// Onset and divergence.
-    pub calculated: Vec<usize>,
+    pub calculated: Vec<(usize, Calculated)>,
     pub onset_speed: usize,
 }
 
@@ -63,9 +63,7 @@ impl Places {
             initial_rate: each(Role::InitialRate)?,
             search_limit: place(table, Role::OnsetSearchLimit)?,
             onset_speed: place(table, Role::Calculated(Calculated::OnsetSpeed))?,
-            calculated: (0..table.variables().len())
-                .filter(|i| matches!(table.variables()[*i].role, Role::Calculated(_)))
-                .collect(),
+            calculated: calculated(table),
         })
     }
 }

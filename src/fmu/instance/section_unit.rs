@@ -7,9 +7,9 @@ use super::section::{self, OnsetCard};
 use super::section_places::Places;
 use super::sensitivity::{check_finite, finite};
 use super::trust::{MonitoredUnit, TrustWarnings, tested_winds};
-use super::unit::Unit;
+use super::unit::{Differentiable, Prepared, Unit};
 use crate::aerodynamics::{GustForce, Realizable, Realization};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::flutter::UnwantedGrowth;
 use crate::fmu::lifecycle::State;
 use crate::fmu::refusal::CallResult;
@@ -181,8 +181,16 @@ impl SectionUnit {
                 let plain = section::plain_onset(model, table, &self.aerodynamics, (values, limit));
                 OnsetCard::search(model, &section, limit, plain)
             }
-            Err(why) => OnsetCard::unknown(limit, &why),
+            Err(why) => OnsetCard::unknown(&why),
         }
+    }
+
+    fn write(&mut self, card: OnsetCard, memory: &mut Memory, notices: &mut Vec<String>) {
+        for (place, which) in &self.places.calculated {
+            memory.values[*place] = card.value(*which);
+        }
+        notices.extend(card.warnings);
+        self.onset_current = true;
     }
 }
 
@@ -244,14 +252,18 @@ impl Unit for SectionUnit {
         self.onset_current &= same_section && same_limit;
         self.growth_known &= same_section && same_limit;
         if self.onset_current {
-            for place in &self.places.calculated {
+            for (place, _) in &self.places.calculated {
                 new.values[*place] = old.values[*place];
             }
         }
         self.release_pending = true;
     }
 
-    fn prepare(&mut self, resources: &Resources, memory: &mut Memory) -> Result<()> {
+    fn prepared(
+        &mut self,
+        resources: &Resources,
+        memory: &mut Memory,
+    ) -> Result<&mut dyn Differentiable> {
         if self.stepper.is_none() {
             let stepper = self.new_stepper(resources, &memory.values)?;
             self.tested_winds = tested_winds(&stepper, resources);
@@ -263,7 +275,13 @@ impl Unit for SectionUnit {
             }
             self.release_pending = false;
         }
-        Ok(())
+        Ok(self)
+    }
+
+    fn cannot_calculate(&mut self, memory: &mut Memory, why: &Error, notices: &mut Vec<String>) {
+        if !self.onset_current {
+            self.write(OnsetCard::unknown(why), memory, notices);
+        }
     }
 
     /// Says also, once for each set of parameters, where the section grows although nothing was tested there.
@@ -276,6 +294,22 @@ impl Unit for SectionUnit {
         }
     }
 
+    fn repeat(&mut self, memory: &mut Memory, step: f64) -> Option<bool> {
+        let (LoadedInputs::Repeatable(last), Some(stepper)) = (&self.loaded, &mut self.stepper)
+        else {
+            return None;
+        };
+        let taken =
+            last.step_s == step && stepper.repeat(&mut memory.system, &self.inputs, last.columns);
+        taken.then(|| self.rotation_news(memory))
+    }
+
+    fn held_output(&self, place: usize) -> Option<usize> {
+        self.places.state_entry[place]
+    }
+}
+
+impl Prepared for SectionUnit {
     fn advance(&mut self, _: &Resources, memory: &mut Memory, step: f64) -> CallResult<bool> {
         self.load_own_inputs(memory);
         if let Some(stepper) = &mut self.stepper {
@@ -288,26 +322,12 @@ impl Unit for SectionUnit {
         Ok(false)
     }
 
-    fn repeat(&mut self, memory: &mut Memory, step: f64) -> Option<bool> {
-        let (LoadedInputs::Repeatable(last), Some(stepper)) = (&self.loaded, &mut self.stepper)
-        else {
-            return None;
-        };
-        let taken =
-            last.step_s == step && stepper.repeat(&mut memory.system, &self.inputs, last.columns);
-        taken.then(|| self.rotation_news(memory))
-    }
-
     fn state_rates(&mut self, _: &Resources, memory: &Memory) -> CallResult<Vec<f64>> {
         self.load_inputs(memory);
         let Some(stepper) = &mut self.stepper else {
             return Ok(Vec::new());
         };
         finite(stepper.state_derivative(&memory.system, &self.inputs)?)
-    }
-
-    fn held_output(&self, place: usize) -> Option<usize> {
-        self.places.state_entry[place]
     }
 
     fn outputs(&mut self, _: &Resources, memory: &mut Memory) -> CallResult<()> {
@@ -330,13 +350,7 @@ impl Unit for SectionUnit {
             return;
         }
         let card = self.onset_card(resources, &memory.values);
-        for (place, variable) in resources.table.variables().iter().enumerate() {
-            if let Role::Calculated(which) = variable.role {
-                memory.values[place] = card.value(which);
-            }
-        }
-        notices.extend(card.warnings);
-        self.onset_current = true;
+        self.write(card, memory, notices);
     }
 
     fn status(

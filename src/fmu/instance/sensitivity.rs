@@ -203,6 +203,7 @@ pub(super) fn finite(rates: Vec<f64>) -> CallResult<Vec<f64>> {
     Err(overgrown())
 }
 
-fn overgrown() -> Refusal {
+#[cold]
+pub(super) fn overgrown() -> Refusal {
     Refusal::discard("outputs: the motion has overflowed")
 }

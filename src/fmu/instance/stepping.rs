@@ -37,8 +37,10 @@ impl Instance {
     fn do_step_anew(&mut self, point: f64, step: f64) -> CallResult<()> {
         self.check_step(point, step)?;
         let (resources, memory) = (&self.resources, &mut self.memory);
-        let prepared = self.unit.prepare(resources, memory).map_err(Refusal::from);
-        let advanced = prepared.and_then(|()| self.unit.advance(resources, memory, step));
+        let prepared = self.unit.prepared(resources, memory);
+        let advanced = prepared
+            .map_err(Refusal::from)
+            .and_then(|unit| unit.advance(resources, memory, step));
         self.outputs_current = advanced.map_err(|refusal| {
             self.memory.state = State::StepFailed;
             Refusal::discard(refusal.message)

@@ -1,7 +1,7 @@
 //! What is known of the present moment of a section or a bridge: how far from flutter it is, and whether that can be trusted.
 
 use super::memory::Memory;
-use super::unit::Unit;
+use super::unit::Prepared;
 use crate::aeroelastic::CoupledSection;
 use crate::error::Result;
 use crate::fmu::resources::Resources;
@@ -55,7 +55,7 @@ pub(super) fn without_motion(
 }
 
 /// What has a present moment.
-pub(super) trait MonitoredUnit: Unit {
+pub(super) trait MonitoredUnit: Prepared {
     /// The motion in its forces; `None` while there is none.
     fn coupled(&self) -> Option<&CoupledSection>;
 

@@ -2,7 +2,7 @@
 
 use super::layout::Source;
 use super::memory::Memory;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::fmu::refusal::CallResult;
 use crate::fmu::resources::Resources;
 use crate::fmu::variables::{Role, VariableTable};
@@ -51,15 +51,39 @@ pub(super) trait Unit: Debug + Send {
     /// Another memory takes the place of `old`: whatever both share stays computed.
     fn replace(&mut self, new: &mut Memory, old: &Memory, same: &dyn Fn(Source) -> bool);
 
-    /// Makes what follows from the parameters and, while initialising, the state.
+    /// What follows from the parameters and, while initialising, the state, made anew where they have changed: the only way
+    /// to anything that is computed from them.
     ///
     /// # Errors
     /// When the values give nothing that can be simulated.
-    fn prepare(&mut self, resources: &Resources, memory: &mut Memory) -> Result<()>;
+    fn prepared(
+        &mut self,
+        resources: &Resources,
+        memory: &mut Memory,
+    ) -> Result<&mut dyn Differentiable>;
+
+    /// Writes into the memory that what is calculated cannot be, because the parameters give nothing that can be simulated.
+    fn cannot_calculate(&mut self, _memory: &mut Memory, _why: &Error, _notices: &mut Vec<String>) {
+    }
 
     /// Says what a user must know of the parameters and of the present state, each thing once.
     fn watch(&mut self, _resources: &Resources, _memory: &Memory, _notices: &mut Vec<String>) {}
 
+    /// The last step once more, where nothing has been set since and no input runs on: most steps, without the work that
+    /// the others need. Returns whether there may be something to say of it; `None`, with everything as it was, where
+    /// the step has to be taken by [`Prepared::advance`].
+    fn repeat(&mut self, _memory: &mut Memory, _step: f64) -> Option<bool> {
+        None
+    }
+
+    /// Entry of the state of what is simulated that the output at `place` is, if it is one.
+    fn held_output(&self, _place: usize) -> Option<usize> {
+        None
+    }
+}
+
+/// What a unit computes, with what follows from the parameters as they are.
+pub(super) trait Prepared: Unit {
     /// One step of `step` seconds from the time of the memory; returns whether the outputs after it are in the memory.
     /// On an error everything is as it was.
     ///
@@ -72,13 +96,6 @@ pub(super) trait Unit: Debug + Send {
         step: f64,
     ) -> CallResult<bool>;
 
-    /// The last step once more, where nothing has been set since and no input runs on: most steps, without the work that
-    /// the others need. Returns whether there may be something to say of it; `None`, with everything as it was, where
-    /// the step has to be taken by [`Unit::advance`].
-    fn repeat(&mut self, _memory: &mut Memory, _step: f64) -> Option<bool> {
-        None
-    }
-
     /// Rates of the state, per second, where an importer may integrate it.
     ///
     /// # Errors
@@ -89,11 +106,6 @@ pub(super) trait Unit: Debug + Send {
 
     /// Rate of one state that is nothing else, by its index in [`Role::Filter`], where that needs less than all.
     fn filter_rate(&mut self, _memory: &Memory, _i: usize) -> Option<f64> {
-        None
-    }
-
-    /// Entry of the state of what is simulated that the output at `place` is, if it is one.
-    fn held_output(&self, _place: usize) -> Option<usize> {
         None
     }
 
@@ -125,7 +137,7 @@ pub(super) trait Unit: Debug + Send {
 }
 
 /// What is known of how a unit changes, in time and with its inputs, states and parameters.
-pub(super) trait Differentiable: Unit {
+pub(super) trait Differentiable: Prepared {
     /// First time derivatives of these outputs, per second.
     ///
     /// # Errors

@@ -2,6 +2,8 @@
 
 use super::Instance;
 use super::layout::{DataType, Source};
+use super::memory::Memory;
+use super::sensitivity::overgrown;
 use crate::fmu::lifecycle::State;
 use crate::fmu::refusal::{CallResult, Refusal};
 
@@ -66,32 +68,32 @@ impl Instance {
 
     pub(super) fn number(&mut self, reference: u32, wanted: DataType) -> CallResult<f64> {
         let (place, access) = self.readable(reference, wanted)?;
+        let (resources, memory) = (&self.resources, &mut self.memory);
         match access.source {
             Source::Response if !self.outputs_current => {
-                self.unit.prepare(&self.resources, &mut self.memory)?;
+                let unit = self.unit.prepared(resources, memory)?;
                 // what is part of the state needs no output equation
                 if let Some(entry) = self.layout.held(place) {
-                    return Ok(self.memory.system.number(entry));
+                    return state_number(memory, entry);
                 }
-                self.unit.outputs(&self.resources, &mut self.memory)?;
+                unit.outputs(resources, memory)?;
                 self.outputs_current = true;
             }
             Source::Status => {
-                let role = self.table().variables()[place].role;
-                self.unit.prepare(&self.resources, &mut self.memory)?;
-                let (resources, memory) = (&self.resources, &mut self.memory);
-                return Ok(self.unit.status(resources, memory, role, &mut self.notices));
+                let role = resources.table.variables()[place].role;
+                let unit = self.unit.prepared(resources, memory)?;
+                return Ok(unit.status(resources, memory, role, &mut self.notices));
             }
             Source::State => {
-                self.unit.prepare(&self.resources, &mut self.memory)?;
+                self.unit.prepared(resources, memory)?;
                 let entry = self.layout.held(place);
-                return Ok(entry.map_or(0.0, |entry| self.memory.system.number(entry)));
+                return entry.map_or(Ok(0.0), |entry| state_number(memory, entry));
             }
             Source::Rate => return self.rate_at(place),
-            Source::Calculated => {
-                self.unit
-                    .calculate(&self.resources, &mut self.memory, &mut self.notices);
-            }
+            Source::Calculated => match self.unit.prepared(resources, memory) {
+                Ok(unit) => unit.calculate(resources, memory, &mut self.notices),
+                Err(why) => self.unit.cannot_calculate(memory, &why, &mut self.notices),
+            },
             _ => {}
         }
         Ok(self.memory.values[place])
@@ -175,6 +177,16 @@ impl Instance {
             let name = &self.table().variables()[place].name;
             Refusal::error(format!("`{name}` is no input"))
         })
+    }
+}
+
+/// A number of the state, which may have overflowed at the release or in the hands of an importer that integrates.
+fn state_number(memory: &Memory, entry: usize) -> CallResult<f64> {
+    let number = memory.system.number(entry);
+    if number.is_finite() {
+        Ok(number)
+    } else {
+        Err(overgrown())
     }
 }
 

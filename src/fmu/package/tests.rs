@@ -203,3 +203,27 @@ fn an_instance_says_where_it_grows_when_made_and_after_its_parameters_have_chang
     let mut good = Instance::new(resources(&model("rational"))).unwrap();
     assert_eq!(growth(good.take_notices()), 0);
 }
+
+/// Names come from anywhere; the description stays XML, and says what the runtime answers.
+#[test]
+fn control_characters_stay_out_of_the_description() {
+    let mut model = model("rational");
+    model.name = "a \u{1b}[31mdeck\u{0}".into();
+    model.provenance.source = "tunnel\u{1}".into();
+    let label = Label {
+        name: Some("na\u{7}me".into()),
+        author: Some("au\u{1b}thor".into()),
+        copyright: Some("\u{2}".into()),
+        generated: None,
+    };
+    let json = model.to_json().unwrap();
+    let resources = Resources::from_bytes(json.as_bytes(), OptionFiles::default()).unwrap();
+    let three = description_fmi3::model_description(&resources, &label).unwrap();
+    let two = model_description(&resources, Listing::All, &label).unwrap();
+    for text in [&two, &three] {
+        let root = crate::fmu::xml::Element::parse(text).unwrap();
+        assert_eq!(root.attribute("modelName"), Some("name"));
+        assert_eq!(root.attribute("author"), Some("author"));
+        assert!(text.contains("a [31mdeck"));
+    }
+}

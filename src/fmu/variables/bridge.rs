@@ -20,6 +20,7 @@ pub(super) fn variables(
     options: &BridgeOptions,
     turbulence: bool,
 ) -> Result<Vec<Variable>> {
+    let (stepper, _) = options.stepper(&options.bridge()?)?;
     let mut table = vec![wind_speed(model)];
     let named = 0..options.named.len();
     table.extend(
@@ -34,12 +35,13 @@ pub(super) fn variables(
     table.push(search_limit(model));
     table.extend((0..options.modes.len()).map(|m| initial(options, m)));
     table.extend(calculated_parameters());
-    table.extend(constants(model)?);
+    let filters = stepper.section().aerodynamics().states();
+    table.extend(constants(model, filters)?);
     let interval = options.onset_interval.into_iter();
     table.extend(interval.flat_map(|b| onset_bounds(b, "bridge")));
     table.extend(status());
     fill_dependencies(&mut table);
-    bridge_states::add(&mut table, options)?;
+    bridge_states::add(&mut table, options, &stepper)?;
     Ok(table)
 }
 

@@ -8,14 +8,18 @@ use super::{InitialDependency, ModeOutput, Response, Role, Status, Variable};
 use crate::aerodynamics::{ContinuousRealization, Realization};
 use crate::error::{Error, Result};
 use crate::fmu::bridge_options::BridgeOptions;
+use crate::response::Stepper;
 use std::f64::consts::TAU;
 
 /// States at most: what depends on what is listed for each, which of more is megabytes of text.
 const MOST: usize = 800;
 
 /// Adds the states and their rates to the table of a bridge, and enters on which states everything depends.
-pub(super) fn add(table: &mut Vec<Variable>, options: &BridgeOptions) -> Result<()> {
-    let (stepper, _) = options.stepper(&options.bridge()?)?;
+pub(super) fn add(
+    table: &mut Vec<Variable>,
+    options: &BridgeOptions,
+    stepper: &Stepper,
+) -> Result<()> {
     let Realization::Continuous(air) = stepper.section().aerodynamics() else {
         return Err(Error::Numerical(
             "bridge: expected forces that are continuous in time, found sampled ones".into(),

@@ -35,7 +35,7 @@ pub(super) fn variables(
         table.extend(strip(s, options));
     }
     table.extend(coupling(options));
-    table.extend(constants(model)?);
+    table.extend(constants(model, model.model.realize().states())?);
     if let Realization::Continuous(c) = model.model.realize() {
         let lags = gusts.map_or(0, GustForce::states);
         add_states(&mut table, options, (c.a.nrows(), lags));

@@ -2,9 +2,9 @@
 
 use super::parameters::SectionParameter;
 use super::{Causality, Initial, Response, Role, Value, Variability, Variable};
-use crate::aerodynamics::Realizable;
 use crate::error::{Error, Result};
 use crate::fmu::si::{self, Unit};
+use crate::fmu::standard::printable;
 use crate::section::Dof;
 use crate::trained_model::TrainedModel;
 use std::f64::consts::TAU;
@@ -95,16 +95,17 @@ pub(super) const LOCAL: (Causality, Variability) = (Causality::Local, Variabilit
 pub(super) const INNER: (Causality, Variability) = (Causality::Local, Variability::Continuous);
 pub(super) const SPEED: Option<&Unit> = Some(&si::METRE_PER_SECOND);
 
-pub(super) fn constants(model: &TrainedModel) -> Result<Vec<Variable>> {
+/// `filters` is the number of the states of its forces.
+pub(super) fn constants(model: &TrainedModel, filters: usize) -> Result<Vec<Variable>> {
     let constant = |name, value, text: &str| Variable {
         initial: Some(Initial::Exact),
         value,
         ..real(name, Role::Constant, LOCAL, text)
     };
-    let text = |text: &str| Value::String(text.to_owned());
-    let states = model.model.realize().states();
-    let states = i32::try_from(states)
-        .map_err(|_| Error::input("model", "fewer filter states", states.to_string()))?;
+    // as the description can say it
+    let text = |text: &str| Value::String(printable(text));
+    let states = i32::try_from(filters)
+        .map_err(|_| Error::input("model", "fewer filter states", filters.to_string()))?;
     let version = env!("CARGO_PKG_VERSION");
     Ok(vec![
         constant(

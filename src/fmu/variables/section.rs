@@ -42,7 +42,7 @@ pub(super) fn variables(
     table.extend(dofs.iter().flat_map(|&dof| initial_values(dof, model)));
     table.push(search_limit(model));
     table.extend(calculated_parameters());
-    table.extend(constants(model)?);
+    table.extend(constants(model, model.model.realize().states())?);
     table.extend(bounds.into_iter().flat_map(|b| onset_bounds(b, "section")));
     table.extend(status());
     if let Realization::Continuous(c) = model.model.realize() {
@@ -302,26 +302,26 @@ pub(super) fn calculated_parameters() -> Vec<Variable> {
         parameter(
             "onset_speed",
             C::OnsetSpeed,
-            "Wind speed of flutter onset for the current parameters; onset_search_limit when none was found",
+            "Wind speed of flutter onset for the current parameters; onset_search_limit when none was found, zero when it cannot be computed",
         )
         .quantity("Velocity", SPEED),
         parameter(
             "onset_frequency",
             C::OnsetFrequency,
-            "Frequency at flutter onset; zero when none was found",
+            "Frequency at flutter onset; zero when none is known",
         )
         .quantity("Frequency", Some(&si::HERTZ))
         .shown(),
         parameter(
             "onset_reduced_velocity",
             C::OnsetReducedVelocity,
-            "Reduced velocity V/(f*B) at flutter onset; zero when none was found",
+            "Reduced velocity V/(f*B) at flutter onset; zero when none is known",
         )
         .quantity("ReducedVelocity", None),
         parameter(
             "divergence_speed",
             C::DivergenceSpeed,
-            "Wind speed of static divergence for the current parameters; onset_search_limit when none was found",
+            "Wind speed of static divergence for the current parameters; onset_search_limit when none was found, zero when it cannot be computed",
         )
         .quantity("Velocity", SPEED),
         flag(
@@ -342,7 +342,7 @@ pub(super) fn calculated_parameters() -> Vec<Variable> {
         flag(
             "stable_below_onset",
             C::StableBelowOnset,
-            "Whether nothing grows below onset_speed: false where the model feeds energy into motions outside the tested range",
+            "Whether nothing grows below onset_speed: false where the model feeds energy into motions outside the tested range, or where that is not known",
         ),
     ]
 }
@@ -358,7 +358,7 @@ pub(super) fn status() -> Vec<Variable> {
         output(
             "flutter_margin",
             Status::FlutterMargin,
-            "onset_speed (or the search limit when none was found) less wind_speed",
+            "onset_speed less wind_speed",
         )
         .quantity("Velocity", SPEED),
         output(

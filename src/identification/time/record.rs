@@ -84,11 +84,7 @@ impl Records {
 
     /// Range of all records together.
     pub(crate) fn tested_range(&self) -> Result<ReducedFrequencyRange> {
-        let ranges = self
-            .each
-            .iter()
-            .filter_map(DimensionlessRecord::tested_range);
-        ReducedFrequencyRange::spanning(ranges.flat_map(|r| [r.min, r.max]))
+        ReducedFrequencyRange::covering(self.each.iter().flat_map(DimensionlessRecord::tested))
             .ok_or_else(|| Error::input("records", "a motion", "none that moves"))
     }
 
@@ -193,14 +189,18 @@ impl DimensionlessRecord {
     }
 
     /// Reduced frequencies of the segments; for other motions the band that holds their power.
-    fn tested_range(&self) -> Option<ReducedFrequencyRange> {
+    fn tested(&self) -> Vec<ReducedFrequencyRange> {
         let k = |per_sample: f64| ReducedFrequency::from_full_width(per_sample / self.delta_s());
         if self.segments().is_empty() {
-            let (low, high) = band(&self.signals.motion)?;
-            return ReducedFrequencyRange::spanning([k(low), k(high)]);
+            let whole = |(low, high)| ReducedFrequencyRange::between(k(low), k(high));
+            return band(&self.signals.motion).map(whole).into_iter().collect();
         }
         let of_hertz = |f: f64| ReducedFrequency::from_full_width(TAU * f / self.rate);
-        ReducedFrequencyRange::spanning(self.segments().iter().map(|s| of_hertz(s.frequency_hz)))
+        let tone = |s: &Segment| of_hertz(s.frequency_hz);
+        let tones = self.segments().iter().map(tone);
+        tones
+            .map(|k| ReducedFrequencyRange::between(k, k))
+            .collect()
     }
 
     /// Subtracts the mean of each force over the record; returns the means, dimensionless.

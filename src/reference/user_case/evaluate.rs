@@ -17,10 +17,10 @@ use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use std::f64::consts::TAU;
 
 /// Reduced frequencies in which the onset of a model without a tested range is searched.
-const WIDE: ReducedFrequencyRange = ReducedFrequencyRange {
-    min: ReducedFrequency::from_full_width(0.02),
-    max: ReducedFrequency::from_full_width(10.0),
-};
+const WIDE: ReducedFrequencyRange = ReducedFrequencyRange::between(
+    ReducedFrequency::from_full_width(0.02),
+    ReducedFrequency::from_full_width(10.0),
+);
 
 impl UserCase {
     /// Computes every figure. A computation that fails is a result that has not passed.

@@ -10,6 +10,7 @@ use crate::fmu::bridge_gusts::{BridgeGusts, TurbulenceOptions};
 use crate::fmu::bridge_options::{BridgeOptions, GroupOptions};
 use crate::fmu::onset_bounds::OnsetBounds;
 use crate::fmu::package::BridgeExport;
+use crate::fmu::variables::Listing;
 use crate::trained_model::{Experiment, Provenance, TrainedModel};
 
 /// Amplitude of the default release where the girder moves most, of half the width.
@@ -62,6 +63,7 @@ impl BridgeStudy {
                 .as_ref()
                 .map(|field| self.turbulence(field))
                 .transpose()?,
+            listing: Listing::All,
         })
     }
 
@@ -72,9 +74,11 @@ impl BridgeStudy {
             .saved
             .clone()
             .ok_or_else(|| Error::Numerical("FMU: the first section has no force model".into()))?;
-        let everywhere = || crate::units::ReducedFrequencyRange {
-            min: crate::units::ReducedFrequency::from_full_width(f64::MIN_POSITIVE),
-            max: crate::units::ReducedFrequency::from_full_width(f64::MAX),
+        let everywhere = || {
+            crate::units::ReducedFrequencyRange::between(
+                crate::units::ReducedFrequency::from_full_width(f64::MIN_POSITIVE),
+                crate::units::ReducedFrequency::from_full_width(f64::MAX),
+            )
         };
         Ok(TrainedModel {
             schema_version: model.schema_version(),
@@ -88,7 +92,7 @@ impl BridgeStudy {
                 licence: section.licence.clone(),
                 method: "see the files of the sections".to_owned(),
                 aerodeck_version: env!("CARGO_PKG_VERSION").to_owned(),
-                notes: self.notes.clone(),
+                notes: self.warnings(),
             },
             experiment: self.experiment(onset_m_s),
             model,

@@ -39,10 +39,10 @@ impl Deck {
                 Ok(search)
             }
             Source::FlatPlate => {
-                let range = ReducedFrequencyRange {
-                    min: ReducedFrequency::from_full_width(EXACT_RANGE.0),
-                    max: ReducedFrequency::from_full_width(EXACT_RANGE.1),
-                };
+                let range = ReducedFrequencyRange::between(
+                    ReducedFrequency::from_full_width(EXACT_RANGE.0),
+                    ReducedFrequency::from_full_width(EXACT_RANGE.1),
+                );
                 let mut search = determinant_onset(
                     &self.own_model_name(),
                     structure,

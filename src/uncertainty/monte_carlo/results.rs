@@ -26,8 +26,13 @@ pub struct MonteCarloResult {
     pub unstable_at_or_below: usize,
     /// Highest of those speeds, m/s.
     pub unstable_up_to_m_s: Option<f64>,
-    /// Samples without one.
+    /// Samples without one, as far as they could be judged.
     pub stable: usize,
+    /// Of these, samples with a mode that leaves the tested range of the model below the highest speed: an onset may lie
+    /// beyond.
+    pub not_judged: usize,
+    /// Lowest speed at which one of them does, m/s.
+    pub judged_up_to_m_s: Option<f64>,
     /// Samples without an answer, mostly for impossible values.
     pub failed: usize,
     /// The first of them, with the reason.
@@ -71,7 +76,7 @@ pub struct Failure {
 pub struct Quantile {
     /// Probability of an onset at or below the speed.
     pub probability: f64,
-    /// m/s; `null` above the highest speed searched.
+    /// m/s; `null` above the highest speed searched, and where it depends on samples that could not be judged so far.
     pub speed_m_s: Option<f64>,
     /// Whether the quantile is that of samples whose onset lies there or below.
     pub or_below: bool,
@@ -95,8 +100,8 @@ pub struct DesignCheck {
     pub speed_m_s: f64,
     /// Samples with an onset below it.
     pub below: u64,
-    /// Samples that grow at the lowest speed that could be judged, which is not below the design speed: not counted as
-    /// safe.
+    /// Samples that grow at the lowest speed that could be judged, which is not below the design speed, and samples that
+    /// could not be judged up to it: not counted as safe.
     pub undecided: u64,
     /// Part of all samples with an answer that have an onset below the design speed, or may have.
     pub probability: f64,
@@ -114,7 +119,8 @@ pub(super) struct Tally {
     pub(super) onsets: Vec<f64>,
     /// Speeds at which samples grow that could not be judged below.
     pub(super) starts: Vec<f64>,
-    pub(super) stable: usize,
+    /// Speeds up to which samples without an onset could be judged.
+    pub(super) stable: Vec<f64>,
     pub(super) failed: usize,
     pub(super) failures: Vec<Failure>,
     pub(super) outside: usize,
@@ -135,6 +141,11 @@ impl Tally {
         self.outside += usize::from(!start.in_tested_range);
     }
 
+    /// A sample without an onset up to a speed.
+    pub(super) fn stable(&mut self, judged_to_m_s: f64) {
+        self.stable.push(judged_to_m_s);
+    }
+
     pub(super) fn failure(&mut self, sample: usize, reason: String) {
         self.failed += 1;
         if self.failures.len() < NAMED_FAILURES {
@@ -146,7 +157,7 @@ impl Tally {
     pub(super) fn add(&mut self, later: Self) {
         self.onsets.extend(later.onsets);
         self.starts.extend(later.starts);
-        self.stable += later.stable;
+        self.stable.extend(later.stable);
         self.failed += later.failed;
         let room = NAMED_FAILURES - self.failures.len().min(NAMED_FAILURES);
         self.failures.extend(later.failures.into_iter().take(room));
@@ -167,12 +178,17 @@ impl Tally {
         let nominal_or_below = matches!(nominal, SweepOutcome::UnstableAtOrBelow(_));
         let nominal_m_s = match nominal {
             SweepOutcome::Onset(o) | SweepOutcome::UnstableAtOrBelow(o) => Some(o.speed_m_s),
-            SweepOutcome::Stable | SweepOutcome::Unresolved => None,
+            SweepOutcome::Stable { .. } | SweepOutcome::Unresolved => None,
         };
-        let answered = self.onsets.len() + self.starts.len() + self.stable;
+        let answered = self.onsets.len() + self.starts.len() + self.stable.len();
+        let open = || self.stable.iter().copied().filter(|v| *v < speed_max_m_s);
         let mut unsafe_speeds: Vec<(f64, bool)> = self.onsets.iter().map(|v| (*v, false)).collect();
         unsafe_speeds.extend(self.starts.iter().map(|v| (*v, true)));
         unsafe_speeds.sort_by(|a, b| a.0.total_cmp(&b.0));
+        // an onset of a sample that was not judged to the end may lie anywhere beyond
+        let mut earliest = unsafe_speeds.clone();
+        earliest.extend(open().map(|v| (v, false)));
+        earliest.sort_by(|a, b| a.0.total_cmp(&b.0));
         let (mean, deviation) = mean_and_deviation(self.onsets.iter().copied());
         MonteCarloResult {
             model: model.to_owned(),
@@ -181,7 +197,9 @@ impl Tally {
             onsets: self.onsets.len(),
             unstable_at_or_below: self.starts.len(),
             unstable_up_to_m_s: self.starts.last().copied(),
-            stable: self.stable,
+            stable: self.stable.len(),
+            not_judged: open().count(),
+            judged_up_to_m_s: open().reduce(f64::min),
             failed: self.failed,
             outside_tested_range: self.outside,
             with_spurious_crossings: self.spurious,
@@ -194,7 +212,12 @@ impl Tally {
             quantiles: plan
                 .quantiles
                 .iter()
-                .map(|p| quantile(&unsafe_speeds, answered, *p))
+                .map(|p| {
+                    let known = quantile(&earliest, answered, *p);
+                    let mut found = quantile(&unsafe_speeds, answered, *p);
+                    found.speed_m_s = found.speed_m_s.filter(|v| known.speed_m_s == Some(*v));
+                    found
+                })
                 .collect(),
             histogram: histogram(&self.onsets),
             design: plan
@@ -254,7 +277,8 @@ fn design(tally: &Tally, answered: usize, speed_m_s: f64, confidence: f64) -> De
     // at or below a speed that is not above the design speed
     let starts = tally.starts.partition_point(|v| *v <= speed_m_s) as u64;
     let below = known(&tally.onsets) + starts;
-    let undecided = tally.starts.len() as u64 - starts;
+    let open = tally.stable.iter().filter(|v| **v < speed_m_s);
+    let undecided = tally.starts.len() as u64 - starts + open.count() as u64;
     let (lower, _) = clopper_pearson(below, answered as u64, confidence);
     let (_, upper) = clopper_pearson(below + undecided, answered as u64, confidence);
     DesignCheck {

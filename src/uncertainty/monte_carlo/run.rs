@@ -105,7 +105,7 @@ impl<'a> Finder<'a> {
                     match onset {
                         SweepOutcome::Onset(onset) => tally.onset(&onset),
                         SweepOutcome::UnstableAtOrBelow(start) => tally.unstable(&start),
-                        SweepOutcome::Stable => tally.stable += 1,
+                        SweepOutcome::Stable { judged_to_m_s } => tally.stable(judged_to_m_s),
                         SweepOutcome::Unresolved => {
                             tally.failure(index, "its modes cannot be resolved".to_owned());
                         }
@@ -153,7 +153,9 @@ impl<'a> Finder<'a> {
                     spurious: 0,
                 })
             }
-            FlutterSearch::StableUpTo(_) => SweepOutcome::Stable,
+            FlutterSearch::StableUpTo(range) => SweepOutcome::Stable {
+                judged_to_m_s: range.to_m_s,
+            },
         })
     }
 }
@@ -169,6 +171,8 @@ pub enum OnsetKind {
     UnstableAtOrBelow,
     /// None up to the highest speed.
     Stable,
+    /// None as far as it could be judged, which is less than the highest speed.
+    NotJudged,
 }
 
 /// Onsets of many sections, in their order; NaN where there is none.
@@ -218,7 +222,7 @@ pub fn many_onsets(
         .collect();
     let mut all = ManyOnsets::default();
     for outcome in all_or_errors(parts)?.into_iter().flatten() {
-        all.push(outcome);
+        all.push(outcome, speed_max_m_s);
     }
     Ok(all)
 }
@@ -234,13 +238,16 @@ fn of_section(index: usize, error: Error) -> Error {
 }
 
 impl ManyOnsets {
-    fn push(&mut self, outcome: SweepOutcome) {
+    fn push(&mut self, outcome: SweepOutcome, speed_max_m_s: f64) {
         let (kind, at) = match &outcome {
             SweepOutcome::Onset(o) if o.in_tested_range => (OnsetKind::Tested, Some(o)),
             SweepOutcome::Onset(o) => (OnsetKind::Untested, Some(o)),
             SweepOutcome::UnstableAtOrBelow(o) => (OnsetKind::UnstableAtOrBelow, Some(o)),
+            SweepOutcome::Stable { judged_to_m_s } if *judged_to_m_s >= speed_max_m_s => {
+                (OnsetKind::Stable, None)
+            }
             // the search in full, which follows an unresolved sweep, always answers
-            SweepOutcome::Stable | SweepOutcome::Unresolved => (OnsetKind::Stable, None),
+            SweepOutcome::Stable { .. } | SweepOutcome::Unresolved => (OnsetKind::NotJudged, None),
         };
         let value = |pick: fn(&SweptOnset) -> f64| at.map_or(f64::NAN, pick);
         self.speeds_m_s.push(value(|o| o.speed_m_s));

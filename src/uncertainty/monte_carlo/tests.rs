@@ -14,10 +14,10 @@ fn jones() -> TrainedModel {
         name: "flat plate".into(),
         section: SectionModel::iabse_1_1a(),
         model: Model::Rational(RationalModel::jones_flat_plate()),
-        tested_range: ReducedFrequencyRange {
-            min: K::from_full_width(0.05),
-            max: K::from_full_width(2.0),
-        },
+        tested_range: ReducedFrequencyRange::between(
+            K::from_full_width(0.05),
+            K::from_full_width(2.0),
+        ),
         provenance: Provenance {
             source: "R. T. Jones".into(),
             licence: "public".into(),

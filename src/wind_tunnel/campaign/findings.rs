@@ -4,7 +4,7 @@
 use super::file::Campaign;
 use crate::error::{Error, Result};
 use crate::plausibility::{
-    DECK_WIDTH, MODEL_LENGTH, MODEL_WIDTH, SAMPLING, WIND_SPEED, hint, ratio_hint,
+    DECK_WIDTH, MODEL_LENGTH, MODEL_WIDTH, SAMPLING, WIND_SPEED, beyond, ratio_hint,
 };
 use crate::section::Dof;
 use crate::signal::{clipped_stretches, extremes, mean};
@@ -211,8 +211,8 @@ pub(super) fn file_hints(campaign: &Campaign) -> Vec<Finding> {
     let mut said = Vec::new();
     match &campaign.rig {
         Some(rig) => {
-            said.push(hint("rig.model_width_m", rig.model_width_m, &MODEL_WIDTH));
-            said.push(hint(
+            said.push(beyond("rig.model_width_m", rig.model_width_m, &MODEL_WIDTH));
+            said.push(beyond(
                 "rig.model_length_m",
                 rig.model_length_m,
                 &MODEL_LENGTH,
@@ -220,25 +220,25 @@ pub(super) fn file_hints(campaign: &Campaign) -> Vec<Finding> {
             for (i, cell) in rig.cells.iter().enumerate() {
                 let farthest = cell.position_m.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
                 let key = format!("rig.cells[{i}].position_m");
-                said.push(hint(&key, farthest, &MODEL_LENGTH).filter(|_| farthest > 1.0));
+                said.push(beyond(&key, farthest, &MODEL_LENGTH).filter(|_| farthest > 1.0));
             }
         }
         None => said.extend(
             campaign
                 .section
                 .width_m
-                .map(|b| hint("section.width_m", b, &DECK_WIDTH)),
+                .map(|b| beyond("section.width_m", b, &DECK_WIDTH)),
         ),
     }
     let sampling = campaign.recording.sampling_hz;
-    said.extend(sampling.map(|hz| hint("recording.sampling_hz", hz, &SAMPLING)));
+    said.extend(sampling.map(|hz| beyond("recording.sampling_hz", hz, &SAMPLING)));
     for (i, run) in campaign.runs.iter().enumerate() {
         let key = format!("run[{i}].mean_speed_m_s");
-        said.extend(run.mean_speed_m_s.map(|v| hint(&key, v, &WIND_SPEED)));
+        said.extend(run.mean_speed_m_s.map(|v| beyond(&key, v, &WIND_SPEED)));
     }
     said.into_iter()
         .flatten()
-        .map(|what| Finding::of_run("", what))
+        .map(|odd| Finding::of_run("", odd.to_string()))
         .collect()
 }
 

@@ -20,7 +20,7 @@ fn calculated(unit: &Unit) -> ([f64; 4], [bool; 3]) {
 fn warned(unit: &Unit, words: &str) -> bool {
     let messages = unit.messages.lock().unwrap();
     let is = |m: &&(String, fmi2Status, String, String)| {
-        m.1 == fmi2OK && m.2 == "logStatusWarning" && m.3.contains(words)
+        m.1 == fmi2Status::fmi2Warning && m.2 == "logStatusWarning" && m.3.contains(words)
     };
     messages.iter().find(is).is_some()
 }
@@ -48,33 +48,29 @@ fn legal_parameters_do_not_make_a_getter_fail() {
             let [limit] = unit.get(["onset_search_limit"]);
             let ([onset, frequency, reduced, divergence], [found, tested, diverges]) =
                 calculated(&unit);
-            assert!(
-                onset > 0.0 && onset <= limit && divergence <= limit,
-                "{kind}"
-            );
+            assert!(onset <= limit && divergence <= limit, "{kind}");
             if !found {
-                assert_eq!(
-                    (onset, frequency, reduced, tested),
-                    (limit, 0.0, 0.0, false)
-                );
+                // the limit, or less where less was judged; nothing where nothing is known
+                assert!(onset >= 0.0, "{kind}");
+                assert_eq!((frequency, reduced, tested), (0.0, 0.0, false));
             }
             if !diverges {
-                assert_eq!(divergence, limit);
+                assert!(divergence == limit || divergence == 0.0, "{kind}");
             }
         }
     }
 }
 
-/// No stiffness: neither onset nor divergence is known, and the log says why. A free motion can still be stepped.
+/// No stiffness: divergence is not known. Its speed is zero, never the limit, which would read as safe, and the log says why. A free
+/// motion can still be stepped.
 #[test]
-fn what_cannot_be_searched_for_is_none_with_a_warning() {
+fn what_cannot_be_searched_for_is_zero_with_a_warning() {
     let unit = Unit::of("rational");
     unit.ok(unit.set_up());
     unit.ok(unit.enter());
     unit.set("torsion_frequency", 0.0);
-    let [limit] = unit.get(["onset_search_limit"]);
     let ([.., divergence], [.., diverges]) = calculated(&unit);
-    assert_eq!((divergence, diverges), (limit, false));
+    assert_eq!((divergence, diverges), (0.0, false));
     assert!(warned(
         &unit,
         "divergence is not known for these parameters"
@@ -215,8 +211,9 @@ fn sections_of_many_states_are_not_searched() {
     unit.ok(unsafe { fmi2SetDebugLogging(unit.handle, 1, 0, null()) });
     unit.ok(unit.set_up());
     unit.ok(unit.enter());
-    assert_eq!(unit.get(["onset_speed"]), [5.0]);
-    assert!(!unit.flag("onset_found"));
+    let [speed, margin, wind] = unit.get(["onset_speed", "flutter_margin", "wind_speed"]);
+    assert_eq!((speed, margin), (0.0, -wind));
+    assert!(!unit.flag("onset_found") && !unit.flag("stable_below_onset"));
     assert!(warned(&unit, "at most 100 states"));
     unit.ok(unit.exit());
     unit.ok(unit.step(0.0, 0.01));

@@ -1,13 +1,15 @@
-//! Whether the numbers of a table look like what they are said to be.
+//! Tables of derivatives: whether the numbers look like what they are said to be.
 //!
 //! Between notations, arguments and axes lie factors of 2, π and K and changes of sign. At low reduced velocities the
 //! derivatives `H1*`, `H3*`, `A1*`, `A3*` of streamlined and most bluff girders have the signs of a flat plate's and nearly
 //! its size: on the embedded decks 0.65 to 1.1 of it for the lift, 0.85 to 0.95 for the moment. A table that is far from
-//! that, and near it when it is read in another convention, was probably written in that one. Nothing is changed: the
-//! hints are for the reader.
+//! that, and near it when it is read in another convention, was probably written in that one: reduced velocities that are
+//! wrong by 2π change `H1*`, `A1*` by that factor against the plate's and `H3*`, `A2*`, `A3*` by its square.
 
-use super::notation::{Argument, Axes, Convention, Notation};
-use super::{Derivative, DerivativePoint, DerivativeTable, Part};
+use super::limits::{DECK_WIDTH, beyond};
+use super::{Finding, Kind};
+use crate::aerodynamics::derivatives::notation::{Argument, Axes, Convention, Notation};
+use crate::aerodynamics::derivatives::{Derivative, DerivativePoint, DerivativeTable, Part};
 use crate::aerodynamics::{FlatPlate, Transfer};
 use crate::section::Dof;
 
@@ -26,44 +28,49 @@ const ODD: f64 = 10.0;
 /// … and another convention is named when it brings the sum below this, and at least so much lower.
 const FITS: f64 = 6.0;
 const BETTER_BY: f64 = 8.0;
-/// Wider than any deck, m.
-const WIDEST_M: f64 = 100.0;
+/// A size that no bluff deck has, as a factor on what is usual.
+const NO_DECK: f64 = 5.0;
 
-/// The five numbers at low reduced velocity, over those of the flat plate.
-struct Signature([f64; 5]);
+/// The five numbers at low reduced velocity, over those of the flat plate; `None` where the table has no such derivative.
+struct Signature([Option<f64>; 5]);
 
-impl DerivativeTable {
-    /// What looks wrong in the table: signs, sizes and units that are those of another convention. Empty when nothing does.
-    /// `label` is the convention that the file states, or that was stated for it.
-    pub(crate) fn hints(&self, label: &Convention) -> Vec<String> {
-        let mut hints = Vec::new();
-        if self.width_m > WIDEST_M {
-            hints.push(format!(
-                "width_m = {} m is wider than any deck: millimetres?",
-                self.width_m
-            ));
-        }
-        let own = Signature::of(self, &|_, point| *point);
-        let score = own.score();
-        if score < ODD {
-            return hints;
-        }
-        let best = candidates(*label)
-            .map(|(words, reading)| (Signature::of(self, &*reading).score(), words))
-            .min_by(|a, b| a.0.total_cmp(&b.0));
-        let odd = own.words();
-        hints.push(match best {
-            Some((other, words)) if other < FITS && other + BETTER_BY < score => format!(
-                "{odd}; read as {words} they would be those of a bridge deck: is the table labelled wrongly? (nothing was \
-                 changed)"
-            ),
-            _ => format!(
-                "{odd}; a streamlined deck has H1* < 0, H3* > 0, A1* < 0, A2* < 0, A3* > 0 at low V̂ (Scanlan, heave up), \
-                 in size near a flat plate's: check notation, argument, axes and units (nothing was changed)"
-            ),
-        });
-        hints
+/// What looks wrong in a table: signs, sizes and units that are those of another convention. Empty when nothing does. `label` is
+/// the convention that the file states, or that was stated for it.
+pub fn of_table(table: &DerivativeTable, label: &Convention) -> Vec<Finding> {
+    let width = format!("{}: width_m", table.name);
+    let mut found: Vec<Finding> = beyond(&width, table.width_m, &DECK_WIDTH)
+        .into_iter()
+        .collect();
+    let own = Signature::of(table, &|_, point| *point);
+    let score = own.score();
+    if score < ODD {
+        return found;
     }
+    let best = candidates(*label)
+        .map(|(words, reading)| (Signature::of(table, &*reading).score(), words))
+        .min_by(|a, b| a.0.total_cmp(&b.0));
+    let odd = Finding::doubt(Kind::Convention, &table.name, own.words());
+    found.push(match best {
+        Some((other, words)) if other < FITS && other + BETTER_BY < score => {
+            odd.otherwise(format!(
+                "read as {words} they would be those of a bridge deck: is the table labelled wrongly? (nothing was changed)"
+            ))
+        }
+        _ => {
+            let odd = odd.otherwise(
+                "a streamlined deck has H1* < 0, H3* > 0, A1* < 0, A2* < 0, A3* > 0 at low V̂ (Scanlan, heave up), in size near \
+                 a flat plate's: check notation, argument, axes and units (nothing was changed)"
+                    .to_owned(),
+            );
+            // signs by themselves may be those of a bluff deck, which gallops
+            if own.has_a_size_of_no_deck() {
+                odd
+            } else {
+                odd.into_note()
+            }
+        }
+    });
+    found
 }
 
 type Reading = Box<dyn Fn(Derivative, &DerivativePoint) -> DerivativePoint>;
@@ -122,14 +129,20 @@ impl Signature {
             let ratio = |p: &DerivativePoint| p.value / flat_plate(derivative, p);
             let mut ratios: Vec<f64> = points.iter().map(ratio).collect();
             ratios.sort_by(f64::total_cmp);
-            ratios.get(ratios.len() / 2).copied().unwrap_or(f64::NAN)
+            ratios.get(ratios.len() / 2).copied()
         }))
+    }
+
+    /// Those that the table has, each with its derivative, usual size and spread.
+    fn known(&self) -> impl Iterator<Item = (f64, (Derivative, f64, f64))> {
+        let all = self.0.into_iter().zip(USUAL);
+        all.filter_map(|(ratio, usual)| Some((ratio?, usual)))
     }
 
     /// Sum over the five of the squared distance from what is usual, in standard deviations.
     fn score(&self) -> f64 {
-        let terms = self.0.iter().zip(USUAL).map(|(ratio, (d, usual, spread))| {
-            if *ratio > 0.0 {
+        let terms = self.known().map(|(ratio, (d, usual, spread))| {
+            if ratio > 0.0 {
                 ((ratio / usual).ln() / spread).powi(2).min(WRONG_SIGN)
             } else if d == Derivative::A2 {
                 0.25 * WRONG_SIGN
@@ -140,21 +153,22 @@ impl Signature {
         terms.sum()
     }
 
+    fn has_a_size_of_no_deck(&self) -> bool {
+        self.known()
+            .any(|(ratio, (_, usual, _))| (ratio / usual).abs().ln().abs() > NO_DECK.ln())
+    }
+
     /// What is odd about the numbers.
     fn words(&self) -> String {
-        let odd = self
-            .0
-            .iter()
-            .zip(USUAL)
-            .filter_map(|(ratio, (d, usual, spread))| {
-                if *ratio <= 0.0 {
-                    return Some(format!("{d}* has the sign opposite to a flat plate's"));
-                }
-                let far = (ratio / usual).ln().abs() > 2.0 * spread;
-                far.then(|| format!("{d}* is {ratio:.2} times a flat plate's"))
-            });
+        let odd = self.known().filter_map(|(ratio, (d, usual, spread))| {
+            if ratio <= 0.0 {
+                return Some(format!("{d}* has the sign opposite to a flat plate's"));
+            }
+            let far = (ratio / usual).ln().abs() > 2.0 * spread;
+            far.then(|| format!("{d}* is {ratio:.2} times a flat plate's"))
+        });
         let odd: Vec<String> = odd.collect();
-        let wrong = |i: usize| self.0[i] <= 0.0;
+        let wrong = |i: usize| self.0[i].is_some_and(|ratio| ratio <= 0.0);
         let both = if wrong(0) && wrong(3) {
             " (H1* and A2* both positive: a section that gallops and flutters at once, or PoliMi's h1*, a2*)"
         } else {

@@ -1,0 +1,126 @@
+//! The line of the nodes against the girder axis, which follows from the axes that are stated.
+
+use crate::bridge::Node;
+use crate::plausibility::limits::{Limits, beyond};
+use crate::plausibility::{Finding, Kind};
+
+/// Length from the first to the last node.
+pub(super) const LENGTH: Limits = Limits {
+    unit: "m",
+    usual: (5.0, 10_000.0),
+    meant: &[("mm", 1e-3), ("cm", 1e-2), ("km", 1e3)],
+};
+
+/// Angle between the line of the nodes in plan and the girder axis: worth a note (0.06 % of a length), and a doubt (0.4 %), degrees.
+const SKEW_DEG: (f64, f64) = (2.0, 5.0);
+/// Rise of the line of the nodes over its length that no road has.
+const STEEPEST: f64 = 0.12;
+/// Distance of a node from the straight line in plan over the length: the ends of a circular arc then turn by 1° and by 4.6°.
+const CURVED: (f64, f64) = (0.005, 0.02);
+
+/// Length from the first to the last node along the girder, m.
+pub(super) fn length_m(nodes: &[Node]) -> f64 {
+    match nodes {
+        [first, .., last] => last.along_m - first.along_m,
+        _ => 0.0,
+    }
+}
+
+/// What is odd about where the nodes are.
+pub(super) fn of_line(nodes: &[Node], offsets_m: &[[f64; 2]]) -> Vec<Finding> {
+    if nodes.len() < 2 {
+        return Vec::new();
+    }
+    let length = length_m(nodes);
+    let along: Vec<f64> = nodes.iter().map(|n| n.along_m).collect();
+    let mut found: Vec<Finding> = beyond("nodes: length", length, &LENGTH)
+        .into_iter()
+        .collect();
+    if offsets_m.len() != nodes.len() {
+        return found;
+    }
+    let [in_plan, in_elevation] =
+        [0, 1].map(|i| straight(&along, offsets_m.iter().map(|o| o[i]).collect()));
+    found.extend(skew(in_plan.slope));
+    if in_elevation.slope.abs() > STEEPEST {
+        let text = format!(
+            "the line of the nodes rises by {:.0} % of its length",
+            100.0 * in_elevation.slope
+        );
+        found.push(
+            Finding::doubt(Kind::Axes, "modes.axes.up", text)
+                .otherwise("is another axis up?".to_owned()),
+        );
+    }
+    found.extend(curve(&in_plan, length));
+    found
+}
+
+fn skew(slope: f64) -> Option<Finding> {
+    let angle = slope.atan().to_degrees();
+    let (note, doubt) = SKEW_DEG;
+    if angle.abs() < note {
+        return None;
+    }
+    let text = format!(
+        "the line of the nodes is turned by {angle:.1}° from the girder axis up × downwind, so that lengths are taken {:.1} % too \
+         short and motions of the girder are mixed",
+        100.0 * (1.0 - slope.atan().cos())
+    );
+    let otherwise = format!(
+        "the wind square to the nodes blows {:.1}° from the stated direction",
+        angle.abs()
+    );
+    let found = Finding::doubt(Kind::Axes, "modes.axes.downwind", text).otherwise(otherwise);
+    Some(if angle.abs() < doubt {
+        found.into_note()
+    } else {
+        found
+    })
+}
+
+fn curve(line: &Straight, length_m: f64) -> Option<Finding> {
+    let part = line.farthest_m / length_m;
+    let (note, doubt) = CURVED;
+    if part < note {
+        return None;
+    }
+    let text = format!(
+        "the nodes leave a straight line in plan by {:.2} m, {:.1} % of its length: a curved girder is answered as a straight one, \
+         with wind square to its chord and motions along the same axes everywhere",
+        line.farthest_m,
+        100.0 * part
+    );
+    let found = Finding::doubt(Kind::Axes, "nodes", text);
+    Some(if part < doubt {
+        found.into_note()
+    } else {
+        found
+    })
+}
+
+/// Nodes against the straight line from the first to the last.
+struct Straight {
+    slope: f64,
+    /// Greatest distance of a node from it, m.
+    farthest_m: f64,
+}
+
+/// The chord: unlike a regression it is the same however dense the nodes are.
+fn straight(along: &[f64], off: Vec<f64>) -> Straight {
+    let (Some((a0, a1)), Some((o0, o1))) = (ends(along), ends(&off)) else {
+        return Straight {
+            slope: 0.0,
+            farthest_m: 0.0,
+        };
+    };
+    let slope = (o1 - o0) / (a1 - a0);
+    let square = slope.mul_add(slope, 1.0).sqrt();
+    let distance = |(a, o): (&f64, &f64)| (o - o0 - slope * (a - a0)).abs() / square;
+    let farthest_m = along.iter().zip(&off).map(distance).fold(0.0, f64::max);
+    Straight { slope, farthest_m }
+}
+
+fn ends(values: &[f64]) -> Option<(f64, f64)> {
+    Some((*values.first()?, *values.last()?))
+}

@@ -1,0 +1,210 @@
+//! How wide a gap between tested `K` may be: what reading smooth forces across it does to the onset.
+
+use aerodeck::aerodynamics::derivatives::{DerivativeTable, Extrapolation, InterpolatedTable};
+use aerodeck::aerodynamics::{FlatPlate, Lags, RationalModel, Transfer};
+use aerodeck::aeroelastic::CoupledSection;
+use aerodeck::flutter::{
+    FlutterSearch, LinearForces, Onset, OnsetSearch, OnsetSweep, SweepOutcome, determinant_onset,
+    find_onset, pk_onset,
+};
+use aerodeck::identification::{Fitted, FrequencyFit, fit_table};
+use aerodeck::section::{Dof, SectionModel, Structure};
+use aerodeck::units::{ReducedFrequency, ReducedFrequencyRange};
+
+/// Ratio of neighbouring tested `K` outside the gap.
+const CLOSE: f64 = 1.25;
+/// Lowest and highest tested `K` over that of the onset.
+const REACH: f64 = 5.0;
+
+const SEARCH: OnsetSearch = OnsetSearch {
+    speed_max_m_s: 60.0,
+    speeds: 120,
+};
+
+fn k(value: f64) -> ReducedFrequency {
+    ReducedFrequency::from_full_width(value)
+}
+
+/// The flat plate, Jones's approximation, and decks that differ from it by up to a third in every coefficient, the last six
+/// with a lag that feeds rotation in slow motion.
+fn truths() -> Vec<Box<dyn Transfer>> {
+    let mut all: Vec<Box<dyn Transfer>> = vec![
+        Box::new(FlatPlate::default()),
+        Box::new(RationalModel::jones_flat_plate()),
+    ];
+    let mut state = 5_u64;
+    let mut factor = || {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1);
+        1.0 + 0.33 * ((state >> 33) as f64 / f64::from(1_u32 << 30) - 1.0)
+    };
+    for i in 1..=9 {
+        let mut model = RationalModel::jones_flat_plate();
+        model.a1.apply(|x| *x *= factor());
+        model.a2.apply(|x| *x *= factor());
+        for lag in &mut model.lag_terms {
+            lag.apply(|x| *x *= factor());
+        }
+        if i > 3 {
+            let mut lag = model.lag_terms[0].clone() * 0.0;
+            lag[(1, 1)] = 0.4 * factor();
+            model.lag_terms.push(lag);
+            model.lags = Lags::Shared(vec![0.091, 0.6, 0.15 * factor()]);
+        }
+        all.push(Box::new(model));
+    }
+    all
+}
+
+fn exact(structure: &Structure, truth: &dyn Transfer) -> Onset {
+    let range = ReducedFrequencyRange::between(k(0.02), k(10.0));
+    let found = determinant_onset("", structure, truth, range, 300.0).unwrap();
+    found.onset().unwrap().clone()
+}
+
+/// A table with tests close to each other but for a gap of this ratio with the onset at `part` of it.
+fn table(truth: &dyn Transfer, onset: f64, ratio: f64, part: f64) -> DerivativeTable {
+    let (below, above) = (onset * ratio.powf(-part), onset * ratio.powf(1.0 - part));
+    let mut ks = Vec::new();
+    let (mut low, mut high) = (below, above);
+    while low > onset / REACH {
+        ks.push(low);
+        low /= CLOSE;
+    }
+    while high < onset * REACH {
+        ks.push(high);
+        high *= CLOSE;
+    }
+    // reduced velocities rise
+    ks.sort_by(|a, b| b.total_cmp(a));
+    let frequencies: Vec<f64> = ks.iter().map(|k| k / std::f64::consts::TAU).collect();
+    DerivativeTable::sampled("truth", truth, 1.0, &[1.0], &frequencies).unwrap()
+}
+
+/// What a gap costs a table on smooth truths, per cent of the onset: the worst of them, with the onset anywhere in it.
+fn cost(ratio: f64) -> f64 {
+    let mut worst = 0.0f64;
+    for section in [SectionModel::table_4_1(), SectionModel::iabse_1_1a()] {
+        let structure = section.structure().unwrap();
+        for truth in truths() {
+            let onset = exact(&structure, truth.as_ref());
+            let at = onset.at.reduced_frequency.full_width();
+            for part in [0.3, 0.5, 0.7] {
+                let table = table(truth.as_ref(), at, ratio, part);
+                let found = by_table(&table, &structure, 300.0);
+                let speed = found.onset().unwrap().at.speed_m_s;
+                worst = worst.max(100.0 * (speed / onset.at.speed_m_s - 1.0).abs());
+            }
+        }
+    }
+    worst
+}
+
+fn by_table(table: &DerivativeTable, structure: &Structure, speed_max_m_s: f64) -> FlutterSearch {
+    let model = InterpolatedTable::new(table, &Dof::TWO, Extrapolation::Refuse).unwrap();
+    let range = model.tested_range();
+    determinant_onset("", structure, &model, range, speed_max_m_s).unwrap()
+}
+
+/// The widest step that counts as tested, a ratio of 2, costs 0.90 %; of 2.5 1.66 %.
+#[test]
+fn the_widest_step_between_tests_costs_a_per_cent() {
+    let (widest, wider) = (cost(2.0), cost(2.5));
+    assert!((0.8..1.0).contains(&widest), "{widest}");
+    assert!(wider > 1.5, "{wider}");
+}
+
+/// Table, fit and sweep say that an onset lies in a gap, and between which tests.
+#[test]
+fn an_onset_in_a_gap_is_said_to_lie_there() {
+    let section = SectionModel::table_4_1();
+    let structure = section.structure().unwrap();
+    let truth = RationalModel::jones_flat_plate();
+    let at = exact(&structure, &truth).at.reduced_frequency.full_width();
+    for (ratio, inside) in [(1.9, true), (3.0, false)] {
+        let table = table(&truth, at, ratio, 0.5);
+        let fit = FrequencyFit::default();
+        let Fitted { model, report } =
+            fit_table(&table.samples(&Dof::TWO), &Dof::TWO, &fit).unwrap();
+        let tested = Some(report.tested_range);
+        let coupled = CoupledSection::with_model(&structure, &model).unwrap();
+        let by_model = find_onset("", &coupled, &SEARCH, tested).unwrap();
+        for found in [by_table(&table, &structure, 60.0), by_model] {
+            let onset = found.onset().unwrap();
+            assert_eq!(onset.in_tested_range, Some(inside), "{onset:?}");
+            let gap = onset
+                .gap
+                .map(|g| (g.from.full_width() / at, g.to.full_width() / at));
+            assert_eq!(gap.is_none(), inside, "{gap:?}");
+            if let Some((from, to)) = gap {
+                assert!((from * ratio.sqrt() - 1.0).abs() < 1e-12);
+                assert!((to / ratio.sqrt() - 1.0).abs() < 1e-12);
+                assert!(
+                    onset
+                        .headline()
+                        .contains("in a gap between the tested K 0.")
+                );
+                assert!(
+                    onset
+                        .warnings
+                        .iter()
+                        .any(|w| w.contains("in a gap between"))
+                );
+            }
+        }
+        let forces = LinearForces::of_rational(&truth, tested);
+        let coefficients = forces.coefficients().to_vec();
+        let sweep = OnsetSweep::new(forces, &structure, 60.0).unwrap();
+        let swept = sweep.onset(&section, &coefficients).unwrap();
+        assert!(matches!(swept, SweepOutcome::Onset(o) if o.in_tested_range == inside));
+    }
+}
+
+/// A deck that flutters at 12 m/s by what it does in slow motion, tested at K of 1.25 and more only: no route calls it stable
+/// beyond 4 m/s.
+#[test]
+fn what_was_not_tested_is_not_called_stable() {
+    let mut truth = RationalModel::jones_flat_plate();
+    let mut lag = truth.lag_terms[0].clone() * 0.0;
+    lag[(1, 1)] = 1.2;
+    truth.lag_terms.push(lag);
+    truth.lags = Lags::Shared(vec![0.091, 0.6, 0.05]);
+    let section = SectionModel::table_4_1();
+    let structure = section.structure().unwrap();
+    println!("truth {:.3}", exact(&structure, &truth).at.speed_m_s);
+    let ks: Vec<f64> = (0..10).map(|i| 1.25 * 1.2f64.powi(9 - i)).collect();
+    let frequencies: Vec<f64> = ks.iter().map(|k| k / std::f64::consts::TAU).collect();
+    let table = DerivativeTable::sampled("", &truth, 1.0, &[1.0], &frequencies).unwrap();
+    let Fitted { model, report } = fit_table(
+        &table.samples(&Dof::TWO),
+        &Dof::TWO,
+        &FrequencyFit::default(),
+    )
+    .unwrap();
+    let tested = Some(report.tested_range);
+    let coupled = CoupledSection::with_model(&structure, &model).unwrap();
+    let search = OnsetSearch {
+        speed_max_m_s: 30.0,
+        speeds: 120,
+    };
+    for found in [
+        find_onset("", &coupled, &search, tested).unwrap(),
+        pk_onset("", &structure, &model, &search, tested).unwrap(),
+        determinant_onset("", &structure, &model, report.tested_range, 30.0).unwrap(),
+        by_table(&table, &structure, 30.0),
+    ] {
+        println!("{}", found.explain());
+    }
+    let f = find_onset(
+        "",
+        &coupled,
+        &OnsetSearch {
+            speed_max_m_s: 60.0,
+            speeds: 120,
+        },
+        tested,
+    )
+    .unwrap();
+    println!("{}", f.explain());
+}
