@@ -26,8 +26,9 @@ const REAL: f64 = 1e-3;
 /// `u` in units of the natural frequencies about which the problem is inverted; no wind has a negative one.
 const SHIFT: f64 = -0.7;
 
-/// The speeds (m/s, rising) at which the number of growing oscillations of `section` may change, all of them; besides these
-/// such at which two real eigenvalues have the sum zero, which mean nothing. `None` for sampled and large systems, and
+/// The speeds (m/s, rising) at which the number of eigenvalues with a positive real part may change, all of them: those of pairs
+/// on the imaginary axis, and of divergence, where one is zero; besides these such at which two real eigenvalues have the sum
+/// zero, which mean nothing. `None` for sampled and large systems, and
 /// where the force model is no stable filter.
 pub(super) fn critical_speeds(section: &CoupledSection) -> Option<Vec<f64>> {
     let (system, size) = small(section)?;
@@ -48,13 +49,14 @@ pub(super) fn critical_speeds(section: &CoupledSection) -> Option<Vec<f64>> {
         return None;
     }
     let found = eigenvalues(&companion).ok()?;
-    let mut speeds: Vec<f64> = found
+    let pairs = found
         .into_iter()
         .filter(|mu| mu.norm() > 0.0)
         .map(|mu| mu.inv() + SHIFT)
         .filter(|u| u.re > 0.0 && u.im.abs() <= REAL * u.re)
-        .map(|u| system.unit_m_s / u.re)
-        .collect();
+        .map(|u| u.re);
+    let all = pairs.chain(system.at_rest()?);
+    let mut speeds: Vec<f64> = all.map(|u| system.unit_m_s / u).collect();
     speeds.sort_by(f64::total_cmp);
     Some(speeds)
 }
@@ -120,6 +122,18 @@ impl Dimensionless {
             a: aero.a.clone(),
             b: aero.b.clone(),
         })
+    }
+
+    /// The `u` of divergence, at which the stiffness in steady wind is singular: `E₀ − C A⁻¹ b + u² E₂`.
+    fn at_rest(&self) -> Option<impl Iterator<Item = f64>> {
+        let steady = match self.a.is_empty() {
+            true => self.e0.clone(),
+            false => &self.e0 - &self.c * self.a.clone().lu().solve(&self.b)?,
+        };
+        let flexibility = self.e2.clone().try_inverse()?;
+        let squares = eigenvalues(&(flexibility * -steady)).ok()?;
+        let real = |z: &nalgebra::Complex<f64>| z.re > 0.0 && z.im.abs() <= REAL * z.re;
+        Some(squares.into_iter().filter(real).map(|z| z.re.sqrt()))
     }
 
     /// The matrices of 1, `u` and `u²`, rows scaled to unit size.

@@ -104,6 +104,8 @@ pub(super) struct Point {
     pub(super) fastest: Option<Complex<f64>>,
     /// The fastest growing oscillation inside the tested range.
     pub(super) inside: Option<Complex<f64>>,
+    /// Number of eigenvalues with a positive real part, oscillating or not.
+    unstable: usize,
 }
 
 impl Point {
@@ -225,6 +227,7 @@ impl<'a> Scan<'a> {
 
     pub(super) fn at(&self, speed: f64) -> Result<Point> {
         let mut all = self.section.at(speed)?.eigenvalues()?;
+        let unstable = all.iter().filter(|z| z.re > 0.0).count();
         all.retain(oscillates);
         all.sort_by(|a, b| b.re.total_cmp(&a.re));
         let inside = |z: &&Complex<f64>| growing(z) && self.inside(speed, **z) != Some(false);
@@ -232,6 +235,7 @@ impl<'a> Scan<'a> {
             speed,
             fastest: all.first().copied(),
             inside: all.iter().find(inside).copied(),
+            unstable,
         })
     }
 
@@ -239,8 +243,9 @@ impl<'a> Scan<'a> {
         speeds.iter().map(|v| self.at(*v)).collect()
     }
 
-    /// Points on both sides of all critical speeds and half way between them: where nothing grows, nothing does up to the
-    /// next. Where something grows the speeds of the grid are added, for the fastest growth and the tested range.
+    /// Points on both sides of all critical speeds and half way between them. Where no two eigenvalues have a positive real
+    /// part there, none have up to the next, and no oscillation grows. Where two have, the speeds of the grid are added: for the
+    /// fastest growth and the tested range, and since two that are real may meet and oscillate.
     fn between(&self, critical: &[f64], grid: &[f64]) -> Result<Vec<Point>> {
         let (low, high) = (grid[0], grid[grid.len() - 1]);
         let inside = critical.iter().filter(|v| (low..high).contains(*v));
@@ -253,12 +258,15 @@ impl<'a> Scan<'a> {
         ends.sort_by(f64::total_cmp);
         ends.dedup();
         let mut points = self.all_at(&ends)?;
-        let grows = |w: &[Point]| w[0].grows() || w[1].grows();
+        let two = |w: &[Point]| w[0].unstable > 1 || w[1].unstable > 1;
         let within = |w: &[Point], v: f64| w[0].speed < v && v < w[1].speed;
-        let more = |v: &&f64| points.windows(2).any(|w| grows(w) && within(w, **v));
+        let more = |v: &&f64| points.windows(2).any(|w| two(w) && within(w, **v));
         let more: Vec<f64> = grid.iter().filter(more).copied().collect();
         points.extend(self.all_at(&more)?);
         points.sort_by(|a, b| a.speed.total_cmp(&b.speed));
+        if points.iter().any(|p| p.unstable > 1 && !p.grows()) {
+            self.add_peaks(&mut points)?;
+        }
         Ok(points)
     }
 

@@ -255,3 +255,44 @@ fn as_onset(model: &TrainedModel, found: &Found) -> Onset {
         interval: OnsetInterval::none("that of the model in it"),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn point(speed_m_s: f64, growth_rate_per_s: f64, frequency_hz: f64) -> GrowthPoint {
+        GrowthPoint {
+            speed_m_s,
+            growth_rate_per_s,
+            frequency_hz,
+        }
+    }
+
+    /// A motion without frequency has no reduced frequency to step it at; that the section diverges is the answer.
+    #[test]
+    fn a_motion_that_diverges_is_an_answer() {
+        let found = Found {
+            speed_m_s: 21.5,
+            frequency_hz: 0.0,
+            mode_ratio: None,
+            phase_deg: 0.0,
+            communication_step_s: 0.01,
+            growth: vec![point(9.0, -0.2, 2.0), point(22.0, 0.1, 0.0)],
+            steps: 1000,
+        };
+        let said = diverges(&found).explain();
+        assert_eq!(
+            said,
+            "no flutter up to 21.500 m/s, judged from 9.000 m/s (from 21.500 m/s on the section diverges, which hides any \
+             oscillation)"
+        );
+        assert!(matches!(
+            Entry::of_rest(&point(30.0, 0.4, 0.0)),
+            Entry::Diverging(30.0)
+        ));
+        assert!(matches!(
+            Entry::of_rest(&point(30.0, -0.4, 0.0)),
+            Entry::Damped
+        ));
+    }
+}
