@@ -173,6 +173,28 @@ impl OnsetInterval {
         }
     }
 
+    /// The same where something besides its width leaves the speed open.
+    #[must_use]
+    pub(crate) fn undetermined(self, why: String) -> Self {
+        match self {
+            Self::Known {
+                low_m_s,
+                high_m_s,
+                standard_error_m_s,
+                degrees_of_freedom,
+                parts,
+            } => Self::Undetermined {
+                low_m_s,
+                high_m_s,
+                standard_error_m_s,
+                degrees_of_freedom,
+                parts,
+                reason: format!("not determined by these data: {why}"),
+            },
+            other => other,
+        }
+    }
+
     /// What the standard error is made of.
     pub fn parts(&self) -> Option<ErrorParts> {
         match self {

@@ -128,7 +128,7 @@ pub struct IntervalCoverage {
 }
 
 impl IntervalCoverage {
-    fn count(verdicts: impl Iterator<Item = bool>) -> Self {
+    pub(super) fn count(verdicts: impl Iterator<Item = bool>) -> Self {
         let (inside, of) =
             verdicts.fold((0, 0), |(inside, of), v| (inside + usize::from(v), of + 1));
         Self {
