@@ -42,10 +42,11 @@ from ._aerodeck import (
     simulate,
     sweep,
 )
-from ._errors import AerodeckError, FileError, InputError, NumericalError, UnstableError
+from ._errors import AerodeckError, AerodeckWarning, FileError, InputError, NumericalError, UnstableError
 
 __all__ = [
     "AerodeckError",
+    "AerodeckWarning",
     "Bridge",
     "BridgeScatter",
     "Buffeting",

@@ -14,6 +14,8 @@ __version__: str
 
 class AerodeckError(Exception): ...
 
+class AerodeckWarning(UserWarning): ...
+
 class InputError(AerodeckError, ValueError):
     file: str | None
     place: str
@@ -466,6 +468,7 @@ def process(campaign: _Path, *, progress: _Progress = None, **options: Any) -> P
 
 __all__ = [
     "AerodeckError",
+    "AerodeckWarning",
     "Bridge",
     "Buffeting",
     "Derivatives",

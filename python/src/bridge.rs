@@ -2,7 +2,7 @@
 
 use crate::bridge_scatter::{BridgeScatter, Derivatives};
 use crate::convert::{rows, shown, to_python};
-use crate::error::{raised, wrong};
+use crate::error::{raised, warned, wrong};
 use crate::export::existing;
 use crate::onset::Onset;
 use crate::sweep::Sweep;
@@ -39,7 +39,9 @@ impl Bridge {
     fn read(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
         let work = Work::new(None);
         let study = work.run(py, || BridgeStudy::new(BridgeFile::read(&path)?))?;
-        study.map(Self).map_err(raised)
+        let study = study.map_err(raised)?;
+        warned(py, &study.findings)?;
+        Ok(Self(study))
     }
 
     /// Name in the file.

@@ -71,7 +71,8 @@ pub fn flutter(
         let model = model.get();
         let found = py.detach(|| of_model(section, model, &search, method))?;
         let evidence = py.detach(|| model_evidence(section, model, &search, found.clone()))?;
-        return Onset::new(&found, method, &against(evidence));
+        let onset = Onset::new(&found, method, &against(evidence))?;
+        return Ok(onset.doubted(&of_section(section)));
     }
     let exact = |range| FixedForces { range, search };
     let method = method.unwrap_or("determinant");
@@ -108,7 +109,10 @@ pub fn flutter(
         ));
     };
     let (found, evidence) = found?;
-    Onset::new(&found, method, &against(evidence))
+    let of_deck = model.cast::<Derivatives>().ok();
+    let of_deck = of_deck.iter().flat_map(|table| &table.get().1);
+    let onset = Onset::new(&found, method, &against(evidence))?;
+    Ok(onset.doubted(of_section(section).iter().chain(of_deck)))
 }
 
 /// What is known of a section in the forces of a trained model.

@@ -5,6 +5,18 @@ use crate::error::{Error, Result};
 use crate::verdict::Verdict;
 use serde::Serialize;
 
+/// Text without the control characters of an input, which a terminal would obey.
+pub(super) fn plain(text: &str) -> String {
+    let shown = |c: char| {
+        if c.is_control() && !['\n', '\t'].contains(&c) {
+            char::REPLACEMENT_CHARACTER
+        } else {
+            c
+        }
+    };
+    text.chars().map(shown).collect()
+}
+
 /// Result of a command.
 #[derive(Debug)]
 pub struct Answer {
@@ -56,7 +68,7 @@ impl Answer {
     pub(crate) fn shown(&self) -> String {
         match self.verbatim {
             true => self.text.clone(),
-            false => wrapped(&self.text),
+            false => wrapped(&plain(&self.text)),
         }
     }
 
@@ -73,5 +85,16 @@ impl Answer {
     /// Whether every check passed.
     pub(crate) fn passed(&self) -> bool {
         self.passed
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_terminal_obeys_no_name() {
+        let answer = Answer::new("a\u{1b}]0;title\u{7}b\tc\n".to_owned(), &()).unwrap();
+        assert_eq!(answer.shown(), "a\u{fffd}]0;title\u{fffd}b\tc\n");
     }
 }

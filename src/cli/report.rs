@@ -208,9 +208,9 @@ fn figures(read: &dyn Fn(&str) -> Option<String>) -> Vec<PageFigure> {
         ),
         (
             FORCES,
-            "Records: measured forces and the model",
-            "Three periods of the steady motion nearest the onset in reduced frequency, of one record per motion. Full: measured. Dashes: the \
-             exported model under the measured motion. Dots: what is left.",
+            "Records: forces and the model",
+            "Three periods of the steady motion nearest the onset in reduced frequency, of one record per motion. Full: the record, \
+             measured or made from the deck as the legend says. Dashes: the exported model under the same motion. Dots: what is left.",
         ),
         (
             ROOTS,

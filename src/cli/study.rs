@@ -240,7 +240,13 @@ impl Chain<'_> {
         };
         let at = (onset.at.speed_m_s, onset.at.frequency_hz);
         if let Some(records) = records {
-            let forces = measured_forces::write(&own.model, records, at, &mut self.out);
+            let made = self.study.deck.records.is_empty();
+            let origin = if made {
+                "made from the deck"
+            } else {
+                "measured"
+            };
+            let forces = measured_forces::write(&own.model, records, at, origin, &mut self.out);
             self.attempt("figure of measured forces", forces)?;
         }
         let response = evidence::write_response(&own.model, at, &mut self.out);

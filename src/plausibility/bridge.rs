@@ -2,21 +2,16 @@
 
 mod line;
 
-use super::limits::{DECK_WIDTH, Limits, beyond, significant};
+use super::limits::{DECK_WIDTH, beyond, significant};
 use super::section::{unusual_air, unusual_damping, unusual_radius};
 use super::{Finding, Kind};
 use crate::bridge::{Bridge, BridgeMode, Node};
+use line::{LENGTH, length_m, of_line};
 use std::f64::consts::{PI, TAU};
 
 /// Unit-norm shapes of one bridge and a generalised mass of 1: the greatest displacement of a mass-normalised shape of
 /// anything as heavy as a bridge is far below this.
 const MASS_NORMALISED_AT_MOST: f64 = 0.1;
-/// Length from the first to the last node.
-const LENGTH: Limits = Limits {
-    unit: "m",
-    usual: (5.0, 10_000.0),
-    meant: &[("mm", 1e-3), ("cm", 1e-2), ("km", 1e3)],
-};
 /// Two modes are one when shapes (as the cosine of their angle, squared), masses and frequencies differ by less than these.
 const SAME_SHAPE: f64 = 0.999;
 const SAME_MASS: f64 = 0.02;
@@ -41,7 +36,7 @@ pub struct Girder<'a> {
 /// What is odd about modes by themselves: lengths, axes, modes given twice, rotations in degrees, norms, damping.
 pub fn of_modes(girder: &Girder<'_>) -> Vec<Finding> {
     let modes = girder.modes;
-    let mut found = line::of_line(girder);
+    let mut found = of_line(girder.nodes, girder.offsets_m);
     if let Some(mode) = modes.iter().find(|m| moves_less_than_it_turns(m)) {
         let (turns, moves) = (greatest(mode, 2), greatest_displacement(mode));
         let text = format!(
@@ -96,13 +91,6 @@ pub fn of_bridge(bridge: &Bridge) -> Vec<Finding> {
 
 fn place(mode: &BridgeMode) -> String {
     format!("mode {}", mode.number)
-}
-
-fn length_m(nodes: &[Node]) -> f64 {
-    match nodes {
-        [first, .., last] => last.along_m - first.along_m,
-        _ => 0.0,
-    }
 }
 
 fn greatest(mode: &BridgeMode, motion: usize) -> f64 {

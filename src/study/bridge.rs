@@ -73,8 +73,9 @@ impl BridgeStudy {
         let modes = file.read_modes()?;
         let mut notes = Vec::new();
         let mut findings = modes.findings();
-        let section =
-            |block: &SectionBlock| SectionForces::of(block, trained(block), &file.directory);
+        let section = |block: &SectionBlock| {
+            SectionForces::of(block, trained(block), &file.directory, &mut findings)
+        };
         let sections: Vec<SectionForces> =
             file.sections.iter().map(section).collect::<Result<_>>()?;
         notes.extend(sections.iter().flat_map(|s| s.notes.iter().cloned()));

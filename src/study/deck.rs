@@ -9,7 +9,9 @@ use crate::aerodynamics::derivatives::{
 };
 use crate::aerodynamics::{FlatPlate, Transfer};
 use crate::error::{Error, Result};
-use crate::files::derivatives::{ReadOptions, embedded, is_table_file, read_table_with};
+use crate::files::derivatives::{
+    ReadOptions, WIDTH_ASSUMED, embedded, is_table_file, read_table_with,
+};
 use crate::identification::sample_model;
 use crate::plausibility::{Finding, WIDEST_MODEL_M, of_table};
 use crate::section::Dof;
@@ -105,7 +107,9 @@ impl Deck {
         }
         let (mut notes, mut findings) = (Vec::new(), Vec::new());
         if let (Source::Table(table), true) = (&source, is_file) {
-            notes.extend(table.header.notes.iter().cloned());
+            // derivatives have no dimension: the width of an answer is that of the section, which is stated
+            let of_answer = table.header.notes.iter();
+            notes.extend(of_answer.filter(|n| !n.starts_with(WIDTH_ASSUMED)).cloned());
             findings.extend(of_table(table, &convention));
             if study.deck.records.is_empty() && study.models.iter().any(|m| m.table.is_none()) {
                 notes.extend(study.tunnel.assumption(table));

@@ -1,8 +1,15 @@
 //! The line of the nodes against the girder axis, which follows from the axes that are stated.
 
-use super::{Girder, LENGTH, length_m};
-use crate::plausibility::limits::beyond;
+use crate::bridge::Node;
+use crate::plausibility::limits::{Limits, beyond};
 use crate::plausibility::{Finding, Kind};
+
+/// Length from the first to the last node.
+pub(super) const LENGTH: Limits = Limits {
+    unit: "m",
+    usual: (5.0, 10_000.0),
+    meant: &[("mm", 1e-3), ("cm", 1e-2), ("km", 1e3)],
+};
 
 /// Angle between the line of the nodes in plan and the girder axis: worth a note (0.06 % of a length), and a doubt (0.4 %), degrees.
 const SKEW_DEG: (f64, f64) = (2.0, 5.0);
@@ -11,21 +18,29 @@ const STEEPEST: f64 = 0.12;
 /// Distance of a node from the straight line in plan over the length: the ends of a circular arc then turn by 1° and by 4.6°.
 const CURVED: (f64, f64) = (0.005, 0.02);
 
+/// Length from the first to the last node along the girder, m.
+pub(super) fn length_m(nodes: &[Node]) -> f64 {
+    match nodes {
+        [first, .., last] => last.along_m - first.along_m,
+        _ => 0.0,
+    }
+}
+
 /// What is odd about where the nodes are.
-pub(super) fn of_line(girder: &Girder<'_>) -> Vec<Finding> {
-    if girder.nodes.len() < 2 {
+pub(super) fn of_line(nodes: &[Node], offsets_m: &[[f64; 2]]) -> Vec<Finding> {
+    if nodes.len() < 2 {
         return Vec::new();
     }
-    let length = length_m(girder.nodes);
-    let along: Vec<f64> = girder.nodes.iter().map(|n| n.along_m).collect();
+    let length = length_m(nodes);
+    let along: Vec<f64> = nodes.iter().map(|n| n.along_m).collect();
     let mut found: Vec<Finding> = beyond("nodes: length", length, &LENGTH)
         .into_iter()
         .collect();
-    if girder.offsets_m.len() != girder.nodes.len() {
+    if offsets_m.len() != nodes.len() {
         return found;
     }
     let [in_plan, in_elevation] =
-        [0, 1].map(|i| straight(&along, girder.offsets_m.iter().map(|o| o[i]).collect()));
+        [0, 1].map(|i| straight(&along, offsets_m.iter().map(|o| o[i]).collect()));
     found.extend(skew(in_plan.slope));
     if in_elevation.slope.abs() > STEEPEST {
         let text = format!(

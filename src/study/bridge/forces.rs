@@ -1,6 +1,7 @@
 //! The self-excited forces of one section of a bridge file.
 
 use super::super::{KnownUncertainty, uncertainty_beside};
+use crate::aerodynamics::derivatives::notation::Convention;
 use crate::aerodynamics::derivatives::{DerivativeTable, Extrapolation, InterpolatedTable};
 use crate::aerodynamics::quasi_steady::LinearQuasiSteady;
 use crate::aerodynamics::{Lags, RationalModel, Transfer};
@@ -8,6 +9,7 @@ use crate::error::{Error, Result};
 use crate::files::bridge::{SectionBlock, StaticBlock};
 use crate::files::derivatives::TableWords;
 use crate::identification::{FeedThrough, Fitted, Form, FrequencyFit, FrequencyWeights, fit_table};
+use crate::plausibility::{Finding, of_table};
 use crate::trained_model::{Model, TrainedModel};
 use crate::uncertainty::{CoefficientUncertainty, DerivativeInterval, table_uncertainty};
 use crate::units::ReducedFrequencyRange;
@@ -54,6 +56,7 @@ impl SectionForces {
         block: &SectionBlock,
         trained: Option<(TrainedModel, KnownUncertainty)>,
         directory: &Path,
+        findings: &mut Vec<Finding>,
     ) -> Result<Self> {
         let trained = match (&block.model, trained) {
             (_, Some(trained)) => Some(trained),
@@ -68,7 +71,7 @@ impl SectionForces {
         let of_table = block
             .derivatives
             .as_ref()
-            .map(|name| by_table(block, name, directory, trained.is_none()));
+            .map(|name| by_table(block, name, directory, trained.is_none(), findings));
         let (table, fitted) = of_table.transpose()?.unzip();
         let table = table.map(|t: InterpolatedTable| Arc::new(t) as Arc<dyn Transfer>);
         if let Some((trained, known)) = trained {
@@ -170,8 +173,15 @@ fn by_table(
     name: &str,
     directory: &Path,
     fit: bool,
+    findings: &mut Vec<Finding>,
 ) -> Result<(InterpolatedTable, Option<SectionForces>)> {
     let table = block_table(block, name, directory)?;
+    let convention = block.convention.clone().unwrap_or_default();
+    let odd = of_table(&table, &convention).into_iter();
+    findings.extend(odd.map(|f| Finding {
+        place: format!("section {}: {}", block.name, f.place),
+        ..f
+    }));
     let between = InterpolatedTable::by(
         block.interpolation,
         &table,

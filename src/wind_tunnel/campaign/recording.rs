@@ -223,8 +223,13 @@ impl ChannelExtraction<'_> {
             (self.set.sampling_hz, "the file"),
             (by_time, "the time channel"),
         ];
-        let mut known = known.iter().filter_map(|(hz, who)| hz.map(|hz| (hz, *who)));
-        let Some((hz, who)) = known.next() else {
+        // a time that the map leaves out is no statement of its own, but may not contradict
+        let beside = self.unmapped_time().filter(|_| by_time.is_none());
+        let beside = (beside, "a time column that `channels.time` does not name");
+        let mut stated = known.iter().filter_map(|(hz, who)| hz.map(|hz| (hz, *who)));
+        let first = stated.next();
+        let mut known = stated.chain(beside.0.map(|hz| (hz, beside.1)));
+        let Some((hz, who)) = first else {
             return Err(Error::input(
                 self.place,
                 "a sampling frequency: `recording.sampling_hz`, `channels.time` or one in the file",
@@ -239,6 +244,26 @@ impl ChannelExtraction<'_> {
                 format!("{other:.4} Hz by {says}"),
             )),
         }
+    }
+
+    /// The sampling frequency by a column that is called time and rises evenly, Hz. Without a unit a step of a second or more is
+    /// one in milliseconds.
+    fn unmapped_time(&self) -> Option<f64> {
+        let is_time = |name: &str| {
+            let name = name.trim().to_lowercase();
+            ["t", "zeit"].contains(&name.as_str()) || name.starts_with("time")
+        };
+        let channel = self.set.channels.iter().find(|c| is_time(&c.name))?;
+        let per_unit = sampling_of("", &channel.samples).ok()?;
+        let seconds = match channel.unit.as_deref() {
+            Some("s") => 1.0,
+            Some("ms") => 1e-3,
+            None if per_unit > 1.0 => 1.0,
+            None => 1e-3,
+            // minutes, dates: not judged
+            Some(_) => return None,
+        };
+        Some(per_unit / seconds)
     }
 
     fn air(&self, is_needed: bool) -> Result<[Option<f64>; 3]> {
