@@ -96,6 +96,7 @@ fn of(required_m_s: f64, flutter: Vec<FlutterReading>) -> Evidence {
         flutter,
         growth: Some(UnwantedGrowth {
             scanned_to_m_s: 100.0,
+            proved: true,
             bands: Vec::new(),
             instability_from_m_s: None,
             proved: false,
