@@ -77,7 +77,7 @@ pub(crate) fn buffeting_response(
     tested: Option<ReducedFrequencyRange>,
 ) -> Result<BuffetingResponse> {
     problem.validate()?;
-    let turned = turning(problem.structure, problem.model, speed_m_s, &[])?;
+    let turned = turning(problem.structure, problem.model, speed_m_s)?;
     if turned.growing > 0 {
         return Err(Error::Unstable(format!(
             "buffeting at {speed_m_s} m/s: the section is unstable there ({} growing roots), no response is stationary",

@@ -12,15 +12,17 @@ use crate::error::{Error, Result, positive};
 use crate::flutter::impedance;
 use crate::section::Structure;
 use nalgebra::Complex;
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::f64::consts::{PI, TAU};
 
 /// Frequencies of the first pass.
 const GRID: usize = 600;
 /// Below the lowest and above the highest natural frequency by these factors nothing turns any more.
 const REACH: (f64, f64) = (1e-4, 1e3);
-/// Distances from every resonance that is expected at which a structure of many modes is looked at, relative to it: two that are
-/// passed in one step turn by a whole turn, which is none.
-const BESIDE: [f64; 7] = [-1e-2, -3e-3, -1e-3, 0.0, 1e-3, 3e-3, 1e-2];
+/// Of more degrees of freedom than this two resonances may be passed in one step, which is a whole turn, or none: steps about the
+/// natural frequencies are this small, relatively, in this range about them.
+const FEW: usize = 3;
+const FINE: f64 = 1.5e-3;
+const FINE_REACH: (f64, f64) = (0.5, 1.5);
 /// Turning between two frequencies from which on the interval is halved, rad.
 const LARGEST_TURN: f64 = 0.8;
 /// Halvings of one interval at most: then the impedance is singular for all that numbers can tell.
@@ -49,11 +51,10 @@ pub(crate) struct Turning {
 /// # Errors
 /// As for [`turning`].
 pub(crate) fn unstable_roots(problem: &BuffetingProblem<'_>, speed_m_s: f64) -> Result<usize> {
-    turning(problem.structure, problem.model, speed_m_s, &[]).map(|turned| turned.growing)
+    turning(problem.structure, problem.model, speed_m_s).map(|turned| turned.growing)
 }
 
-/// The turning of the determinant at a wind speed. `expected_hz` are frequencies near which the structure may resonate, besides
-/// its natural ones.
+/// The turning of the determinant at a wind speed.
 ///
 /// # Errors
 /// [`Error::Input`] for a speed that is not positive; [`Error::Numerical`] at an onset itself, where the impedance is
@@ -62,7 +63,6 @@ pub(crate) fn turning(
     structure: &Structure,
     model: &dyn Transfer,
     speed_m_s: f64,
-    expected_hz: &[f64],
 ) -> Result<Turning> {
     positive("wind speed", speed_m_s)?;
     let at = |f: f64| -> Result<Point> {
@@ -71,7 +71,7 @@ pub(crate) fn turning(
     };
     let mut passed = Vec::new();
     let mut before: Option<Point> = None;
-    for f in frequencies(structure, expected_hz) {
+    for f in frequencies(structure) {
         let next = at(f)?;
         match &before {
             // the ends lie off the real axis by as much as the damping does there
@@ -100,16 +100,19 @@ struct Point {
 }
 
 /// Frequencies of the first pass, rising.
-fn frequencies(structure: &Structure, expected_hz: &[f64]) -> Vec<f64> {
+fn frequencies(structure: &Structure) -> Vec<f64> {
     let natural = natural_hz(structure);
     let (low, high) = range(&natural);
     let (first, last) = (low * REACH.0, high * REACH.1);
     let mut all: Vec<f64> = (0..=GRID)
         .map(|i| first * (last / first).powf(i as f64 / GRID as f64))
         .collect();
-    let expected = natural.iter().chain(expected_hz);
-    all.extend(expected.flat_map(|f| BESIDE.map(|part| f * (1.0 + part))));
-    all.retain(|f| (first..=last).contains(f));
+    if structure.dofs.len() > FEW {
+        let (from, to) = (low * FINE_REACH.0, high * FINE_REACH.1);
+        let steps = ((to / from).ln() / FINE).ceil();
+        all.extend((0..=steps as usize).map(|i| from * (to / from).powf(i as f64 / steps)));
+        all.extend(natural);
+    }
     all.sort_by(f64::total_cmp);
     all.dedup_by(|a, b| *a <= *b * (1.0 + 1e-9));
     all
@@ -168,20 +171,25 @@ fn turn(
     turn(at, &middle, b, depth + 1, passed)
 }
 
-/// Where the angle passes an odd number of quarter turns, and how fast: frequency over angle of a resonance is half of its
-/// half-power width. By a motion that grows it turns back.
+/// Where the determinant turns fastest, and how fast: frequency over angle of a resonance is half of its half-power width. By a
+/// motion that grows it turns back.
 fn resonances(passed: &[(f64, f64)]) -> Vec<(f64, f64)> {
-    let mut found = Vec::new();
-    for pair in passed.windows(2) {
-        let ((f, angle), (next_f, next)) = (pair[0], pair[1]);
-        let quarters = |angle: f64| ((angle - FRAC_PI_2) / PI).floor();
-        if quarters(next) != quarters(angle) {
-            let level = PI * quarters(angle).max(quarters(next)) + FRAC_PI_2;
-            let part = (level - angle) / (next - angle);
-            found.push((f + part * (next_f - f), (next_f - f) / (next - angle)));
-        }
-    }
-    found
+    let pairs = passed.windows(2);
+    // middle of each step, and frequency over angle there
+    let steps: Vec<(f64, f64)> = pairs
+        .map(|p| {
+            (
+                0.5 * (p[0].0 + p[1].0),
+                (p[1].0 - p[0].0) / (p[1].1 - p[0].1),
+            )
+        })
+        .collect();
+    let narrow = |step: &(f64, f64)| step.1.abs();
+    let found = steps.windows(3).filter(|three| {
+        let width = narrow(&three[1]);
+        width < narrow(&three[0]) && width <= narrow(&three[2]) && width < three[1].0
+    });
+    found.map(|three| three[1]).collect()
 }
 
 #[cfg(test)]
@@ -233,15 +241,11 @@ mod tests {
             assert_eq!(count(&jones, speed), unstable, "{speed}");
         }
         let structure = SectionModel::iabse_1_1a().structure().unwrap();
-        let found = turning(&structure, &jones, 20.0, &[]).unwrap();
+        let found = turning(&structure, &jones, 20.0).unwrap();
         let roots = section.at(20.0).unwrap().eigenvalues().unwrap();
-        assert_eq!(found.resonances_hz.len(), 2);
-        for (hertz, half_width) in found.resonances_hz {
-            let nearest = roots.iter().map(|z| (z.im / TAU - hertz).abs());
-            assert!(
-                nearest.fold(f64::INFINITY, f64::min) < half_width,
-                "{hertz}"
-            );
+        for root in roots.iter().filter(|z| z.im > 0.0) {
+            let near = |(hertz, half): &(f64, f64)| (hertz - root.im / TAU).abs() < 0.6 * half;
+            assert!(found.resonances_hz.iter().any(near), "{root}");
         }
     }
 }

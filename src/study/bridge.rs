@@ -220,13 +220,6 @@ fn ends(block: &SectionBlock, modes: &Modes, section: usize) -> Result<(usize, u
         place("from", &block.from, 0)?,
         place("to", &block.to, last)?,
     );
-    if ends.0 > ends.1 {
-        let expected = "a node not before `from`";
-        return Err(Error::input(
-            format!("section[{section}].to"),
-            expected,
-            block.to.clone().unwrap_or_default(),
-        ));
-    }
-    Ok(ends)
+    // whichever way the wind numbers them
+    Ok((ends.0.min(ends.1), ends.0.max(ends.1)))
 }

@@ -84,7 +84,7 @@ impl<'a> SpanFrequency<'a> {
     pub(crate) fn new(problem: &'a SpanProblem<'a>, speed_m_s: f64) -> Result<Self> {
         problem.validate(speed_m_s)?;
         let (structure, forces) = (problem.bridge.structure(), problem.bridge.forces());
-        let turned = turning(&structure, &forces, speed_m_s, &[])?;
+        let turned = turning(&structure, &forces, speed_m_s)?;
         if turned.growing > 0 {
             let at = growth(&turned, &structure, &forces, speed_m_s);
             return Err(unstable(turned.growing, &at, speed_m_s));
@@ -239,7 +239,7 @@ fn resolved(resonances_hz: &[(f64, f64)]) -> Vec<f64> {
     let even = (0..=EVEN).map(|i| lowest * (highest / lowest).powf(i as f64 / EVEN as f64));
     let near = resonances_hz.iter().flat_map(|(f, half)| {
         (-AROUND..=AROUND)
-            .map(move |i| f + half * 10.0 * (f64::from(i) / f64::from(AROUND)).powi(3))
+            .map(move |i| f + half.abs() * 10.0 * (f64::from(i) / f64::from(AROUND)).powi(3))
     });
     let mut all: Vec<f64> = even.chain(near.filter(|f| *f > 0.0)).collect();
     all.sort_by(f64::total_cmp);

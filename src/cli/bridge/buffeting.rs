@@ -130,7 +130,9 @@ fn table(results: &BridgeBuffeting) -> String {
 fn forces(results: &BridgeBuffeting) -> String {
     let mut text = String::new();
     if let Some(models) = &results.models {
-        text.push_str("frequency domain: tables between their points\n");
+        text.push_str(
+            "frequency domain: tables between their points (or the flat plate, exactly)\n",
+        );
         let fits = models.fits.join("; ");
         let _ = writeln!(text, "time domain: models ({fits})");
         if let Some((n, i, change)) = models.largest() {

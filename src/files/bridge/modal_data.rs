@@ -37,11 +37,21 @@ pub struct Modes {
     pub offsets_m: Vec<[f64; 2]>,
     /// Modes; the damping ratio is zero where the file does not state it.
     pub modes: Vec<BridgeMode>,
+    /// Whether the files have the nodes in the opposite order: places along the girder count along up × downwind.
+    pub reversed: bool,
 }
 
 impl ModalData {
-    /// The modes in vertical, lateral and rotation, with tributary lengths by the trapezoidal rule.
-    pub(super) fn in_frame(self, frame: &Frame, source: String) -> Result<Modes> {
+    /// The modes in vertical, lateral and rotation, with tributary lengths by the trapezoidal rule. Nodes that all run against
+    /// up × downwind, since the wind blows from the other side, are taken in the opposite order.
+    pub(super) fn in_frame(mut self, frame: &Frame, source: String) -> Result<Modes> {
+        let mut pairs = self.nodes.windows(2);
+        let reversed = self.nodes.len() > 1
+            && pairs.all(|pair| frame.along(&pair[1].1) < frame.along(&pair[0].1));
+        if reversed {
+            self.nodes.reverse();
+            self.modes.iter_mut().for_each(|m| m.shape.reverse());
+        }
         let along: Vec<f64> = self.nodes.iter().map(|(_, p)| frame.along(p)).collect();
         let lengths = tributary_lengths(&along);
         let nodes = self.nodes.iter().zip(along.iter().zip(lengths));
@@ -65,7 +75,11 @@ impl ModalData {
             source,
             modes: modes.collect(),
             nodes,
+<<<<<<< HEAD
             offsets_m,
+=======
+            reversed,
+>>>>>>> bridge
         })
     }
 }
@@ -112,9 +126,11 @@ impl Modes {
                 .filter_map(|i| self.offsets_m.get(*i).copied())
                 .collect(),
             modes: modes.collect(),
+            reversed: self.reversed,
         }
     }
 
+<<<<<<< HEAD
     /// What is odd about them.
     pub fn findings(&self) -> Vec<Finding> {
         of_modes(&Girder {
@@ -122,5 +138,44 @@ impl Modes {
             offsets_m: &self.offsets_m,
             modes: &self.modes,
         })
+=======
+    /// What is probably not meant: rotations in degrees, masses of one with shapes that are not mass-normalised.
+    pub fn hints(&self) -> Vec<String> {
+        let greatest =
+            |m: &BridgeMode, i: usize| m.shape.iter().map(|s| s[i].abs()).fold(0.0, f64::max);
+        let mut hints = Vec::new();
+        if let (true, [first, .., last]) = (self.reversed, &self.nodes[..]) {
+            hints.push(format!(
+                "the nodes are taken in the opposite order, since places along the girder (wind profile, turbulence) count along \
+                 up × downwind: from {} m at node {} to {} m at node {}",
+                first.along_m, first.name, last.along_m, last.name
+            ));
+        }
+        let in_degrees = |m: &&BridgeMode| {
+            let moved = greatest(m, 0).max(greatest(m, 1));
+            greatest(m, 2) > PI && moved <= 2.0
+        };
+        if let Some(m) = self.modes.iter().find(in_degrees) {
+            hints.push(format!(
+                "mode {} turns by {:.3} where it moves by {:.3} m at most: rotations are in radians; are these degrees?",
+                m.number,
+                greatest(m, 2),
+                greatest(m, 0).max(greatest(m, 1))
+            ));
+        }
+        let unit = |m: &&BridgeMode| {
+            (m.generalised_mass - 1.0).abs() < 1e-9
+                && greatest(m, 0).max(greatest(m, 1)).max(greatest(m, 2)) > MASS_NORMALISED_AT_MOST
+        };
+        if let Some(m) = self.modes.iter().find(unit) {
+            hints.push(format!(
+                "mode {} has a generalised mass of 1 and moves by up to {:.3}: is the shape mass-normalised (then it would move \
+                 by about 1e-3), or is the mass that of a shape of another norm?",
+                m.number,
+                greatest(m, 0).max(greatest(m, 1)).max(greatest(m, 2))
+            ));
+        }
+        hints
+>>>>>>> bridge
     }
 }

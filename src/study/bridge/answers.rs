@@ -196,7 +196,11 @@ fn by_table(bridge: &Bridge, search: &OnsetSearch) -> Result<BridgeAnswer> {
     let forces = bridge.forces();
     let range = forces.known_range();
     let found = pk_onset("table", &bridge.structure(), &forces, search, range)?;
-    answer("tables between their points", bridge, &forces, found)
+    let name = match range {
+        Some(_) => "tables between their points",
+        None => "flat plate (Theodorsen)",
+    };
+    answer(name, bridge, &forces, found)
 }
 
 fn by_model(

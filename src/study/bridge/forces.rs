@@ -4,12 +4,16 @@ use super::super::{KnownUncertainty, uncertainty_beside};
 use crate::aerodynamics::derivatives::notation::Convention;
 use crate::aerodynamics::derivatives::{DerivativeTable, Extrapolation, InterpolatedTable};
 use crate::aerodynamics::quasi_steady::LinearQuasiSteady;
-use crate::aerodynamics::{Lags, RationalModel, Transfer};
+use crate::aerodynamics::{FlatPlate, Lags, RationalModel, Transfer};
 use crate::error::{Error, Result};
 use crate::files::bridge::{SectionBlock, StaticBlock};
 use crate::files::derivatives::TableWords;
 use crate::identification::{FeedThrough, Fitted, Form, FrequencyFit, FrequencyWeights, fit_table};
+<<<<<<< HEAD
 use crate::plausibility::{Finding, of_table};
+=======
+use crate::section::Dof;
+>>>>>>> bridge
 use crate::trained_model::{Model, TrainedModel};
 use crate::uncertainty::{CoefficientUncertainty, DerivativeInterval, table_uncertainty};
 use crate::units::ReducedFrequencyRange;
@@ -17,10 +21,13 @@ use nalgebra::DMatrix;
 use std::path::Path;
 use std::sync::Arc;
 
+/// The word for Theodorsen's plate instead of a table.
+const FLAT_PLATE: &str = "flat plate";
+
 /// Forces of a section, by table and by model.
 #[derive(Clone)]
 pub struct SectionForces {
-    /// Between the points of the table.
+    /// Between the points of the table, or the flat plate, exactly.
     pub table: Option<Arc<dyn Transfer>>,
     /// With a realisation.
     pub model: Arc<dyn Transfer>,
@@ -68,6 +75,10 @@ impl SectionForces {
             }
             (None, None) => None,
         };
+        let plate = |name: &&String| name.eq_ignore_ascii_case(FLAT_PLATE);
+        if block.derivatives.as_ref().filter(plate).is_some() && trained.is_none() {
+            return Self::flat_plate(block);
+        }
         let of_table = block
             .derivatives
             .as_ref()
@@ -103,6 +114,36 @@ impl SectionForces {
             ));
         };
         Ok(Self::quasi_steady(block, statics))
+    }
+
+    /// Theodorsen's plate where frequencies are asked for, Jones's rational functions where a realisation is.
+    fn flat_plate(block: &SectionBlock) -> Result<Self> {
+        let place = format!("section {}", block.name);
+        if block.motions != Dof::TWO {
+            let expected = "vertical and torsional motion with the flat plate";
+            return Err(Error::input(place, expected, Dof::names(&block.motions)));
+        }
+        if !block.convention.is_empty() {
+            let expected = "a table in a file (.csv, .xlsx)";
+            return Err(Error::input(
+                format!("{place}: convention"),
+                expected,
+                format!("`{FLAT_PLATE}`"),
+            ));
+        }
+        let jones = RationalModel::jones_flat_plate();
+        Ok(Self {
+            table: Some(Arc::new(FlatPlate::default())),
+            model: Arc::new(jones.clone()),
+            saved: Some(Model::Rational(jones)),
+            method: "Jones's rational functions of the flat plate".to_owned(),
+            source: "flat plate, Theodorsen's theory".to_owned(),
+            licence: "none needed: a formula".to_owned(),
+            tested: None,
+            notes: Vec::new(),
+            uncertainty: Ok(None),
+            degrees_of_freedom: None,
+        })
     }
 
     /// Forces of a section of which no more than static coefficients are known.
