@@ -87,7 +87,7 @@ fn twelve_states() -> TrainedModel {
 
 fn laguerre(filters: usize) -> Form {
     Form::Laguerre {
-        filters,
+        filters: Some(filters),
         feed_through: FeedThrough::default(),
         pole_per_transfer_function: false,
     }

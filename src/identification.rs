@@ -14,6 +14,7 @@ mod grid;
 pub(crate) mod least_squares;
 mod minimum_state;
 pub(crate) mod options;
+mod order;
 pub(crate) mod own;
 pub(crate) mod records;
 pub(crate) mod report;
@@ -31,7 +32,7 @@ pub use dissipative::{
     ActiveConstraint, ConstraintCost, ConstraintKind, ConstraintReport, Constraints, OnsetEffect,
 };
 pub use entry_report::{Coefficient, EntryReport};
-pub use form::{FeedThrough, Form, PoleSearch};
+pub use form::{FeedThrough, Form, LEAST_CHOSEN, MOST_CHOSEN, PoleSearch};
 pub use frequency::fit_table;
 pub use frequency_options::{FrequencyFit, FrequencyWeights, QuasiSteadyLimit};
 pub use grid::{CellFit, Grid, GridAxis, StretchLabel};

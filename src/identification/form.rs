@@ -47,15 +47,21 @@ impl FeedThrough {
     }
 }
 
+/// Fewest filters that are chosen: those of the thesis.
+pub const LEAST_CHOSEN: usize = 3;
+/// Most filters that are chosen.
+pub const MOST_CHOSEN: usize = 8;
+
 /// Form of a continuous model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum Form {
     /// `e₀ + e₁ p + e₂ p² + Σ c_l Λ_l(p)` with one pole for all filters of a chain.
     Laguerre {
-        /// Number of filters `L`.
-        #[serde(default = "three")]
-        filters: usize,
+        /// Number of filters `L`; left out, chosen by cross-validation of the fit under its constraints, from
+        /// [`LEAST_CHOSEN`] to [`MOST_CHOSEN`].
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        filters: Option<usize>,
         /// Feed-through terms.
         #[serde(default)]
         feed_through: FeedThrough,
@@ -115,14 +121,10 @@ fn yes() -> bool {
     true
 }
 
-fn three() -> usize {
-    3
-}
-
 impl Default for Form {
     fn default() -> Self {
         Self::Laguerre {
-            filters: three(),
+            filters: None,
             feed_through: FeedThrough::default(),
             pole_per_transfer_function: false,
         }
@@ -133,7 +135,8 @@ impl Form {
     /// Number of filters or lags.
     pub(crate) fn filters(&self) -> usize {
         match self {
-            Self::Laguerre { filters, .. } | Self::TakenakaMalmquist { filters, .. } => *filters,
+            Self::Laguerre { filters, .. } => filters.unwrap_or(LEAST_CHOSEN),
+            Self::TakenakaMalmquist { filters, .. } => *filters,
             Self::Rational { lags, .. } | Self::RationalPerForce { lags, .. } => *lags,
             Self::MinimumState { states, .. } => *states,
         }
@@ -180,7 +183,7 @@ impl Form {
     /// One pole per filter from the free ones.
     pub(crate) fn expand(&self, free: &[f64]) -> Vec<f64> {
         match self {
-            Self::Laguerre { filters, .. } => vec![free[0]; *filters],
+            Self::Laguerre { .. } => vec![free[0]; self.filters()],
             _ => free.to_vec(),
         }
     }
@@ -209,7 +212,8 @@ impl Form {
         };
         match self {
             Self::Laguerre { filters, .. } => {
-                format!("continuous Laguerre, L = {filters}, {with}{own}")
+                let count = filters.map_or("chosen".to_owned(), |l| l.to_string());
+                format!("continuous Laguerre, L = {count}, {with}{own}")
             }
             Self::TakenakaMalmquist { filters, .. } => {
                 format!("Takenaka–Malmquist, L = {filters}, {with}{own}")
@@ -222,12 +226,22 @@ impl Form {
     pub(crate) fn with_filters(&self, count: usize) -> Option<Self> {
         let mut form = self.clone();
         match &mut form {
-            Self::Laguerre { filters, .. } | Self::TakenakaMalmquist { filters, .. } => {
-                *filters = count;
-            }
+            Self::Laguerre { filters, .. } => *filters = Some(count),
+            Self::TakenakaMalmquist { filters, .. } => *filters = count,
             _ => return None,
         }
         Some(form)
+    }
+
+    /// Whether the number of filters is left to the data.
+    pub(crate) fn is_open(&self) -> bool {
+        matches!(self, Self::Laguerre { filters: None, .. })
+    }
+
+    /// The form of a model whose transfer functions have the poles `poles`, with the number of filters that was chosen.
+    pub(crate) fn as_fitted(&self, poles: &[f64]) -> Self {
+        let fitted = self.is_open().then(|| self.with_filters(poles.len()));
+        fitted.flatten().unwrap_or_else(|| self.clone())
     }
 
     pub(crate) fn validate(&self) -> Result<()> {

@@ -1,6 +1,7 @@
 //! Continuous models fitted to samples of a transfer matrix.
 
 mod joint;
+mod order;
 mod poles;
 
 use super::basis::{Basis, assemble};
@@ -20,6 +21,7 @@ use crate::section::Dof;
 use crate::trained_model::Model;
 use crate::units::ReducedFrequencyRange;
 use joint::{Joint, JointFit, by_noise};
+use order::fit_chosen;
 use poles::{choose_poles, choose_poles_together};
 
 /// Fits a continuous model to samples of `G`: real and imaginary parts, each at its own `K`.
@@ -36,10 +38,16 @@ pub fn fit_table(samples: &[TransferSample], dofs: &[Dof], fit: &FrequencyFit) -
     state_wishes(&mut entries, dofs, fit)?;
     let tested_range = ReducedFrequencyRange::spanning(samples.iter().map(|s| s.k))
         .ok_or_else(|| Error::input("samples", "at least one", "none"))?;
-    let fitted = if let Form::MinimumState { .. } = fit.form {
-        fit_minimum_state(&entries, dofs, fit, tested_range)?
-    } else {
-        fit_linear(&entries, dofs, fit, tested_range)?
+    let (fitted, form, orders) = match fit.form {
+        Form::MinimumState { .. } => {
+            let fitted = fit_minimum_state(&entries, dofs, fit, tested_range)?;
+            (fitted, fit.form.clone(), Vec::new())
+        }
+        _ if fit.form.is_open() => fit_chosen(&entries, dofs, fit, tested_range)?,
+        _ => {
+            let fitted = fit_linear(&entries, dofs, fit, tested_range)?;
+            (fitted, fit.form.clone(), Vec::new())
+        }
     };
     if fit.regularization > 0.0 {
         notes.push(format!(
@@ -56,7 +64,7 @@ pub fn fit_table(samples: &[TransferSample], dofs: &[Dof], fit: &FrequencyFit) -
     let mut report = FitReport {
         method: format!(
             "{}{}, fitted to {} numbers of the transfer matrix",
-            fit.form.describe(),
+            form.describe(),
             describe_own(fit.own.len()),
             samples.len()
         ),
@@ -66,7 +74,7 @@ pub fn fit_table(samples: &[TransferSample], dofs: &[Dof], fit: &FrequencyFit) -
         condition: reports.iter().map(|r| r.condition).fold(1.0, f64::max),
         entries: reports,
         search,
-        orders: Vec::new(),
+        orders,
         alpha_guideline: None,
         static_terms: Vec::new(),
         memory: Vec::new(),

@@ -89,7 +89,7 @@ fn simultaneous_motions_are_told_apart() {
     assert!((range.max.full_width() - k(2.5)).abs() < k(0.05));
     let own = TimeFit {
         form: Form::Laguerre {
-            filters: 1,
+            filters: Some(1),
             feed_through: FeedThrough::default(),
             pole_per_transfer_function: true,
         },
@@ -149,7 +149,7 @@ fn own_poles_from_records() {
     let all = records(&FlatPlate::default(), &[8.17], 0.0, 1);
     let fit = TimeFit {
         form: Form::Laguerre {
-            filters: 2,
+            filters: Some(2),
             feed_through: FeedThrough::default(),
             pole_per_transfer_function: true,
         },

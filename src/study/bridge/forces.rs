@@ -239,7 +239,7 @@ fn by_table(
         })?,
         None => FrequencyFit {
             form: Form::Laguerre {
-                filters: block.filters,
+                filters: Some(block.filters),
                 feed_through: FeedThrough::default(),
                 pole_per_transfer_function: false,
             },
