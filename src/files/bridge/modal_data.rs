@@ -3,7 +3,7 @@
 use super::axes::Frame;
 use crate::bridge::{BridgeMode, Node, tributary_lengths};
 use crate::error::{Error, Result};
-use crate::plausibility::{Finding, Girder, of_modes};
+use crate::plausibility::{Finding, Girder, Kind, of_modes};
 
 /// A mode with displacements and rotations along the axes of its program.
 #[derive(Debug, Clone, PartialEq)]
@@ -75,11 +75,8 @@ impl ModalData {
             source,
             modes: modes.collect(),
             nodes,
-<<<<<<< HEAD
             offsets_m,
-=======
             reversed,
->>>>>>> bridge
         })
     }
 }
@@ -130,52 +127,21 @@ impl Modes {
         }
     }
 
-<<<<<<< HEAD
     /// What is odd about them.
     pub fn findings(&self) -> Vec<Finding> {
-        of_modes(&Girder {
+        let mut findings = of_modes(&Girder {
             nodes: &self.nodes,
             offsets_m: &self.offsets_m,
             modes: &self.modes,
-        })
-=======
-    /// What is probably not meant: rotations in degrees, masses of one with shapes that are not mass-normalised.
-    pub fn hints(&self) -> Vec<String> {
-        let greatest =
-            |m: &BridgeMode, i: usize| m.shape.iter().map(|s| s[i].abs()).fold(0.0, f64::max);
-        let mut hints = Vec::new();
+        });
         if let (true, [first, .., last]) = (self.reversed, &self.nodes[..]) {
-            hints.push(format!(
-                "the nodes are taken in the opposite order, since places along the girder (wind profile, turbulence) count along \
+            let text = format!(
+                "taken in the opposite order, since places along the girder (wind profile, turbulence) count along \
                  up × downwind: from {} m at node {} to {} m at node {}",
                 first.along_m, first.name, last.along_m, last.name
-            ));
+            );
+            findings.push(Finding::doubt(Kind::Axes, "nodes", text).as_note());
         }
-        let in_degrees = |m: &&BridgeMode| {
-            let moved = greatest(m, 0).max(greatest(m, 1));
-            greatest(m, 2) > PI && moved <= 2.0
-        };
-        if let Some(m) = self.modes.iter().find(in_degrees) {
-            hints.push(format!(
-                "mode {} turns by {:.3} where it moves by {:.3} m at most: rotations are in radians; are these degrees?",
-                m.number,
-                greatest(m, 2),
-                greatest(m, 0).max(greatest(m, 1))
-            ));
-        }
-        let unit = |m: &&BridgeMode| {
-            (m.generalised_mass - 1.0).abs() < 1e-9
-                && greatest(m, 0).max(greatest(m, 1)).max(greatest(m, 2)) > MASS_NORMALISED_AT_MOST
-        };
-        if let Some(m) = self.modes.iter().find(unit) {
-            hints.push(format!(
-                "mode {} has a generalised mass of 1 and moves by up to {:.3}: is the shape mass-normalised (then it would move \
-                 by about 1e-3), or is the mass that of a shape of another norm?",
-                m.number,
-                greatest(m, 0).max(greatest(m, 1)).max(greatest(m, 2))
-            ));
-        }
-        hints
->>>>>>> bridge
+        findings
     }
 }

@@ -9,11 +9,8 @@ use crate::error::{Error, Result};
 use crate::files::bridge::{SectionBlock, StaticBlock};
 use crate::files::derivatives::TableWords;
 use crate::identification::{FeedThrough, Fitted, Form, FrequencyFit, FrequencyWeights, fit_table};
-<<<<<<< HEAD
 use crate::plausibility::{Finding, of_table};
-=======
 use crate::section::Dof;
->>>>>>> bridge
 use crate::trained_model::{Model, TrainedModel};
 use crate::uncertainty::{CoefficientUncertainty, DerivativeInterval, table_uncertainty};
 use crate::units::ReducedFrequencyRange;
