@@ -98,7 +98,7 @@ impl Finding {
 
     /// The same as no more than a note.
     #[must_use]
-    pub(crate) fn as_note(mut self) -> Self {
+    pub(crate) fn into_note(mut self) -> Self {
         self.severity = Severity::Note;
         self
     }

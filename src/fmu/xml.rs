@@ -68,7 +68,7 @@ impl Element {
         text.push_str(&format!("{indent}<{}", self.name));
         for (name, value) in &self.attributes {
             // whatever a name or a source brings along, the document is XML
-            let value = partial_escape(&printable(value)).replace('"', "&quot;");
+            let value = partial_escape(printable(value)).replace('"', "&quot;");
             text.push_str(&format!(" {name}=\"{value}\""));
         }
         if self.children.is_empty() {

@@ -76,14 +76,14 @@ pub(crate) fn unusual_damping(key: &str, ratio: f64) -> Option<Finding> {
     let text = format!("a ratio to critical damping is usually {least} to {most}");
     let found = Finding::unit(key, ratio, text);
     if ratio < least {
-        return Some(found.as_note());
+        return Some(found.into_note());
     }
     let as_decrement = format!(
         "as a logarithmic decrement it would be a ratio of {}",
         significant(ratio / TAU)
     );
     if ratio <= MOST_DAMPING {
-        return Some(found.otherwise(as_decrement).as_note());
+        return Some(found.otherwise(as_decrement).into_note());
     }
     let as_per_cent = format!("in per cent it would be {}", significant(ratio / 100.0));
     Some(found.otherwise(as_per_cent))
@@ -148,7 +148,7 @@ pub(super) fn unusual_radius(key: &str, width_m: f64, ratio: f64) -> Option<Find
     );
     let found = Finding::doubt(Kind::Unit, key, text);
     if within(POSSIBLE_RADII, ratio) {
-        return Some(found.as_note());
+        return Some(found.into_note());
     }
     let thousand = 1e3_f64.sqrt();
     // the factor on the ratio if it was meant so
@@ -246,7 +246,7 @@ fn unusual_frequency(key: &str, name: &str, hertz: f64, width_m: f64) -> Option<
     let text = format!("{low} to {high} Hz is usual at a width of {width_m} m");
     let found = Finding::unit(key, hertz, text).otherwise(otherwise);
     Some(if within(possible, hertz) {
-        found.as_note()
+        found.into_note()
     } else {
         found
     })

@@ -66,7 +66,7 @@ pub fn of_table(table: &DerivativeTable, label: &Convention) -> Vec<Finding> {
             if own.has_a_size_of_no_deck() {
                 odd
             } else {
-                odd.as_note()
+                odd.into_note()
             }
         }
     });

@@ -341,17 +341,18 @@ fn degrees_and_unit_masses_are_hinted_at() {
         .collect();
     fs::write(&path, changed).unwrap();
     edited(folder.path(), "modes.csv", "2000000", "1");
-    let notes = study(folder.path(), &text("csv", "")).unwrap().notes;
+    let notes = study(folder.path(), &text("csv", "")).unwrap().warnings();
     assert!(
         notes
             .iter()
-            .any(|n| n.contains("mode 2 turns by 30.000") && n.contains("degrees?")),
+            .any(|n| n.contains("mode 2: it turns by 30.000")
+                && n.contains("in degrees it would be 0.52")),
         "{notes:?}"
     );
     assert!(
         notes
             .iter()
-            .any(|n| n.contains("mode 1 has a generalised mass of 1")),
+            .any(|n| n.contains("mode 1: a generalised mass of 1")),
         "{notes:?}"
     );
 }

@@ -332,9 +332,10 @@ def test_getters_answer_for_every_legal_parameter(any_model):
         with any_model.section() as section:
             section.initialize(**parameters)
             speed, limit = section.get("onset_speed", "onset_search_limit")
-            assert 0.0 < speed <= limit
-            if not section.flag("onset_found"):
-                assert speed == limit
+            # without an onset it is as far as was judged, and 0 where nothing could be
+            assert 0.0 <= speed <= limit
+            if section.flag("onset_found"):
+                assert speed > 0.0
             section.get("divergence_speed", "onset_frequency", "onset_reduced_velocity")
             section.steps(3, 0.01)
 

@@ -73,7 +73,7 @@ fn skew(slope: f64) -> Option<Finding> {
     );
     let found = Finding::doubt(Kind::Axes, "modes.axes.downwind", text).otherwise(otherwise);
     Some(if angle.abs() < doubt {
-        found.as_note()
+        found.into_note()
     } else {
         found
     })
@@ -92,7 +92,11 @@ fn curve(line: &Straight, length_m: f64) -> Option<Finding> {
         100.0 * part
     );
     let found = Finding::doubt(Kind::Axes, "nodes", text);
-    Some(if part < doubt { found.as_note() } else { found })
+    Some(if part < doubt {
+        found.into_note()
+    } else {
+        found
+    })
 }
 
 /// Nodes against the straight line from the first to the last.

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Everything that the program prints and writes, kept and compared: whether a change leaves the outputs as they were.
 
-    python3 tests/fixtures.py record target/release/aerodeck before     # runs every command, keeps what comes out
-    python3 tests/fixtures.py compare before after                      # exit code 1 where something differs
-    python3 tests/fixtures.py compare before after --tolerance 1e-12    # numbers may differ by that, relative to the largest of a file
+    python3 tests/common/fixtures.py record target/release/aerodeck before     # runs every command, keeps what comes out
+    python3 tests/common/fixtures.py compare before after                      # exit code 1 where something differs
+    python3 tests/common/fixtures.py compare before after --tolerance 1e-12    # numbers may differ by that, relative to the largest of a file
 
 Times, folders and digests of bytes are taken out before files are compared; archives (FMU, XLSX) are compared member by member.
 Needs Python 3.9 or newer and nothing else.
