@@ -99,7 +99,6 @@ fn of(required_m_s: f64, flutter: Vec<FlutterReading>) -> Evidence {
             proved: true,
             bands: Vec::new(),
             instability_from_m_s: None,
-            proved: false,
         }),
         ..Evidence::default()
     }

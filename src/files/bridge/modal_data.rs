@@ -140,7 +140,7 @@ impl Modes {
                  up × downwind: from {} m at node {} to {} m at node {}",
                 first.along_m, first.name, last.along_m, last.name
             );
-            findings.push(Finding::doubt(Kind::Axes, "nodes", text).as_note());
+            findings.push(Finding::doubt(Kind::Axes, "nodes", text).into_note());
         }
         findings
     }

@@ -1,7 +1,6 @@
 //! The self-excited forces of one section of a bridge file.
 
 use super::super::{KnownUncertainty, uncertainty_beside};
-use crate::aerodynamics::derivatives::notation::Convention;
 use crate::aerodynamics::derivatives::{DerivativeTable, Extrapolation, InterpolatedTable};
 use crate::aerodynamics::quasi_steady::LinearQuasiSteady;
 use crate::aerodynamics::{FlatPlate, Lags, RationalModel, Transfer};
@@ -214,7 +213,7 @@ fn by_table(
     findings: &mut Vec<Finding>,
 ) -> Result<(InterpolatedTable, Option<SectionForces>)> {
     let table = block_table(block, name, directory)?;
-    let convention = block.convention.clone().unwrap_or_default();
+    let convention = block.convention.or_usual();
     let odd = of_table(&table, &convention).into_iter();
     findings.extend(odd.map(|f| Finding {
         place: format!("section {}: {}", block.name, f.place),
