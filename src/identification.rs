@@ -14,7 +14,6 @@ mod grid;
 pub(crate) mod least_squares;
 mod minimum_state;
 pub(crate) mod options;
-mod order;
 pub(crate) mod own;
 pub(crate) mod records;
 pub(crate) mod report;

@@ -388,7 +388,7 @@ class Processing:
 
 def fit_laguerre(
     data: Derivatives | Records,
-    filters: int = 3,
+    filters: int | None = None,
     *,
     lateral: bool = False,
     poles: Sequence[float] | None = None,

@@ -1,7 +1,6 @@
 //! Continuous models fitted to samples of a transfer matrix.
 
 mod joint;
-mod order;
 mod poles;
 
 use super::basis::{Basis, assemble};
@@ -21,7 +20,6 @@ use crate::section::Dof;
 use crate::trained_model::Model;
 use crate::units::ReducedFrequencyRange;
 use joint::{Joint, JointFit, by_noise};
-use order::fit_chosen;
 use poles::{choose_poles, choose_poles_together};
 
 /// Fits a continuous model to samples of `G`: real and imaginary parts, each at its own `K`.
@@ -35,19 +33,13 @@ use poles::{choose_poles, choose_poles_together};
 pub fn fit_table(samples: &[TransferSample], dofs: &[Dof], fit: &FrequencyFit) -> Result<Fitted> {
     fit.validate()?;
     let (mut entries, mut notes) = sort_by_entry(samples, dofs, fit.weights)?;
+    let fit = &fit.with_filters_for(&entries);
     state_wishes(&mut entries, dofs, fit)?;
     let tested_range = ReducedFrequencyRange::spanning(samples.iter().map(|s| s.k))
         .ok_or_else(|| Error::input("samples", "at least one", "none"))?;
-    let (fitted, form, orders) = match fit.form {
-        Form::MinimumState { .. } => {
-            let fitted = fit_minimum_state(&entries, dofs, fit, tested_range)?;
-            (fitted, fit.form.clone(), Vec::new())
-        }
-        _ if fit.form.is_open() => fit_chosen(&entries, dofs, fit, tested_range)?,
-        _ => {
-            let fitted = fit_linear(&entries, dofs, fit, tested_range)?;
-            (fitted, fit.form.clone(), Vec::new())
-        }
+    let fitted = match fit.form {
+        Form::MinimumState { .. } => fit_minimum_state(&entries, dofs, fit, tested_range)?,
+        _ => fit_linear(&entries, dofs, fit, tested_range)?,
     };
     if fit.regularization > 0.0 {
         notes.push(format!(
@@ -64,7 +56,7 @@ pub fn fit_table(samples: &[TransferSample], dofs: &[Dof], fit: &FrequencyFit) -
     let mut report = FitReport {
         method: format!(
             "{}{}, fitted to {} numbers of the transfer matrix",
-            form.describe(),
+            fit.form.describe(),
             describe_own(fit.own.len()),
             samples.len()
         ),
@@ -74,7 +66,7 @@ pub fn fit_table(samples: &[TransferSample], dofs: &[Dof], fit: &FrequencyFit) -
         condition: reports.iter().map(|r| r.condition).fold(1.0, f64::max),
         entries: reports,
         search,
-        orders,
+        orders: Vec::new(),
         alpha_guideline: None,
         static_terms: Vec::new(),
         memory: Vec::new(),

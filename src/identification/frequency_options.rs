@@ -6,6 +6,7 @@ use super::form::Form;
 use super::form::PoleSearch;
 use super::own::{OwnFilters, validate_own};
 use super::report::FitReport;
+use super::samples::Entry;
 use crate::error::{Error, Result, non_negative};
 use crate::section::Dof;
 use serde::{Deserialize, Serialize};
@@ -105,6 +106,18 @@ pub struct FrequencyFit {
 }
 
 impl FrequencyFit {
+    /// The same with a number of filters, where it is left to the data.
+    pub(super) fn with_filters_for(&self, entries: &[Entry]) -> Self {
+        let rows = entries.iter().map(|e| e.rows.len()).min().unwrap_or(0);
+        let rows = if self.own.is_empty() { rows } else { 0 };
+        Self {
+            form: self
+                .form
+                .for_rows(rows, self.constraints != Constraints::None),
+            ..self.clone()
+        }
+    }
+
     /// The form with the number of filters that a fit has chosen, where it was left open.
     pub(crate) fn form_of(&self, report: &FitReport) -> Form {
         match report.entries.first() {

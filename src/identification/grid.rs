@@ -162,19 +162,6 @@ impl Grid {
             .collect()
     }
 
-    /// One number of filters of one value of the axis, fitted as in [`Grid::fits`].
-    pub(crate) fn fit(
-        &self,
-        value: usize,
-        filters: usize,
-        keep: &dyn Fn(usize) -> bool,
-    ) -> Result<CellFit> {
-        let stretches = self.pass.stretches.iter().enumerate();
-        let chosen = stretches.filter(|(s, _)| keep(*s)).map(|(_, c)| c);
-        let systems = Rc::new(Systems::new(self.pass.order, chosen, value));
-        self.cell(&systems, value, filters)
-    }
-
     fn leading(&self, filters: usize) -> usize {
         let feed = self.pass.order.per_input - self.filters_max;
         feed + filters

@@ -2,8 +2,6 @@
 //! passes over thinned rows, every sample fitted at these poles in one more pass, the fit put under constraints where they
 //! bind, and written down as model and report.
 
-mod order;
-
 use super::basis::{Basis, assemble};
 use super::degenerate::note_lags;
 use super::dissipative::ConstraintReport;
@@ -22,7 +20,6 @@ use crate::aerodynamics::FilterBank;
 use crate::error::{Error, Result};
 use crate::trained_model::Model;
 use crate::wind_tunnel::RecordSource;
-use order::choose_filters;
 
 /// Fits a continuous model to records of any speeds and sampling frequencies.
 ///
@@ -38,15 +35,8 @@ pub fn fit_records(
     progress: OnProgress<'_>,
 ) -> Result<Fitted> {
     fit.validate()?;
-    if fit.form.is_open() {
-        let (chosen, tried) = choose_filters(records, fit, progress)?;
-        let mut fitted = fit_records(records, &chosen, progress)?;
-        if !tried.is_empty() {
-            fitted.report.orders = tried;
-        }
-        return Ok(fitted);
-    }
     let records = Records::read(records, fit.static_term)?;
+    let fit = &fit.with_filters_for(&records);
     let tested = records.tested_range()?;
     let task = RecordFit {
         fit,

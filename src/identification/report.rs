@@ -40,8 +40,7 @@ pub struct FitReport {
     pub entries: Vec<EntryReport>,
     /// Searches of the poles; empty when they were given.
     pub search: Vec<SearchReport>,
-    /// Fits with other numbers of filters: all that were tried where the number was chosen; else every smaller one with the
-    /// same poles (time domain, from the same factorisation).
+    /// Fits with fewer filters and the same poles (time domain, from the same factorisation).
     pub orders: Vec<OrderReport>,
     /// The guideline for `α` (2.36), for the discrete model.
     pub alpha_guideline: Option<AlphaGuideline>,
@@ -119,17 +118,13 @@ pub struct SearchPoint {
     pub objective: f64,
 }
 
-/// Fit with another number of filters.
+/// Fit with fewer filters.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct OrderReport {
     /// Number of filters `L`.
     pub filters: usize,
     /// As in [`SearchPoint::objective`].
     pub objective: f64,
-    /// Geometric mean over the transfer functions of the relative error under constraints on data that were left out, where
-    /// the number of filters was chosen by it.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub left_out: Option<f64>,
 }
 
 /// Guideline (2.36) for the decay factor of the discrete model.
@@ -146,25 +141,6 @@ pub struct AlphaGuideline {
 }
 
 impl FitReport {
-    /// How the number of filters was chosen, in words; `None` where it was given.
-    pub fn choice_of_filters(&self) -> Option<String> {
-        let tried: Vec<_> = self
-            .orders
-            .iter()
-            .filter(|o| o.left_out.is_some())
-            .collect();
-        let error = |o: &&OrderReport| format!("{:.2}", 100.0 * o.left_out.unwrap_or(f64::NAN));
-        let (first, last) = (tried.first()?, tried.last()?);
-        let errors: Vec<_> = tried.iter().map(error).collect();
-        Some(format!(
-            "L = {} chosen: relative error on speeds and frequencies left out {} % for L = {} to {}",
-            self.entries.first()?.poles.len(),
-            errors.join(", "),
-            first.filters,
-            last.filters
-        ))
-    }
-
     /// Adds the notes that follow from the numbers: poles at their bounds, cancelling terms, bad conditioning.
     pub(crate) fn judge(&mut self, poles: &PoleSearch) {
         let mut notes = Vec::new();

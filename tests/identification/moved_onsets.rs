@@ -66,10 +66,6 @@ fn onsets_with_and_without_constraints_and_of_the_table() {
                     Some(c) => &*c.unconstrained,
                     None => &held.model,
                 };
-                println!(
-                    "<!-- {} -->",
-                    held.report.choice_of_filters().unwrap_or_default()
-                );
                 for named in &sections {
                     let without = onset_m_s(free, named);
                     let with = onset_m_s(&held.model, named);

@@ -150,7 +150,7 @@ pub struct SectionBlock {
     /// How the table is read between its points.
     #[serde(default)]
     pub interpolation: Interpolation,
-    /// Filters of the model that is fitted to the table.
+    /// Filters of the model that is fitted to the table; every mode has them, and more than three cost more than they bring.
     #[serde(default = "three")]
     pub filters: usize,
     /// How the model is fitted to the table, as in a study; before `filters`.

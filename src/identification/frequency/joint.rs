@@ -65,11 +65,6 @@ impl<'a> Joint<'a> {
         self.fit(poles, (true, Strictness::Everywhere))
     }
 
-    /// The same with condition 3 where it is stated first.
-    pub(crate) fn sampled(&self, poles: &[Vec<f64>]) -> Result<JointFit<'a>> {
-        self.fit(poles, (true, Strictness::Sampled))
-    }
-
     /// Weighted residuals of all entries, as the search of poles takes them.
     pub(crate) fn residuals(&self, poles: &[Vec<f64>]) -> Result<DVector<f64>> {
         // a ridge weighs the terms of the model themselves, else only the space counts

@@ -211,7 +211,6 @@ impl<'a> FittedSystems<'a> {
             .map(|filters| OrderReport {
                 filters,
                 objective: self.systems.systems[0].objective(feed + filters, &|_, _| true),
-                left_out: None,
             })
             .collect()
     }
