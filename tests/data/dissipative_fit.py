@@ -1,16 +1,20 @@
 """Dissipative fits of measured decks, independently of the program: reference figures for tests/identification/dissipative_fits.rs.
 
-    python3 dissipative_fit.py        (needs numpy and cvxpy with Clarabel)
+    python3 dissipative_fit.py            coefficients at given poles, as JSON (needs numpy and cvxpy with Clarabel)
+    python3 dissipative_fit.py onsets     onsets of fits with five filters and a searched pole, for data/reference
 
 Continuous Laguerre filters with a given pole, residuals relative to |G| of the entry, each entry relative to its scatter in the
 fit without constraints (rms of its residuals per degree of freedom over that of its data, at least 1 %). Semidefinite
 conditions for the interior-point solver Clarabel: e2 symmetric, and for heave and torsion together and for sway by itself
 -e2 >= m/K_max, -sym e1 >= 1e-3 s, P (K_max/K)^2 - sym Im G(K)/K >= m at 160 K from K_max to 200 K_max, with
-s = |sym Im G(K_max)/K_max| (Frobenius) and P its positive part, both of the unconstrained fit, and m = 1e-6 s. Prints JSON.
+s = |sym Im G(K_max)/K_max| (Frobenius) and P its positive part, both of the unconstrained fit, and m = 1e-6 s. A searched pole
+has the least geometric mean over the entries of the constrained residuals. The onset is where an eigenvalue of section and
+filters together first has no damping.
 """
 
 import csv
 import json
+import sys
 from pathlib import Path
 
 import cvxpy as cp
@@ -106,7 +110,88 @@ def fit(deck, dofs, pole, filters):
         "deck": deck, "dofs": dofs, "pole": pole, "filters": filters,
         "status": problem.status,
         "e0": part(0), "e1": part(1), "e2": part(2),
+    }, {
+        "c": [part(3 + l) for l in range(filters)],
+        "score": np.mean([np.log(1e-4 + np.sum((a @ x[e].value - b) ** 2) / (b @ b)) for e, (a, b, _) in systems.items()]),
     }
+
+
+def growth(speed, section, found, rest):
+    """Largest growth rate, 1/s, of heave and rotation with their filters; forces 1/2 rho V^2 B on heave and times B on rotation."""
+    width, density, inertias, hertz, damping = section
+    m = np.diag(inertias) / np.array([[1, 1], [1, width**2]])  # displacements of width B
+    omega = 2 * np.pi * np.array(hertz)
+    inertia = np.diag(m)
+    q = 0.5 * density * speed**2
+    # in tau = V t / B
+    rate = speed / width
+    e0, e1, e2 = (np.array(found[e]) for e in ("e0", "e1", "e2"))
+    mass = np.diag(inertia) * rate**2 - q * e2
+    damp = np.diag(2 * damping * omega * inertia) * rate - q * e1
+    stiff = np.diag(omega**2 * inertia) - q * e0
+    pole, filters = found["pole"], len(rest["c"])
+    n = 4 + 2 * filters
+    a = np.zeros((n, n))
+    a[0:2, 2:4] = np.eye(2)
+    solve = np.linalg.inv(mass)
+    a[2:4, 0:2], a[2:4, 2:4] = -solve @ stiff, -solve @ damp
+    root = np.sqrt(2 * pole)
+    for l in range(filters):
+        here = slice(4 + 2 * l, 6 + 2 * l)
+        # the states are what leaves the filters: first sqrt(2p)/(s+p), then (p-s)/(s+p) each, whose output is -in + 2p/(s+p) in
+        a[2:4, 4:] += solve @ (q * np.array(rest["c"][l])) @ output(l, pole, root, filters)
+        a[here, 4:] = state(l, pole, root, filters)
+        if l == 0:
+            a[here, 0:2] = np.eye(2)
+    return max(np.linalg.eigvals(a).real) * rate
+
+
+def output(l, pole, root, filters):
+    """Output of filter l from the states x' = -p x + input: sqrt(2p) x_0 for the first, then -previous + 2p x_l."""
+    row = np.zeros(filters)
+    row[0] = root
+    for m in range(1, l + 1):
+        row = -row
+        row[m] += 2 * pole
+    return np.kron(row, np.eye(2))
+
+
+def state(l, pole, root, filters):
+    row = np.kron(np.eye(filters)[l], -pole * np.eye(2))
+    return row if l == 0 else row + output(l - 1, pole, root, filters)
+
+
+SECTIONS = {  # width m, density kg/m3, inertias per metre, Hz, damping ratio
+    "Table 4.1": (0.5, 1.19, (15.0, 0.6), (2.0, 5.0), 0.003),
+    "IABSE 1.1a": (31.0, 1.19, (22_740.0, 2.47e6), (0.100, 0.278), 0.003),
+}
+
+
+def onset(section, found, rest):
+    fastest = 60 if section[0] < 1 else 130
+    speeds = np.linspace(fastest / 400, fastest, 400)
+    rates = [growth(v, section, found, rest) for v in speeds]
+    first = next(i for i, r in enumerate(rates) if r > 0)
+    low, high = speeds[first - 1], speeds[first]
+    for _ in range(50):
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if growth(middle, section, found, rest) > 0 else (middle, high)
+    return high
+
+
+def onsets(filters=5):
+    for deck in ["LN20-5500", "LN21-5200", "LN21-5500", "LN21-5800", "LN21-6100"]:
+        k = [k for rows in samples(deck).values() for k, _ in rows]
+        best = None
+        for pole in np.geomspace(0.3 * min(k), 3 * max(k), 40):
+            try:
+                tried = fit(deck, "yt", pole, filters)
+            except cp.SolverError:
+                continue
+            if best is None or tried[1]["score"] < best[1]["score"]:
+                best = tried
+        for name, section in SECTIONS.items():
+            print(f"{deck}, {name}: {onset(section, *best):.3f} m/s (pole {best[0]['pole']:.3f})")
 
 
 CASES = [
@@ -117,4 +202,7 @@ CASES = [
     ("LN21-5500", "yxt", 0.5, 1),
     ("LN21-5200", "yt", 0.5, 6),
 ]
-print(json.dumps([fit(*case) for case in CASES], indent=1))
+if sys.argv[1:] == ["onsets"]:
+    onsets()
+else:
+    print(json.dumps([fit(*case)[0] for case in CASES], indent=1))
