@@ -1,4 +1,4 @@
-"""Seconds of one grid over L and the decay factor (or pole) in SciPy and NumPy.
+"""One grid over L and the decay factor (or pole) in SciPy and NumPy.
 
 For every cell of the grid as a script does it: the filters of that cell by `scipy.signal.lfilter`, one regression a
 motion by `numpy.linalg.lstsq` with both forces as right-hand sides, and the relative residual of every transfer function.
@@ -6,21 +6,11 @@ Filters are vectorised over time; nothing is computed twice that the cell does n
 made once before the grid. BLAS may use all cores.
 """
 
-import json
-import sys
-import time
-
 import numpy as np
 from scipy.signal import bilinear, butter, lfilter
 
-d = json.load(open(sys.argv[1]))
-records = [
-    {**r, "motion": [np.array(x) for x in r["motion"]], "force": [np.array(x) for x in r["force"]]}
-    for r in d["records"]
-]
 
-
-def prepare(continuous):
+def dimensionless(records, continuous):
     """Dimensionless motion and forces of each record, low-passed for the continuous filters, and fixed columns."""
     prepared = []
     for r in records:
@@ -73,7 +63,14 @@ def grid(prepared, values, count, continuous):
     return residuals
 
 
-prepared = prepare(d["continuous"])
-start = time.perf_counter()
-grid(prepared, d["values"], d["filters"], d["continuous"])
-print(time.perf_counter() - start)
+def prepare(d):
+    records = [
+        {**r, "motion": [np.array(x) for x in r["motion"]], "force": [np.array(x) for x in r["force"]]}
+        for r in d["records"]
+    ]
+    prepared = dimensionless(records, d["continuous"])
+
+    def work():
+        grid(prepared, d["values"], d["filters"], d["continuous"])
+
+    return work
