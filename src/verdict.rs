@@ -30,9 +30,9 @@ pub use critical::{Critical, CriticalSpeed, Phenomenon};
 pub use doubt::{Doubt, DoubtKind, Severity};
 pub use evidence::{
     Basis, DivergenceReading, Evidence, Failure, FlutterReading, GallopingReading, MeanRotation,
-    MovedOnset,
+    MovedOnset, RequiredSpeed,
 };
-pub use outcome::{Below, Outcome, RequiredSpeed};
+pub use outcome::{Below, Outcome};
 pub use reach::Reach;
 
 use serde::{Deserialize, Serialize};
