@@ -30,6 +30,7 @@ mod parameters;
 mod record_covariance;
 mod scattered;
 mod segments;
+mod speed_groups;
 mod speed_onsets;
 mod speed_prior;
 mod speed_scatter;

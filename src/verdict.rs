@@ -18,9 +18,11 @@ mod critical;
 mod doubt;
 mod doubts;
 mod evidence;
+mod judgement;
 mod outcome;
 mod reach;
 mod searched;
+mod sentences;
 mod words;
 
 #[cfg(test)]
@@ -30,11 +32,13 @@ pub use critical::{Critical, CriticalSpeed, Phenomenon};
 pub use doubt::{Doubt, DoubtKind, Severity};
 pub use evidence::{
     Basis, DivergenceReading, Evidence, Failure, FlutterReading, GallopingReading, MeanRotation,
-    MovedOnset,
+    MovedOnset, RequiredSpeed,
 };
-pub use outcome::{Below, Outcome, RequiredSpeed};
+pub use outcome::{Below, Outcome};
 pub use reach::Reach;
 
+use judgement::Judgement;
+use sentences::{explanation, headline};
 use serde::{Deserialize, Serialize};
 
 /// What is known of the safety of a structure in the wind, in one value.
@@ -59,26 +63,16 @@ pub struct Verdict {
 impl Verdict {
     /// What the evidence amounts to.
     pub fn of(evidence: &Evidence) -> Self {
-        let critical = Critical::of(evidence);
-        let doubts = doubts::all(evidence, &critical);
-        let required = evidence.required;
-        let outcome = required.map(|r| Outcome::of(r, &critical, &doubts));
-        let suggested_m_s = match required {
-            None => suggestion(evidence, &critical),
-            Some(_) => None,
-        };
-        let mut verdict = Self {
-            headline: String::new(),
-            explanation: String::new(),
-            outcome,
-            against: required,
-            critical,
-            doubts,
-            suggested_m_s,
-        };
-        verdict.headline = words::headline(&verdict, evidence);
-        verdict.explanation = words::explanation(&verdict);
-        verdict
+        let judgement = Judgement::of(evidence);
+        Self {
+            headline: headline(&judgement, evidence),
+            explanation: explanation(&judgement, evidence.required),
+            outcome: judgement.outcome,
+            against: evidence.required,
+            critical: judgement.critical,
+            doubts: judgement.doubts,
+            suggested_m_s: judgement.suggested_m_s,
+        }
     }
 
     /// Whether a speed is required and everything critical is known to lie above it.
@@ -95,21 +89,4 @@ impl Verdict {
     pub fn warnings(&self) -> impl Iterator<Item = &str> {
         self.doubts.iter().map(|d| d.text.as_str())
     }
-}
-
-/// The highest requirement, to a tenth of a metre per second, that this evidence meets.
-fn suggestion(evidence: &Evidence, critical: &Critical) -> Option<f64> {
-    let least = critical
-        .governs
-        .as_ref()
-        .map_or(f64::INFINITY, CriticalSpeed::least_m_s);
-    let speed_m_s = (10.0 * least.min(critical.judged_to_m_s)).floor() / 10.0;
-    if !(speed_m_s.is_finite() && speed_m_s > 0.0) {
-        return None;
-    }
-    let required = Evidence {
-        required: Some(RequiredSpeed { speed_m_s }),
-        ..evidence.clone()
-    };
-    Verdict::of(&required).is_met().then_some(speed_m_s)
 }

@@ -8,7 +8,7 @@
 //! 2. damping in the limit of fast motion: `−(e₁ + e₁ᵀ) ⪰ δI`;
 //! 3. damping of every real mode shape above the tested range: `−sym Im G(K)/K ⪰ 0` for `K ≥ K_max`.
 //!
-//! The inequalities hold for heave and torsion together, and for sway by itself ([`parts`]). A deck whose tests end with
+//! The inequalities hold for heave and torsion together, and for sway by itself ([`Motions`]). A deck whose tests end with
 //! growth (a bluff one) keeps it: where `sym Im G/K` at `K_max` has a positive part `P` in the fit that the data alone give,
 //! condition 3 reads `P (K_max/K)² − sym Im G(K)/K ⪰ 0`, since a fit damped from `K_max` on would be damped at the end of the
 //! tested range too, on the unsafe side.
@@ -22,18 +22,19 @@ mod conic;
 mod edge;
 mod equations;
 mod everywhere;
+mod motions;
 mod report;
 mod stated;
 mod tangent;
 
 use super::basis::Basis;
 use crate::error::{Error, Result};
-use crate::section::Dof;
 use conic::shortest;
 use edge::TestedRangeEnd;
 pub use equations::Constraints;
 pub(crate) use equations::FitRequirements;
 use equations::{Equation, equations, satisfy};
+use motions::Motions;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use stated::{Condition, Stated};
 
@@ -59,12 +60,8 @@ pub(crate) enum Strictness {
 /// The conditions on one model with given poles.
 pub(crate) struct Dissipation<'a> {
     bases: &'a [Basis],
-    n: usize,
     k_max: f64,
-    parts: Vec<Vec<usize>>,
-    /// Which of `distinct` the basis of a transfer function is, row by row.
-    basis_of: Vec<usize>,
-    distinct: Vec<&'a Basis>,
+    motions: Motions<'a>,
     stated: Vec<Stated>,
     equations: Vec<Equation>,
 }
@@ -80,68 +77,32 @@ pub(crate) struct Solution {
     pub tangent: Tangent,
 }
 
-/// The motions that the conditions hold together: heave and torsion; sway by itself. Shapes that mix sway with the others
-/// are fed energy by quasi-steady theory itself (`[[2C_D, C_D′ − C_L], [2C_L, C_L′ + C_D]]` is indefinite at small drag), and nothing
-/// grows for it: frequencies of sway are far from the others', or its mass is.
-fn parts(dofs: &[Dof]) -> Vec<Vec<usize>> {
-    let (sway, deck) = (0..dofs.len()).partition(|i| dofs[*i] == Dof::Lateral);
-    let parts: [Vec<usize>; 2] = [deck, sway];
-    parts.into_iter().filter(|p| !p.is_empty()).collect()
-}
-
 impl<'a> Dissipation<'a> {
     /// For the bases of all transfer functions, row by row.
     pub(crate) fn new(bases: &'a [Basis], wishes: &FitRequirements) -> Self {
-        let n = bases.len().isqrt();
-        let mut distinct: Vec<&Basis> = Vec::new();
-        let mut basis_of = Vec::with_capacity(bases.len());
-        for basis in bases {
-            let known = distinct.iter().position(|d| d.same_columns(basis));
-            basis_of.push(known.unwrap_or(distinct.len()));
-            if known.is_none() {
-                distinct.push(basis);
-            }
-        }
-        let parts = parts(&wishes.dofs);
+        let motions = Motions::new(bases, &wishes.dofs);
         let mut stated = Vec::new();
         if wishes.constraints == Constraints::Dissipative {
-            for part in 0..parts.len() {
+            for part in 0..motions.parts.len() {
                 let all = Condition::all(bases[0].feed(), wishes.k_max, part);
-                stated.extend(all.into_iter().map(|c| Stated::new(c, &distinct)));
+                stated.extend(all.into_iter().map(|c| Stated::new(c, &motions)));
             }
         }
         Self {
-            equations: equations(bases, n, wishes),
+            equations: equations(bases, motions.count, wishes),
             k_max: wishes.k_max,
             bases,
-            n,
-            parts,
-            basis_of,
-            distinct,
+            motions,
             stated,
         }
-    }
-
-    /// Symmetric part of the matrix of a condition in the motions of its part.
-    fn matrix(&self, stated: &Stated, coefficients: &[Vec<f64>]) -> DMatrix<f64> {
-        let part = &self.parts[stated.condition.part];
-        let full = DMatrix::from_fn(part.len(), part.len(), |i, j| {
-            let e = part[i] * self.n + part[j];
-            let row = &stated.rows[self.basis_of[e]];
-            row.iter()
-                .zip(&coefficients[e])
-                .map(|(a, c)| a * c)
-                .sum::<f64>()
-        });
-        (&full + full.transpose()) * 0.5
     }
 
     /// The end of the tested range for every part, from the fit that the data alone give.
     fn edges(&self, alone: &[Vec<f64>]) -> Vec<TestedRangeEnd> {
         let first = |part: usize| self.stated.iter().find(|s| s.condition.part == part);
-        (0..self.parts.len())
+        (0..self.motions.parts.len())
             .filter_map(first)
-            .map(|s| TestedRangeEnd::new(self.matrix(s, alone)))
+            .map(|s| TestedRangeEnd::new(s.matrix(&self.motions, alone)))
             .collect()
     }
 
@@ -175,8 +136,8 @@ impl<'a> Dissipation<'a> {
         }
         for _ in 0..ROUNDS {
             let cone = |s: &Stated| {
-                let of = (at_start.as_slice(), edges.as_slice());
-                self.cone(s, entries, of, &equalities)
+                let edge = &edges[s.condition.part];
+                s.cone(&self.motions, entries, (&at_start, edge), &equalities)
             };
             let cones: Vec<_> = stated.iter().map(cone).collect();
             let found = shortest(&cones, width)?;
@@ -210,7 +171,7 @@ impl<'a> Dissipation<'a> {
         for (part, edge) in edges.iter().enumerate() {
             for k in self.broken_at(part, coefficients, edge) {
                 let condition = Condition::above(k, k / self.k_max, self.bases[0].feed(), part);
-                all.push(Stated::new(condition, &self.distinct));
+                all.push(Stated::new(condition, &self.motions));
             }
         }
         all
@@ -230,7 +191,7 @@ impl<'a> Dissipation<'a> {
             part,
             ..
         } = stated.condition;
-        let beyond = self.matrix(stated, coefficients) - &edges[part].own * own;
+        let beyond = stated.matrix(&self.motions, coefficients) - &edges[part].own * own;
         let eigen = SymmetricEigen::new(beyond / (edges[part].size * scale));
         (eigen.eigenvalues.add_scalar(margin), eigen.eigenvectors)
     }
@@ -244,7 +205,7 @@ impl<'a> Dissipation<'a> {
         equalities: Vec<DVector<f64>>,
     ) -> Solution {
         let alone: Vec<Vec<f64>> = entries.iter().map(|e| e.values.clone()).collect();
-        let account = |e: &Equation| e.account(self.n, &alone, &coefficients);
+        let account = |e: &Equation| e.account(self.motions.count, &alone, &coefficients);
         let mut active: Vec<_> = self.equations.iter().map(account).collect();
         let mut gradients = equalities;
         let mut held: Vec<&Stated> = stated
@@ -259,12 +220,14 @@ impl<'a> Dissipation<'a> {
                 if *excess <= -ACTIVE {
                     continue;
                 }
-                let v = self.whole(s.condition.part, directions.column(m).as_slice());
+                let v = self
+                    .motions
+                    .whole(s.condition.part, directions.column(m).as_slice());
                 let weights = &v * v.transpose();
-                gradients.push(self.gradient(s, &weights, entries));
+                gradients.push(s.gradient(&self.motions, &weights, entries));
                 let value = |x: &[Vec<f64>]| {
                     let d = directions.column(m);
-                    d.dot(&(self.matrix(s, x) * d))
+                    d.dot(&(s.matrix(&self.motions, x) * d))
                 };
                 active.push(ActiveConstraint {
                     kind: s.condition.kind,
@@ -282,14 +245,5 @@ impl<'a> Dissipation<'a> {
             active,
             tangent: Tangent::new(gradients.into_iter()),
         }
-    }
-
-    /// A shape of all motions from one of a part.
-    fn whole(&self, part: usize, shape: &[f64]) -> DVector<f64> {
-        let mut v = DVector::zeros(self.n);
-        for (&i, x) in self.parts[part].iter().zip(shape) {
-            v[i] = *x;
-        }
-        v
     }
 }

@@ -33,7 +33,8 @@ use poles::{choose_poles, choose_poles_together};
 pub fn fit_table(samples: &[TransferSample], dofs: &[Dof], fit: &FrequencyFit) -> Result<Fitted> {
     fit.validate()?;
     let (mut entries, mut notes) = sort_by_entry(samples, dofs, fit.weights)?;
-    let fit = &fit.with_filters_for(&entries);
+    let fewest = entries.iter().map(|e| e.rows.len()).min();
+    let fit = &fit.with_filters_for(fewest.unwrap_or(0));
     state_wishes(&mut entries, dofs, fit)?;
     let tested_range = ReducedFrequencyRange::spanning(samples.iter().map(|s| s.k))
         .ok_or_else(|| Error::input("samples", "at least one", "none"))?;

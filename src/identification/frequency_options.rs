@@ -6,7 +6,6 @@ use super::form::Form;
 use super::form::PoleSearch;
 use super::own::{OwnFilters, validate_own};
 use super::report::FitReport;
-use super::samples::Entry;
 use crate::error::{Error, Result, non_negative};
 use crate::section::Dof;
 use serde::{Deserialize, Serialize};
@@ -106,9 +105,8 @@ pub struct FrequencyFit {
 }
 
 impl FrequencyFit {
-    /// The same with a number of filters, where it is left to the data.
-    pub(super) fn with_filters_for(&self, entries: &[Entry]) -> Self {
-        let rows = entries.iter().map(|e| e.rows.len()).min().unwrap_or(0);
+    /// The same with a number of filters, where it is left to the data: `rows` samples of the entry that has fewest.
+    pub(super) fn with_filters_for(&self, rows: usize) -> Self {
         let rows = if self.own.is_empty() { rows } else { 0 };
         Self {
             form: self

@@ -1,43 +1,38 @@
 //! Cases of whole bridges, and of a wing that is one.
 
-use crate::aerodynamics::Transfer;
+use crate::aerodynamics::{FlatPlate, Transfer};
+use crate::bridge::{Bridge, StripGroup};
 use crate::error::{Error, Result};
-use crate::files::bridge::BridgeFile;
-use crate::flutter::pk_onset;
-use crate::study::bridge::BridgeStudy;
-use std::path::PathBuf;
+use crate::files::bridge::embedded;
+use crate::flutter::{OnsetSearch, pk_onset};
+use std::sync::Arc;
 
-const GOLAND: &str = r#"
-schema = 1
-name = "Goland"
-air_density_kg_m3 = 1.225
-[modes]
-format = "embedded"
-path = "goland"
-damping_ratio = 0.0
-[[section]]
-name = "wing"
-width_m = 1.8288
-derivatives = "flat plate"
-[flutter]
-speed_max_m_s = 200.0
-speeds = 100
-"#;
+/// Chord of Goland's wing, m.
+const GOLAND_CHORD_M: f64 = 1.8288;
+
+/// Goland's wing: modes of the embedded file, undamped as they stand there, strips of Theodorsen's plate along all of it.
+fn goland_wing() -> Result<Bridge> {
+    let modes = embedded::modes("goland")?;
+    let wing = StripGroup {
+        name: "wing".to_owned(),
+        width_m: GOLAND_CHORD_M,
+        wind_factor: 1.0,
+        nodes: (0..modes.nodes.len()).collect(),
+        forces: Arc::new(FlatPlate::default()),
+    };
+    Bridge::new("Goland", 1.225, modes.nodes, modes.modes, vec![wing])
+}
 
 /// Onset (m/s) and circular frequency (rad/s) of Goland's wing.
 pub(super) fn goland() -> Result<Vec<f64>> {
-    let study = BridgeStudy::new(BridgeFile::from_toml(GOLAND, PathBuf::new())?)?;
-    let bridge = study.by_table.as_ref();
-    let bridge = bridge.ok_or_else(|| Error::input("derivatives", "the flat plate", "none"))?;
-    let forces = bridge.forces();
+    let wing = goland_wing()?;
+    let forces = wing.forces();
     let range = forces.known_range();
-    let found = pk_onset(
-        "plate",
-        &bridge.structure(),
-        &forces,
-        &study.search(),
-        range,
-    )?;
+    let search = OnsetSearch {
+        speed_max_m_s: 200.0,
+        speeds: 100,
+    };
+    let found = pk_onset("plate", &wing.structure(), &forces, &search, range)?;
     let onset = found
         .onset()
         .ok_or_else(|| Error::Numerical(found.explain()))?;

@@ -3,6 +3,7 @@
 use super::columns::LinearModel;
 use super::design::Design;
 use super::parameters::{Coordinates, Parameter, per_chain};
+use super::speed_groups::speed_groups;
 use super::speed_prior::SpeedPrior;
 use super::speed_scatter::{self, Effect, POINTS, Slopes, SpeedScatter};
 use crate::aerodynamics::{DiscreteLaguerre, Transfer, TransferMatrix};
@@ -347,7 +348,7 @@ impl CoefficientUncertainty {
         let Some(design) = &self.design else {
             return Vec::new();
         };
-        let Some((groups, speeds_m_s)) = speed_scatter::speed_groups(design.blocks()) else {
+        let Some((groups, speeds_m_s)) = speed_groups(design.blocks()) else {
             return Vec::new();
         };
         let alone = |(g, speed): (usize, f64)| (speed, self.alone(design, &groups, g));

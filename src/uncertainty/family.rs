@@ -5,8 +5,10 @@
 //! above it or below it.
 
 mod deck;
+mod plan;
 
 pub use deck::FamilyRange;
+pub use plan::FamilyPlan;
 
 use super::coverage::IntervalCoverage;
 use super::forms::{FormEnsemble, interval_with_forms};
@@ -16,37 +18,13 @@ use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
 use crate::flutter::{FlutterSearch, OnsetInterval, OnsetSearch, find_onset};
 use crate::identification::{Fitted, FrequencyFit, fit_table};
-use deck::SyntheticDeck;
+use deck::{SEARCHED, SyntheticDeck};
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Highest speed of the search over the true onset.
-const SEARCHED: f64 = 2.5;
 /// Required speeds over the true onset with which a deck is asked whether it meets them.
 const REQUIRED: [f64; 8] = [0.6, 0.7, 0.8, 0.9, 1.02, 1.1, 1.25, 1.5];
-
-/// A family of decks.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct FamilyPlan {
-    /// Number of decks; ranges and numbers of motions take turns.
-    pub decks: usize,
-    /// Seed of the first deck; each has its own.
-    pub seed: u64,
-    /// Whether transfer functions scatter between mean speeds as those of measured decks do.
-    pub speeds_scatter: bool,
-}
-
-impl Default for FamilyPlan {
-    fn default() -> Self {
-        Self {
-            decks: 400,
-            seed: 1,
-            speeds_scatter: true,
-        }
-    }
-}
 
 /// What the program says of one deck.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -14,8 +14,9 @@
 //!
 //! What each speed says alone is [`CoefficientUncertainty::at_each_speed`].
 
-use super::design::{Block, Design};
-use super::speed_prior::{POINTS_OF_A_SPEED, SpeedPrior};
+use super::design::Design;
+use super::speed_groups::{only_speed, points_of_a_speed, shared_range, speed_groups};
+use super::speed_prior::SpeedPrior;
 use crate::aerodynamics::TransferMatrix;
 use crate::error::Result;
 use crate::flutter::BetweenSpeeds;
@@ -23,10 +24,6 @@ use crate::section::Dof;
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
-/// Mean speeds less than 5 % apart are one, as in tables.
-const SAME_SPEED: f64 = 1.05;
-/// Reduced frequencies closer than this ratio are one test point, as in tables.
-const SAME_POINT: f64 = 1.03;
 /// Reduced frequencies over the tested range at which transfer functions are compared.
 pub(super) const POINTS: usize = 16;
 /// Transfer functions smaller than this part of their root mean square are taken as that.
@@ -115,61 +112,6 @@ pub(super) fn degrees_of_freedom(
     } else {
         own
     }
-}
-
-/// Number of the speed of every block, and the speeds, rising; `None` when a block has none or all have the same.
-pub(super) fn speed_groups(blocks: &[Block]) -> Option<(Vec<usize>, Vec<f64>)> {
-    let speeds: Vec<f64> = blocks.iter().map(|b| b.speed_m_s).collect::<Option<_>>()?;
-    let mut sorted = speeds.clone();
-    sorted.sort_by(f64::total_cmp);
-    let groups: Vec<&[f64]> = sorted.chunk_by(|a, b| *b <= SAME_SPEED * a).collect();
-    if groups.len() < 2 {
-        return None;
-    }
-    let last = |g: &&[f64]| g[g.len() - 1];
-    let number = |v: f64| groups.iter().position(|g| v <= last(g)).unwrap_or(0);
-    let mean = |g: &&[f64]| g.iter().sum::<f64>() / g.len() as f64;
-    Some((
-        speeds.into_iter().map(number).collect(),
-        groups.iter().map(mean).collect(),
-    ))
-}
-
-/// The speed of all blocks, if they have one.
-fn only_speed(blocks: &[Block]) -> Vec<f64> {
-    let speeds: Option<Vec<f64>> = blocks.iter().map(|b| b.speed_m_s).collect();
-    let mean = |all: Vec<f64>| all.iter().sum::<f64>() / all.len() as f64;
-    speeds.map(mean).into_iter().collect()
-}
-
-/// Reduced frequencies that the blocks of every group have; `None` when they share none or do not say.
-fn shared_range(blocks: &[Block], groups: &[usize]) -> Option<(f64, f64)> {
-    let count = groups.iter().max().map_or(0, |g| g + 1);
-    let mut ranges = vec![(f64::INFINITY, 0.0_f64); count];
-    for (block, group) in blocks.iter().zip(groups) {
-        let k = block.k?;
-        let range = &mut ranges[*group];
-        *range = (range.0.min(k), range.1.max(k));
-    }
-    let low = ranges.iter().map(|r| r.0).fold(0.0, f64::max);
-    let high = ranges.iter().map(|r| r.1).fold(f64::INFINITY, f64::min);
-    (low < high).then_some((low, high))
-}
-
-/// Test points at each speed: reduced frequencies that can be told apart, on average over the speeds.
-fn points_of_a_speed(blocks: &[Block], groups: &[usize], speeds: usize) -> f64 {
-    let points = |group: usize| {
-        let own = blocks.iter().zip(groups).filter(|(_, g)| **g == group);
-        let mut ks: Vec<f64> = own.filter_map(|(b, _)| b.k).collect();
-        ks.sort_by(f64::total_cmp);
-        ks.chunk_by(|a, b| *b <= SAME_POINT * a).count()
-    };
-    let sum: usize = (0..speeds).map(points).sum();
-    if sum == 0 {
-        // motions without a frequency of their own
-        return POINTS_OF_A_SPEED;
-    }
-    sum as f64 / speeds as f64
 }
 
 /// The random effects of mean speeds, drawn towards `prior`; with tests at one speed they are those of the prior.
@@ -428,10 +370,13 @@ impl SpeedScatter {
         let (forces, prior) = (forces.join("; "), self.prior_ratio);
         match self.ratio {
             Some(ratio) => format!(
-                "scatter between the mean speeds{speeds}: its variance is {ratio:.1} times that of independent blocks by these                  tests, {prior:.1} times by measured decks; counted as a random effect of each speed, pooled over the motions of                  a force and drawn towards those decks (standard deviations: {forces})"
+                "scatter between the mean speeds{speeds}: its variance is {ratio:.1} times that of independent blocks by these \
+                 tests, {prior:.1} times by measured decks; counted as a random effect of each speed, pooled over the motions of \
+                 a force and drawn towards those decks (standard deviations: {forces})"
             ),
             None => format!(
-                "one mean speed{speeds}: what another speed would change is taken from measured decks, not from these tests                  (variance {prior:.1} times that of independent blocks; standard deviations: {forces})"
+                "one mean speed{speeds}: what another speed would change is taken from measured decks, not from these tests \
+                 (variance {prior:.1} times that of independent blocks; standard deviations: {forces})"
             ),
         }
     }

@@ -1,10 +1,17 @@
 //! Everything that is known before a verdict: answers of searches, limits of tests, failures, findings.
 
-use super::outcome::RequiredSpeed;
 use super::reach::Reach;
 use crate::flutter::{FlutterSearch, Onset, OnsetInterval, UnwantedGrowth};
 use crate::plausibility::Finding;
 use crate::units::ReducedFrequencyRange;
+use serde::{Deserialize, Serialize};
+
+/// The wind speed below which nothing critical may begin: the criterion of a code.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct RequiredSpeed {
+    /// Wind speed, m/s.
+    pub speed_m_s: f64,
+}
 
 /// What the searches, fits and checks of one structure have found.
 #[derive(Debug, Clone, Default, PartialEq)]

@@ -2,14 +2,8 @@
 
 use super::critical::{Critical, CriticalSpeed, Phenomenon};
 use super::doubt::{Doubt, DoubtKind, Severity};
+use super::evidence::RequiredSpeed;
 use serde::{Deserialize, Serialize};
-
-/// The wind speed below which nothing critical may begin: the criterion of a code.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct RequiredSpeed {
-    /// Wind speed, m/s.
-    pub speed_m_s: f64,
-}
 
 /// Whether what is required is met.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -71,8 +71,8 @@ impl Dissipation<'_> {
         edge: &TestedRangeEnd,
     ) -> f64 {
         let condition = Condition::above(k, k / self.k_max, self.bases[0].feed(), part);
-        let stated = Stated::new(condition, &self.distinct);
-        let beyond = self.matrix(&stated, coefficients) - &edge.own * condition.own;
+        let stated = Stated::new(condition, &self.motions);
+        let beyond = stated.matrix(&self.motions, coefficients) - &edge.own * condition.own;
         SymmetricEigen::new(beyond / edge.size).eigenvalues.max()
     }
 
@@ -83,22 +83,22 @@ impl Dissipation<'_> {
         coefficients: &[Vec<f64>],
         edge: &TestedRangeEnd,
     ) -> Option<Vec<f64>> {
-        let motions = &self.parts[part];
+        let motions = &self.motions.parts[part];
         let n = motions.len();
         let fast = Condition {
             kind: ConstraintKind::FastMotion,
             k: None,
             ..Condition::above(self.k_max, 1.0, self.bases[0].feed(), part)
         };
-        let e1 = self.matrix(&Stated::new(fast, &self.distinct), coefficients);
+        let e1 = Stated::new(fast, &self.motions).matrix(&self.motions, coefficients);
         let inverse = e1.try_inverse()?;
-        let filters: usize = self.distinct.iter().map(|b| b.poles().len()).sum();
+        let filters: usize = self.motions.distinct.iter().map(|b| b.poles().len()).sum();
         let states = n * (filters + 1);
         let mut a = DMatrix::zeros(states, states);
         let mut b = DMatrix::zeros(states, n);
         let mut c = DMatrix::zeros(n, states);
         let mut at = 0;
-        for (d, basis) in self.distinct.iter().enumerate() {
+        for (d, basis) in self.motions.distinct.iter().enumerate() {
             let chain = basis.filters();
             let squared = &chain.a * &chain.a;
             let driven = &chain.on_motion + &chain.a * &chain.on_rate;
@@ -111,10 +111,10 @@ impl Dissipation<'_> {
                     }
                     for j in 0..n {
                         for e in [
-                            motions[i] * self.n + motions[j],
-                            motions[j] * self.n + motions[i],
+                            motions[i] * self.motions.count + motions[j],
+                            motions[j] * self.motions.count + motions[i],
                         ] {
-                            if self.basis_of[e] == d {
+                            if self.motions.basis_of[e] == d {
                                 c[(i, at + l * n + j)] += 0.5 * coefficients[e][feed + l];
                             }
                         }

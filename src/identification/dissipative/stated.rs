@@ -1,8 +1,8 @@
 //! The conditions, one by one, as cones in the free numbers of a fit.
 
-use super::Dissipation;
 use super::conic::Cone;
 use super::edge::TestedRangeEnd;
+use super::motions::Motions;
 use super::report::ConstraintKind;
 use super::tangent::{LinearEntry, take_away};
 use crate::identification::basis::Basis;
@@ -90,31 +90,44 @@ pub(super) struct Stated {
 }
 
 impl Stated {
-    pub(super) fn new(condition: Condition, distinct: &[&Basis]) -> Self {
+    pub(super) fn new(condition: Condition, motions: &Motions<'_>) -> Self {
         let row = |basis: &&Basis| condition.kind.row(condition.k, basis);
         Self {
-            rows: distinct.iter().map(row).collect(),
+            rows: motions.distinct.iter().map(row).collect(),
             condition,
         }
     }
-}
 
-impl Dissipation<'_> {
+    /// Symmetric part of `M` in the motions of its part.
+    pub(super) fn matrix(&self, motions: &Motions<'_>, coefficients: &[Vec<f64>]) -> DMatrix<f64> {
+        let part = &motions.parts[self.condition.part];
+        let full = DMatrix::from_fn(part.len(), part.len(), |i, j| {
+            let e = part[i] * motions.count + part[j];
+            let row = &self.rows[motions.basis_of[e]];
+            row.iter()
+                .zip(&coefficients[e])
+                .map(|(a, c)| a * c)
+                .sum::<f64>()
+        });
+        (&full + full.transpose()) * 0.5
+    }
+
     /// Gradient of `Σ weights ∘ M` with respect to the free numbers.
     pub(super) fn gradient(
         &self,
-        stated: &Stated,
+        motions: &Motions<'_>,
         weights: &DMatrix<f64>,
         entries: &[LinearEntry],
     ) -> DVector<f64> {
+        let n = motions.count;
         let width = entries.iter().map(LinearEntry::end).max().unwrap_or(0);
         let mut gradient = DVector::zeros(width);
         for (e, entry) in entries.iter().enumerate() {
-            let weight = weights[(e / self.n, e % self.n)];
+            let weight = weights[(e / n, e % n)];
             if weight == 0.0 {
                 continue;
             }
-            let row = DVector::from_column_slice(&stated.rows[self.basis_of[e]]);
+            let row = DVector::from_column_slice(&self.rows[motions.basis_of[e]]);
             let own = entry.spread.tr_mul(&row) * weight;
             let mut place = gradient.rows_mut(entry.at, own.len());
             place += own;
@@ -125,9 +138,9 @@ impl Dissipation<'_> {
     /// `M ⪯ own growth − margin` in the free numbers from the start on.
     pub(super) fn cone(
         &self,
-        stated: &Stated,
+        motions: &Motions<'_>,
         entries: &[LinearEntry],
-        (start, edges): (&[Vec<f64>], &[TestedRangeEnd]),
+        (start, edge): (&[Vec<f64>], &TestedRangeEnd),
         equalities: &[DVector<f64>],
     ) -> Cone {
         let Condition {
@@ -136,17 +149,17 @@ impl Dissipation<'_> {
             margin,
             own,
             ..
-        } = stated.condition;
-        let motions = &self.parts[part];
-        let edge = &edges[part];
-        let size = motions.len();
+        } = self.condition;
+        let n = motions.count;
+        let held = &motions.parts[part];
+        let size = held.len();
         let floor = DMatrix::identity(size, size) * (margin * scale * edge.size);
-        let room = &edge.own * own - floor - self.matrix(stated, start);
+        let room = &edge.own * own - floor - self.matrix(motions, start);
         let gradient = |i: usize, j: usize| {
-            let mut weights = DMatrix::zeros(self.n, self.n);
-            weights[(motions[i], motions[j])] += 0.5;
-            weights[(motions[j], motions[i])] += 0.5;
-            let mut gradient = self.gradient(stated, &weights, entries);
+            let mut weights = DMatrix::zeros(n, n);
+            weights[(held[i], held[j])] += 0.5;
+            weights[(held[j], held[i])] += 0.5;
+            let mut gradient = self.gradient(motions, &weights, entries);
             take_away(&mut gradient, equalities);
             gradient
         };

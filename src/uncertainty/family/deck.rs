@@ -1,7 +1,7 @@
 //! One deck of the family: section, truth, and a table of its tests.
 
 use super::super::speed_prior::SpeedPrior;
-use super::{FamilyPlan, SEARCHED};
+use super::plan::FamilyPlan;
 use crate::aerodynamics::derivatives::{Part, TransferSample};
 use crate::aerodynamics::{Lags, RationalModel, Transfer};
 use crate::aeroelastic::CoupledSection;
@@ -16,6 +16,8 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{ChiSquared, Distribution, StandardNormal};
 use serde::{Deserialize, Serialize};
 
+/// Highest speed of the search over the true onset.
+pub(super) const SEARCHED: f64 = 2.5;
 /// Decks that are drawn until one flutters as it should.
 const TRIES: u64 = 200;
 /// Speeds between which a true onset is looked for, in units of the speed at which torsion has `K = 1`.
