@@ -60,9 +60,6 @@ pub struct ConstraintCost {
     pub with: Option<f64>,
 }
 
-/// Part of an onset that constraints may move before it is a doubt, where its standard error is not larger.
-const MOVES_AT_MOST: f64 = 0.01;
-
 /// The onset of one section with and without constraints; `None` where there is none in the range searched.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct OnsetEffect {
@@ -177,17 +174,6 @@ impl OnsetEffect {
 }
 
 impl ConstraintReport {
-    /// The onsets with and without constraints where these move it by more than 1 % and by more than one standard error of
-    /// the onset, m/s: a doubt of the answer, which holds both figures. `None` too where no section was known.
-    pub fn moved_onset(&self, standard_error_m_s: Option<f64>) -> Option<&OnsetEffect> {
-        let effect = self.onset.as_ref()?;
-        let allowed = match (effect.without_m_s, standard_error_m_s) {
-            (Some(without), Some(error)) => MOVES_AT_MOST.max(error / without),
-            _ => MOVES_AT_MOST,
-        };
-        (effect.shift().abs() > allowed).then_some(effect)
-    }
-
     /// The account of a fit beside the one without constraints.
     pub(crate) fn new(
         mut active: Vec<ActiveConstraint>,

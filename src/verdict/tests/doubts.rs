@@ -134,26 +134,36 @@ fn constraints_that_moved_the_onset_are_weighed() {
             without_m_s,
             with_m_s,
         });
-        Verdict::of(evidence).doubts[0].severity
+        let doubts = Verdict::of(evidence).doubts;
+        doubts.first().map(|d| d.severity)
     };
-    assert_eq!(
-        weight(&mut evidence, Some(36.8), Some(36.9)),
-        Severity::Minor
-    );
+    // by less than a hundredth
+    assert_eq!(weight(&mut evidence, Some(36.6), Some(36.9)), None);
     // beyond the interval, but above what is required as well
     assert_eq!(
         weight(&mut evidence, Some(33.0), Some(36.9)),
-        Severity::Minor
+        Some(Severity::Minor)
     );
     assert_eq!(
         weight(&mut evidence, Some(30.2), Some(36.9)),
-        Severity::Severe
+        Some(Severity::Severe)
     );
-    assert_eq!(weight(&mut evidence, None, Some(36.9)), Severity::Severe);
+    // no onset that could have been moved
+    for without_m_s in [None, Some(1.1)] {
+        assert_eq!(
+            weight(&mut evidence, without_m_s, Some(36.9)),
+            Some(Severity::Minor)
+        );
+    }
+    evidence.constraints = Some(MovedOnset {
+        without_m_s: Some(34.0),
+        with_m_s: None,
+    });
+    assert_eq!(Verdict::of(&evidence).doubts[0].severity, Severity::Severe);
     evidence.required = None;
     assert_eq!(
         weight(&mut evidence, Some(33.0), Some(36.9)),
-        Severity::Severe
+        Some(Severity::Severe)
     );
 }
 
