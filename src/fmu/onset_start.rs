@@ -44,10 +44,8 @@ impl OnsetStart {
     pub(super) fn check(&self) -> Result<()> {
         positive("speed_m_s", self.speed_m_s)?;
         positive("frequency_hz", self.frequency_hz)?;
-        let damping = self.damping_below.into_iter();
-        damping
-            .map(|d| finite("damping_below", d).map(drop))
-            .collect()
+        let mut damping = self.damping_below.into_iter();
+        damping.try_for_each(|d| finite("damping_below", d).map(drop))
     }
 }
 

@@ -88,10 +88,7 @@ fn of_model(study: &Study, results: &FlutterStudy, model: &TrainedModel) -> Opti
     Some(FlutterReading {
         forces: forces(&model.name, ""),
         search: results.search_of(&model.name, OnsetMethod::Eigenvalues)?,
-        basis: Basis::Tested {
-            range: model.tested_range,
-            reach,
-        },
+        basis: Basis::tested(model.tested_range, reach),
     })
 }
 
@@ -112,10 +109,7 @@ fn of_deck(deck: &Deck, results: &FlutterStudy, name: &str) -> Option<FlutterRea
         search: results.search_of(name, OnsetMethod::Determinant)?,
         basis: match tested {
             // a table is searched no further than it reaches
-            Some(range) => Basis::Tested {
-                range,
-                reach: Reach::everywhere(),
-            },
+            Some(range) => Basis::tested(range, Reach::everywhere()),
             None => Basis::Exact,
         },
     })

@@ -61,12 +61,22 @@ pub enum Basis {
         /// Reduced frequencies of the tests.
         range: ReducedFrequencyRange,
         /// The wind speeds at which every mode stays among them.
-        reach: Reach,
+        reach: Box<Reach>,
     },
     /// A closed formula that holds at every reduced frequency.
     Exact,
     /// Coefficients that are stated, of a theory that was not tested here.
     Stated,
+}
+
+impl Basis {
+    /// Tests in `range`, among which every mode is at the wind speeds of `reach`.
+    pub fn tested(range: ReducedFrequencyRange, reach: Reach) -> Self {
+        Self::Tested {
+            range,
+            reach: Box::new(reach),
+        }
+    }
 }
 
 impl FlutterReading {

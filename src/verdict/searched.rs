@@ -33,10 +33,7 @@ impl Evidence {
         evidence.flutter.push(FlutterReading {
             forces: forces.to_owned(),
             search: found,
-            basis: Basis::Tested {
-                range: tested,
-                reach: reach.unwrap_or_else(Reach::nowhere),
-            },
+            basis: Basis::tested(tested, reach.unwrap_or_else(Reach::nowhere)),
         });
         let growth = unwanted_growth(section, search, Some(tested));
         evidence.growth = evidence.noted("scan for growth", growth);
@@ -61,10 +58,7 @@ impl Evidence {
         evidence.flutter.push(FlutterReading {
             forces: forces.to_owned(),
             search: found,
-            basis: Basis::Tested {
-                range,
-                reach: Reach::everywhere(),
-            },
+            basis: Basis::tested(range, Reach::everywhere()),
         });
         let divergence = table.transfer(range.min).and_then(|lowest| {
             let speed = divergence_speed(structure, &static_part(table.dofs(), &lowest))?;

@@ -17,13 +17,12 @@ fn k(value: f64) -> ReducedFrequency {
 const TESTED: (f64, f64) = (0.3, 2.0);
 
 fn tests(to_m_s: f64) -> Basis {
-    Basis::Tested {
-        range: ReducedFrequencyRange::between(k(TESTED.0), k(TESTED.1)),
-        reach: Reach {
-            to_m_s,
-            ..Reach::everywhere()
-        },
-    }
+    let range = ReducedFrequencyRange::between(k(TESTED.0), k(TESTED.1));
+    let reach = Reach {
+        to_m_s,
+        ..Reach::everywhere()
+    };
+    Basis::tested(range, reach)
 }
 
 fn at(speed_m_s: f64, reduced: f64) -> CriticalPoint {

@@ -66,12 +66,10 @@ impl BridgeStudy {
     fn readings(&self, results: &BridgeFlutter) -> Vec<FlutterReading> {
         let basis = match self.tested_range() {
             None => Basis::Stated,
-            Some(range) => Basis::Tested {
-                range,
-                reach: self
-                    .reach(results, range)
-                    .unwrap_or_else(|_| Reach::nowhere()),
-            },
+            Some(range) => {
+                let reach = self.reach(results, range);
+                Basis::tested(range, reach.unwrap_or_else(|_| Reach::nowhere()))
+            }
         };
         let reading = |forces: &str, answer: &BridgeAnswer| FlutterReading {
             forces: forces.to_owned(),

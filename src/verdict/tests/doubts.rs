@@ -113,13 +113,12 @@ fn growth_where_nothing_was_tested_cannot_be_judged() {
     );
     // nobody looked: as bad
     evidence.growth = None;
-    evidence.flutter[0].basis = Basis::Tested {
-        range: ReducedFrequencyRange::between(k(0.3), k(2.0)),
-        reach: Reach {
-            from_m_s: 5.0,
-            ..Reach::everywhere()
-        },
+    let reach = Reach {
+        from_m_s: 5.0,
+        ..Reach::everywhere()
     };
+    evidence.flutter[0].basis =
+        Basis::tested(ReducedFrequencyRange::between(k(0.3), k(2.0)), reach);
     assert_eq!(
         severe(&evidence),
         [DoubtKind::NotJudgedBelow { speed_m_s: 5.0 }]
