@@ -82,17 +82,30 @@ fn the_frequency_domain_takes_the_table() {
             assert!((found / expected - 1.0).abs() < 1e-4, "{found} {expected}");
         }
     }
-    // what is stepped in time is a fit, whose sway is a seventh too small
+    // what is stepped in time is a fit, whose rotation is a quarter larger
     let models = found.models.unwrap();
     assert!(models.fits[0].contains("Laguerre"), "{}", models.fits[0]);
     let (node, motion, change) = models.largest().unwrap();
-    assert_eq!((node, motion), (1, 1));
-    assert!((-0.16..-0.13).contains(&change), "{change}");
+    println!("{:?}", models.change);
+    assert_eq!((node, motion), (1, 2));
+    assert!((0.24..0.28).contains(&change), "{change}");
     let by_model = models.response.unwrap();
-    let ratio = by_model.rms[1][1] / found.frequency.rms[1][1] - 1.0;
+    let ratio = by_model.rms[1][2] / found.frequency.rms[1][2] - 1.0;
     assert!((ratio - change).abs() < 1e-12);
+    // but in gusts slower than any test, which move the girder as by their stiffness at rest: there nine tenths of that variance
+    // lie, and a table that holds its derivatives knows no such stiffness
     let parts = found.frequency.part_in_tested_range.unwrap();
-    assert!(parts.iter().flatten().all(|p| (0.0..=1.0).contains(p)));
+    assert!(parts[1][2] < 0.12, "{}", parts[1][2]);
+    let model_parts = by_model.part_in_tested_range.unwrap();
+    for (node, (table, model)) in parts.iter().zip(&model_parts).enumerate() {
+        for (i, (table, model)) in table.iter().zip(model).enumerate() {
+            assert!((0.0..=1.0).contains(table) && (0.0..=1.0).contains(model));
+            let inside = by_model.rms[node][i] * model.sqrt();
+            let change = inside / (found.frequency.rms[node][i] * table.sqrt()) - 1.0;
+            println!("node {node}, motion {i}: {change:+.4} inside the tested range");
+            assert!(change.abs() < 0.04, "{change}");
+        }
+    }
 }
 
 /// The onset by this table is 76.384 m/s, by the model above it: the table decides what is refused.

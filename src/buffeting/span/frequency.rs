@@ -56,7 +56,7 @@ impl SpanResponse {
 /// One-sided spectra of the displacements of named nodes.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SpanSpectra {
-    /// Hz, rising; close together at the resonances.
+    /// Hz, rising from zero; close together at the resonances.
     pub frequencies_hz: Vec<f64>,
     /// Vertical, lateral (m²/Hz) and rotation (rad²/Hz) of each node at every frequency.
     pub densities: Vec<[Vec<f64>; 3]>,
@@ -152,7 +152,7 @@ impl<'a> SpanFrequency<'a> {
         })
     }
 
-    /// Spectra of the displacements of `nodes`, from a hundredth of the slowest resonance to four times the fastest.
+    /// Spectra of the displacements of `nodes`, from zero to four times the fastest resonance.
     ///
     /// # Errors
     /// [`Error::Input`] for forces that say nothing at a `K`.
@@ -230,8 +230,9 @@ fn growth(turned: &Turning, structure: &Structure, forces: &ModalForces, speed: 
     growing.map(one).collect::<Vec<_>>().join(",")
 }
 
-/// Frequencies, Hz, that show every resonance: evenly spread on a logarithmic scale, and within ten half-power widths of
-/// each.
+/// Frequencies, Hz, that show every resonance: zero, from a hundredth of the slowest on evenly spread on a logarithmic scale,
+/// and within ten half-power widths of each. Zero, since a motion whose resonance is a fast one follows slow gusts: below the
+/// hundredth lies a twenty-fifth of the variance of a rotation.
 fn resolved(resonances_hz: &[(f64, f64)]) -> Vec<f64> {
     let hertz = resonances_hz.iter().map(|r| r.0);
     let lowest = hertz.clone().fold(f64::INFINITY, f64::min) / 100.0;
@@ -241,7 +242,8 @@ fn resolved(resonances_hz: &[(f64, f64)]) -> Vec<f64> {
         (-AROUND..=AROUND)
             .map(move |i| f + half.abs() * 10.0 * (f64::from(i) / f64::from(AROUND)).powi(3))
     });
-    let mut all: Vec<f64> = even.chain(near.filter(|f| *f > 0.0)).collect();
+    let above = even.chain(near.filter(|f| *f > 0.0));
+    let mut all: Vec<f64> = std::iter::once(0.0).chain(above).collect();
     all.sort_by(f64::total_cmp);
     all.dedup_by(|a, b| *a <= *b * (1.0 + 1e-9));
     all

@@ -7,7 +7,7 @@ use crate::aerodynamics::{FlatPlate, Lags, RationalModel, Transfer};
 use crate::error::{Error, Result};
 use crate::files::bridge::{SectionBlock, StaticBlock};
 use crate::files::derivatives::TableWords;
-use crate::identification::{FeedThrough, Fitted, Form, FrequencyFit, FrequencyWeights, fit_table};
+use crate::identification::{FeedThrough, Fitted, Form, FrequencyFit, fit_table};
 use crate::plausibility::{Finding, of_table};
 use crate::section::Dof;
 use crate::trained_model::{Model, TrainedModel};
@@ -239,9 +239,6 @@ fn by_table(
                 feed_through: FeedThrough::default(),
                 pole_per_transfer_function: false,
             },
-            // the modes of a bridge reach every tested K: residuals of G itself, so that the small entries of sway, which
-            // scatter, do not choose the poles (relative weights: −1.9 % of the onset of LN21-5200 with sway)
-            weights: FrequencyWeights::None,
             ..FrequencyFit::default()
         },
     };
