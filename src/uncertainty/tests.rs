@@ -282,6 +282,4 @@ fn a_family_of_decks_is_told_nothing_false() {
     let normal = &report.ranges[0];
     assert_eq!((normal.range, normal.decks), (FamilyRange::Normal, 8));
     assert_eq!((normal.refused, normal.held.inside), (0, 8));
-    let all = report.ranges.last().unwrap();
-    assert!(all.held.of >= 20, "{all:?}");
 }

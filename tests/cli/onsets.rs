@@ -90,8 +90,8 @@ fn spurious_onsets_are_named_and_not_taken() {
         .replace("source = \"LN21-5200\"", "source = \"LN21-5500\"")
         // least squares alone: with constraints nothing is spurious
         .replace(
-            "records = { form",
-            "records = { constraints = \"none\", form",
+            "records = { weights",
+            "records = { constraints = \"none\", weights",
         );
     fs::write(at.join("study.toml"), study).unwrap();
     // the model that grows where it should not is not exported
