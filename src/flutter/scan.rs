@@ -81,7 +81,7 @@ impl GrowthBand {
 
 /// Bands of wind speed between two speeds in which an oscillation grows, in rising order.
 ///
-/// Sections find all speeds at which growth may begin or end at once ([`critical`](super::critical)), so that no growth
+/// Sections find all speeds at which growth may begin or end at once (`critical`), so that no growth
 /// between two speeds is a statement about every one between; what is sampled or large looks at every eigenvalue at speeds a
 /// twentieth apart or closer, and at peaks between them. Zero for `from_m_s` is nearly still air. `tested` as in [`find_onset`](super::find_onset).
 ///
