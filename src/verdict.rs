@@ -19,6 +19,7 @@ mod doubt;
 mod doubts;
 mod evidence;
 mod judgement;
+mod moved;
 mod outcome;
 mod reach;
 mod searched;
