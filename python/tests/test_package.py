@@ -32,8 +32,8 @@ def model(table):
 
 def test_onset_is_that_of_the_library_with_an_interval_around_it(section, model):
     onset = aerodeck.flutter(section, model)
-    # the figure of the README's Rust program
-    assert onset.state == "onset" and abs(onset.speed_m_s - 36.87) < 0.01
+    # the figure of the manual (docs/models.md): as in README
+    assert onset.state == "onset" and abs(onset.speed_m_s - 36.92) < 0.01
     low, high = onset.interval
     assert low < onset.speed_m_s < high and onset.in_tested_range
     assert onset.card["onset"]["speed_m_s"] == onset.speed_m_s
@@ -51,7 +51,7 @@ def test_every_deck_at_both_scales(deck, at):
     own = aerodeck.flutter(section, measured)
     assert onset.state == "onset"
     if own.state == "onset" and onset.in_tested_range:
-        assert abs(onset.speed_m_s / own.speed_m_s - 1) < 0.08
+        assert abs(onset.speed_m_s / own.speed_m_s - 1) < 0.04
 
 
 def test_three_motions(table):
