@@ -32,7 +32,7 @@ def model(table):
 
 def test_onset_is_that_of_the_library_with_an_interval_around_it(section, model):
     onset = aerodeck.flutter(section, model)
-    # the figure of the manual (docs/models.md): as in README
+    # by five filters, as the command line has it
     assert onset.state == "onset" and abs(onset.speed_m_s - 36.92) < 0.01
     low, high = onset.interval
     assert low < onset.speed_m_s < high and onset.in_tested_range
