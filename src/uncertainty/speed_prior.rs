@@ -20,8 +20,6 @@ const MEASURED_FREEDOM: f64 = 2.0;
 /// below its limit, between the one-sided bounds of 95 and 97.5 %: as few as these decks hardly allow, so that a deck unlike them
 /// soon counts by its own tests.
 const PRIOR_FREEDOM: f64 = 6.0;
-/// Probability below which a deck is no longer taken as one of the measured kind.
-const UNLIKELY: f64 = 0.05;
 
 /// Ratios of the embedded measured decks: lift and moment, each in size and in phase, of dissipative Laguerre models (L = 3) fitted
 /// to the tables of heave and rotation. The test `ratios_are_those_of_the_embedded_decks` computes them anew.
@@ -71,14 +69,14 @@ impl SpeedPrior {
         }
     }
 
-    /// The same for a deck whose ratios are `mean` on average, with `freedom` degrees of freedom together: one that scatters far
-    /// more than measured decks do is not one of them, and what they say counts less and less as that becomes plain.
+    /// The same for a deck whose ratios are `mean` on average, with `freedom` degrees of freedom together: the prior counts by the
+    /// probability that a measured deck would scatter as much or more, so that one that scatters far more counts by its own tests.
     pub(super) fn for_deck(self, mean: f64, freedom: f64) -> Self {
         let (nu, own) = (freedom, self.degrees_of_freedom);
         let x = nu * mean / (nu * mean + own * self.ratio);
         let more = 1.0 - incomplete_beta(x, 0.5 * nu, 0.5 * own);
         Self {
-            degrees_of_freedom: own * (more / UNLIKELY).min(1.0),
+            degrees_of_freedom: own * more,
             ..self
         }
     }
@@ -138,10 +136,12 @@ mod tests {
     #[test]
     fn a_deck_far_outside_counts_by_its_own_tests() {
         let prior = SpeedPrior::measured(None);
-        assert_eq!(prior.for_deck(prior.ratio, 8.0), prior);
+        // SciPy: 6 f.sf(1, 8, 6) and 6 f.sf(100, 8, 6)
+        let like = prior.for_deck(prior.ratio, 8.0);
+        assert!((like.degrees_of_freedom / 3.088_560_039 - 1.0).abs() < 1e-6);
         let far = prior.for_deck(100.0 * prior.ratio, 8.0);
         assert!(
-            (far.degrees_of_freedom / 9.735719690e-04 - 1.0).abs() < 1e-6,
+            (far.degrees_of_freedom / 4.867_859_845e-5 - 1.0).abs() < 1e-6,
             "{far:?}"
         );
         assert!((far.after(500.0, 2.0).ratio / 500.0 - 1.0).abs() < 1e-3);
