@@ -1,7 +1,7 @@
 //! `aerodeck bridge flutter`: onset, modes that take part, curves, the motion at flutter.
 
 use super::super::answer::Answer;
-use super::super::evidence::{DerivativesShown, curves_csv};
+use super::super::evidence::{DerivativesShown, curves_csv, text_cell};
 use super::super::figures;
 use super::super::output::OutputDir;
 use super::super::progress::Progress;
@@ -234,7 +234,14 @@ fn motion_csv(motion: &BridgeMotion) -> String {
         let _ = writeln!(
             text,
             "{},{},{},{},{},{},{},{}",
-            n.node, n.along_m, y[0], y[1], x[0], x[1], t[0], t[1]
+            text_cell(&n.node),
+            n.along_m,
+            y[0],
+            y[1],
+            x[0],
+            x[1],
+            t[0],
+            t[1]
         );
     }
     text
@@ -248,7 +255,12 @@ fn animation_csv(motion: &BridgeMotion) -> String {
         let (sin, cos) = (std::f64::consts::TAU * phase).sin_cos();
         for n in &motion.nodes {
             let [y, x, t] = n.motion.map(|z| z[0] * cos - z[1] * sin);
-            let _ = writeln!(text, "{phase},{},{},{y},{x},{t}", n.node, n.along_m);
+            let _ = writeln!(
+                text,
+                "{phase},{},{},{y},{x},{t}",
+                text_cell(&n.node),
+                n.along_m
+            );
         }
     }
     text
