@@ -230,7 +230,7 @@ def test_process_finds_the_derivatives_of_a_virtual_campaign():
     found = aerodeck.process(campaign)
     assert len(found.records) > 0 and found.report["runs"] and found.estimates
     onset = aerodeck.flutter(aerodeck.Section.table_4_1(), aerodeck.fit_laguerre(found.derivatives))
-    assert abs(onset.speed_m_s / 36.87 - 1) < 0.02
+    assert abs(onset.speed_m_s / 36.92 - 1) < 0.02
 
 
 def test_pages_for_notebooks(table, section, model):
