@@ -13,6 +13,7 @@
 //! FMU treat it as they treat a section. A section is the bridge of one node of unit length with unit shapes
 //! ([`Bridge::of_section`]).
 
+mod banks;
 mod gusts;
 mod modal;
 mod similarity;

@@ -20,13 +20,11 @@ pub use frequency::BuffetingResponse;
 pub(crate) use frequency::{buffeting_response, response_spectrum};
 pub(crate) use problem::{BuffetingProblem, GustForces};
 pub use problem::{Gust, Turbulence};
-pub(crate) use span::span_ensemble;
-pub(crate) use span::span_response;
-pub(crate) use span::span_spectra;
 pub use span::{
     Coherence, SpanEnsemble, SpanPlan, SpanProblem, SpanRecord, SpanResponse, SpanSpectra,
     TurbulenceField, span_record, turbulence_field,
 };
+pub(crate) use span::{SpanFrequency, span_ensemble};
 pub use spectrum::{GustComponent, GustSpectrum, SpectrumFormula, SpectrumShape};
 pub(crate) use stability::unstable_roots;
 pub(crate) use synthesis::synthesise;

@@ -55,6 +55,8 @@ use std::process::ExitCode;
 const WRONG_INPUT: u8 = 2;
 /// Exit code when a computation failed or a check did not pass.
 const FAILED: u8 = 1;
+/// Exit code when a speed is required and it is not known to be met.
+const NOT_MET: u8 = 3;
 
 /// Bridge aeroelasticity from wind-tunnel data to an FMI 2.0 co-simulation FMU.
 #[derive(Parser)]
@@ -166,6 +168,7 @@ fn print(answer: &Answer, json: bool) -> u8 {
             complain(&error);
             FAILED
         }
+        Ok(()) if answer.refused() => NOT_MET,
         Ok(()) if answer.passed() => 0,
         Ok(()) => FAILED,
     }

@@ -21,6 +21,7 @@ pub mod lifecycle;
 pub mod location;
 pub mod log_categories;
 pub mod onset_bounds;
+pub mod onset_start;
 #[cfg(feature = "cli")]
 pub mod package;
 pub mod refusal;

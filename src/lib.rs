@@ -19,7 +19,7 @@
 //! let found = find_onset("LN21-5200", &section, &search, Some(report.tested_range))?;
 //!
 //! let onset = found.onset().expect("this deck flutters");
-//! assert!((onset.at.speed_m_s - 36.87).abs() < 0.01);
+//! assert!((onset.at.speed_m_s - 36.92).abs() < 0.01);
 //! assert!(onset.headline().ends_with("inside the tested range"));
 //! # Ok(())
 //! # }
@@ -107,6 +107,8 @@ pub mod trained_model;
 #[cfg(feature = "cli")]
 pub mod uncertainty;
 pub mod units;
+#[cfg(feature = "cli")]
+pub mod verdict;
 #[cfg(feature = "cli")]
 pub mod wind_tunnel;
 

@@ -4,6 +4,7 @@
 //! tests, `aerodeck validate` and the table in the README. "Published" figures are printed in the source named; "computed" ones
 //! were obtained with NumPy and SciPy, independently of this crate. Users write cases of their own as `UserCase`.
 
+mod bridges;
 mod first_order;
 mod flat_plate;
 mod models;
@@ -21,9 +22,10 @@ use crate::identification::{FrequencyFit, FrequencyWeights};
 use serde::{Deserialize, Serialize};
 
 /// The files of `data/reference`.
-const FILES: [&str; 8] = [
+const FILES: [&str; 9] = [
     include_str!("../data/reference/flat-plate-fits.toml"),
     include_str!("../data/reference/fung-1955.toml"),
+    include_str!("../data/reference/goland-1945.toml"),
     include_str!("../data/reference/iabse-1.1a.toml"),
     include_str!("../data/reference/jones-1940.toml"),
     include_str!("../data/reference/kavrakov-2022.toml"),
@@ -36,7 +38,7 @@ const FILES: [&str; 8] = [
 type Compute = fn() -> Result<Vec<f64>>;
 
 /// All cases by name, in the order in which they are shown.
-const COMPUTATIONS: [(&str, Compute); 32] = [
+const COMPUTATIONS: [(&str, Compute); 34] = [
     ("flat-plate-table-4.1", flat_plate::table_4_1),
     ("iabse-1.1a-onset", flat_plate::iabse_onset),
     ("iabse-1.1a-in-wind", flat_plate::iabse_in_wind),
@@ -85,6 +87,8 @@ const COMPUTATIONS: [(&str, Compute); 32] = [
     ("iabse-1.1a-buffeting", flat_plate::iabse_rms),
     ("iabse-1.1a-buffeting-adaptive", flat_plate::iabse_rms),
     ("iabse-1.1a-buffeting-published", flat_plate::iabse_rms),
+    ("goland-wing", bridges::goland),
+    ("goland-wing-published", bridges::goland),
 ];
 
 /// Who says what a figure should be.

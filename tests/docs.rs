@@ -158,7 +158,8 @@ fn every_key_of_results_has_its_line() {
     let summary: Value = serde_json::from_str(&read("summary.json")).unwrap();
     documented("docs/files/results.md", &keys(&summary));
     documented("docs/files/results.md", &keys(&summary["onsets"][0]));
-    documented("docs/files/results.md", &keys(&summary["answer"]));
+    documented("docs/verdict.md", &keys(&summary["verdict"]));
+    documented("docs/verdict.md", &keys(&summary["verdict"]["critical"]));
     let model = read("model.json");
     TrainedModel::from_json(&model).unwrap();
     let model: Value = serde_json::from_str(&model).unwrap();

@@ -5,7 +5,7 @@ Fifteen lines from a deck to its flutter onset::
     import aerodeck
 
     table = aerodeck.Derivatives.deck("LN21-5200")      # or Derivatives.read("workbook.xlsx")
-    model = aerodeck.fit_laguerre(table, filters=3)
+    model = aerodeck.fit_laguerre(table)
     section = aerodeck.Section.table_4_1()
     onset = aerodeck.flutter(section, model)
     print(onset.headline)
@@ -42,10 +42,11 @@ from ._aerodeck import (
     simulate,
     sweep,
 )
-from ._errors import AerodeckError, FileError, InputError, NumericalError, UnstableError
+from ._errors import AerodeckError, AerodeckWarning, FileError, InputError, NumericalError, UnstableError
 
 __all__ = [
     "AerodeckError",
+    "AerodeckWarning",
     "Bridge",
     "BridgeScatter",
     "Buffeting",

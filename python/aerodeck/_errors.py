@@ -5,6 +5,10 @@ class AerodeckError(Exception):
     """Any error of this package."""
 
 
+class AerodeckWarning(UserWarning):
+    """Something given that is possible but implausible, as in another unit, notation or axis."""
+
+
 class InputError(AerodeckError, ValueError):
     """Wrong input: the caller can mend it.
 

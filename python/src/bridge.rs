@@ -2,7 +2,7 @@
 
 use crate::bridge_scatter::{BridgeScatter, Derivatives};
 use crate::convert::{rows, shown, to_python};
-use crate::error::{raised, wrong};
+use crate::error::{raised, warned, wrong};
 use crate::export::existing;
 use crate::onset::Onset;
 use crate::sweep::Sweep;
@@ -14,6 +14,7 @@ use aerodeck::fmu::package::{FmiVersion, Label, Runtime, package_bridge, write_a
 use aerodeck::study::bridge::{
     BridgeBuffeting, BridgeExportOptions, BridgeStudy, Scatter, bridge_flutter,
 };
+use aerodeck::verdict::Verdict;
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -38,7 +39,9 @@ impl Bridge {
     fn read(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
         let work = Work::new(None);
         let study = work.run(py, || BridgeStudy::new(BridgeFile::read(&path)?))?;
-        study.map(Self).map_err(raised)
+        let study = study.map_err(raised)?;
+        warned(py, &study.findings)?;
+        Ok(Self(study))
     }
 
     /// Name in the file.
@@ -137,7 +140,8 @@ impl Bridge {
             "search": answer.search, "motion": answer.motion, "left_out": found.left_out,
             "divergence_m_s": found.divergence_m_s, "mean_rotation_deg": found.mean_rotation_deg, "failed": found.failed,
         });
-        Onset::with_card(&answer.search, method, &card)
+        let verdict = Verdict::of(&self.0.evidence(&found, &found.failed));
+        Onset::with_card(&answer.search, method, &verdict, &card)
     }
 
     /// Follow the modes over wind speed, with the force models.
@@ -349,12 +353,16 @@ pub struct Buffeting {
     /// Root mean square, by spectra; shape (n, 3).
     #[pyo3(get)]
     rms: Py<PyArray2<f64>>,
-    /// Root mean square, by records in time; shape (n, 3).
+    /// Root mean square, by records in time; shape (n, 3). `None` where the models grow and the tables do not.
     #[pyo3(get)]
-    rms_of_records: Py<PyArray2<f64>>,
+    rms_of_records: Option<Py<PyArray2<f64>>>,
     /// Standard error of `rms_of_records`; shape (n, 3).
     #[pyo3(get)]
-    standard_error: Py<PyArray2<f64>>,
+    standard_error: Option<Py<PyArray2<f64>>>,
+    /// Root mean square by spectra with the models that are stepped in time, over `rms`, less 1; shape (n, 3). `None`
+    /// without tables.
+    #[pyo3(get)]
+    model_change: Option<Py<PyArray2<f64>>>,
     /// Mean frequency of upward crossings of the mean, Hz; shape (n, 3).
     #[pyo3(get)]
     crossing_frequency_hz: Py<PyArray2<f64>>,
@@ -363,23 +371,25 @@ pub struct Buffeting {
     expected_peak_factor: Py<PyArray2<f64>>,
     /// The same by records; shape (n, 3).
     #[pyo3(get)]
-    peak_factor: Py<PyArray2<f64>>,
+    peak_factor: Option<Py<PyArray2<f64>>>,
     all: Py<PyAny>,
 }
 
 impl Buffeting {
     fn new(py: Python<'_>, found: &BridgeBuffeting) -> PyResult<Self> {
         let array = |values: &[[f64; 3]]| rows(py, 3, values).map(Bound::unbind);
-        let (frequency, time) = (&found.frequency, &found.time);
+        let (frequency, time) = (&found.frequency, found.time.as_ref());
+        let change = found.models.as_ref().and_then(|m| m.change.as_deref());
         Ok(Self {
             speed_m_s: frequency.speed_m_s,
             nodes: found.nodes.clone(),
             rms: array(&frequency.rms)?,
-            rms_of_records: array(&time.rms)?,
-            standard_error: array(&time.standard_error)?,
+            rms_of_records: time.map(|t| array(&t.rms)).transpose()?,
+            standard_error: time.map(|t| array(&t.standard_error)).transpose()?,
+            model_change: change.map(array).transpose()?,
             crossing_frequency_hz: array(&frequency.crossing_frequency_hz)?,
             expected_peak_factor: array(&found.expected_peak_factor)?,
-            peak_factor: array(&time.peak_factor)?,
+            peak_factor: time.map(|t| array(&t.peak_factor)).transpose()?,
             all: to_python(py, found)?.unbind(),
         })
     }

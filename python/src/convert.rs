@@ -22,8 +22,16 @@ pub fn from_python<T: DeserializeOwned>(place: &str, value: &Bound<'_, PyAny>) -
         .import("json")?
         .call_method1("dumps", (value,))?
         .extract()?;
-    serde_json::from_str(&text)
-        .map_err(|e| wrong(place, "the keys and values of a study file", e.to_string()))
+    serde_json::from_str(&text).map_err(|e| {
+        let said = e.to_string();
+        // the place is one in a text that the caller never saw
+        let found = said.split(" at line ").next().unwrap_or_default();
+        wrong(
+            place,
+            "the keys and values of a study file",
+            found.to_owned(),
+        )
+    })
 }
 
 /// Adds `key` unless the caller has stated it.

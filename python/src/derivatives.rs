@@ -1,12 +1,13 @@
 //! `Derivatives`: a table of measured aerodynamic derivatives.
 
 use crate::convert::{dof_names, rows, shown, word};
-use crate::error::{raised, wrong};
+use crate::error::{raised, warned, wrong};
 use aerodeck::aerodynamics::derivatives::notation::{
     Argument, Axes, Convention, ExpressedPoint, Notation, StatedConvention,
 };
 use aerodeck::aerodynamics::derivatives::{DerivativeTable, Missing, TableHeader};
 use aerodeck::files::derivatives::{ReadOptions, embedded, read_table_with, write_csv_in};
+use aerodeck::plausibility::{Finding, of_table};
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -22,7 +23,7 @@ const AXES: &str = "heave_up or heave_down";
 /// Inside, the numbers are Scanlan's with ½ρV² and K², heave and lift up, over V̂ = V/(ωB). Everything else is converted when
 /// it is read or written, and has to be stated.
 #[pyclass(frozen, module = "aerodeck")]
-pub struct Derivatives(pub DerivativeTable);
+pub struct Derivatives(pub DerivativeTable, pub Vec<Finding>);
 
 #[pymethods]
 impl Derivatives {
@@ -43,6 +44,7 @@ impl Derivatives {
     #[staticmethod]
     #[pyo3(signature = (path, *, notation = None, argument = None, axes = None, width_m = None, missing = None))]
     fn read(
+        py: Python<'_>,
         path: PathBuf,
         notation: Option<&str>,
         argument: Option<&str>,
@@ -58,14 +60,15 @@ impl Derivatives {
                 .transpose()?,
             ..ReadOptions::default()
         };
-        let table = read_table_with(path, &options).map_err(raised)?.table;
-        Ok(Self(table))
+        let read = read_table_with(path, &options).map_err(raised)?;
+        Self::judged(py, read.table, &read.convention)
     }
 
     /// A measured deck that comes with the package: one of `Derivatives.decks()`.
     #[staticmethod]
     fn deck(name: &str) -> PyResult<Self> {
-        embedded::deck(name).map(Self).map_err(raised)
+        let table = embedded::deck(name).map_err(raised)?;
+        Ok(Self(table, Vec::new()))
     }
 
     /// Names of the measured decks that come with the package.
@@ -113,9 +116,8 @@ impl Derivatives {
             source: "arrays".to_owned(),
             ..TableHeader::default()
         };
-        DerivativeTable::new(name, width_m, header, points)
-            .map(Self)
-            .map_err(raised)
+        let table = DerivativeTable::new(name, width_m, header, points).map_err(raised)?;
+        Self::judged(values.py(), table, &convention)
     }
 
     /// All test points in a notation.
@@ -220,6 +222,15 @@ impl Derivatives {
         keywords: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         shown(slf.as_any(), "derivatives_plot", keywords)
+    }
+}
+
+impl Derivatives {
+    /// The table with what is odd about it, which is said.
+    fn judged(py: Python<'_>, table: DerivativeTable, convention: &Convention) -> PyResult<Self> {
+        let findings = of_table(&table, convention);
+        warned(py, &findings)?;
+        Ok(Self(table, findings))
     }
 }
 

@@ -1,11 +1,22 @@
 //! Errors of the library as the exceptions of `aerodeck/_errors.py`.
 
 use aerodeck::Error;
+use aerodeck::plausibility::Finding;
 use pyo3::prelude::*;
 
 /// The exception for an error: `InputError` knows file, place, expected and found.
 pub fn raised(error: Error) -> PyErr {
     Python::attach(|py| exception(py, &error).unwrap_or_else(|failed| failed))
+}
+
+/// Says what is odd by `warnings.warn`, as `AerodeckWarning`.
+pub fn warned(py: Python<'_>, findings: &[Finding]) -> PyResult<()> {
+    let class = py.import("aerodeck._errors")?.getattr("AerodeckWarning")?;
+    let warn = py.import("warnings")?.getattr("warn")?;
+    for finding in findings {
+        warn.call1((finding.to_string(), &class, 1))?;
+    }
+    Ok(())
 }
 
 /// Wrong input at `place`.

@@ -105,6 +105,7 @@ pub fn export_fmu(
         force,
         bounds,
         gusts,
+        verdict: None,
         listing: if reals_only {
             Listing::Reals
         } else {

@@ -20,8 +20,8 @@ use serde_json::{Value, json};
 /// Parameters
 /// ----------
 /// data : Derivatives or Records
-/// filters : int
-///     Filters of each motion's bank.
+/// filters : int, optional
+///     Filters of each motion's bank; left out, as many as the data determine, three to five under constraints.
 /// lateral : bool
 ///     Whether sway is part of the model; for records what they hold.
 /// poles : sequence of float, optional
@@ -31,11 +31,11 @@ use serde_json::{Value, json};
 /// **options
 ///     Further keys of `table` or `records` of a `[[model]]` in a study file: `weights`, `constraints`, `own`, …
 #[pyfunction]
-#[pyo3(signature = (data, filters = 3, *, lateral = false, poles = None, progress = None, **options))]
+#[pyo3(signature = (data, filters = None, *, lateral = false, poles = None, progress = None, **options))]
 pub fn fit_laguerre(
     py: Python<'_>,
     data: &Bound<'_, PyAny>,
-    filters: usize,
+    filters: Option<usize>,
     lateral: bool,
     poles: Option<Vec<f64>>,
     progress: Option<Py<PyAny>>,

@@ -11,9 +11,11 @@ use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::flutter::{
     FlutterSearch, OnsetInterval, OnsetSearch, determinant_onset, find_onset, pk_onset,
 };
+use aerodeck::plausibility::of_section;
 use aerodeck::section::SectionModel;
 use aerodeck::study::{FlutterBlock, SpeedRange};
 use aerodeck::units::{ReducedFrequency, ReducedFrequencyRange};
+use aerodeck::verdict::{Evidence, MovedOnset, RequiredSpeed, Verdict};
 use pyo3::prelude::*;
 
 /// Reduced frequencies in which the flat plate is searched.
@@ -33,6 +35,8 @@ pub fn usual_range(section: &SectionModel) -> SpeedRange {
 ///     A trained model, a measured table (searched inside its test points) or Theodorsen's flat plate.
 /// speed_max_m_s : float, optional
 ///     Highest wind speed searched, m/s; left out, well beyond the flat plate's onset.
+/// required_speed_m_s : float, optional
+///     Nothing critical may begin below this wind speed, m/s; the search always reaches it. `Onset.outcome` says whether that is met.
 /// method : {"eigenvalues", "determinant", "pk"}, optional
 ///     Left out, eigenvalues for a model and the determinant for the others, which have none.
 ///
@@ -40,22 +44,35 @@ pub fn usual_range(section: &SectionModel) -> SpeedRange {
 /// -------
 /// Onset
 #[pyfunction]
-#[pyo3(signature = (section, model, *, speed_max_m_s = None, method = None))]
+#[pyo3(signature = (section, model, *, speed_max_m_s = None, required_speed_m_s = None, method = None))]
 pub fn flutter(
     py: Python<'_>,
     section: &Bound<'_, Section>,
     model: &Bound<'_, PyAny>,
     speed_max_m_s: Option<f64>,
+    required_speed_m_s: Option<f64>,
     method: Option<&str>,
 ) -> PyResult<Onset> {
     let section = &section.get().0;
-    let mut search = usual_range(section).search();
-    search.speed_max_m_s = speed_max_m_s.unwrap_or(search.speed_max_m_s);
+    let block = FlutterBlock {
+        speed_max_m_s,
+        required_speed_m_s,
+        ..FlutterBlock::default()
+    };
+    let search = block.range(section).search();
+    let structure = section.structure().map_err(raised)?;
+    let against = |mut evidence: Evidence| {
+        evidence.required = required_speed_m_s.map(|speed_m_s| RequiredSpeed { speed_m_s });
+        evidence.implausible = of_section(section);
+        Verdict::of(&evidence)
+    };
     if let Ok(model) = model.cast::<Model>() {
         let method = method.unwrap_or("eigenvalues");
         let model = model.get();
-        let found = py.detach(|| of_model(section, model, &search, method));
-        return Onset::new(found?, method);
+        let found = py.detach(|| of_model(section, model, &search, method))?;
+        let evidence = py.detach(|| model_evidence(section, model, &search, found.clone()))?;
+        let onset = Onset::new(&found, method, &against(evidence))?;
+        return Ok(onset.doubted(&of_section(section)));
     }
     let exact = |range| FixedForces { range, search };
     let method = method.unwrap_or("determinant");
@@ -65,7 +82,11 @@ pub fn flutter(
             let dofs = section.dofs();
             let forces =
                 InterpolatedTable::new(table, &dofs, Extrapolation::Refuse).map_err(raised)?;
-            exact(forces.tested_range()).find(&table.name, section, &forces, method)
+            let range = forces.tested_range();
+            let found = exact(range).find(&table.name, section, &forces, method)?;
+            let evidence =
+                Evidence::of_table("the table", &structure, &forces, range, found.clone());
+            PyResult::Ok((found, evidence))
         })
     } else if model
         .extract::<&str>()
@@ -73,9 +94,12 @@ pub fn flutter(
     {
         let k = ReducedFrequency::from_full_width;
         let range = ReducedFrequencyRange::between(k(PLATE_K.0), k(PLATE_K.1));
-        let found =
-            py.detach(|| exact(range).find("flat plate", section, &FlatPlate::default(), method));
-        found.map(exactly)
+        let plate = FlatPlate::default();
+        let found = py.detach(|| exact(range).find("flat plate", section, &plate, method));
+        found.map(exactly).map(|found| {
+            let evidence = Evidence::of_exact("the flat plate", &structure, &plate, found.clone());
+            (found, evidence)
+        })
     } else {
         let found = model.get_type().name()?.to_string();
         return Err(wrong(
@@ -84,7 +108,35 @@ pub fn flutter(
             found,
         ));
     };
-    Onset::new(found?, method)
+    let (found, evidence) = found?;
+    let of_deck = model.cast::<Derivatives>().ok();
+    let of_deck = of_deck.iter().flat_map(|table| &table.get().1);
+    let onset = Onset::new(&found, method, &against(evidence))?;
+    Ok(onset.doubted(of_section(section).iter().chain(of_deck)))
+}
+
+/// What is known of a section in the forces of a trained model.
+fn model_evidence(
+    section: &SectionModel,
+    model: &Model,
+    search: &OnsetSearch,
+    found: FlutterSearch,
+) -> PyResult<Evidence> {
+    let structure = section.structure().map_err(raised)?;
+    let coupled = CoupledSection::with_model(&structure, &model.model).map_err(raised)?;
+    let at_rest = ReducedFrequency::from_full_width(0.0);
+    let at_rest = model.model.transfer(at_rest).map_err(raised)?;
+    let mut evidence =
+        Evidence::of_section("the model", &coupled, &at_rest, model.tested, search, found);
+    let effect = model
+        .report
+        .as_ref()
+        .and_then(|r| r.constraints.as_ref()?.onset.as_ref());
+    evidence.constraints = effect.map(|effect| MovedOnset {
+        without_m_s: effect.without_m_s,
+        with_m_s: effect.with_m_s,
+    });
+    Ok(evidence)
 }
 
 /// The answer of forces that hold at every reduced frequency.

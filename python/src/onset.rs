@@ -3,6 +3,8 @@
 use crate::convert::shown;
 use crate::error::raised;
 use aerodeck::flutter::{FlutterSearch, OnsetInterval};
+use aerodeck::plausibility::Finding;
+use aerodeck::verdict::{Outcome, Verdict};
 use pyo3::prelude::*;
 use serde::Serialize;
 
@@ -24,13 +26,18 @@ pub struct Onset {
     no_interval: Option<String>,
     /// Whether the data reach the onset; None when there is none, or the model is exact.
     in_tested_range: Option<bool>,
-    /// The answer in one line.
+    /// The answer in one line; begins with the outcome where a speed is required.
     headline: String,
-    /// What limits trust in it.
+    /// `met`, `not_met` or `cannot_be_judged`; None where no speed is required.
+    outcome: Option<&'static str>,
+    /// Why, or what it takes to have one.
+    explanation: String,
+    /// What limits trust in it, the gravest first.
     warnings: Vec<String>,
     /// How it was found.
     method: String,
     json: String,
+    verdict_json: String,
 }
 
 #[pymethods]
@@ -39,6 +46,14 @@ impl Onset {
     #[getter]
     fn card<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         py.import("json")?.call_method1("loads", (&self.json,))
+    }
+
+    /// What everything that is known amounts to, as dicts and numbers: outcome, what governs, doubts with their kinds, severities
+    /// and numbers.
+    #[getter]
+    fn verdict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        py.import("json")?
+            .call_method1("loads", (&self.verdict_json,))
     }
 
     fn __repr__(&self) -> String {
@@ -52,18 +67,26 @@ impl Onset {
 
 impl Onset {
     /// What was found, by `method`.
-    pub fn new(search: FlutterSearch, method: &str) -> PyResult<Self> {
-        Self::with_card(&search, method, &search)
+    pub fn new(search: &FlutterSearch, method: &str, verdict: &Verdict) -> PyResult<Self> {
+        Self::with_card(search, method, verdict, search)
+    }
+
+    /// The same with what is odd about what it rests on.
+    pub fn doubted<'a>(mut self, findings: impl IntoIterator<Item = &'a Finding>) -> Self {
+        let odd = findings.into_iter().map(ToString::to_string);
+        self.warnings.extend(odd);
+        self
     }
 
     /// What was found, with a card that holds more.
     pub fn with_card(
         search: &FlutterSearch,
         method: &str,
+        verdict: &Verdict,
         card: &impl Serialize,
     ) -> PyResult<Self> {
-        let json = serde_json::to_string(card)
-            .map_err(|e| raised(aerodeck::Error::Numerical(e.to_string())))?;
+        let failed = |e: serde_json::Error| raised(aerodeck::Error::Numerical(e.to_string()));
+        let json = serde_json::to_string(card).map_err(failed)?;
         let mut answer = Self {
             state: "stable",
             speed_m_s: None,
@@ -72,17 +95,22 @@ impl Onset {
             interval: None,
             no_interval: None,
             in_tested_range: None,
-            headline: search.explain(),
-            warnings: vec![],
+            headline: verdict.headline.clone(),
+            outcome: verdict.outcome.as_ref().map(|outcome| match outcome {
+                Outcome::Met => "met",
+                Outcome::NotMet { .. } => "not_met",
+                Outcome::CannotBeJudged { .. } => "cannot_be_judged",
+            }),
+            explanation: verdict.explanation.clone(),
+            warnings: verdict.warnings().map(str::to_owned).collect(),
             method: method.to_owned(),
             json,
+            verdict_json: serde_json::to_string(verdict).map_err(failed)?,
         };
         let at = match search {
             FlutterSearch::Onset(onset) => {
                 answer.state = "onset";
-                answer.headline = onset.headline();
                 answer.in_tested_range = onset.in_tested_range;
-                answer.warnings.clone_from(&onset.warnings);
                 match &onset.interval {
                     OnsetInterval::Known {
                         low_m_s, high_m_s, ..
@@ -99,7 +127,6 @@ impl Onset {
             FlutterSearch::UnstableAtOrBelow(start) => {
                 answer.state = "unstable";
                 answer.in_tested_range = start.in_tested_range;
-                answer.warnings.clone_from(&start.warnings);
                 &start.at
             }
             FlutterSearch::StableUpTo(_) => return Ok(answer),

@@ -93,7 +93,7 @@ pub fn process(
         estimates: to_python(py, &found.estimates)?.unbind(),
         report: to_python(py, &processed.report)?.unbind(),
         records: Py::new(py, Records(processed.records))?,
-        derivatives: Py::new(py, Derivatives(table))?,
+        derivatives: Py::new(py, Derivatives(table, Vec::new()))?,
         warnings,
     })
 }

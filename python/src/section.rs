@@ -1,7 +1,8 @@
 //! `Section`: what is suspended.
 
 use crate::convert::{dof_names, from_python, shown, to_python};
-use crate::error::raised;
+use crate::error::{raised, warned};
+use aerodeck::plausibility::of_section;
 use aerodeck::section::{Rotation, SectionModel, Translation};
 use aerodeck::uncertainty::monte_carlo::Parameter;
 use pyo3::prelude::*;
@@ -142,6 +143,7 @@ impl Section {
 impl Section {
     fn checked(section: SectionModel) -> PyResult<Self> {
         section.structure().map_err(raised)?;
+        Python::attach(|py| warned(py, &of_section(&section)))?;
         Ok(Self(section))
     }
 }

@@ -32,8 +32,8 @@ def model(table):
 
 def test_onset_is_that_of_the_library_with_an_interval_around_it(section, model):
     onset = aerodeck.flutter(section, model)
-    # the figure of the README's Rust program
-    assert onset.state == "onset" and abs(onset.speed_m_s - 36.87) < 0.01
+    # by five filters, as the command line has it
+    assert onset.state == "onset" and abs(onset.speed_m_s - 36.92) < 0.01
     low, high = onset.interval
     assert low < onset.speed_m_s < high and onset.in_tested_range
     assert onset.card["onset"]["speed_m_s"] == onset.speed_m_s
@@ -51,7 +51,7 @@ def test_every_deck_at_both_scales(deck, at):
     own = aerodeck.flutter(section, measured)
     assert onset.state == "onset"
     if own.state == "onset" and onset.in_tested_range:
-        assert abs(onset.speed_m_s / own.speed_m_s - 1) < 0.08
+        assert abs(onset.speed_m_s / own.speed_m_s - 1) < 0.04
 
 
 def test_three_motions(table):
@@ -230,7 +230,7 @@ def test_process_finds_the_derivatives_of_a_virtual_campaign():
     found = aerodeck.process(campaign)
     assert len(found.records) > 0 and found.report["runs"] and found.estimates
     onset = aerodeck.flutter(aerodeck.Section.table_4_1(), aerodeck.fit_laguerre(found.derivatives))
-    assert abs(onset.speed_m_s / 36.87 - 1) < 0.02
+    assert abs(onset.speed_m_s / 36.92 - 1) < 0.02
 
 
 def test_pages_for_notebooks(table, section, model):

@@ -5,7 +5,9 @@
 //!
 //! Filters live on modal coordinates, not on strips: the filter states of node `i` are `x_i = Φ_i X` with
 //! `X' = (V/B)(A X + b η)`, exact, modes × filters states for a group and a set of poles instead of nodes × filters × motions.
+//! Groups of one section in different winds share filters (`banks`).
 
+use super::banks::{ModalBank, merged};
 use super::sums::GroupSums;
 use super::{Bridge, StripGroup};
 use crate::aerodynamics::{ContinuousRealization, Realization, Transfer, TransferMatrix};
@@ -112,11 +114,18 @@ impl ModalForces {
             total.e2 += sums.modal(group.width_m, &aero.e2) * (pressure * k * k);
             for chain in section_chains(&aero) {
                 // filters run with the wind of their own group
-                let (a, b) = (&chain.a / k, &chain.b / k);
-                let alike = banks.iter().position(|bank| bank.a == a && bank.b == b);
-                let at = alike.unwrap_or_else(|| {
-                    let outputs = vec![DMatrix::zeros(n, n); b.len()];
-                    banks.push(ModalBank { a, b, outputs });
+                let rate = 1.0 / k;
+                let alike =
+                    |bank: &ModalBank| bank.rate == rate && bank.a == chain.a && bank.b == chain.b;
+                let at = banks.iter().position(alike).unwrap_or_else(|| {
+                    let outputs = vec![DMatrix::zeros(n, n); chain.b.len()];
+                    let (a, b) = (chain.a.clone(), chain.b.clone());
+                    banks.push(ModalBank {
+                        a,
+                        b,
+                        rate,
+                        outputs,
+                    });
                     banks.len() - 1
                 });
                 for (l, output) in banks[at].outputs.iter_mut().enumerate() {
@@ -125,17 +134,9 @@ impl ModalForces {
                 }
             }
         }
-        assemble(&mut total, &banks);
+        assemble(&mut total, &merged(banks));
         Ok(Realization::Continuous(total))
     }
-}
-
-/// Filters of the whole bridge with one set of poles: `L` for every mode.
-struct ModalBank {
-    a: DMatrix<f64>,
-    b: DVector<f64>,
-    /// What filter `l` of mode `m` does to every mode: column `m`.
-    outputs: Vec<DMatrix<f64>>,
 }
 
 /// The filters that one motion of a section drives.
@@ -190,11 +191,11 @@ fn assemble(total: &mut ContinuousRealization, banks: &[ModalBank]) {
             total
                 .a
                 .view_mut((at, at), (filters, filters))
-                .copy_from(&bank.a);
+                .copy_from(&(&bank.a * bank.rate));
             total
                 .b
                 .view_mut((at, mode), (filters, 1))
-                .copy_from(&bank.b);
+                .copy_from(&(&bank.b * bank.rate));
             for (l, output) in bank.outputs.iter().enumerate() {
                 total.c.column_mut(at + l).copy_from(&output.column(mode));
             }
@@ -210,15 +211,21 @@ impl Transfer for ModalForces {
 
     fn transfer(&self, k: ReducedFrequency) -> Result<TransferMatrix> {
         let n = self.dofs.len();
-        let mut total = TransferMatrix::zeros(n, n);
+        let (mut real, mut imaginary) = (vec![0.0; n * n], vec![0.0; n * n]);
         for (group, sums) in &self.groups {
             let of_group = k.full_width() * self.frequency_ratio(group);
             let g = group
                 .forces
                 .transfer(ReducedFrequency::from_full_width(of_group))?;
-            total += sums.modal(group.width_m, &g) * Complex::from(self.pressure_ratio(group));
+            let pressure = self.pressure_ratio(group);
+            sums.add_modal(group.width_m, &g, pressure, &mut real, &mut imaginary);
         }
-        Ok(total)
+        let parts = real.into_iter().zip(imaginary);
+        Ok(TransferMatrix::from_iterator(
+            n,
+            n,
+            parts.map(|(re, im)| Complex::new(re, im)),
+        ))
     }
 
     fn known_range(&self) -> Option<ReducedFrequencyRange> {

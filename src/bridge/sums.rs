@@ -1,6 +1,7 @@
 //! Sums over the nodes of a group: `I_ab^ij = Σ_n w_n φ_a,i(n) φ_b,j(n)`.
 
 use super::{Bridge, StripGroup, motion_index};
+use crate::aerodynamics::TransferMatrix;
 use crate::section::Dof;
 use nalgebra::DMatrix;
 
@@ -54,7 +55,33 @@ impl GroupSums {
         total
     }
 
-    /// The same for one motion only: `Σ_i s_ij c_i I^ij`.
+    /// Adds `factor` times the same to the real and the imaginary parts of a matrix, column by column: the forces of every
+    /// step of a p-k iteration, which are asked for very often.
+    pub(super) fn add_modal(
+        &self,
+        width_m: f64,
+        g: &TransferMatrix,
+        factor: f64,
+        real: &mut [f64],
+        imaginary: &mut [f64],
+    ) {
+        let n = self.dofs.len();
+        for (i, force) in self.dofs.iter().enumerate() {
+            for (j, motion) in self.dofs.iter().enumerate() {
+                let scale = factor * force.force_scale(width_m) * motion.motion_scale(width_m);
+                let value = g[(i, j)] * scale;
+                let sums = self.sums[i * n + j].as_slice();
+                for (sum, s) in real.iter_mut().zip(sums) {
+                    *sum += value.re * s;
+                }
+                for (sum, s) in imaginary.iter_mut().zip(sums) {
+                    *sum += value.im * s;
+                }
+            }
+        }
+    }
+
+    /// The same as `modal` for one motion only: `Σ_i s_ij c_i I^ij`.
     pub(super) fn modal_column(&self, width_m: f64, c: &[f64], motion: usize) -> DMatrix<f64> {
         let n = self.dofs.len();
         let only = DMatrix::from_fn(n, n, |i, j| if j == motion { c[i] } else { 0.0 });

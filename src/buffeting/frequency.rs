@@ -3,20 +3,15 @@
 use super::problem::BuffetingProblem;
 use super::quadrature::integrate;
 use super::spectrum::GustComponent;
-use super::stability::unstable_roots;
+use super::stability::turning;
 use crate::error::{Error, Result};
-use crate::state_space::golden_section;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
-use nalgebra::Complex;
 use serde::Serialize;
 
 /// Relative error of the variances.
 const TOLERANCE: f64 = 1e-8;
-/// Frequencies at which resonances are looked for, over this range about the natural ones.
-const GRID: usize = 800;
-const REACH: (f64, f64) = (0.02, 20.0);
-/// Steps of the golden section on a resonance.
-const GOLDEN_STEPS: usize = 40;
+/// The integration over the frequency ends at this many times the highest natural one, that over its inverse begins there.
+const REACH: f64 = 20.0;
 
 /// Response to turbulence at one mean wind speed; vectors in the order of the degrees of freedom.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -82,13 +77,16 @@ pub(crate) fn buffeting_response(
     tested: Option<ReducedFrequencyRange>,
 ) -> Result<BuffetingResponse> {
     problem.validate()?;
-    let unstable = unstable_roots(problem, speed_m_s)?;
-    if unstable > 0 {
+    let turned = turning(problem.structure, problem.model, speed_m_s)?;
+    if turned.growing > 0 {
         return Err(Error::Unstable(format!(
-            "buffeting at {speed_m_s} m/s: the section is unstable there ({unstable} growing roots), no response is stationary"
+            "buffeting at {speed_m_s} m/s: the section is unstable there ({} growing roots), no response is stationary",
+            turned.growing
         )));
     }
-    let peaks = resonances(problem, speed_m_s)?;
+    let last = REACH * problem.natural_range_hz().1;
+    let peaks = turned.resonances_hz.iter().map(|(hertz, _)| *hertz);
+    let peaks: Vec<f64> = peaks.filter(|f| *f < last).collect();
     let n = problem.structure.dofs.len();
     let variances = all_frequencies(problem, speed_m_s, &peaks)?;
     let part = |i: usize| variances[i * n..(i + 1) * n].to_vec();
@@ -119,7 +117,7 @@ fn roots(variances: &[f64]) -> Vec<f64> {
 /// Variances of the displacements by `u`, by `w`, and of the rates (3n): up to the last break over the frequency, beyond it
 /// over its inverse.
 fn all_frequencies(problem: &BuffetingProblem<'_>, speed: f64, peaks: &[f64]) -> Result<Vec<f64>> {
-    let last = REACH.1 * problem.natural_range_hz().1;
+    let last = REACH * problem.natural_range_hz().1;
     let mut breaks = vec![0.0];
     breaks.extend_from_slice(peaks);
     breaks.push(last);
@@ -158,33 +156,4 @@ fn tested_part(
         .zip(rms)
         .map(|(v, rms)| v / (rms * rms))
         .collect())
-}
-
-/// Frequencies at which the determinant of the impedance is smallest, Hz, rising: the breaks of the integration.
-fn resonances(problem: &BuffetingProblem<'_>, speed: f64) -> Result<Vec<f64>> {
-    let (low, high) = problem.natural_range_hz();
-    let (first, last) = (low * REACH.0, high * REACH.1);
-    let frequency = |i: usize| first * (last / first).powf(i as f64 / GRID as f64);
-    let at = |f: f64| -> Result<f64> {
-        let determinant: Complex<f64> = problem.determinant(f, speed)?;
-        Ok(determinant.norm())
-    };
-    let values = (0..=GRID)
-        .map(|i| at(frequency(i)))
-        .collect::<Result<Vec<_>>>()?;
-    let mut found = Vec::new();
-    for i in 1..GRID {
-        if values[i] < values[i - 1] && values[i] <= values[i + 1] {
-            found.push(minimum(&at, (frequency(i - 1), frequency(i + 1)))?);
-        }
-    }
-    Ok(found)
-}
-
-/// Minimum between two frequencies.
-fn minimum(at: &impl Fn(f64) -> Result<f64>, ends: (f64, f64)) -> Result<f64> {
-    let mut steps = 0..GOLDEN_STEPS;
-    let done = |_, _: &f64, _: &f64| steps.next().is_none();
-    let ((low, high), _) = golden_section(ends, at, f64::lt, done)?;
-    Ok(0.5 * (low + high))
 }

@@ -10,8 +10,7 @@ mod frequency;
 mod time;
 
 pub use field::{TurbulenceField, turbulence_field};
-pub(crate) use frequency::span_response;
-pub(crate) use frequency::span_spectra;
+pub(crate) use frequency::SpanFrequency;
 pub use frequency::{SpanResponse, SpanSpectra};
 pub(crate) use time::span_ensemble;
 pub use time::{SpanEnsemble, SpanPlan, SpanRecord, span_record};
@@ -171,16 +170,21 @@ impl SpanProblem<'_> {
     }
 
     /// The coupled bridge, which must be stable.
-    fn coupled(&self, speed_m_s: f64) -> Result<(CoupledSection, Vec<Complex<f64>>)> {
+    fn coupled(&self, speed_m_s: f64) -> Result<CoupledSection> {
         let bridge = self.bridge;
         let coupled = CoupledSection::new(bridge.structure(), bridge.forces().realize()?)?;
         let roots = coupled.at(speed_m_s)?.eigenvalues()?;
-        let growing = roots.iter().filter(|z| z.re > 0.0).count();
-        if growing == 0 {
-            return Ok((coupled, roots));
+        match roots.iter().filter(|z| z.re > 0.0).count() {
+            0 => Ok(coupled),
+            growing => Err(unstable(growing, "", speed_m_s)),
         }
-        Err(Error::Unstable(format!(
-            "buffeting at {speed_m_s} m/s: the bridge is unstable there ({growing} growing roots), no response is stationary"
-        )))
     }
+}
+
+/// Only what is stable has a stationary response; `at` says where motions grow.
+fn unstable(growing: usize, at: &str, speed_m_s: f64) -> Error {
+    Error::Unstable(format!(
+        "buffeting at {speed_m_s} m/s: the bridge is unstable there ({}{at}), no response is stationary",
+        counted(growing, "growing root")
+    ))
 }

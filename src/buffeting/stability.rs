@@ -1,11 +1,16 @@
-//! Whether the section is stable in smooth wind: without that a response to turbulence means nothing.
+//! Whether a structure is stable in smooth wind, and where it resonates: without the first a response to turbulence means
+//! nothing.
 //!
 //! For any `G` that is analytic for `Re iK > 0` and at most quadratic there, the number of roots of `det Z(λ)` with
 //! positive real part follows from the turning of `det Z(iω)` (principle of the argument): over `0 < ω < ∞` it turns by
-//! `(n − N)π`.
+//! `(n − N)π`. A table is what such a `G` is on the axis of frequencies, which is all that is asked for. At a resonance the
+//! determinant turns by half a turn, the faster the less damped.
 
 use super::problem::BuffetingProblem;
+use crate::aerodynamics::Transfer;
 use crate::error::{Error, Result, positive};
+use crate::flutter::impedance;
+use crate::section::Structure;
 use nalgebra::Complex;
 use std::f64::consts::{PI, TAU};
 
@@ -13,6 +18,11 @@ use std::f64::consts::{PI, TAU};
 const GRID: usize = 600;
 /// Below the lowest and above the highest natural frequency by these factors nothing turns any more.
 const REACH: (f64, f64) = (1e-4, 1e3);
+/// Of more degrees of freedom than this two resonances may be passed in one step, which is a whole turn, or none: steps about the
+/// natural frequencies are this small, relatively, in this range about them.
+const FEW: usize = 3;
+const FINE: f64 = 1.5e-3;
+const FINE_REACH: (f64, f64) = (0.5, 1.5);
 /// Turning between two frequencies from which on the interval is halved, rad.
 const LARGEST_TURN: f64 = 0.8;
 /// Halvings of one interval at most: then the impedance is singular for all that numbers can tell.
@@ -23,48 +33,112 @@ const WHOLE: f64 = 0.2;
 impl BuffetingProblem<'_> {
     /// Lowest and highest still-air frequency, Hz.
     pub(super) fn natural_range_hz(&self) -> (f64, f64) {
-        self.structure
-            .still_air_rad_s()
-            .map(|omega| omega / TAU)
-            .filter(|f| *f > 0.0)
-            .fold((f64::INFINITY, 0.0), |(low, high), f| {
-                (f.min(low), f.max(high))
-            })
-    }
-
-    pub(super) fn determinant(&self, frequency_hz: f64, speed_m_s: f64) -> Result<Complex<f64>> {
-        Ok(self.impedance(frequency_hz, speed_m_s)?.determinant())
+        range(&natural_hz(self.structure))
     }
 }
 
-/// Number of eigenvalues with positive real part at a wind speed.
+/// What the turning of the determinant over all frequencies tells.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Turning {
+    /// Roots with positive real part.
+    pub growing: usize,
+    /// Frequencies of resonance, Hz, rising, and half of the half-power width of each, Hz: negative where the motion grows.
+    pub resonances_hz: Vec<(f64, f64)>,
+}
+
+/// Number of eigenvalues with positive real part of a section at a wind speed.
+///
+/// # Errors
+/// As for [`turning`].
+pub(crate) fn unstable_roots(problem: &BuffetingProblem<'_>, speed_m_s: f64) -> Result<usize> {
+    turning(problem.structure, problem.model, speed_m_s).map(|turned| turned.growing)
+}
+
+/// The turning of the determinant at a wind speed.
 ///
 /// # Errors
 /// [`Error::Input`] for a speed that is not positive; [`Error::Numerical`] at an onset itself, where the impedance is
 /// singular.
-pub(crate) fn unstable_roots(problem: &BuffetingProblem<'_>, speed_m_s: f64) -> Result<usize> {
+pub(crate) fn turning(
+    structure: &Structure,
+    model: &dyn Transfer,
+    speed_m_s: f64,
+) -> Result<Turning> {
     positive("wind speed", speed_m_s)?;
-    let (low, high) = problem.natural_range_hz();
-    let at = |f: f64| problem.determinant(f, speed_m_s);
-    let (first, last) = (low * REACH.0, high * REACH.1);
-    let frequency = |i: usize| first * (last / first).powf(i as f64 / GRID as f64);
-    let mut before = (frequency(0), at(frequency(0))?);
-    // the ends lie off the real axis by as much as the damping does there
-    let mut turned = off_axis(before.1);
-    for i in 1..=GRID {
-        let next = (frequency(i), at(frequency(i))?);
-        turned += turn(&at, before, next, 0)?;
-        before = next;
+    let at = |f: f64| -> Result<Point> {
+        let phase = phase(impedance(structure, model, speed_m_s, TAU * f)?);
+        Ok(Point { hertz: f, phase })
+    };
+    let mut passed = Vec::new();
+    let mut before: Option<Point> = None;
+    for f in frequencies(structure) {
+        let next = at(f)?;
+        match &before {
+            // the ends lie off the real axis by as much as the damping does there
+            None => passed.push((f, off_axis(next.phase))),
+            Some(before) => turn(&at, before, &next, 0, &mut passed)?,
+        }
+        before = Some(next);
     }
-    turned -= off_axis(before.1);
-    let n = problem.structure.dofs.len() as f64;
-    let count = n - turned / PI;
+    let turned = passed.last().map_or(0.0, |p| p.1) - before.map_or(0.0, |p| off_axis(p.phase));
+    let count = structure.dofs.len() as f64 - turned / PI;
     if (count - count.round()).abs() > WHOLE || count < -WHOLE {
         return Err(Error::Numerical(format!(
             "stability at {speed_m_s} m/s: the impedance turns by {turned:.3} rad, no whole number of half turns"
         )));
     }
-    Ok(count.round().max(0.0) as usize)
+    Ok(Turning {
+        growing: count.round().max(0.0) as usize,
+        resonances_hz: resonances(&passed),
+    })
+}
+
+/// The determinant over its size at a frequency.
+struct Point {
+    hertz: f64,
+    phase: Complex<f64>,
+}
+
+/// Frequencies of the first pass, rising.
+fn frequencies(structure: &Structure) -> Vec<f64> {
+    let natural = natural_hz(structure);
+    let (low, high) = range(&natural);
+    let (first, last) = (low * REACH.0, high * REACH.1);
+    let mut all: Vec<f64> = (0..=GRID)
+        .map(|i| first * (last / first).powf(i as f64 / GRID as f64))
+        .collect();
+    if structure.dofs.len() > FEW {
+        let (from, to) = (low * FINE_REACH.0, high * FINE_REACH.1);
+        let steps = ((to / from).ln() / FINE).ceil();
+        all.extend((0..=steps as usize).map(|i| from * (to / from).powf(i as f64 / steps)));
+        all.extend(natural);
+    }
+    all.sort_by(f64::total_cmp);
+    all.dedup_by(|a, b| *a <= *b * (1.0 + 1e-9));
+    all
+}
+
+/// Frequencies of the modes in still air, Hz.
+fn natural_hz(structure: &Structure) -> Vec<f64> {
+    let all = structure.still_air_rad_s().map(|omega| omega / TAU);
+    all.filter(|f| *f > 0.0).collect()
+}
+
+fn range(hertz: &[f64]) -> (f64, f64) {
+    let ends = (f64::INFINITY, 0.0f64);
+    hertz
+        .iter()
+        .fold(ends, |(low, high), f| (f.min(low), f.max(high)))
+}
+
+/// The determinant over its size: that of many modes is beyond all numbers.
+fn phase(impedance: nalgebra::DMatrix<Complex<f64>>) -> Complex<f64> {
+    let lu = impedance.lu();
+    let sign: f64 = lu.p().determinant();
+    let pivots = lu.lu_internal().diagonal();
+    pivots.iter().fold(Complex::from(sign), |product, z| {
+        product * z.unscale(z.norm())
+    })
 }
 
 /// Angle of a value to the real axis, in (−π/2, π/2].
@@ -72,26 +146,50 @@ fn off_axis(z: Complex<f64>) -> f64 {
     (z * z.re.signum()).arg()
 }
 
-/// Turning of the determinant between two frequencies, by halves until it is small.
+/// Adds the turning between two frequencies to `passed`, by halves until it is small.
 fn turn(
-    at: &impl Fn(f64) -> Result<Complex<f64>>,
-    a: (f64, Complex<f64>),
-    b: (f64, Complex<f64>),
+    at: &impl Fn(f64) -> Result<Point>,
+    a: &Point,
+    b: &Point,
     depth: usize,
-) -> Result<f64> {
-    let angle = (b.1 / a.1).arg();
+    passed: &mut Vec<(f64, f64)>,
+) -> Result<()> {
+    let angle = (b.phase / a.phase).arg();
     if angle.abs() <= LARGEST_TURN {
-        return Ok(angle);
+        let before = passed.last().map_or(0.0, |p| p.1);
+        passed.push((b.hertz, before + angle));
+        return Ok(());
     }
     if depth == MAX_HALVINGS || !angle.is_finite() {
         return Err(Error::Numerical(format!(
             "stability: the impedance is singular at {} Hz",
-            a.0
+            a.hertz
         )));
     }
-    let middle = 0.5 * (a.0 + b.0);
-    let middle = (middle, at(middle)?);
-    Ok(turn(at, a, middle, depth + 1)? + turn(at, middle, b, depth + 1)?)
+    let middle = at(0.5 * (a.hertz + b.hertz))?;
+    turn(at, a, &middle, depth + 1, passed)?;
+    turn(at, &middle, b, depth + 1, passed)
+}
+
+/// Where the determinant turns fastest, and how fast: frequency over angle of a resonance is half of its half-power width. By a
+/// motion that grows it turns back.
+fn resonances(passed: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    let pairs = passed.windows(2);
+    // middle of each step, and frequency over angle there
+    let steps: Vec<(f64, f64)> = pairs
+        .map(|p| {
+            (
+                0.5 * (p[0].0 + p[1].0),
+                (p[1].0 - p[0].0) / (p[1].1 - p[0].1),
+            )
+        })
+        .collect();
+    let narrow = |step: &(f64, f64)| step.1.abs();
+    let found = steps.windows(3).filter(|three| {
+        let width = narrow(&three[1]);
+        width < narrow(&three[0]) && width <= narrow(&three[2]) && width < three[1].0
+    });
+    found.map(|three| three[1]).collect()
 }
 
 #[cfg(test)]
@@ -131,7 +229,7 @@ mod tests {
         }
     }
 
-    /// The same count from the eigenvalues of the realisation.
+    /// The same count from the eigenvalues of the realisation, and the same resonances.
     #[test]
     fn agrees_with_eigenvalues() {
         let jones = RationalModel::jones_flat_plate();
@@ -141,6 +239,13 @@ mod tests {
             let eigenvalues = section.at(speed).unwrap().eigenvalues().unwrap();
             let unstable = eigenvalues.iter().filter(|z| z.re > 0.0).count();
             assert_eq!(count(&jones, speed), unstable, "{speed}");
+        }
+        let structure = SectionModel::iabse_1_1a().structure().unwrap();
+        let found = turning(&structure, &jones, 20.0).unwrap();
+        let roots = section.at(20.0).unwrap().eigenvalues().unwrap();
+        for root in roots.iter().filter(|z| z.im > 0.0) {
+            let near = |(hertz, half): &(f64, f64)| (hertz - root.im / TAU).abs() < 0.6 * half;
+            assert!(found.resonances_hz.iter().any(near), "{root}");
         }
     }
 }

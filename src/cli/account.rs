@@ -1,5 +1,6 @@
 //! Results in words and tables, for people.
 
+use super::headline;
 use super::summary::Summary;
 use super::wrapping::beside;
 use crate::error::counted;
@@ -17,18 +18,14 @@ pub(crate) fn chain(
     summary: &Summary,
     (files, verbose): (&str, bool),
 ) -> String {
-    let mut text = format!("{}: {}\n\n", study.name, summary.answer.headline);
+    // what was assumed in reading the deck stands beside the deck
+    let mut text = headline::account(&study.name, &summary.verdict, &deck.warnings());
     let _ = writeln!(
         text,
         "Answer    of the model {}, which the FMU holds; everything on one page: {}",
-        summary.answer.model,
+        summary.model,
         super::report::REPORT
     );
-    // what was assumed in reading the deck stands beside the deck
-    let with_deck = deck.warnings();
-    for limit in summary.limits.iter().filter(|l| !with_deck.contains(l)) {
-        let _ = writeln!(text, "          but: {limit}");
-    }
     let s = &study.section;
     let _ = writeln!(text, "Deck      {}", deck.description());
     text.push_str(&deck_warnings(deck));
@@ -249,7 +246,7 @@ fn figures(o: &Onset) -> String {
     )
 }
 
-/// Why there is no 95 % interval, or none at all.
+/// What the interval is made of, or why there is no 95 % interval, or none at all.
 fn without_interval(o: &Onset) -> Option<String> {
     let place = format!("{} ({})", o.at.model, o.at.method.name());
     match &o.interval {
@@ -258,7 +255,9 @@ fn without_interval(o: &Onset) -> Option<String> {
             Some(format!("in brackets, no 95 % interval: {place}: {of}\n"))
         }
         OnsetInterval::Undetermined { reason, .. } => Some(format!("{place}: {reason}\n")),
-        OnsetInterval::Known { .. } => None,
+        OnsetInterval::Known { parts, .. } => {
+            Some(format!("standard error: {place}: {}\n", parts.explain()))
+        }
     }
 }
 

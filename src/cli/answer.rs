@@ -2,7 +2,20 @@
 
 use super::wrapping::wrapped;
 use crate::error::{Error, Result};
+use crate::verdict::Verdict;
 use serde::Serialize;
+
+/// Text without the control characters of an input, which a terminal would obey.
+pub(super) fn plain(text: &str) -> String {
+    let shown = |c: char| {
+        if c.is_control() && !['\n', '\t'].contains(&c) {
+            char::REPLACEMENT_CHARACTER
+        } else {
+            c
+        }
+    };
+    text.chars().map(shown).collect()
+}
 
 /// Result of a command.
 #[derive(Debug)]
@@ -10,6 +23,7 @@ pub struct Answer {
     text: String,
     json: serde_json::Value,
     passed: bool,
+    refused: bool,
     verbatim: bool,
 }
 
@@ -24,14 +38,22 @@ impl Answer {
             text,
             json,
             passed: true,
+            refused: false,
             verbatim: false,
         })
     }
 
     /// The same answer of a check that did or did not pass.
     #[must_use]
-    pub(crate) fn with_verdict(mut self, passed: bool) -> Self {
+    pub(crate) fn passed_if(mut self, passed: bool) -> Self {
         self.passed = passed;
+        self
+    }
+
+    /// The same answer to a question that states a required speed, if it does.
+    #[must_use]
+    pub(crate) fn with_outcome_of(mut self, verdict: &Verdict) -> Self {
+        self.refused = verdict.refuses();
         self
     }
 
@@ -46,7 +68,7 @@ impl Answer {
     pub(crate) fn shown(&self) -> String {
         match self.verbatim {
             true => self.text.clone(),
-            false => wrapped(&self.text),
+            false => wrapped(&plain(&self.text)),
         }
     }
 
@@ -55,8 +77,24 @@ impl Answer {
         format!("{:#}", self.json)
     }
 
+    /// Whether a speed is required and not known to be met.
+    pub(crate) fn refused(&self) -> bool {
+        self.refused
+    }
+
     /// Whether every check passed.
     pub(crate) fn passed(&self) -> bool {
         self.passed
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_terminal_obeys_no_name() {
+        let answer = Answer::new("a\u{1b}]0;title\u{7}b\tc\n".to_owned(), &()).unwrap();
+        assert_eq!(answer.shown(), "a\u{fffd}]0;title\u{fffd}b\tc\n");
     }
 }

@@ -129,6 +129,16 @@ fn time_domain(results: &BuffetingStudy) -> String {
                 c.deviations
             );
         }
+        if let (Some(change), Some(fit)) = (&domain.model_change, &results.fit) {
+            let of = results.dofs.iter().zip(change);
+            let parts = of.map(|(dof, part)| format!("{} {:+.1} %", dof.symbol(), 100.0 * part));
+            let parts: Vec<String> = parts.collect();
+            let _ = writeln!(
+                text,
+                "  it takes a model ({fit}), whose RMS in the frequency domain differs from that of the table: {}",
+                parts.join(", ")
+            );
+        }
     }
     text
 }

@@ -1,5 +1,6 @@
 //! Arguments that several commands share.
 
+use super::answer::plain;
 use crate::error::{Error, Result};
 use crate::plausibility::sentences;
 use crate::section::Dof;
@@ -14,7 +15,8 @@ use std::path::{Path, PathBuf};
 pub(crate) fn warn(file: &Path, warnings: &[String]) {
     for warning in warnings {
         // standard error may be closed
-        let _ = writeln!(std::io::stderr(), "warning: {}: {warning}", file.display());
+        let line = plain(&format!("warning: {}: {warning}", file.display()));
+        let _ = writeln!(std::io::stderr(), "{line}");
     }
 }
 

@@ -4,13 +4,21 @@ use super::answer::Answer;
 use super::common::spelt;
 use super::progress::Progress;
 use crate::error::Result;
-use crate::uncertainty::{CoveragePlan, CoverageReport, Truth, coverage};
+use crate::uncertainty::{
+    CoveragePlan, CoverageReport, FamilyPlan, FamilyReport, RangeCount, Truth, coverage,
+    family_coverage,
+};
 use crate::wind_tunnel::TunnelPlan;
 use std::fmt::Write as _;
 
 /// Repeat a virtual campaign with known truth and count how often the 95 % intervals hold it
 ///
+/// With --family it makes, tests and judges many synthetic decks instead, each once, and counts what is true of what the program
+/// says of them.
+///
 /// Example: aerodeck coverage --repetitions 500 --noise-correlation 0.1
+///
+/// Example: aerodeck coverage --family 400
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
 pub(crate) struct Args {
@@ -41,6 +49,12 @@ pub(crate) struct Args {
     /// The same from run to run (one motion at one speed), for all forces of a run together.
     #[arg(long, default_value_t = 0.0)]
     run_scatter: f64,
+    /// Judge this number of synthetic decks: five sections, two and three motions, tests around, beside and far from the onset.
+    #[arg(long, value_name = "DECKS", conflicts_with_all = ["repetitions", "truth", "poles", "search"])]
+    family: Option<usize>,
+    /// Decks of the family whose mean speeds agree, where intervals are wider than they need be.
+    #[arg(long, requires = "family")]
+    no_speed_scatter: bool,
     /// Seed of the first repetition; each has its own.
     #[arg(long, default_value_t = 1)]
     seed: u64,
@@ -48,6 +62,17 @@ pub(crate) struct Args {
 
 /// Runs the command.
 pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+    if let Some(decks) = args.family {
+        let plan = FamilyPlan {
+            decks,
+            seed: args.seed,
+            speeds_scatter: !args.no_speed_scatter,
+        };
+        let stage = progress.steps("decks");
+        let report = family_coverage(&plan, &|done| stage.at(done as u64, decks as u64))?;
+        drop(stage);
+        return Answer::new(family(&report), &report);
+    }
     let plan = CoveragePlan {
         truth: args.truth,
         poles: args.poles.clone(),
@@ -70,6 +95,51 @@ pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     })?;
     drop(stage);
     Answer::new(account(&report), &report)
+}
+
+/// The family by where tests lie.
+fn family(report: &FamilyReport) -> String {
+    let mut text = format!(
+        "{:<26} {:>5} {:>6} {:>14} {:>10} {:>7} {:>11} {:>6} {:>6} {:>8}\n",
+        "tests",
+        "decks",
+        "onsets",
+        "held",
+        "no flutter",
+        "refused",
+        "false none",
+        "unsafe",
+        "met",
+        "half"
+    );
+    for r in &report.ranges {
+        text.push_str(&family_row(r));
+    }
+    text.push_str(
+        "\nheld: stated 95 % intervals that hold the truth; false none: \"no flutter\" above the true onset; unsafe: intervals \
+         above it; met: required speeds above it that are called met; half: median half width of the intervals\n",
+    );
+    text
+}
+
+fn family_row(r: &RangeCount) -> String {
+    let half = r
+        .median_half_width_percent
+        .map_or_else(|| "–".to_owned(), |h| format!("{h:.1} %"));
+    format!(
+        "{:<26} {:>5} {:>6} {:>5} ({:5.1} %) {:>10} {:>7} {:>11} {:>6} {:>6} {:>8}\n",
+        r.range.title(),
+        r.decks,
+        r.held.of,
+        r.held.inside,
+        r.held.percent,
+        r.no_flutter,
+        r.refused,
+        r.false_no_flutter,
+        r.unsafe_side,
+        r.met_against_truth,
+        half
+    )
 }
 
 fn account(r: &CoverageReport) -> String {

@@ -52,7 +52,7 @@ pub(super) fn curves_csv(name: &str, curves: &[FlutterCurves]) -> String {
                 let _ = writeln!(
                     text,
                     "{},{},{},{},{},{},{tested}",
-                    quoted(&curve.model),
+                    text_cell(&curve.model),
                     branch.name,
                     p.speed_m_s,
                     p.frequency_hz,
@@ -80,12 +80,18 @@ pub(super) fn write_curves(
     figures::write(ROOTS, out, || root_locus_figure(drawn, &title))
 }
 
-/// A field of a CSV file.
-fn quoted(text: &str) -> String {
+/// A text of a user as a cell of a CSV file: quoted where it has to be, and never a formula of a spreadsheet.
+pub(super) fn text_cell(text: &str) -> String {
+    let formula = text.starts_with(['=', '+', '-', '@']) && text.parse::<f64>().is_err();
+    let text = if formula {
+        format!("'{text}")
+    } else {
+        text.to_owned()
+    };
     if text.contains([',', '"', '\n']) {
         format!("\"{}\"", text.replace('"', "\"\""))
     } else {
-        text.to_owned()
+        text
     }
 }
 
@@ -240,4 +246,23 @@ pub(super) fn write_response(
     figures::write(RESPONSE, out, || {
         time_history_figure(&title, &panels, "Time t (s)")
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::text_cell;
+
+    #[test]
+    fn a_text_is_no_formula() {
+        for (text, cell) in [
+            ("=1+2", "'=1+2"),
+            ("@sum(a1)", "'@sum(a1)"),
+            ("-a, b", "\"'-a, b\""),
+            ("-12.5", "-12.5"),
+            ("say \"a\"", "\"say \"\"a\"\"\""),
+            ("Laguerre", "Laguerre"),
+        ] {
+            assert_eq!(text_cell(text), cell);
+        }
+    }
 }

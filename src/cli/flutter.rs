@@ -7,9 +7,12 @@ use super::progress::Progress;
 use super::{account, evidence, headline, routes, stages};
 use crate::error::Result;
 use crate::study::{
-    Deck, KnownUncertainty, StageFailure, Study, attempt, route_table, state_route_intervals,
+    Deck, FlutterStudy, KnownUncertainty, OwnModel, StageFailure, Study, attempt, route_table,
+    section_evidence, state_route_intervals,
 };
 use crate::trained_model::TrainedModel;
+use crate::verdict::Verdict;
+use std::fmt::Write as _;
 
 /// Frequencies, damping and flutter onset of the trained models of a study (see `train`)
 ///
@@ -39,18 +42,14 @@ pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     }
     let mut results = stages::flutter(&study, &deck, &models, &known, progress)?;
     let mut out = OutputDir::new(&directory)?;
-    let figure = stages::flutter_figure(&study, &results, &mut out);
+    let verdict = verdict(&study, &deck, &results, (&models, &known), &failed)?;
+    let figure = stages::flutter_figure(&study, &results, Some(&verdict), &mut out);
     attempt(&mut failed, "figure", figure)?;
     let curves = evidence::write_curves(&study, &results.curves, &mut out);
     attempt(&mut failed, "curves", curves)?;
     results.failed.splice(0..0, failed);
-    let answer = headline::answer(&study, &results, &study.exported()?.name);
-    let mut text = format!(
-        "{}: {}\n{}\n",
-        study.name,
-        answer.headline,
-        deck.description()
-    );
+    let mut text = headline::account(&study.name, &verdict, &deck.warnings());
+    let _ = writeln!(text, "{}", deck.description());
     text.push_str(&account::deck_warnings(&deck));
     text.push('\n');
     text.push_str(&account::onsets(
@@ -63,11 +62,33 @@ pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     text.push_str(&account::deviations(&results.deviations));
     text.push_str(&account::failures(&results.failed));
     let value = serde_json::json!({
-        "answer": answer, "flutter": results, "warnings": deck.warnings()
+        "verdict": verdict, "flutter": results, "warnings": deck.warnings()
     });
     Ok(out
         .answer(text, value)?
-        .with_verdict(results.failed.is_empty()))
+        .passed_if(results.failed.is_empty())
+        .with_outcome_of(&verdict))
+}
+
+/// What the saved models of a study amount to; how they were fitted is not known any more.
+fn verdict(
+    study: &Study,
+    deck: &Deck,
+    results: &FlutterStudy,
+    (models, known): (&[TrainedModel], &[KnownUncertainty]),
+    failed: &[StageFailure],
+) -> Result<Verdict> {
+    let name = &study.exported()?.name;
+    let place = models.iter().position(|m| m.name == *name);
+    let own = OwnModel {
+        model: place.map(|i| &models[i]),
+        uncertainty: place.and_then(|i| known.get(i)),
+        fit: None,
+    };
+    let failed = [failed, &results.failed].concat();
+    Ok(Verdict::of(&section_evidence(
+        study, deck, results, &own, &failed,
+    )))
 }
 
 /// Every route in one table, with cards and a figure.
@@ -94,5 +115,5 @@ fn all_routes(
     let value = serde_json::json!({
         "routes": table, "failed": failed, "warnings": deck.warnings()
     });
-    Ok(out.answer(text, value)?.with_verdict(failed.is_empty()))
+    Ok(out.answer(text, value)?.passed_if(failed.is_empty()))
 }

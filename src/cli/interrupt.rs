@@ -54,12 +54,45 @@ impl Drop for Temporary {
 
 /// A folder for the temporary files of this process alone, which goes with it however it ends; none where it cannot be made.
 pub(crate) fn own_temporary_folder() -> Option<Temporary> {
-    let path = std::env::temp_dir().join(format!("aerodeck-{}", std::process::id()));
+    let all = std::env::temp_dir();
+    clear_left_behind(&all);
     let _busy = uninterrupted();
-    std::fs::create_dir(&path).ok()?;
-    let folder = Temporary::new(path);
+    // the number of a process comes again, what follows it does not
+    let folder = tempfile::Builder::new()
+        .prefix(&format!("{OWN}{}-", std::process::id()))
+        .tempdir_in(all)
+        .ok()?;
+    let folder = Temporary::new(folder.keep());
     tempfile::env::override_temp_dir(folder.path()).ok()?;
     Some(folder)
+}
+
+/// Start of the name of such a folder; the number of its process follows.
+const OWN: &str = "aerodeck-";
+/// What a killed process left is old: one in another container has the same folder, but not the same numbers.
+const LEFT_BEHIND: std::time::Duration = std::time::Duration::from_secs(24 * 3600);
+
+/// Removes the folders of processes that were killed, which are gone and wrote nothing for a day.
+fn clear_left_behind(all: &Path) {
+    let processes = Path::new("/proc");
+    if !processes.join("self").exists() {
+        return;
+    }
+    for entry in std::fs::read_dir(all).into_iter().flatten().flatten() {
+        let name = entry.file_name();
+        let name = name.to_string_lossy();
+        let number = name.strip_prefix(OWN).and_then(|n| n.split('-').next());
+        let Some(number) = number.filter(|n| n.parse::<u32>().is_ok()) else {
+            continue;
+        };
+        let written = entry.metadata().and_then(|m| m.modified()).ok();
+        let is_old = written
+            .and_then(|t| t.elapsed().ok())
+            .is_some_and(|age| age > LEFT_BEHIND);
+        if is_old && !processes.join(number).exists() {
+            remove(&entry.path());
+        }
+    }
 }
 
 /// Whether nothing stands there any more.
@@ -102,3 +135,33 @@ pub(crate) fn install() {
 /// Nothing is caught here; the next run removes what is left behind.
 #[cfg(not(unix))]
 pub(crate) fn install() {}
+
+#[cfg(test)]
+#[cfg(target_os = "linux")]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn folders_of_killed_processes_are_removed_after_a_day() {
+        let all = tempfile::tempdir().unwrap();
+        let make = |name: &str, days: u64| {
+            let path = all.path().join(name);
+            std::fs::create_dir(&path).unwrap();
+            let then = std::time::SystemTime::now() - LEFT_BEHIND * days as u32;
+            let folder = std::fs::File::open(&path).unwrap();
+            folder.set_modified(then).unwrap();
+            path
+        };
+        // no process has a number above 2^22
+        let dead = make("aerodeck-99999999-abc", 2);
+        let kept = [
+            make("aerodeck-99999998-abc", 0),
+            make(&format!("aerodeck-{}-abc", std::process::id()), 2),
+            make("aerodeck-fmu-abc", 2),
+            make("aerodeck-out", 2),
+        ];
+        clear_left_behind(all.path());
+        assert!(!dead.exists());
+        assert!(kept.iter().all(|p| p.exists()));
+    }
+}

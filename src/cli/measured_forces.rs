@@ -17,11 +17,12 @@ pub(super) const FORCES: &str = "forces";
 const PERIODS: f64 = 3.0;
 
 /// Three periods of one record per motion, as near to the onset in reduced frequency as the tests are; nothing without records.
-/// `onset` is its speed, m/s, and frequency, Hz.
+/// `onset` is its speed, m/s, and frequency, Hz; `origin` says in a word whether the forces were measured or made from a table.
 pub(super) fn write(
     model: &TrainedModel,
     records: &RecordSet,
     onset: (f64, f64),
+    origin: &str,
     out: &mut OutputDir,
 ) -> Result<()> {
     let wanted = ReducedFrequency::from_hertz(onset.1, model.section.width_m, onset.0);
@@ -47,7 +48,7 @@ pub(super) fn write(
     chosen.sort_by_key(|c| c.motion.name() != Dof::Vertical.name());
     let mut panels = Vec::new();
     for stretch in &chosen {
-        panels.extend(stretch.panels(model)?);
+        panels.extend(stretch.panels(model, origin)?);
     }
     let descriptions = chosen.iter().map(Stretch::describe).collect::<Vec<_>>();
     let title = format!("Forces by {}", descriptions.join(", by "));
@@ -102,7 +103,7 @@ impl Stretch {
     }
 
     /// One panel per force.
-    fn panels(&self, model: &TrainedModel) -> Result<Vec<TimePanel>> {
+    fn panels(&self, model: &TrainedModel, origin: &str) -> Result<Vec<TimePanel>> {
         let h = &self.record.header;
         let predicted = predicted_forces(&model.model, &self.record)?;
         let first = (self.start_s * h.sampling_hz).round() as usize;
@@ -118,9 +119,9 @@ impl Stretch {
             TimePanel {
                 y_label: self.label(h, i),
                 series: vec![
-                    points("measured", &|n| measured[n]),
+                    points(origin, &|n| measured[n]),
                     points("model", &|n| model[n]),
-                    points("measured less model", &|n| measured[n] - model[n]),
+                    points(&format!("{origin} less model"), &|n| measured[n] - model[n]),
                 ],
             }
         };

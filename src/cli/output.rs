@@ -49,6 +49,9 @@ impl OutputDir {
     /// [`Error::Io`] when it cannot be made or written to; [`Error::Input`] while another run writes into it.
     pub(crate) fn new(directory: &Path) -> Result<Self> {
         let created = !directory.exists();
+        if directory.is_file() {
+            return Err(Error::input("", "a folder for the results", "a file").in_file(directory));
+        }
         fs::create_dir_all(directory).map_err(|e| Error::io(directory, e))?;
         let lock = FolderLock::take(directory)?;
         clear(directory)?;
@@ -331,6 +334,19 @@ mod tests {
         assert_eq!(read("model.json"), "new");
         assert_eq!(read("records/a.csv"), "a");
         assert_eq!(fs::read_dir(at).unwrap().count(), 2);
+    }
+
+    #[test]
+    fn a_file_is_no_folder_of_results() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("results");
+        fs::write(&file, "mine").unwrap();
+        let said = OutputDir::new(&file).err().unwrap().to_string();
+        assert!(
+            said.ends_with("expected a folder for the results, found a file"),
+            "{said}"
+        );
+        assert_eq!(fs::read_to_string(&file).unwrap(), "mine");
     }
 
     #[test]

@@ -5,7 +5,7 @@ use super::common::motion_columns;
 use super::output::OutputDir;
 use super::progress::Progress;
 use super::wind::WindArgs;
-use super::{account, figures};
+use super::{account, figures, headline};
 use crate::aerodynamics::GustSeries;
 use crate::aerodynamics::quasi_steady::{CoefficientRow, CoefficientsAt};
 use crate::error::{Error, Result, counted};
@@ -52,7 +52,7 @@ pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
         text.push_str(&run_in_words(run));
     }
     let value = serde_json::json!({ "quasi_steady": results, "simulation": run });
-    out.answer(text, value)
+    Ok(out.answer(text, value)?.with_outcome_of(&results.verdict))
 }
 
 fn draw(study: &WindStudy, results: &QuasiSteadyStudy, out: &mut OutputDir) -> Result<()> {
@@ -68,7 +68,7 @@ fn draw(study: &WindStudy, results: &QuasiSteadyStudy, out: &mut OutputDir) -> R
     let onsets: Vec<_> = results.onset.search.onset().cloned().into_iter().collect();
     let curves = std::slice::from_ref(&results.curves);
     figures::write("quasi_steady_modes", out, || {
-        vf_vg_figure(curves, &onsets, &study.name, None)
+        vf_vg_figure(curves, &onsets, &study.name, Some(&results.verdict))
     })
 }
 
@@ -97,10 +97,8 @@ fn coefficients(results: &QuasiSteadyStudy) -> DerivativesPlot {
 }
 
 fn in_words(study: &WindStudy, results: &QuasiSteadyStudy) -> String {
-    let mut text = format!(
-        "{}\nstatic coefficients: {}\n",
-        study.name, results.coefficients
-    );
+    let mut text = headline::account(&study.name, &results.verdict, &[]);
+    let _ = writeln!(text, "\nstatic coefficients: {}", results.coefficients);
     if let Some(first) = results.linear.first() {
         let arms = first.arms();
         let arms: Vec<String> = results

@@ -10,7 +10,6 @@ mod view;
 
 pub(crate) use bridge::{BridgeFacts, ModeFacts, SectionFacts};
 pub(super) use folder::{REPORT, SUMMARY, is_of_a_study};
-pub(crate) use view::AnswerView;
 
 use super::answer::Answer;
 use super::evidence::{CURVES, DERIVATIVES, RESPONSE, ROOTS};
@@ -18,11 +17,12 @@ use super::measured_forces::FORCES;
 use super::output::{OutputDir, list};
 use super::stages::{FIGURE, FMU_FILE, MODEL_FILE};
 use crate::error::{Error, Result};
+use crate::flutter::{Onset, OnsetMethod};
 use crate::report::{PageFigure, PageFit, StudyPage, study_page};
 use crate::study::Study;
 use curves::curves_of;
 use folder::{Kind, digest, parsed};
-use parts::{capital, card, known, of_svg, round, row};
+use parts::{card, known, of_svg, round, row};
 use std::path::{Path, PathBuf};
 use variables::variables_of;
 use view::{EntryView, FitView, SummaryView};
@@ -90,11 +90,10 @@ pub(super) fn page(folder: &Path, study_folder: &Path) -> Result<String> {
 }
 
 fn of_summary(summary: &SummaryView, study: &Study) -> StudyPage {
-    let answer = &summary.answer;
-    let own = summary
-        .onsets
-        .iter()
-        .find(|o| o.at.model == answer.model && Some(o.at.speed_m_s) == answer.speed_m_s);
+    let verdict = &summary.verdict;
+    let is_own =
+        |o: &&Onset| o.at.model == summary.model && o.at.method == OnsetMethod::Eigenvalues;
+    let own = summary.onsets.iter().find(is_own);
     let all = summary.onsets.iter().chain(&summary.undetermined);
     StudyPage {
         title: summary.study.clone(),
@@ -102,40 +101,22 @@ fn of_summary(summary: &SummaryView, study: &Study) -> StudyPage {
         kind: "study",
         beyond: "Amplitudes beyond the tests, turbulence and the third dimension are not part of this analysis.",
         generator: summary.generator.clone(),
-        verdict: match answer.required_speed_met {
-            Some(true) => "good",
-            Some(false) => "bad",
-            None => "",
-        },
-        headline: capital(&answer.headline),
-        criterion: criterion(answer),
+        verdict: verdict.into(),
         card: own.map_or(vec![], card),
         whose: format!(
             "The answer is that of the model “{}”, which the FMU holds; the other models and routes stand below for comparison.",
-            answer.model
+            summary.model
         ),
-        limits: summary.limits.clone(),
         asked: asked(summary, study),
         onsets: all.map(row).collect(),
         comparisons: summary.comparisons.clone(),
         fits: summary.fits.iter().map(fit).collect(),
         command: format!("aerodeck study {} --out results", summary.study_file),
         licence: summary.licence.lines().next().unwrap_or("").to_owned(),
-        onset: answer.speed_m_s,
+        onset: own.map(|o| o.at.speed_m_s),
         interval: own.and_then(|o| known(&o.interval)),
-        required: answer.required_speed_m_s,
         ..StudyPage::default()
     }
-}
-
-fn criterion(answer: &AnswerView) -> Option<String> {
-    let required = answer.required_speed_m_s?;
-    Some(match answer.required_speed_met? {
-        true => format!("Required: above {required} m/s. Met, with the lower end of the interval."),
-        false => {
-            format!("Required: above {required} m/s. NOT met with the lower end of the interval.")
-        }
-    })
 }
 
 fn asked(summary: &SummaryView, study: &Study) -> Vec<(String, String)> {
@@ -227,9 +208,9 @@ fn figures(read: &dyn Fn(&str) -> Option<String>) -> Vec<PageFigure> {
         ),
         (
             FORCES,
-            "Records: measured forces and the model",
-            "Three periods of the steady motion nearest the onset in reduced frequency, of one record per motion. Full: measured. Dashes: the \
-             exported model under the measured motion. Dots: what is left.",
+            "Records: forces and the model",
+            "Three periods of the steady motion nearest the onset in reduced frequency, of one record per motion. Full: the record, \
+             measured or made from the deck as the legend says. Dashes: the exported model under the same motion. Dots: what is left.",
         ),
         (
             ROOTS,

@@ -161,8 +161,9 @@ fn found(o: &Onset, route: &Route) -> String {
         None => writeln!(text, " (exact at every K)"),
     };
     let _ = match &o.interval {
-        OnsetInterval::Known { .. } => {
-            writeln!(text, "  95 % interval {} m/s", interval(&o.interval))
+        OnsetInterval::Known { parts, .. } => {
+            let ends = interval(&o.interval);
+            writeln!(text, "  95 % interval {ends} m/s\n  {}", parts.explain())
         }
         OnsetInterval::Spread { of, .. } => writeln!(
             text,

@@ -192,7 +192,7 @@ fn recommended(
         let fit = records_fit(study);
         block.records = Some(TimeFit {
             form: Form::Laguerre {
-                filters: found.filters,
+                filters: Some(found.filters),
                 feed_through: fit.form.feed_through(),
                 pole_per_transfer_function: false,
             },

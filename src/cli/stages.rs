@@ -16,6 +16,7 @@ use crate::study::{
     state_intervals, train_one,
 };
 use crate::trained_model::TrainedModel;
+use crate::verdict::Verdict;
 use crate::wind_tunnel::Record;
 use std::path::{Path, PathBuf};
 
@@ -216,15 +217,15 @@ pub(crate) fn flutter_of(
 pub(crate) fn flutter_figure(
     study: &Study,
     results: &FlutterStudy,
+    verdict: Option<&Verdict>,
     out: &mut OutputDir,
 ) -> Result<()> {
     if results.curves.is_empty() {
         return Err(Error::Numerical("no modes to draw".into()));
     }
-    let required = study.flutter.required_speed_m_s;
     figures::write(FIGURE, out, || {
         let (curves, onsets) = (&results.curves, &results.onsets);
-        vf_vg_figure(curves, onsets, &study.name, required)
+        vf_vg_figure(curves, onsets, &study.name, verdict)
     })
 }
 
@@ -248,6 +249,7 @@ pub(crate) fn routes_figure(
 pub(crate) fn export(
     (model, known): (&TrainedModel, &KnownUncertainty),
     study: &Study,
+    verdict: &Verdict,
     growing: GrowthPolicy,
     progress: &Progress,
 ) -> Result<Vec<u8>> {
@@ -261,6 +263,7 @@ pub(crate) fn export(
     let export = Export {
         label: label.dated()?,
         bounds: onset_bounds(model, known)?,
+        verdict: Some(verdict.clone()),
         ..growing.into()
     };
     let bytes = package(model, &Runtime::available()?, export).map_err(or_allow_unstable)?;

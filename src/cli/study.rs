@@ -13,9 +13,10 @@ use crate::flutter::{FlutterSearch, OnsetMethod};
 use crate::fmu::package::GrowthPolicy;
 use crate::plausibility::sentences;
 use crate::study::{
-    Deck, FITS, FlutterStudy, RecordSet, StageFailure, SteppedOnset, Study, TrainedWithReport,
-    attempt, interval_of, stepped_onset, study_findings,
+    Deck, FITS, FlutterStudy, OwnModel, RecordSet, StageFailure, SteppedOnset, Study,
+    TrainedWithReport, attempt, interval_of, section_evidence, stepped_onset, study_findings,
 };
+use crate::verdict::Verdict;
 use std::path::PathBuf;
 
 /// Run the whole chain of a study file: records, training, flutter, FMU, onset by stepping the FMU
@@ -76,9 +77,11 @@ pub(crate) fn run_chain(
     let failed = &mut chain.failed;
     let mut results = stages::flutter_of(&chain.study, &chain.deck, &trained, failed, progress)?;
     let own = chain.own(&trained)?;
-    let fmu = chain.export(own, growing)?;
+    let verdict = chain.verdict(own, &results);
+    let fmu = chain.export(own, &verdict, growing)?;
     let stepped = chain.step(own, fmu, &mut results)?;
-    chain.draw(&trained, &results)?;
+    let verdict = chain.verdict(own, &results);
+    chain.draw(&trained, &results, &verdict)?;
     chain.draw_exported(own, &results, records.as_ref())?;
     let summary = chain.summary(study_file, trained, results, stepped)?;
     chain.finish(summary)
@@ -144,6 +147,7 @@ impl Chain<'_> {
     fn export(
         &mut self,
         own: Option<&TrainedWithReport>,
+        verdict: &Verdict,
         growing: GrowthPolicy,
     ) -> Result<Option<PathBuf>> {
         let Some(own) = own else {
@@ -152,7 +156,7 @@ impl Chain<'_> {
             return Ok(None);
         };
         let known = (&own.model, &own.uncertainty);
-        let bytes = stages::export(known, &self.study, growing, self.progress);
+        let bytes = stages::export(known, &self.study, verdict, growing, self.progress);
         let Some(bytes) = self.attempt("export", bytes)? else {
             return Ok(None);
         };
@@ -195,10 +199,26 @@ impl Chain<'_> {
         Ok(Some(SteppedOnset { onset, runs }))
     }
 
+    /// What everything found so far amounts to.
+    fn verdict(&self, own: Option<&TrainedWithReport>, results: &FlutterStudy) -> Verdict {
+        let own = OwnModel {
+            model: own.map(|t| &t.model),
+            uncertainty: own.map(|t| &t.uncertainty),
+            fit: own.map(|t| &t.report),
+        };
+        let (study, deck) = (&self.study, &self.deck);
+        Verdict::of(&section_evidence(study, deck, results, &own, &self.failed))
+    }
+
     /// Figures and curves of all models.
-    fn draw(&mut self, trained: &[TrainedWithReport], results: &FlutterStudy) -> Result<()> {
+    fn draw(
+        &mut self,
+        trained: &[TrainedWithReport],
+        results: &FlutterStudy,
+        verdict: &Verdict,
+    ) -> Result<()> {
         let (study, out) = (&self.study, &mut self.out);
-        let figure = stages::flutter_figure(study, results, out);
+        let figure = stages::flutter_figure(study, results, Some(verdict), out);
         let derivatives = evidence::write_derivatives(study, &self.deck, trained, out);
         let curves = evidence::write_curves(study, &results.curves, out);
         self.attempt("figure", figure)?;
@@ -220,7 +240,13 @@ impl Chain<'_> {
         };
         let at = (onset.at.speed_m_s, onset.at.frequency_hz);
         if let Some(records) = records {
-            let forces = measured_forces::write(&own.model, records, at, &mut self.out);
+            let made = self.study.deck.records.is_empty();
+            let origin = if made {
+                "made from the deck"
+            } else {
+                "measured"
+            };
+            let forces = measured_forces::write(&own.model, records, at, origin, &mut self.out);
             self.attempt("figure of measured forces", forces)?;
         }
         let response = evidence::write_response(&own.model, at, &mut self.out);
@@ -236,14 +262,15 @@ impl Chain<'_> {
         results: FlutterStudy,
         stepped: Option<SteppedOnset>,
     ) -> Result<Summary> {
+        // figures that failed since the last one are among the doubts
+        let verdict = self.verdict(self.own(&trained)?, &results);
         let (study, deck) = (&self.study, &self.deck);
         let name = &study.exported()?.name;
         let failed = std::mem::take(&mut self.failed);
         let of_study = study_findings(study);
-        let limits = headline::limits(deck, &results, name, &failed);
         Ok(Summary {
-            answer: headline::answer(study, &results, name),
-            limits: [limits, sentences(&of_study)].concat(),
+            model: name.clone(),
+            verdict,
             comparisons: headline::comparisons(&results, stepped.as_ref(), name),
             study_file,
             generator: format!("aerodeck {}", env!("CARGO_PKG_VERSION")),
@@ -279,7 +306,9 @@ impl Chain<'_> {
         let written = shown(&self.out.commit()?);
         let how = (&written[..], self.progress.verbose());
         let text = account::chain(&self.study, &self.deck, &summary, how);
-        Ok(Answer::new(text, &summary)?.with_verdict(summary.failed.is_empty()))
+        Ok(Answer::new(text, &summary)?
+            .passed_if(summary.failed.is_empty())
+            .with_outcome_of(&summary.verdict))
     }
 }
 

@@ -1,6 +1,5 @@
 //! `summary.json` of a study.
 
-use super::report::AnswerView;
 use crate::flutter::{Onset, UnstableStart};
 use crate::identification::FitReport;
 use crate::plausibility::Finding;
@@ -8,6 +7,7 @@ use crate::study::{
     Deviation, Divergence, KnownUncertainty, ModelGrowth, OnsetSummary, SpeedRange, StageFailure,
     SteppedOnset, TrainedWithReport,
 };
+use crate::verdict::Verdict;
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -20,10 +20,10 @@ pub(crate) struct Summary {
     pub study: String,
     /// File of the study in this folder.
     pub study_file: String,
-    /// The answer in words.
-    pub answer: AnswerView,
-    /// What limits trust in it.
-    pub limits: Vec<String>,
+    /// The model that the verdict is about.
+    pub model: String,
+    /// What it amounts to.
+    pub verdict: Verdict,
     /// How models and routes compare.
     pub comparisons: Vec<String>,
     /// What the aerodynamics come from.

@@ -66,5 +66,5 @@ pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     let value = serde_json::json!({
         "trained": fits, "growth": growths, "failed": failed, "warnings": deck.warnings()
     });
-    Ok(out.answer(text, value)?.with_verdict(failed.is_empty()))
+    Ok(out.answer(text, value)?.passed_if(failed.is_empty()))
 }

@@ -39,7 +39,7 @@ pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     } else {
         table(&results)
     };
-    Ok(Answer::new(text, &results)?.with_verdict(passed))
+    Ok(Answer::new(text, &results)?.passed_if(passed))
 }
 
 fn user_cases(files: &[PathBuf]) -> Result<Vec<CaseResult>> {

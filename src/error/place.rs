@@ -105,11 +105,12 @@ const QUOTED_AT_MOST: usize = 300;
 
 /// At most a line of what stood in an input, cut where it is long.
 pub(super) fn quoted(text: String) -> String {
-    let is_short = text.len() <= QUOTED_AT_MOST && !text.contains(['\n', '\r']);
+    // control characters of an input may not reach a terminal
+    let is_short = text.len() <= QUOTED_AT_MOST && !text.contains(char::is_control);
     if is_short {
         return text;
     }
-    let line = text.replace(['\n', '\r'], " ");
+    let line = text.replace(char::is_control, " ");
     match line.char_indices().nth(QUOTED_AT_MOST) {
         None => line,
         Some((end, _)) => format!("{} … ({} characters)", &line[..end], line.chars().count()),
@@ -217,6 +218,11 @@ mod tests {
         assert_eq!(place.to_string(), "run 3, line 8, column time_s");
         let place = Place::line(4).about("width_m");
         assert_eq!(place.to_string(), "line 4 (width_m)");
+    }
+
+    #[test]
+    fn no_escape_of_an_input_reaches_a_terminal() {
+        assert_eq!(quoted("a\u{1b}[2Jb\nc".to_owned()), "a [2Jb c");
     }
 
     #[test]

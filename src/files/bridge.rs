@@ -50,17 +50,22 @@ pub mod embedded {
     /// The Langenuen suspension bridge, MIT © 2022 juelpb.
     const LANGENUEN: &str = include_str!("../../data/bridges/langenuen.csv");
 
+    /// Goland's cantilever wing, made for this program.
+    const GOLAND: &str = include_str!("../../data/bridges/goland.csv");
+
     /// Modes of an embedded bridge by name.
     ///
     /// # Errors
     /// [`Error::Input`] for a name that is none.
     pub fn modes(name: &str) -> Result<Modes> {
-        if name.eq_ignore_ascii_case("langenuen") {
-            return single_file::parse(LANGENUEN);
+        for (known, text) in [("langenuen", LANGENUEN), ("goland", GOLAND)] {
+            if name.eq_ignore_ascii_case(known) {
+                return single_file::parse(text);
+            }
         }
         Err(Error::input(
             "modes",
-            "the embedded bridge langenuen",
+            "the embedded bridges langenuen and goland",
             format!("`{name}`"),
         ))
     }

@@ -13,11 +13,14 @@ pub(crate) use csv_file::parse_csv_in;
 pub(crate) use csv_file::{parse_csv, read_csv_with, write_points};
 pub use csv_file::{read_csv, write_csv, write_csv_in};
 pub use csv_header::{ReadOptions, TableInConvention};
-pub(crate) use workbook::{TABLE_3_2_FREQUENCIES_HZ, read_workbook_in};
+pub(crate) use workbook::{TABLE_3_2_FREQUENCIES_HZ, WIDTH_ASSUMED, read_workbook_in};
 pub use workbook::{WorkbookOptions, read_workbook};
 pub(crate) use workbook_writer::{workbook_bytes, workbook_bytes_in};
 
 use crate::aerodynamics::derivatives::DerivativeTable;
+use crate::aerodynamics::derivatives::notation::StatedConvention;
+use crate::error::{Error, Result};
+use std::path::Path;
 
 /// Whether `name` means a file that holds a table, not an embedded deck: it ends in `.csv` or `.xlsx`.
 pub(crate) fn is_table_file(name: &str) -> bool {
@@ -26,7 +29,7 @@ pub(crate) fn is_table_file(name: &str) -> bool {
 }
 
 /// The table of that name: an embedded deck, or a file whose path is read against `directory`.
-pub fn named_table(name: &str, directory: &std::path::Path) -> crate::Result<DerivativeTable> {
+pub fn named_table(name: &str, directory: &Path) -> Result<DerivativeTable> {
     if is_table_file(name) {
         read_table(directory.join(name))
     } else {
@@ -34,19 +37,51 @@ pub fn named_table(name: &str, directory: &std::path::Path) -> crate::Result<Der
     }
 }
 
+/// A table as a file of settings names it, with what that says of its convention.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct TableWords<'a> {
+    /// An embedded deck, or a file.
+    pub(crate) name: &'a str,
+    /// Against which the path of a file is read.
+    pub(crate) directory: &'a Path,
+    /// As far as a file does not state it itself; nothing for a deck, whose convention is known.
+    pub(crate) convention: StatedConvention,
+}
+
+impl TableWords<'_> {
+    /// The table; `place` is the key of the convention.
+    ///
+    /// # Errors
+    /// [`Error::Io`]; [`Error::Input`] for a table that is wrong, or contradicted.
+    pub(crate) fn read(&self, place: &str) -> Result<DerivativeTable> {
+        if is_table_file(self.name) {
+            let options = ReadOptions {
+                convention: self.convention,
+                ..ReadOptions::default()
+            };
+            return Ok(read_table_with(self.directory.join(self.name), &options)?.table);
+        }
+        if !self.convention.is_empty() {
+            return Err(Error::input(
+                place,
+                "a table in a file (.csv, .xlsx)",
+                format!("`{}`, whose convention is known", self.name),
+            ));
+        }
+        embedded::deck(self.name)
+    }
+}
+
 /// Reads a table from `path`: an NTNU workbook when the name ends in `.xlsx`, else a CSV.
-pub fn read_table(path: impl AsRef<std::path::Path>) -> crate::Result<DerivativeTable> {
+pub fn read_table(path: impl AsRef<Path>) -> Result<DerivativeTable> {
     read_table_with(path, &ReadOptions::default()).map(|read| read.table)
 }
 
 /// The same with what the caller states.
 ///
 /// # Errors
-/// [`crate::Error::Io`]; [`crate::Error::Input`] with file and place, also where the caller contradicts the file.
-pub fn read_table_with(
-    path: impl AsRef<std::path::Path>,
-    options: &ReadOptions,
-) -> crate::Result<TableInConvention> {
+/// [`Error::Io`]; [`Error::Input`] with file and place, also where the caller contradicts the file.
+pub fn read_table_with(path: impl AsRef<Path>, options: &ReadOptions) -> Result<TableInConvention> {
     let path = path.as_ref();
     let is_workbook = path
         .extension()

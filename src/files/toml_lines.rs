@@ -29,8 +29,54 @@ pub(crate) fn parse<T: DeserializeOwned>(
     check: impl FnOnce(&mut T) -> Result<()>,
 ) -> Result<T> {
     let mut value = toml::from_str(text).map_err(|e| syntax_error(what, text, &e))?;
+    without_control_characters(text)?;
     check(&mut value).map_err(|e| with_line(text, e))?;
     Ok(value)
+}
+
+/// Refuses texts with control characters: they end up in names of files, descriptions of FMUs and on terminals. Lines that are
+/// broken, and tabs, are texts.
+fn without_control_characters(text: &str) -> Result<()> {
+    // such a character stands there itself or is written as an escape
+    if !text.contains('\\') && !text.contains(is_refused) {
+        return Ok(());
+    }
+    let root: toml::Table = toml::from_str(text)
+        .map_err(|e| Error::input("", "a file in TOML", e.message().to_owned()))?;
+    match refused_text(&toml::Value::Table(root)) {
+        None => Ok(()),
+        Some(path) => Err(with_line(
+            text,
+            Error::input(
+                path.as_str(),
+                "a text without control characters",
+                "one with them",
+            ),
+        )),
+    }
+}
+
+fn is_refused(c: char) -> bool {
+    c.is_control() && !['\n', '\r', '\t'].contains(&c)
+}
+
+/// Key of the first text with such a character.
+fn refused_text(value: &toml::Value) -> Option<String> {
+    let below = |key: &str, rest: String| match rest.starts_with('[') || rest.is_empty() {
+        true => format!("{key}{rest}"),
+        false => format!("{key}.{rest}"),
+    };
+    match value {
+        toml::Value::String(text) => text.contains(is_refused).then(String::new),
+        toml::Value::Array(all) => all
+            .iter()
+            .enumerate()
+            .find_map(|(i, v)| Some(below(&format!("[{i}]"), refused_text(v)?))),
+        toml::Value::Table(all) => all
+            .iter()
+            .find_map(|(key, v)| Some(below(key, refused_text(v)?))),
+        _ => None,
+    }
 }
 
 /// A reading error of the TOML library as one of ours.
@@ -89,4 +135,22 @@ fn line_of_key(text: &str, place: &[Part]) -> Option<usize> {
         (table, list) = (value.get_ref().as_table(), value.get_ref().as_array());
     }
     offset.map(|o| line_of(text, o))
+}
+
+#[cfg(test)]
+mod control_tests {
+    use super::*;
+
+    #[test]
+    fn names_with_control_characters_are_refused_with_line_and_key() {
+        let read = |text: &str| parse::<toml::Table>("a file", text, |_| Ok(())).map(drop);
+        assert!(read("name = \"a\\tb\"\n[x]\ntext = \"a\\nb\"").is_ok());
+        for escape in ["\\u001b", "\\u0000", "\\u007f", "\\b"] {
+            let text = format!("a = 1\n[export]\nauthors = [\"b\", \"{escape}[2J\"]\n");
+            assert_eq!(
+                read(&text).unwrap_err().to_string(),
+                "line 3, export.authors[1]: expected a text without control characters, found one with them"
+            );
+        }
+    }
 }

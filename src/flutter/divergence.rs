@@ -1,10 +1,11 @@
 //! Static divergence: in closed form, and by a real eigenvalue of the coupled system that passes through zero.
 
-use crate::aerodynamics::TransferMatrix;
+use crate::aerodynamics::{FlatPlate, Transfer, TransferMatrix};
 use crate::aeroelastic::{CoupledSection, CoupledSystem};
 use crate::error::{Error, Result, positive};
 use crate::section::{Dof, Structure};
 use crate::state_space::{balance, eigenvalues, root};
+use crate::units::ReducedFrequency;
 use nalgebra::DMatrix;
 
 /// Speeds at which the sign of the determinant is looked at.
@@ -41,6 +42,41 @@ pub(crate) fn static_part(dofs: &[Dof], g: &TransferMatrix) -> TransferMatrix {
         Dof::Torsion => g[(i, j)].re.into(),
         Dof::Vertical | Dof::Lateral => 0.0.into(),
     })
+}
+
+/// What stands for steady flow when nothing below a reduced frequency was tested, with what it costs on a flat plate.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct AssumedAtRest {
+    /// Lowest tested reduced frequency, whose slopes are used.
+    k: ReducedFrequency,
+    /// How much too high the divergence of a flat plate comes out, relatively.
+    excess: f64,
+}
+
+impl AssumedAtRest {
+    /// With the slopes at `k`.
+    pub(crate) fn below(k: ReducedFrequency) -> Result<Self> {
+        let slope = |k| FlatPlate::default().transfer(k).map(|g| g[(1, 1)].re);
+        let still = slope(ReducedFrequency::from_full_width(0.0))?;
+        // ½ρV² times the slope is the stiffness: the speed goes with one over the root
+        let excess = (still / slope(k)?).sqrt() - 1.0;
+        Ok(Self { k, excess })
+    }
+
+    /// What is left of a divergence speed when the deck behaves as a plate does, m/s.
+    pub(crate) fn lower_m_s(self, speed_m_s: f64) -> f64 {
+        speed_m_s / (1.0 + self.excess.max(0.0))
+    }
+
+    /// In words.
+    pub(crate) fn explain(self) -> String {
+        format!(
+            "K → 0 was not tested: H3*, A3* at the lowest tested K, {:.3}, are used as the static slopes; nothing is used for \
+             H4*, A4*, which are dynamic there (a flat plate's divergence would come out {:.1} % too high)",
+            self.k.full_width(),
+            100.0 * self.excess
+        )
+    }
 }
 
 /// Lowest speed up to `speed_max_m_s` at which a real eigenvalue of the coupled system passes through zero, m/s: a change

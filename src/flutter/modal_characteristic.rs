@@ -20,10 +20,12 @@ type Shape = DVector<Complex64>;
 
 /// Rounds before a start is given up as too far away.
 const MAX_ROUNDS: usize = 12;
-/// Relative size of the last step; the next would be its cube over the square of the distance to other modes.
+/// Relative size of the last step, and of what it leaves: its cube over the square of the distance to other modes.
 const TOLERANCE: f64 = 1e-5;
-/// The same after a residual was taken away, which brings the error down by the step before over the distance to other modes.
+/// The same after a residual was taken away, which leaves its step times the step before over the distance to other modes.
 const POLISHED: f64 = 1e-9;
+/// What a step may leave, relatively.
+const LEFT: f64 = 1e-13;
 /// Part of the distance to other eigenvalues up to which a step is small.
 const SMALL_PART: f64 = 0.1;
 /// Part of an eigenvalue by which it is moved where the problem is exactly singular; below the tolerance, so that it settles.
@@ -97,8 +99,9 @@ pub(super) struct AtSpeed<'a> {
 impl AtSpeed<'_> {
     /// The eigenvalue that is reached from `start` and the shape of a mode nearby, with its own shape of unit norm; `None`
     /// when the iteration does not settle. `apart` is how far other eigenvalues are, rad/s, where that is known: the last
-    /// step is a small part of it, since before that the shape may be any mixture of both; and as long as a step is not, its
-    /// residual is left to a round of its own, since the triangles at hand do not tell the modes apart.
+    /// step is a small part of it, since before that the shape may be any mixture of both, and so small that what it leaves is
+    /// rounding; and as long as a step is not a small part, its residual is left to a round of its own, since the triangles at
+    /// hand do not tell the modes apart.
     pub(super) fn solve(
         &self,
         start: Complex64,
@@ -106,10 +109,12 @@ impl AtSpeed<'_> {
         apart: Option<f64>,
     ) -> Option<(Complex64, Shape)> {
         let small = |step: Complex64| apart.is_some_and(|apart| step.norm() <= SMALL_PART * apart);
-        let settled = |step: Complex64, lambda: Complex64, tolerance: f64| {
-            let told_apart = small(step) || apart.is_none() || step.norm() <= NUDGE * lambda.norm();
-            step.norm() <= tolerance * lambda.norm() && told_apart
+        let settled = |step: Complex64, left: f64, lambda: Complex64, tolerance: f64| {
+            let (step, size) = (step.norm(), lambda.norm());
+            step <= NUDGE * size || step <= tolerance * size && left <= LEFT * size
         };
+        // what a step of this size leaves, as a part: nothing where no other eigenvalue is known
+        let part = |step: Complex64| apart.map_or(0.0, |apart| step.norm() / apart);
         let mut lambda = start;
         let mut shape = Columns::of_column(&near.normalize());
         for _ in 0..MAX_ROUNDS {
@@ -123,7 +128,13 @@ impl AtSpeed<'_> {
                 continue;
             };
             lambda -= round.step;
-            if settled(round.step, lambda, TOLERANCE) {
+            let part = part(round.step);
+            if settled(
+                round.step,
+                round.step.norm() * part * part,
+                lambda,
+                TOLERANCE,
+            ) {
                 return Some((lambda, round.right.to_column()));
             }
             if !small(round.step) {
@@ -133,7 +144,7 @@ impl AtSpeed<'_> {
             let terms = self.terms(lambda)?;
             let (step, better) = pulp::Arch::new().dispatch(Residual { terms, round })?;
             lambda -= step;
-            if settled(step, lambda, POLISHED) {
+            if settled(step, step.norm() * part, lambda, POLISHED) {
                 return Some((lambda, better.to_column()));
             }
             shape = better;

@@ -34,11 +34,49 @@ pub struct Onset {
     pub interval: OnsetInterval,
 }
 
+/// Where the variance between mean speeds is from that an interval holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum BetweenSpeeds {
+    /// Tests at two mean speeds or more, and measured decks.
+    Tests,
+    /// Measured decks alone: the tests are at one mean speed, or do not state it.
+    Prior,
+}
+
+/// What the standard error of an onset is made of.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct ErrorParts {
+    /// Scatter of the data under the form of the model, m/s.
+    pub scatter_m_s: f64,
+    /// Spread between the forms that explain the data as well, m/s; none where no other form was asked.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub form_m_s: Option<f64>,
+    /// Where the scatter between mean speeds in it is from; none where it holds none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub between_speeds: Option<BetweenSpeeds>,
+}
+
+impl ErrorParts {
+    /// Both together, m/s.
+    pub fn standard_error_m_s(&self) -> f64 {
+        self.scatter_m_s.hypot(self.form_m_s.unwrap_or(0.0))
+    }
+
+    /// As it is printed beside an interval: `scatter 0.26, form 0.31 m/s`; the scatter alone where no other form was asked.
+    pub(crate) fn explain(&self) -> String {
+        match self.form_m_s {
+            Some(form) => format!("scatter {:.2}, form {form:.2} m/s", self.scatter_m_s),
+            None => format!("scatter {:.2} m/s", self.scatter_m_s),
+        }
+    }
+}
+
 /// 95 % interval of an onset speed, or why there is none.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum OnsetInterval {
-    /// The scatter of the data, carried to the onset; says nothing of the bias of the form of the model.
+    /// The scatter of the data, carried to the onset, and what the form of the model leaves open.
     Known {
         /// Lower end, m/s.
         low_m_s: f64,
@@ -48,6 +86,9 @@ pub enum OnsetInterval {
         standard_error_m_s: f64,
         /// Degrees of freedom of the standard error.
         degrees_of_freedom: f64,
+        /// What it is made of.
+        #[serde(default)]
+        parts: ErrorParts,
     },
     /// The speeds that several ways of reading the same data give, e.g. of interpolating a table: no statement of
     /// probability.
@@ -69,6 +110,9 @@ pub enum OnsetInterval {
         standard_error_m_s: f64,
         /// Degrees of freedom of the standard error.
         degrees_of_freedom: f64,
+        /// What it is made of.
+        #[serde(default)]
+        parts: ErrorParts,
         /// Which of the two, in words.
         reason: String,
     },
@@ -84,9 +128,10 @@ impl OnsetInterval {
     pub(crate) fn about(
         speed_m_s: f64,
         half_width_m_s: f64,
-        standard_error_m_s: f64,
         degrees_of_freedom: f64,
+        parts: ErrorParts,
     ) -> Self {
+        let standard_error_m_s = parts.standard_error_m_s();
         let (low_m_s, high_m_s) = (speed_m_s - half_width_m_s, speed_m_s + half_width_m_s);
         let ends = format!("its 95 % interval, {low_m_s:.3} to {high_m_s:.3} m/s,");
         // an error that is not a number is neither, and leaves the speed undetermined
@@ -102,6 +147,7 @@ impl OnsetInterval {
                 high_m_s,
                 standard_error_m_s,
                 degrees_of_freedom,
+                parts,
             };
         };
         Self::Undetermined {
@@ -109,6 +155,7 @@ impl OnsetInterval {
             high_m_s,
             standard_error_m_s,
             degrees_of_freedom,
+            parts,
             reason: format!("not determined by these data: {ends} {why}"),
         }
     }
@@ -123,6 +170,36 @@ impl OnsetInterval {
                 low_m_s, high_m_s, ..
             } => Some((low_m_s, high_m_s)),
             Self::Undetermined { .. } | Self::None { .. } => None,
+        }
+    }
+
+    /// The same where something besides its width leaves the speed open.
+    #[must_use]
+    pub(crate) fn undetermined(self, why: String) -> Self {
+        match self {
+            Self::Known {
+                low_m_s,
+                high_m_s,
+                standard_error_m_s,
+                degrees_of_freedom,
+                parts,
+            } => Self::Undetermined {
+                low_m_s,
+                high_m_s,
+                standard_error_m_s,
+                degrees_of_freedom,
+                parts,
+                reason: format!("not determined by these data: {why}"),
+            },
+            other => other,
+        }
+    }
+
+    /// What the standard error is made of.
+    pub fn parts(&self) -> Option<ErrorParts> {
+        match self {
+            Self::Known { parts, .. } | Self::Undetermined { parts, .. } => Some(*parts),
+            Self::Spread { .. } | Self::None { .. } => None,
         }
     }
 
@@ -153,7 +230,6 @@ impl Onset {
         }
     }
 
-    /// The onset at speed and frequency with a mode shape; nothing about ranges yet.
     /// The answer in one line: speed, interval, and whether the data reach it, such as
     /// `flutter onset 36.9 m/s, 36.6–37.3, inside the tested range`.
     pub fn headline(&self) -> String {
@@ -163,8 +239,8 @@ impl Onset {
         };
         let spread = matches!(self.interval, OnsetInterval::Spread { .. });
         let interval = match self.interval.ends() {
-            Some((low, high)) if spread => format!(" [{}–{}]", short(low), short(high)),
-            Some((low, high)) => format!(", {}–{}", short(low), short(high)),
+            Some((low, high)) if spread => format!(" [{}–{}]", shown_m_s(low), shown_m_s(high)),
+            Some((low, high)) => format!(", {}–{}", shown_m_s(low), shown_m_s(high)),
             None => ", interval not known".to_owned(),
         };
         let tested = match (self.gap, self.in_tested_range) {
@@ -173,9 +249,10 @@ impl Onset {
             (None, Some(false)) => ", OUTSIDE the tested range".to_owned(),
             (None, None) => String::new(),
         };
-        format!("flutter onset {} m/s{interval}{tested}", short(speed))
+        format!("flutter onset {} m/s{interval}{tested}", shown_m_s(speed))
     }
 
+    /// The onset at speed and frequency with a mode shape; nothing about ranges yet.
     pub(super) fn new(
         model: &str,
         method: OnsetMethod,
@@ -204,7 +281,7 @@ impl Onset {
 }
 
 /// A wind speed for people, m/s: a tenth, below 10 m/s a hundredth, which no measurement surpasses.
-fn short(speed_m_s: f64) -> String {
+pub(crate) fn shown_m_s(speed_m_s: f64) -> String {
     let digits = if speed_m_s.abs() < 10.0 { 2 } else { 1 };
     format!("{speed_m_s:.digits$}")
 }
@@ -215,7 +292,13 @@ mod tests {
 
     #[test]
     fn a_speed_that_the_data_leave_open_is_undetermined() {
-        let about = |speed, half| OnsetInterval::about(speed, half, half / 2.0, 20.0);
+        let about = |speed, half| {
+            let parts = ErrorParts {
+                scatter_m_s: half / 2.0,
+                ..ErrorParts::default()
+            };
+            OnsetInterval::about(speed, half, 20.0, parts)
+        };
         assert!(matches!(
             about(37.0, 1.0),
             OnsetInterval::Known {

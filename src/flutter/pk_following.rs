@@ -219,24 +219,26 @@ impl Iteration<'_> {
         (modes.len() == n).then_some(modes)
     }
 
-    /// Where a step cannot be made smooth: the modes that went on; of two on one root the one that moved less.
+    /// Where a step cannot be made smooth: the modes that went on; of two on one root the one that moved less, the first where
+    /// both came on it together, as a mode does that enters a table on the root of another.
     fn without_lost(&self, before: &Modes, after: Modes) -> Modes {
         let moved = |mode: &Mode| {
             before
                 .mode(mode.branch)
                 .map_or(f64::INFINITY, |old| (mode.lambda - old.lambda).norm())
         };
-        let nearest = |m: &Mode| {
-            let rivals = after.all.iter().filter(|o| same_root(o, m));
-            rivals.map(moved).fold(f64::INFINITY, f64::min) >= moved(m)
+        let nearest = |(i, m): (usize, &Mode)| {
+            let mut rivals = after.all.iter().enumerate().filter(|r| same_root(r.1, m));
+            rivals.all(|(j, rival)| j == i || (moved(m), i) < (moved(rival), j))
         };
         // a mode that would have to change its shape at once is another one: the branch ends here
         let same = |mode: &Mode| {
             let old = before.mode(mode.branch);
             before.speed == 0.0 || old.is_none_or(|old| self.assurance(old, mode) > OTHER_MODE)
         };
-        let going_on = after.all.iter().filter(|m| nearest(m) && same(m));
-        let all = going_on.cloned().collect();
+        let going_on = after.all.iter().enumerate();
+        let going_on = going_on.filter(|(i, m)| nearest((*i, m)) && same(m));
+        let all = going_on.map(|(_, m)| m.clone()).collect();
         Modes {
             speed: after.speed,
             all,
@@ -290,6 +292,11 @@ impl Follower for Iteration<'_> {
             let next = self.at(&at, target)?;
             if next.all.len() == at.all.len() && self.continuous(&at, &next) {
                 at = next;
+                // one place that asks for short steps is soon behind
+                if halvings > 0 {
+                    halvings -= 1;
+                    step *= 2.0;
+                }
             } else if halvings < MAX_HALVINGS {
                 halvings += 1;
                 step *= 0.5;

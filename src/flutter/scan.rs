@@ -1,5 +1,6 @@
 //! All eigenvalues over wind speed: the speeds at which any oscillation grows, found without following modes.
 
+use super::critical::critical_speeds;
 use super::following::{dimensionless, growing, oscillates};
 use super::judged::StableRange;
 use super::still_air::lowest_speed;
@@ -22,6 +23,8 @@ pub(super) const COARSE: (f64, f64) = (1.12, 1.0 / 50.0);
 pub(super) const AERODYNAMIC: &str = "aerodynamic";
 /// Relative width to which the ends of a band are halved.
 const EDGE_TOLERANCE: f64 = 1e-11;
+/// Relative distance from a critical speed, known to rounding, at which both sides of it are looked at.
+const BESIDE: f64 = 1e-7;
 /// Steps of the golden section between three speeds of the grid: a peak to 1e-5 of their distance.
 const PEAK_STEPS: usize = 24;
 
@@ -78,8 +81,9 @@ impl GrowthBand {
 
 /// Bands of wind speed between two speeds in which an oscillation grows, in rising order.
 ///
-/// Looks at every eigenvalue at speeds a twentieth apart or closer, from nearly still air if `from_m_s` is zero, at peaks
-/// between them too, and halves down to the ends of each band. `tested` as in [`find_onset`](super::find_onset).
+/// Sections find all speeds at which growth may begin or end at once (`critical`), so that no growth
+/// between two speeds is a statement about every one between; what is sampled or large looks at every eigenvalue at speeds a
+/// twentieth apart or closer, and at peaks between them. Zero for `from_m_s` is nearly still air. `tested` as in [`find_onset`](super::find_onset).
 ///
 /// # Errors
 /// [`Error::Input`] for speeds that are no interval; [`Error::Numerical`] when eigenvalues cannot be computed.
@@ -100,6 +104,8 @@ pub(super) struct Point {
     pub(super) fastest: Option<Complex<f64>>,
     /// The fastest growing oscillation inside the tested range.
     pub(super) inside: Option<Complex<f64>>,
+    /// Number of eigenvalues with a positive real part, oscillating or not.
+    unstable: usize,
 }
 
 impl Point {
@@ -191,12 +197,15 @@ impl<'a> Scan<'a> {
         to_m_s: f64,
         density: (f64, f64),
     ) -> Result<Vec<GrowthBand>> {
-        let speeds = self.speeds(from_m_s, to_m_s, density)?;
-        let mut points: Vec<Point> = speeds
-            .into_iter()
-            .map(|v| self.at(v))
-            .collect::<Result<_>>()?;
-        self.add_peaks(&mut points)?;
+        let grid = self.speeds(from_m_s, to_m_s, density)?;
+        let points = match critical_speeds(self.section) {
+            Some(critical) => self.between(&critical, &grid)?,
+            None => {
+                let mut points = self.all_at(&grid)?;
+                self.add_peaks(&mut points)?;
+                points
+            }
+        };
         let mut bands = Vec::new();
         let mut i = 0;
         while i < points.len() {
@@ -218,6 +227,7 @@ impl<'a> Scan<'a> {
 
     pub(super) fn at(&self, speed: f64) -> Result<Point> {
         let mut all = self.section.at(speed)?.eigenvalues()?;
+        let unstable = all.iter().filter(|z| z.re > 0.0).count();
         all.retain(oscillates);
         all.sort_by(|a, b| b.re.total_cmp(&a.re));
         let inside = |z: &&Complex<f64>| growing(z) && self.inside(speed, **z) != Some(false);
@@ -225,7 +235,39 @@ impl<'a> Scan<'a> {
             speed,
             fastest: all.first().copied(),
             inside: all.iter().find(inside).copied(),
+            unstable,
         })
+    }
+
+    fn all_at(&self, speeds: &[f64]) -> Result<Vec<Point>> {
+        speeds.iter().map(|v| self.at(*v)).collect()
+    }
+
+    /// Points on both sides of all critical speeds and half way between them. Where no two eigenvalues have a positive real
+    /// part there, none have up to the next, and no oscillation grows. Where two have, the speeds of the grid are added: for the
+    /// fastest growth and the tested range, and since two that are real may meet and oscillate.
+    fn between(&self, critical: &[f64], grid: &[f64]) -> Result<Vec<Point>> {
+        let (low, high) = (grid[0], grid[grid.len() - 1]);
+        let inside = critical.iter().filter(|v| (low..high).contains(*v));
+        let sides = inside.flat_map(|v| [v * (1.0 - BESIDE), *v, v * (1.0 + BESIDE)]);
+        let mut ends: Vec<f64> = sides.filter(|v| (low..high).contains(v)).collect();
+        ends.extend([low, high]);
+        ends.sort_by(f64::total_cmp);
+        let middles: Vec<f64> = ends.windows(2).map(|w| (w[0] * w[1]).sqrt()).collect();
+        ends.extend(middles);
+        ends.sort_by(f64::total_cmp);
+        ends.dedup();
+        let mut points = self.all_at(&ends)?;
+        let two = |w: &[Point]| w[0].unstable > 1 || w[1].unstable > 1;
+        let within = |w: &[Point], v: f64| w[0].speed < v && v < w[1].speed;
+        let more = |v: &&f64| points.windows(2).any(|w| two(w) && within(w, **v));
+        let more: Vec<f64> = grid.iter().filter(more).copied().collect();
+        points.extend(self.all_at(&more)?);
+        points.sort_by(|a, b| a.speed.total_cmp(&b.speed));
+        if points.iter().any(|p| p.unstable > 1 && !p.grows()) {
+            self.add_peaks(&mut points)?;
+        }
+        Ok(points)
     }
 
     /// Adds growth that is met only between the speeds looked at.

@@ -37,7 +37,7 @@ impl OnsetSearch {
     ///
     /// # Errors
     /// [`Error::Input`] for a highest speed that is not positive or fewer than two speeds.
-    pub(super) fn speeds_m_s(&self) -> Result<Vec<f64>> {
+    pub(crate) fn speeds_m_s(&self) -> Result<Vec<f64>> {
         let highest = positive("flutter.speed_max_m_s", self.speed_max_m_s)?;
         if self.speeds < 2 {
             return Err(Error::input(

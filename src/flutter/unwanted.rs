@@ -1,6 +1,7 @@
 //! Growth that a force model makes up: below the onset, at reduced frequencies at which nothing was tested.
 
 use super::answer::FlutterSearch;
+use super::critical::all_speeds_are_known;
 use super::critical_point::OnsetMethod;
 use super::scan::{GrowthBand, growth_scan};
 use super::search::{OnsetSearch, find_onset};
@@ -21,6 +22,8 @@ pub struct UnwantedGrowth {
     pub scanned_to_m_s: f64,
     /// Bands below it in which the section grows by extrapolation alone.
     pub bands: Vec<GrowthBand>,
+    /// Whether all speeds were looked at, so that the bands are proved to be all of the model, and not a grid of speeds.
+    pub proved: bool,
     /// Lowest speed of growth that goes on into the tested range, where that begins below, m/s.
     pub instability_from_m_s: Option<f64>,
 }
@@ -51,11 +54,22 @@ pub fn unwanted_growth(
     Ok(UnwantedGrowth {
         scanned_to_m_s: limit,
         bands,
+        proved: all_speeds_are_known(section),
         instability_from_m_s: own.iter().map(|band| band.from_m_s).reduce(f64::min),
     })
 }
 
 impl UnwantedGrowth {
+    /// No growth up to a speed (m/s), as a sweep of reduced frequencies sees it.
+    pub(crate) fn none_up_to(speed_m_s: f64) -> Self {
+        Self {
+            scanned_to_m_s: speed_m_s,
+            bands: Vec::new(),
+            proved: false,
+            instability_from_m_s: None,
+        }
+    }
+
     /// Whether there is none.
     pub fn is_none(&self) -> bool {
         self.bands.is_empty()
@@ -65,11 +79,16 @@ impl UnwantedGrowth {
     pub fn explain(&self) -> String {
         if self.is_none() {
             let to = self.scanned_to_m_s;
+            let proved = if self.proved {
+                ", proved for the model"
+            } else {
+                ""
+            };
             return match self.instability_from_m_s {
-                None => format!("no growth from nearly still air to {to:.3} m/s"),
+                None => format!("no growth from nearly still air to {to:.3} m/s{proved}"),
                 Some(from) => format!(
                     "no growth from nearly still air to {to:.3} m/s but that of the instability itself, which the model \
-                     carries down to {from:.3} m/s"
+                     carries down to {from:.3} m/s{proved}"
                 ),
             };
         }

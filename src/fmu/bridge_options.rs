@@ -2,6 +2,7 @@
 
 use super::bridge_gusts::BridgeGusts;
 use super::onset_bounds::OnsetBounds;
+use super::onset_start::OnsetStart;
 use crate::aeroelastic::CoupledSection;
 use crate::bridge::{Bridge, BridgeMode, GustChannels, Node, StripGroup};
 use crate::error::{Error, Result, positive};
@@ -62,6 +63,9 @@ pub struct BridgeOptions {
     /// 95 % interval of the onset, where it is known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub onset_interval: Option<OnsetBounds>,
+    /// The onset of the bridge as it is exported, from which a unit goes on.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub onset: Option<OnsetStart>,
 }
 
 impl BridgeOptions {
@@ -163,6 +167,9 @@ impl BridgeOptions {
         }
         if let Some(interval) = &self.onset_interval {
             interval.check().map_err(|e| e.at("onset_interval"))?;
+        }
+        if let Some(onset) = &self.onset {
+            onset.check().map_err(|e| e.at("onset"))?;
         }
         let bridge = self.bridge()?;
         self.gusts.iter().try_for_each(|g| g.validate(&bridge))

@@ -8,6 +8,7 @@
 mod access;
 mod bridge_built;
 mod bridge_derivatives;
+mod bridge_followed;
 mod bridge_places;
 mod bridge_search;
 mod bridge_unit;

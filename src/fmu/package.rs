@@ -30,6 +30,7 @@ use super::variables::Listing;
 use crate::aerodynamics::GustForce;
 use crate::error::{Error, Result};
 use crate::trained_model::TrainedModel;
+use crate::verdict::Verdict;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::io::{Cursor, Write};
@@ -66,6 +67,8 @@ pub struct Export {
     pub gusts: Option<GustForce>,
     /// 95 % interval of the onset of the section, where it is known.
     pub bounds: Option<OnsetBounds>,
+    /// What is known of the section, for the page that documents it; without, what its own searches say.
+    pub verdict: Option<Verdict>,
     /// Which variables its description lists.
     pub listing: Listing,
     /// What it says of its origin.
@@ -81,6 +84,7 @@ impl From<GrowthPolicy> for Export {
             force: None,
             gusts: None,
             bounds: None,
+            verdict: None,
             listing: Listing::All,
             label: Label::default(),
             version: FmiVersion::default(),
@@ -103,6 +107,7 @@ pub fn package(
         force,
         gusts,
         bounds,
+        verdict,
         listing,
         label,
         version,
@@ -123,7 +128,7 @@ pub fn package(
         bounds: bounds.as_deref().map(str::as_bytes),
     };
     let resources = Resources::from_bytes(json.as_bytes(), files)?;
-    let page = documentation(&resources, runtimes, listing)?;
+    let page = documentation(&resources, runtimes, listing, verdict.as_ref())?;
     let options = [
         (FORCE_FILE, force),
         (GUST_FILE, gusts),

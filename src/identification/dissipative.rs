@@ -6,74 +6,63 @@
 //!
 //! 1. added mass that is a mass: `e₂ = e₂ᵀ`, `−e₂ ⪰ 0`;
 //! 2. damping in the limit of fast motion: `−(e₁ + e₁ᵀ) ⪰ δI`;
-//! 3. damping of every real mode shape above the tested range: `−sym Im G(K)/K ⪰ 0` at 40 `K` from `K_max` to `200 K_max`.
+//! 3. damping of every real mode shape above the tested range: `−sym Im G(K)/K ⪰ 0` for `K ≥ K_max`.
 //!
-//! A deck whose tests end with growth (a bluff one) keeps it: where `sym Im G/K` of heave and torsion at `K_max` has a
-//! positive part `P` in the fit that the data alone give, condition 3 reads `P (K_max/K)² − sym Im G(K)/K ⪰ 0`, since a
-//! fit damped from `K_max` on would be damped at the end of the tested range too, on the unsafe side.
+//! The inequalities hold for heave and torsion together, and for sway by itself ([`Motions`]). A deck whose tests end with
+//! growth (a bluff one) keeps it: where `sym Im G/K` at `K_max` has a positive part `P` in the fit that the data alone give,
+//! condition 3 reads `P (K_max/K)² − sym Im G(K)/K ⪰ 0`, since a fit damped from `K_max` on would be damped at the end of the
+//! tested range too, on the unsafe side.
 //!
 //! This is less than passivity, which a flat plate does not have either. All conditions are convex in the
 //! coefficients. For given poles the fit minimises the sum over the transfer functions of weighted squared residuals, each
-//! relative to the weighted data of its own — the objective of the search of poles — by cutting planes: whatever mode
-//! shape `v` a solution feeds gives the linear inequality `vᵀ(…)v ≤ 0` for the next.
+//! relative to the weighted data of its own — the objective of the search of poles. Condition 3 is stated at 40 `K` from
+//! `K_max` to `200 K_max`, and then at every `K` at which the answer still breaks it ([`everywhere`]), until there is none.
 
+mod conic;
 mod edge;
 mod equations;
-mod least_distance;
+mod everywhere;
+mod motions;
 mod report;
+mod stated;
 mod tangent;
 
 use super::basis::Basis;
 use crate::error::{Error, Result};
-use crate::section::Dof;
+use conic::shortest;
 use edge::TestedRangeEnd;
 pub use equations::Constraints;
 pub(crate) use equations::FitRequirements;
 use equations::{Equation, equations, satisfy};
-use least_distance::{Inequality, shortest};
+use motions::Motions;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
+use stated::{Condition, Stated};
 
 pub use report::{ActiveConstraint, ConstraintCost, ConstraintKind, ConstraintReport, OnsetEffect};
-use tangent::take_away;
 pub(crate) use tangent::{LinearEntry, Tangent};
 
-/// Reduced frequencies at which condition 3 is stated.
-const SAMPLES: usize = 40;
-/// Highest of them over the highest tested one: beyond, condition 2 is more than what is left of the filters.
-const REACH: f64 = 200.0;
-/// `δ/2` over the size of `sym Im G/K` at the end of the tested range: covers the filters beyond [`REACH`], `O(REACH⁻²)`.
-const FAST_MARGIN: f64 = 1e-3;
-/// Margin of the other conditions on the same scale: a thousand times [`TOLERANCE`], so that no rounding undoes them.
-const MARGIN: f64 = 1e-6;
-/// Violation, on the same scale, at which no further plane is cut.
+/// Violation, on the scale of the condition, at which a fit without constraints breaks it.
 const TOLERANCE: f64 = 1e-9;
-/// A condition is held by what comes closer than this to its bound: a curved one is followed by planes at [`TOLERANCE`].
+/// A condition is held by what comes closer than this to its bound.
 const ACTIVE: f64 = 1e-7;
-/// Rounds of cutting planes; a few are the rule.
-const ROUNDS: usize = 200;
+/// Times that further `K` are stated; two or three are the rule.
+const ROUNDS: usize = 30;
 
-/// One matrix `M`, linear in the coefficients, with `−sym M ⪰ margin · I`.
-#[derive(Debug, Clone, Copy)]
-struct Condition {
-    kind: ConstraintKind,
-    /// Reduced frequency, of condition 3.
-    k: Option<f64>,
-    /// Size of the matrix over that of `sym Im G/K` at the end of the tested range.
-    scale: f64,
-    margin: f64,
-    /// Share of the growth of the tests that is left here: `(K_max/K)²`.
-    own: f64,
+/// Where condition 3 is to hold.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Strictness {
+    /// At the `K` that are stated first: for the search of poles.
+    Sampled,
+    /// At every `K ≥ K_max`.
+    Everywhere,
 }
 
 /// The conditions on one model with given poles.
-pub(crate) struct Dissipation {
-    n: usize,
-    dofs: Vec<Dof>,
-    conditions: Vec<Condition>,
-    /// Which list of rows belongs to a transfer function, row by row.
-    rows_of: Vec<usize>,
-    /// For each distinct basis and condition: what a transfer function contributes, as a row over its columns.
-    rows: Vec<Vec<Vec<f64>>>,
+pub(crate) struct Dissipation<'a> {
+    bases: &'a [Basis],
+    k_max: f64,
+    motions: Motions<'a>,
+    stated: Vec<Stated>,
     equations: Vec<Equation>,
 }
 
@@ -88,244 +77,166 @@ pub(crate) struct Solution {
     pub tangent: Tangent,
 }
 
-/// A plane that cuts off what feeds one motion.
-struct Cut {
-    condition: usize,
-    plane: Inequality,
-}
-
-impl Dissipation {
+impl<'a> Dissipation<'a> {
     /// For the bases of all transfer functions, row by row.
-    pub(crate) fn new(bases: &[Basis], wishes: &FitRequirements) -> Self {
-        let k_max = wishes.k_max;
-        let n = bases.len().isqrt();
-        let feed = bases[0].feed();
-        let column = |order: usize| feed.orders().position(|o| o == order);
-        let step = REACH.ln() / (SAMPLES as f64 - 1.0);
-        let fast = column(1).is_some();
-        let dissipative = wishes.constraints == Constraints::Dissipative;
-        let samples = if dissipative { SAMPLES } else { 0 };
-        let mut conditions: Vec<Condition> = (0..samples)
-            .map(|i| {
-                let ratio = (step * i as f64).exp();
-                Condition {
-                    kind: ConstraintKind::AboveTestedRange,
-                    k: Some(k_max * ratio),
-                    // without e₁ the filters alone are left, which fade
-                    scale: if fast { 1.0 } else { ratio.powi(-2) },
-                    margin: MARGIN,
-                    own: ratio.powi(-2),
-                }
-            })
-            .collect();
-        let limits = [
-            (ConstraintKind::FastMotion, column(1), 1.0, FAST_MARGIN),
-            (ConstraintKind::AddedMass, column(2), 1.0 / k_max, MARGIN),
-        ];
-        for (kind, column, scale, margin) in limits {
-            conditions.extend(column.filter(|_| dissipative).map(|_| Condition {
-                kind,
-                k: None,
-                scale,
-                margin,
-                own: 0.0,
-            }));
-        }
-        let mut distinct: Vec<&Basis> = Vec::new();
-        let mut rows_of = Vec::with_capacity(bases.len());
-        for basis in bases {
-            let known = distinct.iter().position(|d| d.same_columns(basis));
-            rows_of.push(known.unwrap_or(distinct.len()));
-            if known.is_none() {
-                distinct.push(basis);
+    pub(crate) fn new(bases: &'a [Basis], wishes: &FitRequirements) -> Self {
+        let motions = Motions::new(bases, &wishes.dofs);
+        let mut stated = Vec::new();
+        if wishes.constraints == Constraints::Dissipative {
+            for part in 0..motions.parts.len() {
+                let all = Condition::all(bases[0].feed(), wishes.k_max, part);
+                stated.extend(all.into_iter().map(|c| Stated::new(c, &motions)));
             }
         }
-        let rows = distinct
-            .iter()
-            .map(|basis| conditions.iter().map(|c| c.kind.row(c.k, basis)).collect())
-            .collect();
         Self {
-            n,
-            dofs: wishes.dofs.clone(),
-            conditions,
-            rows_of,
-            rows,
-            equations: equations(bases, n, wishes),
+            equations: equations(bases, motions.count, wishes),
+            k_max: wishes.k_max,
+            bases,
+            motions,
+            stated,
         }
     }
 
-    fn row(&self, condition: usize, entry: usize) -> &[f64] {
-        &self.rows[self.rows_of[entry]][condition]
-    }
-
-    /// Symmetric part of the matrix of a condition, n×n.
-    fn matrix(&self, condition: usize, coefficients: &[Vec<f64>]) -> DMatrix<f64> {
-        let full = DMatrix::from_fn(self.n, self.n, |i, j| {
-            let e = i * self.n + j;
-            let row = self.row(condition, e);
-            row.iter()
-                .zip(&coefficients[e])
-                .map(|(a, c)| a * c)
-                .sum::<f64>()
-        });
-        (&full + full.transpose()) * 0.5
+    /// The end of the tested range for every part, from the fit that the data alone give.
+    fn edges(&self, alone: &[Vec<f64>]) -> Vec<TestedRangeEnd> {
+        let first = |part: usize| self.stated.iter().find(|s| s.condition.part == part);
+        (0..self.motions.parts.len())
+            .filter_map(first)
+            .map(|s| TestedRangeEnd::new(s.matrix(&self.motions, alone)))
+            .collect()
     }
 
     /// The least of the joint objective under the conditions; `None` when least squares alone satisfy them.
-    pub(crate) fn solve(&self, entries: &[LinearEntry]) -> Result<Option<Solution>> {
+    ///
+    /// # Errors
+    /// Limits at K → 0 that the columns cannot meet, and conditions that no coefficients satisfy.
+    pub(crate) fn solve(
+        &self,
+        entries: &[LinearEntry],
+        strictness: Strictness,
+    ) -> Result<Option<Solution>> {
         let width = entries.iter().map(LinearEntry::end).max().unwrap_or(0);
         let alone: Vec<Vec<f64>> = entries.iter().map(|e| e.values.clone()).collect();
-        let edge = match self.conditions.first() {
-            Some(_) => TestedRangeEnd::new(self.matrix(0, &alone), &self.dofs),
-            None => TestedRangeEnd::nothing(self.n),
-        };
+        let edges = self.edges(&alone);
         let (equalities, start) = satisfy(&self.equations, entries, width)?;
-        let mut u = start.clone();
-        let mut cuts: Vec<Cut> = Vec::new();
         let at_start: Vec<Vec<f64>> = entries.iter().map(|e| e.coefficients(&start)).collect();
-        for _ in 0..ROUNDS {
-            let coefficients: Vec<Vec<f64>> = entries.iter().map(|e| e.coefficients(&u)).collect();
-            let fed = self.fed(&coefficients, &edge);
-            if fed.is_empty() {
-                if cuts.is_empty() && start.amax() == 0.0 {
+        let mut stated = self.stated.clone();
+        let mut at = (start.clone(), at_start.clone());
+        let mut holds = vec![false; stated.len()];
+        let broken = |s: &Stated| self.excesses(s, &at_start, &edges).0.max() > TOLERANCE;
+        if !stated.iter().any(broken) {
+            stated.extend(self.broken_between(&at_start, &edges, strictness));
+            if stated.len() == self.stated.len() {
+                if start.amax() == 0.0 {
                     return Ok(None);
                 }
-                return Ok(Some(self.solution(
-                    entries,
-                    (u, coefficients),
-                    &edge,
-                    &cuts,
-                    equalities,
-                )));
+                let held = (stated.as_slice(), holds.as_slice());
+                return Ok(Some(self.solution(entries, at, &edges, held, equalities)));
             }
-            for (condition, direction) in fed {
-                let plane = self.plane(
-                    (condition, &direction),
-                    entries,
-                    (&at_start, &edge),
-                    &equalities,
-                );
-                cuts.push(Cut { condition, plane });
+        }
+        for _ in 0..ROUNDS {
+            let cone = |s: &Stated| {
+                let edge = &edges[s.condition.part];
+                s.cone(&self.motions, entries, (&at_start, edge), &equalities)
+            };
+            let cones: Vec<_> = stated.iter().map(cone).collect();
+            let found = shortest(&cones, width)?;
+            let u = &start + found.w;
+            let coefficients = entries.iter().map(|e| e.coefficients(&u)).collect();
+            at = (u, coefficients);
+            holds = found.holds;
+            let more = self.broken_between(&at.1, &edges, strictness);
+            if more.is_empty() {
+                let held = (stated.as_slice(), holds.as_slice());
+                return Ok(Some(self.solution(entries, at, &edges, held, equalities)));
             }
-            let planes: Vec<Inequality> = cuts.iter().map(|c| c.plane.clone()).collect();
-            let (moved, held) = shortest(&planes, width)?;
-            u = &start + moved;
-            let mut at = 0;
-            cuts.retain(|_| {
-                at += 1;
-                held.contains(&(at - 1))
-            });
+            stated.extend(more);
         }
         Err(Error::Numerical(format!(
-            "dissipative fit: not reached after {ROUNDS} rounds of cutting planes; `constraints = \"none\"` fits without"
+            "dissipative fit: damping for every K not reached after {ROUNDS} rounds; `constraints = \"none\"` fits without"
         )))
     }
 
-    /// Conditions that do not hold and the mode shapes that are fed; of neighbouring reduced frequencies only the worst.
-    fn fed(&self, coefficients: &[Vec<f64>], edge: &TestedRangeEnd) -> Vec<(usize, DVector<f64>)> {
-        let eigen: Vec<_> = (0..self.conditions.len())
-            .map(|c| self.excesses(c, coefficients, edge))
-            .collect();
-        let worst = |c: usize| eigen[c].0.max();
-        let sampled = |c: usize| c < eigen.len() && self.conditions[c].k.is_some();
-        let mut found = Vec::new();
-        for (c, (excesses, directions)) in eigen.iter().enumerate() {
-            let beside = [c.wrapping_sub(1), c + 1];
-            let worse = |o: &usize| sampled(*o) && sampled(c) && worst(*o) > worst(c);
-            if beside.iter().any(worse) {
-                continue;
-            }
-            for (m, excess) in excesses.iter().enumerate() {
-                if *excess > TOLERANCE {
-                    found.push((c, directions.column(m).into_owned()));
-                }
+    /// Condition 3 where it is broken although it is not stated there.
+    fn broken_between(
+        &self,
+        coefficients: &[Vec<f64>],
+        edges: &[TestedRangeEnd],
+        strictness: Strictness,
+    ) -> Vec<Stated> {
+        if strictness == Strictness::Sampled {
+            return Vec::new();
+        }
+        let mut all = Vec::new();
+        for (part, edge) in edges.iter().enumerate() {
+            for k in self.broken_at(part, coefficients, edge) {
+                let condition = Condition::above(k, k / self.k_max, self.bases[0].feed(), part);
+                all.push(Stated::new(condition, &self.motions));
             }
         }
-        found
+        all
     }
 
     /// Eigenvalues of a condition's matrix beyond what it may have, over its scale, and eigenvectors.
     fn excesses(
         &self,
-        condition: usize,
+        stated: &Stated,
         coefficients: &[Vec<f64>],
-        edge: &TestedRangeEnd,
+        edges: &[TestedRangeEnd],
     ) -> (DVector<f64>, DMatrix<f64>) {
         let Condition {
-            scale, margin, own, ..
-        } = self.conditions[condition];
-        let beyond = self.matrix(condition, coefficients) - &edge.own * own;
-        let matrix = beyond / (edge.size * scale);
-        let eigen = SymmetricEigen::new(matrix);
+            scale,
+            margin,
+            own,
+            part,
+            ..
+        } = stated.condition;
+        let beyond = stated.matrix(&self.motions, coefficients) - &edges[part].own * own;
+        let eigen = SymmetricEigen::new(beyond / (edges[part].size * scale));
         (eigen.eigenvalues.add_scalar(margin), eigen.eigenvectors)
-    }
-
-    /// Gradient of `vᵀ M v` with respect to the free numbers.
-    fn gradient(&self, condition: usize, v: &[f64], entries: &[LinearEntry]) -> DVector<f64> {
-        let width = entries.iter().map(LinearEntry::end).max().unwrap_or(0);
-        let mut gradient = DVector::zeros(width);
-        for (e, entry) in entries.iter().enumerate() {
-            let weight = v[e / self.n] * v[e % self.n];
-            for (c, x) in self.row(condition, e).iter().enumerate() {
-                for (m, s) in entry.spread.row(c).iter().enumerate() {
-                    gradient[entry.at + m] += weight * x * s;
-                }
-            }
-        }
-        gradient
-    }
-
-    /// The plane `vᵀ M v ≤ own growth − margin`, in the free numbers from the start on.
-    fn plane(
-        &self,
-        (condition, v): (usize, &DVector<f64>),
-        entries: &[LinearEntry],
-        (start, edge): (&[Vec<f64>], &TestedRangeEnd),
-        equalities: &[DVector<f64>],
-    ) -> Inequality {
-        let mut gradient = self.gradient(condition, v.as_slice(), entries);
-        take_away(&mut gradient, equalities);
-        let Condition {
-            scale, margin, own, ..
-        } = self.conditions[condition];
-        let allowed = v.dot(&(&edge.own * v)) * own - margin * scale * edge.size;
-        Inequality {
-            gradient,
-            bound: allowed - v.dot(&(self.matrix(condition, start) * v)),
-        }
     }
 
     fn solution(
         &self,
         entries: &[LinearEntry],
         (free, coefficients): (DVector<f64>, Vec<Vec<f64>>),
-        edge: &TestedRangeEnd,
-        cuts: &[Cut],
+        edges: &[TestedRangeEnd],
+        (stated, holds): (&[Stated], &[bool]),
         equalities: Vec<DVector<f64>>,
     ) -> Solution {
         let alone: Vec<Vec<f64>> = entries.iter().map(|e| e.values.clone()).collect();
-        let account = |e: &Equation| e.account(self.n, &alone, &coefficients);
+        let account = |e: &Equation| e.account(self.motions.count, &alone, &coefficients);
         let mut active: Vec<_> = self.equations.iter().map(account).collect();
         let mut gradients = equalities;
-        for (c, condition) in self.conditions.iter().enumerate() {
-            if !cuts.iter().any(|cut| cut.condition == c) {
-                continue;
-            }
-            let (excesses, directions) = self.excesses(c, &coefficients, edge);
+        let mut held: Vec<&Stated> = stated
+            .iter()
+            .zip(holds)
+            .filter_map(|(s, held)| held.then_some(s))
+            .collect();
+        held.sort_by(|a, b| a.condition.order(&b.condition));
+        for s in held {
+            let (excesses, directions) = self.excesses(s, &coefficients, edges);
             for (m, excess) in excesses.iter().enumerate() {
-                let v = directions.column(m).into_owned();
-                if *excess > -ACTIVE {
-                    gradients.push(self.gradient(c, v.as_slice(), entries));
-                    let value = |x: &[Vec<f64>]| v.dot(&(self.matrix(c, x) * &v));
-                    active.push(ActiveConstraint {
-                        kind: condition.kind,
-                        k: condition.k,
-                        entry: None,
-                        direction: v.iter().copied().collect(),
-                        alone: value(&alone),
-                        held: value(&coefficients),
-                    });
+                if *excess <= -ACTIVE {
+                    continue;
                 }
+                let v = self
+                    .motions
+                    .whole(s.condition.part, directions.column(m).as_slice());
+                let weights = &v * v.transpose();
+                gradients.push(s.gradient(&self.motions, &weights, entries));
+                let value = |x: &[Vec<f64>]| {
+                    let d = directions.column(m);
+                    d.dot(&(s.matrix(&self.motions, x) * d))
+                };
+                active.push(ActiveConstraint {
+                    kind: s.condition.kind,
+                    k: s.condition.k,
+                    entry: None,
+                    direction: v.iter().copied().collect(),
+                    alone: value(&alone),
+                    held: value(&coefficients),
+                });
             }
         }
         Solution {

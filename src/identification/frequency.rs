@@ -19,7 +19,7 @@ use crate::error::{Error, Result};
 use crate::section::Dof;
 use crate::trained_model::Model;
 use crate::units::ReducedFrequencyRange;
-use joint::{Joint, JointFit};
+use joint::{Joint, JointFit, by_noise};
 use poles::{choose_poles, choose_poles_together};
 
 /// Fits a continuous model to samples of `G`: real and imaginary parts, each at its own `K`.
@@ -33,13 +33,14 @@ use poles::{choose_poles, choose_poles_together};
 pub fn fit_table(samples: &[TransferSample], dofs: &[Dof], fit: &FrequencyFit) -> Result<Fitted> {
     fit.validate()?;
     let (mut entries, mut notes) = sort_by_entry(samples, dofs, fit.weights)?;
+    let fewest = entries.iter().map(|e| e.rows.len()).min();
+    let fit = &fit.with_filters_for(fewest.unwrap_or(0));
     state_wishes(&mut entries, dofs, fit)?;
     let tested_range = ReducedFrequencyRange::spanning(samples.iter().map(|s| s.k))
         .ok_or_else(|| Error::input("samples", "at least one", "none"))?;
-    let fitted = if let Form::MinimumState { .. } = fit.form {
-        fit_minimum_state(&entries, dofs, fit, tested_range)?
-    } else {
-        fit_linear(&entries, dofs, fit, tested_range)?
+    let fitted = match fit.form {
+        Form::MinimumState { .. } => fit_minimum_state(&entries, dofs, fit, tested_range)?,
+        _ => fit_linear(&entries, dofs, fit, tested_range)?,
     };
     if fit.regularization > 0.0 {
         notes.push(format!(
@@ -107,6 +108,7 @@ fn fit_linear(
     let joint = Joint {
         entries,
         form: &fit.form,
+        shares: by_noise(entries, &fit.form, &poles)?,
         wishes: FitRequirements {
             dofs: dofs.to_vec(),
             k_max: tested.max.full_width(),

@@ -5,6 +5,7 @@ use super::dissipative::Constraints;
 use super::form::Form;
 use super::form::PoleSearch;
 use super::own::{OwnFilters, validate_own};
+use super::report::FitReport;
 use crate::error::{Error, Result, non_negative};
 use crate::section::Dof;
 use serde::{Deserialize, Serialize};
@@ -104,6 +105,25 @@ pub struct FrequencyFit {
 }
 
 impl FrequencyFit {
+    /// The same with a number of filters, where it is left to the data: `rows` samples of the entry that has fewest.
+    pub(super) fn with_filters_for(&self, rows: usize) -> Self {
+        let rows = if self.own.is_empty() { rows } else { 0 };
+        Self {
+            form: self
+                .form
+                .for_rows(rows, self.constraints != Constraints::None),
+            ..self.clone()
+        }
+    }
+
+    /// The form with the number of filters that a fit has chosen, where it was left open.
+    pub(crate) fn form_of(&self, report: &FitReport) -> Form {
+        match report.entries.first() {
+            Some(entry) if self.own.is_empty() => self.form.as_fitted(&entry.poles),
+            _ => self.form.clone(),
+        }
+    }
+
     /// Checks every value.
     pub(crate) fn validate(&self) -> Result<()> {
         self.form.validate()?;

@@ -5,6 +5,7 @@
 
 use super::basis::{Basis, assemble};
 use super::discrete::discrete_pass;
+use super::dissipative::Strictness;
 use super::form::{Form, number_of_filters};
 use super::least_squares::Factor;
 use super::options::{TimeFit, TimeWeights};
@@ -221,7 +222,12 @@ impl Grid {
             counts: vec![self.leading(filters); entries],
             systems: vec![Rc::clone(systems)],
         };
-        let joint = Joint::new(&systems, &vec![basis; entries], &wishes)?;
+        let joint = Joint::new(
+            &systems,
+            &vec![basis; entries],
+            &wishes,
+            Strictness::Sampled,
+        )?;
         Ok(Some(joint).filter(|j| j.held.is_some()))
     }
 
@@ -355,7 +361,7 @@ impl GridAxis {
 
 fn with_filters(form: &Form, filters: usize) -> Form {
     Form::Laguerre {
-        filters,
+        filters: Some(filters),
         feed_through: form.feed_through(),
         pole_per_transfer_function: false,
     }

@@ -9,7 +9,7 @@ mod held;
 
 use super::basis::Basis;
 use super::constrained::{LinearProblem, LinearSolution};
-use super::dissipative::{ActiveConstraint, Constraints, FitRequirements};
+use super::dissipative::{ActiveConstraint, Constraints, FitRequirements, Strictness};
 use super::entry_report::EntryReport;
 use super::form::{FeedThrough, Form};
 use super::frequency_options::FrequencyFit;
@@ -239,7 +239,7 @@ impl LagSearch<'_> {
     }
 
     fn residuals(&self, x: &[f64]) -> Result<DVector<f64>> {
-        let rows = self.rows(x)?;
+        let rows = self.rows(x, Strictness::Sampled)?;
         let mut all = Vec::new();
         for (i, problem) in rows.problems.iter().enumerate() {
             let values = &rows.values[i];
@@ -316,7 +316,7 @@ impl LagSearch<'_> {
         x: &[f64],
         search: Vec<SearchReport>,
     ) -> Result<(FittedTable, Option<Vec<ActiveConstraint>>)> {
-        let rows = self.rows(x)?;
+        let rows = self.rows(x, Strictness::Everywhere)?;
         let model = self.model_of(dofs, x, &rows.values);
         model.validate()?;
         let fitted = FittedTable {

@@ -5,6 +5,8 @@ use super::dissipative::{Constraints, FitRequirements};
 use super::form::{Form, PoleSearch};
 use super::frequency_options::{QuasiSteadyLimit, limits_by_entry, validate_limits};
 use super::own::{OwnFilters, StaticTerm, validate_own};
+use super::report::FitReport;
+use super::time::record::Records;
 use crate::error::{Result, non_negative, positive};
 use crate::section::Dof;
 use crate::units::ReducedFrequencyRange;
@@ -52,6 +54,29 @@ pub struct TimeFit {
 }
 
 impl TimeFit {
+    /// The same with a number of filters, where it is left to the data.
+    pub(super) fn with_filters_for(&self, records: &Records) -> Self {
+        let rows = if self.own.is_empty() {
+            records.rows_of_tests()
+        } else {
+            0
+        };
+        Self {
+            form: self
+                .form
+                .for_rows(rows, self.constraints != Constraints::None),
+            ..self.clone()
+        }
+    }
+
+    /// The form with the number of filters that a fit has chosen, where it was left open.
+    pub(crate) fn form_of(&self, report: &FitReport) -> Form {
+        match report.entries.first() {
+            Some(entry) if self.own.is_empty() => self.form.as_fitted(&entry.poles),
+            _ => self.form.clone(),
+        }
+    }
+
     /// Checks every value.
     pub(crate) fn validate(&self) -> Result<()> {
         self.form.validate_for_records()?;

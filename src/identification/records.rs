@@ -36,6 +36,7 @@ pub fn fit_records(
 ) -> Result<Fitted> {
     fit.validate()?;
     let records = Records::read(records, fit.static_term)?;
+    let fit = &fit.with_filters_for(&records);
     let tested = records.tested_range()?;
     let task = RecordFit {
         fit,

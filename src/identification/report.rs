@@ -40,7 +40,7 @@ pub struct FitReport {
     pub entries: Vec<EntryReport>,
     /// Searches of the poles; empty when they were given.
     pub search: Vec<SearchReport>,
-    /// Fit of every smaller number of filters with the same poles (time domain, from the same factorisation).
+    /// Fits with fewer filters and the same poles (time domain, from the same factorisation).
     pub orders: Vec<OrderReport>,
     /// The guideline for `α` (2.36), for the discrete model.
     pub alpha_guideline: Option<AlphaGuideline>,
@@ -118,7 +118,7 @@ pub struct SearchPoint {
     pub objective: f64,
 }
 
-/// Fit with the first filters only.
+/// Fit with fewer filters.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct OrderReport {
     /// Number of filters `L`.
@@ -224,6 +224,23 @@ pub(super) struct FittedTable {
 /// A degree-of-freedom count that leaves something to estimate the variance from.
 pub(crate) fn variance(residual_sum: f64, rows: usize, unknowns: usize) -> Option<f64> {
     (rows > unknowns).then(|| residual_sum / (rows - unknowns) as f64)
+}
+
+/// Relative scatter below which no measurement is known: what is left of a better fit is not told from the form of the model.
+pub(crate) const LEAST_NOISE: f64 = 0.01;
+
+/// Root mean square of the noise of weighted data, relative to the data, from the sum of the squares of `rows` residuals after
+/// `unknowns` coefficients were fitted to them; one where that leaves nothing to judge by.
+pub(crate) fn relative_noise(
+    residual_sum: f64,
+    total_sum: f64,
+    (rows, unknowns): (usize, usize),
+) -> f64 {
+    let relative = |v: f64| (v * rows as f64 / total_sum).sqrt().max(LEAST_NOISE);
+    match variance(residual_sum, rows, unknowns) {
+        Some(v) if total_sum > 0.0 => relative(v),
+        _ => 1.0,
+    }
 }
 
 /// Fewer equations than unknowns cannot be fitted.

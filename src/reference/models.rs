@@ -51,7 +51,7 @@ pub(super) fn flat_plate_fits() -> Result<Vec<f64>> {
         Ok::<_, Error>(fit_table(&samples, &Dof::TWO, &options)?.model)
     };
     let laguerre = || Form::Laguerre {
-        filters: 3,
+        filters: Some(3),
         feed_through: FeedThrough::default(),
         pole_per_transfer_function: false,
     };

@@ -6,9 +6,10 @@ use super::figure::Figure;
 use super::legend::Entry;
 use super::panel::{Note, Panel};
 use super::series::{distinct, index_of};
-use super::style::{BLACK, GREY, Ink, PALE_GREY, Shape, branch_width, colour, dash, pale};
+use super::style::{GREY, Ink, PALE_GREY, Shape, branch_width, colour, dash, outcome_colour, pale};
 use crate::error::{Error, Result};
 use crate::flutter::{FlutterCurves, ModePoint, Onset, OnsetMethod};
+use crate::verdict::{Outcome, Verdict};
 
 /// Frequencies (Hz) and damping ratios (per cent of critical) of all modes over wind speed (m/s).
 ///
@@ -16,7 +17,7 @@ use crate::flutter::{FlutterCurves, ModePoint, Onset, OnsetMethod};
 /// bars of their intervals are marked on both panels and stated in the legend. An onset is
 /// drawn in the colour of the curves of the same model, hollow when it lies outside the tested range; crossings
 /// suspected to be spurious are crosses on the zero line. Where the reduced frequency of a mode lies outside the tested
-/// range its curves are pale. `required_m_s` is the wind speed that the onset has to exceed, as a full upright line.
+/// range its curves are pale. The wind speed that `verdict` is against is a full upright line, with the outcome in words.
 ///
 /// # Errors
 /// [`Error::Input`] for no curves or non-finite ones, and for more models than colours.
@@ -24,7 +25,7 @@ pub fn vf_vg_figure(
     curves: &[FlutterCurves],
     onsets: &[Onset],
     title: &str,
-    required_m_s: Option<f64>,
+    verdict: Option<&Verdict>,
 ) -> Result<Figure> {
     let mut diagram = VfVg::new(branch_names(curves)?);
     for (i, model) in curves.iter().enumerate() {
@@ -33,8 +34,8 @@ pub fn vf_vg_figure(
     for onset in onsets {
         diagram.mark_onset(onset, colour_of(&onset.at.model, curves)?);
     }
-    if let Some(required) = required_m_s {
-        diagram.draw_required(required);
+    if let Some((required, outcome)) = verdict.and_then(|v| v.against.zip(v.outcome.as_ref())) {
+        diagram.draw_required(required.speed_m_s, outcome);
     }
     diagram.explain_kinds(onsets);
     diagram.into_drawing(title).draw()
@@ -169,16 +170,18 @@ impl VfVg {
     }
 
     /// The upright line that the onset has to exceed, over the height of each panel.
-    fn draw_required(&mut self, speed_m_s: f64) {
+    fn draw_required(&mut self, speed_m_s: f64, outcome: &Outcome) {
+        let ink = Ink::stroke(outcome_colour(outcome), None, 1.6);
         let drawn = self.frequency.series.iter().flat_map(|s| &s.points);
         let highest = drawn.map(|p| p.1).fold(0.0, f64::max);
         let heights = [(0.0, highest), DAMPING_WINDOW_PERCENT, NEAR_ZERO_PERCENT];
         for (panel, (from, to)) in self.panels().into_iter().zip(heights) {
             let line = vec![(speed_m_s, from), (speed_m_s, to)];
-            panel.add("required", line, REQUIRED);
+            panel.add("required", line, ink);
         }
-        let text = format!("required onset above {} m/s", significant(speed_m_s));
-        self.models.push(Entry::new(text, REQUIRED));
+        let (speed, words) = (significant(speed_m_s), outcome.words());
+        let text = format!("required {speed} m/s: {words}");
+        self.models.push(Entry::new(text, ink));
     }
 
     /// What widths, markers and pale lines stand for, as far as they are drawn.
@@ -221,7 +224,6 @@ impl VfVg {
 }
 
 const PLACE: &str = "V-f and V-g diagram";
-const REQUIRED: Ink = Ink::stroke(BLACK, None, 1.6);
 /// Beyond, the heavily damped heaving branch would hide the crossing.
 const DAMPING_WINDOW_PERCENT: (f64, f64) = (-10.0, 20.0);
 /// A growth of half a per cent below the onset is a finding, and a hair's breadth in the panel above.

@@ -1,8 +1,9 @@
 //! The report of a study, or of a whole bridge, as one page that loads nothing from elsewhere.
 
 use super::sections_page::PageSection;
-use super::style::{COLOURS, branch_width, dash};
+use super::style::{COLOURS, branch_width, dash, outcome_colour};
 use crate::error::{Error, Result};
+use crate::verdict::{Outcome, Severity, Verdict};
 use askama::Template;
 use serde::Serialize;
 
@@ -44,6 +45,57 @@ pub(crate) struct PageCurve {
     pub(crate) damping: Vec<Option<f64>>,
 }
 
+/// A verdict on the page: its words, its sign and its colour follow the outcome.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct PageVerdict {
+    /// Class of the card: `met`, `not-met`, `open`, or nothing where nothing is required.
+    pub(crate) class: &'static str,
+    /// Of the line that marks the required speed.
+    pub(crate) colour: &'static str,
+    pub(crate) headline: String,
+    pub(crate) explanation: String,
+    /// With which nothing is met, and what would settle it.
+    pub(crate) severe: Vec<(String, Option<String>)>,
+    /// To be known.
+    pub(crate) minor: Vec<String>,
+    pub(crate) required_m_s: Option<f64>,
+}
+
+impl From<&Verdict> for PageVerdict {
+    fn from(verdict: &Verdict) -> Self {
+        let of = |severity| {
+            verdict
+                .doubts
+                .iter()
+                .filter(move |d| d.severity == severity)
+        };
+        let outcome = verdict.outcome.as_ref();
+        Self {
+            class: match outcome {
+                Some(Outcome::Met) => "met",
+                Some(Outcome::NotMet { .. }) => "not-met",
+                Some(Outcome::CannotBeJudged { .. }) => "open",
+                None => "",
+            },
+            colour: outcome.map_or("#000", outcome_colour),
+            headline: capital(&verdict.headline),
+            explanation: verdict.explanation.clone(),
+            severe: of(Severity::Severe)
+                .map(|d| (d.text.clone(), d.settled_by.clone()))
+                .collect(),
+            minor: of(Severity::Minor).map(|d| d.text.clone()).collect(),
+            required_m_s: verdict.against.map(|r| r.speed_m_s),
+        }
+    }
+}
+
+/// `text` with a capital first letter.
+fn capital(text: &str) -> String {
+    let mut characters = text.chars();
+    let first = characters.next().map(|c| c.to_uppercase().to_string());
+    first.unwrap_or_default() + characters.as_str()
+}
+
 /// Everything on the page, in words.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct StudyPage {
@@ -55,14 +107,10 @@ pub(crate) struct StudyPage {
     /// What is no part of the analysis, a sentence.
     pub(crate) beyond: &'static str,
     pub(crate) generator: String,
-    /// `good`, `bad` or nothing: whether a criterion is met.
-    pub(crate) verdict: &'static str,
-    pub(crate) headline: String,
-    pub(crate) criterion: Option<String>,
+    pub(crate) verdict: PageVerdict,
     pub(crate) card: Vec<(String, String)>,
     /// Which of the models the answer is of, and why.
     pub(crate) whose: String,
-    pub(crate) limits: Vec<String>,
     pub(crate) asked: Vec<(String, String)>,
     pub(crate) onsets: Vec<Vec<String>>,
     pub(crate) comparisons: Vec<String>,
@@ -87,8 +135,6 @@ pub(crate) struct StudyPage {
     pub(crate) onset: Option<f64>,
     /// 95 % interval of the onset, m/s.
     pub(crate) interval: Option<(f64, f64)>,
-    /// Wind speed that the onset has to exceed, m/s.
-    pub(crate) required: Option<f64>,
     /// What the sliders start from and the module they ask, as JSON; they need the curves.
     pub(crate) live: Option<String>,
 }
@@ -111,6 +157,7 @@ struct Charts<'a> {
     onset: Option<f64>,
     interval: Option<(f64, f64)>,
     required: Option<f64>,
+    required_colour: &'static str,
     series: Vec<ChartSeries<'a>>,
 }
 
@@ -154,7 +201,8 @@ fn charts(of: &StudyPage) -> serde_json::Result<String> {
         speeds: &of.speeds,
         onset: of.onset,
         interval: of.interval,
-        required: of.required,
+        required: of.verdict.required_m_s,
+        required_colour: of.verdict.colour,
         series: of.curves.iter().map(series).collect(),
     };
     Ok(in_script(&serde_json::to_string(&charts)?))

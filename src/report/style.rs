@@ -1,6 +1,7 @@
 //! Colours, dashes and markers.
 
 use crate::error::{Error, Result};
+use crate::verdict::Outcome;
 use kuva::render::color::Color;
 use kuva::render::render::{PathData, Primitive, Scene, build_path};
 
@@ -44,6 +45,15 @@ pub(super) fn colour(place: &str, i: usize) -> Result<&'static str> {
             format!("at least {}", i + 1),
         )
     })
+}
+
+/// Colour of what is required, which never stands without the words of the outcome.
+pub(super) fn outcome_colour(outcome: &Outcome) -> &'static str {
+    match outcome {
+        Outcome::Met => "#00694f",
+        Outcome::NotMet { .. } => "#a33b00",
+        Outcome::CannotBeJudged { .. } => "#7a5c00",
+    }
 }
 
 /// The pale colour that goes with [`colour`].

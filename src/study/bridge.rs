@@ -2,19 +2,22 @@
 
 mod answers;
 mod buffeting;
+mod evidence;
 mod export;
 mod forces;
 mod interval;
 mod scaled_forces;
 mod scatter;
 
-pub use answers::{BridgeAnswer, BridgeFlutter, LeftOut, bridge_flutter};
-pub use buffeting::{BridgeBuffeting, BridgeRecord, BuffetingBlock};
+pub use answers::{BridgeAnswer, BridgeFlutter, LeftOut, TableDivergence, bridge_flutter};
+pub use buffeting::{BridgeBuffeting, BridgeRecord, BuffetingBlock, ModelsBesideTables};
 pub use export::BridgeExportOptions;
 pub use forces::SectionForces;
+pub(crate) use forces::block_table;
 pub use scatter::{DerivativeScatter, Scatter, ScatteredOnset};
 
 use super::KnownUncertainty;
+use super::speeds::reaching;
 use crate::bridge::{Bridge, Similarity, StripGroup, similarities};
 use crate::error::{Error, Result};
 use crate::files::bridge::{BridgeFile, Modes, SectionBlock};
@@ -70,8 +73,9 @@ impl BridgeStudy {
         let modes = file.read_modes()?;
         let mut notes = Vec::new();
         let mut findings = modes.findings();
-        let section =
-            |block: &SectionBlock| SectionForces::of(block, trained(block), &file.directory);
+        let section = |block: &SectionBlock| {
+            SectionForces::of(block, trained(block), &file.directory, &mut findings)
+        };
         let sections: Vec<SectionForces> =
             file.sections.iter().map(section).collect::<Result<_>>()?;
         notes.extend(sections.iter().flat_map(|s| s.notes.iter().cloned()));
@@ -116,7 +120,10 @@ impl BridgeStudy {
     /// Where an onset is searched.
     pub fn search(&self) -> OnsetSearch {
         OnsetSearch {
-            speed_max_m_s: self.file.flutter.speed_max_m_s,
+            speed_max_m_s: reaching(
+                self.file.flutter.speed_max_m_s,
+                self.file.flutter.required_speed_m_s,
+            ),
             speeds: self.file.flutter.speeds,
         }
     }
@@ -213,13 +220,6 @@ fn ends(block: &SectionBlock, modes: &Modes, section: usize) -> Result<(usize, u
         place("from", &block.from, 0)?,
         place("to", &block.to, last)?,
     );
-    if ends.0 > ends.1 {
-        let expected = "a node not before `from`";
-        return Err(Error::input(
-            format!("section[{section}].to"),
-            expected,
-            block.to.clone().unwrap_or_default(),
-        ));
-    }
-    Ok(ends)
+    // whichever way the wind numbers them
+    Ok((ends.0.min(ends.1), ends.0.max(ends.1)))
 }

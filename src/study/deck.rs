@@ -9,7 +9,9 @@ use crate::aerodynamics::derivatives::{
 };
 use crate::aerodynamics::{FlatPlate, Transfer};
 use crate::error::{Error, Result};
-use crate::files::derivatives::{ReadOptions, embedded, is_table_file, read_table_with};
+use crate::files::derivatives::{
+    ReadOptions, WIDTH_ASSUMED, embedded, is_table_file, read_table_with,
+};
 use crate::identification::sample_model;
 use crate::plausibility::{Finding, WIDEST_MODEL_M, of_table};
 use crate::section::Dof;
@@ -105,7 +107,9 @@ impl Deck {
         }
         let (mut notes, mut findings) = (Vec::new(), Vec::new());
         if let (Source::Table(table), true) = (&source, is_file) {
-            notes.extend(table.header.notes.iter().cloned());
+            // derivatives have no dimension: the width of an answer is that of the section, which is stated
+            let of_answer = table.header.notes.iter();
+            notes.extend(of_answer.filter(|n| !n.starts_with(WIDTH_ASSUMED)).cloned());
             findings.extend(of_table(table, &convention));
             if study.deck.records.is_empty() && study.models.iter().any(|m| m.table.is_none()) {
                 notes.extend(study.tunnel.assumption(table));
@@ -137,6 +141,14 @@ impl Deck {
             Source::Table(_) if self.built_in => embedded::LICENCE.to_owned(),
             Source::Table(table) => table.header.licence.clone(),
             Source::FlatPlate => "none needed: a closed formula".to_owned(),
+        }
+    }
+
+    /// Name of its table; none for a closed formula.
+    pub(crate) fn table_name(&self) -> Option<&str> {
+        match &self.source {
+            Source::Table(table) => Some(&table.name),
+            Source::FlatPlate => None,
         }
     }
 
@@ -208,6 +220,11 @@ impl Deck {
     pub(crate) fn warnings(&self) -> Vec<String> {
         let found = self.findings.iter().map(ToString::to_string);
         self.notes.iter().cloned().chain(found).collect()
+    }
+
+    /// What was assumed in reading the table.
+    pub(crate) fn notes(&self) -> Vec<String> {
+        self.notes.clone()
     }
 
     /// What looks wrong in the table.

@@ -1,16 +1,18 @@
 //! Training the models of a study.
 
 use super::{Deck, KnownUncertainty, ModelBlock, RecordSet, Study};
+use crate::aerodynamics::derivatives::TableHeader;
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
 use crate::flutter::{FlutterSearch, StableRange, find_onset};
+use crate::identification::derivatives::{DerivativeOptions, identify_derivatives};
 use crate::identification::{
     FitReport, Fitted, OnProgress, OnsetEffect, fit_discrete, fit_records, fit_table,
 };
 use crate::trained_model::{Experiment, Model, Provenance, TrainedModel};
 use crate::uncertainty::{
-    CoefficientUncertainty, ModelUncertainty, discrete_uncertainty, record_uncertainty,
-    table_uncertainty,
+    CoefficientUncertainty, FormEnsemble, ModelUncertainty, discrete_uncertainty,
+    record_uncertainty, table_uncertainty,
 };
 use crate::units::ReducedFrequencyRange;
 
@@ -58,7 +60,15 @@ pub fn train_one(
         });
     }
     let uncertainty = estimate
+        .and_then(|estimate| match deck.table_name() {
+            Some(name) => estimate.leaving_out(name),
+            None => Ok(estimate),
+        })
         .and_then(|estimate| model_uncertainty(study, estimate, &mut report, &search))
+        .and_then(|known| {
+            let forms = other_forms(study, block, deck, records);
+            with_forms(study, known, forms, &mut report)
+        })
         .map(Box::new)
         .map_err(|e| e.to_string());
     let trained = TrainedModel {
@@ -115,6 +125,50 @@ fn fit(
     let fitted = fit_discrete(&chosen, fit, progress)?;
     let estimate = discrete_uncertainty(&chosen, fit, &fitted.model, progress);
     Ok((fitted, estimate))
+}
+
+/// Other forms for the data of a model: fits to its table, or to the derivatives that its records show. None for a model in
+/// discrete time, whose bias is known.
+fn other_forms(
+    study: &Study,
+    block: &ModelBlock,
+    deck: &Deck,
+    records: &RecordSet,
+) -> Result<Option<FormEnsemble>> {
+    let own = block.speed_groups.as_deref();
+    let groups = own.or(study.deck.speed_groups.as_deref());
+    let dofs = study.section.dofs();
+    if block.table.is_some() {
+        return FormEnsemble::new(&deck.samples(study, groups)?, &dofs).map(Some);
+    }
+    if block.records.is_none() {
+        return Ok(None);
+    }
+    let found = identify_derivatives(&records.select(groups)?, &DerivativeOptions::default())?;
+    let table = found.table(&block.name, TableHeader::default())?;
+    FormEnsemble::new(&table.samples(&dofs), &dofs).map(Some)
+}
+
+/// Adds their onsets. An ensemble that cannot be made is noted, and the interval holds the scatter alone.
+fn with_forms(
+    study: &Study,
+    known: ModelUncertainty,
+    forms: Result<Option<FormEnsemble>>,
+    report: &mut FitReport,
+) -> Result<ModelUncertainty> {
+    match forms {
+        Ok(Some(forms)) => {
+            let (structure, search) = (study.section.structure()?, study.speeds().search());
+            known.with_forms(forms, &structure, &search)
+        }
+        Ok(None) => Ok(known),
+        Err(error) => {
+            report.notes.push(format!(
+                "what the form of the model leaves open is not in its interval: {error}"
+            ));
+            Ok(known)
+        }
+    }
 }
 
 /// Onset of the coupled section.

@@ -1,12 +1,14 @@
 //! Curves, onsets and divergence of all models of a study, side by side.
 
+use super::routes::THEORY;
 use super::{Deck, StageFailure, Study, attempt};
 use crate::aerodynamics::{Realizable, Realization, Transfer};
 use crate::aeroelastic::CoupledSection;
 use crate::error::Result;
 use crate::flutter::{
-    FlutterCurves, FlutterSearch, Onset, OnsetMethod, StableRange, UnstableStart, UnwantedGrowth,
-    determinant_onset, divergence_speed, find_onset, trace_modes, unwanted_growth,
+    AssumedAtRest, FlutterCurves, FlutterSearch, Onset, OnsetMethod, QuasiSteadyOnset, StableRange,
+    UnstableStart, UnwantedGrowth, determinant_onset, divergence_speed, find_onset,
+    quasi_steady_onset, trace_modes, unwanted_growth,
 };
 use crate::section::Structure;
 use crate::trained_model::TrainedModel;
@@ -32,6 +34,9 @@ pub struct FlutterStudy {
     pub undetermined: Vec<Onset>,
     /// Growth of each trained model below its onset, by extrapolation alone.
     pub growth: Vec<ModelGrowth>,
+    /// Quasi-steady theory, where static coefficients are given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) quasi_steady: Option<QuasiSteadyOnset>,
     /// What could not be computed, and why.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub failed: Vec<StageFailure>,
@@ -69,6 +74,9 @@ pub struct Divergence {
     pub model: String,
     /// Divergence speed, m/s.
     pub speed_m_s: Option<f64>,
+    /// What is left of it when what was assumed about steady flow is as wrong as on a flat plate, m/s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lower_m_s: Option<f64>,
     /// What was assumed about steady flow.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub assumed: Option<String>,
@@ -102,6 +110,7 @@ pub fn flutter_study(study: &Study, deck: &Deck, trained: &[TrainedModel]) -> Re
         deviations: Vec::new(),
         undetermined: Vec::new(),
         growth: Vec::new(),
+        quasi_steady: None,
         failed: Vec::new(),
     };
     let name = deck.own_model_name();
@@ -111,11 +120,18 @@ pub fn flutter_study(study: &Study, deck: &Deck, trained: &[TrainedModel]) -> Re
     for model in trained {
         results.add(study, &structure, model, reference)?;
     }
+    if let Some(block) = &study.coefficients {
+        let theory = block.theory(&study.directory, &study.section.dofs())?;
+        let found = quasi_steady_onset(THEORY, &structure, &theory, &study.speeds().search());
+        results.quasi_steady = attempt(&mut results.failed, THEORY, found)?;
+    }
     let still = deck.static_transfer().and_then(|(still, assumed)| {
+        let speed_m_s = divergence_speed(&structure, &still)?;
         Ok(Divergence {
             model: name.clone(),
-            speed_m_s: divergence_speed(&structure, &still)?,
-            assumed,
+            speed_m_s,
+            lower_m_s: assumed.zip(speed_m_s).map(|(a, v)| a.lower_m_s(v)),
+            assumed: assumed.map(AssumedAtRest::explain),
         })
     });
     let still = attempt(
@@ -176,6 +192,7 @@ impl FlutterStudy {
             self.divergence.push(Divergence {
                 model: name.clone(),
                 speed_m_s,
+                lower_m_s: None,
                 assumed: None,
             });
         }

@@ -36,7 +36,7 @@ const ALONE_SOON: f64 = 1.5;
 /// Name of the flat plate with the section's structure.
 const FLAT_PLATE: &str = "flat plate, same structure";
 /// Name of quasi-steady theory with static coefficients.
-const THEORY: &str = "quasi-steady theory";
+pub(super) const THEORY: &str = "quasi-steady theory";
 
 /// All routes of one study.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -283,9 +283,11 @@ impl RouteTable {
             ) {
                 onset.interval = own.interval.clone();
             }
-            route
-                .warnings
-                .extend(assumed.iter().map(|a| format!("divergence: {a}")));
+            route.warnings.extend(
+                assumed
+                    .iter()
+                    .map(|a| format!("divergence: {}", a.explain())),
+            );
         }
         let speeds = study.speeds().curve_speeds_m_s();
         let curves = pk_curves(&forces.name, structure, model.as_ref(), &speeds);

@@ -3,6 +3,7 @@
 use crate::error::{Error, Result, counted, positive};
 use crate::flutter::{OnsetSearch, curve_speeds_m_s};
 use crate::section::{Dof, SectionModel};
+use crate::verdict::RequiredSpeed;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
@@ -17,6 +18,8 @@ const SELBERG: f64 = 3.72;
 const LEAST_REDUCED_VELOCITY: f64 = 10.0;
 /// The search reaches this much beyond the flat plate.
 const BEYOND_THE_PLATE: f64 = 1.75;
+/// The search reaches this much beyond the speed that is required, so that what begins just above it is seen as well.
+const BEYOND_THE_REQUIRED: f64 = 1.1;
 /// Lowest wind speed of the curves as a part of the highest.
 const LOWEST_PART: f64 = 1.0 / 12.0;
 /// A section without springs has no frequency to go by, m/s.
@@ -32,7 +35,7 @@ pub struct FlutterBlock {
     pub speed_min_m_s: Option<f64>,
     /// Number of wind speeds.
     pub speeds: usize,
-    /// The onset has to lie above this wind speed, m/s: the criterion of a code. It changes no number, the report judges by it.
+    /// Nothing critical may begin below this wind speed, m/s: the criterion of a code. The search always reaches it.
     pub required_speed_m_s: Option<f64>,
 }
 
@@ -67,12 +70,19 @@ impl FlutterBlock {
             let usual = usual_highest_m_s(section).max(self.speed_min_m_s.unwrap_or(0.0) * 2.0);
             rounded_up(usual).min(HIGHEST_SPEED_M_S)
         });
+        let speed_max_m_s = reaching(speed_max_m_s, self.required_speed_m_s);
         SpeedRange {
             speed_min_m_s: self.speed_min_m_s.unwrap_or(LOWEST_PART * speed_max_m_s),
             speed_max_m_s,
             speeds: self.speeds,
             from_section: self.speed_max_m_s.is_none(),
         }
+    }
+
+    /// What is required.
+    pub(crate) fn required(&self) -> Option<RequiredSpeed> {
+        let speed = self.required_speed_m_s;
+        speed.map(|speed_m_s| RequiredSpeed { speed_m_s })
     }
 
     /// Checks what is stated; `place` is the table it stands in.
@@ -139,6 +149,12 @@ impl SpeedRange {
     }
 }
 
+/// The highest speed of a search that does not end below the required one, m/s.
+pub(super) fn reaching(speed_max_m_s: f64, required_m_s: Option<f64>) -> f64 {
+    let required = required_m_s.map(|v| rounded_up(BEYOND_THE_REQUIRED * v));
+    required.map_or(speed_max_m_s, |v| speed_max_m_s.max(v))
+}
+
 /// Well beyond the onset of a flat plate with this structure, m/s.
 fn usual_highest_m_s(section: &SectionModel) -> f64 {
     let Ok(structure) = section.structure() else {
@@ -161,7 +177,8 @@ fn usual_highest_m_s(section: &SectionModel) -> f64 {
 /// The next number with two digits.
 fn rounded_up(value: f64) -> f64 {
     let unit = 10f64.powf(value.log10().floor() - 1.0);
-    (value / unit).ceil() * unit
+    // what is a number of two digits but for rounding stays one
+    (value / unit - 1e-9).ceil() * unit
 }
 
 #[cfg(test)]
@@ -191,6 +208,22 @@ mod tests {
         assert!(!range.from_section);
         assert_eq!(range.curve_speeds_m_s().len(), 120);
         assert_eq!(range.curve_speeds_m_s().last(), Some(&60.0));
+    }
+
+    #[test]
+    fn the_search_reaches_what_is_required() {
+        let section = SectionModel::table_4_1();
+        let highest = |speed_max_m_s, required| {
+            let block = FlutterBlock {
+                speed_max_m_s,
+                required_speed_m_s: Some(required),
+                ..FlutterBlock::default()
+            };
+            block.range(&section).speed_max_m_s
+        };
+        assert_eq!(highest(Some(54.0), 62.0), 69.0);
+        assert_eq!(highest(None, 30.0), 74.0);
+        assert_eq!(highest(None, 200.0), 220.0);
     }
 
     #[test]

@@ -3,8 +3,8 @@
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result, counted};
 use crate::flutter::{
-    CriticalPoint, FlutterSearch, Onset, OnsetInterval, OnsetMethod, OnsetSearch, UnstableStart,
-    judged_speeds,
+    CriticalPoint, FlutterSearch, Onset, OnsetInterval, OnsetMethod, OnsetSearch, StableRange,
+    UnstableStart, judged_speeds,
 };
 use crate::fmu::importer::{
     Fmu, GrowthPoint, SteppedOnset as Found, SteppedSearch, SteppingSearch, growth_by_stepping,
@@ -97,7 +97,11 @@ pub fn stepped_onset(
         match onset_by_stepping(&fmu, &search)? {
             SteppedSearch::Onset(onset) => found.push(*onset),
             SteppedSearch::UnstableAtOrBelow(at) => {
-                let reason = "the lowest speed stepped".to_owned();
+                let reason = match at.frequency_hz > 0.0 {
+                    true => "the lowest speed stepped",
+                    false => "the lowest speed stepped, where it diverges without oscillating",
+                };
+                let reason = reason.to_owned();
                 return Ok(unstable(model, at, reason).into());
             }
             SteppedSearch::StableUpTo(range) => {
@@ -123,24 +127,59 @@ pub fn stepped_onset(
     let Some(first) = found.first() else {
         return Err(Error::Numerical("FMU stepped: no run".into()));
     };
-    if let Some(start) = enters_growing(&fmu, model, first)? {
-        return Ok(start.into());
+    if first.frequency_hz <= 0.0 {
+        return Ok(diverges(first).into());
     }
-    let search = FlutterSearch::Onset(Box::new(as_onset(model, first)));
+    let mut onset = as_onset(model, first);
+    match enters(&fmu, model, first)? {
+        Entry::Growing(start) => return Ok((*start).into()),
+        Entry::Diverging(speed_m_s) => onset.warnings.push(format!(
+            "at {speed_m_s:.3} m/s, where its motion would come into the tested range, the section diverges without \
+             oscillating"
+        )),
+        Entry::Damped => {}
+    }
+    let search = FlutterSearch::Onset(Box::new(onset));
     Ok(SteppedAnswer { search, runs })
 }
 
-/// An onset above the tested `K` whose motion still grows where it comes into the tested range, stepped there.
-fn enters_growing(fmu: &Fmu, model: &TrainedModel, found: &Found) -> Result<Option<FlutterSearch>> {
+/// A section that diverges before anything that oscillates grows.
+fn diverges(found: &Found) -> FlutterSearch {
+    let lowest = found.growth.first().map_or(0.0, |point| point.speed_m_s);
+    FlutterSearch::StableUpTo(StableRange {
+        from_m_s: lowest,
+        to_m_s: found.speed_m_s,
+        not_judged: Some(format!(
+            "from {:.3} m/s on the section diverges, which hides any oscillation",
+            found.speed_m_s
+        )),
+    })
+}
+
+/// What a motion that grows above the tested `K` does where it comes into the tested range.
+enum Entry {
+    /// It grows there still: unstable at and below that speed.
+    Growing(Box<FlutterSearch>),
+    /// The section diverges at that speed, m/s, which hides the motion.
+    Diverging(f64),
+    /// It is damped, or was inside from the beginning.
+    Damped,
+}
+
+/// Steps an onset above the tested `K` where its motion comes into the tested range.
+fn enters(fmu: &Fmu, model: &TrainedModel, found: &Found) -> Result<Entry> {
     let limit = model.tested_range.max;
     let width = model.section.width_m;
     if ReducedFrequency::from_hertz(found.frequency_hz, width, found.speed_m_s) <= limit {
-        return Ok(None);
+        return Ok(Entry::Damped);
     }
     let speed_of = |frequency_hz: f64| TAU * frequency_hz * width / limit.full_width();
     let mut speed = speed_of(found.frequency_hz);
     let mut at = growth_by_stepping(fmu, speed, found.communication_step_s)?;
     for _ in 0..MAX_ROUNDS {
+        if at.frequency_hz <= 0.0 {
+            return Ok(Entry::of_rest(&at));
+        }
         let next = speed_of(at.frequency_hz);
         if (next / speed - 1.0).abs() < ENTRY_TOLERANCE {
             break;
@@ -154,13 +193,24 @@ fn enters_growing(fmu: &Fmu, model: &TrainedModel, found: &Found) -> Result<Opti
         limit.full_width(),
         found.speed_m_s
     );
-    Ok((at.growth_rate_per_s > 0.0).then(|| {
-        let mut answer = unstable(model, at, reason);
-        if let FlutterSearch::UnstableAtOrBelow(start) = &mut answer {
-            start.in_tested_range = Some(true);
+    if at.frequency_hz <= 0.0 || at.growth_rate_per_s <= 0.0 {
+        return Ok(Entry::of_rest(&at));
+    }
+    let mut answer = unstable(model, at, reason);
+    if let FlutterSearch::UnstableAtOrBelow(start) = &mut answer {
+        start.in_tested_range = Some(true);
+    }
+    Ok(Entry::Growing(Box::new(answer)))
+}
+
+impl Entry {
+    /// Of a motion that does not oscillate, or is damped.
+    fn of_rest(at: &GrowthPoint) -> Self {
+        match at.growth_rate_per_s > 0.0 {
+            true => Self::Diverging(at.speed_m_s),
+            false => Self::Damped,
         }
-        answer
-    }))
+    }
 }
 
 fn unstable(model: &TrainedModel, at: GrowthPoint, reason: String) -> FlutterSearch {
@@ -203,5 +253,46 @@ fn as_onset(model: &TrainedModel, found: &Found) -> Onset {
         spurious_speeds_m_s: Vec::new(),
         warnings: Vec::new(),
         interval: OnsetInterval::none("that of the model in it"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn point(speed_m_s: f64, growth_rate_per_s: f64, frequency_hz: f64) -> GrowthPoint {
+        GrowthPoint {
+            speed_m_s,
+            growth_rate_per_s,
+            frequency_hz,
+        }
+    }
+
+    /// A motion without frequency has no reduced frequency to step it at; that the section diverges is the answer.
+    #[test]
+    fn a_motion_that_diverges_is_an_answer() {
+        let found = Found {
+            speed_m_s: 21.5,
+            frequency_hz: 0.0,
+            mode_ratio: None,
+            phase_deg: 0.0,
+            communication_step_s: 0.01,
+            growth: vec![point(9.0, -0.2, 2.0), point(22.0, 0.1, 0.0)],
+            steps: 1000,
+        };
+        let said = diverges(&found).explain();
+        assert_eq!(
+            said,
+            "no flutter up to 21.500 m/s, judged from 9.000 m/s (from 21.500 m/s on the section diverges, which hides any \
+             oscillation)"
+        );
+        assert!(matches!(
+            Entry::of_rest(&point(30.0, 0.4, 0.0)),
+            Entry::Diverging(30.0)
+        ));
+        assert!(matches!(
+            Entry::of_rest(&point(30.0, -0.4, 0.0)),
+            Entry::Damped
+        ));
     }
 }

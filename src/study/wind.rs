@@ -9,7 +9,8 @@ pub(crate) use quasi_steady::{
 };
 
 use super::{FlutterBlock, SpeedRange};
-use crate::aerodynamics::derivatives::{Extrapolation, InterpolatedTable};
+use crate::aerodynamics::derivatives::notation::StatedConvention;
+use crate::aerodynamics::derivatives::{Extrapolation, InterpolatedTable, Interpolation};
 use crate::aerodynamics::quasi_steady::{Arms, QuasiSteady, StaticCoefficients};
 use crate::buffeting::{TimePlan, Turbulence};
 use crate::error::{Error, Result, finite, of_schema, positive};
@@ -41,9 +42,16 @@ pub(crate) struct WindStudy {
     pub section: Option<SectionModel>,
     /// Static coefficients, for quasi-steady theory and for gust forces.
     pub coefficients: Option<CoefficientsBlock>,
-    /// Self-excited forces in turbulence: `quasi-steady`, `flat plate`, `flat plate (Jones)` or a trained model (`.json`).
+    /// Self-excited forces in turbulence: `quasi-steady`, `flat plate`, `flat plate (Jones)`, a trained model (`.json`), an
+    /// embedded deck or a table of derivatives (`.csv`, `.xlsx`).
     #[serde(default = "quasi_steady_forces")]
     pub aerodynamics: String,
+    /// Notation, argument and axes of such a table, as far as it does not state them itself.
+    #[serde(default)]
+    pub convention: StatedConvention,
+    /// How such a table is read between its points.
+    #[serde(default)]
+    pub interpolation: Interpolation,
     /// Wind speeds of all curves and of the search for the onset.
     #[serde(default)]
     pub speeds: FlutterBlock,

@@ -3,6 +3,8 @@
 use super::columns::LinearModel;
 use super::design::Design;
 use super::parameters::{Coordinates, Parameter, per_chain};
+use super::speed_groups::speed_groups;
+use super::speed_prior::SpeedPrior;
 use super::speed_scatter::{self, Effect, POINTS, Slopes, SpeedScatter};
 use crate::aerodynamics::{DiscreteLaguerre, Transfer, TransferMatrix};
 use crate::error::{Error, Result};
@@ -36,13 +38,16 @@ pub struct CoefficientUncertainty {
     pub covariance: DMatrix<f64>,
     /// The independent blocks of data.
     pub blocks: Vec<String>,
-    /// Scatter between mean speeds; none for tests at one speed.
+    /// Scatter between mean speeds.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub speeds: Option<SpeedScatter>,
     #[serde(skip)]
     pub(super) design: Option<Design>,
+    /// Reduced frequencies over which the scatter between mean speeds was asked.
     #[serde(skip)]
-    effects: Vec<Effect>,
+    tested: Option<ReducedFrequencyRange>,
+    #[serde(skip)]
+    pub(super) effects: Vec<Effect>,
 }
 
 impl CoefficientUncertainty {
@@ -65,32 +70,58 @@ impl CoefficientUncertainty {
             blocks: design.names(),
             speeds: None,
             design: None,
+            tested,
             effects: Vec::new(),
         };
         if let Some(tested) = tested {
-            estimate.add_speeds(&design, tested)?;
+            estimate.add_speeds(&design, tested, SpeedPrior::measured(None))?;
         }
-        for (i, parameter) in estimate.parameters.iter_mut().enumerate() {
-            parameter.standard_error = estimate.covariance[(i, i)].max(0.0).sqrt();
-        }
+        estimate.state_errors();
         estimate.design = Some(design);
         Ok(estimate)
     }
 
+    /// The same without what an embedded measured deck says of the scatter between mean speeds: for that deck itself.
+    ///
+    /// # Errors
+    /// [`Error::Numerical`] when the covariance cannot be made again.
+    pub(crate) fn leaving_out(mut self, deck: &str) -> Result<Self> {
+        let (Some(design), Some(speeds), Some(tested)) =
+            (self.design.take(), &self.speeds, self.tested)
+        else {
+            return Ok(self);
+        };
+        let said = format!("; {}", speeds.describe());
+        if let Some(without) = self.assumption.strip_suffix(&said) {
+            self.assumption = without.to_owned();
+        }
+        let contributions = design.contributions();
+        self.covariance = &contributions * contributions.transpose();
+        self.add_speeds(&design, tested, SpeedPrior::measured(Some(deck)))?;
+        self.state_errors();
+        self.design = Some(design);
+        Ok(self)
+    }
+
+    fn state_errors(&mut self) {
+        for (i, parameter) in self.parameters.iter_mut().enumerate() {
+            parameter.standard_error = self.covariance[(i, i)].max(0.0).sqrt();
+        }
+    }
+
     /// Adds the scatter between mean speeds.
-    fn add_speeds(&mut self, design: &Design, tested: ReducedFrequencyRange) -> Result<()> {
+    fn add_speeds(
+        &mut self,
+        design: &Design,
+        tested: ReducedFrequencyRange,
+        prior: SpeedPrior,
+    ) -> Result<()> {
         let at = self.slopes_over(tested)?;
         let values = DVector::from_vec(self.values());
         let own = self.own_coefficients();
-        let found = speed_scatter::between_speeds(design, &self.dofs, (&values, &own), &at)?;
-        let text = match &found {
-            Some((scatter, _)) => scatter.describe(),
-            None => "one mean speed: what another speed would change is not known and not in the intervals".into(),
-        };
-        self.assumption = format!("{}; {text}", self.assumption);
-        let Some((scatter, effects)) = found else {
-            return Ok(());
-        };
+        let (scatter, effects) =
+            speed_scatter::between_speeds((design, prior), &self.dofs, (&values, &own), &at)?;
+        self.assumption = format!("{}; {}", self.assumption, scatter.describe());
         for effect in &effects {
             self.covariance += &effect.columns * effect.columns.transpose();
         }
@@ -317,7 +348,7 @@ impl CoefficientUncertainty {
         let Some(design) = &self.design else {
             return Vec::new();
         };
-        let Some((groups, speeds_m_s)) = speed_scatter::speed_groups(design.blocks()) else {
+        let Some((groups, speeds_m_s)) = speed_groups(design.blocks()) else {
             return Vec::new();
         };
         let alone = |(g, speed): (usize, f64)| (speed, self.alone(design, &groups, g));

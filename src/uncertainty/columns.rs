@@ -201,7 +201,7 @@ mod tests {
         let forms = [
             (
                 Form::Laguerre {
-                    filters: 3,
+                    filters: Some(3),
                     feed_through,
                     pole_per_transfer_function: false,
                 },

@@ -128,7 +128,7 @@ pub struct IntervalCoverage {
 }
 
 impl IntervalCoverage {
-    fn count(verdicts: impl Iterator<Item = bool>) -> Self {
+    pub(super) fn count(verdicts: impl Iterator<Item = bool>) -> Self {
         let (inside, of) =
             verdicts.fold((0, 0), |(inside, of), v| (inside + usize::from(v), of + 1));
         Self {
@@ -335,7 +335,10 @@ impl Campaign {
             half_width_m_s: error.half_width_m_s(),
             degrees_of_freedom: error.degrees_of_freedom,
             derivatives_inside: self.derivatives(&estimate)?,
-            speeds_differ: estimate.speeds.as_ref().is_some_and(|s| s.counted),
+            speeds_differ: estimate
+                .speeds
+                .as_ref()
+                .is_some_and(|s| s.ratio.is_some_and(|r| r > 1.0)),
         }))
     }
 

@@ -1,6 +1,7 @@
 //! All that is known of the uncertainty of one trained model, as it is saved beside it.
 
 use super::coefficients::{CoefficientUncertainty, spread_over};
+use super::forms::{FormEnsemble, FormSpread, interval_with_forms};
 use super::onset::{
     CONFIDENCE, OnsetError, ResampledOnset, Resampling, ResamplingPlan, onset_error, resample_onset,
 };
@@ -18,6 +19,10 @@ use serde::{Deserialize, Serialize};
 const REPLICATES: usize = 400;
 /// Seed of the resamplings.
 const SEED: u64 = 1;
+/// Onsets closer than this, relatively, are that of the section of the training.
+const SAME_ONSET: f64 = 1e-9;
+/// How far above the onset of a model those of other forms are looked for.
+const REACH: f64 = 2.0;
 /// Reduced frequencies at which derivatives are stated.
 const DERIVATIVE_POINTS: usize = 9;
 
@@ -36,6 +41,12 @@ pub struct ModelUncertainty {
     /// Onsets by the tests at each mean speed alone.
     #[serde(default)]
     pub speeds: SpeedOnsets,
+    /// Other forms that explain the data as well; none where none were fitted.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub forms: Option<FormEnsemble>,
+    /// Their onsets with the section that the model was trained for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub form_spread: Option<FormSpread>,
     /// Derivatives over the tested range.
     pub derivatives: Vec<DerivativeInterval>,
 }
@@ -56,6 +67,8 @@ impl ModelUncertainty {
             block_bootstrap: None,
             drawn_coefficients: None,
             speeds: SpeedOnsets::default(),
+            forms: None,
+            form_spread: None,
         };
         let Some(onset) = onset else {
             return Ok(uncertainty);
@@ -82,6 +95,36 @@ impl ModelUncertainty {
         Ok(uncertainty)
     }
 
+    /// Adds other forms that explain the data as well, and their onsets with the section that the model was trained for.
+    ///
+    /// # Errors
+    /// [`Error::Numerical`] when the eigenvalues of a form cannot be computed.
+    pub(crate) fn with_forms(
+        mut self,
+        forms: FormEnsemble,
+        structure: &Structure,
+        search: &OnsetSearch,
+    ) -> Result<Self> {
+        self.form_spread = Some(forms.spread(structure, search)?);
+        self.forms = Some(forms);
+        Ok(self)
+    }
+
+    /// What the choice of the form leaves open of an onset, with any section: the spread that was computed in training where its onset is
+    /// asked, a new one otherwise.
+    fn spread_of(&self, structure: &Structure, onset: &Onset) -> Result<Option<FormSpread>> {
+        let same = |own: &OnsetError| (own.speed_m_s / onset.at.speed_m_s - 1.0).abs() < SAME_ONSET;
+        if self.onset.as_ref().is_some_and(same) {
+            return Ok(self.form_spread.clone());
+        }
+        let search = OnsetSearch {
+            speed_max_m_s: REACH * onset.at.speed_m_s,
+            ..OnsetSearch::default()
+        };
+        let forms = self.forms.as_ref();
+        forms.map(|f| f.spread(structure, &search)).transpose()
+    }
+
     /// Interval of an onset of `model`, on any structure.
     pub(crate) fn interval(
         &self,
@@ -98,7 +141,14 @@ impl ModelUncertainty {
             ));
         }
         let known = self.onset.as_ref().map(|o| o.degrees_of_freedom);
-        self.coefficients.interval_knowing(structure, onset, known)
+        if self.coefficients.known_bias().is_some() {
+            return self.coefficients.interval_knowing(structure, onset, known);
+        }
+        let error = onset_error(&self.coefficients, structure, onset, known)?;
+        Ok(match self.spread_of(structure, onset)? {
+            Some(spread) => interval_with_forms(&error, &spread),
+            None => error.interval(),
+        })
     }
 
     /// Reads what was saved.
@@ -129,10 +179,20 @@ impl ModelUncertainty {
     /// The onset's interval with its two checks, in words.
     pub(crate) fn explain(&self) -> Option<String> {
         let onset = self.onset.as_ref()?;
-        if let OnsetInterval::Undetermined { reason, .. } = onset.interval() {
-            return Some(format!("onset {reason}"));
-        }
-        let half = onset.half_width_m_s();
+        let stated = match &self.form_spread {
+            Some(spread) => interval_with_forms(onset, spread),
+            None => onset.interval(),
+        };
+        let OnsetInterval::Known {
+            low_m_s,
+            high_m_s,
+            degrees_of_freedom,
+            parts,
+            ..
+        } = stated
+        else {
+            return stated.reason().map(|reason| format!("onset {reason}"));
+        };
         let other = |r: &Option<ResampledOnset>| {
             r.as_ref().map_or_else(
                 || "–".to_owned(),
@@ -142,14 +202,12 @@ impl ModelUncertainty {
         let interval = match self.coefficients.known_bias() {
             Some(bias) => format!("no 95 % interval, since {bias}"),
             None => format!(
-                "95 % interval {:.3} to {:.3} ({:.1} degrees of freedom)",
-                onset.speed_m_s - half,
-                onset.speed_m_s + half,
-                onset.degrees_of_freedom
+                "95 % interval {low_m_s:.3} to {high_m_s:.3} ({degrees_of_freedom:.1} degrees of freedom; {})",
+                parts.explain()
             ),
         };
         Some(format!(
-            "onset {:.3} m/s, {interval}; standard error by sensitivities \
+            "onset {:.3} m/s, {interval}; standard error of the scatter by sensitivities \
              {:.3}, by block bootstrap {}, by drawn coefficients {} m/s",
             onset.speed_m_s,
             onset.standard_error_m_s,

@@ -10,7 +10,9 @@ use super::statistics::{sample_quantile, two_sided_quantile};
 use crate::aerodynamics::Realizable;
 use crate::aeroelastic::{CoupledSection, CoupledSystem};
 use crate::error::{Error, Result};
-use crate::flutter::{FlutterSearch, Onset, OnsetInterval, OnsetSearch, find_onset};
+use crate::flutter::{
+    BetweenSpeeds, ErrorParts, FlutterSearch, Onset, OnsetInterval, OnsetSearch, find_onset,
+};
 use crate::section::Structure;
 use crate::signal::{mean_and_deviation, random_stream};
 use crate::state_space::{complex, eigenvector};
@@ -38,10 +40,13 @@ const REACH: f64 = 0.5;
 pub struct OnsetError {
     /// Onset speed, m/s.
     pub speed_m_s: f64,
-    /// Standard error by the gradient, m/s.
+    /// Standard error of the scatter of the data, by the gradient, m/s.
     pub standard_error_m_s: f64,
     /// Its degrees of freedom.
     pub degrees_of_freedom: f64,
+    /// Where the scatter between mean speeds in it is from; none where it holds none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub between_speeds: Option<BetweenSpeeds>,
 }
 
 /// Standard error of an onset by the delta method, `√(gᵀ C g)` with the gradient `g` of the onset speed.
@@ -72,6 +77,7 @@ pub(super) fn error_at(
             .degrees_of_freedom(&gradient)
             .or(degrees_of_freedom)
             .unwrap_or(1.0),
+        between_speeds: estimate.speeds.as_ref().map(|s| s.source),
     })
 }
 
@@ -113,8 +119,12 @@ impl OnsetError {
         OnsetInterval::about(
             self.speed_m_s,
             self.half_width_m_s(),
-            self.standard_error_m_s,
             self.degrees_of_freedom,
+            ErrorParts {
+                scatter_m_s: self.standard_error_m_s,
+                form_m_s: None,
+                between_speeds: self.between_speeds,
+            },
         )
     }
 }

@@ -52,9 +52,10 @@ pub fn record_uncertainty(
         records: &records,
         progress,
     };
-    let poles = free_poles(&fit.form, &fit.poles, report);
+    let form = fit.form_of(report);
+    let poles = free_poles(&form, &fit.poles, report);
     let (parameters, first) = parameters_of(report, &poles);
-    let entries = Entries::new(&fit.form, (first, parameters.len()), report, &poles)?;
+    let entries = Entries::new(&form, (first, parameters.len()), report, &poles)?;
     let rows = Rows {
         orthonormal: true,
         thinned: false,
@@ -72,7 +73,7 @@ pub fn record_uncertainty(
             Some(report.tested_range),
         ),
         records.dofs,
-        coordinates_of(&fit.form, report, poles.searched),
+        coordinates_of(&form, report, poles.searched),
         parameters,
         design,
     )

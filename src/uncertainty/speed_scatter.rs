@@ -6,29 +6,28 @@
 //! the next. What nests in a speed (its runs) is in it. Variances are estimated by moments: sandwich over speeds minus
 //! sandwich over blocks, of the transfer functions at reduced frequencies that every speed has.
 //!
-//! With two speeds each difference has one degree of freedom, and Student's quantile would be 12.7. The variance of a
-//! force is therefore pooled over its motions, in absolute size: on measured decks lift due to heave and lift due to
-//! rotation, whose transfer functions differ fivefold, scatter by the same amount per unit of dimensionless motion, and so
-//! do the moments, at a tenth of it. Nothing is pooled over forces, nor over size and phase.
+//! With two speeds each difference has one degree of freedom, with one speed there is none. The variance of a force is
+//! therefore pooled over its motions, in absolute size: on measured decks lift due to heave and lift due to rotation, whose
+//! transfer functions differ fivefold, scatter by the same amount per unit of dimensionless motion, and so do the moments, at a
+//! tenth of it. And its ratio to the variance that independent blocks would give is drawn towards what measured decks
+//! show ([`super::speed_prior`]); with tests at one speed it is theirs.
 //!
 //! What each speed says alone is [`CoefficientUncertainty::at_each_speed`].
 
-use super::design::{Block, Design};
+use super::design::Design;
+use super::speed_groups::{only_speed, points_of_a_speed, shared_range, speed_groups};
+use super::speed_prior::SpeedPrior;
 use crate::aerodynamics::TransferMatrix;
 use crate::error::Result;
+use crate::flutter::BetweenSpeeds;
 use crate::section::Dof;
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
-/// Mean speeds less than 5 % apart are one, as in tables.
-const SAME_SPEED: f64 = 1.05;
 /// Reduced frequencies over the tested range at which transfer functions are compared.
 pub(super) const POINTS: usize = 16;
 /// Transfer functions smaller than this part of their root mean square are taken as that.
 const SMALL: f64 = 1e-3;
-/// Standard deviations by which the mean ratio of variances must exceed one to be counted: a lower limit counts scatter that
-/// is not there and widens intervals of speeds that agree, a higher one misses scatter of the size of the noise.
-const BEYOND_CHANCE: f64 = 1.5;
 /// Singular values below this part of the largest are left out where a turned transfer function is sought.
 const SINGULAR: f64 = 1e-8;
 
@@ -36,13 +35,19 @@ const SINGULAR: f64 = 1e-8;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SpeedScatter {
-    /// Mean wind speeds, rising, m/s.
+    /// Mean wind speeds, rising, m/s; empty where they are not stated.
     pub speeds_m_s: Vec<f64>,
-    /// Variance between speeds over what independent blocks would give: one if speeds agree.
-    pub ratio: f64,
-    /// Whether the ratio is more than chance, so that the scatter is in the covariance.
-    pub counted: bool,
-    /// Standard deviations of each force.
+    /// Where the variance between speeds is from.
+    pub source: BetweenSpeeds,
+    /// Variance between speeds over what independent blocks would give, by these tests alone: one if speeds agree. None with one
+    /// speed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ratio: Option<f64>,
+    /// The same ratio by measured decks, which it is drawn to.
+    pub prior_ratio: f64,
+    /// Degrees of freedom with which the variance of a force in size or in phase is known, those of the measured decks included.
+    pub degrees_of_freedom: f64,
+    /// Standard deviations of each force, as they are counted.
     pub forces: Vec<ForceScatter>,
 }
 
@@ -57,6 +62,12 @@ pub struct ForceScatter {
     pub size: f64,
     /// In quadrature to it, rad.
     pub phase: f64,
+    /// Variance between speeds over that of independent blocks by these tests alone, of the first; none with one speed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub size_ratio: Option<f64>,
+    /// The same of the second.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub phase_ratio: Option<f64>,
 }
 
 /// Transfer matrix at one reduced frequency with its derivatives with respect to all parameters.
@@ -72,8 +83,8 @@ pub(super) struct Effect {
     /// Each column times an independent standard normal number, P×m.
     pub columns: DMatrix<f64>,
     /// Variance between speeds over that part of it which exceeds the blocks'.
-    total: f64,
-    degrees_of_freedom: f64,
+    pub total: f64,
+    pub degrees_of_freedom: f64,
 }
 
 impl Effect {
@@ -103,103 +114,96 @@ pub(super) fn degrees_of_freedom(
     }
 }
 
-/// Number of the speed of every block, and the speeds, rising; `None` when a block has none or all have the same.
-pub(super) fn speed_groups(blocks: &[Block]) -> Option<(Vec<usize>, Vec<f64>)> {
-    let speeds: Vec<f64> = blocks.iter().map(|b| b.speed_m_s).collect::<Option<_>>()?;
-    let mut sorted = speeds.clone();
-    sorted.sort_by(f64::total_cmp);
-    let groups: Vec<&[f64]> = sorted.chunk_by(|a, b| *b <= SAME_SPEED * a).collect();
-    if groups.len() < 2 {
-        return None;
-    }
-    let last = |g: &&[f64]| g[g.len() - 1];
-    let number = |v: f64| groups.iter().position(|g| v <= last(g)).unwrap_or(0);
-    let mean = |g: &&[f64]| g.iter().sum::<f64>() / g.len() as f64;
-    Some((
-        speeds.into_iter().map(number).collect(),
-        groups.iter().map(mean).collect(),
-    ))
-}
-
-/// Reduced frequencies that the blocks of every group have; `None` when they share none or do not say.
-fn shared_range(blocks: &[Block], groups: &[usize]) -> Option<(f64, f64)> {
-    let count = groups.iter().max().map_or(0, |g| g + 1);
-    let mut ranges = vec![(f64::INFINITY, 0.0_f64); count];
-    for (block, group) in blocks.iter().zip(groups) {
-        let k = block.k?;
-        let range = &mut ranges[*group];
-        *range = (range.0.min(k), range.1.max(k));
-    }
-    let low = ranges.iter().map(|r| r.0).fold(0.0, f64::max);
-    let high = ranges.iter().map(|r| r.1).fold(f64::INFINITY, f64::min);
-    (low < high).then_some((low, high))
-}
-
-/// The random effects of mean speeds; `None` for tests at one speed.
+/// The random effects of mean speeds, drawn towards `prior`; with tests at one speed they are those of the prior.
 ///
 /// `own` lists the coefficients of every transfer function, row by row; `at` are points over all tested `K`.
 pub(super) fn between_speeds(
-    design: &Design,
+    (design, prior): (&Design, SpeedPrior),
     dofs: &[Dof],
     (values, own): (&DVector<f64>, &[Vec<usize>]),
     at: &[Slopes],
-) -> Result<Option<(SpeedScatter, Vec<Effect>)>> {
-    let Some((groups, speeds_m_s)) = speed_groups(design.blocks()) else {
-        return Ok(None);
+) -> Result<(SpeedScatter, Vec<Effect>)> {
+    let blocks = design.blocks();
+    let several = speed_groups(blocks);
+    let source = match &several {
+        Some(_) => BetweenSpeeds::Tests,
+        None => BetweenSpeeds::Prior,
     };
-    let shared = shared_range(design.blocks(), &groups);
-    let inside = |s: &&Slopes| shared.is_none_or(|(low, high)| low <= s.k && s.k <= high);
-    let mut common: Vec<&Slopes> = at.iter().filter(inside).collect();
-    if common.is_empty() {
-        common = at.iter().collect();
-    }
-    let clusters = design.clusters(&groups, speeds_m_s.len());
+    let (groups, speeds_m_s) =
+        several.unwrap_or_else(|| (vec![0; blocks.len()], only_speed(blocks)));
+    let count = speeds_m_s.len().max(1);
+    let prior = prior.at_points(points_of_a_speed(blocks, &groups, count));
+    let clusters = design.clusters(&groups, count);
     let judge = Judge {
         grams: clusters.iter().map(|c| c.rows.tr_mul(&c.rows)).collect(),
-        of_speeds: design.with_blocks(clusters)?.contributions(),
+        of_speeds: match source {
+            BetweenSpeeds::Tests => Some(design.with_blocks(clusters)?.contributions()),
+            BetweenSpeeds::Prior => None,
+        },
         of_blocks: design.contributions(),
         design,
         at,
-        common,
+        common: common_points(shared_range(blocks, &groups), at),
     };
     let n = dofs.len();
-    let spare = (n * (speeds_m_s.len() - 1)) as f64;
-    let (mut ratios, mut effects, mut forces) = (Vec::new(), Vec::new(), Vec::new());
-    for (i, &force) in dofs.iter().enumerate() {
-        let size: f64 = (0..n).map(|j| judge.mean_square((i, j))).sum::<f64>() / n as f64;
-        let mut deviations = [0.0; 2];
-        for (turn, deviation) in [ScatterDirection::Size, ScatterDirection::Phase]
-            .into_iter()
-            .zip(&mut deviations)
-        {
-            let unit = judge.effect((i, n), turn, (values, own), &mut ratios);
-            let Some(unit) = unit.filter(|u| u.excess > 0.0 && size > 0.0) else {
-                continue;
-            };
-            *deviation = (unit.excess / size).sqrt();
-            effects.push(Effect {
-                columns: unit.columns * unit.excess.sqrt(),
-                total: unit.total / unit.excess,
-                degrees_of_freedom: spare,
-            });
-        }
-        let [size, phase] = deviations;
-        forces.push(ForceScatter { force, size, phase });
-    }
-    let ratio = ratios.iter().sum::<f64>() / (ratios.len() as f64).max(1.0);
-    // standard deviation of the mean of that many squares
-    let chance = (2.0 / (ratios.len() as f64 * (speeds_m_s.len() - 1) as f64)).sqrt();
-    let counted = ratio > 1.0 + BEYOND_CHANCE * chance;
-    if !counted {
-        effects.clear();
-    }
-    let scatter = SpeedScatter {
+    let spare = (n * (count - 1)) as f64;
+    let mut scatter = SpeedScatter {
         speeds_m_s,
-        ratio,
-        counted,
-        forces,
+        source,
+        ratio: None,
+        prior_ratio: prior.ratio,
+        degrees_of_freedom: prior.degrees_of_freedom + spare,
+        forces: Vec::new(),
     };
-    Ok(Some((scatter, effects)))
+    let turns = [ScatterDirection::Size, ScatterDirection::Phase];
+    let units: Vec<[Option<UnitEffect>; 2]> = (0..n)
+        .map(|i| turns.map(|turn| judge.effect((i, n), turn, (values, own))))
+        .collect();
+    let ratios: Vec<f64> = units
+        .iter()
+        .flatten()
+        .flatten()
+        .filter_map(|u| u.ratio)
+        .collect();
+    let mut of_deck = prior;
+    if !ratios.is_empty() {
+        let mean = ratios.iter().sum::<f64>() / ratios.len() as f64;
+        of_deck = prior.for_deck(mean, spare * ratios.len() as f64);
+        scatter.ratio = Some(mean);
+        scatter.degrees_of_freedom = of_deck.degrees_of_freedom + spare;
+    }
+    let mut effects = Vec::new();
+    for (i, (&force, units)) in dofs.iter().zip(units).enumerate() {
+        let size: f64 = (0..n).map(|j| judge.mean_square((i, j))).sum::<f64>() / n as f64;
+        let [size_ratio, phase_ratio] = [0, 1].map(|t| units[t].as_ref().and_then(|u| u.ratio));
+        let [size, phase] = units.map(|unit| {
+            let effect = unit.and_then(|u| u.drawn(of_deck, spare));
+            let Some((variance, effect)) = effect.filter(|_| size > 0.0) else {
+                return 0.0;
+            };
+            effects.push(effect);
+            (variance / size).sqrt()
+        });
+        scatter.forces.push(ForceScatter {
+            force,
+            size,
+            phase,
+            size_ratio,
+            phase_ratio,
+        });
+    }
+    Ok((scatter, effects))
+}
+
+/// The points at which all speeds have transfer functions; all of them where they share none or do not say.
+fn common_points(shared: Option<(f64, f64)>, at: &[Slopes]) -> Vec<&Slopes> {
+    let inside = |s: &&Slopes| shared.is_none_or(|(low, high)| low <= s.k && s.k <= high);
+    let common: Vec<&Slopes> = at.iter().filter(inside).collect();
+    if common.is_empty() {
+        at.iter().collect()
+    } else {
+        common
+    }
 }
 
 /// In which direction a transfer function is moved.
@@ -212,10 +216,29 @@ enum ScatterDirection {
 /// An effect of unit absolute standard deviation.
 struct UnitEffect {
     columns: DMatrix<f64>,
-    /// Its estimated variance: what exceeds the blocks.
-    excess: f64,
-    /// The same with the blocks.
-    total: f64,
+    /// Variance that independent blocks would give.
+    of_blocks: f64,
+    /// Variance between speeds over that, where there are several.
+    ratio: Option<f64>,
+}
+
+impl UnitEffect {
+    /// Its variance and the effect, drawn towards a prior; none where the speeds scatter no more than the blocks.
+    fn drawn(self, prior: SpeedPrior, spare: f64) -> Option<(f64, Effect)> {
+        let known = match self.ratio {
+            Some(ratio) => prior.after(ratio, spare),
+            None => prior,
+        };
+        let variance = (known.ratio - 1.0) * self.of_blocks;
+        (variance > 0.0).then(|| {
+            let effect = Effect {
+                columns: self.columns * variance.sqrt(),
+                total: known.ratio / (known.ratio - 1.0),
+                degrees_of_freedom: known.degrees_of_freedom,
+            };
+            (variance, effect)
+        })
+    }
 }
 
 /// What the scatter of all forces is judged by.
@@ -224,7 +247,7 @@ struct Judge<'a> {
     at: &'a [Slopes],
     common: Vec<&'a Slopes>,
     grams: Vec<DMatrix<f64>>,
-    of_speeds: DMatrix<f64>,
+    of_speeds: Option<DMatrix<f64>>,
     of_blocks: DMatrix<f64>,
 }
 
@@ -234,17 +257,16 @@ impl Judge<'_> {
         sum / self.common.len() as f64
     }
 
-    /// The effect of force `i` of `n`; adds the ratios of variances to `ratios`.
+    /// The effect of force `i` of `n`.
     fn effect(
         &self,
         (i, n): (usize, usize),
         turn: ScatterDirection,
         (values, own): (&DVector<f64>, &[Vec<usize>]),
-        ratios: &mut Vec<f64>,
     ) -> Option<UnitEffect> {
         let parameters = values.len();
         let mut columns: Vec<DVector<f64>> = Vec::new();
-        let (mut excess, mut total, mut weight) = (0.0, 0.0, 0.0);
+        let (mut of_speeds, mut of_blocks, mut weight) = (0.0, 0.0, 0.0);
         for j in 0..n {
             let size = self.mean_square((i, j));
             let own = &own[i * n + j];
@@ -254,7 +276,6 @@ impl Judge<'_> {
             let relative = self.relative_rows((i, j), turn, size.sqrt());
             let square =
                 |m: &DMatrix<f64>| (&relative * m).norm_squared() / relative.nrows() as f64;
-            let (speeds, blocks) = (square(&self.of_speeds), square(&self.of_blocks));
             let moved = self.moved((i, j), turn, (values, own), size.sqrt());
             let mut scattered = DVector::zeros(parameters);
             for (p, value) in own.iter().zip(moved.iter()) {
@@ -266,17 +287,14 @@ impl Judge<'_> {
                 .map(|gram| self.design.inverse() * (gram * &scattered))
                 .collect();
             weight += square(&DMatrix::from_columns(&of_each));
-            excess += size * (speeds - blocks);
-            total += size * speeds;
-            if blocks > 0.0 {
-                ratios.push(speeds / blocks);
-            }
+            of_speeds += size * self.of_speeds.as_ref().map_or(0.0, square);
+            of_blocks += size * square(&self.of_blocks);
             columns.extend(of_each.into_iter().map(|c| c / size.sqrt()));
         }
-        (weight > 0.0).then(|| UnitEffect {
+        (weight > 0.0 && of_blocks > 0.0).then(|| UnitEffect {
             columns: DMatrix::from_columns(&columns),
-            excess: (excess / weight).max(0.0),
-            total: total / weight,
+            of_blocks: of_blocks / weight,
+            ratio: self.of_speeds.as_ref().map(|_| of_speeds / of_blocks),
         })
     }
 
@@ -333,13 +351,10 @@ impl SpeedScatter {
     /// In words.
     pub(crate) fn describe(&self) -> String {
         let speeds: Vec<String> = self.speeds_m_s.iter().map(|v| format!("{v:.2}")).collect();
-        let speeds = speeds.join(", ");
-        if !self.counted {
-            return format!(
-                "the mean speeds {speeds} m/s agree within the scatter of their blocks (variance ratio {:.2})",
-                self.ratio
-            );
-        }
+        let speeds = match speeds.is_empty() {
+            true => String::new(),
+            false => format!(" {} m/s", speeds.join(", ")),
+        };
         let forces: Vec<String> = self
             .forces
             .iter()
@@ -352,11 +367,17 @@ impl SpeedScatter {
                 )
             })
             .collect();
-        format!(
-            "transfer functions scatter between the mean speeds {speeds} m/s (standard deviations: {}; variance {:.1} times \
-             that of independent blocks): counted as a random effect of each speed, pooled over the motions of a force",
-            forces.join("; "),
-            self.ratio
-        )
+        let (forces, prior) = (forces.join("; "), self.prior_ratio);
+        match self.ratio {
+            Some(ratio) => format!(
+                "scatter between the mean speeds{speeds}: its variance is {ratio:.1} times that of independent blocks by these \
+                 tests, {prior:.1} times by measured decks; counted as a random effect of each speed, pooled over the motions of \
+                 a force and drawn towards those decks (standard deviations: {forces})"
+            ),
+            None => format!(
+                "one mean speed{speeds}: what another speed would change is taken from measured decks, not from these tests \
+                 (variance {prior:.1} times that of independent blocks; standard deviations: {forces})"
+            ),
+        }
     }
 }

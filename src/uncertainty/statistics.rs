@@ -23,7 +23,7 @@ pub(super) fn two_sided_quantile(confidence: f64, degrees_of_freedom: f64) -> f6
 }
 
 /// Regularised incomplete beta function `I_x(a, b)`; no number where it has none.
-fn incomplete_beta(x: f64, a: f64, b: f64) -> f64 {
+pub(super) fn incomplete_beta(x: f64, a: f64, b: f64) -> f64 {
     checked_beta_reg(a, b, x).unwrap_or(f64::NAN)
 }
 

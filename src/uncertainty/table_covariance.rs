@@ -41,7 +41,8 @@ pub fn table_uncertainty(
         ));
     }
     let (entries, _) = sort_by_entry(samples, dofs, fit.weights)?;
-    let poles = free_poles(&fit.form, &fit.poles, report);
+    let form = fit.form_of(report);
+    let poles = free_poles(&form, &fit.poles, report);
     let (parameters, first) = parameters_of(report, &poles);
     let first_pole = parameters.len() - poles.searched.len();
     let mut runs: Vec<Run> = Vec::new();
@@ -57,9 +58,9 @@ pub fn table_uncertainty(
             first: first[e],
             poles: searched.map(|(m, p)| (first_pole + m, p.index)).collect(),
         };
-        columns.add_to(&mut runs, &fit.form, entry, parameters.len())?;
+        columns.add_to(&mut runs, &form, entry, parameters.len())?;
     }
-    let tangent = tangent_of(report, (&fit.form, &poles), &first, parameters.len())?;
+    let tangent = tangent_of(report, (&form, &poles), &first, parameters.len())?;
     let blocks = runs.into_iter().map(Run::block).collect();
     let searched = poles.sentence() + &held_sentence(report);
     CoefficientUncertainty::new(
@@ -72,7 +73,7 @@ pub fn table_uncertainty(
             Some(report.tested_range),
         ),
         dofs.to_vec(),
-        coordinates_of(&fit.form, report, poles.searched),
+        coordinates_of(&form, report, poles.searched),
         parameters,
         Design::new(blocks, tangent)?,
     )

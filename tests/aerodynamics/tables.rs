@@ -81,7 +81,7 @@ fn a_wide_table_without_speeds_goes_through_the_chain() {
     let said = flowing(&succeeds(at, &["study", "study.toml", "--out", "."]));
     for part in [
         "H4* = K H2*, A4* = K A2* taken, quasi-steady, as stated",
-        "1 m is assumed",
+        "the width 1 m",
         "the table states no mean wind speeds: records of the virtual tunnel take 8.17 m/s",
         "spread between interpolations: modified Akima over ln K",
         "K → 0 was not tested: H3*, A3* at the lowest tested K, 0.071",
@@ -198,4 +198,36 @@ fn a_mislabelled_table_is_pointed_out() {
     assert!(said.contains("read as PoliMi, over v_star"), "{said}");
     let said = succeeds(at, &["derivatives", "show", "polimi.csv"]);
     assert!(!said.contains("warning"), "{said}");
+}
+
+/// Heave and lift turned over in all derivatives is a similarity, `G -> S G S`: the onset stays. Turned over in some it moves.
+#[test]
+fn a_consistent_flip_of_heave_leaves_the_onset() {
+    use Derivative::{A1, A4, H2, H3};
+    let deck = aerodeck::files::derivatives::embedded::deck("LN21-5200").unwrap();
+    let structure = SectionModel::table_4_1().structure().unwrap();
+    let onset = |flipped: &[Derivative]| {
+        let points = deck.derivatives().map(|d| {
+            let sign = if flipped.contains(&d) { -1.0 } else { 1.0 };
+            let mut points = deck.points(d).to_vec();
+            points.iter_mut().for_each(|p| p.value *= sign);
+            (d, points)
+        });
+        let table = DerivativeTable::new(
+            "flipped",
+            deck.width_m,
+            deck.header.clone(),
+            points.collect(),
+        );
+        let forces =
+            InterpolatedTable::new(&table.unwrap(), &Dof::TWO, Extrapolation::Refuse).unwrap();
+        let range = forces.tested_range();
+        let found = determinant_onset("flipped", &structure, &forces, range, 80.0).unwrap();
+        found.onset().map(|o| o.at.speed_m_s)
+    };
+    let right = onset(&[]).unwrap();
+    assert!((onset(&[H2, H3, A1, A4]).unwrap() / right - 1.0).abs() < 1e-9);
+    // what the tutorial says of it
+    let partial = onset(&[A1, A4]).unwrap() / right;
+    assert!((partial - 1.08).abs() < 0.005, "{partial}");
 }

@@ -67,7 +67,11 @@ pub const ARROWS: &[Row] = &[
     row("response", &["aeroelastic+"]),
     row("buffeting", &["flutter+", "response+", "signal"]),
     row("live", &["flutter+", "trained_model+"]),
-    row("fmu", &["flutter+", "response+", "trained_model+"]),
+    row("verdict", &["flutter+", "plausibility"]),
+    row(
+        "fmu",
+        &["flutter+", "response+", "trained_model+", "verdict"],
+    ),
     row("fmu::fmi2", &["fmu"]),
     // a second shell over the guard of the first
     row("fmu::fmi3", &["fmu", "fmu::fmi2"]),
@@ -116,6 +120,7 @@ const BELOW_STUDY: &[&str] = &[
     "buffeting+",
     "uncertainty",
     "selection",
+    "verdict",
 ];
 
 /// Every module may use these.

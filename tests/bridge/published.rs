@@ -2,12 +2,14 @@
 
 use crate::bridges::{DECKS, SEARCH, THREE, TWO, coupled, langenuen, near, onset, read};
 use aerodeck::aerodynamics::Transfer;
+use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::bridge::Bridge;
 use aerodeck::flutter::{
     FlutterSearch, NearbyOnset, OnsetInterval, OnsetSearch, find_onset, impedance, motion_at_onset,
     pk_curves, pk_onset, trace_modes,
 };
 use aerodeck::study::bridge::{DerivativeScatter, Scatter};
+use nalgebra::Complex;
 use std::f64::consts::PI;
 
 /// Half of the last printed digit of the reference figures, and what 63 of 311 nodes cost (4e-5 m/s).
@@ -111,25 +113,32 @@ fn langenuen_with_sway_crosses_again_where_the_reference_does() {
     near(speed, 81.298, PRINTED);
 }
 
-/// A dissipative model of three filters, eigenvalues of 195 states: within a hundredth of the table's.
+/// A dissipative model of three filters, eigenvalues of 195 states, beside the table that it is fitted to and an independent
+/// constrained fit of as many filters. That one takes residuals of `G` as they are; here they are relative, and entries count
+/// by their own scatter, which is nearer to the table of LN21-5500, whose two test speeds contradict each other.
 #[test]
 fn langenuen_by_eigenvalues() {
-    for (deck, motions, speed) in [
-        ("LN21-5200", TWO, 76.53),
-        ("LN21-5200", THREE, 77.70),
-        ("LN21-5500", TWO, 83.13),
-        ("LN20-5500", TWO, 79.03),
-        ("LN21-5800", TWO, 81.18),
+    for (deck, motions, table, reference) in [
+        ("LN21-5200", TWO, 76.384, 76.53),
+        ("LN21-5200", THREE, 77.674, 77.70),
+        ("LN21-5500", TWO, 80.806, 83.13),
+        ("LN20-5500", TWO, 77.736, 79.03),
+        ("LN21-5800", TWO, 80.032, 81.18),
     ] {
         let study = langenuen(deck, motions);
         let section = coupled(&study.by_model);
         assert_eq!(section.states(), 195);
         let found = onset(find_onset("model", &section, &SEARCH, study.tested_range()).unwrap());
+        let off = |speed: f64| speed / table - 1.0;
+        let (model, other) = (off(found.at.speed_m_s), off(reference));
         println!(
-            "{deck} {motions}: {} (reference {speed})",
-            found.at.speed_m_s
+            "{deck} {motions}: {:.3} m/s, {:+.2} % from the table, the reference {:+.2} %",
+            found.at.speed_m_s,
+            100.0 * model,
+            100.0 * other
         );
-        near(found.at.speed_m_s / speed, 1.0, 0.01);
+        // 0.3 % is what weights and poles of two fits differ by on LN21-5200, where all stand close together
+        assert!(model.abs() < other.abs() + 0.003 && model.abs() < 0.016);
         assert_eq!(found.in_tested_range, Some(true));
         // every mode is followed, those that share a frequency too
         assert!(found.warnings.is_empty(), "{:?}", found.warnings);
@@ -175,38 +184,78 @@ fn modes_of_one_frequency_are_followed() {
     }
 }
 
-/// Every mode of the bridge at every wind speed below the onset, filters included.
+/// The oscillation of a bridge that grows fastest for its size, filters included.
+fn fastest(section: &CoupledSection, speed: f64) -> Complex<f64> {
+    let all = section.at(speed).unwrap().eigenvalues().unwrap();
+    let oscillating = all.into_iter().filter(|z| z.im > 1e-6 * z.norm());
+    let part = |z: &Complex<f64>| z.re / z.norm();
+    oscillating
+        .max_by(|a, b| part(a).total_cmp(&part(b)))
+        .unwrap()
+}
+
+fn grows(z: &Complex<f64>) -> bool {
+    z.re > 1e-9 * z.norm()
+}
+
+/// Every mode of the bridge at every wind speed below the onset, which stands within a fiftieth of the table's.
 #[test]
 fn nothing_grows_below_the_onset() {
-    for deck in DECKS {
-        for motions in [TWO, THREE] {
-            let study = langenuen(deck, motions);
-            let section = coupled(&study.by_model);
-            let fastest = |speed: f64| {
-                let all = section.at(speed).unwrap().eigenvalues().unwrap();
-                let oscillating = all.iter().filter(|z| z.im > 1e-6 * z.norm());
-                oscillating
-                    .map(|z| z.re / z.norm())
-                    .fold(f64::MIN, f64::max)
-            };
-            let (mut low, mut high) = (0.5, 0.5);
-            while high < 150.0 && fastest(high) <= 1e-9 {
-                low = high;
-                high = (1.15 * high).min(high + 3.0);
-            }
-            for _ in 0..20 {
-                let middle = 0.5 * (low + high);
-                *(if fastest(middle) > 1e-9 {
-                    &mut high
-                } else {
-                    &mut low
-                }) = middle;
-            }
-            println!("{deck} {motions}: first growth at {high:.3} m/s");
-            // the lowest onset of the family is that of LN21-6100
-            assert!(high > 60.0, "{deck} {motions}: grows at {high}");
+    let motions = [TWO, THREE].into_iter();
+    let all = motions.flat_map(|motions| DECKS.map(|deck| (deck, motions)));
+    // the table itself grows
+    for (deck, motions) in all.filter(|case| *case != ("LN21-5500", THREE)) {
+        let study = langenuen(deck, motions);
+        let section = coupled(&study.by_model);
+        let growing = |speed: f64| grows(&fastest(&section, speed));
+        let (mut low, mut high) = (0.5, 0.5);
+        while high < 150.0 && !growing(high) {
+            low = high;
+            high = (1.15 * high).min(high + 3.0);
         }
+        for _ in 0..20 {
+            let middle = 0.5 * (low + high);
+            *(if growing(middle) { &mut high } else { &mut low }) = middle;
+        }
+        let table = onset(by_table(study.by_table.as_ref().unwrap()));
+        let off = high / table.at.speed_m_s - 1.0;
+        println!(
+            "{deck} {motions}: first growth at {high:.3} m/s, {:+.2} % from {:.3}",
+            100.0 * off,
+            table.at.speed_m_s
+        );
+        assert!(off.abs() < 0.02, "{deck} {motions}: grows at {high}");
     }
+}
+
+/// The slow test of LN21-5500 ends with growth of sway, which a model keeps: it is unstable where the table is, in lateral modes
+/// at the upper end of the tests and, fading, above it; hardly below `K` 0.955, where the fast test ends, and less than the table.
+#[test]
+fn growth_with_which_tests_end_is_that_of_the_model() {
+    let study = langenuen("LN21-5500", THREE);
+    let section = coupled(&study.by_model);
+    let tested = study.tested_range().unwrap().max.full_width();
+    let found = find_onset("model", &section, &SEARCH, study.tested_range()).unwrap();
+    let FlutterSearch::UnstableAtOrBelow(start) = found else {
+        panic!("no growth");
+    };
+    assert_eq!(start.branch, "mode 1");
+    // where that mode comes into the tests, as by the table: 8.62 m/s
+    near(start.at.speed_m_s / 8.621, 1.0, 0.01);
+    near(start.at.reduced_frequency.full_width(), tested, 1e-6);
+    let (mut speed, mut least, mut most, mut worst) = (0.5, f64::MAX, 0.0f64, 0.0f64);
+    while speed < 75.0 {
+        let z = fastest(&section, speed);
+        if grows(&z) {
+            let k = z.im * 31.0 / speed;
+            (least, most) = (least.min(k), most.max(k));
+            worst = worst.max(z.re / z.norm());
+            assert!(worst < 4.4e-3, "more than the table at {speed} m/s");
+        }
+        speed = f64::min(1.05 * speed, speed + 1.0);
+    }
+    println!("grows at K {least:.3} to {most:.3}, tested to {tested:.3}, by {worst:.2e}");
+    assert!(least > 0.9 && most < 1.6 * tested);
 }
 
 fn cheynet(case: usize, rest: &str) -> Bridge {

@@ -2,7 +2,7 @@
 
 use crate::bridges::{TWO, langenuen_text};
 use crate::browser;
-use crate::command::{listing, refused, succeeds};
+use crate::command::{aerodeck, listing, refused, succeeds};
 use serde_json::Value;
 use std::fs;
 use tempfile::TempDir;
@@ -67,9 +67,11 @@ fn the_report_of_a_bridge_stands_alone() {
     let answers = value["flutter"]["answers"].as_array().unwrap();
     let own = answers.last().unwrap();
     let speed = own["search"]["onset"]["speed_m_s"].as_f64().unwrap();
+    let table = answers[0]["search"]["onset"]["speed_m_s"].as_f64().unwrap();
     let largest = own["motion"]["modes"][0]["mode"].as_u64().unwrap();
     for word in [
-        &format!("Flutter onset {speed:.1} m/s"),
+        &format!("Flutter onset {table:.1} m/s by the tables"),
+        &format!("the models: {speed:.1} m/s"),
         &format!("<td>{speed:.2} m/s</td>"),
         "95 % interval",
         "What limits trust",
@@ -128,6 +130,42 @@ fn results_are_json_for_machines() {
     assert_eq!(value["modes"].as_array().unwrap().len(), 8);
     let similarity = &value["similarities"][0]["similarity"];
     assert!((0.0..=1.0).contains(&similarity.as_f64().unwrap()));
+}
+
+/// The table is the headline, the models give its interval; divergence counts by both; a requirement makes the exit code.
+#[test]
+fn a_required_speed_of_a_bridge_is_judged() {
+    let folder = folder();
+    let at = folder.path();
+    let text = fs::read_to_string(at.join("bridge.toml")).unwrap();
+    let stated = |required: f64| {
+        let text = match text.contains("[flutter]") {
+            true => text.replace(
+                "[flutter]",
+                &format!("[flutter]\nrequired_speed_m_s = {required}"),
+            ),
+            false => format!("{text}\n[flutter]\nrequired_speed_m_s = {required}\n"),
+        };
+        fs::write(at.join("bridge.toml"), text).unwrap();
+        let run = ["bridge", "flutter", "bridge.toml", "--no-figures", "--json"];
+        let (code, said, error) = aerodeck(at, &run);
+        let value: Value = serde_json::from_str(&said).expect(&error);
+        (code, value["verdict"].clone())
+    };
+    let (code, verdict) = stated(60.0);
+    let headline = verdict["headline"].as_str().unwrap();
+    assert_eq!(code, 0, "{verdict:#}");
+    assert!(
+        headline.starts_with("✓ MET, required 60 m/s: flutter onset"),
+        "{headline}"
+    );
+    assert!(headline.contains("by the tables"), "{headline}");
+    let all = verdict["critical"]["others"].as_array().unwrap();
+    let divergence = all.iter().filter(|c| c["phenomenon"] == "divergence");
+    assert_eq!(divergence.count(), 2, "{verdict:#}");
+    let (code, verdict) = stated(95.0);
+    assert_eq!((code, &verdict["outcome"]["state"]), (3, &"not_met".into()));
+    assert_eq!(verdict["outcome"]["below"], "best_estimate");
 }
 
 #[test]

@@ -34,7 +34,7 @@ fn the_report_of_the_demo_stands_alone() {
         "Flutter onset 36.9 m/s",
         "What limits trust",
         "Derivatives: measured and modelled",
-        "Records: measured forces and the model",
+        "Records: forces and the model",
         "Root locus",
         "Motion below, at and above the onset",
         "wind_speed",
@@ -67,38 +67,126 @@ fn the_report_of_the_demo_stands_alone() {
     }
 }
 
+/// Words, exit code, page and line in the charts follow one outcome.
 #[test]
 fn a_required_speed_is_judged_by_the_lower_end_of_the_interval() {
     let folder = TempDir::new().unwrap();
     let at = folder.path();
     succeeds(at, &["new", "--out", "s.toml"]);
-    for (required, met) in [(30.0, true), (36.7, false), (45.0, false)] {
+    let cases = [
+        (30.0, "met", Value::Null, "✓ MET", "card met"),
+        (
+            36.7,
+            "not_met",
+            "lower_end".into(),
+            "✗ NOT MET",
+            "card not-met",
+        ),
+        (
+            45.0,
+            "not_met",
+            "best_estimate".into(),
+            "✗ NOT MET",
+            "card not-met",
+        ),
+    ];
+    for (required, state, below, words, class) in cases {
         let set = format!("flutter.required_speed_m_s={required}");
-        succeeds(
-            at,
-            &[
-                "study",
-                "s.toml",
-                "--out",
-                "r",
-                "--set",
-                &set,
-                "--no-figures",
-            ],
-        );
-        let answer = summary(&at.join("r"))["answer"].clone();
-        assert_eq!(answer["required_speed_met"], met, "{answer}");
+        let run = [
+            "study",
+            "s.toml",
+            "--out",
+            "r",
+            "--set",
+            &set,
+            "--no-figures",
+        ];
+        let (code, said, error) = aerodeck(at, &run);
+        assert_eq!(code, if state == "met" { 0 } else { 3 }, "{error}");
+        let first = format!("LN21-5200: {words}, required {required} m/s: flutter onset 36.9");
+        assert!(said.starts_with(&first), "{said}");
+        let verdict = summary(&at.join("r"))["verdict"].clone();
+        assert_eq!(verdict["outcome"]["state"], state, "{verdict}");
+        assert_eq!(verdict["outcome"]["below"], below, "{verdict}");
+        assert_eq!(verdict["critical"]["governs"]["phenomenon"], "flutter");
         let page = fs::read_to_string(at.join("r/report.html")).unwrap();
-        assert_eq!(page.contains("NOT met"), !met);
+        assert!(page.contains(&format!("{words}, required {required} m/s")));
+        assert!(page.contains(class), "{class}");
         // the line in the charts
         assert!(page.contains(&format!("\"required\":{required:?}")));
     }
+    // the unit says the same
+    let page = fmu_page(&at.join("r/deck_section.fmu"));
+    assert!(page.contains("NOT MET, required 45 m/s"), "{page}");
     assert!(
         listing(at)
             .iter()
             .all(|n| !n.ends_with(".svg") && !n.ends_with(".png")),
         "figures in spite of --no-figures"
     );
+}
+
+fn fmu_page(path: &Path) -> String {
+    let mut archive = zip::ZipArchive::new(fs::File::open(path).unwrap()).unwrap();
+    let mut page = archive.by_name("documentation/index.html").unwrap();
+    let mut text = String::new();
+    std::io::Read::read_to_string(&mut page, &mut text).unwrap();
+    text
+}
+
+/// Tests that end at K 0.5 say nothing of wind in which motions are slower: what is missing is said, and nothing is green.
+#[test]
+fn tests_that_end_before_the_required_speed_cannot_judge_it() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    succeeds(at, &["new", "--out", "s.toml"]);
+    succeeds(at, &["derivatives", "convert", "LN21-5200", "whole.csv"]);
+    let whole = fs::read_to_string(at.join("whole.csv")).unwrap();
+    let mut points = std::collections::HashMap::new();
+    let mut cut = String::new();
+    for line in whole.lines() {
+        let mut cells: Vec<String> = line.split(',').map(str::to_owned).collect();
+        if let Some(Ok(v_hat)) = cells.get(3).map(|c| c.parse::<f64>()) {
+            if v_hat > 2.2 {
+                continue;
+            }
+            let point = points.entry(cells[0].clone()).or_insert(0);
+            *point += 1;
+            cells[1] = point.to_string();
+        }
+        cut.push_str(&(cells.join(",") + "\n"));
+    }
+    fs::write(at.join("cut.csv"), cut).unwrap();
+    let run = [
+        "study",
+        "s.toml",
+        "--out",
+        "r",
+        "--no-figures",
+        "--set",
+        "deck.source=\"cut.csv\"",
+        "--set",
+        "flutter.required_speed_m_s=25.0",
+    ];
+    let (code, said, error) = aerodeck(at, &run);
+    assert_eq!(code, 3, "{error}");
+    assert!(
+        said.contains("? CANNOT BE JUDGED, required 25 m/s"),
+        "{said}"
+    );
+    let verdict = summary(&at.join("r"))["verdict"].clone();
+    let settled = verdict["outcome"]["settled_by"].to_string();
+    assert!(settled.contains("tests at K 0.27–0.49"), "{settled}");
+    let kinds: Vec<&str> = verdict["doubts"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .filter(|d| d["severity"] == "severe")
+        .map(|d| d["kind"].as_str().unwrap())
+        .collect();
+    assert_eq!(kinds, ["outside_tested_range", "not_judged_above"]);
+    let page = fs::read_to_string(at.join("r/report.html")).unwrap();
+    assert!(page.contains("card open") && page.contains("Severe doubt."));
 }
 
 #[test]

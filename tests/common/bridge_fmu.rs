@@ -51,6 +51,7 @@ pub fn export(folder: &Path, runtimes: &[Runtime]) {
         listing: Listing::All,
         label: Label::default(),
         version: FmiVersion::Two,
+        verdict: None,
     };
     let fmu = folder.join("bridge_force.fmu");
     write_fmu(&fmu, &export.model, runtimes, Overwrite::Refuse, force).unwrap();

@@ -76,7 +76,7 @@ pub fn onset_m_s(model: &Model, named: &NamedSection) -> f64 {
 
 pub fn laguerre(filters: usize) -> Form {
     Form::Laguerre {
-        filters,
+        filters: Some(filters),
         feed_through: FeedThrough::default(),
         pole_per_transfer_function: false,
     }

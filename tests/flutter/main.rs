@@ -12,6 +12,7 @@ mod matrix;
 #[allow(dead_code)]
 mod three_dof;
 
+mod all_speeds;
 mod answers;
 mod gaps;
 mod growth_bands;

@@ -66,7 +66,7 @@ fn calculated_onsets_are_those_of_the_search() {
         ..OnsetSearch::default()
     };
     let laguerre = Form::Laguerre {
-        filters: 3,
+        filters: Some(3),
         feed_through: FeedThrough::default(),
         pole_per_transfer_function: false,
     };

@@ -7,9 +7,7 @@ use aerodeck::flutter::{Onset, OnsetSearch, find_onset};
 use aerodeck::fmu::importer::{
     Fmu, Severity, Simulation, SteppingSearch, Value, onset_by_stepping, simulate,
 };
-use aerodeck::fmu::package::{
-    Export, FmiVersion, GrowthPolicy, Label, Overwrite, Runtime, write_fmu,
-};
+use aerodeck::fmu::package::{Export, FmiVersion, GrowthPolicy, Overwrite, Runtime, write_fmu};
 use aerodeck::fmu::variables::Listing;
 use aerodeck::trained_model::TrainedModel;
 use std::path::{Path, PathBuf};
@@ -51,13 +49,9 @@ fn real_variables_alone_pass_every_check() {
     for kind in KINDS {
         let path = folder.path().join(format!("{kind}.fmu"));
         let export = Export {
-            growing: GrowthPolicy::Allow,
-            force: None,
-            gusts: None,
-            bounds: None,
             listing: Listing::Reals,
-            label: Label::default(),
             version: FmiVersion::Two,
+            ..GrowthPolicy::Allow.into()
         };
         let runtimes = [Runtime::embedded().unwrap()];
         write_fmu(&path, &model(kind), &runtimes, Overwrite::Refuse, export).unwrap();

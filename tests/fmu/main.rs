@@ -2,6 +2,9 @@
 
 #![cfg(feature = "cli")]
 
+#[path = "../common/bridges.rs"]
+#[allow(dead_code)] // each room needs a part of it
+mod bridges;
 #[path = "../common/matrix.rs"]
 #[allow(dead_code)] // each room needs a part of it
 mod matrix;
@@ -10,6 +13,7 @@ mod models;
 #[path = "../common/three_dof.rs"]
 mod three_dof;
 
+mod bridge;
 mod calculated_onset;
 mod description;
 mod importer;

@@ -259,7 +259,7 @@ fn least_squares_alone_are_what_they_were() {
     }
 }
 
-/// Six filters on 172 800 samples per motion, with a given pole (as `cargo bench --bench speed` trains) and a searched one.
+/// Six filters on 172 800 samples per motion, with a given pole (as `cargo bench -- training` does) and a searched one.
 #[test]
 #[ignore = "measures time"]
 fn what_the_constraints_cost_in_time() {

@@ -10,3 +10,4 @@ mod matrix;
 
 mod dissipative;
 mod dissipative_fits;
+mod moved_onsets;

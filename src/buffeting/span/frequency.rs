@@ -1,11 +1,15 @@
 //! Response of a bridge in the frequency domain: `S_η = H S_Q Hᴴ` with all modes coupled.
 
-use super::SpanProblem;
+use super::{SpanProblem, unstable};
+use crate::aerodynamics::Transfer;
 use crate::bridge::ModalForces;
 use crate::buffeting::quadrature::integrate;
 use crate::buffeting::spectrum::GustComponent;
+use crate::buffeting::stability::{Turning, turning};
 use crate::error::{Error, Result};
 use crate::flutter::impedance;
+use crate::section::Structure;
+use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use nalgebra::{Complex, DMatrix};
 use serde::Serialize;
 use std::f64::consts::TAU;
@@ -29,6 +33,10 @@ pub struct SpanResponse {
     pub rms: Vec<[f64; 3]>,
     /// Mean frequency of upward crossings of the mean, Hz.
     pub crossing_frequency_hz: Vec<[f64; 3]>,
+    /// Part of each variance inside the tested range of `K`, where the forces have one; the rest rests on forces that were
+    /// not tested.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub part_in_tested_range: Option<Vec<[f64; 3]>>,
 }
 
 impl SpanResponse {
@@ -45,161 +53,200 @@ impl SpanResponse {
     }
 }
 
-/// Root mean squares of the displacements of `nodes` about their mean.
-///
-/// # Errors
-/// [`Error::Input`] for parts that do not fit together and forces that say nothing at a `K`; [`Error::Unstable`] when the
-/// bridge is unstable at this speed.
-pub(crate) fn span_response(
-    problem: &SpanProblem<'_>,
-    nodes: &[usize],
-    speed_m_s: f64,
-) -> Result<SpanResponse> {
-    problem.validate(speed_m_s)?;
-    let (_, roots) = problem.coupled(speed_m_s)?;
-    let shapes = problem.bridge.shapes_at(nodes);
-    let forces = problem.bridge.forces();
-    let mut breaks: Vec<f64> = roots
-        .iter()
-        .map(|z| z.im / TAU)
-        .filter(|f| *f > 1e-6)
-        .collect();
-    breaks.sort_by(f64::total_cmp);
-    breaks.dedup_by(|a, b| *a < *b * (1.0 + 1e-4));
-    let highest = problem
-        .bridge
-        .modes
-        .iter()
-        .map(|m| m.frequency_hz)
-        .fold(0.0, f64::max);
-    breaks.retain(|f| *f < REACH * highest);
-    breaks.insert(0, 0.0);
-    breaks.push(REACH * highest);
-    let densities = |f: f64| -> Result<Vec<f64>> {
-        let spectra = spectra(problem, &forces, &shapes, (f, speed_m_s))?;
-        let rates = spectra.iter().map(|s| s * (TAU * f).powi(2));
-        Ok(spectra.iter().copied().chain(rates).collect())
-    };
-    let (variances, _) = integrate(densities, &breaks, TOLERANCE)?;
-    let rows = shapes.nrows();
-    let of = |n: usize, i: usize| variances[3 * n + i].sqrt();
-    let crossing =
-        |n: usize, i: usize| (variances[rows + 3 * n + i] / variances[3 * n + i]).sqrt() / TAU;
-    let count = 0..nodes.len();
-    Ok(SpanResponse {
-        speed_m_s,
-        nodes: nodes.to_vec(),
-        rms: count
-            .clone()
-            .map(|n| std::array::from_fn(|i| of(n, i)))
-            .collect(),
-        crossing_frequency_hz: count
-            .map(|n| std::array::from_fn(|i| crossing(n, i)))
-            .collect(),
-    })
-}
-
 /// One-sided spectra of the displacements of named nodes.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SpanSpectra {
-    /// Hz, rising; close together at the resonances.
+    /// Hz, rising from zero; close together at the resonances.
     pub frequencies_hz: Vec<f64>,
     /// Vertical, lateral (m²/Hz) and rotation (rad²/Hz) of each node at every frequency.
     pub densities: Vec<[Vec<f64>; 3]>,
 }
 
-/// Spectra of the displacements of `nodes`, from a hundredth of the slowest resonance to four times the highest frequency.
-///
-/// # Errors
-/// [`Error::Input`] for parts that do not fit together and forces that say nothing at a `K`; [`Error::Unstable`] when the
-/// bridge is unstable at this speed.
-pub(crate) fn span_spectra(
-    problem: &SpanProblem<'_>,
-    nodes: &[usize],
+/// A bridge in turbulence at one mean wind speed, at which it is stable. Its self-excited forces are asked for at frequencies
+/// alone, so that tables serve as well as models.
+pub(crate) struct SpanFrequency<'a> {
+    problem: &'a SpanProblem<'a>,
+    structure: Structure,
+    forces: ModalForces,
     speed_m_s: f64,
-) -> Result<SpanSpectra> {
-    problem.validate(speed_m_s)?;
-    let (_, roots) = problem.coupled(speed_m_s)?;
-    let frequencies_hz = resolved(&roots);
-    let shapes = problem.bridge.shapes_at(nodes);
-    let forces = problem.bridge.forces();
-    let mut densities = vec![[const { Vec::new() }; 3]; nodes.len()];
-    for frequency in &frequencies_hz {
-        let all = spectra(problem, &forces, &shapes, (*frequency, speed_m_s))?;
-        for (row, density) in all.into_iter().enumerate() {
-            densities[row / 3][row % 3].push(density);
-        }
-    }
-    Ok(SpanSpectra {
-        frequencies_hz,
-        densities,
-    })
+    wind_factors: Vec<f64>,
+    /// Hz, and half of the half-power width of each.
+    resonances_hz: Vec<(f64, f64)>,
+    highest_hz: f64,
 }
 
-/// Frequencies, Hz, that show every resonance: evenly spread on a logarithmic scale, and within ten half-power widths of
-/// each eigenvalue.
-fn resolved(roots: &[Complex<f64>]) -> Vec<f64> {
-    let resonances = roots.iter().filter(|z| z.im > 1e-6 * z.norm());
-    let hertz: Vec<(f64, f64)> = resonances.map(|z| (z.im / TAU, -z.re / TAU)).collect();
-    let lowest = hertz.iter().map(|r| r.0).fold(f64::INFINITY, f64::min) / 100.0;
-    let highest = hertz.iter().map(|r| r.0).fold(0.0, f64::max) * REACH;
+impl<'a> SpanFrequency<'a> {
+    /// Looks whether the bridge is stable at this speed, and where it resonates.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for parts that do not fit together and forces that say nothing at a `K`; [`Error::Unstable`] when the
+    /// bridge is unstable at this speed; [`Error::Numerical`] at an onset itself.
+    pub(crate) fn new(problem: &'a SpanProblem<'a>, speed_m_s: f64) -> Result<Self> {
+        problem.validate(speed_m_s)?;
+        let (structure, forces) = (problem.bridge.structure(), problem.bridge.forces());
+        let turned = turning(&structure, &forces, speed_m_s)?;
+        if turned.growing > 0 {
+            let at = growth(&turned, &structure, &forces, speed_m_s);
+            return Err(unstable(turned.growing, &at, speed_m_s));
+        }
+        let modes = problem.bridge.modes.iter();
+        let highest = modes.map(|m| m.frequency_hz).fold(0.0, f64::max);
+        let mut resonances_hz = turned.resonances_hz;
+        resonances_hz.retain(|(hertz, _)| *hertz < REACH * highest);
+        Ok(Self {
+            problem,
+            structure,
+            forces,
+            speed_m_s,
+            wind_factors: problem.wind_factors(),
+            resonances_hz,
+            highest_hz: highest,
+        })
+    }
+
+    /// Root mean squares of the displacements of `nodes` about their mean. `tested` are the reduced frequencies, of the bridge,
+    /// in which the forces were tested.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for forces that say nothing at a `K`; [`Error::Numerical`] when the integral does not settle.
+    pub(crate) fn response(
+        &self,
+        nodes: &[usize],
+        tested: Option<ReducedFrequencyRange>,
+    ) -> Result<SpanResponse> {
+        let shapes = self.problem.bridge.shapes_at(nodes);
+        let speed_m_s = self.speed_m_s;
+        let hertz = |k: ReducedFrequency| k.circular(self.structure.width_m, speed_m_s) / TAU;
+        let tested = tested.map(|range| (hertz(range.min), hertz(range.max)));
+        let last = REACH * self.highest_hz;
+        let mut breaks = vec![0.0, last];
+        breaks.extend(self.resonances_hz.iter().map(|(hertz, _)| *hertz));
+        breaks.extend(tested.iter().flat_map(|(low, high)| [*low, *high]));
+        breaks.retain(|f| *f <= last);
+        breaks.sort_by(f64::total_cmp);
+        breaks.dedup_by(|a, b| *a <= *b * (1.0 + 1e-6));
+        let densities = |f: f64| -> Result<Vec<f64>> {
+            let spectra = self.spectra_at(f, &shapes)?;
+            let inside = tested.is_some_and(|(low, high)| (low..=high).contains(&f));
+            let rates = spectra.iter().map(|s| s * (TAU * f).powi(2));
+            let part = spectra.iter().map(|s| if inside { *s } else { 0.0 });
+            Ok(spectra.iter().copied().chain(rates).chain(part).collect())
+        };
+        let (variances, _) = integrate(densities, &breaks, TOLERANCE)?;
+        let rows = shapes.nrows();
+        let list = |of: &dyn Fn(usize) -> f64| -> Vec<[f64; 3]> {
+            let count = 0..nodes.len();
+            count
+                .map(|n| std::array::from_fn(|i| of(3 * n + i)))
+                .collect()
+        };
+        Ok(SpanResponse {
+            speed_m_s,
+            nodes: nodes.to_vec(),
+            rms: list(&|row| variances[row].sqrt()),
+            crossing_frequency_hz: list(&|row| {
+                (variances[rows + row] / variances[row]).sqrt() / TAU
+            }),
+            part_in_tested_range: tested
+                .map(|_| list(&|row| variances[2 * rows + row] / variances[row])),
+        })
+    }
+
+    /// Spectra of the displacements of `nodes`, from zero to four times the fastest resonance.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for forces that say nothing at a `K`.
+    pub(crate) fn spectra(&self, nodes: &[usize]) -> Result<SpanSpectra> {
+        let frequencies_hz = resolved(&self.resonances_hz);
+        let shapes = self.problem.bridge.shapes_at(nodes);
+        let mut densities = vec![[const { Vec::new() }; 3]; nodes.len()];
+        for frequency in &frequencies_hz {
+            let all = self.spectra_at(*frequency, &shapes)?;
+            for (row, density) in all.into_iter().enumerate() {
+                densities[row / 3][row % 3].push(density);
+            }
+        }
+        Ok(SpanSpectra {
+            frequencies_hz,
+            densities,
+        })
+    }
+
+    /// One-sided spectra of the rows of `shapes` at a frequency.
+    fn spectra_at(&self, frequency_hz: f64, shapes: &DMatrix<f64>) -> Result<Vec<f64>> {
+        // the limit at zero: what is static has no phase
+        let frequency = frequency_hz.max(1e-9);
+        let (problem, speed) = (self.problem, self.speed_m_s);
+        let z = impedance(&self.structure, &self.forces, speed, TAU * frequency)?;
+        // rows of Φ H: (Zᵀ)⁻¹ Φᵀ
+        let rows = z
+            .transpose()
+            .lu()
+            .solve(&shapes.transpose().map(Complex::from))
+            .ok_or_else(|| {
+                Error::Numerical(format!(
+                    "buffeting: the impedance is singular at {frequency} Hz and {speed} m/s"
+                ))
+            })?;
+        let mut total = vec![0.0; shapes.nrows()];
+        for component in GustComponent::BOTH {
+            let Some(gust) = problem.turbulence.component(component) else {
+                continue;
+            };
+            let gaps = problem
+                .coherence
+                .of_gaps(component, problem.bridge, frequency, speed);
+            // motion of each row by a gust of the size of the turbulence at each node
+            let mut motion = problem.force_of_gusts(component, frequency, speed) * &rows;
+            for (factor, mut row) in self.wind_factors.iter().zip(motion.row_iter_mut()) {
+                let local = factor * speed;
+                let density = if local > 0.0 {
+                    gust.spectrum.density(component, frequency, local)
+                } else {
+                    0.0
+                };
+                row *= Complex::from(density.sqrt());
+            }
+            for (sum, column) in total.iter_mut().zip(motion.column_iter()) {
+                *sum += coherent_power(column.as_slice(), &gaps);
+            }
+        }
+        Ok(total)
+    }
+}
+
+/// Where motions grow, in words, and whether tables know of it.
+fn growth(turned: &Turning, structure: &Structure, forces: &ModalForces, speed: f64) -> String {
+    let growing = turned.resonances_hz.iter().filter(|r| r.1 < 0.0);
+    let one = |(hertz, _): &(f64, f64)| {
+        let k = ReducedFrequency::from_hertz(*hertz, structure.width_m, speed);
+        let tested = match forces.known_range().map(|range| range.contains(k)) {
+            Some(true) => ", inside the tested range",
+            Some(false) => ", where nothing was tested",
+            None => "",
+        };
+        format!(" near {hertz:.4} Hz (K {:.3}{tested})", k.full_width())
+    };
+    growing.map(one).collect::<Vec<_>>().join(",")
+}
+
+/// Frequencies, Hz, that show every resonance: zero, from a hundredth of the slowest on evenly spread on a logarithmic scale,
+/// and within ten half-power widths of each. Zero, since a motion whose resonance is a fast one follows slow gusts: below the
+/// hundredth lies a twenty-fifth of the variance of a rotation.
+fn resolved(resonances_hz: &[(f64, f64)]) -> Vec<f64> {
+    let hertz = resonances_hz.iter().map(|r| r.0);
+    let lowest = hertz.clone().fold(f64::INFINITY, f64::min) / 100.0;
+    let highest = hertz.fold(0.0, f64::max) * REACH;
     let even = (0..=EVEN).map(|i| lowest * (highest / lowest).powf(i as f64 / EVEN as f64));
-    let near = hertz.iter().flat_map(|(f, half)| {
+    let near = resonances_hz.iter().flat_map(|(f, half)| {
         (-AROUND..=AROUND)
-            .map(move |i| f + half * 10.0 * (f64::from(i) / f64::from(AROUND)).powi(3))
+            .map(move |i| f + half.abs() * 10.0 * (f64::from(i) / f64::from(AROUND)).powi(3))
     });
-    let mut all: Vec<f64> = even.chain(near.filter(|f| *f > 0.0)).collect();
+    let above = even.chain(near.filter(|f| *f > 0.0));
+    let mut all: Vec<f64> = std::iter::once(0.0).chain(above).collect();
     all.sort_by(f64::total_cmp);
     all.dedup_by(|a, b| *a <= *b * (1.0 + 1e-9));
     all
-}
-
-/// One-sided spectra of the rows of `shapes` at a frequency.
-fn spectra(
-    problem: &SpanProblem<'_>,
-    forces: &ModalForces,
-    shapes: &DMatrix<f64>,
-    (frequency, speed): (f64, f64),
-) -> Result<Vec<f64>> {
-    // the limit at zero: what is static has no phase
-    let frequency = frequency.max(1e-9);
-    let structure = problem.bridge.structure();
-    let z = impedance(&structure, forces, speed, TAU * frequency)?;
-    // rows of Φ H: (Zᵀ)⁻¹ Φᵀ
-    let rows = z
-        .transpose()
-        .lu()
-        .solve(&shapes.transpose().map(Complex::from))
-        .ok_or_else(|| {
-            Error::Numerical(format!(
-                "buffeting: the impedance is singular at {frequency} Hz and {speed} m/s"
-            ))
-        })?;
-    let factors = problem.wind_factors();
-    let mut total = vec![0.0; shapes.nrows()];
-    for component in GustComponent::BOTH {
-        let Some(gust) = problem.turbulence.component(component) else {
-            continue;
-        };
-        let gaps = problem
-            .coherence
-            .of_gaps(component, problem.bridge, frequency, speed);
-        // motion of each row by a gust of the size of the turbulence at each node
-        let mut motion = problem.force_of_gusts(component, frequency, speed) * &rows;
-        for (n, mut row) in motion.row_iter_mut().enumerate() {
-            let local = factors[n] * speed;
-            let density = if local > 0.0 {
-                gust.spectrum.density(component, frequency, local)
-            } else {
-                0.0
-            };
-            row *= Complex::from(density.sqrt());
-        }
-        for (sum, column) in total.iter_mut().zip(motion.column_iter()) {
-            *sum += coherent_power(column.as_slice(), &gaps);
-        }
-    }
-    Ok(total)
 }
 
 /// `vᴴ C v` with the exponential coherence of a line, in one pass: `C = T + Tᴴ − I` with a recursion for `T`.

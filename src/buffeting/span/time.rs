@@ -74,7 +74,7 @@ pub fn span_record(
     field: &TurbulenceField,
 ) -> Result<SpanRecord> {
     problem.validate(speed_m_s)?;
-    let (coupled, _) = problem.coupled(speed_m_s)?;
+    let coupled = problem.coupled(speed_m_s)?;
     let mut periodic = Periodic::new(coupled, speed_m_s, field.step_s, field.samples())?;
     let forces = modal_forces(problem, field, speed_m_s)?;
     let shapes = problem.bridge.shapes_at(nodes);
@@ -141,7 +141,7 @@ pub(crate) fn span_ensemble(
             plan.records.to_string(),
         ));
     }
-    let (coupled, _) = problem.coupled(speed_m_s)?;
+    let coupled = problem.coupled(speed_m_s)?;
     let samples = 2 * (0.5 * plan.duration_s / plan.step_s).round() as usize;
     let mut periodic = Periodic::new(coupled, speed_m_s, plan.step_s, samples)?;
     let shapes = problem.bridge.shapes_at(nodes);

@@ -1,19 +1,22 @@
 //! The onset card of a bridge, in words.
 
+use crate::cli::headline;
 use crate::error::counted;
 use crate::flutter::{FlutterSearch, OnsetInterval};
 use crate::study::bridge::{BridgeAnswer, BridgeFlutter, BridgeStudy};
+use crate::verdict::Verdict;
 use std::fmt::Write as _;
 
 /// Modes with less of the kinetic energy are not named on the card.
 const NAMED_SHARE: f64 = 1e-3;
 
 /// The card.
-pub(crate) fn card(study: &BridgeStudy, results: &BridgeFlutter) -> String {
+pub(crate) fn card(study: &BridgeStudy, results: &BridgeFlutter, verdict: &Verdict) -> String {
     let bridge = &study.by_model;
-    let mut text = format!(
-        "{}: {}, {}, {} of strips; K refers to B = {} m\n",
-        study.file.name,
+    let mut text = headline::account(&study.file.name, verdict, &[]);
+    let _ = writeln!(
+        text,
+        "Bridge    {}, {}, {} of strips; K refers to B = {} m",
         counted(bridge.nodes.len(), "node"),
         counted(bridge.modes.len(), "mode"),
         counted(bridge.groups.len(), "group"),
@@ -46,9 +49,6 @@ pub(crate) fn card(study: &BridgeStudy, results: &BridgeFlutter) -> String {
     for sentence in beside_the_onset(results) {
         let _ = writeln!(text, "{sentence}");
     }
-    if let Some(why) = &results.curves.ended {
-        let _ = writeln!(text, "curves end early: {why}");
-    }
     text
 }
 
@@ -61,7 +61,14 @@ pub(super) fn beside_the_onset(results: &BridgeFlutter) -> Vec<String> {
         format!("Greatest mean rotation at the onset: {rotation:.3}° (nose-up positive)")
     });
     let divergence = format!("Divergence of the model: {divergence}");
-    std::iter::once(divergence).chain(rotation).collect()
+    let of_tables = results.table_divergence.as_ref().map(|d| {
+        let speed = d
+            .speed_m_s
+            .map_or("none".to_owned(), |v| format!("{v:.3} m/s"));
+        format!("Divergence of the tables: {speed}")
+    });
+    let all = std::iter::once(divergence).chain(of_tables);
+    all.chain(rotation).collect()
 }
 
 fn interval(of: &OnsetInterval) -> String {

@@ -1,6 +1,7 @@
 //! `aerodeck bridge buffeting`: RMS and peak factors at named nodes.
 
 use super::super::answer::Answer;
+use super::super::evidence::text_cell;
 use super::super::progress::Progress;
 use super::args::BridgeArgs;
 use crate::buffeting::TurbulenceField;
@@ -55,7 +56,7 @@ pub(super) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     }
     let head = format!("{} at {} m/s\n", study.file.name, args.speed);
     let json = serde_json::json!({ "buffeting": results, "notes": study.warnings(), "findings": study.findings });
-    out.answer(head + &table(&results), json)
+    out.answer(head + &forces(&results) + "\n" + &table(&results), json)
 }
 
 /// The response to the turbulence of a file.
@@ -93,35 +94,80 @@ fn by_file(
 const MOTIONS: [&str; 3] = ["vertical m", "lateral m", "rotation rad"];
 
 fn table(results: &BridgeBuffeting) -> String {
-    let time = &results.time;
     let mut text = format!(
-        "{} of {} s, every {} s, seed {}\n{:<8} {:<14} {:>12} {:>12} {:>11} {:>11} {:>8} {:>8}\n",
-        counted(time.plan.records, "record"),
-        time.plan.duration_s,
-        time.plan.step_s,
-        time.plan.seed,
+        "{:<8} {:<14} {:>12} {:>11} {:>8} {:>12} {:>11} {:>8}\n",
         "node",
         "motion",
         "RMS, freq.",
+        "crossing Hz",
+        "expected",
         "RMS, time",
         "std. error",
-        "crossing Hz",
-        "peak f.",
-        "expected"
+        "peak f."
     );
     for (n, name) in results.nodes.iter().enumerate() {
         for (i, motion) in MOTIONS.into_iter().enumerate() {
-            let _ = writeln!(
+            let _ = write!(
                 text,
-                "{name:<8} {motion:<14} {:>12.5e} {:>12.5e} {:>11.2e} {:>11.4} {:>8.3} {:>8.3}",
+                "{name:<8} {motion:<14} {:>12.5e} {:>11.4} {:>8.3}",
                 results.frequency.rms[n][i],
-                time.rms[n][i],
-                time.standard_error[n][i],
                 results.frequency.crossing_frequency_hz[n][i],
-                time.peak_factor[n][i],
                 results.expected_peak_factor[n][i]
             );
+            let _ = match &results.time {
+                Some(time) => writeln!(
+                    text,
+                    " {:>12.5e} {:>11.2e} {:>8.3}",
+                    time.rms[n][i], time.standard_error[n][i], time.peak_factor[n][i]
+                ),
+                None => writeln!(text, " {:>12} {:>11} {:>8}", "-", "-", "-"),
+            };
         }
+    }
+    text
+}
+
+/// Which forces each domain takes, and how far that of the time domain leaves the answer.
+fn forces(results: &BridgeBuffeting) -> String {
+    let mut text = String::new();
+    if let Some(models) = &results.models {
+        text.push_str(
+            "frequency domain: tables between their points (or the flat plate, exactly)\n",
+        );
+        let fits = models.fits.join("; ");
+        let _ = writeln!(text, "time domain: models ({fits})");
+        if let Some((n, i, change)) = models.largest() {
+            let _ = writeln!(
+                text,
+                "  in the frequency domain their RMS differs from that of the tables by up to {:+.1} % ({} at node {})",
+                100.0 * change,
+                MOTIONS[i].split(' ').next().unwrap_or_default(),
+                results.nodes[n]
+            );
+        }
+    }
+    if let Some(time) = &results.time {
+        let plan = &time.plan;
+        let _ = writeln!(
+            text,
+            "time domain: {} of {} s, every {} s, seed {}",
+            counted(plan.records, "record"),
+            plan.duration_s,
+            plan.step_s,
+            plan.seed
+        );
+    }
+    if let Some(why) = &results.no_time {
+        let _ = writeln!(text, "no time domain: {why}");
+    }
+    let parts = results.frequency.part_in_tested_range.iter().flatten();
+    let least = parts.flatten().copied().reduce(f64::min);
+    if let Some(least) = least {
+        let _ = writeln!(
+            text,
+            "variance inside the tested range of K: {:.0} % at least; the rest is extrapolation",
+            100.0 * least
+        );
     }
     text
 }
@@ -130,7 +176,7 @@ fn spectra_csv(results: &BridgeBuffeting) -> String {
     let mut text = "# one-sided spectra of the displacements\nfrequency_hz".to_owned();
     for name in &results.nodes {
         for motion in ["vertical_m2_hz", "lateral_m2_hz", "rotation_rad2_hz"] {
-            let _ = write!(text, ",node[{name}].{motion}");
+            let _ = write!(text, ",{}", text_cell(&format!("node[{name}].{motion}")));
         }
     }
     text.push('\n');

@@ -14,7 +14,7 @@ use crate::fmu::package::{FmiVersion, Label, Runtime, package_bridge};
 use crate::study::bridge::{BridgeExportOptions, BridgeStudy, demo_bridge_text};
 use crate::study::{Deck, KnownUncertainty, RecordSet, StageFailure, Study, demo_study_text};
 use crate::trained_model::TrainedModel;
-use std::fmt::Write as _;
+use crate::verdict::Verdict;
 use std::path::Path;
 
 const BRIDGE_FILE: &str = "bridge.toml";
@@ -38,21 +38,21 @@ pub(crate) fn run(directory: &Path, force: bool, progress: &Progress) -> Result<
         failed.push(format!("FMU: {e}"));
     }
     drop(stage);
-    let mut text = card(&study, &results);
-    for failure in &failed {
-        let _ = writeln!(text, "failed: {failure}");
-    }
+    let verdict = Verdict::of(&study.evidence(&results, &failed));
+    let mut text = card(&study, &results, &verdict);
     let ran = BridgeRun {
         text: demo_bridge_text().to_owned(),
         command: "aerodeck demo --bridge --out results".to_owned(),
     };
-    let summary = summary::leave(&ran, (&study, &results), (&[], &failed), &mut out)?;
+    let summary = summary::leave(&ran, (&study, &results, &verdict), (&[], &failed), &mut out)?;
     let answer_json =
         serde_json::to_value(&summary).map_err(|e| Error::Numerical(e.to_string()))?;
     let passed = failed.is_empty();
     let written = out.commit()?;
     text.push_str(&list(&written));
-    Ok(Answer::new(text, &answer_json)?.with_verdict(passed))
+    Ok(Answer::new(text, &answer_json)?
+        .passed_if(passed)
+        .with_outcome_of(&verdict))
 }
 
 /// The FMU of the bridge.

@@ -1,7 +1,7 @@
 //! `aerodeck bridge flutter`: onset, modes that take part, curves, the motion at flutter.
 
 use super::super::answer::Answer;
-use super::super::evidence::{DerivativesShown, curves_csv};
+use super::super::evidence::{DerivativesShown, curves_csv, text_cell};
 use super::super::figures;
 use super::super::output::OutputDir;
 use super::super::progress::Progress;
@@ -12,15 +12,16 @@ use super::files::{
 };
 use super::{account, summary};
 use crate::error::Result;
-use crate::files::derivatives::named_table;
 use crate::flutter::BridgeMotion;
 use crate::report::{
     bridge_curves_figure, bridge_roots_figure, derivatives_figure, flutter_motion_figure,
 };
 use crate::study::bridge::{
-    BridgeFlutter, BridgeStudy, DerivativeScatter, Scatter, ScatteredOnset, bridge_flutter,
+    BridgeFlutter, BridgeStudy, DerivativeScatter, Scatter, ScatteredOnset, block_table,
+    bridge_flutter,
 };
 use crate::study::derivative_lines;
+use crate::verdict::Verdict;
 use std::fmt::Write as _;
 
 /// Phases of an animation over one period.
@@ -65,7 +66,8 @@ pub(super) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
             failed.push(format!("scatter: {e}"));
             None
         });
-    let mut text = account::card(&study, &results);
+    let verdict = Verdict::of(&study.evidence(&results, &failed));
+    let mut text = account::card(&study, &results, &verdict);
     let mut comparisons = Vec::new();
     if let Some(s) = &scattered {
         let line = scatter_line(s);
@@ -80,15 +82,15 @@ pub(super) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
         text.push_str("The folder already holds the report of a study, which was kept; --out with another folder writes the report of the bridge\n");
     } else {
         let said = (&comparisons[..], &failed[..]);
-        summary::leave(&ran, (&study, &results), said, &mut out)?;
-    }
-    for failure in &failed {
-        let _ = writeln!(text, "failed: {failure}");
+        summary::leave(&ran, (&study, &results, &verdict), said, &mut out)?;
     }
     let json = serde_json::json!({
-        "bridge": study.file.name, "onsets": results.onsets().collect::<Vec<_>>(), "flutter": results, "scatter": scattered, "notes": study.warnings(), "findings": study.findings, "failed": failed
+        "bridge": study.file.name, "verdict": verdict, "onsets": results.onsets().collect::<Vec<_>>(), "flutter": results, "scatter": scattered, "notes": study.warnings(), "findings": study.findings, "failed": failed
     });
-    Ok(out.answer(text, json)?.with_verdict(failed.is_empty()))
+    Ok(out
+        .answer(text, json)?
+        .passed_if(failed.is_empty())
+        .with_outcome_of(&verdict))
 }
 
 impl Args {
@@ -205,7 +207,7 @@ fn write_derivatives(study: &BridgeStudy, number: usize, out: &mut OutputDir) ->
         return Ok(());
     };
     let table = block.derivatives.as_ref();
-    let table = table.map(|name| named_table(name, &study.file.directory));
+    let table = table.map(|name| block_table(block, name, &study.file.directory));
     let table = table.transpose()?;
     let model = forces.model.as_ref();
     let shown = DerivativesShown {
@@ -232,7 +234,14 @@ fn motion_csv(motion: &BridgeMotion) -> String {
         let _ = writeln!(
             text,
             "{},{},{},{},{},{},{},{}",
-            n.node, n.along_m, y[0], y[1], x[0], x[1], t[0], t[1]
+            text_cell(&n.node),
+            n.along_m,
+            y[0],
+            y[1],
+            x[0],
+            x[1],
+            t[0],
+            t[1]
         );
     }
     text
@@ -246,7 +255,12 @@ fn animation_csv(motion: &BridgeMotion) -> String {
         let (sin, cos) = (std::f64::consts::TAU * phase).sin_cos();
         for n in &motion.nodes {
             let [y, x, t] = n.motion.map(|z| z[0] * cos - z[1] * sin);
-            let _ = writeln!(text, "{phase},{},{},{y},{x},{t}", n.node, n.along_m);
+            let _ = writeln!(
+                text,
+                "{phase},{},{},{y},{x},{t}",
+                text_cell(&n.node),
+                n.along_m
+            );
         }
     }
     text

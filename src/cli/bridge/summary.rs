@@ -1,16 +1,14 @@
 //! `summary.json` of a bridge and the page that is made from it.
 
-use super::super::headline;
 use super::super::output::OutputDir;
-use super::super::report::{
-    self, AnswerView, BridgeFacts, ModeFacts, REPORT, SUMMARY, SectionFacts,
-};
+use super::super::report::{self, BridgeFacts, ModeFacts, REPORT, SUMMARY, SectionFacts};
 use super::account::beside_the_onset;
 use crate::error::Result;
-use crate::flutter::{FlutterSearch, Onset};
+use crate::flutter::Onset;
 use crate::plausibility::Finding;
 use crate::section::Dof;
 use crate::study::bridge::{BridgeFlutter, BridgeStudy};
+use crate::verdict::Verdict;
 use serde::Serialize;
 
 /// What was run.
@@ -38,7 +36,7 @@ pub(super) struct Summary<'a> {
 /// Leaves summary and page; `said` is what else was found, in words.
 pub(super) fn leave<'a>(
     ran: &BridgeRun,
-    (study, results): (&'a BridgeStudy, &'a BridgeFlutter),
+    (study, results, verdict): (&'a BridgeStudy, &'a BridgeFlutter, &Verdict),
     (said, failed): (&[String], &'a [String]),
     out: &mut OutputDir,
 ) -> Result<Summary<'a>> {
@@ -50,8 +48,7 @@ pub(super) fn leave<'a>(
             bridge: study.file.name.clone(),
             bridge_file: ran.text.clone(),
             command: ran.command.clone(),
-            answer: answer(results),
-            limits: limits(study, results, failed),
+            verdict: verdict.clone(),
             comparisons: [beside_the_onset(results), said.to_vec()].concat(),
             nodes: study.by_model.nodes.len(),
             length_m: study.by_model.nodes.iter().map(|n| n.length_m).sum(),
@@ -70,43 +67,6 @@ pub(super) fn leave<'a>(
     let page = report::page(out.staging(), &out.target(""))?;
     out.write(REPORT, page)?;
     Ok(summary)
-}
-
-/// The answer is that of the models, which is searched last.
-fn own(results: &BridgeFlutter) -> Option<&FlutterSearch> {
-    results.answers.last().map(|a| &a.search)
-}
-
-fn answer(results: &BridgeFlutter) -> AnswerView {
-    let search = own(results);
-    let onset = search.and_then(FlutterSearch::onset);
-    let headline = match (onset, search) {
-        (Some(onset), _) => onset.headline(),
-        (None, Some(search)) => search.explain(),
-        (None, None) => "no answer: nothing was searched".to_owned(),
-    };
-    AnswerView {
-        model: "model".to_owned(),
-        headline,
-        speed_m_s: onset
-            .filter(|o| o.headline_m_s().is_ok())
-            .map(|o| o.at.speed_m_s),
-        required_speed_m_s: None,
-        required_speed_met: None,
-    }
-}
-
-fn limits(study: &BridgeStudy, results: &BridgeFlutter, failed: &[String]) -> Vec<String> {
-    let mut limits = Vec::new();
-    if let Some(onset) = own(results).and_then(FlutterSearch::onset) {
-        limits.extend(headline::limits_of(onset, "the models are"));
-    }
-    limits.extend(study.warnings());
-    if let Some(why) = &results.curves.ended {
-        limits.push(format!("The curves end early: {why}"));
-    }
-    limits.extend(failed.iter().map(|f| format!("failed: {f}")));
-    limits
 }
 
 fn sections(study: &BridgeStudy) -> Vec<SectionFacts> {

@@ -33,7 +33,7 @@ pub(super) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     };
     drop(stage);
     let passed = report.passed();
-    Ok(Answer::new(text(&report), &report)?.with_verdict(passed))
+    Ok(Answer::new(text(&report), &report)?.passed_if(passed))
 }
 
 fn text(report: &CheckReport) -> String {

@@ -260,6 +260,7 @@ pub(super) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
         force: args.force(&model)?,
         gusts: args.gusts(&model)?,
         bounds,
+        verdict: None,
         label: args.label()?,
         version: args.fmi,
         listing: args.listing(),

@@ -2,9 +2,8 @@
 
 use super::curves::curves_of;
 use super::folder::{SUMMARY, digest, parsed};
-use super::parts::{capital, card, known, of_svg, round, row};
+use super::parts::{card, known, of_svg, round, row};
 use super::variables::variables_of;
-use super::view::AnswerView;
 use crate::cli::bridge::{
     BRIDGE_FMU, CURVES, DERIVATIVES_FIGURE, FLUTTER_FIGURE, MOTION_FIGURE, ROOTS_FIGURE,
     shown_modes,
@@ -15,6 +14,7 @@ use crate::flutter::{ModeShare, Onset};
 use crate::report::{PageCurve, PageFigure, PageSection, StudyPage, study_page};
 use crate::study::bridge::LeftOut;
 use crate::units::ReducedFrequencyRange;
+use crate::verdict::Verdict;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
@@ -32,10 +32,8 @@ pub(crate) struct BridgeFacts {
     pub(crate) bridge_file: String,
     /// The command that made the results.
     pub(crate) command: String,
-    /// The answer in words.
-    pub(crate) answer: AnswerView,
-    /// What limits trust in it.
-    pub(crate) limits: Vec<String>,
+    /// What everything found amounts to.
+    pub(crate) verdict: Verdict,
     /// What else was found, in words.
     pub(crate) comparisons: Vec<String>,
     /// Number of nodes of the girder.
@@ -116,34 +114,30 @@ pub(super) fn page(folder: &Path, text: &str) -> Result<String> {
     let shares = route.and_then(|r| r.motion.as_ref());
     let shares = shares.map_or(&[][..], |m| &m.modes);
     // found in the order of the routes, the model last
-    let own = view
-        .onsets
-        .iter()
-        .rfind(|_| facts.answer.speed_m_s.is_some());
+    let own = view.onsets.last();
     let mut page = StudyPage {
         title: facts.bridge.clone(),
         subtitle: "Flutter of a whole bridge",
         kind: "bridge file",
         beyond: "Amplitudes beyond the tests, turbulence, towers and cables in the wind are not part of this analysis.",
         generator: facts.generator.clone(),
-        headline: capital(&facts.answer.headline),
+        verdict: (&facts.verdict).into(),
         card: own.map_or(vec![], card),
-        whose: "The answer is that of the models of the sections, by the eigenvalues of all modes in the wind; tables read between their \
-                points stand below for comparison, where there are some. The motion is that of the node that turns most."
+        whose: "The verdict is about tables read between their points, where there are some and they reach the onset; the numbers of the card \
+                are those of the models of the sections, by the eigenvalues of all modes in the wind. The motion is that of the node that turns most."
             .to_owned(),
-        limits: facts.limits.clone(),
         asked: asked(facts, &file),
         onsets: view.onsets.iter().map(row).collect(),
         comparisons: facts.comparisons.clone(),
         sections: vec![
             taking_part(shares),
-            fewer(&view.flutter.left_out, facts),
+            fewer(&view.flutter.left_out, own.map(|o| o.at.speed_m_s)),
         ],
         appendix: vec![data(facts), modes(facts)],
         figures: figures(&text_of, &facts.sections),
         command: facts.command.clone(),
         licence: licences(facts),
-        onset: facts.answer.speed_m_s,
+        onset: own.map(|o| o.at.speed_m_s),
         interval: own.and_then(|o| known(&o.interval)),
         text: facts.bridge_file.clone(),
         ..StudyPage::default()
@@ -276,8 +270,7 @@ fn taking_part(shares: &[ModeShare]) -> PageSection {
     }
 }
 
-fn fewer(left_out: &[LeftOut], facts: &BridgeFacts) -> PageSection {
-    let full = facts.answer.speed_m_s;
+fn fewer(left_out: &[LeftOut], full: Option<f64>) -> PageSection {
     let row = |l: &LeftOut| {
         let numbers: Vec<String> = l.modes.iter().map(usize::to_string).collect();
         let change = l

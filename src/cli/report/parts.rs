@@ -4,13 +4,6 @@ use crate::cli::account::interval;
 use crate::flutter::{Onset, OnsetInterval};
 use crate::report::PageFigure;
 
-/// `text` with a capital first letter.
-pub(super) fn capital(text: &str) -> String {
-    let mut characters = text.chars();
-    let first = characters.next().map(|c| c.to_uppercase().to_string());
-    first.unwrap_or_default() + characters.as_str()
-}
-
 /// The ends of an interval that is known.
 pub(super) fn known(interval: &OnsetInterval) -> Option<(f64, f64)> {
     match interval {
@@ -29,8 +22,10 @@ pub(super) fn card(onset: &Onset) -> Vec<(String, String)> {
             high_m_s,
             standard_error_m_s,
             degrees_of_freedom,
+            parts,
         } => format!(
-            "{low_m_s:.2} to {high_m_s:.2} m/s (standard error {standard_error_m_s:.2} m/s, {degrees_of_freedom:.0} {} of freedom)",
+            "{low_m_s:.2} to {high_m_s:.2} m/s (standard error {standard_error_m_s:.2} m/s: {}; {degrees_of_freedom:.0} {} of freedom)",
+            parts.explain(),
             if degrees_of_freedom.round_ties_even() == 1.0 {
                 "degree"
             } else {

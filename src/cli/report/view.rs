@@ -4,7 +4,8 @@ use crate::flutter::Onset;
 use crate::section::Dof;
 use crate::study::SpeedRange;
 use crate::units::ReducedFrequencyRange;
-use serde::{Deserialize, Serialize};
+use crate::verdict::Verdict;
+use serde::Deserialize;
 
 /// What is read of `summary.json`.
 #[derive(Deserialize)]
@@ -14,28 +15,14 @@ pub(super) struct SummaryView {
     pub(super) study_file: String,
     pub(super) deck: String,
     pub(super) licence: String,
-    pub(super) answer: AnswerView,
-    pub(super) limits: Vec<String>,
+    /// The model that the verdict is about.
+    pub(super) model: String,
+    pub(super) verdict: Verdict,
     pub(super) comparisons: Vec<String>,
     pub(super) onsets: Vec<Onset>,
     pub(super) undetermined: Vec<Onset>,
     pub(super) fits: Vec<FitView>,
     pub(super) speeds: SpeedRange,
-}
-
-/// The answer of a study in words, as `summary.json` holds it.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct AnswerView {
-    /// The model the answer is of.
-    pub(crate) model: String,
-    /// Speed, interval, tested range, in one line.
-    pub(crate) headline: String,
-    /// Onset, where the data determine one, m/s.
-    pub(crate) speed_m_s: Option<f64>,
-    /// What the study requires, m/s.
-    pub(crate) required_speed_m_s: Option<f64>,
-    /// Whether the lower end of the interval (the onset itself where there is none) lies above it.
-    pub(crate) required_speed_met: Option<bool>,
 }
 
 #[derive(Deserialize)]

@@ -62,7 +62,7 @@ fn time_and_frequency_domain_agree() {
     assert_eq!(results.entries.len(), 4);
     assert_eq!(results.scores.len(), 3 * 2 * 2 * 8);
     let coefficients: Vec<usize> = results.models.iter().map(|m| m.coefficients).collect();
-    assert_eq!(coefficients, [3, 3, 6]);
+    assert_eq!(coefficients, [3, 3, 8]);
     let mut checked = 0;
     for entry in &results.entries {
         for (model, points) in results.models.iter().zip(&entry.models) {

@@ -82,6 +82,7 @@ fn parse(bytes: Vec<u8>, span: &SpanBlock) -> Result<Modes> {
         length_m,
     });
     Ok(Modes {
+        reversed: false,
         source: "MATLAB wn and phi".to_owned(),
         nodes: nodes.collect(),
         modes: all,

@@ -3,7 +3,7 @@
 use super::axes::Frame;
 use crate::bridge::{BridgeMode, Node, tributary_lengths};
 use crate::error::{Error, Result};
-use crate::plausibility::{Finding, Girder, of_modes};
+use crate::plausibility::{Finding, Girder, Kind, of_modes};
 
 /// A mode with displacements and rotations along the axes of its program.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,11 +37,21 @@ pub struct Modes {
     pub offsets_m: Vec<[f64; 2]>,
     /// Modes; the damping ratio is zero where the file does not state it.
     pub modes: Vec<BridgeMode>,
+    /// Whether the files have the nodes in the opposite order: places along the girder count along up × downwind.
+    pub reversed: bool,
 }
 
 impl ModalData {
-    /// The modes in vertical, lateral and rotation, with tributary lengths by the trapezoidal rule.
-    pub(super) fn in_frame(self, frame: &Frame, source: String) -> Result<Modes> {
+    /// The modes in vertical, lateral and rotation, with tributary lengths by the trapezoidal rule. Nodes that all run against
+    /// up × downwind, since the wind blows from the other side, are taken in the opposite order.
+    pub(super) fn in_frame(mut self, frame: &Frame, source: String) -> Result<Modes> {
+        let mut pairs = self.nodes.windows(2);
+        let reversed = self.nodes.len() > 1
+            && pairs.all(|pair| frame.along(&pair[1].1) < frame.along(&pair[0].1));
+        if reversed {
+            self.nodes.reverse();
+            self.modes.iter_mut().for_each(|m| m.shape.reverse());
+        }
         let along: Vec<f64> = self.nodes.iter().map(|(_, p)| frame.along(p)).collect();
         let lengths = tributary_lengths(&along);
         let nodes = self.nodes.iter().zip(along.iter().zip(lengths));
@@ -66,6 +76,7 @@ impl ModalData {
             modes: modes.collect(),
             nodes,
             offsets_m,
+            reversed,
         })
     }
 }
@@ -112,15 +123,25 @@ impl Modes {
                 .filter_map(|i| self.offsets_m.get(*i).copied())
                 .collect(),
             modes: modes.collect(),
+            reversed: self.reversed,
         }
     }
 
     /// What is odd about them.
     pub fn findings(&self) -> Vec<Finding> {
-        of_modes(&Girder {
+        let mut findings = of_modes(&Girder {
             nodes: &self.nodes,
             offsets_m: &self.offsets_m,
             modes: &self.modes,
-        })
+        });
+        if let (true, [first, .., last]) = (self.reversed, &self.nodes[..]) {
+            let text = format!(
+                "taken in the opposite order, since places along the girder (wind profile, turbulence) count along \
+                 up × downwind: from {} m at node {} to {} m at node {}",
+                first.along_m, first.name, last.along_m, last.name
+            );
+            findings.push(Finding::doubt(Kind::Axes, "nodes", text).into_note());
+        }
+        findings
     }
 }

@@ -77,6 +77,7 @@ pub(super) fn parse(text: &str) -> Result<Modes> {
         })
     });
     Ok(Modes {
+        reversed: false,
         source: header.text("source"),
         modes: modes.collect::<Result<_>>()?,
         nodes,

@@ -5,6 +5,7 @@ use super::modal_data::Modes;
 use super::wind_block::WindBlock;
 use super::{Axes, abaqus, embedded, matlab, opensees, single_file, tables, wawi};
 use crate::aerodynamics::derivatives::Interpolation;
+use crate::aerodynamics::derivatives::notation::StatedConvention;
 use crate::aerodynamics::quasi_steady::{Arms, CoefficientsAt};
 use crate::bridge::BridgeMode;
 use crate::error::{Error, Result, non_negative, of_schema, positive};
@@ -143,10 +144,13 @@ pub struct SectionBlock {
     /// Embedded deck or file of a derivative table.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub derivatives: Option<String>,
+    /// Notation, argument and axes of the table, as far as it does not state them itself.
+    #[serde(default, skip_serializing_if = "StatedConvention::is_empty")]
+    pub convention: StatedConvention,
     /// How the table is read between its points.
     #[serde(default)]
     pub interpolation: Interpolation,
-    /// Filters of the model that is fitted to the table.
+    /// Filters of the model that is fitted to the table; every mode has them, and more than three cost more than they bring.
     #[serde(default = "three")]
     pub filters: usize,
     /// How the model is fitted to the table, as in a study; before `filters`.
@@ -213,6 +217,9 @@ pub struct SearchBlock {
     pub speed_max_m_s: f64,
     /// Speeds between still air and the highest.
     pub speeds: usize,
+    /// Nothing critical may begin below this wind speed, m/s: the criterion of a code. The search always reaches it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub required_speed_m_s: Option<f64>,
 }
 
 impl Default for SearchBlock {
@@ -220,6 +227,7 @@ impl Default for SearchBlock {
         Self {
             speed_max_m_s: 120.0,
             speeds: 60,
+            required_speed_m_s: None,
         }
     }
 }
@@ -248,6 +256,9 @@ impl BridgeFile {
         of_schema(SCHEMA, self.schema)?;
         positive("air_density_kg_m3", self.air_density_kg_m3)?;
         positive("flutter.speed_max_m_s", self.flutter.speed_max_m_s)?;
+        if let Some(required) = self.flutter.required_speed_m_s {
+            positive("flutter.required_speed_m_s", required)?;
+        }
         if self.sections.is_empty() {
             return Err(Error::input("section", "at least one [[section]]", "none"));
         }

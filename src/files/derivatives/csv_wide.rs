@@ -76,7 +76,17 @@ pub(super) fn parse(text: &str, stem: &str, options: &ReadOptions) -> Result<Tab
         .next()
         .ok_or_else(|| Error::input("", "a row of column names", "an empty file"))?;
     let between = separator(row);
-    let names = cells(row, between);
+    // `H1 [-]` is the derivative with its unit
+    let bare = |name: &&'_ str| -> usize {
+        ["[-]", "(-)", "[1]"]
+            .iter()
+            .find_map(|unit| name.strip_suffix(unit))
+            .map_or(name.len(), |rest| rest.trim_end().len())
+    };
+    let names: Vec<&str> = cells(row, between)
+        .into_iter()
+        .map(|name| &name[..bare(&name)])
+        .collect();
     let mut stated = head.stated()?;
     let known = Argument::ALL
         .into_iter()
@@ -220,12 +230,14 @@ fn find_columns(names: &[&str], line: usize, convention: &Convention) -> Result<
     if columns.argument == usize::MAX {
         // the argument is stated: the only column that is nothing else is its
         let [only] = unnamed[..] else {
-            let expected = format!("a column `{}`", convention.argument.name());
-            return Err(Error::input(
-                Place::line(line),
-                expected,
-                format!("`{}`", names.join(",")),
-            ));
+            let expected = format!(
+                "a column `{}`, and derivatives named {}",
+                convention.argument.name(),
+                convention.notation.names()
+            );
+            let unnamed: Vec<&str> = unnamed.iter().map(|i| names[*i]).collect();
+            let found = format!("`{}` besides the derivatives", unnamed.join("`, `"));
+            return Err(Error::input(Place::line(line), expected, found));
         };
         columns.argument = only;
         unnamed.clear();

@@ -35,6 +35,9 @@ const DECKS: [(&str, &str); 5] = [
     ),
 ];
 
+/// Endings of files that hold tables for other programs.
+const OTHER_TABLES: [&str; 8] = ["xls", "xlsm", "xlsb", "ods", "txt", "dat", "tsv", "mat"];
+
 /// Names of the embedded decks.
 pub fn names() -> impl Iterator<Item = &'static str> {
     DECKS.iter().map(|(name, _)| *name)
@@ -50,6 +53,11 @@ pub fn deck(name: &str) -> Result<DerivativeTable> {
         .iter()
         .find(|(n, _)| n.eq_ignore_ascii_case(&wanted))
         .ok_or_else(|| {
+            let ending = std::path::Path::new(name.trim()).extension();
+            if ending.is_some_and(|e| OTHER_TABLES.iter().any(|o| e.eq_ignore_ascii_case(o))) {
+                let expected = "a table of derivatives as .csv or .xlsx (save it as one of these)";
+                return Error::input("deck", expected, format!("the file `{name}`"));
+            }
             let all: Vec<_> = names().collect();
             let expected = format!("one of the embedded decks {}", all.join(", "));
             Error::input("deck", expected, format!("`{name}`"))
@@ -62,6 +70,14 @@ mod tests {
     use crate::aerodynamics::derivatives::Derivative;
     use crate::files::derivatives::embedded::*;
     use crate::section::Dof;
+
+    #[test]
+    fn files_of_other_programs_are_no_unknown_decks() {
+        for name in ["table.xls", "a/b.ODS", "table.txt"] {
+            let said = deck(name).unwrap_err().to_string();
+            assert!(said.contains("as .csv or .xlsx"), "{said}");
+        }
+    }
 
     #[test]
     fn every_deck_has_18_derivatives_at_16_points_and_its_width() {

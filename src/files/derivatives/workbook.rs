@@ -34,7 +34,7 @@ pub(super) const NOTES: &str = "Notes";
 const DIMENSIONS: &str = "Dim section model";
 
 /// What is said when nothing gives the width.
-pub(super) const WIDTH_ASSUMED: &str = "the width of the section model is not stated and does not follow from the table: 1 m is assumed, which affects only the \
+pub(crate) const WIDTH_ASSUMED: &str = "the width of the section model is not stated and does not follow from the table: 1 m is assumed, which affects only the \
      frequencies of virtual records (`width_m` states it)";
 
 /// The same width must follow from every point to within this fraction.

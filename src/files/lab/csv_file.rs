@@ -58,11 +58,19 @@ pub(super) fn parse(bytes: &[u8], group: Option<&str>) -> Result<ChannelSet> {
     Ok(set)
 }
 
+/// Text that is UTF-8 or else Latin-1, in which many programs write `°`.
+fn decoded(bytes: &[u8]) -> Cow<'_, str> {
+    match std::str::from_utf8(bytes) {
+        Ok(text) => Cow::Borrowed(text),
+        Err(_) => bytes.iter().map(|b| char::from(*b)).collect(),
+    }
+}
+
 /// Comments at the head as attributes; the byte behind them.
 fn take_comments(bytes: &[u8], set: &mut ChannelSet) -> usize {
     let mut start = 0;
     for line in bytes.split_inclusive(|b| *b == b'\n') {
-        let text = String::from_utf8_lossy(line);
+        let text = decoded(line);
         let text = text.trim();
         let comment = text.strip_prefix(['#', '%']);
         if let Some((key, value)) = comment.and_then(|c| c.split_once(':')) {
@@ -149,7 +157,7 @@ impl Table {
     /// From the first row.
     fn begin(row: &csv::ByteRecord, style: Style) -> Self {
         let numbers: Option<Vec<f64>> = row.iter().map(|cell| style.number(cell)).collect();
-        let cells = row.iter().map(String::from_utf8_lossy);
+        let cells = row.iter().map(decoded);
         let (names, units) = match &numbers {
             Some(_) => (1..=row.len())
                 .map(|i| (format!("column[{i}]"), None))
@@ -207,7 +215,7 @@ impl Table {
             return false;
         }
         let stated = |cell: &[u8]| {
-            let text = String::from_utf8_lossy(cell);
+            let text = decoded(cell);
             let text = text.trim().trim_matches(['[', ']', '(', ')']).to_owned();
             (!text.is_empty()).then_some(text)
         };

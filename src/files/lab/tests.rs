@@ -305,3 +305,11 @@ fn truncated_and_corrupt_files_are_refused() {
     assert!(said.contains("truncated?"), "{said}");
     assert!(complaint("a.mat", b"MATLAB", None).contains("found 6 bytes"));
 }
+
+/// A degree sign in Latin-1, which is no UTF-8.
+#[test]
+fn a_header_in_latin_1_keeps_its_degrees() {
+    let set = csv_file::parse(b"y [mm],theta [\xb0]\n1,2\n3,4\n", None).unwrap();
+    let unit = set.channel("theta").unwrap().unit.clone();
+    assert_eq!(unit.as_deref(), Some("\u{b0}"));
+}

@@ -20,6 +20,8 @@ pub(super) struct Built {
     pub stepper: Stepper,
     gusts: Option<GustChannels>,
     turbulence: Option<GustRecord>,
+    /// Smallest damping ratio at a wind speed, where it has been asked for.
+    pub damping: Option<(f64, f64)>,
 }
 
 impl Built {
@@ -50,6 +52,7 @@ impl Built {
             stepper,
             gusts,
             turbulence,
+            damping: None,
         })
     }
 

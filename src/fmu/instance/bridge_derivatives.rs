@@ -7,10 +7,11 @@ use super::layout::Source;
 use super::memory::Memory;
 use super::section::OnsetCard;
 use super::sensitivity::{SectionValues, add, central_difference, parameter_step};
-use super::trust::{MonitoredUnit, is_of_onset, smallest_damping, without_motion};
+use super::trust::{MonitoredUnit, is_of_onset, without_motion};
 use super::unit::{Differentiable, Prepared};
 use crate::error::Result;
 use crate::fmu::lifecycle::State;
+use crate::fmu::onset_start::smallest_damping;
 use crate::fmu::refusal::CallResult;
 use crate::fmu::resources::Resources;
 use crate::fmu::variables::{Calculated, Role, Status};
@@ -149,7 +150,7 @@ impl BridgeUnit {
         let wants = |wanted: fn(&Role) -> bool| unknowns.iter().any(wanted);
         let limit = memory.values[self.places.limit];
         let card =
-            wants(is_of_onset).then(|| OnsetCard::of_bridge(&self.built, self.tested, limit));
+            wants(is_of_onset).then(|| OnsetCard::of_bridge(&self.built, self.tested, limit).0);
         let damping = if unknowns.contains(&Role::Status(Status::DampingNow)) {
             smallest_damping(self.built.stepper.section(), wind)?
         } else {

@@ -4,6 +4,7 @@
 //! blow.
 
 use super::bridge_built::Built;
+use super::bridge_followed::SearchedOnset;
 use super::bridge_places::Places;
 use super::layout::Source;
 use super::memory::{Memory, starts};
@@ -37,6 +38,8 @@ pub(super) struct BridgeUnit {
     pub roots: Vec<f64>,
     release_pending: bool,
     onset_current: bool,
+    /// From which the onset of other parameters is followed.
+    searched: Option<SearchedOnset>,
     warned: bool,
     pub inputs: Inputs,
     outputs: Outputs,
@@ -50,6 +53,9 @@ impl BridgeUnit {
     pub(super) fn new(resources: &Resources, options: &BridgeOptions) -> Result<Self> {
         let table = &resources.table;
         let built = Built::new(resources, options, &starts(table))?;
+        // without a start the first onset is searched for
+        let start = options.onset.as_ref();
+        let searched = start.and_then(|start| SearchedOnset::from(&built, start).ok());
         let masses = options.modes.iter().map(|m| m.generalised_mass.sqrt());
         Ok(Self {
             places: Places::new(table, options)?,
@@ -61,6 +67,7 @@ impl BridgeUnit {
             stale: false,
             release_pending: true,
             onset_current: false,
+            searched,
             warned: false,
             outputs: Outputs::default(),
         })
@@ -172,6 +179,10 @@ impl BridgeUnit {
 impl MonitoredUnit for BridgeUnit {
     fn coupled(&self) -> Option<&CoupledSection> {
         Some(self.built.stepper.section())
+    }
+
+    fn known_damping(&mut self) -> &mut Option<(f64, f64)> {
+        &mut self.built.damping
     }
 
     fn wind_speed(&self, memory: &Memory) -> f64 {
@@ -328,7 +339,16 @@ impl Prepared for BridgeUnit {
             return;
         }
         let limit = memory.values[self.places.limit];
-        let card = OnsetCard::of_bridge(&self.built, self.tested, limit);
+        let known = self.searched.as_ref();
+        let followed = known.and_then(|known| known.followed(&self.built, limit));
+        let card = match followed {
+            Some(onset) => OnsetCard::of_followed(&self.built, self.tested, (limit, onset)),
+            None => {
+                let (card, searched) = OnsetCard::of_bridge(&self.built, self.tested, limit);
+                self.searched = searched;
+                card
+            }
+        };
         self.write(card, memory, notices);
     }
 

@@ -251,7 +251,13 @@ impl OnsetCard {
         self.warnings.extend(warnings);
     }
 
-    fn set_onset(&mut self, speed: f64, frequency: f64, velocity: ReducedVelocity, tested: bool) {
+    pub(super) fn set_onset(
+        &mut self,
+        speed: f64,
+        frequency: f64,
+        velocity: ReducedVelocity,
+        tested: bool,
+    ) {
         self.set(Calculated::OnsetSpeed, speed);
         self.set(Calculated::OnsetFrequency, frequency);
         self.set(Calculated::OnsetReducedVelocity, velocity.v_star());

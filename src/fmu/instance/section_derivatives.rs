@@ -8,9 +8,10 @@ use super::section_unit::SectionUnit;
 use super::sensitivity::{
     SectionValues, add, central_difference, check_finite, parameter_step, pick, speed_sensitivity,
 };
-use super::trust::{MonitoredUnit, is_of_onset, smallest_damping, without_motion};
+use super::trust::{MonitoredUnit, is_of_onset, without_motion};
 use super::unit::Differentiable;
 use crate::error::Result;
+use crate::fmu::onset_start::smallest_damping;
 use crate::fmu::refusal::CallResult;
 use crate::fmu::resources::Resources;
 use crate::fmu::variables::{Role, Status};

@@ -12,6 +12,10 @@ impl MonitoredUnit for SectionUnit {
         self.stepper.as_ref().map(Stepper::section)
     }
 
+    fn known_damping(&mut self) -> &mut Option<(f64, f64)> {
+        &mut self.damping
+    }
+
     fn wind_speed(&self, memory: &Memory) -> f64 {
         memory.values[self.places.wind_speed]
     }

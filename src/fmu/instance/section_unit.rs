@@ -44,6 +44,8 @@ pub(super) struct SectionUnit {
     pub stepper: Option<Stepper>,
     /// Wind speeds (m/s) at which it was tested, see [`tested_winds`].
     pub tested_winds: Option<[f64; 2]>,
+    /// Smallest damping ratio at a wind speed with that stepper.
+    pub damping: Option<(f64, f64)>,
     /// While initialising: the state has to be made anew from the values at release.
     release_pending: bool,
     onset_current: bool,
@@ -78,6 +80,7 @@ impl SectionUnit {
             aerodynamics: resources.model.model.realize(),
             stepper: None,
             tested_winds: None,
+            damping: None,
             release_pending: true,
             onset_current: false,
             growth_known: false,
@@ -144,11 +147,7 @@ impl SectionUnit {
         let section = section::coupled_section(model, table, &self.aerodynamics, values)?;
         let asked = (values, speed_max_m_s);
         if let Some(speed) = section::plainly_stable_to(model, table, &self.aerodynamics, asked) {
-            return Ok(UnwantedGrowth {
-                scanned_to_m_s: speed,
-                instability_from_m_s: None,
-                bands: Vec::new(),
-            });
+            return Ok(UnwantedGrowth::none_up_to(speed));
         }
         section::growth_of(model, &section, speed_max_m_s)
     }
@@ -268,6 +267,7 @@ impl Unit for SectionUnit {
             let stepper = self.new_stepper(resources, &memory.values)?;
             self.tested_winds = tested_winds(&stepper, resources);
             self.stepper = Some(stepper);
+            self.damping = None;
         }
         if self.release_pending && memory.state == State::Initialization {
             if let Some(stepper) = &self.stepper {

@@ -1,6 +1,9 @@
 //! Every kind of unit, driven without a shell.
 
 mod after_changes;
+#[allow(unsafe_code)]
+mod allocations;
+mod followed;
 mod unknown;
 
 use super::Instance;
@@ -59,6 +62,7 @@ fn bridge_of(model: &TrainedModel) -> BridgeOptions {
         initial: vec![0.01, 0.002],
         gusts: None,
         onset_interval: None,
+        onset: None,
     }
 }
 

@@ -4,6 +4,7 @@ use super::memory::Memory;
 use super::unit::Prepared;
 use crate::aeroelastic::CoupledSection;
 use crate::error::Result;
+use crate::fmu::onset_start::smallest_damping;
 use crate::fmu::resources::Resources;
 use crate::fmu::variables::{Calculated, Role, Status};
 use crate::response::Stepper;
@@ -14,15 +15,7 @@ pub(super) const LINEAR_ROTATION_RAD: f64 = 10.0 * std::f64::consts::PI / 180.0;
 /// Relative step of a difference over the wind speed.
 const WIND_STEP: f64 = 1e-5;
 
-/// Smallest damping ratio of the modes at a wind speed; one where nothing oscillates.
-pub(super) fn smallest_damping(section: &CoupledSection, wind: f64) -> Result<f64> {
-    let modes = section.at(wind)?.eigenvalues()?;
-    let oscillating = modes.iter().filter(|z| z.im > 0.0);
-    let least = oscillating.map(|z| -z.re / z.norm()).reduce(f64::min);
-    Ok(least.unwrap_or(1.0))
-}
-
-/// Its derivative with respect to the wind speed, per m/s.
+/// Derivative of the smallest damping ratio with respect to the wind speed, per m/s.
 fn damping_slope(section: &CoupledSection, wind: f64) -> Result<f64> {
     let step = WIND_STEP * wind.max(1.0);
     let low = (wind - step).max(0.0);
@@ -58,6 +51,9 @@ pub(super) fn without_motion(
 pub(super) trait MonitoredUnit: Prepared {
     /// The motion in its forces; `None` while there is none.
     fn coupled(&self) -> Option<&CoupledSection>;
+
+    /// A wind speed, m/s, and the smallest damping ratio there; forgotten where the system is made anew.
+    fn known_damping(&mut self) -> &mut Option<(f64, f64)>;
 
     fn wind_speed(&self, memory: &Memory) -> f64;
 
@@ -96,16 +92,28 @@ pub(super) trait MonitoredUnit: Prepared {
                 self.calculate(resources, memory, notices);
                 self.onset_speed(memory) - wind
             }
-            Status::DampingNow => {
-                let damping = self.coupled().map(|s| smallest_damping(s, wind));
-                damping.unwrap_or(Ok(0.0)).unwrap_or_else(|why| {
-                    notices.push(format!("damping_now is not known: {why}"));
-                    0.0
-                })
-            }
+            Status::DampingNow => self.damping(wind, notices),
             Status::WindInTestedRange => flag(self.wind_is_tested(resources, memory, notices)),
             Status::AmplitudeInLinearRange => {
                 flag(self.rotation(memory).abs() <= LINEAR_ROTATION_RAD)
+            }
+        }
+    }
+
+    /// Smallest damping ratio, that of the last time where the wind is the same.
+    fn damping(&mut self, wind: f64, notices: &mut Vec<String>) -> f64 {
+        if let Some((_, known)) = self.known_damping().filter(|(at, _)| *at == wind) {
+            return known;
+        }
+        let damping = self.coupled().map(|s| smallest_damping(s, wind));
+        match damping.unwrap_or(Ok(0.0)) {
+            Ok(damping) => {
+                *self.known_damping() = Some((wind, damping));
+                damping
+            }
+            Err(why) => {
+                notices.push(format!("damping_now is not known: {why}"));
+                0.0
             }
         }
     }

@@ -4,9 +4,7 @@ use super::runtime::Runtime;
 use crate::aerodynamics::{Realizable, Transfer};
 use crate::aeroelastic::CoupledSection;
 use crate::error::{Error, Result};
-use crate::flutter::{
-    FlutterSearch, Onset, OnsetSearch, divergence_speed, find_onset, unwanted_growth,
-};
+use crate::flutter::{Onset, OnsetSearch, find_onset};
 use crate::fmu::force_options::ForceOptions;
 use crate::fmu::resources::Resources;
 use crate::fmu::standard::FmiVersion;
@@ -16,6 +14,7 @@ use crate::fmu::variables::{
 use crate::section::Dof;
 use crate::trained_model::{Model, TrainedModel};
 use crate::units::{ReducedFrequency, ReducedVelocity};
+use crate::verdict::{Evidence, Phenomenon, Severity, Verdict};
 use askama::Template;
 
 /// The page: one file, nothing loaded from elsewhere.
@@ -26,6 +25,7 @@ pub fn documentation(
     resources: &Resources,
     runtimes: &[Runtime],
     listing: Listing,
+    verdict: Option<&Verdict>,
 ) -> Result<String> {
     let model = &resources.model;
     let page = Page {
@@ -44,7 +44,7 @@ pub fn documentation(
         range: Range::of(model),
         speeds: speeds(model),
         stability: match &resources.force {
-            None => stability(model)?,
+            None => stability(model, verdict)?,
             Some(_) => Vec::new(),
         },
         force: resources.force.as_ref(),
@@ -207,61 +207,70 @@ fn speeds(model: &TrainedModel) -> Vec<Speeds> {
         .collect()
 }
 
-/// Sentences on onset and divergence of the section as exported.
-fn stability(model: &TrainedModel) -> Result<Vec<String>> {
+/// Sentences on the section as exported: the verdict that goes with it, or what its own searches amount to.
+fn stability(model: &TrainedModel, verdict: Option<&Verdict>) -> Result<Vec<String>> {
     let structure = model.section.structure()?;
-    let limit = model.experiment.onset_search_limit_m_s;
     let search = OnsetSearch {
-        speed_max_m_s: limit,
+        speed_max_m_s: model.experiment.onset_search_limit_m_s,
         ..OnsetSearch::default()
     };
     let section = CoupledSection::with_model(&structure, &model.model)?;
-    let mut sentences = match find_onset(&model.name, &section, &search, Some(model.tested_range)) {
-        Ok(FlutterSearch::StableUpTo(range)) => {
-            vec![format!("No flutter up to {} m/s.", digits(range.to_m_s))]
-        }
-        Ok(FlutterSearch::UnstableAtOrBelow(start)) => {
-            let mut sentences = vec![format!("Warning: {}.", start.explain())];
-            sentences.extend(start.warnings.iter().map(|w| format!("Warning: {w}.")));
-            sentences
-        }
-        Ok(FlutterSearch::Onset(onset)) => onset_sentences(&onset),
+    let found = match find_onset(&model.name, &section, &search, Some(model.tested_range)) {
+        Ok(found) => found,
         // a page that says so is better than no FMU
-        Err(e) => vec![format!("Flutter onset could not be determined: {e}.")],
+        Err(e) => return Ok(vec![format!("Flutter onset could not be determined: {e}.")]),
     };
-    match unwanted_growth(&section, &search, Some(model.tested_range)) {
-        Ok(growth) if growth.is_none() => {}
-        Ok(growth) => sentences.push(format!("Warning: the section {}.", growth.explain())),
-        Err(e) => sentences.push(format!("Growth below the onset could not be judged: {e}.")),
-    }
-    let at_rest = model
-        .model
-        .transfer(ReducedFrequency::from_full_width(0.0))?;
-    sentences.push(match divergence_speed(&structure, &at_rest)? {
-        Some(speed) if speed <= limit => format!("Static divergence at {} m/s.", digits(speed)),
-        _ => format!("No static divergence up to {} m/s.", digits(limit)),
-    });
+    let motion = found.onset().map(motion);
+    let own;
+    let verdict = match verdict {
+        Some(verdict) => verdict,
+        None => {
+            let at_rest = ReducedFrequency::from_full_width(0.0);
+            let at_rest = model.model.transfer(at_rest)?;
+            let tested = model.tested_range;
+            own = Verdict::of(&Evidence::of_section(
+                "the model",
+                &section,
+                &at_rest,
+                tested,
+                &search,
+                found,
+            ));
+            &own
+        }
+    };
+    let mut sentences = vec![
+        format!("{}.", verdict.headline),
+        verdict.explanation.clone(),
+    ];
+    sentences.extend(motion);
+    let divergence = verdict.critical.all();
+    let divergence = divergence.filter(|c| c.phenomenon == Phenomenon::Divergence);
+    sentences.extend(divergence.map(|c| {
+        format!(
+            "Static divergence at {} m/s by {}.",
+            digits(c.best_m_s),
+            c.forces
+        )
+    }));
+    sentences.extend(verdict.doubts.iter().map(|d| match d.severity {
+        Severity::Severe => format!("Severe doubt: {}.", d.text),
+        Severity::Minor => format!("To be known: {}.", d.text),
+    }));
     Ok(sentences)
 }
 
-fn onset_sentences(onset: &Onset) -> Vec<String> {
-    let mut sentences = vec![format!(
-        "Flutter onset at {} m/s with {} Hz, V* = {}, K = {}; |y|/(B|θ|) = {}, y leads θ by {}°. \
-         Its reduced frequency lies {} the tested range.",
+/// The motion at the onset.
+fn motion(onset: &Onset) -> String {
+    format!(
+        "Flutter onset at {} m/s with {} Hz, V* = {}, K = {}; |y|/(B|θ|) = {}, y leads θ by {}°.",
         digits(onset.at.speed_m_s),
         digits(onset.at.frequency_hz),
         digits(onset.at.reduced_velocity.v_star()),
         digits(onset.at.reduced_frequency.full_width()),
         digits(onset.mode_ratio),
         digits(onset.phase_deg),
-        if onset.in_tested_range == Some(false) {
-            "outside"
-        } else {
-            "inside"
-        }
-    )];
-    sentences.extend(onset.warnings.iter().map(|w| format!("Warning: {w}.")));
-    sentences
+    )
 }
 
 /// What the discrete model does between its samples.

@@ -54,7 +54,7 @@ fn the_page_names_everything_and_loads_nothing() {
     for kind in ["rational", "continuous_laguerre", "discrete_laguerre"] {
         let json = model(kind).to_json().unwrap();
         let resources = Resources::from_bytes(json.as_bytes(), OptionFiles::default()).unwrap();
-        let page = documentation(&resources, &embedded(), Listing::All).unwrap();
+        let page = documentation(&resources, &embedded(), Listing::All, None).unwrap();
         for v in resources.table.variables() {
             assert!(
                 page.contains(&format!("<code>{}</code>", v.name)),

@@ -161,6 +161,18 @@ impl ActiveConstraint {
     }
 }
 
+impl OnsetEffect {
+    /// How far the constraints move the onset, relative to the one without them; infinite where only one of the two fits has
+    /// an onset, zero where none has.
+    pub fn shift(&self) -> f64 {
+        match (self.without_m_s, self.with_m_s) {
+            (Some(without), Some(with)) => with / without - 1.0,
+            (None, None) => 0.0,
+            _ => f64::INFINITY,
+        }
+    }
+}
+
 impl ConstraintReport {
     /// The account of a fit beside the one without constraints.
     pub(crate) fn new(

@@ -3,8 +3,11 @@
 use crate::error::Result;
 use crate::identification::basis::Basis;
 use crate::identification::constrained::LinearSolution;
-use crate::identification::dissipative::{Dissipation, FitRequirements, LinearEntry, Solution};
+use crate::identification::dissipative::{
+    Dissipation, FitRequirements, LinearEntry, Solution, Strictness,
+};
 use crate::identification::form::Form;
+use crate::identification::report::relative_noise;
 use crate::identification::samples::{Entry, shares};
 use nalgebra::{DMatrix, DVector};
 
@@ -16,6 +19,8 @@ pub(super) struct Joint<'a> {
     pub entries: &'a [Entry],
     pub form: &'a Form,
     pub wishes: FitRequirements,
+    /// What the weighted residuals of each entry are multiplied with, see [`by_noise`].
+    pub shares: Vec<f64>,
 }
 
 /// All entries at given poles: each by itself, and together under the constraints where these bind.
@@ -28,20 +33,50 @@ pub(super) struct JointFit<'a> {
     pub held: Option<Solution>,
 }
 
+/// Shares of the entries by their own scatter instead of their own size: under constraints the poles and the coefficients of
+/// one entry depend on those of others, and an entry that scatters by half of its size is no reason to bend one that is known to
+/// a hundredth. The scatter is that of the fit without constraints at `poles`; of their fit all shares together say as much as
+/// those by size do.
+///
+/// # Errors
+/// Entries that cannot be fitted.
+pub(super) fn by_noise(entries: &[Entry], form: &Form, poles: &[Vec<f64>]) -> Result<Vec<f64>> {
+    let all: Vec<&Entry> = entries.iter().collect();
+    let by_size = shares(&all);
+    let mut noisy = by_size.clone();
+    let (mut before, mut after) = (0.0, 0.0);
+    for (e, entry) in entries.iter().enumerate() {
+        let fit = entry.fit(&Basis::new(form, &poles[e])?)?;
+        let residual = fit.factor.residual_sum(fit.unknowns, 0);
+        noisy[e] /= relative_noise(residual, entry.total(), (entry.rows.len(), fit.unknowns));
+        before += by_size[e].powi(2) * residual;
+        after += noisy[e].powi(2) * residual;
+    }
+    if after > 0.0 {
+        let scale = (before / after).sqrt();
+        noisy.iter_mut().for_each(|share| *share *= scale);
+    }
+    Ok(noisy)
+}
+
 impl<'a> Joint<'a> {
     /// The constrained fit in the columns of the model.
     pub(crate) fn at(&self, poles: &[Vec<f64>]) -> Result<JointFit<'a>> {
-        self.fit(poles, true)
+        self.fit(poles, (true, Strictness::Everywhere))
     }
 
     /// Weighted residuals of all entries, as the search of poles takes them.
     pub(crate) fn residuals(&self, poles: &[Vec<f64>]) -> Result<DVector<f64>> {
         // a ridge weighs the terms of the model themselves, else only the space counts
         let native = self.entries.iter().any(|e| e.ridge > 0.0);
-        Ok(self.fit(poles, native)?.residuals())
+        Ok(self.fit(poles, (native, Strictness::Sampled))?.residuals())
     }
 
-    fn fit(&self, poles: &[Vec<f64>], native: bool) -> Result<JointFit<'a>> {
+    fn fit(
+        &self,
+        poles: &[Vec<f64>],
+        (native, strictness): (bool, Strictness),
+    ) -> Result<JointFit<'a>> {
         let basis = |poles: &Vec<f64>| {
             if native {
                 Basis::new(self.form, poles)
@@ -50,8 +85,7 @@ impl<'a> Joint<'a> {
             }
         };
         let bases = poles.iter().map(basis).collect::<Result<Vec<_>>>()?;
-        let all: Vec<&Entry> = self.entries.iter().collect();
-        let shares = shares(&all);
+        let shares = self.shares.clone();
         let least = LEAST_SHARE * shares.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
         let (mut solutions, mut linear, mut at) = (Vec::new(), Vec::new(), 0);
         for ((entry, basis), share) in self.entries.iter().zip(&bases).zip(&shares) {
@@ -64,7 +98,7 @@ impl<'a> Joint<'a> {
             at += solution.unknowns;
             solutions.push(solution);
         }
-        let held = Dissipation::new(&bases, &self.wishes).solve(&linear)?;
+        let held = Dissipation::new(&bases, &self.wishes).solve(&linear, strictness)?;
         Ok(JointFit {
             entries: self.entries,
             shares,

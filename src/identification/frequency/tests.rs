@@ -17,7 +17,7 @@ fn flat_plate() -> Vec<TransferSample> {
 
 fn laguerre(filters: usize) -> Form {
     Form::Laguerre {
-        filters,
+        filters: Some(filters),
         feed_through: FeedThrough::default(),
         pole_per_transfer_function: false,
     }
@@ -163,7 +163,7 @@ fn rational_function_is_recovered_from_its_samples() {
 fn own_poles_fit_at_least_as_well() {
     let own = FrequencyFit {
         form: Form::Laguerre {
-            filters: 2,
+            filters: Some(2),
             feed_through: FeedThrough::default(),
             pole_per_transfer_function: true,
         },

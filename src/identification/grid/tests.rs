@@ -55,7 +55,7 @@ fn continuous_cells_are_single_fits_but_for_thinning() {
     let cell = grid.fits(0, &|_| true).pop().unwrap().unwrap();
     let fit = TimeFit {
         form: Form::Laguerre {
-            filters: 3,
+            filters: Some(3),
             feed_through: FeedThrough::default(),
             pole_per_transfer_function: false,
         },

@@ -3,7 +3,7 @@
 use super::{FittedTable, LagSearch, LinearProblem, LinearSolution, ROUNDS};
 use crate::error::Result;
 use crate::identification::dissipative::{
-    ActiveConstraint, ConstraintReport, Dissipation, LinearEntry,
+    ActiveConstraint, ConstraintReport, Dissipation, LinearEntry, Strictness,
 };
 use crate::identification::report::SearchPoint;
 use crate::identification::search::descend;
@@ -28,7 +28,7 @@ impl LagSearch<'_> {
         best: Vec<f64>,
         alone: FittedTable,
     ) -> Result<FittedTable> {
-        if self.rows(&best)?.active.is_none() {
+        if self.rows(&best, Strictness::Everywhere)?.active.is_none() {
             return Ok(alone);
         }
         let mut at = DVector::from_vec(best);
@@ -54,7 +54,7 @@ impl LagSearch<'_> {
     }
 
     /// Coefficients of every force at one point, under the constraints once these are asked for.
-    pub(super) fn rows(&self, x: &[f64]) -> Result<Rows> {
+    pub(super) fn rows(&self, x: &[f64], strictness: Strictness) -> Result<Rows> {
         let (lags, e) = (self.lags_at(x), self.e_at(x));
         let problems: Vec<_> = (0..self.n).map(|i| self.row(i, &lags, &e)).collect();
         let mut solutions = Vec::new();
@@ -82,7 +82,7 @@ impl LagSearch<'_> {
             forces.push(force);
         }
         let bases = vec![self.roger_basis(&lags)?; self.entries.len()];
-        if let Some(held) = Dissipation::new(&bases, wishes).solve(&entries)? {
+        if let Some(held) = Dissipation::new(&bases, wishes).solve(&entries, strictness)? {
             rows.values = forces.iter().map(|f| f.coefficients(&held.free)).collect();
             rows.active = Some(held.active);
         }

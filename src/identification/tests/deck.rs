@@ -69,7 +69,7 @@ fn overfit_of_ln21_5500_is_said() {
     let table = embedded::deck("LN21-5500").unwrap();
     let four = FrequencyFit {
         form: Form::Laguerre {
-            filters: 4,
+            filters: Some(4),
             feed_through: FeedThrough::default(),
             pole_per_transfer_function: false,
         },

@@ -5,11 +5,13 @@ use super::systems::ForceSystems;
 use crate::error::{Error, Result};
 use crate::identification::basis::Basis;
 use crate::identification::dissipative::{
-    ActiveConstraint, Dissipation, FitRequirements, LinearEntry, Solution,
+    ActiveConstraint, Dissipation, FitRequirements, LinearEntry, Solution, Strictness,
 };
 use crate::identification::entry_report::EntryReport;
 use crate::identification::least_squares::Factor;
-use crate::identification::report::{OrderReport, StaticReport, enough_rows, variance};
+use crate::identification::report::{
+    LEAST_NOISE, OrderReport, StaticReport, enough_rows, relative_noise, variance,
+};
 use crate::section::Dof;
 use nalgebra::{DMatrix, DVector};
 
@@ -67,7 +69,7 @@ impl<'a> FittedSystems<'a> {
     /// # Errors
     /// Constraints that no coefficients satisfy.
     pub(crate) fn constrain(&mut self, bases: &[Basis], wishes: &FitRequirements) -> Result<()> {
-        let joint = Joint::new(&self.systems, bases, wishes)?;
+        let joint = Joint::new(&self.systems, bases, wishes, Strictness::Everywhere)?;
         if joint.held.is_none() {
             return Ok(());
         }
@@ -222,8 +224,8 @@ pub(crate) struct Joint {
     entries: Vec<LinearEntry>,
     /// Scale of the weighted residual of each of `whole` in the objective.
     shares: Vec<f64>,
-    /// Relative objective without constraints, squared.
-    least: f64,
+    /// Sums of the squares of the residuals without constraints and of the data of each.
+    residuals: Vec<(f64, f64)>,
     pub held: Option<Solution>,
 }
 
@@ -237,6 +239,7 @@ impl Joint {
         systems: &ForceSystems,
         bases: &[Basis],
         wishes: &FitRequirements,
+        strictness: Strictness,
     ) -> Result<Self> {
         let n = bases.len().isqrt();
         let apart = (0..n).all(|i| (0..n).all(|j| systems.alone(i, j).is_some()))
@@ -245,7 +248,7 @@ impl Joint {
             whole: Vec::new(),
             entries: Vec::new(),
             shares: Vec::new(),
-            least: 0.0,
+            residuals: Vec::new(),
             held: None,
         };
         let count = if apart { n * n } else { n } as f64;
@@ -272,20 +275,21 @@ impl Joint {
                 joint.whole.push(linear);
             }
         }
-        joint.held = Dissipation::new(bases, wishes).solve(&joint.entries)?;
+        joint.held = Dissipation::new(bases, wishes).solve(&joint.entries, strictness)?;
         Ok(joint)
     }
 
     fn add(&mut self, factor: &Factor, count: f64, at: usize) -> Result<LinearEntry> {
         let columns = factor.columns();
-        let total = factor.total_sum(0);
+        let (total, residual) = (factor.total_sum(0), factor.residual_sum(columns, 0));
         let share = if total > 0.0 {
-            (total * count).sqrt().recip()
+            let noise = relative_noise(residual, total, (factor.rows(), columns));
+            (total * count).sqrt().recip() / noise
         } else {
             1.0
         };
-        self.least += share * share * factor.residual_sum(columns, 0);
         self.shares.push(share);
+        self.residuals.push((residual, total));
         Ok(LinearEntry {
             values: factor.solve(columns)?.as_slice().to_vec(),
             spread: factor.inverse_upper(columns)? / share,
@@ -293,10 +297,25 @@ impl Joint {
         })
     }
 
-    /// Root mean square of the relative weighted residuals, with the constraints.
+    /// Geometric mean of the relative weighted residuals with the constraints: where it is least, the likelihood of data that
+    /// scatter by themselves each is largest.
     pub(crate) fn objective(&self) -> f64 {
-        let added = self.held.as_ref().map_or(0.0, |h| h.free.norm_squared());
-        (self.least + added).sqrt()
+        let mut logarithms = 0.0;
+        let mut count = 0.0;
+        for ((linear, share), (residual, total)) in
+            self.whole.iter().zip(&self.shares).zip(&self.residuals)
+        {
+            if *total > 0.0 {
+                let moved = |held: &Solution| {
+                    let own = held.free.rows(linear.at, linear.spread.ncols());
+                    own.norm_squared() / (share * share)
+                };
+                let added = self.held.as_ref().map_or(0.0, moved);
+                logarithms += ((residual + added) / total + LEAST_NOISE * LEAST_NOISE).ln();
+                count += 1.0;
+            }
+        }
+        (0.5 * logarithms / f64::max(count, 1.0)).exp()
     }
 
     /// Coefficients of a transfer function.

@@ -88,6 +88,20 @@ impl Records {
             .ok_or_else(|| Error::input("records", "a motion", "none that moves"))
     }
 
+    /// Numbers of a transfer function that the tests determine: two for each frequency and speed at which one degree of freedom
+    /// was moved; no end of them where records move a whole band.
+    pub(crate) fn rows_of_tests(&self) -> usize {
+        let tested: Vec<_> = self
+            .each
+            .iter()
+            .flat_map(DimensionlessRecord::tested)
+            .collect();
+        if tested.iter().any(|range| range.min < range.max) {
+            return usize::MAX;
+        }
+        2 * tested.len() / self.dofs.len().max(1)
+    }
+
     /// The longest dimensionless step, to which the discrete model resamples all records.
     pub(crate) fn longest_step(&self) -> f64 {
         let steps = self.each.iter().map(DimensionlessRecord::delta_s);

@@ -5,7 +5,7 @@ use super::fitted::Joint;
 use super::systems::{ForceSystems, Systems};
 use crate::error::{Error, Result};
 use crate::identification::basis::Basis;
-use crate::identification::dissipative::FitRequirements;
+use crate::identification::dissipative::{FitRequirements, Strictness};
 use crate::identification::form::Form;
 use crate::identification::form::PoleSearch;
 use crate::identification::own::{EntryForm, entry_forms, search_for, searched_together};
@@ -203,7 +203,7 @@ impl Group {
                 systems: vec![Rc::clone(system)],
             };
             let bases = vec![basis; self.members.len()];
-            return Ok(Joint::new(&systems, &bases, wishes)?.objective());
+            return Ok(Joint::new(&systems, &bases, wishes, Strictness::Sampled)?.objective());
         }
         let Some((i, j)) = self.entry else {
             let n = system.order.inputs;

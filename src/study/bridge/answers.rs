@@ -1,16 +1,18 @@
 //! Flutter and divergence of a bridge, with the modes behind them.
 
 use super::BridgeStudy;
-use crate::aerodynamics::Transfer;
+use crate::aerodynamics::{Lags, RationalModel, Transfer};
 use crate::aeroelastic::CoupledSection;
 use crate::bridge::Bridge;
 use crate::error::Result;
 use crate::flutter::{
-    BridgeMotion, FlutterCurves, FlutterSearch, Onset, OnsetSearch, divergence_speed, find_onset,
-    motion_at_onset, pk_onset, static_deflection, trace_modes,
+    AssumedAtRest, BridgeMotion, FlutterCurves, FlutterSearch, Onset, OnsetSearch, UnwantedGrowth,
+    divergence_speed, find_onset, motion_at_onset, pk_onset, static_deflection, static_part,
+    trace_modes, unwanted_growth,
 };
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// Modes below this share of the energy are left out together, in turn for each number.
 const SHARES: [f64; 4] = [0.1, 0.01, 1e-3, 1e-4];
@@ -37,6 +39,17 @@ pub struct LeftOut {
     pub onset_m_s: Option<f64>,
 }
 
+/// Divergence by tables, which say nothing of steady flow.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TableDivergence {
+    /// Speed, m/s; `None` where there is none.
+    pub speed_m_s: Option<f64>,
+    /// What is left of it when the deck behaves as a plate below the tested reduced frequencies, m/s.
+    pub lower_m_s: Option<f64>,
+    /// What was assumed.
+    pub assumed: String,
+}
+
 /// Everything about the flutter of a bridge.
 #[derive(Debug, Clone, Serialize)]
 pub struct BridgeFlutter {
@@ -48,6 +61,10 @@ pub struct BridgeFlutter {
     pub left_out: Vec<LeftOut>,
     /// Speed of divergence by model, m/s.
     pub divergence_m_s: Option<f64>,
+    /// The same by the static slopes that tables have at their lowest tested reduced frequency; `None` without tables.
+    pub table_divergence: Option<TableDivergence>,
+    /// Growth of the bridge by its models below their onset, where nothing was tested; `None` where the scan failed.
+    pub growth: Option<UnwantedGrowth>,
     /// Greatest mean rotation along the girder at the onset, deg, where static coefficients are stated.
     pub mean_rotation_deg: Option<f64>,
     /// What could not be computed, and why.
@@ -98,9 +115,16 @@ pub fn bridge_flutter(study: &BridgeStudy) -> Result<BridgeFlutter> {
     let forces = study.by_model.forces();
     let at_rest = forces.transfer(ReducedFrequency::from_full_width(0.0))?;
     let divergence_m_s = divergence_speed(&study.by_model.structure(), &at_rest)?;
-    let statics = study
-        .static_coefficients()
-        .zip(by_model.search.critical_speed_m_s());
+    let mut noted = |what: &str, e: crate::Error| failed.push(format!("{what}: {e}"));
+    let of_tables = table_divergence(study).map_err(|e| noted("divergence of the tables", e));
+    let growth = unwanted_growth(&section, &search, tested);
+    let growth = growth.map_err(|e| noted("scan for growth", e)).ok();
+    // where the answer is: by the tables first, which are the headline
+    let critical = answers.iter().chain([&by_model]);
+    let critical = critical
+        .filter_map(|a| a.search.critical_speed_m_s())
+        .next();
+    let statics = study.static_coefficients().zip(critical);
     let mean_rotation_deg = statics.and_then(|(c, speed)| {
         let mean = static_deflection(&study.by_model, &c, &at_rest, speed);
         let mean = mean.map_err(|e| failed.push(e.to_string())).ok()?;
@@ -116,9 +140,46 @@ pub fn bridge_flutter(study: &BridgeStudy) -> Result<BridgeFlutter> {
         curves,
         left_out,
         divergence_m_s,
+        table_divergence: of_tables.ok().flatten(),
+        growth,
         mean_rotation_deg,
         failed,
     })
+}
+
+/// Divergence by the slopes of the tables at rest, of other sections by their models.
+fn table_divergence(study: &BridgeStudy) -> Result<Option<TableDivergence>> {
+    let Some(bridge) = &study.by_table else {
+        return Ok(None);
+    };
+    let mut still = bridge.clone();
+    let mut lowest: Option<ReducedFrequency> = None;
+    for group in &mut still.groups {
+        let Some(range) = group.forces.known_range() else {
+            continue;
+        };
+        let at_rest = static_part(group.forces.dofs(), &group.forces.transfer(range.min)?);
+        let [e0, zero] = [at_rest.map(|z| z.re), at_rest.map(|_| 0.0)];
+        group.forces = Arc::new(RationalModel {
+            dofs: group.forces.dofs().to_vec(),
+            a1: e0,
+            a2: zero.clone(),
+            a3: zero,
+            lags: Lags::Shared(Vec::new()),
+            lag_terms: Vec::new(),
+        });
+        lowest = Some(lowest.map_or(range.min, |k| if k > range.min { k } else { range.min }));
+    }
+    let Some(k) = lowest else { return Ok(None) };
+    let assumed = AssumedAtRest::below(k)?;
+    let forces = still.forces();
+    let at_rest = forces.transfer(ReducedFrequency::from_full_width(0.0))?;
+    let speed_m_s = divergence_speed(&still.structure(), &at_rest)?;
+    Ok(Some(TableDivergence {
+        speed_m_s,
+        lower_m_s: speed_m_s.map(|v| assumed.lower_m_s(v)),
+        assumed: assumed.explain(),
+    }))
 }
 
 fn search_speeds(search: &OnsetSearch) -> Vec<f64> {
@@ -135,7 +196,11 @@ fn by_table(bridge: &Bridge, search: &OnsetSearch) -> Result<BridgeAnswer> {
     let forces = bridge.forces();
     let range = forces.known_range();
     let found = pk_onset("table", &bridge.structure(), &forces, search, range)?;
-    answer("tables between their points", bridge, &forces, found)
+    let name = match range {
+        Some(_) => "tables between their points",
+        None => "flat plate (Theodorsen)",
+    };
+    answer(name, bridge, &forces, found)
 }
 
 fn by_model(

@@ -1,12 +1,12 @@
 //! The block `[buffeting]` of a bridge file, computed in both domains.
 
 use super::BridgeStudy;
+use crate::aerodynamics::Transfer;
 use crate::aerodynamics::quasi_steady::LinearQuasiSteady;
-use crate::bridge::motion_index;
+use crate::bridge::{Bridge, motion_index};
 use crate::buffeting::{
-    Coherence, Gust, SpanEnsemble, SpanPlan, SpanProblem, SpanRecord, SpanResponse, SpanSpectra,
-    Turbulence, TurbulenceField, span_ensemble, span_record, span_response, span_spectra,
-    turbulence_field,
+    Coherence, Gust, SpanEnsemble, SpanFrequency, SpanPlan, SpanProblem, SpanRecord, SpanResponse,
+    SpanSpectra, Turbulence, TurbulenceField, span_ensemble, span_record, turbulence_field,
 };
 use crate::error::{Error, Result, positive};
 use crate::files::bridge::FieldTable;
@@ -39,15 +39,40 @@ pub struct BuffetingBlock {
 pub struct BridgeBuffeting {
     /// Names of the nodes.
     pub nodes: Vec<String>,
-    /// Frequency domain.
+    /// Frequency domain, by tables between their points where there are some.
     pub frequency: SpanResponse,
+    /// The models that are stepped in time, where tables are the answer.
+    pub models: Option<ModelsBesideTables>,
     /// Expected peak factors in the length of a record, from the frequency domain.
     pub expected_peak_factor: Vec<[f64; 3]>,
     /// Spectra of the nodes; too many numbers for the JSON of a command.
     #[serde(skip)]
     pub spectra: SpanSpectra,
-    /// Time domain.
-    pub time: SpanEnsemble,
+    /// Time domain, by models.
+    pub time: Option<SpanEnsemble>,
+    /// Why there is none in time.
+    pub no_time: Option<String>,
+}
+
+/// How far the response by models is from that by tables, both in the frequency domain.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ModelsBesideTables {
+    /// How the model of each section was made, section by section.
+    pub fits: Vec<String>,
+    /// Response by the models; `None` where they are unstable.
+    pub response: Option<SpanResponse>,
+    /// Root mean square by the models over that by the tables, less 1, of each node.
+    pub change: Option<Vec<[f64; 3]>>,
+}
+
+impl ModelsBesideTables {
+    /// The change of the largest size, with the places of its node and of its motion.
+    pub fn largest(&self) -> Option<(usize, usize, f64)> {
+        let changes = self.change.iter().flatten().enumerate();
+        let all = changes.flat_map(|(n, of)| (0..3).map(move |i| (n, i, of[i])));
+        all.filter(|c| c.2.is_finite())
+            .max_by(|a, b| a.2.abs().total_cmp(&b.2.abs()))
+    }
 }
 
 /// Response to turbulence of a file.
@@ -107,9 +132,18 @@ impl BridgeStudy {
         self.section_of_group.iter().map(matrix).collect()
     }
 
+    /// The problem with models.
     fn problem(&self, block: &BuffetingBlock) -> Result<SpanProblem<'_>> {
+        self.problem_of(&self.by_model, block)
+    }
+
+    fn problem_of<'a>(
+        &'a self,
+        bridge: &'a Bridge,
+        block: &BuffetingBlock,
+    ) -> Result<SpanProblem<'a>> {
         Ok(SpanProblem {
-            bridge: &self.by_model,
+            bridge,
             gust_matrices: self.gust_matrices()?,
             turbulence: Turbulence {
                 along: block.along,
@@ -125,7 +159,8 @@ impl BridgeStudy {
         field.at(&nodes.map(|n| n.along_m).collect::<Vec<_>>())
     }
 
-    /// Response at the nodes of the block at a wind speed, in both domains.
+    /// Response at the nodes of the block at a wind speed, in both domains: by tables between their points in the frequency
+    /// domain where there are some, by models in time.
     ///
     /// # Errors
     /// [`Error::Input`] with the key of the block that cannot be; [`Error::Unstable`] when the bridge is unstable at this
@@ -136,20 +171,64 @@ impl BridgeStudy {
         speed_m_s: f64,
         progress: &dyn Fn(usize, usize),
     ) -> Result<BridgeBuffeting> {
-        let problem = self.problem(block)?;
         let nodes = self.named(&block.nodes)?;
-        let frequency = span_response(&problem, &nodes, speed_m_s)?;
-        let time = span_ensemble(&problem, &nodes, speed_m_s, &block.time, progress)?;
+        let models = self.problem(block)?;
+        let answering = self.by_table.as_ref().unwrap_or(&self.by_model);
+        let problem = self.problem_of(answering, block)?;
+        let tables = problem.bridge.forces().known_range();
+        let domain = SpanFrequency::new(&problem, speed_m_s)?;
+        let frequency = domain.response(&nodes, tables.or_else(|| self.tested_range()))?;
+        let beside = self.by_table.is_some();
+        let beside = beside.then(|| self.beside_tables(&models, &frequency));
+        let time = span_ensemble(&models, &nodes, speed_m_s, &block.time, progress);
+        let (time, no_time) = match time {
+            Ok(time) => (Some(time), None),
+            // the tables know of no growth at this speed
+            Err(Error::Unstable(_)) if beside.is_some() => {
+                (None, Some(format!("the models grow at {speed_m_s} m/s")))
+            }
+            Err(e) => return Err(e),
+        };
         Ok(BridgeBuffeting {
-            nodes: nodes
-                .iter()
-                .map(|n| self.by_model.nodes[*n].name.clone())
-                .collect(),
+            nodes: self.names_of(&nodes),
             expected_peak_factor: frequency.peak_factors(block.time.duration_s),
+            spectra: domain.spectra(&nodes)?,
+            models: beside.transpose()?,
             frequency,
-            spectra: span_spectra(&problem, &nodes, speed_m_s)?,
             time,
+            no_time,
         })
+    }
+
+    /// The models in the frequency domain, where the tables have given `answer`.
+    fn beside_tables(
+        &self,
+        problem: &SpanProblem<'_>,
+        answer: &SpanResponse,
+    ) -> Result<ModelsBesideTables> {
+        let response = match SpanFrequency::new(problem, answer.speed_m_s) {
+            Ok(domain) => Some(domain.response(&answer.nodes, self.tested_range())?),
+            Err(Error::Unstable(_)) => None,
+            Err(e) => return Err(e),
+        };
+        let change = response.as_ref().map(|by_model| {
+            let both = by_model.rms.iter().zip(&answer.rms);
+            both.map(|(m, t)| std::array::from_fn(|i| m[i] / t[i] - 1.0))
+                .collect()
+        });
+        let sections = self.file.sections.iter().zip(&self.sections);
+        Ok(ModelsBesideTables {
+            fits: sections
+                .map(|(block, forces)| format!("{}: {}", block.name, forces.method))
+                .collect(),
+            response,
+            change,
+        })
+    }
+
+    fn names_of(&self, nodes: &[usize]) -> Vec<String> {
+        let names = nodes.iter().map(|n| self.by_model.nodes[*n].name.clone());
+        names.collect()
     }
 
     /// Response to the turbulence of a file, at the nodes of the bridge.
@@ -170,10 +249,7 @@ impl BridgeStudy {
         };
         let places = self.named(&block.nodes)?;
         Ok(BridgeRecord {
-            nodes: places
-                .iter()
-                .map(|n| self.by_model.nodes[*n].name.clone())
-                .collect(),
+            nodes: self.names_of(&places),
             record: span_record(&self.problem(block)?, &places, speed_m_s, &field)?,
         })
     }

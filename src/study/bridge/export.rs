@@ -9,6 +9,7 @@ use crate::flutter::{BridgeMotion, FlutterSearch, find_onset};
 use crate::fmu::bridge_gusts::{BridgeGusts, TurbulenceOptions};
 use crate::fmu::bridge_options::{BridgeOptions, GroupOptions};
 use crate::fmu::onset_bounds::OnsetBounds;
+use crate::fmu::onset_start::OnsetStart;
 use crate::fmu::package::BridgeExport;
 use crate::fmu::variables::Listing;
 use crate::trained_model::{Experiment, Provenance, TrainedModel};
@@ -47,7 +48,8 @@ impl BridgeStudy {
         let gusts = self.gusts(wanted)?;
         let search = self.search();
         // as the unit itself judges: whatever grows counts, tested or not
-        let found = find_onset("bridge", &coupled(&self.by_model)?, &search, None)?;
+        let section = coupled(&self.by_model)?;
+        let found = find_onset("bridge", &section, &search, None)?;
         if let (FlutterSearch::UnstableAtOrBelow(_), false) = (&found, wanted.allow_unstable) {
             return Err(Error::Unstable(format!(
                 "the bridge is not exported: it {}",
@@ -57,7 +59,10 @@ impl BridgeStudy {
         let onset = found.critical_speed_m_s().unwrap_or(search.speed_max_m_s);
         Ok(BridgeExport {
             model: self.first_model(onset)?,
-            bridge: self.options(&found, named, gusts)?,
+            bridge: BridgeOptions {
+                onset: found.onset().and_then(|o| OnsetStart::of(o, &section)),
+                ..self.options(&found, named, gusts)?
+            },
             turbulence: wanted
                 .turbulence
                 .as_ref()
@@ -137,6 +142,7 @@ impl BridgeStudy {
                 let interval = self.onset_interval(onset).ok()?;
                 OnsetBounds::of(&interval)
             }),
+            onset: None,
         })
     }
 

@@ -1,13 +1,15 @@
 //! The self-excited forces of one section of a bridge file.
 
 use super::super::{KnownUncertainty, uncertainty_beside};
-use crate::aerodynamics::derivatives::{Extrapolation, InterpolatedTable};
+use crate::aerodynamics::derivatives::{DerivativeTable, Extrapolation, InterpolatedTable};
 use crate::aerodynamics::quasi_steady::LinearQuasiSteady;
-use crate::aerodynamics::{Lags, RationalModel, Transfer};
+use crate::aerodynamics::{FlatPlate, Lags, RationalModel, Transfer};
 use crate::error::{Error, Result};
 use crate::files::bridge::{SectionBlock, StaticBlock};
-use crate::files::derivatives::named_table;
-use crate::identification::{FeedThrough, Fitted, Form, FrequencyFit, FrequencyWeights, fit_table};
+use crate::files::derivatives::TableWords;
+use crate::identification::{FeedThrough, Fitted, Form, FrequencyFit, fit_table};
+use crate::plausibility::{Finding, of_table};
+use crate::section::Dof;
 use crate::trained_model::{Model, TrainedModel};
 use crate::uncertainty::{CoefficientUncertainty, DerivativeInterval, table_uncertainty};
 use crate::units::ReducedFrequencyRange;
@@ -15,15 +17,20 @@ use nalgebra::DMatrix;
 use std::path::Path;
 use std::sync::Arc;
 
+/// The word for Theodorsen's plate instead of a table.
+const FLAT_PLATE: &str = "flat plate";
+
 /// Forces of a section, by table and by model.
 #[derive(Clone)]
 pub struct SectionForces {
-    /// Between the points of the table.
+    /// Between the points of the table, or the flat plate, exactly.
     pub table: Option<Arc<dyn Transfer>>,
     /// With a realisation.
     pub model: Arc<dyn Transfer>,
     /// What it is saved as.
     pub saved: Option<Model>,
+    /// How the model was made, in words.
+    pub method: String,
     /// Where the data come from.
     pub source: String,
     /// Licence of the data.
@@ -52,6 +59,7 @@ impl SectionForces {
         block: &SectionBlock,
         trained: Option<(TrainedModel, KnownUncertainty)>,
         directory: &Path,
+        findings: &mut Vec<Finding>,
     ) -> Result<Self> {
         let trained = match (&block.model, trained) {
             (_, Some(trained)) => Some(trained),
@@ -63,10 +71,14 @@ impl SectionForces {
             }
             (None, None) => None,
         };
+        let plate = |name: &&String| name.eq_ignore_ascii_case(FLAT_PLATE);
+        if block.derivatives.as_ref().filter(plate).is_some() && trained.is_none() {
+            return Self::flat_plate(block);
+        }
         let of_table = block
             .derivatives
             .as_ref()
-            .map(|name| by_table(block, name, directory, trained.is_none()));
+            .map(|name| by_table(block, name, directory, trained.is_none(), findings));
         let (table, fitted) = of_table.transpose()?.unzip();
         let table = table.map(|t: InterpolatedTable| Arc::new(t) as Arc<dyn Transfer>);
         if let Some((trained, known)) = trained {
@@ -75,6 +87,7 @@ impl SectionForces {
                 table,
                 model,
                 saved: Some(trained.model),
+                method: trained.provenance.method,
                 source: trained.provenance.source,
                 licence: trained.provenance.licence,
                 tested: Some(trained.tested_range),
@@ -99,6 +112,36 @@ impl SectionForces {
         Ok(Self::quasi_steady(block, statics))
     }
 
+    /// Theodorsen's plate where frequencies are asked for, Jones's rational functions where a realisation is.
+    fn flat_plate(block: &SectionBlock) -> Result<Self> {
+        let place = format!("section {}", block.name);
+        if block.motions != Dof::TWO {
+            let expected = "vertical and torsional motion with the flat plate";
+            return Err(Error::input(place, expected, Dof::names(&block.motions)));
+        }
+        if !block.convention.is_empty() {
+            let expected = "a table in a file (.csv, .xlsx)";
+            return Err(Error::input(
+                format!("{place}: convention"),
+                expected,
+                format!("`{FLAT_PLATE}`"),
+            ));
+        }
+        let jones = RationalModel::jones_flat_plate();
+        Ok(Self {
+            table: Some(Arc::new(FlatPlate::default())),
+            model: Arc::new(jones.clone()),
+            saved: Some(Model::Rational(jones)),
+            method: "Jones's rational functions of the flat plate".to_owned(),
+            source: "flat plate, Theodorsen's theory".to_owned(),
+            licence: "none needed: a formula".to_owned(),
+            tested: None,
+            notes: Vec::new(),
+            uncertainty: Ok(None),
+            degrees_of_freedom: None,
+        })
+    }
+
     /// Forces of a section of which no more than static coefficients are known.
     fn quasi_steady(block: &SectionBlock, statics: &StaticBlock) -> Self {
         let theory =
@@ -117,6 +160,7 @@ impl SectionForces {
             table: None,
             model: Arc::new(theory),
             saved: Some(Model::Rational(saved)),
+            method: "quasi-steady theory".to_owned(),
             source: format!("static coefficients of {}", block.name),
             licence: "that of the bridge file".to_owned(),
             tested: None,
@@ -146,14 +190,35 @@ impl SectionForces {
     }
 }
 
+/// The table of a section, in the convention of this project.
+pub(crate) fn block_table(
+    block: &SectionBlock,
+    name: &str,
+    directory: &Path,
+) -> Result<DerivativeTable> {
+    let words = TableWords {
+        name,
+        directory,
+        convention: block.convention,
+    };
+    words.read(&format!("section {}: convention", block.name))
+}
+
 /// The table between its points, and the model fitted to it.
 fn by_table(
     block: &SectionBlock,
     name: &str,
     directory: &Path,
     fit: bool,
+    findings: &mut Vec<Finding>,
 ) -> Result<(InterpolatedTable, Option<SectionForces>)> {
-    let table = named_table(name, directory)?;
+    let table = block_table(block, name, directory)?;
+    let convention = block.convention.or_usual();
+    let odd = of_table(&table, &convention).into_iter();
+    findings.extend(odd.map(|f| Finding {
+        place: format!("section {}: {}", block.name, f.place),
+        ..f
+    }));
     let between = InterpolatedTable::by(
         block.interpolation,
         &table,
@@ -170,13 +235,10 @@ fn by_table(
         })?,
         None => FrequencyFit {
             form: Form::Laguerre {
-                filters: block.filters,
+                filters: Some(block.filters),
                 feed_through: FeedThrough::default(),
                 pole_per_transfer_function: false,
             },
-            // the modes of a bridge reach every tested K: residuals of G itself, so that the small entries of sway, which
-            // scatter, do not choose the poles (relative weights: −1.9 % of the onset of LN21-5200 with sway)
-            weights: FrequencyWeights::None,
             ..FrequencyFit::default()
         },
     };
@@ -187,6 +249,7 @@ fn by_table(
         table: None,
         model: Arc::new(model.clone()),
         saved: Some(model),
+        method: report.method.clone(),
         source: table.header.source.clone(),
         licence: table.header.licence.clone(),
         tested: Some(between.tested_range()),

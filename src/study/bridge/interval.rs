@@ -3,7 +3,7 @@
 use super::BridgeStudy;
 use super::answers::coupled;
 use crate::error::{Error, Result};
-use crate::flutter::{NearbyOnset, Onset, OnsetInterval};
+use crate::flutter::{BetweenSpeeds, NearbyOnset, Onset, OnsetInterval};
 use crate::uncertainty::{CoefficientUncertainty, OnsetError};
 use std::sync::Arc;
 
@@ -21,6 +21,7 @@ impl BridgeStudy {
     pub fn onset_interval(&self, onset: &Onset) -> Result<OnsetInterval> {
         let nearby = NearbyOnset::of(&self.by_model, &onset.at)?;
         let (mut variance, mut of_each) = (0.0, 0.0);
+        let mut between_speeds = None;
         for (section, forces) in self.sections.iter().enumerate() {
             let name = &self.file.sections[section].name;
             let estimate = match &forces.uncertainty {
@@ -34,6 +35,9 @@ impl BridgeStudy {
             let freedom = estimate.degrees_of_freedom(&gradient);
             let freedom = freedom.or(forces.degrees_of_freedom).unwrap_or(1.0);
             variance += part;
+            if between_speeds != Some(BetweenSpeeds::Prior) {
+                between_speeds = estimate.speeds.as_ref().map(|s| s.source);
+            }
             // as Satterthwaite adds them
             of_each += part * part / freedom;
         }
@@ -45,6 +49,7 @@ impl BridgeStudy {
             speed_m_s: onset.at.speed_m_s,
             standard_error_m_s: variance.sqrt(),
             degrees_of_freedom: variance * variance / of_each,
+            between_speeds,
         };
         Ok(error.interval())
     }

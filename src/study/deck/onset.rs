@@ -4,23 +4,23 @@ use super::{Deck, EXACT_RANGE, Source};
 use crate::aerodynamics::derivatives::{
     DerivativeTable, Extrapolation, InterpolatedTable, Interpolation,
 };
-use crate::aerodynamics::{FlatPlate, Transfer, TransferMatrix};
+use crate::aerodynamics::{FlatPlate, TransferMatrix};
 use crate::error::Result;
-use crate::flutter::{FlutterSearch, OnsetInterval, determinant_onset, static_part};
+use crate::flutter::{AssumedAtRest, FlutterSearch, OnsetInterval, determinant_onset, static_part};
 use crate::section::Structure;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 
 impl Deck {
     /// The forces on a section that is held, `G` at `K → 0` (n×n), and what a table does not say about them and was
     /// assumed.
-    pub(crate) fn static_transfer(&self) -> Result<(TransferMatrix, Option<String>)> {
+    pub(crate) fn static_transfer(&self) -> Result<(TransferMatrix, Option<AssumedAtRest>)> {
         let (model, tested) = self.model()?;
         let Some(range) = tested else {
             let still = ReducedFrequency::from_full_width(0.0);
             return Ok((model.transfer(still)?, None));
         };
         let slopes = static_part(&self.dofs, &model.transfer(range.min)?);
-        Ok((slopes, Some(assumed_at_rest(range.min)?)))
+        Ok((slopes, Some(AssumedAtRest::below(range.min)?)))
     }
 
     /// Onset of the deck itself by the determinant; for a table with the spread between ways of interpolation.
@@ -97,18 +97,4 @@ impl Deck {
             of: format!("spread between interpolations: {}", words.join(", ")),
         }
     }
-}
-
-/// What stands for steady flow when nothing below `k` was tested, with what it costs on a flat plate.
-fn assumed_at_rest(k: ReducedFrequency) -> Result<String> {
-    let slope = |k| FlatPlate::default().transfer(k).map(|g| g[(1, 1)].re);
-    let still = slope(ReducedFrequency::from_full_width(0.0))?;
-    // ½ρV² times the slope is the stiffness: the speed goes with one over the root
-    let excess = (still / slope(k)?).sqrt() - 1.0;
-    Ok(format!(
-        "K → 0 was not tested: H3*, A3* at the lowest tested K, {:.3}, are used as the static slopes; nothing is used for H4*, \
-         A4*, which are dynamic there (a flat plate's divergence would come out {:.1} % too high)",
-        k.full_width(),
-        100.0 * excess
-    ))
 }

@@ -1,6 +1,7 @@
 //! Buffeting of a wind file: RMS over wind speed, spectra, both domains side by side.
 
 use super::{QUASI_STEADY, WindStudy};
+use crate::aerodynamics::derivatives::{Extrapolation, InterpolatedTable};
 use crate::aerodynamics::quasi_steady::QuasiSteady;
 use crate::aerodynamics::{FlatPlate, RationalModel, Transfer};
 use crate::aeroelastic::static_equilibria;
@@ -9,6 +10,8 @@ use crate::buffeting::{
     TimePlan, buffeting_response, compare, response_spectrum, time_ensemble, unstable_roots,
 };
 use crate::error::{Error, Result};
+use crate::files::derivatives::{TableWords, embedded, is_table_file};
+use crate::identification::{Fitted, FrequencyFit, fit_table};
 use crate::section::{Dof, SectionModel, Structure};
 use crate::units::ReducedFrequencyRange;
 use serde::Serialize;
@@ -36,6 +39,8 @@ pub(crate) struct BuffetingStudy {
     pub spectra: Vec<SpectrumCurve>,
     /// Both domains at the speeds asked for.
     pub time: Vec<TimeDomain>,
+    /// How the model that is stepped in time was fitted to the table that is the answer.
+    pub fit: Option<String>,
 }
 
 /// A wind speed without a stationary response.
@@ -67,6 +72,9 @@ pub(crate) struct TimeDomain {
     pub ensemble: Ensemble,
     /// Degree by degree of freedom.
     pub comparison: Vec<ComponentComparison>,
+    /// Root mean square in the frequency domain by the model that is stepped over that by the table, less 1, where there is a
+    /// table.
+    pub model_change: Option<Vec<f64>>,
 }
 
 /// What does not change with the wind speed.
@@ -75,6 +83,8 @@ struct Setting<'a> {
     structure: Structure,
     theory: Option<QuasiSteady>,
     fixed: Option<Box<dyn Transfer>>,
+    /// The model fitted to a table, which alone can be stepped, and how.
+    fitted: Option<(Box<dyn Transfer>, String)>,
     tested: Option<ReducedFrequencyRange>,
 }
 
@@ -101,9 +111,9 @@ pub(crate) fn buffeting_study(
     for speed in &study.time.speeds_m_s {
         timed.extend(setting.answered(*speed, &mut left_out)?);
     }
+    let time = setting.time(&timed, progress, &mut left_out)?;
     left_out.sort_by(|a, b| a.speed_m_s.total_cmp(&b.speed_m_s));
     left_out.dedup_by(|a, b| a.speed_m_s == b.speed_m_s);
-    let time = setting.time(&timed, progress)?;
     let mut of_spectra: Vec<f64> = timed.iter().map(|r| r.speed_m_s).collect();
     if study.time.speeds_m_s.is_empty() {
         of_spectra.extend(responses.get(responses.len() / 2).map(|r| r.speed_m_s));
@@ -120,6 +130,7 @@ pub(crate) fn buffeting_study(
         left_out,
         spectra,
         time,
+        fit: setting.fitted.map(|(_, how)| how),
     })
 }
 
@@ -128,35 +139,65 @@ impl<'a> Setting<'a> {
         let section: SectionModel = study.section()?;
         let theory = study.coefficients.is_some().then(|| study.quasi_steady());
         let theory = theory.transpose()?;
-        let trained = study.trained_model()?;
-        let tested = trained.as_ref().map(|m| m.tested_range);
-        let fixed: Option<Box<dyn Transfer>> = match study.aerodynamics.as_str() {
-            QUASI_STEADY => {
-                study.static_coefficients()?;
-                None
-            }
-            FLAT_PLATE => Some(Box::new(FlatPlate::default())),
-            JONES => Some(Box::new(RationalModel::jones_flat_plate())),
-            other => {
-                let model = trained.ok_or_else(|| {
-                    Error::input(
-                        "aerodynamics",
-                        format!(
-                            "`{QUASI_STEADY}`, `{FLAT_PLATE}`, `{JONES}` or a trained model (.json)"
-                        ),
-                        format!("`{other}`"),
-                    )
-                })?;
-                Some(Box::new(model.model))
-            }
-        };
-        Ok(Self {
+        let structure = section.structure()?;
+        let mut setting = Self {
             study,
-            structure: section.structure()?,
+            structure,
             theory,
-            fixed,
-            tested,
-        })
+            fixed: None,
+            fitted: None,
+            tested: None,
+        };
+        setting.take(study.aerodynamics.as_str())?;
+        Ok(setting)
+    }
+
+    /// Takes up the self-excited forces that the file names, unless they change with the wind speed.
+    fn take(&mut self, aerodynamics: &str) -> Result<()> {
+        match aerodynamics {
+            QUASI_STEADY => {
+                self.study.static_coefficients()?;
+            }
+            FLAT_PLATE => self.fixed = Some(Box::new(FlatPlate::default())),
+            JONES => self.fixed = Some(Box::new(RationalModel::jones_flat_plate())),
+            name if is_table_file(name) || embedded::deck(name).is_ok() => self.take_table(name)?,
+            other => {
+                let model = self.study.trained_model()?.ok_or_else(|| {
+                    let decks: Vec<_> = embedded::names().collect();
+                    let expected = format!(
+                        "`{QUASI_STEADY}`, `{FLAT_PLATE}`, `{JONES}`, a trained model (.json), a table of derivatives (.csv, \
+                         .xlsx), or an embedded deck ({})",
+                        decks.join(", ")
+                    );
+                    Error::input("aerodynamics", expected, format!("`{other}`"))
+                })?;
+                self.tested = Some(model.tested_range);
+                self.fixed = Some(Box::new(model.model));
+            }
+        }
+        Ok(())
+    }
+
+    /// The table between its points for the frequency domain, a model fitted to it for the time domain where that is asked for.
+    fn take_table(&mut self, name: &str) -> Result<()> {
+        let study = self.study;
+        let words = TableWords {
+            name,
+            directory: &study.directory,
+            convention: study.convention,
+        };
+        let table = words.read("convention")?;
+        let dofs = &self.structure.dofs;
+        let by = study.interpolation;
+        let between = InterpolatedTable::by(by, &table, dofs, Extrapolation::Hold)?;
+        if !study.time.speeds_m_s.is_empty() {
+            let fit = FrequencyFit::default();
+            let Fitted { model, report } = fit_table(&table.samples(dofs), dofs, &fit)?;
+            self.fitted = Some((Box::new(model), report.method));
+        }
+        self.tested = Some(between.tested_range());
+        self.fixed = Some(Box::new(between));
+        Ok(())
     }
 
     /// The forces at one speed: gust forces about the equilibrium with quasi-steady theory, else at rotation zero; without
@@ -189,8 +230,16 @@ impl<'a> Setting<'a> {
         }))
     }
 
+    /// The problem of the frequency domain.
     fn problem<'b>(&'b self, at: &'b AtSpeed) -> Result<BuffetingProblem<'b>> {
-        let model = at.moving.as_deref().or(self.fixed.as_deref());
+        self.problem_of(at.moving.as_deref().or(self.fixed.as_deref()), at)
+    }
+
+    fn problem_of<'b>(
+        &'b self,
+        model: Option<&'b dyn Transfer>,
+        at: &'b AtSpeed,
+    ) -> Result<BuffetingProblem<'b>> {
         let turbulence = self.study.turbulence.as_ref();
         Ok(BuffetingProblem {
             structure: &self.structure,
@@ -247,17 +296,24 @@ impl<'a> Setting<'a> {
         &self,
         responses: &[BuffetingResponse],
         progress: &(dyn Fn(usize, usize) + Sync),
+        left_out: &mut Vec<SpeedLeftOut>,
     ) -> Result<Vec<TimeDomain>> {
         let plan = &self.study.time.plan;
         let all = responses.len() * plan.records;
-        responses
-            .iter()
-            .enumerate()
-            .map(|(i, response)| {
-                let of_all = |done: usize, _: usize| progress(i * plan.records + done, all);
-                self.both_domains(response, plan, &of_all)
-            })
-            .collect()
+        let mut found = Vec::with_capacity(responses.len());
+        for (i, response) in responses.iter().enumerate() {
+            let of_all = |done: usize, _: usize| progress(i * plan.records + done, all);
+            match self.both_domains(response, plan, &of_all) {
+                Ok(domain) => found.push(domain),
+                // the table knows of no growth at this speed
+                Err(Error::Unstable(why)) if self.fitted.is_some() => left_out.push(SpeedLeftOut {
+                    speed_m_s: response.speed_m_s,
+                    reason: format!("no time domain, the model fitted to the table grows: {why}"),
+                }),
+                Err(e) => return Err(e),
+            }
+        }
+        Ok(found)
     }
 
     fn both_domains(
@@ -268,11 +324,20 @@ impl<'a> Setting<'a> {
     ) -> Result<TimeDomain> {
         let speed = frequency.speed_m_s;
         let at = self.required(speed)?;
-        let problem = self.problem(&at)?;
+        let (problem, model_change) = match &self.fitted {
+            None => (self.problem(&at)?, None),
+            Some((model, _)) => {
+                let problem = self.problem_of(Some(model.as_ref()), &at)?;
+                let by_model = buffeting_response(&problem, speed, self.tested)?;
+                let both = by_model.rms.iter().zip(&frequency.rms);
+                (problem, Some(both.map(|(m, t)| m / t - 1.0).collect()))
+            }
+        };
         let ensemble = time_ensemble(&problem, speed, plan, progress)?;
         Ok(TimeDomain {
             comparison: compare(&self.structure.dofs, frequency, &ensemble),
             ensemble,
+            model_change,
         })
     }
 

@@ -3,13 +3,17 @@
 use super::{SimulationBlock, WindStudy};
 use crate::aerodynamics::GustSeries;
 use crate::aerodynamics::quasi_steady::{CoefficientRow, CoefficientsAt, LinearQuasiSteady};
-use crate::aeroelastic::{CoupledSection, EquilibriumPath, StaticEquilibrium, static_equilibria};
+use crate::aeroelastic::{
+    CoupledSection, EquilibriumEnd, EquilibriumPath, StaticEquilibrium, static_equilibria,
+};
 use crate::buffeting::{BuffetingProblem, GustForces, synthesise};
 use crate::error::{Error, Result};
 use crate::files::gusts::read_gusts;
 use crate::flutter::{FlutterCurves, QuasiSteadyOnset, quasi_steady_modes, quasi_steady_onset};
+use crate::plausibility::of_section;
 use crate::response::{Inputs, NonlinearSection, Stepper};
 use crate::section::{Dof, Structure};
+use crate::verdict::{Basis, DivergenceReading, Evidence, FlutterReading, Verdict};
 use serde::Serialize;
 
 /// Agreement that halving the step has to reach.
@@ -32,6 +36,8 @@ pub(crate) struct QuasiSteadyStudy {
     pub curves: FlutterCurves,
     /// Onset.
     pub onset: QuasiSteadyOnset,
+    /// What it amounts to.
+    pub verdict: Verdict,
     /// Rows of the table, for the figure.
     #[serde(skip)]
     pub rows: Vec<CoefficientRow>,
@@ -61,16 +67,42 @@ pub(crate) fn quasi_steady_study(study: &WindStudy) -> Result<QuasiSteadyStudy> 
             Ok((angle.to_degrees(), table.at(angle)?))
         })
         .collect::<Result<_>>()?;
+    let onset = quasi_steady_onset(&name, &structure, &theory, &range.search())?;
     Ok(QuasiSteadyStudy {
+        verdict: Verdict::of(&evidence(study, &onset)?),
         coefficients: table.name().to_owned(),
         dofs: structure.dofs.clone(),
         curves: quasi_steady_modes(&name, &structure, &theory, &equilibria)?,
-        onset: quasi_steady_onset(&name, &structure, &theory, &range.search())?,
+        onset,
         rows: table.rows().to_vec(),
         linear,
         equilibria,
         line,
     })
+}
+
+/// What quasi-steady theory says of a section, as evidence: no test of it stands behind.
+fn evidence(study: &WindStudy, onset: &QuasiSteadyOnset) -> Result<Evidence> {
+    let forces = "quasi-steady theory";
+    let mut evidence = Evidence {
+        required: study.speeds.required(),
+        flutter: vec![FlutterReading {
+            forces: forces.to_owned(),
+            search: onset.search.clone(),
+            basis: Basis::Stated,
+        }],
+        implausible: of_section(&study.section()?),
+        ..Evidence::default()
+    };
+    match onset.equilibrium_end {
+        Some(EquilibriumEnd::Divergence(last)) => {
+            let at = DivergenceReading::at(forces, Some(last.speed_m_s));
+            evidence.divergence.push(at);
+        }
+        Some(end @ EquilibriumEnd::OutsideTable(_)) => evidence.remarks.push(end.explain()),
+        None => {}
+    }
+    Ok(evidence)
 }
 
 /// One run with nonlinear forces, and the same with the linear ones.

@@ -134,3 +134,18 @@ fn what_is_wrong_is_named() {
         .to_string();
     assert!(message.contains("at most 10000 test points"), "{message}");
 }
+
+/// A derivative with its unit is that derivative, and what is none is named instead of the argument.
+#[test]
+fn a_unit_behind_a_name_is_no_other_column() {
+    let text = |h1: &str| {
+        format!(
+            "# notation: scanlan\n# axes: heave_up\n# width_m: 0.5\nv_star [-],{h1},H2,H3,A1,A2,A3\n9,-1,1,1,-1,-1,1\n"
+        )
+    };
+    let read = |h1: &str| parse(&text(h1), "wide", &ReadOptions::default());
+    let table = read("H1 [-]").unwrap().table;
+    assert_eq!(table.points(Derivative::H1)[0].value, -1.0);
+    let notes = read("H1_up").unwrap_err().to_string();
+    assert!(notes.contains("H1"), "{notes}");
+}

@@ -103,8 +103,11 @@ fn judge(kind: Kind, integrated: bool, state: State) {
                     let of = &unit.table().variables()[places[i] as usize].name;
                     let first = &unit.table().variables()[places[first] as usize].name;
                     let [found, expected] = [found, expected].map(|bits| f64::from_bits(*bits));
+                    // the onset of a bridge is followed from that of the last search, until it settles to 1e-9
+                    let followed = kind == Kind::Bridge
+                        && (found - expected).abs() <= 1e-8 * expected.abs().max(1.0);
                     assert!(
-                        found == expected,
+                        found == expected || followed,
                         "{kind:?}, {state:?}: `{of}` after `{name}` {way:?}, read from `{first}` on: {found}, not {expected}"
                     );
                 }

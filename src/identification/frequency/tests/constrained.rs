@@ -86,7 +86,7 @@ fn constrained_fit_is_that_of_lapack() {
 fn every_form_meets_the_limits() {
     let forms = [
         Form::Laguerre {
-            filters: 3,
+            filters: Some(3),
             feed_through: FeedThrough::default(),
             pole_per_transfer_function: false,
         },
@@ -163,7 +163,7 @@ fn impossible_limits_are_refused() {
     );
     let no_feed_through = message(&|f| {
         f.form = Form::Laguerre {
-            filters: 1,
+            filters: Some(1),
             feed_through: FeedThrough {
                 e0: false,
                 e1: false,

@@ -1,0 +1,126 @@
+//! Models and records that several jobs use.
+
+use aerodeck::aeroelastic::CoupledSection;
+use aerodeck::files::derivatives::embedded;
+use aerodeck::identification::{FeedThrough, Fitted, Form, FrequencyFit, PoleSearch, fit_table};
+use aerodeck::section::{Dof, SectionModel};
+use aerodeck::trained_model::{Experiment, Provenance, SCHEMA_VERSION, TrainedModel};
+use aerodeck::wind_tunnel::{Record, RecordSource, TunnelPlan};
+use nalgebra::DMatrix;
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+
+pub(crate) const POLE: f64 = 0.5;
+pub(crate) const SPEED_MAX_M_S: f64 = 60.0;
+
+/// A folder of this program's own below the target directory.
+pub(crate) fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"))
+        .join("ledger")
+        .join(name);
+    std::fs::create_dir_all(&folder).expect("a folder");
+    folder
+}
+
+/// Text of a committed model.
+pub(crate) fn text(kind: &str) -> String {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/models");
+    std::fs::read_to_string(format!("{folder}/{kind}.json")).expect("a model")
+}
+
+pub(crate) fn model(kind: &str) -> TrainedModel {
+    TrainedModel::from_json(&text(kind)).expect("a model")
+}
+
+pub(crate) fn coupled(model: &TrainedModel) -> CoupledSection {
+    use aerodeck::aerodynamics::Realizable;
+    let structure = model.section.structure().expect("a structure");
+    CoupledSection::new(structure, model.model.realize()).expect("a section")
+}
+
+pub(crate) fn laguerre(filters: usize) -> Form {
+    Form::Laguerre {
+        filters: Some(filters),
+        feed_through: FeedThrough::default(),
+        pole_per_transfer_function: false,
+    }
+}
+
+/// The deck LN21-5200 by four filters per motion at a given pole: twelve states with the section.
+pub(crate) fn four_filters() -> TrainedModel {
+    of_deck(FrequencyFit {
+        form: laguerre(4),
+        poles: PoleSearch::fixed(&[POLE]),
+        ..FrequencyFit::default()
+    })
+}
+
+/// The same by the form of the thesis: one bank of three filters per motion.
+pub(crate) fn three_filters() -> TrainedModel {
+    of_deck(FrequencyFit {
+        form: laguerre(3),
+        ..FrequencyFit::default()
+    })
+}
+
+fn of_deck(fit: FrequencyFit) -> TrainedModel {
+    let deck = embedded::deck("LN21-5200").expect("an embedded deck");
+    let Fitted { model, report } =
+        fit_table(&deck.samples(&Dof::TWO), &Dof::TWO, &fit).expect("a fit");
+    TrainedModel {
+        schema_version: SCHEMA_VERSION,
+        name: "LN21-5200".into(),
+        section: SectionModel::table_4_1(),
+        model,
+        tested_range: report.tested_range,
+        provenance: Provenance {
+            source: deck.header.source.clone(),
+            licence: deck.header.licence.clone(),
+            method: report.method,
+            aerodeck_version: env!("CARGO_PKG_VERSION").into(),
+            notes: vec![],
+        },
+        experiment: Experiment {
+            wind_speed_m_s: 30.0,
+            initial_vertical_m: 0.01,
+            initial_rotation_rad: 0.0,
+            stop_time_s: 10.0,
+            step_size_s: 0.01,
+            onset_search_limit_m_s: SPEED_MAX_M_S,
+        },
+    }
+}
+
+/// Records of 43 200 samples, four for each motion: 172 800 samples per motion.
+pub(crate) fn full_set() -> Vec<Record> {
+    ["LN21-5200", "LN21-5500"]
+        .iter()
+        .flat_map(|deck| records(&TunnelPlan::default(), deck))
+        .collect()
+}
+
+pub(crate) fn records(plan: &TunnelPlan, deck: &str) -> Vec<Record> {
+    let deck = embedded::deck(deck).expect("an embedded deck");
+    plan.records_from_table(&deck, &Dof::TWO).expect("records")
+}
+
+pub(crate) fn sources(records: &[Record]) -> Vec<&dyn RecordSource> {
+    records.iter().map(|r| r as &dyn RecordSource).collect()
+}
+
+pub(crate) fn records_as_json(records: &[Record]) -> Value {
+    let one = |r: &Record| {
+        json!({
+            "width": r.header.width_m, "speed": r.header.mean_speed_m_s, "density": r.header.air_density_kg_m3,
+            "sampling": r.header.sampling_hz, "motion": r.motion, "force": r.force,
+        })
+    };
+    records.iter().map(one).collect()
+}
+
+pub(crate) fn rows(m: &DMatrix<f64>) -> Value {
+    m.row_iter()
+        .map(|r| r.iter().copied().collect::<Vec<_>>())
+        .collect::<Vec<_>>()
+        .into()
+}

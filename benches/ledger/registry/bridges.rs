@@ -1,0 +1,109 @@
+//! Whole bridges.
+
+use super::{NO_FMU, NOBODY, OWN_FORMAT, PLAIN};
+use crate::entry::{Baseline, Entry, Script, Threads};
+use crate::jobs::bridge;
+
+const BRIDGE: Entry = Entry {
+    size: "39 modes, 195 states",
+    prepare: Some(bridge::prepare_whole),
+    times: 2000,
+    ..PLAIN
+};
+
+pub(crate) static ENTRIES: &[Entry] = &[
+    Entry {
+        name: "bridge-step",
+        what: "FMU of a bridge, doStep and two readings",
+        job: bridge::step,
+        baseline: Baseline::Here {
+            name: "bare product of 195 by 195 numbers, nalgebra",
+            package: Some("nalgebra"),
+            job: bridge::product,
+            units: 1,
+            times: 2000,
+        },
+        count: Some([50, 550]),
+        is_step: true,
+        ..BRIDGE
+    },
+    Entry {
+        name: "bridge-step-wind",
+        what: "the same, another wind set at every step",
+        job: bridge::step_in_another_wind,
+        times: 200,
+        baseline: Baseline::Here {
+            name: "bare product of 195 by 195 numbers, nalgebra",
+            package: Some("nalgebra"),
+            job: bridge::product,
+            units: 1,
+            times: 2000,
+        },
+        count: Some([10, 60]),
+        is_step: true,
+        ..BRIDGE
+    },
+    Entry {
+        name: "bridge-onset",
+        what: "FMU of a bridge, onset_speed after another density",
+        size: "8 modes",
+        prepare: Some(bridge::prepare_few_modes),
+        job: bridge::onset,
+        times: 5,
+        baseline: NO_FMU,
+        count: Some([1, 4]),
+        ..PLAIN
+    },
+    Entry {
+        name: "bridge-sweep",
+        what: "modes of a bridge over wind speed",
+        size: "39 modes, 195 states, 60 speeds",
+        job: bridge::sweep,
+        baseline: Baseline::Python(Script {
+            name: "NumPy eigvals of the same matrices",
+            packages: &["numpy"],
+            file: "eigenvalues.py",
+            argument: bridge::sweep_argument,
+            share: 1.0,
+            tolerance: 0.0,
+        }),
+        ..PLAIN
+    },
+    Entry {
+        name: "bridge-buffeting",
+        what: "both domains, two records of 600 s",
+        size: "39 modes, 63 nodes, 12 000 samples",
+        threads: Threads::All,
+        job: bridge::buffeting,
+        baseline: NOBODY,
+        ..PLAIN
+    },
+    Entry {
+        name: "bridge-field",
+        what: "field of turbulence",
+        size: "100 strips, 12 000 samples",
+        threads: Threads::All,
+        job: bridge::field,
+        baseline: NOBODY,
+        ..PLAIN
+    },
+    Entry {
+        name: "bridge-response",
+        what: "response to that field",
+        size: "39 modes, 100 strips, 12 000 samples",
+        threads: Threads::All,
+        job: bridge::response,
+        baseline: NOBODY,
+        ..PLAIN
+    },
+    Entry {
+        name: "large-bridge",
+        what: "coupled, modes at 20 speeds, one step",
+        size: "1000 nodes, 100 modes",
+        threads: Threads::All,
+        job: bridge::thousand_nodes,
+        baseline: OWN_FORMAT,
+        judged_peak: true,
+        ..PLAIN
+    },
+];

@@ -1,0 +1,140 @@
+//! Steps, instances and strips of an FMU.
+
+use super::{NO_FMU, OWN_FORMAT, PLAIN};
+use crate::entry::{Baseline, Entry};
+use crate::jobs::steps;
+
+/// Of an FMU that is not ours: there is none with these equations, so the arithmetic alone is the measure.
+const PRODUCT: Baseline = Baseline::Here {
+    name: "bare product of 12 by 16 numbers, nalgebra",
+    package: Some("nalgebra"),
+    job: steps::product_in_nalgebra,
+    units: 1,
+    times: 200_000,
+};
+
+/// A step of a section through the C interface.
+const STEP: Entry = Entry {
+    size: "12 states",
+    times: 50_000,
+    baseline: PRODUCT,
+    count: Some([2_000, 12_000]),
+    is_step: true,
+    ..PLAIN
+};
+
+pub(crate) static ENTRIES: &[Entry] = &[
+    Entry {
+        name: "step",
+        what: "FMU, doStep and getReal of four motions",
+        job: steps::motion,
+        ..STEP
+    },
+    Entry {
+        name: "step-forces",
+        what: "the same with two forces among the four",
+        job: steps::forces,
+        ..STEP
+    },
+    Entry {
+        name: "step-wind",
+        what: "the motions, another wind set at every step",
+        job: steps::another_wind,
+        ..STEP
+    },
+    Entry {
+        name: "step-gusts",
+        what: "the motions, two gusts set at every step",
+        size: "16 states",
+        job: steps::gusts,
+        ..STEP
+    },
+    Entry {
+        name: "step-discrete",
+        what: "discrete model, the motions",
+        size: "10 states",
+        job: steps::discrete,
+        ..STEP
+    },
+    Entry {
+        name: "caller",
+        what: "the calls of doStep and getReal alone, part of every step above",
+        size: "two calls",
+        job: steps::caller,
+        is_step: false,
+        baseline: Baseline::None("it is the overhead of this program"),
+        ..STEP
+    },
+    Entry {
+        name: "derivative",
+        what: "model exchange, rates of all states",
+        job: steps::derivative,
+        is_step: false,
+        ..STEP
+    },
+    Entry {
+        name: "instance",
+        what: "FMU, an instance made and freed",
+        size: "12 states",
+        job: steps::instance,
+        times: 500,
+        baseline: NO_FMU,
+        count: Some([20, 120]),
+        ..PLAIN
+    },
+    Entry {
+        name: "instance-rational",
+        what: "the same of rational functions",
+        size: "10 states",
+        job: steps::instance_rational,
+        times: 500,
+        baseline: NO_FMU,
+        count: Some([20, 120]),
+        ..PLAIN
+    },
+    Entry {
+        name: "instance-discrete",
+        what: "the same of the discrete model",
+        size: "10 states",
+        job: steps::instance_discrete,
+        times: 500,
+        baseline: NO_FMU,
+        count: Some([20, 120]),
+        ..PLAIN
+    },
+    Entry {
+        name: "strip",
+        what: "unit of forces, a strip: motion set, step, forces read",
+        size: "1000 strips",
+        job: steps::strips,
+        units: steps::STRIPS,
+        times: 20,
+        baseline: Baseline::Here {
+            name: "a coupled section stepped by itself",
+            package: None,
+            job: steps::as_many_sections,
+            units: steps::STRIPS,
+            times: 20,
+        },
+        count: Some([3, 13]),
+        ..PLAIN
+    },
+    Entry {
+        name: "growth-steps",
+        what: "ten million steps: memory must not grow",
+        size: "12 states",
+        job: steps::ten_million,
+        baseline: OWN_FORMAT,
+        judged_peak: true,
+        ..PLAIN
+    },
+    Entry {
+        name: "growth-loads",
+        what: "a thousand loads of the library: memory must not grow",
+        size: "12 states",
+        job: steps::loads,
+        baseline: OWN_FORMAT,
+        judged_peak: true,
+        ..PLAIN
+    },
+];

@@ -1,0 +1,297 @@
+//! All critical speeds of a section at once, without a grid.
+//!
+//! In dimensionless time `s = Vt/B` the coupled system has the state matrix `A(u)`, `u = B/V`, of rows `q: [0, I, 0]`,
+//! `v: [E(u), D(u), C]`, `x: [b, 0, A]` with `E = E₀ + u² E₂` and `D = D₀ + u D₁` (stiffness and damping of the structure). Two
+//! of its eigenvalues with the sum zero, a pair on the imaginary axis among them, mean that `A X + X Aᵀ = 0` has a solution
+//! `X = −Xᵀ ≠ 0` (the bialternate sum is singular; Guckenheimer, Myers and Sturmfels, *Computing Hopf bifurcations I*, 1997):
+//! a quadratic eigenvalue problem in `u`. Only the rows of `v` depend on `u`. The others give, block by block,
+//!
+//! ```text
+//! S = X_vq symmetric,   X_vx = −(Q bᵀ + W Aᵀ),   A Z + Z Aᵀ = Wᵀ bᵀ − b W
+//! ```
+//!
+//! with `Q = X_qq`, `W = X_qx`, `Z = X_xx`, so that what is left has the size `n(3n − 1)/2 + nF` instead of `N(N − 1)/2` for
+//! `N = 2n + F` states: 17 for 45 with two motions and six filters.
+
+use crate::aerodynamics::{ContinuousRealization, Realization};
+use crate::aeroelastic::CoupledSection;
+use crate::state_space::eigenvalues;
+use nalgebra::{DMatrix, DVector};
+
+/// Largest problem: beyond, a grid of speeds is quicker.
+const LARGEST: usize = 72;
+/// A solution counts as real when its imaginary part is at most this part of it: double ones come apart by the root of
+/// rounding. One more speed to look at costs nothing, one that is missed may hide an onset.
+const REAL: f64 = 1e-3;
+/// `u` in units of the natural frequencies about which the problem is inverted; no wind has a negative one.
+const SHIFT: f64 = -0.7;
+
+/// The speeds (m/s, rising) at which the number of eigenvalues with a positive real part may change, all of them: those of pairs
+/// on the imaginary axis, and of divergence, where one is zero; besides these such at which two real eigenvalues have the sum
+/// zero, which mean nothing. `None` for sampled and large systems, and
+/// where the force model is no stable filter.
+pub(super) fn critical_speeds(section: &CoupledSection) -> Option<Vec<f64>> {
+    let (system, size) = small(section)?;
+    let [c0, c1, c2] = system.pencil(size)?;
+    let at = (&c0 + &c1 * SHIFT + &c2 * (SHIFT * SHIFT)).lu();
+    let slope = at.solve(&(&c1 + &c2 * (2.0 * SHIFT)))?;
+    let bend = at.solve(&c2)?;
+    // μ² C(σ) + μ C'(σ) + C₂ with u = σ + 1/μ
+    let mut companion = DMatrix::zeros(2 * size, 2 * size);
+    companion.view_mut((0, 0), (size, size)).copy_from(&-slope);
+    companion
+        .view_mut((0, size), (size, size))
+        .copy_from(&-bend);
+    companion
+        .view_mut((size, 0), (size, size))
+        .fill_with_identity();
+    if !companion.iter().all(|x| x.is_finite()) {
+        return None;
+    }
+    let found = eigenvalues(&companion).ok()?;
+    let pairs = found
+        .into_iter()
+        .filter(|mu| mu.norm() > 0.0)
+        .map(|mu| mu.inv() + SHIFT)
+        .filter(|u| u.re > 0.0 && u.im.abs() <= REAL * u.re)
+        .map(|u| u.re);
+    let all = pairs.chain(system.at_rest()?);
+    let mut speeds: Vec<f64> = all.map(|u| system.unit_m_s / u).collect();
+    speeds.sort_by(f64::total_cmp);
+    Some(speeds)
+}
+
+/// Whether [`critical_speeds`] finds them all.
+pub(super) fn all_speeds_are_known(section: &CoupledSection) -> bool {
+    small(section).is_some_and(|(system, _)| AntisymmetricLyapunov::new(&system.a).is_some())
+}
+
+/// The system, if its problem is not too large, and the size of that.
+fn small(section: &CoupledSection) -> Option<(Dimensionless, usize)> {
+    let Realization::Continuous(aero) = section.aerodynamics() else {
+        return None;
+    };
+    let n = section.structure().dofs.len();
+    let size = n * (3 * n - 1) / 2 + n * aero.a.nrows();
+    let system = (size <= LARGEST).then(|| Dimensionless::of(section, aero));
+    Some((system??, size))
+}
+
+/// The state matrix in dimensionless time and displacements, `u` in units of a natural frequency.
+struct Dimensionless {
+    /// Wind speed at `u = 1`, m/s.
+    unit_m_s: f64,
+    e0: DMatrix<f64>,
+    e2: DMatrix<f64>,
+    d0: DMatrix<f64>,
+    d1: DMatrix<f64>,
+    c: DMatrix<f64>,
+    a: DMatrix<f64>,
+    b: DMatrix<f64>,
+}
+
+/// The part of the state matrix that is looked at: `E`, `D`, and whether what does not depend on `u` is counted.
+struct Part<'a> {
+    e: Option<&'a DMatrix<f64>>,
+    d: Option<&'a DMatrix<f64>>,
+    constant: bool,
+}
+
+impl Dimensionless {
+    fn of(section: &CoupledSection, aero: &ContinuousRealization) -> Option<Self> {
+        let s = section.structure();
+        let (n, width) = (s.dofs.len(), s.width_m);
+        let natural = s.still_air_rad_s().filter(|w| *w > 0.0);
+        let (sum, count) = natural.fold((0.0, 0), |(sum, count), w| (sum + w.ln(), count + 1));
+        let unit = (count > 0).then(|| (sum / f64::from(count)).exp())?;
+        let scale = |i: usize| s.dofs[i].motion_scale(width);
+        let of_motion = |physical: DMatrix<f64>| {
+            let m = section.inverse_mass() * physical;
+            DMatrix::from_fn(n, n, |i, j| m[(i, j)] * scale(i) / scale(j))
+        };
+        let air = 0.5 * s.air_density_kg_m3 * width * width;
+        // ½ρB² diag(B, B, B²) C
+        let force = section.inverse_mass() * section.force_of_filters(&aero.c, width);
+        Some(Self {
+            unit_m_s: unit * width,
+            e0: of_motion(s.scaled(&aero.e0) * air),
+            e2: of_motion(&s.stiffness / -(unit * unit)),
+            d0: of_motion(s.scaled(&aero.e1) * air),
+            d1: of_motion(&s.damping / -unit),
+            c: DMatrix::from_fn(n, aero.a.nrows(), |i, j| force[(i, j)] * scale(i)),
+            a: aero.a.clone(),
+            b: aero.b.clone(),
+        })
+    }
+
+    /// The `u` of divergence, at which the stiffness in steady wind is singular: `E₀ − C A⁻¹ b + u² E₂`.
+    fn at_rest(&self) -> Option<impl Iterator<Item = f64>> {
+        let steady = match self.a.is_empty() {
+            true => self.e0.clone(),
+            false => &self.e0 - &self.c * self.a.clone().lu().solve(&self.b)?,
+        };
+        let flexibility = self.e2.clone().try_inverse()?;
+        let squares = eigenvalues(&(flexibility * -steady)).ok()?;
+        let real = |z: &nalgebra::Complex<f64>| z.re > 0.0 && z.im.abs() <= REAL * z.re;
+        Some(squares.into_iter().filter(real).map(|z| z.re.sqrt()))
+    }
+
+    /// The matrices of 1, `u` and `u²`, rows scaled to unit size.
+    fn pencil(&self, size: usize) -> Option<[DMatrix<f64>; 3]> {
+        let filters = AntisymmetricLyapunov::new(&self.a)?;
+        let parts = [
+            Part {
+                e: Some(&self.e0),
+                d: Some(&self.d0),
+                constant: true,
+            },
+            Part {
+                e: None,
+                d: Some(&self.d1),
+                constant: false,
+            },
+            Part {
+                e: Some(&self.e2),
+                d: None,
+                constant: false,
+            },
+        ];
+        let mut pencil = [0; 3].map(|_| DMatrix::zeros(size, size));
+        for j in 0..size {
+            let unknowns = Unknowns::unit(j, self, &filters)?;
+            for (matrix, part) in pencil.iter_mut().zip(&parts) {
+                let column = self.equations(&unknowns, part, size);
+                matrix.set_column(j, &column);
+            }
+        }
+        for i in 0..size {
+            let largest = pencil.iter().map(|m| m.row(i).amax()).fold(0.0, f64::max);
+            if largest > 0.0 {
+                pencil
+                    .iter_mut()
+                    .for_each(|m| m.row_mut(i).unscale_mut(largest));
+            }
+        }
+        Some(pencil)
+    }
+
+    /// The rows of `v` of `A X + X Aᵀ`.
+    fn equations(&self, x: &Unknowns, part: &Part<'_>, size: usize) -> DVector<f64> {
+        let (n, filters) = self.c.shape();
+        let (mut vq, mut vx) = (DMatrix::zeros(n, n), DMatrix::zeros(n, filters));
+        let mut vv = DMatrix::zeros(n, n);
+        if let Some(e) = part.e {
+            vq += e * &x.q;
+            vx += e * &x.w;
+            vv -= e * &x.s;
+        }
+        if let Some(d) = part.d {
+            vq += d * &x.s;
+            vx += d * &x.y;
+            vv += d * &x.t;
+        }
+        if part.constant {
+            vq += &x.t - &self.c * x.w.transpose();
+            vx += &self.c * &x.z + &x.s * self.b.transpose() + &x.y * self.a.transpose();
+            vv -= &self.c * x.y.transpose();
+        }
+        let below = pairs(n).map(|(i, j)| vv[(i, j)] - vv[(j, i)]);
+        let all = vq.iter().chain(vx.iter()).copied().chain(below);
+        DVector::from_iterator(size, all)
+    }
+}
+
+/// Places below the diagonal.
+fn pairs(n: usize) -> impl Iterator<Item = (usize, usize)> {
+    (0..n).flat_map(|i| (0..i).map(move |j| (i, j)))
+}
+
+/// The blocks of `X`: `q` and `t` antisymmetric, `s` symmetric, `w` free, `y` and `z` what follows from them.
+struct Unknowns {
+    q: DMatrix<f64>,
+    s: DMatrix<f64>,
+    t: DMatrix<f64>,
+    w: DMatrix<f64>,
+    y: DMatrix<f64>,
+    z: DMatrix<f64>,
+}
+
+impl Unknowns {
+    /// The one of which only the free number `j` is 1: those of `q`, `t`, `s`, `w` in turn.
+    fn unit(j: usize, of: &Dimensionless, filters: &AntisymmetricLyapunov) -> Option<Self> {
+        let (n, f) = of.c.shape();
+        let zeros = || DMatrix::zeros(n, n);
+        let (mut q, mut s, mut t, mut w) = (zeros(), zeros(), zeros(), DMatrix::zeros(n, f));
+        let below: Vec<_> = pairs(n).collect();
+        let (first, second) = (below.len(), 2 * below.len());
+        let third = second + n * (n + 1) / 2;
+        if j < second {
+            let (matrix, pair) = if j < first {
+                (&mut q, below[j])
+            } else {
+                (&mut t, below[j - first])
+            };
+            matrix[pair] = 1.0;
+            matrix[(pair.1, pair.0)] = -1.0;
+        } else if j < third {
+            let mut all = below.into_iter().chain((0..n).map(|i| (i, i)));
+            let (row, column) = all.nth(j - second)?;
+            s[(row, column)] = 1.0;
+            s[(column, row)] = 1.0;
+        } else {
+            w[((j - third) % n, (j - third) / n)] = 1.0;
+        }
+        let y = -(&q * of.b.transpose() + &w * of.a.transpose());
+        let product = &of.b * &w;
+        let z = filters.solve(&(product.transpose() - product))?;
+        Some(Self { q, s, t, w, y, z })
+    }
+}
+
+/// `A Z + Z Aᵀ = R` for antisymmetric `R` and `Z`.
+struct AntisymmetricLyapunov {
+    order: usize,
+    factors: Option<nalgebra::LU<f64, nalgebra::Dyn, nalgebra::Dyn>>,
+}
+
+impl AntisymmetricLyapunov {
+    /// `None` when two eigenvalues of `A` have the sum zero.
+    fn new(a: &DMatrix<f64>) -> Option<Self> {
+        let order = a.nrows();
+        let places: Vec<_> = pairs(order).collect();
+        if places.is_empty() {
+            return Some(Self {
+                order,
+                factors: None,
+            });
+        }
+        // (A Z + Z Aᵀ)_ij = Σ a_ik z_kj + a_jk z_ik
+        let operator = DMatrix::from_fn(places.len(), places.len(), |row, column| {
+            let ((i, j), (p, q)) = (places[row], places[column]);
+            let left = |from: usize, to: usize| if j == to { a[(i, from)] } else { 0.0 };
+            let right = |from: usize, to: usize| if i == from { a[(j, to)] } else { 0.0 };
+            // z_pq = 1, z_qp = −1
+            left(p, q) - left(q, p) + right(p, q) - right(q, p)
+        });
+        let factors = operator.lu();
+        factors.is_invertible().then_some(Self {
+            order,
+            factors: Some(factors),
+        })
+    }
+
+    fn solve(&self, right: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+        let mut z = DMatrix::zeros(self.order, self.order);
+        let Some(factors) = &self.factors else {
+            return Some(z);
+        };
+        let count = self.order * (self.order - 1) / 2;
+        let below = pairs(self.order).map(|place| right[place]);
+        let solved = factors.solve(&DVector::from_iterator(count, below))?;
+        for ((i, j), value) in pairs(self.order).zip(solved.iter()) {
+            z[(i, j)] = *value;
+            z[(j, i)] = -value;
+        }
+        Some(z)
+    }
+}

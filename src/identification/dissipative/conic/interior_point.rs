@@ -1,0 +1,234 @@
+//! The way through the interior of the cones, by Newton's steps towards the answer.
+
+use super::cone::Cone;
+use super::second_order::{Scaling, Vector, determinant, dot, product, quotient, reach, tail};
+use crate::error::{Error, Result};
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use std::array::from_fn;
+
+/// Steps at most; fifteen are the rule.
+const STEPS: usize = 60;
+/// Gap between the objectives, relative to the objective, at which the answer is exact to rounding.
+const GAP: f64 = 1e-15;
+/// The same at which an answer that no step improves any more is taken.
+const GAP_TAKEN: f64 = 1e-6;
+/// Share of the way to the boundary that a step takes.
+const SHORT_OF_BOUNDARY: f64 = 0.99;
+/// Refinements of a direction at most.
+const REFINEMENTS: usize = 6;
+
+/// All cones as one system `rows w + s = bound`.
+pub(super) struct Problem {
+    /// Places of the rows of each cone in `rows`.
+    spans: Vec<(usize, usize)>,
+    rows: DMatrix<f64>,
+    bound: Vec<Vector>,
+}
+
+/// A point of the way: vector, slacks, multipliers.
+#[derive(Clone)]
+pub(super) struct Point {
+    pub w: DVector<f64>,
+    pub s: Vec<Vector>,
+    pub z: Vec<Vector>,
+}
+
+impl Problem {
+    pub(super) fn new(cones: &[Cone], seen: &[usize], unit: f64) -> Self {
+        let mut spans = Vec::new();
+        let mut count = 0;
+        for cone in cones {
+            spans.push((count, cone.rows.len()));
+            count += cone.rows.len();
+        }
+        let all: Vec<&DVector<f64>> = cones.iter().flat_map(|c| &c.rows).collect();
+        Self {
+            spans,
+            rows: DMatrix::from_fn(count, seen.len(), |r, c| all[r][seen[c]]),
+            bound: cones.iter().map(|c| c.bound.map(|b| b / unit)).collect(),
+        }
+    }
+
+    /// Rows, cone by cone.
+    fn cut(&self, all: &DVector<f64>) -> Vec<Vector> {
+        let of =
+            |&(at, count): &(usize, usize)| from_fn(|r| if r < count { all[at + r] } else { 0.0 });
+        self.spans.iter().map(of).collect()
+    }
+
+    /// The same as one vector.
+    fn flat(&self, each: &[Vector]) -> DVector<f64> {
+        let mut all = DVector::zeros(self.rows.nrows());
+        for (&(at, count), v) in self.spans.iter().zip(each) {
+            all.rows_mut(at, count).copy_from_slice(&v[..count]);
+        }
+        all
+    }
+
+    /// `rows w`, cone by cone.
+    fn times(&self, w: &DVector<f64>) -> Vec<Vector> {
+        self.cut(&(&self.rows * w))
+    }
+
+    /// `rowsᵀ z`.
+    fn transposed(&self, z: &[Vector]) -> DVector<f64> {
+        self.rows.tr_mul(&self.flat(z))
+    }
+
+    pub(super) fn solve(&self) -> Result<Point> {
+        let mut at = self.start();
+        let mut best = (f64::INFINITY, at.clone());
+        for _ in 0..STEPS {
+            let gap: f64 = at.s.iter().zip(&at.z).map(|(s, z)| dot(s, z)).sum();
+            let moved = self.times(&at.w);
+            let short: Vec<Vector> = (0..at.s.len())
+                .map(|c| from_fn(|r| moved[c][r] + at.s[c][r] - self.bound[c][r]))
+                .collect();
+            let uneven = &at.w + self.transposed(&at.z);
+            let infeasible = short.iter().flatten().fold(0.0, |a: f64, x| a.max(x.abs()));
+            let size = at.w.norm_squared().max(f64::MIN_POSITIVE);
+            let error = (gap / size)
+                .max(infeasible * infeasible / size)
+                .max(uneven.norm_squared() / size);
+            if error < best.0 {
+                best = (error, at.clone());
+            }
+            if error.is_nan() || error < GAP {
+                break;
+            }
+            match self.step(&at, &short, &uneven, gap) {
+                Some(next) => at = next,
+                None => break,
+            }
+        }
+        let (error, at) = best;
+        if error < GAP_TAKEN {
+            Ok(at)
+        } else {
+            Err(contradiction())
+        }
+    }
+
+    /// Zero, the slacks moved into their cones, and the multipliers that are central to them.
+    fn start(&self) -> Point {
+        let inside = |v: &Vector| [v[0].max(tail(v) + 1.0), v[1], v[2]];
+        let s: Vec<Vector> = self.bound.iter().map(inside).collect();
+        let central = |s: &Vector| {
+            let size = determinant(s);
+            [s[0] / size, -s[1] / size, -s[2] / size]
+        };
+        Point {
+            w: DVector::zeros(self.rows.ncols()),
+            z: s.iter().map(central).collect(),
+            s,
+        }
+    }
+
+    fn step(&self, at: &Point, short: &[Vector], uneven: &DVector<f64>, gap: f64) -> Option<Point> {
+        let cones = at.s.len();
+        let scalings = (0..cones)
+            .map(|c| Scaling::new(&at.s[c], &at.z[c]))
+            .collect::<Option<Vec<_>>>()?;
+        // W⁻¹ rows
+        let mut scaled = self.rows.clone();
+        for (&(first, count), scaling) in self.spans.iter().zip(&scalings) {
+            for mut column in scaled.column_iter_mut() {
+                let v: Vector = from_fn(|r| if r < count { column[first + r] } else { 0.0 });
+                let v = scaling.divide(&v);
+                column.rows_mut(first, count).copy_from_slice(&v[..count]);
+            }
+        }
+        let system = Weighted::new(&scaled)?;
+        let direction = |wanted: &[Vector]| -> (DVector<f64>, Vec<Vector>, Vec<Vector>) {
+            // W⁻¹ (short − W (λ \ wanted))
+            let rest: Vec<Vector> = (0..cones)
+                .map(|c| {
+                    let back = quotient(&scalings[c].lambda, &wanted[c]);
+                    let short = scalings[c].divide(&short[c]);
+                    from_fn(|r| short[r] - back[r])
+                })
+                .collect();
+            let (w, left) = system.solve(&self.flat(&rest), uneven);
+            let left = self.cut(&left);
+            let along = self.times(&w);
+            let z = (0..cones).map(|c| scalings[c].divide(&left[c])).collect();
+            let s = (0..cones)
+                .map(|c| from_fn(|r| -short[c][r] - along[c][r]))
+                .collect();
+            (w, s, z)
+        };
+        let squared = |c: usize| product(&scalings[c].lambda, &scalings[c].lambda);
+        let affine: Vec<Vector> = (0..cones).map(squared).collect();
+        let (_, s, z) = direction(&affine);
+        let reach = reach(&at.s, &s).min(reach(&at.z, &z)).min(1.0);
+        let left: f64 = (0..cones)
+            .map(|c| {
+                let s: Vector = from_fn(|r| at.s[c][r] + reach * s[c][r]);
+                let z: Vector = from_fn(|r| at.z[c][r] + reach * z[c][r]);
+                dot(&s, &z)
+            })
+            .sum();
+        let centre = (left / gap).clamp(0.0, 1.0).powi(3) * gap / cones as f64;
+        let corrected: Vec<Vector> = (0..cones)
+            .map(|c| {
+                let second = product(&scalings[c].divide(&s[c]), &scalings[c].times(&z[c]));
+                let mut all: Vector = from_fn(|r| affine[c][r] + second[r]);
+                all[0] -= centre;
+                all
+            })
+            .collect();
+        let (w, s, z) = direction(&corrected);
+        let length =
+            (SHORT_OF_BOUNDARY * self::reach(&at.s, &s).min(self::reach(&at.z, &z))).min(1.0);
+        let moved = |from: &[Vector], by: &[Vector]| -> Vec<Vector> {
+            let one = |(a, b): (&Vector, &Vector)| from_fn(|r| a[r] + length * b[r]);
+            from.iter().zip(by).map(one).collect()
+        };
+        Some(Point {
+            w: &at.w + w * length,
+            s: moved(&at.s, &s),
+            z: moved(&at.z, &z),
+        })
+    }
+}
+
+/// `min ‖B w + b‖² + ‖w + a‖²` by the Cholesky factor of `I + BᵀB`. Rows of cones that hold the answer are larger than the
+/// others by many digits, which the factor loses and refinement of `w` and `y = B w + b` together brings back (Björck 1967).
+struct Weighted<'a> {
+    rows: &'a DMatrix<f64>,
+    factor: Cholesky<f64, Dyn>,
+}
+
+impl<'a> Weighted<'a> {
+    fn new(rows: &'a DMatrix<f64>) -> Option<Self> {
+        let n = rows.ncols();
+        let mut gram = DMatrix::identity(n, n);
+        gram.gemm_tr(1.0, rows, rows, 1.0);
+        let factor = gram.cholesky()?;
+        Some(Self { rows, factor })
+    }
+
+    /// `w` and `y`.
+    fn solve(&self, b: &DVector<f64>, a: &DVector<f64>) -> (DVector<f64>, DVector<f64>) {
+        let mut w = DVector::zeros(a.len());
+        let mut y = DVector::zeros(b.len());
+        let mut before = f64::INFINITY;
+        for _ in 0..=REFINEMENTS {
+            let first = -a - &w - self.rows.tr_mul(&y);
+            let second = &y - b - self.rows * &w;
+            let left = first.norm_squared() + second.norm_squared();
+            if left == 0.0 || left > 0.1 * before {
+                break;
+            }
+            before = left;
+            let by = self.factor.solve(&(first + self.rows.tr_mul(&second)));
+            y += self.rows * &by - second;
+            w += by;
+        }
+        (w, y)
+    }
+}
+
+pub(super) fn contradiction() -> Error {
+    Error::Numerical("constraints of the fit that contradict each other".into())
+}

@@ -1,0 +1,230 @@
+//! What is known of the section of a study, as evidence for its verdict.
+
+use super::{Deck, FlutterStudy, KnownUncertainty, StageFailure, Study, study_findings};
+use crate::aeroelastic::{CoupledSection, EquilibriumEnd, static_equilibria};
+use crate::error::{Error, Result};
+use crate::flutter::{FlutterSearch, Instability, OnsetMethod, StableRange, judged_speeds};
+use crate::identification::FitReport;
+use crate::trained_model::TrainedModel;
+use crate::verdict::{
+    Basis, DivergenceReading, Evidence, Failure, FlutterReading, GallopingReading, MeanRotation,
+    MovedOnset, Reach,
+};
+
+/// The rotation to which derivatives belong, deg: tables do not state another.
+const TESTED_ROTATION_DEG: f64 = 0.0;
+/// Stages that draw and write, without which the answer is the same.
+const DRAWING: [&str; 2] = ["figure", "curves"];
+
+/// The model of a study whose onset is the answer, with what is known of its fit.
+pub(crate) struct OwnModel<'a> {
+    /// The model; `None` where it was not trained.
+    pub model: Option<&'a TrainedModel>,
+    /// How far the data leave it open.
+    pub uncertainty: Option<&'a KnownUncertainty>,
+    /// How it was fitted, where that was just done.
+    pub fit: Option<&'a FitReport>,
+}
+
+/// Everything that the stages of a study have found on the section in the forces of its own model.
+pub(crate) fn section_evidence(
+    study: &Study,
+    deck: &Deck,
+    results: &FlutterStudy,
+    own: &OwnModel<'_>,
+    failed: &[StageFailure],
+) -> Evidence {
+    let name = own.model.map(|m| m.name.as_str());
+    let mut evidence = Evidence {
+        required: study.flutter.required(),
+        flutter: own
+            .model
+            .into_iter()
+            .filter_map(|m| of_model(study, results, m))
+            .collect(),
+        growth: results
+            .growth
+            .iter()
+            .find(|g| Some(g.model.as_str()) == name)
+            .map(|g| g.growth.clone()),
+        failures: failures(study, failed, name),
+        constraints: own.fit.and_then(moved),
+        test_speeds: own.uncertainty.and_then(one_test_speed),
+        implausible: [deck.findings(), &study_findings(study)[..]].concat(),
+        remarks: deck.notes(),
+        ..Evidence::default()
+    };
+    let table = deck.own_model_name();
+    evidence.flutter.extend(of_deck(deck, results, &table));
+    let of_answer = |model: &str| Some(model) == name || model == table;
+    let divergence = results.divergence.iter().filter(|d| of_answer(&d.model));
+    evidence.divergence = divergence
+        .map(|d| DivergenceReading {
+            forces: forces(&d.model, &table),
+            speed_m_s: d.speed_m_s,
+            lower_m_s: d.lower_m_s,
+            assumed: d.assumed.clone(),
+        })
+        .collect();
+    if let Err(e) = add_coefficients(study, results, &mut evidence) {
+        evidence.failures.push(Failure {
+            stage: "quasi-steady theory".to_owned(),
+            reason: e.to_string(),
+            bears_on_answer: true,
+        });
+    }
+    evidence
+}
+
+fn forces(model: &str, table: &str) -> String {
+    match model == table {
+        true => format!("the {table}"),
+        false => format!("the model “{model}”"),
+    }
+}
+
+fn of_model(study: &Study, results: &FlutterStudy, model: &TrainedModel) -> Option<FlutterReading> {
+    let reach = reach(study, results, model).unwrap_or_else(|_| Reach::nowhere());
+    Some(FlutterReading {
+        forces: forces(&model.name, ""),
+        search: results.search_of(&model.name, OnsetMethod::Eigenvalues)?,
+        basis: Basis::tested(model.tested_range, reach),
+    })
+}
+
+/// The speeds at which every mode of the section is among the tests of the model.
+fn reach(study: &Study, results: &FlutterStudy, model: &TrainedModel) -> Result<Reach> {
+    let section = CoupledSection::with_model(&study.section.structure()?, &model.model)?;
+    let search = study.speeds().search();
+    let judged = judged_speeds(&section, &search, Some(model.tested_range))?;
+    let curves = results.curves.iter().find(|c| c.model == model.name);
+    let curves = curves.ok_or_else(|| Error::Numerical("no modes".to_owned()))?;
+    Ok(Reach::of(judged, curves, study.section.width_m))
+}
+
+fn of_deck(deck: &Deck, results: &FlutterStudy, name: &str) -> Option<FlutterReading> {
+    let tested = deck.model().ok()?.1;
+    Some(FlutterReading {
+        forces: forces(name, name),
+        search: results.search_of(name, OnsetMethod::Determinant)?,
+        basis: match tested {
+            // a table is searched no further than it reaches
+            Some(range) => Basis::tested(range, Reach::everywhere()),
+            None => Basis::Exact,
+        },
+    })
+}
+
+fn failures(study: &Study, failed: &[StageFailure], own: Option<&str>) -> Vec<Failure> {
+    let others: Vec<&str> = study
+        .models
+        .iter()
+        .map(|m| m.name.as_str())
+        .filter(|m| Some(*m) != own)
+        .collect();
+    let bears = |stage: &str| {
+        let draws = DRAWING.iter().any(|d| stage.starts_with(d));
+        let of_another = own.is_some() && others.iter().any(|m| stage.ends_with(&format!(" {m}")));
+        !draws && !of_another
+    };
+    failed
+        .iter()
+        .map(|f| Failure {
+            stage: f.stage.clone(),
+            reason: f.reason.clone(),
+            bears_on_answer: bears(&f.stage),
+        })
+        .collect()
+}
+
+fn moved(fit: &FitReport) -> Option<MovedOnset> {
+    let effect = fit.constraints.as_ref()?.onset.as_ref()?;
+    Some(MovedOnset {
+        without_m_s: effect.without_m_s,
+        with_m_s: effect.with_m_s,
+    })
+}
+
+/// 1 where the tests behind an interval are at one mean speed; else not known here.
+fn one_test_speed(known: &KnownUncertainty) -> Option<usize> {
+    let known = known.as_ref().ok()?;
+    (known.onset.is_some() && known.speeds.each.is_empty()).then_some(1)
+}
+
+/// What static coefficients say beside the derivatives: galloping, divergence about the equilibrium, mean rotation.
+fn add_coefficients(study: &Study, results: &FlutterStudy, evidence: &mut Evidence) -> Result<()> {
+    let (Some(block), Some(found)) = (&study.coefficients, &results.quasi_steady) else {
+        return Ok(());
+    };
+    let forces = format!("static coefficients ({})", block.source);
+    let gallops = found.mode.as_ref().is_some_and(|m| {
+        matches!(
+            m.kind,
+            Instability::Galloping | Instability::LateralGalloping
+        )
+    });
+    if let Some(speed_m_s) = found.search.critical_speed_m_s() {
+        // quasi-steady theory of coupled motions is no answer beside derivatives
+        if gallops || found.search.onset().is_none() {
+            evidence.galloping = Some(GallopingReading {
+                forces: forces.clone(),
+                speed_m_s,
+            });
+        } else {
+            evidence
+                .remarks
+                .push(format!("By {forces}: {}", found.search.explain()));
+        }
+    }
+    match found.equilibrium_end {
+        Some(EquilibriumEnd::Divergence(last)) => {
+            let at = DivergenceReading::at(&forces, Some(last.speed_m_s));
+            evidence.divergence.push(at);
+        }
+        Some(end @ EquilibriumEnd::OutsideTable(_)) => {
+            evidence
+                .remarks
+                .push(format!("By {forces}: {}", end.explain()));
+        }
+        None => {}
+    }
+    let critical = evidence
+        .flutter
+        .first()
+        .and_then(|r| r.search.critical_speed_m_s());
+    if let Some(speed) = critical {
+        let structure = study.section.structure()?;
+        let theory = block.theory(&study.directory, &study.section.dofs())?;
+        let path = static_equilibria(&structure, &theory, &[speed])?;
+        evidence.mean_rotation = path.points.first().map(|p| MeanRotation {
+            at_onset_deg: p.rotation_rad.to_degrees(),
+            tested_deg: TESTED_ROTATION_DEG,
+        });
+    }
+    Ok(())
+}
+
+impl FlutterStudy {
+    /// The answer of one search.
+    fn search_of(&self, model: &str, method: OnsetMethod) -> Option<FlutterSearch> {
+        let onsets = self.onsets.iter().chain(&self.undetermined);
+        let onset = onsets
+            .filter(|o| o.at.model == model && o.at.method == method)
+            .map(|o| FlutterSearch::Onset(Box::new(o.clone())));
+        let starts = self.unstable.iter();
+        let start = starts
+            .filter(|s| s.at.model == model && s.at.method == method)
+            .map(|s| FlutterSearch::UnstableAtOrBelow(Box::new(s.clone())));
+        let stable = self.stable.iter();
+        let stable = stable
+            .filter(|s| s.model == model && s.method == method)
+            .map(|s| {
+                FlutterSearch::StableUpTo(StableRange {
+                    from_m_s: s.stable_from_m_s,
+                    to_m_s: s.stable_up_to_m_s,
+                    not_judged: s.not_judged.clone(),
+                })
+            });
+        onset.chain(start).chain(stable).next()
+    }
+}

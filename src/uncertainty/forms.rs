@@ -1,0 +1,389 @@
+//! What the form of a model does not know: the onsets of other forms that explain the same table as well.
+//!
+//! The scatter of the data under one form says nothing of what another form would have made of them between the tests and
+//! beyond. A table is therefore fitted by a set of dissipative forms, banks of 2 to 8 fixed poles spread logarithmically from half the
+//! lowest to six times the highest tested `K` (and 4 over a narrower range), rational functions with one and two lags, and
+//! read by several ways of interpolation. Those whose variance of residuals per degree of freedom is within 1.25 of the best are
+//! admissible, and the spread of their onsets belongs into the interval. Where tests surround the onset they agree to a per cent;
+//! where all tests lie beside it they do not, and nothing else would say so.
+
+use super::onset::{CONFIDENCE, OnsetError};
+use super::statistics::two_sided_quantile;
+use crate::aerodynamics::derivatives::{
+    Derivative, DerivativePoint, DerivativeTable, Extrapolation, InterpolatedTable, Interpolation,
+    TableHeader, TransferSample,
+};
+use crate::aeroelastic::CoupledSection;
+use crate::error::{Error, Result};
+use crate::flutter::{
+    ErrorParts, FlutterSearch, OnsetInterval, OnsetSearch, determinant_onset, find_onset,
+};
+use crate::identification::{
+    Constraints, FeedThrough, Fitted, Form, FrequencyFit, FrequencyWeights, PoleSearch, fit_table,
+};
+use crate::section::{Dof, Structure};
+use crate::signal::mean_and_deviation;
+use crate::trained_model::Model;
+use crate::units::ReducedFrequencyRange;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Numbers of poles of the banks over the wide range.
+const BANKS: std::ops::RangeInclusive<usize> = 2..=8;
+/// Ends of a wide bank over the lowest and the highest tested `K`.
+const WIDE: [f64; 2] = [0.5, 6.0];
+/// Number of poles of the narrow bank, and its ends.
+const NARROW: (usize, [f64; 2]) = (4, [1.0, 3.0]);
+/// Numbers of lags of the rational functions, whose poles are searched.
+const LAGS: [usize; 2] = [1, 2];
+/// Ways of reading the table without a fit.
+const INTERPOLATIONS: [Interpolation; 3] = [
+    Interpolation::ModifiedAkima,
+    Interpolation::PchipVHat,
+    Interpolation::LinearVHat,
+];
+/// Variance of the residuals per degree of freedom over that of the best form, at most.
+const ADMISSIBLE: f64 = 1.25;
+/// Residuals below this part of the data (root mean square) are no better than each other: no table is known so well.
+const AS_GOOD: f64 = 0.005;
+
+/// The onset by one admissible form.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FormOnset {
+    /// The form.
+    pub form: String,
+    /// Variance of its residuals per degree of freedom over that of the best form; none where the table is interpolated.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub residual_ratio: Option<f64>,
+    /// Its onset, or the speed at or below which it grows already, m/s.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub onset_m_s: Option<f64>,
+    /// Highest speed up to which it was judged and has no onset, m/s.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stable_up_to_m_s: Option<f64>,
+}
+
+/// Onsets of all admissible forms.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FormSpread {
+    /// The admissible forms.
+    pub forms: Vec<FormOnset>,
+    /// Half the difference between the highest and the lowest onset, m/s; none without onsets.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub half_range_m_s: Option<f64>,
+    /// Standard deviation of the onsets about their mean, m/s; none with fewer than two.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub standard_deviation_m_s: Option<f64>,
+    /// Whether every form has one; an interpolated table that ends below the others' onsets is not counted.
+    pub all_have_onset: bool,
+}
+
+/// The forms that explain one table as well as the best of them, for any section.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FormEnsemble {
+    /// Fits, each with its model.
+    pub fits: Vec<AdmissibleForm>,
+    /// Reduced frequencies of the tests.
+    pub tested: ReducedFrequencyRange,
+    /// Ways to read the table without a fit; an ensemble from a file has none.
+    #[serde(skip)]
+    read: Vec<InterpolatedTable>,
+}
+
+/// One form with its model.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AdmissibleForm {
+    /// The form, in words.
+    pub form: String,
+    /// Variance of its residuals per degree of freedom over that of the best form.
+    pub residual_ratio: f64,
+    /// The model.
+    pub model: Model,
+}
+
+impl FormEnsemble {
+    /// Fits all forms to samples of a transfer matrix and keeps the admissible ones.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for samples without the forces of heave and rotation; [`Error::Numerical`] when no form can be fitted.
+    pub fn new(samples: &[TransferSample], dofs: &[Dof]) -> Result<Self> {
+        let tested = ReducedFrequencyRange::spanning(samples.iter().map(|s| s.k))
+            .ok_or_else(|| Error::input("samples", "at least one", "none"))?;
+        let table = table_of(samples, dofs)?;
+        let read = INTERPOLATIONS
+            .iter()
+            .map(|by| InterpolatedTable::by(*by, &table, dofs, Extrapolation::Refuse));
+        let read = read.collect::<Result<_>>()?;
+        let fitted: Vec<FittedForm> = fitted_forms(tested)
+            .into_par_iter()
+            .filter_map(|(name, fit)| FittedForm::new(name, samples, dofs, &fit).ok())
+            .collect();
+        Ok(Self {
+            fits: admissible(fitted)?,
+            tested,
+            read,
+        })
+    }
+
+    /// Onsets of a section by every form.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a search range that is none and a section with other motions; [`Error::Numerical`] when eigenvalues
+    /// cannot be computed.
+    pub fn spread(&self, structure: &Structure, search: &OnsetSearch) -> Result<FormSpread> {
+        let of_fit = |f: &AdmissibleForm| -> Result<FormOnset> {
+            let section = CoupledSection::with_model(structure, &f.model)?;
+            let found = find_onset(&f.form, &section, search, Some(self.tested))?;
+            Ok(FormOnset::new(&f.form, Some(f.residual_ratio), &found))
+        };
+        let fits = self.fits.par_iter().map(of_fit);
+        let mut forms: Vec<FormOnset> = fits.collect::<Result<_>>()?;
+        let by_table = |(by, table): (&Interpolation, &InterpolatedTable)| -> Result<FormOnset> {
+            let (range, highest) = (table.tested_range(), search.speed_max_m_s);
+            let found = determinant_onset(by.title(), structure, table, range, highest)?;
+            Ok(FormOnset::new(by.title(), None, &found))
+        };
+        let read: Vec<_> = INTERPOLATIONS.iter().zip(&self.read).collect();
+        // a table whose roots cannot be told apart says nothing
+        let read = read
+            .into_par_iter()
+            .filter_map(|r| by_table(r).ok())
+            .collect();
+        forms.extend(told(read, &forms));
+        Ok(FormSpread::of(forms))
+    }
+}
+
+/// Interpolated tables that say something of the onset: those that have one, and those that are stable where others flutter.
+fn told(read: Vec<FormOnset>, fits: &[FormOnset]) -> Vec<FormOnset> {
+    let lowest = lowest(fits);
+    let contradicts = |f: &FormOnset| {
+        f.stable_up_to_m_s
+            .zip(lowest)
+            .is_some_and(|(to, onset)| to > onset)
+    };
+    read.into_iter()
+        .filter(|f| f.onset_m_s.is_some() || contradicts(f))
+        .collect()
+}
+
+fn lowest(forms: &[FormOnset]) -> Option<f64> {
+    forms.iter().filter_map(|f| f.onset_m_s).reduce(f64::min)
+}
+
+impl FormSpread {
+    fn of(forms: Vec<FormOnset>) -> Self {
+        let onsets: Vec<f64> = forms.iter().filter_map(|f| f.onset_m_s).collect();
+        let low = lowest(&forms);
+        let high = onsets.iter().copied().reduce(f64::max);
+        Self {
+            half_range_m_s: low.zip(high).map(|(low, high)| 0.5 * (high - low)),
+            standard_deviation_m_s: (onsets.len() > 1)
+                .then(|| mean_and_deviation(onsets.iter().copied()).1),
+            all_have_onset: !forms.is_empty() && onsets.len() == forms.len(),
+            forms,
+        }
+    }
+
+    /// The lowest onset of all admissible forms, m/s.
+    pub fn lowest_onset_m_s(&self) -> Option<f64> {
+        lowest(&self.forms)
+    }
+
+    /// Why not every form has an onset, if so.
+    pub fn missing(&self) -> Option<String> {
+        if self.all_have_onset {
+            return None;
+        }
+        let without = self.forms.iter().filter(|f| f.onset_m_s.is_none());
+        let names: Vec<&str> = without.map(|f| f.form.as_str()).collect();
+        Some(format!(
+            "{} of {} forms that explain the data as well have no onset ({})",
+            names.len(),
+            self.forms.len(),
+            names.join(", ")
+        ))
+    }
+
+    /// Root mean square distance of the onsets from one of them, m/s: what the choice of that form leaves open.
+    pub fn deviation_from_m_s(&self, onset_m_s: f64) -> Option<f64> {
+        let squares: Vec<f64> = self
+            .forms
+            .iter()
+            .filter_map(|f| Some((f.onset_m_s? - onset_m_s).powi(2)))
+            .collect();
+        let mean = squares.iter().sum::<f64>() / squares.len() as f64;
+        (!squares.is_empty()).then(|| mean.sqrt())
+    }
+}
+
+/// The interval of an onset with what the choice of its form leaves open: variances add, and degrees of freedom as Satterthwaite adds
+/// them, those of the forms being one less than their number. Where not every form has an onset the data do not determine it.
+pub(crate) fn interval_with_forms(error: &OnsetError, spread: &FormSpread) -> OnsetInterval {
+    let form_m_s = spread.deviation_from_m_s(error.speed_m_s);
+    let parts = ErrorParts {
+        scatter_m_s: error.standard_error_m_s,
+        form_m_s,
+        between_speeds: error.between_speeds,
+    };
+    let form = form_m_s.unwrap_or(0.0).powi(2);
+    let (scatter, total) = (error.standard_error_m_s.powi(2), parts.standard_error_m_s());
+    let others = spread.forms.len().max(2) as f64 - 1.0;
+    let squares = scatter.powi(2) / error.degrees_of_freedom + form.powi(2) / others;
+    let freedom = if squares > 0.0 {
+        total.powi(4) / squares
+    } else {
+        error.degrees_of_freedom
+    };
+    let half = two_sided_quantile(CONFIDENCE, freedom) * total;
+    let interval = OnsetInterval::about(error.speed_m_s, half, freedom, parts);
+    match spread.missing() {
+        Some(why) => interval.undetermined(why),
+        None => interval,
+    }
+}
+
+/// All forms that are fitted.
+fn fitted_forms(tested: ReducedFrequencyRange) -> Vec<(String, FrequencyFit)> {
+    let ends = [tested.min.full_width(), tested.max.full_width()];
+    let bank = |count: usize, reach: [f64; 2]| {
+        let (low, high) = (reach[0] * ends[0], reach[1] * ends[1]);
+        let pole = |i: usize| low * (high / low).powf(i as f64 / (count as f64 - 1.0));
+        let poles: Vec<f64> = (0..count).map(pole).collect();
+        let form = Form::TakenakaMalmquist {
+            filters: count,
+            feed_through: FeedThrough::default(),
+            pole_per_transfer_function: false,
+        };
+        let name = format!("{count} poles from K {low:.3} to {high:.2}");
+        (name, form, PoleSearch::fixed(&poles))
+    };
+    let lags = |lags: usize| {
+        let form = Form::Rational {
+            lags,
+            added_mass: true,
+        };
+        (format!("{lags} lag(s)"), form, PoleSearch::default())
+    };
+    BANKS
+        .map(|count| bank(count, WIDE))
+        .chain([bank(NARROW.0, NARROW.1)])
+        .chain(LAGS.map(lags))
+        .map(|(name, form, poles)| {
+            let fit = FrequencyFit {
+                form,
+                poles,
+                weights: FrequencyWeights::Relative,
+                constraints: Constraints::Dissipative,
+                ..FrequencyFit::default()
+            };
+            (name, fit)
+        })
+        .collect()
+}
+
+/// One form with its fit.
+struct FittedForm {
+    name: String,
+    fitted: Fitted,
+    /// Variance of the residuals of each transfer function per degree of freedom, over its mean square.
+    variances: Vec<f64>,
+}
+
+impl FittedForm {
+    fn new(
+        name: String,
+        samples: &[TransferSample],
+        dofs: &[Dof],
+        fit: &FrequencyFit,
+    ) -> Result<Self> {
+        let fitted = fit_table(samples, dofs, fit)?;
+        let searched = match fit.poles.fixed {
+            Some(_) => 0.0,
+            None => fit.form.filters() as f64,
+        };
+        let entries = &fitted.report.entries;
+        let numbers = samples.len() as f64 / entries.len() as f64;
+        let mut variances = Vec::with_capacity(entries.len());
+        for entry in entries {
+            let shared = searched / entries.len() as f64;
+            let free = numbers - entry.coefficients.len() as f64 - shared;
+            if free <= 0.0 {
+                return Err(Error::Numerical(format!("{name}: no degrees of freedom")));
+            }
+            variances.push(entry.relative_rms.unwrap_or(0.0).powi(2) * numbers / free);
+        }
+        Ok(Self {
+            name,
+            fitted,
+            variances,
+        })
+    }
+
+    /// Variance of the residuals over that of another form, the mean over the transfer functions.
+    fn ratio(&self, best: &Self) -> f64 {
+        let floor = AS_GOOD.powi(2);
+        let ratios = self.variances.iter().zip(&best.variances);
+        let sum: f64 = ratios
+            .map(|(own, best)| (own + floor) / (best + floor))
+            .sum();
+        sum / self.variances.len() as f64
+    }
+}
+
+impl FormOnset {
+    fn new(form: &str, residual_ratio: Option<f64>, found: &FlutterSearch) -> Self {
+        Self {
+            form: form.to_owned(),
+            residual_ratio,
+            onset_m_s: found.critical_speed_m_s(),
+            stable_up_to_m_s: match found {
+                FlutterSearch::StableUpTo(range) => Some(range.to_m_s),
+                FlutterSearch::Onset(_) | FlutterSearch::UnstableAtOrBelow(_) => None,
+            },
+        }
+    }
+}
+
+/// Forms that explain the samples as well as the best of them.
+fn admissible(all: Vec<FittedForm>) -> Result<Vec<AdmissibleForm>> {
+    let sum = |f: &FittedForm| -> f64 { f.variances.iter().sum() };
+    let best = all
+        .iter()
+        .min_by(|a, b| sum(a).total_cmp(&sum(b)))
+        .ok_or_else(|| Error::Numerical("no form can be fitted to these samples".into()))?;
+    let ratios: Vec<f64> = all.iter().map(|f| f.ratio(best)).collect();
+    let rated = all.into_iter().zip(ratios);
+    let kept = rated.filter(|(_, ratio)| *ratio <= ADMISSIBLE);
+    Ok(kept
+        .map(|(f, residual_ratio)| AdmissibleForm {
+            form: f.name,
+            residual_ratio,
+            model: f.fitted.model,
+        })
+        .collect())
+}
+
+/// The table that these are the samples of.
+fn table_of(samples: &[TransferSample], dofs: &[Dof]) -> Result<DerivativeTable> {
+    let mut points = BTreeMap::<Derivative, Vec<DerivativePoint>>::new();
+    for sample in samples {
+        if !(dofs.contains(&sample.force) && dofs.contains(&sample.motion)) {
+            continue;
+        }
+        let derivative = Derivative::of(sample.force, sample.motion, sample.part);
+        let v_hat = sample.k.v_hat();
+        points.entry(derivative).or_default().push(DerivativePoint {
+            mean_speed_m_s: sample.mean_speed_m_s,
+            v_hat,
+            value: sample.value * v_hat * v_hat,
+        });
+    }
+    // dimensionless throughout: any width does
+    DerivativeTable::new("samples", 1.0, TableHeader::default(), points)
+}

@@ -1,0 +1,382 @@
+//! The doubts that evidence leaves, and how much each weighs against what is required.
+
+use super::critical::{Critical, contradict};
+use super::doubt::{Doubt, DoubtKind, Severity};
+use super::evidence::{Basis, Evidence, FlutterReading};
+use super::moved::constraints;
+use super::words::{found, k_range, speed};
+use crate::flutter::{BetweenSpeeds, FlutterSearch, OnsetInterval};
+use crate::plausibility;
+
+/// Mean rotation away from the tests from which it is to be known, and from which derivatives are others, deg: decks are
+/// tested at steps of two to three degrees.
+const ROTATION_DEG: (f64, f64) = (1.0, 3.0);
+
+/// All of them, the gravest first.
+pub(super) fn all(evidence: &Evidence, critical: &Critical) -> Vec<Doubt> {
+    let mut all = Vec::new();
+    let weighed = Weighed { evidence, critical };
+    match evidence.flutter.first() {
+        Some(first) => weighed.of_answer(first, &mut all),
+        None => all.push(Doubt::new(
+            Severity::Severe,
+            DoubtKind::NotSearched,
+            "Flutter was not searched",
+        )),
+    }
+    weighed.of_input(&mut all);
+    // stable: those of one weight stay in the order in which they were found
+    all.sort_by_key(|d| std::cmp::Reverse(d.severity));
+    all
+}
+
+struct Weighed<'a> {
+    evidence: &'a Evidence,
+    critical: &'a Critical,
+}
+
+impl Weighed<'_> {
+    /// The speed that has to be judged, m/s: what is required, else the lowest critical one.
+    fn asked_m_s(&self) -> Option<f64> {
+        let required = self.evidence.required.map(|r| r.speed_m_s);
+        required.or(self.critical.least_m_s())
+    }
+
+    /// Whether a speed is known to lie above what is required.
+    fn clears(&self, speed_m_s: f64) -> bool {
+        self.evidence
+            .required
+            .is_some_and(|r| speed_m_s >= r.speed_m_s)
+    }
+
+    /// As far as every mode was tested nothing grows: that may be all that is asked for.
+    fn unless_cleared(&self) -> Severity {
+        match self.clears(self.critical.judged_to_m_s) {
+            false => Severity::Severe,
+            true => Severity::Minor,
+        }
+    }
+
+    fn of_answer(&self, first: &FlutterReading, all: &mut Vec<Doubt>) {
+        all.extend(self.tests(first));
+        all.extend(self.judged(first));
+        all.extend(self.interval(first));
+        all.extend(self.growth());
+        all.extend(self.moved(first));
+        let others = &self.evidence.flutter[1..];
+        all.extend(
+            others
+                .iter()
+                .filter(|o| contradict(first, o))
+                .map(|o| contradiction(first, o)),
+        );
+        if first.basis == Basis::Stated {
+            let text = format!(
+                "The forces are those of {}, which no test of this deck confirms",
+                first.forces
+            );
+            all.push(
+                Doubt::new(Severity::Severe, DoubtKind::Untested, text)
+                    .settled_by("measured derivatives of this deck"),
+            );
+        }
+        let warnings = match &first.search {
+            FlutterSearch::Onset(onset) => &onset.warnings[..],
+            FlutterSearch::UnstableAtOrBelow(start) => &start.warnings[..],
+            FlutterSearch::StableUpTo(_) => &[],
+        };
+        all.extend(warnings.iter().map(|w| remark(w)));
+    }
+
+    /// The onset at a reduced frequency that was not tested.
+    fn tests(&self, first: &FlutterReading) -> Option<Doubt> {
+        let Basis::Tested { range, .. } = &first.basis else {
+            return None;
+        };
+        let at = first.search.critical().filter(|_| first.extrapolated())?;
+        let (k, tested) = (at.reduced_frequency, range);
+        if let Some(gap) = first.onset().and_then(|o| o.gap) {
+            let kind = DoubtKind::GapInTests {
+                k: k.full_width(),
+                gap_from_k: gap.from.full_width(),
+                gap_to_k: gap.to.full_width(),
+            };
+            let text = format!(
+                "The onset lies at K {:.3}, {}",
+                k.full_width(),
+                gap.explain()
+            );
+            let missing = k_range(gap.from, gap.to);
+            let doubt = Doubt::new(self.unless_cleared(), kind, text);
+            return Some(doubt.settled_by(format!("tests at K {missing}")));
+        }
+        let kind = DoubtKind::OutsideTestedRange {
+            k: k.full_width(),
+            tested_from_k: tested.min.full_width(),
+            tested_to_k: tested.max.full_width(),
+        };
+        let severity = self.unless_cleared();
+        let text = format!(
+            "The onset lies outside the tested range, at K {:.3} (tests: {}): {} extrapolated",
+            k.full_width(),
+            k_range(tested.min, tested.max),
+            first.are()
+        );
+        let missing = match k < tested.min {
+            true => k_range(k, tested.min),
+            false => k_range(tested.max, k),
+        };
+        Some(Doubt::new(severity, kind, text).settled_by(format!("tests at K {missing}")))
+    }
+
+    /// Speeds that no test reaches.
+    fn judged(&self, first: &FlutterReading) -> Vec<Doubt> {
+        let mut found = Vec::new();
+        let (from, to) = (self.critical.judged_from_m_s, self.critical.judged_to_m_s);
+        let asked = self.asked_m_s().unwrap_or(to);
+        // up to growth that was found there is nothing to be judged
+        let needed = first.best_m_s().map_or(asked, |best| asked.min(best));
+        if needed > to * (1.0 + 1e-9) {
+            found.push(self.not_judged_above(first, to, asked));
+        } else if let FlutterSearch::StableUpTo(range) = &first.search
+            && let Some(why) = range.not_judged.as_ref().filter(|_| asked <= to)
+        {
+            found.push(remark(why));
+        }
+        let looked = self.evidence.growth.is_some();
+        if from > 0.0 && !matches!(first.search, FlutterSearch::UnstableAtOrBelow(_)) {
+            let kind = DoubtKind::NotJudgedBelow { speed_m_s: from };
+            let (severity, text) = match looked {
+                true => (
+                    Severity::Minor,
+                    format!(
+                        "Below {} the fastest motions lie above the tested K; the model alone says that they do not grow there",
+                        speed(from)
+                    ),
+                ),
+                false => (
+                    Severity::Severe,
+                    format!("Below {} not every motion was tested", speed(from)),
+                ),
+            };
+            found.push(Doubt::new(severity, kind, text).settled_by("tests at higher K"));
+        }
+        found
+    }
+
+    fn not_judged_above(&self, first: &FlutterReading, to: f64, asked: f64) -> Doubt {
+        let kind = DoubtKind::NotJudgedAbove {
+            speed_m_s: to,
+            asked_m_s: asked,
+        };
+        let (missing, of_tests) = match &first.basis {
+            Basis::Tested { range, reach } => {
+                let binds = reach.to_m_s <= to;
+                (
+                    reach.missing_up_to(asked, *range),
+                    reach.why.as_ref().filter(|_| binds),
+                )
+            }
+            Basis::Exact | Basis::Stated => (None, None),
+        };
+        let of_search = match &first.search {
+            FlutterSearch::StableUpTo(range) => range.not_judged.as_ref(),
+            _ => None,
+        };
+        let why = of_tests
+            .or(of_search)
+            .map_or(String::new(), |w| format!(": {w}"));
+        let text = format!("Nothing is judged by data above {}{why}", speed(to));
+        let settled = match missing {
+            Some(range) => format!("tests at K {}", k_range(range.min, range.max)),
+            None => format!("tests, and a search, that reach {}", speed(asked)),
+        };
+        Doubt::new(Severity::Severe, kind, text).settled_by(settled)
+    }
+
+    fn interval(&self, first: &FlutterReading) -> Vec<Doubt> {
+        let mut found = Vec::new();
+        let Some(onset) = first.onset().filter(|_| first.basis != Basis::Exact) else {
+            return found;
+        };
+        let others = &self.evidence.flutter[1..];
+        let of_another = |o: &FlutterReading| {
+            o.onset().is_some() && o.interval_is_known() && !contradict(first, o)
+        };
+        match &onset.interval {
+            OnsetInterval::Known { .. } => {}
+            OnsetInterval::Undetermined {
+                low_m_s,
+                high_m_s,
+                reason,
+                ..
+            } => {
+                let kind = DoubtKind::IntervalUndetermined {
+                    low_m_s: *low_m_s,
+                    high_m_s: *high_m_s,
+                };
+                let text = format!("The onset is {reason}");
+                found.push(
+                    Doubt::new(Severity::Severe, kind, text)
+                        .settled_by("more tests near the onset, which scatter less"),
+                );
+            }
+            _ if others.iter().any(of_another) => {}
+            OnsetInterval::Spread { of: reason, .. } | OnsetInterval::None { reason } => {
+                let kind = DoubtKind::IntervalUnknown {
+                    reason: reason.clone(),
+                };
+                let text = format!("No interval of the onset: {reason}");
+                found.push(
+                    Doubt::new(Severity::Severe, kind, text)
+                        .settled_by("tests whose scatter is known"),
+                );
+            }
+        }
+        // with the scatter that decks show between speeds in the interval, it is known after all
+        let prior =
+            onset.interval.parts().and_then(|p| p.between_speeds) == Some(BetweenSpeeds::Prior);
+        if prior || self.evidence.test_speeds == Some(1) {
+            let (severity, how) = match prior {
+                true => (Severity::Minor, "is taken from other decks"),
+                false => (Severity::Severe, "is not known"),
+            };
+            let text =
+                format!("Tests at one mean wind speed: how results scatter between speeds {how}");
+            found.push(
+                Doubt::new(severity, DoubtKind::OneTestSpeed, text)
+                    .settled_by("tests at a second mean wind speed"),
+            );
+        }
+        found
+    }
+
+    fn growth(&self) -> Option<Doubt> {
+        let growth = self.evidence.growth.as_ref()?;
+        let bands = growth.bands.iter();
+        let fastest = bands
+            .clone()
+            .max_by(|a, b| a.fastest_growth_per_s.total_cmp(&b.fastest_growth_per_s))?;
+        let k = fastest.reduced_frequency.full_width();
+        let kind = DoubtKind::GrowthBelowOnset {
+            from_m_s: bands
+                .clone()
+                .map(|b| b.from_m_s)
+                .fold(f64::INFINITY, f64::min),
+            to_m_s: bands.map(|b| b.to_m_s).fold(0.0, f64::max),
+            k,
+        };
+        let text = format!("The model {}", growth.explain());
+        let settled = format!("tests at K {k:.2}, or a fit that feeds no energy there");
+        Some(Doubt::new(Severity::Severe, kind, text).settled_by(settled))
+    }
+
+    fn moved(&self, first: &FlutterReading) -> Option<Doubt> {
+        let moved = self.evidence.constraints?;
+        constraints(moved, first, |speed_m_s| self.clears(speed_m_s))
+    }
+
+    fn of_input(&self, all: &mut Vec<Doubt>) {
+        let evidence = self.evidence;
+        all.extend(evidence.failures.iter().map(|f| {
+            let severity = match f.bears_on_answer {
+                true => Severity::Severe,
+                false => Severity::Minor,
+            };
+            let kind = DoubtKind::StageFailed {
+                stage: f.stage.clone(),
+                reason: f.reason.clone(),
+            };
+            let text = format!("FAILED {}: {}", f.stage, f.reason);
+            Doubt::new(severity, kind, text).settled_by(format!("{} without a failure", f.stage))
+        }));
+        all.extend(evidence.implausible.iter().map(|finding| {
+            let severity = match finding.severity {
+                plausibility::Severity::Doubt => Severity::Severe,
+                plausibility::Severity::Note => Severity::Minor,
+            };
+            let kind = DoubtKind::ImplausibleInput {
+                place: finding.place.clone(),
+                value: finding.value,
+            };
+            Doubt::new(severity, kind, finding.to_string())
+                .settled_by(format!("{} confirmed or corrected", finding.place))
+        }));
+        all.extend(rotation(evidence));
+        let assumed = evidence.divergence.iter().filter_map(|d| {
+            let text = format!("Divergence of {}: {}", d.forces, d.assumed.as_ref()?);
+            Some(Doubt::new(
+                Severity::Minor,
+                DoubtKind::AssumedSteadyFlow,
+                text,
+            ))
+        });
+        all.extend(assumed);
+        all.extend(evidence.tested_rotation_deg.map(|tested_rotation_deg| {
+            let kind = DoubtKind::Amplitude {
+                tested_rotation_deg,
+            };
+            let text =
+                format!("Rotations beyond the {tested_rotation_deg}° of the tests are not covered");
+            Doubt::new(Severity::Minor, kind, text)
+        }));
+        all.extend(evidence.remarks.iter().map(|text| remark(text)));
+    }
+}
+
+fn remark(text: &str) -> Doubt {
+    Doubt::new(Severity::Minor, DoubtKind::Remark, text)
+}
+
+fn contradiction(first: &FlutterReading, second: &FlutterReading) -> Doubt {
+    let kind = DoubtKind::Contradiction {
+        first: first.forces.clone(),
+        first_m_s: first.best_m_s(),
+        second: second.forces.clone(),
+        second_m_s: second.best_m_s(),
+    };
+    let text = format!(
+        "Contradiction: {} by {}, {} by {}",
+        found(first),
+        first.forces,
+        found(second),
+        second.forces
+    );
+    let mut doubt = Doubt::new(Severity::Severe, kind, text);
+    let at = [first, second].map(|r| {
+        r.search
+            .critical()
+            .map(|at| at.reduced_frequency.full_width())
+    });
+    let ks: Vec<String> = at.iter().flatten().map(|k| format!("{k:.2}")).collect();
+    if !ks.is_empty() {
+        doubt = doubt.settled_by(format!(
+            "tests near K {}, where the two differ",
+            ks.join(" and ")
+        ));
+    }
+    doubt
+}
+
+fn rotation(evidence: &Evidence) -> Option<Doubt> {
+    let mean = evidence.mean_rotation?;
+    let away = (mean.at_onset_deg - mean.tested_deg).abs();
+    let (known, others) = ROTATION_DEG;
+    if away < known {
+        return None;
+    }
+    let severity = match away > others {
+        true => Severity::Severe,
+        false => Severity::Minor,
+    };
+    let kind = DoubtKind::MeanRotation {
+        at_onset_deg: mean.at_onset_deg,
+        tested_deg: mean.tested_deg,
+    };
+    let text = format!(
+        "The deck stands at {:.1}° in the mean wind at the critical speed, the forces are those at {:.1}°",
+        mean.at_onset_deg, mean.tested_deg
+    );
+    let settled = format!("forces measured at {:.1}°", mean.at_onset_deg);
+    Some(Doubt::new(severity, kind, text).settled_by(settled))
+}

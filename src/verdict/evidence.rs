@@ -1,0 +1,201 @@
+//! Everything that is known before a verdict: answers of searches, limits of tests, failures, findings.
+
+use super::reach::Reach;
+use crate::flutter::{FlutterSearch, Onset, OnsetInterval, UnwantedGrowth};
+use crate::plausibility::Finding;
+use crate::units::ReducedFrequencyRange;
+use serde::{Deserialize, Serialize};
+
+/// The wind speed below which nothing critical may begin: the criterion of a code.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct RequiredSpeed {
+    /// Wind speed, m/s.
+    pub speed_m_s: f64,
+}
+
+/// What the searches, fits and checks of one structure have found.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Evidence {
+    /// The wind speed below which nothing critical may begin.
+    pub required: Option<RequiredSpeed>,
+    /// The searches for flutter. The first gives the answer, the others read the same data in other ways.
+    pub flutter: Vec<FlutterReading>,
+    /// Static divergence, by each of the forces.
+    pub divergence: Vec<DivergenceReading>,
+    /// Galloping by quasi-steady theory, where static coefficients are given and it was found.
+    pub galloping: Option<GallopingReading>,
+    /// Growth of the first of the readings below its onset, where nothing was tested; `None` where nobody looked.
+    pub growth: Option<UnwantedGrowth>,
+    /// Stages that failed.
+    pub failures: Vec<Failure>,
+    /// What constraints on the fit did to the onset.
+    pub constraints: Option<MovedOnset>,
+    /// Number of mean wind speeds of the tests; `None` where it is not known or there are no tests.
+    pub test_speeds: Option<usize>,
+    /// Input that does not look right.
+    pub implausible: Vec<Finding>,
+    /// Rotation in the mean wind.
+    pub mean_rotation: Option<MeanRotation>,
+    /// Largest rotation of the tests, deg; `None` where it is not known.
+    pub tested_rotation_deg: Option<f64>,
+    /// What else a reader must know; changes no outcome.
+    pub remarks: Vec<String>,
+}
+
+/// A search for flutter with forces that rest on something.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FlutterReading {
+    /// Whose forces, as part of a sentence: `the model “Laguerre”`, `the table`.
+    pub forces: String,
+    /// What the search found.
+    pub search: FlutterSearch,
+    /// What the forces rest on.
+    pub basis: Basis,
+}
+
+/// What forces rest on.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Basis {
+    /// Tests.
+    Tested {
+        /// Reduced frequencies of the tests.
+        range: ReducedFrequencyRange,
+        /// The wind speeds at which every mode stays among them.
+        reach: Box<Reach>,
+    },
+    /// A closed formula that holds at every reduced frequency.
+    Exact,
+    /// Coefficients that are stated, of a theory that was not tested here.
+    Stated,
+}
+
+impl Basis {
+    /// Tests in `range`, among which every mode is at the wind speeds of `reach`.
+    pub fn tested(range: ReducedFrequencyRange, reach: Reach) -> Self {
+        Self::Tested {
+            range,
+            reach: Box::new(reach),
+        }
+    }
+}
+
+impl FlutterReading {
+    /// The onset, where the search found one.
+    pub(super) fn onset(&self) -> Option<&Onset> {
+        self.search.onset()
+    }
+
+    /// Where growth is known, m/s.
+    pub(super) fn best_m_s(&self) -> Option<f64> {
+        self.search.critical_speed_m_s()
+    }
+
+    /// Ends of the interval or the spread of the onset, m/s.
+    pub(super) fn ends_m_s(&self) -> Option<(f64, f64)> {
+        self.onset()?.interval.ends()
+    }
+
+    /// Everything that the interval leaves open, m/s, also where that is too much for a result.
+    pub(super) fn range_m_s(&self) -> Option<(f64, f64)> {
+        match self.onset()?.interval {
+            OnsetInterval::Undetermined {
+                low_m_s, high_m_s, ..
+            } => Some((low_m_s, high_m_s)),
+            ref other => other.ends(),
+        }
+    }
+
+    /// Whether the onset has an interval that is a statement of probability, or needs none.
+    pub(super) fn interval_is_known(&self) -> bool {
+        let known = |o: &Onset| matches!(o.interval, OnsetInterval::Known { .. });
+        self.basis == Basis::Exact || self.onset().is_none_or(known)
+    }
+
+    /// Whether data reach the growth that was found.
+    pub(super) fn extrapolated(&self) -> bool {
+        let inside = match &self.search {
+            FlutterSearch::Onset(onset) => onset.in_tested_range,
+            FlutterSearch::UnstableAtOrBelow(start) => start.in_tested_range,
+            FlutterSearch::StableUpTo(_) => None,
+        };
+        inside == Some(false)
+    }
+
+    /// Lowest and highest speed between which every mode was looked at and its forces rest on something, m/s.
+    pub(super) fn judged_m_s(&self) -> (f64, f64) {
+        let searched = match &self.search {
+            FlutterSearch::Onset(onset) => (0.0, onset.at.speed_m_s),
+            FlutterSearch::UnstableAtOrBelow(start) => (start.at.speed_m_s, start.at.speed_m_s),
+            FlutterSearch::StableUpTo(range) => (range.from_m_s, range.to_m_s),
+        };
+        match &self.basis {
+            Basis::Tested { reach, .. } => {
+                (searched.0.max(reach.from_m_s), searched.1.min(reach.to_m_s))
+            }
+            Basis::Exact | Basis::Stated => searched,
+        }
+    }
+}
+
+/// Static divergence by some forces.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DivergenceReading {
+    /// Whose forces, as part of a sentence.
+    pub forces: String,
+    /// Speed, m/s; `None` where there is none.
+    pub speed_m_s: Option<f64>,
+    /// The speed that is left when what was assumed about steady flow is as wrong as it may be, m/s.
+    pub lower_m_s: Option<f64>,
+    /// What was assumed about steady flow.
+    pub assumed: Option<String>,
+}
+
+impl DivergenceReading {
+    /// Divergence without assumptions.
+    pub fn at(forces: &str, speed_m_s: Option<f64>) -> Self {
+        Self {
+            forces: forces.to_owned(),
+            speed_m_s,
+            lower_m_s: None,
+            assumed: None,
+        }
+    }
+}
+
+/// Galloping by quasi-steady theory.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GallopingReading {
+    /// Whose coefficients, as part of a sentence.
+    pub forces: String,
+    /// Onset, m/s.
+    pub speed_m_s: f64,
+}
+
+/// A stage that failed.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Failure {
+    /// Which stage, in words.
+    pub stage: String,
+    /// Why.
+    pub reason: String,
+    /// Whether the answer could be another without the failure.
+    pub bears_on_answer: bool,
+}
+
+/// One onset by the data alone and by the fit as it is; `None` where there is none in the range searched.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MovedOnset {
+    /// By the data alone, m/s.
+    pub without_m_s: Option<f64>,
+    /// Under the constraints, m/s.
+    pub with_m_s: Option<f64>,
+}
+
+/// Rotation in the mean wind at the critical speed, and at the tests.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MeanRotation {
+    /// Greatest, at the critical speed, deg; nose-up positive.
+    pub at_onset_deg: f64,
+    /// That of the tests, deg.
+    pub tested_deg: f64,
+}

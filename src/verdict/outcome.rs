@@ -1,0 +1,92 @@
+//! Whether a requirement is met.
+
+use super::critical::{Critical, CriticalSpeed, Phenomenon};
+use super::doubt::{Doubt, DoubtKind, Severity};
+use super::evidence::RequiredSpeed;
+use serde::{Deserialize, Serialize};
+
+/// Whether what is required is met.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "state", rename_all = "snake_case")]
+pub enum Outcome {
+    /// Everything critical lies above, judged by data, without a severe doubt.
+    Met,
+    /// Something critical begins below.
+    NotMet {
+        /// Which of its numbers lies below.
+        below: Below,
+    },
+    /// Data do not say.
+    CannotBeJudged {
+        /// What is missing, in sentences.
+        missing: Vec<String>,
+        /// What would settle it.
+        settled_by: Vec<String>,
+    },
+}
+
+/// Which number of a critical speed lies below the required speed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Below {
+    /// The best estimate.
+    BestEstimate,
+    /// Only the lower end.
+    LowerEnd,
+}
+
+impl Outcome {
+    pub(super) fn of(required: RequiredSpeed, critical: &Critical, doubts: &[Doubt]) -> Self {
+        let found = || critical.all();
+        let open = |d: &Doubt| matches!(d.kind, DoubtKind::IntervalUndetermined { .. });
+        let undetermined = doubts.iter().any(open);
+        // growth that forces make up where nothing was tested, and an onset that the data do not determine, say neither
+        let backed = |c: &&CriticalSpeed| match c.phenomenon {
+            Phenomenon::Growth => false,
+            Phenomenon::Flutter => !undetermined,
+            Phenomenon::Divergence | Phenomenon::Galloping => true,
+        };
+        let least = |c: &CriticalSpeed| c.least_m_s() < required.speed_m_s;
+        let best = |c: &CriticalSpeed| c.best_m_s < required.speed_m_s;
+        if found().filter(backed).any(best) {
+            let below = Below::BestEstimate;
+            return Self::NotMet { below };
+        }
+        let severe: Vec<&Doubt> = doubts
+            .iter()
+            .filter(|d| d.severity == Severity::Severe)
+            .collect();
+        if found().filter(backed).any(least) {
+            let below = Below::LowerEnd;
+            return Self::NotMet { below };
+        }
+        if severe.is_empty() {
+            return Self::Met;
+        }
+        let mut settled_by: Vec<String> =
+            severe.iter().filter_map(|d| d.settled_by.clone()).collect();
+        settled_by.dedup();
+        Self::CannotBeJudged {
+            missing: severe.iter().map(|d| d.text.clone()).collect(),
+            settled_by,
+        }
+    }
+
+    /// In capitals, as it stands before an answer.
+    pub fn words(&self) -> &'static str {
+        match self {
+            Self::Met => "MET",
+            Self::NotMet { .. } => "NOT MET",
+            Self::CannotBeJudged { .. } => "CANNOT BE JUDGED",
+        }
+    }
+
+    /// A sign for it; never without the words.
+    pub fn sign(&self) -> &'static str {
+        match self {
+            Self::Met => "✓",
+            Self::NotMet { .. } => "✗",
+            Self::CannotBeJudged { .. } => "?",
+        }
+    }
+}

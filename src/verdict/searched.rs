@@ -1,0 +1,111 @@
+//! Evidence of one section in the forces of one model, from the searches alone.
+
+use super::evidence::{Basis, DivergenceReading, Evidence, Failure, FlutterReading};
+use super::reach::Reach;
+use crate::aerodynamics::{Transfer, TransferMatrix};
+use crate::aeroelastic::CoupledSection;
+use crate::error::Result;
+use crate::flutter::{
+    AssumedAtRest, FlutterSearch, OnsetSearch, divergence_speed, judged_speeds, static_part,
+    trace_modes, unwanted_growth,
+};
+use crate::section::Structure;
+use crate::units::{ReducedFrequency, ReducedFrequencyRange};
+
+impl Evidence {
+    /// What a section in forces that were `tested` answers beside what was `found` for it: how far tests reach, growth, static
+    /// divergence with the forces `at_rest` (`G` at `K = 0`, n×n). What cannot be computed is a failure in it.
+    pub fn of_section(
+        forces: &str,
+        section: &CoupledSection,
+        at_rest: &TransferMatrix,
+        tested: ReducedFrequencyRange,
+        search: &OnsetSearch,
+        found: FlutterSearch,
+    ) -> Self {
+        let mut evidence = Self::default();
+        let structure = section.structure();
+        let reach = judged_speeds(section, search, Some(tested)).and_then(|judged| {
+            let curves = trace_modes(forces, section, &search.speeds_m_s()?)?;
+            Ok(Reach::of(judged, &curves, structure.width_m))
+        });
+        let reach = evidence.noted("modes over wind speed", reach);
+        evidence.flutter.push(FlutterReading {
+            forces: forces.to_owned(),
+            search: found,
+            basis: Basis::tested(tested, reach.unwrap_or_else(Reach::nowhere)),
+        });
+        let growth = unwanted_growth(section, search, Some(tested));
+        evidence.growth = evidence.noted("scan for growth", growth);
+        let divergence = divergence_speed(structure, at_rest);
+        if let Some(speed_m_s) = evidence.noted("divergence", divergence) {
+            let reading = DivergenceReading::at(forces, speed_m_s);
+            evidence.divergence.push(reading);
+        }
+        evidence
+    }
+
+    /// What a structure in the forces of a table, tested in `range`, answers beside what was `found` for it by a search that ends
+    /// where the table does. A table says nothing of steady flow: divergence is by its slopes at the lowest `K`.
+    pub fn of_table(
+        forces: &str,
+        structure: &Structure,
+        table: &dyn Transfer,
+        range: ReducedFrequencyRange,
+        found: FlutterSearch,
+    ) -> Self {
+        let mut evidence = Self::default();
+        evidence.flutter.push(FlutterReading {
+            forces: forces.to_owned(),
+            search: found,
+            basis: Basis::tested(range, Reach::everywhere()),
+        });
+        let divergence = table.transfer(range.min).and_then(|lowest| {
+            let speed = divergence_speed(structure, &static_part(table.dofs(), &lowest))?;
+            Ok((speed, AssumedAtRest::below(range.min)?))
+        });
+        if let Some((speed_m_s, assumed)) = evidence.noted("divergence", divergence) {
+            evidence.divergence.push(DivergenceReading {
+                lower_m_s: speed_m_s.map(|v| assumed.lower_m_s(v)),
+                assumed: Some(assumed.explain()),
+                ..DivergenceReading::at(forces, speed_m_s)
+            });
+        }
+        evidence
+    }
+
+    /// The same for forces that hold at every reduced frequency.
+    pub fn of_exact(
+        forces: &str,
+        structure: &Structure,
+        exact: &dyn Transfer,
+        found: FlutterSearch,
+    ) -> Self {
+        let mut evidence = Self::default();
+        evidence.flutter.push(FlutterReading {
+            forces: forces.to_owned(),
+            search: found,
+            basis: Basis::Exact,
+        });
+        let at_rest = exact.transfer(ReducedFrequency::from_full_width(0.0));
+        let divergence = at_rest.and_then(|g| divergence_speed(structure, &g));
+        if let Some(speed_m_s) = evidence.noted("divergence", divergence) {
+            let reading = DivergenceReading::at(forces, speed_m_s);
+            evidence.divergence.push(reading);
+        }
+        evidence
+    }
+
+    /// The value of a stage; a failure is one of the evidence.
+    fn noted<T>(&mut self, stage: &str, result: Result<T>) -> Option<T> {
+        result
+            .map_err(|e| {
+                self.failures.push(Failure {
+                    stage: stage.to_owned(),
+                    reason: e.to_string(),
+                    bears_on_answer: true,
+                });
+            })
+            .ok()
+    }
+}

@@ -1,0 +1,183 @@
+//! The sentences of a verdict.
+
+use super::critical::{Critical, CriticalSpeed, Phenomenon, contradict};
+use super::doubt::Severity;
+use super::evidence::{Evidence, FlutterReading, RequiredSpeed};
+use super::judgement::Judgement;
+use super::outcome::{Below, Outcome};
+use super::words::{found, speed};
+use crate::flutter::FlutterSearch;
+
+/// The answer in one line; begins with the outcome where a speed is required.
+pub(super) fn headline(judgement: &Judgement, evidence: &Evidence) -> String {
+    let what = what(&judgement.critical, evidence);
+    match (&judgement.outcome, evidence.required) {
+        (Some(outcome), Some(required)) => format!(
+            "{} {}, required {} m/s: {what}",
+            outcome.sign(),
+            outcome.words(),
+            required.speed_m_s
+        ),
+        _ => what,
+    }
+}
+
+/// What governs, then what the search for flutter found.
+fn what(critical: &Critical, evidence: &Evidence) -> String {
+    let flutter = flutter(evidence);
+    match &critical.governs {
+        Some(c) if c.phenomenon != Phenomenon::Flutter => {
+            format!(
+                "{} at {} ({}); {flutter}",
+                c.phenomenon.name(),
+                speed(c.best_m_s),
+                c.forces
+            )
+        }
+        _ => flutter,
+    }
+}
+
+/// What the first reading found, with the interval of another that agrees where it has none, and what contradicts it.
+fn flutter(evidence: &Evidence) -> String {
+    let Some((first, others)) = evidence.flutter.split_first() else {
+        return "flutter not searched".to_owned();
+    };
+    let against: Vec<&FlutterReading> = others.iter().filter(|o| contradict(first, o)).collect();
+    let support = others.iter().find(|o| {
+        !first.interval_is_known()
+            && o.onset().is_some()
+            && o.interval_is_known()
+            && !contradict(first, o)
+    });
+    let mut text = match (&first.search, support) {
+        (FlutterSearch::Onset(onset), Some(other)) => format!(
+            "flutter onset {} by {}{}; {}: {}",
+            speed(onset.at.speed_m_s),
+            first.forces,
+            tested(onset.in_tested_range),
+            other.forces,
+            found(other)
+        ),
+        (FlutterSearch::Onset(onset), None) => onset.headline(),
+        (other, _) => other.explain(),
+    };
+    for other in against {
+        text.push_str(&format!(
+            "; CONTRADICTED by {}: {}",
+            other.forces,
+            found(other)
+        ));
+    }
+    text
+}
+
+fn tested(inside: Option<bool>) -> &'static str {
+    match inside {
+        Some(true) => ", inside the tested range",
+        Some(false) => ", OUTSIDE the tested range",
+        None => "",
+    }
+}
+
+/// Why the outcome is what it is.
+pub(super) fn explanation(judgement: &Judgement, required: Option<RequiredSpeed>) -> String {
+    let critical = &judgement.critical;
+    match (&judgement.outcome, required) {
+        (Some(Outcome::Met), Some(_)) => met(critical),
+        (Some(Outcome::NotMet { below }), Some(required)) => {
+            not_met(critical, *below, required.speed_m_s)
+        }
+        (
+            Some(Outcome::CannotBeJudged {
+                missing,
+                settled_by,
+            }),
+            Some(_),
+        ) => {
+            let mut text = format!("Cannot be judged: {}.", missing.join("; "));
+            if !settled_by.is_empty() {
+                text.push_str(&format!(
+                    " It would be settled by {}.",
+                    settled_by.join("; ")
+                ));
+            }
+            text
+        }
+        _ => no_requirement(judgement),
+    }
+}
+
+fn one(c: &CriticalSpeed) -> String {
+    let lower = match c.lower_m_s {
+        Some(low) if low < c.best_m_s => format!(", lower end {}", speed(low)),
+        _ => String::new(),
+    };
+    format!(
+        "{} at {} by {}{lower}",
+        c.phenomenon.name(),
+        speed(c.best_m_s),
+        c.forces
+    )
+}
+
+fn met(critical: &Critical) -> String {
+    let all: Vec<String> = critical
+        .governs
+        .iter()
+        .chain(&critical.others)
+        .map(one)
+        .collect();
+    match all.is_empty() {
+        true => format!(
+            "Met: nothing critical up to {}.",
+            speed(critical.judged_to_m_s)
+        ),
+        false => format!("Met: everything critical lies above: {}.", all.join("; ")),
+    }
+}
+
+fn not_met(critical: &Critical, below: Below, required_m_s: f64) -> String {
+    let all = || critical.all();
+    let which = |c: &&CriticalSpeed| match below {
+        Below::BestEstimate => c.best_m_s < required_m_s,
+        Below::LowerEnd => c.least_m_s() < required_m_s,
+    };
+    let Some(c) = all()
+        .filter(|c| c.phenomenon != Phenomenon::Growth)
+        .find(which)
+    else {
+        return "Not met.".to_owned();
+    };
+    match below {
+        Below::BestEstimate => format!(
+            "Not met: the best estimate lies below {required_m_s} m/s: {}.",
+            one(c)
+        ),
+        Below::LowerEnd => format!(
+            "Not met: the best estimate lies above {required_m_s} m/s, but only the lower end counts: {}.",
+            one(c)
+        ),
+    }
+}
+
+fn no_requirement(judgement: &Judgement) -> String {
+    let how = "state required_speed_m_s, the criterion of a code";
+    match judgement.suggested_m_s {
+        Some(most) => format!(
+            "No required speed is stated, so that nothing is judged; {how}: up to {most} m/s it would be met."
+        ),
+        None => {
+            let severe = judgement
+                .doubts
+                .iter()
+                .filter(|d| d.severity == Severity::Severe);
+            let why: Vec<&str> = severe.map(|d| d.text.as_str()).collect();
+            let why = match why.is_empty() {
+                true => "nothing was judged by data".to_owned(),
+                false => why.join("; "),
+            };
+            format!("No required speed is stated ({how}), and none could be met: {why}.")
+        }
+    }
+}

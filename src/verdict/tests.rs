@@ -1,0 +1,310 @@
+//! What is green and what is not: every way in which an answer looked safer than it was.
+
+mod doubts;
+
+use super::*;
+use crate::flutter::{
+    BetweenSpeeds, CriticalPoint, ErrorParts, FlutterSearch, GrowthBand, Onset, OnsetInterval,
+    OnsetMethod, StableRange, UnstableStart, UnwantedGrowth,
+};
+use crate::plausibility::Finding;
+use crate::units::{ReducedFrequency, ReducedFrequencyGap, ReducedFrequencyRange};
+
+fn k(value: f64) -> ReducedFrequency {
+    ReducedFrequency::from_full_width(value)
+}
+
+const TESTED: (f64, f64) = (0.3, 2.0);
+
+fn tests(to_m_s: f64) -> Basis {
+    let range = ReducedFrequencyRange::between(k(TESTED.0), k(TESTED.1));
+    let reach = Reach {
+        to_m_s,
+        ..Reach::everywhere()
+    };
+    Basis::tested(range, reach)
+}
+
+fn at(speed_m_s: f64, reduced: f64) -> CriticalPoint {
+    CriticalPoint::new("m", OnsetMethod::Eigenvalues, speed_m_s, 2.0, k(reduced))
+}
+
+/// An onset inside the tested range, with a half width of its interval (0: none).
+fn onset(speed_m_s: f64, half_m_s: f64) -> Onset {
+    Onset {
+        at: at(speed_m_s, 0.5),
+        mode_ratio: 0.1,
+        phase_deg: 0.0,
+        damping_slope_s_m: None,
+        branch: "torsion".to_owned(),
+        in_tested_range: Some(true),
+        gap: None,
+        spurious_speeds_m_s: Vec::new(),
+        warnings: Vec::new(),
+        interval: match half_m_s > 0.0 {
+            true => OnsetInterval::about(speed_m_s, half_m_s, 20.0, parts(half_m_s)),
+            false => OnsetInterval::none("no tests"),
+        },
+    }
+}
+
+fn parts(half_m_s: f64) -> ErrorParts {
+    ErrorParts {
+        scatter_m_s: half_m_s / 2.0,
+        ..ErrorParts::default()
+    }
+}
+
+fn reading(forces: &str, search: FlutterSearch) -> FlutterReading {
+    FlutterReading {
+        forces: forces.to_owned(),
+        search,
+        basis: tests(f64::INFINITY),
+    }
+}
+
+fn found(forces: &str, speed_m_s: f64, half_m_s: f64) -> FlutterReading {
+    let onset = onset(speed_m_s, half_m_s);
+    reading(forces, FlutterSearch::Onset(Box::new(onset)))
+}
+
+fn stable(forces: &str, to_m_s: f64) -> FlutterReading {
+    reading(
+        forces,
+        FlutterSearch::StableUpTo(StableRange::up_to(to_m_s)),
+    )
+}
+
+fn unstable(forces: &str, speed_m_s: f64) -> FlutterReading {
+    let start = UnstableStart {
+        at: at(speed_m_s, 1.9),
+        growth_rate_per_s: 0.1,
+        branch: "torsion".to_owned(),
+        in_tested_range: Some(true),
+        reason: "there its motion enters".to_owned(),
+        warnings: Vec::new(),
+        onset_above: None,
+    };
+    reading(forces, FlutterSearch::UnstableAtOrBelow(Box::new(start)))
+}
+
+/// Evidence of a model that was scanned for growth, against a required speed.
+fn of(required_m_s: f64, flutter: Vec<FlutterReading>) -> Evidence {
+    Evidence {
+        required: Some(RequiredSpeed {
+            speed_m_s: required_m_s,
+        }),
+        flutter,
+        growth: Some(UnwantedGrowth {
+            scanned_to_m_s: 100.0,
+            proved: true,
+            bands: Vec::new(),
+            instability_from_m_s: None,
+        }),
+        ..Evidence::default()
+    }
+}
+
+fn words(evidence: &Evidence) -> &'static str {
+    Verdict::of(evidence).outcome.unwrap().words()
+}
+
+fn severe(evidence: &Evidence) -> Vec<DoubtKind> {
+    let all = Verdict::of(evidence).doubts.into_iter();
+    let severe = all.filter(|d| d.severity == Severity::Severe);
+    severe.map(|d| d.kind).collect()
+}
+
+#[test]
+fn an_onset_with_its_interval_above_is_met() {
+    let verdict = Verdict::of(&of(30.0, vec![found("the model", 36.9, 0.3)]));
+    assert!(verdict.is_met() && !verdict.refuses());
+    assert_eq!(
+        verdict.headline,
+        "✓ MET, required 30 m/s: flutter onset 36.9 m/s, 36.6–37.2, inside the tested range"
+    );
+    assert_eq!(verdict.doubts, Vec::new());
+    assert_eq!(
+        verdict.explanation,
+        "Met: everything critical lies above: flutter at 36.9 m/s by the model, lower end 36.6 m/s."
+    );
+}
+
+#[test]
+fn which_number_lies_below_is_said() {
+    let verdict = Verdict::of(&of(36.7, vec![found("the model", 36.9, 0.3)]));
+    let below = Below::LowerEnd;
+    assert_eq!(verdict.outcome, Some(Outcome::NotMet { below }));
+    assert!(verdict.explanation.contains("only the lower end counts"));
+    let verdict = Verdict::of(&of(45.0, vec![found("the model", 36.9, 0.3)]));
+    let below = Below::BestEstimate;
+    assert_eq!(verdict.outcome, Some(Outcome::NotMet { below }));
+    assert!(verdict.refuses());
+}
+
+/// Divergence at 79.9 m/s, required 100, no flutter to 110 was a green "Met".
+#[test]
+fn divergence_below_the_required_speed_is_not_met() {
+    let mut evidence = of(100.0, vec![stable("the model", 110.0)]);
+    assert_eq!(words(&evidence), "MET");
+    evidence.divergence = vec![DivergenceReading::at("the model", Some(79.9))];
+    let verdict = Verdict::of(&evidence);
+    let below = Below::BestEstimate;
+    assert_eq!(verdict.outcome, Some(Outcome::NotMet { below }));
+    assert_eq!(
+        verdict.headline,
+        "✗ NOT MET, required 100 m/s: static divergence at 79.9 m/s (the model); no flutter up to 110.000 m/s"
+    );
+}
+
+/// A bridge that diverges at 62.6 m/s was headed "no flutter up to 120 m/s"; a deck with divergence at 14.8 "onset at 21.2".
+#[test]
+fn what_begins_first_governs_also_without_a_requirement() {
+    let mut evidence = of(1.0, vec![stable("the models", 120.0)]);
+    evidence.required = None;
+    evidence.divergence = vec![DivergenceReading::at("the models", Some(62.6))];
+    let verdict = Verdict::of(&evidence);
+    assert!(
+        verdict
+            .headline
+            .starts_with("static divergence at 62.6 m/s")
+    );
+    assert_eq!((verdict.outcome, verdict.suggested_m_s), (None, Some(62.6)));
+    assert!(
+        verdict
+            .explanation
+            .contains("up to 62.6 m/s it would be met")
+    );
+    evidence.flutter = vec![found("the model", 21.2, 0.4)];
+    evidence.divergence = vec![DivergenceReading::at("the table", Some(14.8))];
+    let critical = Verdict::of(&evidence).critical;
+    let governs = critical.governs.unwrap();
+    assert_eq!(governs.phenomenon, Phenomenon::Divergence);
+    assert_eq!((governs.best_m_s, &governs.forces[..]), (14.8, "the table"));
+    assert_eq!(critical.others[0].phenomenon, Phenomenon::Flutter);
+    // what was assumed at rest makes the lower end
+    evidence.divergence[0].lower_m_s = Some(14.0);
+    assert_eq!(Verdict::of(&evidence).critical.least_m_s(), Some(14.0));
+    evidence.galloping = Some(GallopingReading {
+        forces: "the coefficients".to_owned(),
+        speed_m_s: 9.0,
+    });
+    let governs = Verdict::of(&evidence).critical.governs.unwrap();
+    assert_eq!(governs.phenomenon, Phenomenon::Galloping);
+}
+
+/// Required 62 and searched to 54 was "NOT met"; tests that end at 4.5 m/s were "no flutter up to 40 m/s".
+#[test]
+fn what_was_not_looked_at_cannot_be_judged() {
+    let evidence = of(62.0, vec![stable("the model", 54.0)]);
+    let verdict = Verdict::of(&evidence);
+    assert_eq!(words(&evidence), "CANNOT BE JUDGED");
+    assert!(
+        verdict
+            .headline
+            .starts_with("? CANNOT BE JUDGED, required 62 m/s")
+    );
+    assert_eq!(
+        severe(&evidence),
+        [DoubtKind::NotJudgedAbove {
+            speed_m_s: 54.0,
+            asked_m_s: 62.0
+        }]
+    );
+    let mut tested = of(30.0, vec![stable("the model", 40.0)]);
+    assert_eq!(words(&tested), "MET");
+    tested.flutter[0].basis = tests(4.5);
+    assert_eq!(words(&tested), "CANNOT BE JUDGED");
+    // an onset far above says nothing of what lies between the tests and the required speed
+    tested.flutter = vec![found("the model", 60.0, 1.0)];
+    tested.flutter[0].basis = tests(25.0);
+    assert_eq!(words(&tested), "CANNOT BE JUDGED");
+    tested.flutter[0].basis = tests(31.0);
+    assert_eq!(words(&tested), "MET");
+    assert_eq!(words(&of(30.0, Vec::new())), "CANNOT BE JUDGED");
+}
+
+/// A bridge was headed 84.1 m/s where its table said 77.97; 84.6 where the table was unstable from 8.6 on.
+#[test]
+fn model_and_table_that_contradict_each_other_are_said() {
+    let table = found("the tables", 77.97, 0.0);
+    let model = found("the models", 84.1, 1.5);
+    let evidence = of(50.0, vec![table.clone(), model.clone()]);
+    let verdict = Verdict::of(&evidence);
+    assert_eq!(words(&evidence), "CANNOT BE JUDGED");
+    assert!(
+        verdict
+            .headline
+            .contains("CONTRADICTED by the models: 84.1 m/s (82.6–85.6)")
+    );
+    assert_eq!(verdict.critical.least_m_s(), Some(77.97));
+    // the same, whichever comes first
+    let reversed = Verdict::of(&of(50.0, vec![model.clone(), table.clone()]));
+    assert_eq!(reversed.critical.least_m_s(), Some(77.97));
+    let said = reversed.warnings().next().unwrap();
+    assert_eq!(
+        said,
+        "Contradiction: 84.1 m/s (82.6–85.6) by the models, 78.0 m/s by the tables"
+    );
+    // lower than required by the table alone
+    assert_eq!(words(&of(80.0, vec![table.clone(), model])), "NOT MET");
+    let verdict = Verdict::of(&of(
+        50.0,
+        vec![unstable("the tables", 8.6), found("the models", 84.6, 2.0)],
+    ));
+    let below = Below::BestEstimate;
+    assert_eq!(verdict.outcome, Some(Outcome::NotMet { below }));
+    assert!(
+        verdict
+            .doubts
+            .iter()
+            .any(|d| matches!(d.kind, DoubtKind::Contradiction { .. }))
+    );
+    // one finds what the other excludes
+    let missed = Verdict::of(&of(
+        50.0,
+        vec![stable("the tables", 90.0), found("the models", 60.0, 1.0)],
+    ));
+    assert!(!missed.is_met());
+    // a table that ends before says nothing against it
+    let ends = Verdict::of(&of(
+        50.0,
+        vec![found("the models", 60.0, 1.0), stable("the tables", 55.0)],
+    ));
+    assert!(ends.is_met());
+}
+
+/// The table gives the number, the models its interval.
+#[test]
+fn readings_that_agree_share_an_interval() {
+    let evidence = of(
+        70.0,
+        vec![
+            found("the tables", 77.0, 0.0),
+            found("the models", 77.4, 2.0),
+        ],
+    );
+    let verdict = Verdict::of(&evidence);
+    assert_eq!(
+        verdict.headline,
+        "✓ MET, required 70 m/s: flutter onset 77.0 m/s by the tables, inside the tested range; the models: 77.4 m/s (75.4–79.4)"
+    );
+    assert_eq!(verdict.critical.least_m_s(), Some(75.4));
+    let low = found("the tables", 75.0, 0.0);
+    let other = Verdict::of(&of(70.0, vec![found("the models", 77.4, 2.5), low]));
+    assert_eq!(other.critical.least_m_s(), Some(74.9));
+}
+
+#[test]
+fn a_verdict_is_written_and_read() {
+    let mut evidence = of(62.0, vec![stable("the model", 54.0)]);
+    evidence.divergence = vec![DivergenceReading::at("the model", Some(79.9))];
+    let verdict = Verdict::of(&evidence);
+    let json = serde_json::to_value(&verdict).unwrap();
+    assert_eq!(json["outcome"]["state"], "cannot_be_judged");
+    assert_eq!(json["doubts"][0]["kind"], "not_judged_above");
+    assert_eq!(json["doubts"][0]["severity"], "severe");
+    assert_eq!(json["critical"]["governs"]["phenomenon"], "divergence");
+    let read: Verdict = serde_json::from_value(json).unwrap();
+    assert_eq!(read, verdict);
+}

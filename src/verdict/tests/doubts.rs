@@ -1,0 +1,224 @@
+//! What each doubt weighs.
+
+use super::*;
+
+#[test]
+fn an_extrapolated_onset_counts_as_far_as_tests_reach() {
+    let mut first = onset(60.0, 1.0);
+    first.in_tested_range = Some(false);
+    first.at = at(60.0, 0.2);
+    let mut evidence = of(
+        30.0,
+        vec![reading("the model", FlutterSearch::Onset(Box::new(first)))],
+    );
+    evidence.flutter[0].basis = tests(50.0);
+    assert_eq!(words(&evidence), "MET");
+    evidence.required = Some(RequiredSpeed { speed_m_s: 55.0 });
+    let verdict = Verdict::of(&evidence);
+    let Some(Outcome::CannotBeJudged { settled_by, .. }) = verdict.outcome else {
+        panic!("{:?}", verdict.outcome);
+    };
+    assert!(
+        settled_by.contains(&"tests at K 0.20–0.30".to_owned()),
+        "{settled_by:?}"
+    );
+}
+
+#[test]
+fn an_onset_in_a_gap_between_tests_is_a_doubt() {
+    let mut first = onset(60.0, 1.0);
+    first.in_tested_range = Some(false);
+    first.gap = Some(ReducedFrequencyGap {
+        from: k(0.4),
+        to: k(1.1),
+    });
+    let mut evidence = of(
+        58.0,
+        vec![reading("the model", FlutterSearch::Onset(Box::new(first)))],
+    );
+    evidence.flutter[0].basis = tests(50.0);
+    let kinds = severe(&evidence);
+    assert!(
+        kinds.contains(&DoubtKind::GapInTests {
+            k: 0.5,
+            gap_from_k: 0.4,
+            gap_to_k: 1.1
+        }),
+        "{kinds:?}"
+    );
+    let settled = Verdict::of(&evidence).explanation;
+    assert!(settled.contains("tests at K 0.40–1.10"), "{settled}");
+}
+
+#[test]
+fn an_interval_that_is_not_known_or_too_wide_is_a_doubt() {
+    let evidence = of(30.0, vec![found("the model", 36.9, 0.0)]);
+    assert_eq!(words(&evidence), "CANNOT BE JUDGED");
+    assert!(matches!(
+        severe(&evidence)[..],
+        [DoubtKind::IntervalUnknown { .. }]
+    ));
+    let mut exact = evidence.clone();
+    exact.flutter[0].basis = Basis::Exact;
+    assert_eq!(words(&exact), "MET");
+    // not even "not met": the best estimate is no result
+    let wide = of(30.0, vec![found("the model", 9.2, 114.0)]);
+    assert_eq!(words(&wide), "CANNOT BE JUDGED");
+    assert!(matches!(
+        severe(&wide)[..],
+        [DoubtKind::IntervalUndetermined { .. }]
+    ));
+    let mut one = of(30.0, vec![found("the model", 36.9, 0.3)]);
+    one.test_speeds = Some(1);
+    assert_eq!(severe(&one), [DoubtKind::OneTestSpeed]);
+    // the scatter of other decks in the interval makes it one to be known
+    let mut first = onset(36.9, 0.3);
+    let between = ErrorParts {
+        between_speeds: Some(BetweenSpeeds::Prior),
+        ..parts(0.3)
+    };
+    first.interval = OnsetInterval::about(36.9, 0.3, 20.0, between);
+    one.flutter[0].search = FlutterSearch::Onset(Box::new(first));
+    assert_eq!(words(&one), "MET");
+    assert_eq!(Verdict::of(&one).doubts[0].kind, DoubtKind::OneTestSpeed);
+    one.flutter = vec![found("the model", 36.9, 0.3)];
+    one.test_speeds = Some(2);
+    assert_eq!(words(&one), "MET");
+}
+
+#[test]
+fn growth_where_nothing_was_tested_cannot_be_judged() {
+    let mut evidence = of(30.0, vec![found("the model", 36.9, 0.3)]);
+    evidence.growth.as_mut().unwrap().bands.push(GrowthBand {
+        from_m_s: 3.1,
+        to_m_s: 3.4,
+        from_start: false,
+        fastest_growth_per_s: 0.02,
+        fastest_at_m_s: 3.2,
+        frequency_hz: 2.0,
+        reduced_frequency: k(6.5),
+        tested_from_m_s: None,
+        branch: "vertical".to_owned(),
+    });
+    let verdict = Verdict::of(&evidence);
+    assert_eq!(words(&evidence), "CANNOT BE JUDGED");
+    assert_eq!(
+        verdict.critical.governs.unwrap().phenomenon,
+        Phenomenon::Growth
+    );
+    assert!(
+        verdict
+            .headline
+            .contains("growth outside the tests at 3.10 m/s")
+    );
+    // nobody looked: as bad
+    evidence.growth = None;
+    let reach = Reach {
+        from_m_s: 5.0,
+        ..Reach::everywhere()
+    };
+    evidence.flutter[0].basis =
+        Basis::tested(ReducedFrequencyRange::between(k(0.3), k(2.0)), reach);
+    assert_eq!(
+        severe(&evidence),
+        [DoubtKind::NotJudgedBelow { speed_m_s: 5.0 }]
+    );
+}
+
+#[test]
+fn constraints_that_moved_the_onset_are_weighed() {
+    let mut evidence = of(30.0, vec![found("the model", 36.9, 0.3)]);
+    let weight = |evidence: &mut Evidence, without_m_s, with_m_s| {
+        evidence.constraints = Some(MovedOnset {
+            without_m_s,
+            with_m_s,
+        });
+        let doubts = Verdict::of(evidence).doubts;
+        doubts.first().map(|d| d.severity)
+    };
+    // by less than a hundredth
+    assert_eq!(weight(&mut evidence, Some(36.6), Some(36.9)), None);
+    // beyond the interval, but above what is required as well
+    assert_eq!(
+        weight(&mut evidence, Some(33.0), Some(36.9)),
+        Some(Severity::Minor)
+    );
+    assert_eq!(
+        weight(&mut evidence, Some(30.2), Some(36.9)),
+        Some(Severity::Severe)
+    );
+    // no onset that could have been moved
+    for without_m_s in [None, Some(1.1)] {
+        assert_eq!(
+            weight(&mut evidence, without_m_s, Some(36.9)),
+            Some(Severity::Minor)
+        );
+    }
+    evidence.constraints = Some(MovedOnset {
+        without_m_s: Some(34.0),
+        with_m_s: None,
+    });
+    assert_eq!(Verdict::of(&evidence).doubts[0].severity, Severity::Severe);
+    evidence.required = None;
+    assert_eq!(
+        weight(&mut evidence, Some(33.0), Some(36.9)),
+        Some(Severity::Severe)
+    );
+}
+
+#[test]
+fn failures_input_and_rotation_are_weighed() {
+    let clean = of(30.0, vec![found("the model", 36.9, 0.3)]);
+    let failed = |bears_on_answer| Evidence {
+        failures: vec![Failure {
+            stage: "divergence".to_owned(),
+            reason: "no stiffness".to_owned(),
+            bears_on_answer,
+        }],
+        ..clean.clone()
+    };
+    assert_eq!(words(&failed(true)), "CANNOT BE JUDGED");
+    assert_eq!(words(&failed(false)), "MET");
+    let implausible = Evidence {
+        implausible: vec![Finding::unit(
+            "section.width_m",
+            22e3,
+            "no deck is that wide",
+        )],
+        ..clean.clone()
+    };
+    assert_eq!(words(&implausible), "CANNOT BE JUDGED");
+    let turned = |at_onset_deg| Evidence {
+        mean_rotation: Some(MeanRotation {
+            at_onset_deg,
+            tested_deg: 0.0,
+        }),
+        ..clean.clone()
+    };
+    // a bridge at −5.8° with tables of 0°
+    assert_eq!(words(&turned(-5.8)), "CANNOT BE JUDGED");
+    assert_eq!(words(&turned(-2.0)), "MET");
+    assert!(Verdict::of(&turned(0.5)).doubts.is_empty());
+    let theory = Evidence {
+        flutter: vec![FlutterReading {
+            basis: Basis::Stated,
+            ..found("quasi-steady theory", 36.9, 0.3)
+        }],
+        ..clean.clone()
+    };
+    assert_eq!(severe(&theory), [DoubtKind::Untested]);
+    let known = Evidence {
+        remarks: vec!["a remark.".to_owned()],
+        tested_rotation_deg: Some(2.0),
+        ..clean
+    };
+    assert_eq!(words(&known), "MET");
+    let texts: Vec<String> = Verdict::of(&known).warnings().map(str::to_owned).collect();
+    assert_eq!(
+        texts,
+        [
+            "Rotations beyond the 2° of the tests are not covered",
+            "a remark"
+        ]
+    );
+}

@@ -1,0 +1,109 @@
+//! FMUs of whole bridges: what their parameters change, and bridges that are not as most.
+
+use crate::bridges::{SEARCH, TWO, coupled, langenuen, langenuen_text, read};
+use aerodeck::flutter::{OnsetSearch, find_onset};
+use aerodeck::fmu::importer::{CheckReport, Fmu, Slave, Value};
+use aerodeck::fmu::package::{
+    BridgeExport, FmiVersion, Label, Overwrite, Runtime, package_bridge, write_archive,
+};
+use aerodeck::fmu::variables::Listing;
+use aerodeck::study::bridge::BridgeExportOptions;
+use std::time::{Duration, Instant};
+
+fn opened(export: &BridgeExport) -> (tempfile::TempDir, Fmu) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("bridge.fmu");
+    let runtimes = [Runtime::embedded().unwrap()];
+    let bytes = package_bridge(export, &runtimes, &Label::default(), FmiVersion::Two).unwrap();
+    write_archive(&path, &bytes, Overwrite::Refuse).unwrap();
+    let fmu = Fmu::open(&path).unwrap();
+    (folder, fmu)
+}
+
+fn timed(slave: &Slave, name: &str) -> (f64, Duration) {
+    let start = Instant::now();
+    match slave.get(name).unwrap() {
+        Value::Real(value) => (value, start.elapsed()),
+        other => panic!("{name} is {other}"),
+    }
+}
+
+/// The onset that is read first after a parameter was set is that of the parameter, found by eigenvalues in another bridge.
+#[test]
+fn the_onset_is_that_of_the_parameters() {
+    let study = langenuen("LN21-5200", TWO);
+    let export = study.export(&BridgeExportOptions::default()).unwrap();
+    assert!(export.bridge.onset.is_some());
+    let (_folder, fmu) = opened(&export);
+    let mut slave = fmu.instantiate("bridge").unwrap();
+    slave.setup(0.0, None, None).unwrap();
+    slave.enter_initialization().unwrap();
+    slave.exit_initialization().unwrap();
+    let (_, damping) = timed(&slave, "damping_now");
+    let (_, again) = timed(&slave, "damping_now");
+    eprintln!("damping_now: {damping:?}, once more {again:?}");
+    let own = export.bridge.air_density_kg_m3;
+    for density in [own, 1.6, 1.2, 2.0] {
+        slave.set("air_density", &Value::Real(density)).unwrap();
+        let (found, took) = timed(&slave, "onset_speed");
+        let mut other = study.by_model.clone();
+        other.air_density_kg_m3 = density;
+        let search = OnsetSearch {
+            speeds: 60,
+            ..SEARCH
+        };
+        let expected = find_onset("bridge", &coupled(&other), &search, None).unwrap();
+        let expected = expected.onset().unwrap().at.speed_m_s;
+        eprintln!("{density} kg/m³: {found} m/s in {took:?}, searched {expected}");
+        // a motion that is followed settles to 1e-9
+        assert!((found / expected - 1.0).abs() < 1e-8, "{found}, {expected}");
+    }
+}
+
+/// The numbers of the modes that move mainly so: vertical 0, lateral 1, rotation 2.
+fn modes_in(motion: usize) -> Vec<usize> {
+    let study = langenuen("LN21-5200", TWO);
+    let half = 0.5 * study.by_model.width_m();
+    let main = |shape: &[[f64; 3]]| {
+        let scale = [1.0, 1.0, half];
+        let sum = |i: usize| shape.iter().map(|s| (s[i] * scale[i]).powi(2)).sum::<f64>();
+        (0..3).max_by(|a, b| sum(*a).total_cmp(&sum(*b))).unwrap()
+    };
+    let modes = study.by_model.modes.iter();
+    modes
+        .filter(|m| main(&m.shape) == motion)
+        .map(|m| m.number)
+        .take(3)
+        .collect()
+}
+
+fn checked(export: &BridgeExport) -> (CheckReport, Fmu) {
+    let (_folder, fmu) = opened(export);
+    let report = fmu.check();
+    assert!(report.passed(), "{report:#?}");
+    assert!(report.ran.is_some());
+    (report, fmu)
+}
+
+/// A bridge of torsional modes alone, with all variables and with real ones; its filters are those of all modes.
+#[test]
+fn a_bridge_of_torsional_modes_is_exported() {
+    let select = format!("damping_ratio = 0.002\nselect = {:?}", modes_in(2));
+    let text = langenuen_text("LN21-5200", TWO, "linear_v_hat");
+    let study = read(&text.replace("damping_ratio = 0.002", &select));
+    assert_eq!(study.by_model.modes.len(), 3);
+    let mut export = study
+        .export(&BridgeExportOptions {
+            allow_unstable: true,
+            ..BridgeExportOptions::default()
+        })
+        .unwrap();
+    let (_, fmu) = checked(&export);
+    let filters = fmu.model_description().variable("filters").unwrap();
+    let of_all = coupled(&study.by_model).aerodynamics().states();
+    assert_eq!(filters.start, Some(Value::Integer(of_all as i32)));
+    export.listing = Listing::Reals;
+    let (_, fmu) = checked(&export);
+    assert!(fmu.model_description().variable("filters").is_none());
+    assert!(fmu.model_description().variable("flutter_speed").is_some());
+}
