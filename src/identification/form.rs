@@ -63,7 +63,7 @@ pub enum Form {
     /// `e₀ + e₁ p + e₂ p² + Σ c_l Λ_l(p)` with one pole for all filters of a chain.
     Laguerre {
         /// Number of filters `L`; left out, as many as the data determine from [`LEAST_CHOSEN`] to [`MOST_CHOSEN`], and
-        /// [`LEAST_CHOSEN`] without constraints.
+        /// [`LEAST_CHOSEN`] without constraints; from records that move sway too no more than four.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         filters: Option<usize>,
         /// Feed-through terms.
@@ -243,14 +243,15 @@ impl Form {
     }
 
     /// The form with a number of filters that `rows` rows of the least-squares problem of one transfer function determine:
-    /// two rows to judge each coefficient by. Only constraints keep more than the fewest filters from growing where nothing
-    /// was tested, and only filters that are common to all have one number.
-    pub(crate) fn for_rows(&self, rows: usize, constrained: bool) -> Self {
+    /// two rows to judge each coefficient by, and no more than `most`. Only filters that are common to all have one number.
+    pub(crate) fn for_rows(&self, rows: usize, most: usize) -> Self {
         if !self.is_open() {
             return self.clone();
         }
-        let common = constrained && !self.pole_per_transfer_function();
-        let most = if common { MOST_CHOSEN } else { LEAST_CHOSEN };
+        let most = match self.pole_per_transfer_function() {
+            true => LEAST_CHOSEN,
+            false => most,
+        };
         let determined = (rows / 2).saturating_sub(self.feed_through().count());
         let filters = determined.clamp(LEAST_CHOSEN, most);
         self.with_filters(filters).unwrap_or_default()

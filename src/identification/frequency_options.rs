@@ -108,10 +108,9 @@ impl FrequencyFit {
     /// The same with a number of filters, where it is left to the data: `rows` samples of the entry that has fewest.
     pub(super) fn with_filters_for(&self, rows: usize) -> Self {
         let rows = if self.own.is_empty() { rows } else { 0 };
+        let most = self.constraints.most_filters();
         Self {
-            form: self
-                .form
-                .for_rows(rows, self.constraints != Constraints::None),
+            form: self.form.for_rows(rows, most),
             ..self.clone()
         }
     }

@@ -62,10 +62,10 @@ pub(super) fn constraints(
         ),
         _ => format!(
             "Constraints decide: by the data alone the model {}, with them the onset is {}",
-            without.map_or("has no onset".to_owned(), |v| format!(
-                "grows from {}",
-                speed(v)
-            )),
+            without.map_or(
+                "has no onset, or grows from the lowest speed on".to_owned(),
+                |v| format!("grows from {}", speed(v))
+            ),
             speed(with)
         ),
     };

@@ -4,7 +4,7 @@ use crate::matrix::{NamedSection, fastest_growth};
 use aerodeck::aerodynamics::derivatives::DerivativeTable;
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::identification::{
-    Constraints, FeedThrough, FitReport, Fitted, Form, FrequencyFit, fit_table,
+    Constraints, FeedThrough, FitReport, Fitted, Form, FrequencyFit, MOST_CHOSEN, fit_table,
 };
 use aerodeck::section::{Dof, SectionModel};
 use aerodeck::trained_model::Model;
@@ -90,7 +90,8 @@ pub fn rational(lags: usize) -> Form {
 }
 
 pub fn forms() -> Vec<Form> {
-    (1..5).map(laguerre).chain((1..3).map(rational)).collect()
+    let filters = (1..=MOST_CHOSEN).map(laguerre);
+    filters.chain((1..3).map(rational)).collect()
 }
 
 pub fn fitted(

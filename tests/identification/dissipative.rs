@@ -3,14 +3,17 @@
 //! `cargo test --release --test identification -- dissipative:: --ignored --nocapture` prints what the constraints change, as a table.
 
 use crate::fits::{
-    assert_stable_below_onset, bands, fitted, forms, laguerre, objective, onset_m_s,
+    assert_stable_below_onset, bands, fitted, forms, laguerre, objective, onset_m_s, sources,
 };
 use crate::matrix::{decks, sections_of_three, sections_of_two};
 use aerodeck::aerodynamics::{FlatPlate, Transfer};
-use aerodeck::identification::{Constraints, Fitted, FrequencyFit, fit_table, sample_model};
+use aerodeck::identification::{
+    Constraints, Fitted, FrequencyFit, TimeFit, fit_records, fit_table, sample_model,
+};
 use aerodeck::section::Dof;
 use aerodeck::trained_model::Model;
 use aerodeck::units::ReducedFrequency;
+use aerodeck::wind_tunnel::TunnelPlan;
 
 #[test]
 fn nothing_grows_below_the_onset_with_two_motions() {
@@ -33,6 +36,29 @@ fn nothing_grows_below_the_onset_with_three_motions() {
             for named in sections_of_three() {
                 let what = format!("{}, {}", table.name, form.describe());
                 assert_stable_below_onset(&what, &model, &named);
+            }
+        }
+    }
+}
+
+/// The default of fits to records.
+#[test]
+fn nothing_grows_below_the_onset_by_records() {
+    for (dofs, sections) in [
+        (&Dof::TWO[..], sections_of_two()),
+        (&Dof::THREE[..], sections_of_three()),
+    ] {
+        for table in decks() {
+            let records = TunnelPlan::default()
+                .records_from_table(&table, dofs)
+                .unwrap();
+            let fit = TimeFit::default();
+            let model = fit_records(&sources(&records), &fit, &|_| ())
+                .unwrap()
+                .model;
+            for named in &sections {
+                let what = format!("{}, {} motions, records", table.name, dofs.len());
+                assert_stable_below_onset(&what, &model, named);
             }
         }
     }

@@ -4,6 +4,7 @@ use super::report::{ActiveConstraint, ConstraintKind};
 use super::tangent::{LinearEntry, take_away};
 use crate::error::{Error, Result};
 use crate::identification::basis::Basis;
+use crate::identification::form::{LEAST_CHOSEN, MOST_CHOSEN};
 use crate::section::Dof;
 use nalgebra::DVector;
 use serde::{Deserialize, Serialize};
@@ -22,6 +23,17 @@ pub enum Constraints {
     Dissipative,
     /// Nothing: least squares alone.
     None,
+}
+
+impl Constraints {
+    /// Most filters of a fit that leaves their number to the data: only conditions keep more than the fewest from growing where
+    /// nothing was tested.
+    pub(crate) fn most_filters(self) -> usize {
+        match self {
+            Self::Dissipative => MOST_CHOSEN,
+            Self::None => LEAST_CHOSEN,
+        }
+    }
 }
 
 /// What is asked of a fit besides.
