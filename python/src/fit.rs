@@ -21,7 +21,7 @@ use serde_json::{Value, json};
 /// ----------
 /// data : Derivatives or Records
 /// filters : int, optional
-///     Filters of each motion's bank; left out, as many as the data determine, three to five under constraints.
+///     Filters of each motion's bank; left out, as many as the data determine, three to five under constraints (four from records with sway).
 /// lateral : bool
 ///     Whether sway is part of the model; for records what they hold.
 /// poles : sequence of float, optional
