@@ -1,7 +1,7 @@
 //! The lowest wind speed at which something critical begins.
 
 use super::evidence::{Evidence, FlutterReading};
-use crate::flutter::GrowthBand;
+use crate::flutter::{FlutterSearch, GrowthBand};
 use serde::{Deserialize, Serialize};
 
 /// Readings closer than this, relatively, are one answer: what ways of interpolating one table differ by at worst.
@@ -42,7 +42,7 @@ pub struct CriticalSpeed {
     pub forces: String,
     /// Best estimate, m/s.
     pub best_m_s: f64,
-    /// Lower end, m/s; `None` where it is not known.
+    /// Lower end, m/s; `None` where it is not known, zero where nothing tells at which lower speed it begins.
     pub lower_m_s: Option<f64>,
     /// Whether it lies where nothing was tested.
     pub extrapolated: bool,
@@ -126,7 +126,11 @@ fn flutter(readings: &[FlutterReading]) -> Vec<CriticalSpeed> {
             extrapolated: reading.extrapolated(),
         })
     };
-    let lower = |reading: &FlutterReading| reading.ends_m_s().map(|(low, _)| low);
+    let lower = |reading: &FlutterReading| match reading.search {
+        // nobody knows where what grows there begins
+        FlutterSearch::UnstableAtOrBelow(_) => Some(0.0),
+        _ => reading.ends_m_s().map(|(low, _)| low),
+    };
     let agreeing = others.iter().filter(|o| !contradict(first, o));
     let of_others = agreeing.filter_map(|o| match o.interval_is_known() {
         true => lower(o).or(o.best_m_s()),

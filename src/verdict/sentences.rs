@@ -110,6 +110,7 @@ pub(super) fn explanation(judgement: &Judgement, required: Option<RequiredSpeed>
 
 fn one(c: &CriticalSpeed) -> String {
     let lower = match c.lower_m_s {
+        Some(low) if low <= 0.0 => " or at any speed below".to_owned(),
         Some(low) if low < c.best_m_s => format!(", lower end {}", speed(low)),
         _ => String::new(),
     };
@@ -154,6 +155,10 @@ fn not_met(critical: &Critical, below: Below, required_m_s: f64) -> String {
             "Not met: the best estimate lies below {required_m_s} m/s: {}.",
             one(c)
         ),
+        Below::LowerEnd if c.lower_m_s.is_some_and(|low| low <= 0.0) => format!(
+            "Not met: where it begins is not known, at {required_m_s} m/s or elsewhere: {}.",
+            one(c)
+        ),
         Below::LowerEnd => format!(
             "Not met: the best estimate lies above {required_m_s} m/s, but only the lower end counts: {}.",
             one(c)
@@ -173,9 +178,11 @@ fn no_requirement(judgement: &Judgement) -> String {
                 .iter()
                 .filter(|d| d.severity == Severity::Severe);
             let why: Vec<&str> = severe.map(|d| d.text.as_str()).collect();
-            let why = match why.is_empty() {
-                true => "nothing was judged by data".to_owned(),
-                false => why.join("; "),
+            let governs = judgement.critical.governs.as_ref();
+            let why = match governs.filter(|c| c.lower_m_s.is_some_and(|low| low <= 0.0)) {
+                Some(first) => one(first),
+                None if why.is_empty() => "nothing was judged by data".to_owned(),
+                None => why.join("; "),
             };
             format!("No required speed is stated ({how}), and none could be met: {why}.")
         }

@@ -275,6 +275,27 @@ fn model_and_table_that_contradict_each_other_are_said() {
 }
 
 /// The table gives the number, the models its interval.
+/// Unstable at and below the lowest speed that could be judged: no requirement is met, above or below that speed.
+#[test]
+fn what_is_unstable_from_the_start_meets_nothing() {
+    for (required_m_s, below) in [(10.0, Below::LowerEnd), (20.0, Below::BestEstimate)] {
+        let verdict = Verdict::of(&of(required_m_s, vec![unstable("the model", 15.7)]));
+        assert_eq!(verdict.outcome, Some(Outcome::NotMet { below }));
+        assert!(
+            verdict
+                .explanation
+                .contains("15.7 m/s by the model or at any speed below"),
+            "{}",
+            verdict.explanation
+        );
+    }
+    let open = Evidence {
+        required: None,
+        ..of(10.0, vec![unstable("the model", 15.7)])
+    };
+    assert_eq!(Verdict::of(&open).suggested_m_s, None);
+}
+
 #[test]
 fn readings_that_agree_share_an_interval() {
     let evidence = of(
