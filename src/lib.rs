@@ -68,9 +68,6 @@
 // the runtime of the FMU reaches only a part of the rooms it is built of
 #![cfg_attr(not(feature = "cli"), allow(dead_code, unused_imports))]
 
-pub mod aerodynamics;
-pub mod aeroelastic;
-pub mod bridge;
 #[cfg(feature = "cli")]
 pub mod buffeting;
 #[cfg(feature = "cli")]
@@ -78,44 +75,37 @@ pub mod buffeting;
 pub mod cli;
 #[cfg(feature = "cli")]
 pub mod comparison;
-pub mod error;
 #[cfg(feature = "cli")]
 pub mod files;
-pub mod flutter;
 // the module of a report has no use for it
 #[cfg(not(target_arch = "wasm32"))]
 pub mod fmu;
 #[cfg(feature = "cli")]
 pub mod identification;
 pub mod live;
-pub mod plausibility;
 pub mod prelude;
 #[cfg(feature = "cli")]
 pub mod reference;
 #[cfg(feature = "cli")]
 pub mod report;
-pub mod response;
-pub mod section;
 #[cfg(feature = "cli")]
 pub mod selection;
 #[cfg(feature = "cli")]
 pub mod signal;
-pub mod state_space;
 #[cfg(feature = "cli")]
 pub mod study;
-pub mod trained_model;
 #[cfg(feature = "cli")]
 pub mod uncertainty;
-pub mod units;
-#[cfg(feature = "cli")]
-pub mod verdict;
 #[cfg(feature = "cli")]
 pub mod wind_tunnel;
 
 #[cfg(all(test, feature = "cli"))]
 mod tests;
 
-pub use error::{Error, Result};
+pub use aerodeck_core::{
+    Error, Result, aerodynamics, aeroelastic, bridge, error, flutter, plausibility, response,
+    section, state_space, trained_model, units, verdict,
+};
 
 /// The program in the README is compiled and run with the tests.
 #[cfg(all(doctest, feature = "cli"))]

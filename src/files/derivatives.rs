@@ -8,10 +8,8 @@ mod workbook;
 mod workbook_writer;
 mod xlsx_cells;
 
-#[cfg(test)]
-pub(crate) use csv_file::parse_csv_in;
 pub(crate) use csv_file::{parse_csv, read_csv_with, write_points};
-pub use csv_file::{read_csv, write_csv, write_csv_in};
+pub use csv_file::{parse_csv_in, read_csv, write_csv, write_csv_in};
 pub use csv_header::{ReadOptions, TableInConvention};
 pub(crate) use workbook::{TABLE_3_2_FREQUENCIES_HZ, WIDTH_ASSUMED, read_workbook_in};
 pub use workbook::{WorkbookOptions, read_workbook};

@@ -7,5 +7,8 @@ mod command;
 #[path = "../common/three_dof.rs"]
 mod three_dof;
 
+mod notation;
+mod plausibility;
+mod quasi_steady;
 mod tables;
 mod three_motions;

@@ -11,4 +11,5 @@ mod buffeting;
 mod files;
 mod gusts;
 mod identities;
+mod plausibility;
 mod published;

@@ -16,5 +16,6 @@ mod all_speeds;
 mod answers;
 mod gaps;
 mod growth_bands;
+mod quasi_steady;
 mod reference_onsets;
 mod routes;

@@ -6,4 +6,6 @@
 mod steppers;
 
 mod changing_wind;
+mod beside_a_structure;
+mod quasi_steady;
 mod stepping;

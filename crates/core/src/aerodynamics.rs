@@ -1,0 +1,62 @@
+//! Linear models of the self-excited forces: all of them a transfer matrix `q̂(K) = G(K) r̂(K)`.
+//!
+//! `r` is the dimensionless motion (`y/B`, `x/B`, `θ`), `q` the dimensionless force (`F/(½ρV²B)`, `M/(½ρV²B²)`),
+//! `K = ωB/V` the reduced frequency. Models that are more than a table also have a realisation in
+//! dimensionless time `s = Vt/B`.
+
+pub mod derivatives;
+pub mod flat_plate;
+mod gust;
+mod gust_force;
+pub mod laguerre;
+pub mod quasi_steady;
+pub mod rational;
+mod realization;
+mod spline;
+
+pub use flat_plate::FlatPlate;
+pub use gust::GustSeries;
+pub use gust_force::{GustForce, RationalAdmittance};
+pub use laguerre::{DiscreteLaguerre, FilterBank, FilterTerm, LaguerreModel};
+pub use rational::{Lags, MinimumStateModel, RationalModel};
+pub use realization::DiscreteRealization;
+pub use realization::{ContinuousRealization, Realization};
+
+use crate::error::Result;
+use crate::section::Dof;
+use crate::units::{ReducedFrequency, ReducedFrequencyRange};
+use nalgebra::{Complex, DMatrix};
+
+/// `G(K)`, n×n, dimensionless.
+pub type TransferMatrix = DMatrix<Complex<f64>>;
+
+/// A linear model of the self-excited forces.
+pub trait Transfer: Send + Sync {
+    /// Degrees of freedom, in the order of rows and columns of [`Transfer::transfer`].
+    fn dofs(&self) -> &[Dof];
+
+    /// The transfer matrix `G(K)`.
+    ///
+    /// # Errors
+    /// When the model does not say anything at this `K` (a table outside its range).
+    fn transfer(&self, k: ReducedFrequency) -> Result<TransferMatrix>;
+
+    /// Reduced frequencies to which the model's own statements are confined; `None` when it speaks at every `K`.
+    ///
+    /// A table knows nothing beyond its points. Outside this range it refuses or holds values, so that a mode can be
+    /// followed; no answer may rest on what is held.
+    fn known_range(&self) -> Option<ReducedFrequencyRange> {
+        None
+    }
+
+    /// The model as one with a realisation; `None` when it is known only as a `G(K)`.
+    fn realizable(&self) -> Option<&dyn Realizable> {
+        None
+    }
+}
+
+/// A force model with a state-space realisation.
+pub trait Realizable: Transfer {
+    /// Its realisation in dimensionless time `s = Vt/B`; the frequency response is [`Transfer::transfer`].
+    fn realize(&self) -> Realization;
+}

@@ -1,0 +1,158 @@
+//! Notations of aerodynamic derivatives: which numbers a table holds, how they are scaled, which way the axes point.
+//!
+//! Inside the crate there is one convention, [`Convention::default`]; everything else exists in files only and is
+//! converted at the border. All four notations describe one matrix `G(K)` and differ, entry by entry, by a real factor
+//! that depends on `K` alone, so a conversion keeps every test point and its own reduced velocity.
+//!
+//! | notation | force due to heave, velocity part | factor on Scanlan's derivative |
+//! |---|---|---|
+//! | Scanlan with ½ | `½ρV²B · K H1* ẏ/V` | 1 |
+//! | classical, without ½ | `ρV²B · K H1* ḣ/V`, h down | ½ and signs |
+//! | PoliMi | `½ρV²B · (−h1* ż/V)` | −K, K² or 2/π |
+//! | Küssner/Starossek | `ω²πρb² · i c″_hh h`, h down | 2/π, 4/π, 8/π and signs |
+
+mod argument;
+mod axes;
+mod convention;
+mod expressed;
+mod names;
+
+pub use argument::Argument;
+pub use axes::Axes;
+pub use convention::{Convention, StatedConvention};
+pub use expressed::ExpressedPoint;
+pub use expressed::{ExpressedDerivative, ExpressedTable};
+
+use super::{Derivative, Part};
+use crate::error::{Error, Result};
+use crate::section::Dof;
+use crate::units::ReducedFrequency;
+use serde::{Deserialize, Serialize};
+use std::f64::consts::PI;
+use std::str::FromStr;
+
+/// A way of writing the 18 numbers of a deck.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Notation {
+    /// Scanlan's derivatives with ½ρV² and K²: (1.15)–(1.17) of the thesis, (C.1) corrected. The crate's own.
+    #[default]
+    Scanlan,
+    /// Scanlan's derivatives as first published, with ρV² instead of ½ρV²: half as large, and usually h down
+    /// (R. H. Scanlan, J. J. Tomko, J. Eng. Mech. Div. ASCE 97, 1971, and its extension to 18 numbers).
+    Classical,
+    /// Politecnico di Milano: `h`, `a`, `p` of (C.2) with V* = V/(fB) and the corrected (C.3).
+    Polimi,
+    /// Complex coefficients `c_mn` after H. G. Küssner as U. Starossek uses them (*Brückendynamik*, Vieweg 1992):
+    /// `L = ω²πρb² (c_hh h + b c_hα α)`, `M = ω²πρb² (b c_αh h + b² c_αα α)` with the semi-chord `b = B/2`; sway `p` and
+    /// drag are scaled like heave and lift.
+    Starossek,
+}
+
+impl Notation {
+    /// All notations.
+    pub const ALL: [Self; 4] = [
+        Self::Scanlan,
+        Self::Classical,
+        Self::Polimi,
+        Self::Starossek,
+    ];
+
+    /// The word for it in files, studies and commands.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Scanlan => "scanlan",
+            Self::Classical => "classical",
+            Self::Polimi => "polimi",
+            Self::Starossek => "starossek",
+        }
+    }
+
+    /// The notation for people.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Scanlan => "Scanlan with 1/2",
+            Self::Classical => "classical (Scanlan without 1/2)",
+            Self::Polimi => "PoliMi",
+            Self::Starossek => "Küssner/Starossek",
+        }
+    }
+
+    /// The axes this notation is usually printed with.
+    pub fn usual_axes(self) -> Axes {
+        match self {
+            Self::Scanlan | Self::Polimi => Axes::HeaveUp,
+            Self::Classical | Self::Starossek => Axes::HeaveDown,
+        }
+    }
+
+    /// The argument this notation is usually tabulated over.
+    pub fn usual_argument(self) -> Argument {
+        match self {
+            Self::Scanlan => Argument::VHat,
+            Self::Classical | Self::Polimi => Argument::VStar,
+            Self::Starossek => Argument::KSemi,
+        }
+    }
+
+    /// The definition, as it stands in the header of files: force per unit length due to harmonic motion `e^{iωt}`, `z`
+    /// heave, `x` sway, `theta` rotation, in the axes stated beside it.
+    pub fn definition(self) -> &'static str {
+        match self {
+            Self::Scanlan => {
+                "with K = omega B/V: lift = (rho V^2 B/2) K^2 [(H4 + i H1) z/B + (H6 + i H5) x/B + (H3 + i H2) theta]; drag the same with (P6 + i P5) z/B + (P4 + i P1) x/B + (P3 + i P2) theta; moment = (rho V^2 B^2/2) K^2 [(A4 + i A1) z/B + (A6 + i A5) x/B + (A3 + i A2) theta]"
+            }
+            Self::Classical => {
+                "with K = omega B/V: lift = (rho V^2 B) K^2 [(H4 + i H1) z/B + (H6 + i H5) x/B + (H3 + i H2) theta]; drag the same with (P6 + i P5) z/B + (P4 + i P1) x/B + (P3 + i P2) theta; moment = (rho V^2 B^2) K^2 [(A4 + i A1) z/B + (A6 + i A5) x/B + (A3 + i A2) theta]"
+            }
+            Self::Polimi => {
+                "with V* = V/(f B): lift = (rho V^2 B/2) [-h1 z'/V - h2 B theta'/V + h3 theta + (2 pi^3/V*^2) h4 z/B - h5 x'/V + (2 pi^3/V*^2) h6 x/B], ' = d/dt; drag the same with p1 to p6; moment the same with a1 to a6 and rho V^2 B^2/2"
+            }
+            Self::Starossek => {
+                "with b = B/2 and c = c_re + i c_im: lift = omega^2 pi rho b^2 (c_hh z + c_hp x + b c_ha theta); drag = omega^2 pi rho b^2 (c_ph z + c_pp x + b c_pa theta); moment = omega^2 pi rho b^2 (b c_ah z + b c_ap x + b^2 c_aa theta)"
+            }
+        }
+    }
+
+    /// What a value of Scanlan's with ½ is multiplied with to give the value in this notation, in the same axes.
+    pub fn factor(self, derivative: Derivative, k: ReducedFrequency) -> f64 {
+        let k = k.full_width();
+        let turning = |dof: Dof| i32::from(dof == Dof::Torsion);
+        match self {
+            Self::Scanlan => 1.0,
+            Self::Classical => 0.5,
+            // (C.3), rows h and a as printed; −h1 ż/V stands for K H1 ż/V, h3 θ for K² H3 θ
+            Self::Polimi => match (derivative.part(), derivative.motion()) {
+                (Part::Imaginary, _) => -k,
+                (Part::Real, Dof::Torsion) => k * k,
+                (Part::Real, _) => 2.0 / PI,
+            },
+            // ½ρV²B K²/B = 2 ω²ρb², and a factor B/b = 2 more for every rotation or moment
+            Self::Starossek => {
+                let doublings = turning(derivative.force()) + turning(derivative.motion());
+                2.0 / PI * 2f64.powi(doublings)
+            }
+        }
+    }
+}
+
+displayed_by_name!(Notation);
+
+impl FromStr for Notation {
+    type Err = Error;
+
+    /// Reads the word for a notation; `kussner` is another word for `starossek`.
+    fn from_str(text: &str) -> Result<Self> {
+        let word = text.trim().to_lowercase();
+        if ["kussner", "kuessner", "küssner"].contains(&word.as_str()) {
+            return Ok(Self::Starossek);
+        }
+        Self::ALL
+            .into_iter()
+            .find(|n| n.name() == word)
+            .ok_or_else(|| {
+                let all = Self::ALL.map(Self::name).join(", ");
+                Error::input("notation", format!("one of {all}"), format!("`{text}`"))
+            })
+    }
+}

@@ -1,0 +1,144 @@
+//! Notation, argument and axes together, and what somebody has said about them.
+
+use super::{Argument, Axes, Notation};
+use crate::aerodynamics::derivatives::Derivative;
+use crate::error::{Error, Result};
+use crate::units::ReducedFrequency;
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// All that has to be known to read or write a number. The default is the convention of the crate.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Convention {
+    /// Definition and scaling.
+    pub notation: Notation,
+    /// What is tabulated over.
+    pub argument: Argument,
+    /// Direction of heave and lift.
+    pub axes: Axes,
+}
+
+impl Convention {
+    /// The notation with the axes and the argument it is usually printed with.
+    pub fn usual(notation: Notation) -> Self {
+        Self {
+            notation,
+            argument: notation.usual_argument(),
+            axes: notation.usual_axes(),
+        }
+    }
+
+    /// Value in this convention over the value in the crate's.
+    pub fn factor(&self, derivative: Derivative, k: ReducedFrequency) -> f64 {
+        self.axes.sign(derivative) * self.notation.factor(derivative, k)
+    }
+
+    /// Symbol of a number for people: `H1*`, `h1*`, `c″_hh`.
+    pub fn symbol(&self, derivative: Derivative) -> String {
+        super::names::symbol(self.notation, derivative)
+    }
+}
+
+impl fmt::Display for Convention {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "{}, over {}, {}",
+            self.notation.title(),
+            self.argument.definition(),
+            self.axes.words()
+        )
+    }
+}
+
+/// What a file or its user says about the convention: nothing, some of it, or all.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct StatedConvention {
+    /// Definition and scaling.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub notation: Option<Notation>,
+    /// What is tabulated over.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub argument: Option<Argument>,
+    /// Direction of heave and lift.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub axes: Option<Axes>,
+}
+
+impl StatedConvention {
+    /// Only the notation.
+    pub fn notation(notation: Notation) -> Self {
+        Self {
+            notation: Some(notation),
+            ..Self::default()
+        }
+    }
+
+    /// Whether nothing is stated.
+    pub fn is_empty(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// For writing: what is not stated is as usual for the notation, the notation itself as in the crate.
+    pub fn or_usual(self) -> Convention {
+        let usual = Convention::usual(self.notation.unwrap_or_default());
+        Convention {
+            argument: self.argument.unwrap_or(usual.argument),
+            axes: self.axes.unwrap_or(usual.axes),
+            ..usual
+        }
+    }
+
+    /// For reading: `self` is what the user says, `file` what the file says; neither may contradict the other. Axes that
+    /// nobody states are those usual for the notation.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a contradiction, and for a notation or an argument that nobody states.
+    pub fn with_file(self, file: Self) -> Result<Convention> {
+        let notation = agree("notation", self.notation, file.notation)?
+            .ok_or_else(|| unstated("notation", &Notation::ALL.map(Notation::name).join(", ")))?;
+        let argument = agree("argument", self.argument, file.argument)?
+            .ok_or_else(|| unstated("argument", &Argument::ALL.map(Argument::name).join(", ")))?;
+        let axes = agree("axes", self.axes, file.axes)?.unwrap_or(notation.usual_axes());
+        Ok(Convention {
+            notation,
+            argument,
+            axes,
+        })
+    }
+}
+
+impl From<Convention> for StatedConvention {
+    fn from(all: Convention) -> Self {
+        Self {
+            notation: Some(all.notation),
+            argument: Some(all.argument),
+            axes: Some(all.axes),
+        }
+    }
+}
+
+fn unstated(what: &str, choices: &str) -> Error {
+    Error::input(
+        what,
+        format!("it stated in the file or on import, one of {choices}"),
+        "neither",
+    )
+}
+
+fn agree<T: PartialEq + fmt::Display>(
+    what: &str,
+    user: Option<T>,
+    file: Option<T>,
+) -> Result<Option<T>> {
+    match (user, file) {
+        (Some(user), Some(file)) if user != file => Err(Error::input(
+            what,
+            format!("`{user}` as stated on import"),
+            format!("`{file}` stated in the file"),
+        )),
+        (user, file) => Ok(user.or(file)),
+    }
+}

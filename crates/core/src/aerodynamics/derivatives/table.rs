@@ -1,0 +1,385 @@
+//! A table of measured derivatives, each with its own reduced velocities.
+
+use super::{Derivative, Part, TransferSample};
+use crate::aerodynamics::Transfer;
+use crate::error::{Error, Place, Result, positive};
+use crate::section::Dof;
+use crate::units::{ReducedFrequency, ReducedFrequencyRange, SAME_SPEED, near_groups};
+use std::collections::BTreeMap;
+
+/// Sign convention and scaling of every table of this project, as written in the header of its files.
+pub const SIGN_CONVENTION: &str = "y and lift up, theta and moment nose-up, x and drag downwind; q = G r with q = F/(rho V^2 B/2), M/(rho V^2 B^2/2), r = (y/B, x/B, theta); G_yy = K^2 (H4 + i H1), G_ytheta = K^2 (H3 + i H2), G_thetay = K^2 (A4 + i A1), G_thetatheta = K^2 (A3 + i A2)";
+
+/// Units of the columns, as written in the header of the files.
+pub const UNITS: &str = "mean_speed_m_s in m/s; v_hat = V/(omega B) = 1/K and value dimensionless";
+
+/// Test points of one derivative: more than any tunnel measures, few enough for every reader and fit.
+const POINTS_AT_MOST: usize = 10_000;
+
+/// Refuses more test points than a table can have.
+pub fn check_point_count(place: impl Into<Place>, count: usize) -> Result<()> {
+    if count <= POINTS_AT_MOST {
+        return Ok(());
+    }
+    let expected = format!("at most {POINTS_AT_MOST} test points of a derivative");
+    Err(Error::input(place, expected, count.to_string()))
+}
+
+/// One test point of one derivative.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DerivativePoint {
+    /// Mean wind speed of the run, m/s; `None` when the source does not say.
+    pub mean_speed_m_s: Option<f64>,
+    /// Reduced velocity `V̂ = V/(ωB) = 1/K`.
+    pub v_hat: f64,
+    /// The derivative, dimensionless.
+    pub value: f64,
+}
+
+impl DerivativePoint {
+    /// Reduced frequency of the point.
+    pub fn k(&self) -> ReducedFrequency {
+        ReducedFrequency::from_v_hat(self.v_hat)
+    }
+}
+
+/// Where a table comes from. Units and sign convention are `UNITS` and `SIGN_CONVENTION` for all tables.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct TableHeader {
+    /// Where the figures come from.
+    pub source: String,
+    /// Licence notice of the figures.
+    pub licence: String,
+    /// What wrote the table.
+    pub generator: String,
+    /// Length of the section model, m, if known.
+    pub model_length_m: Option<f64>,
+    /// What was assumed in reading the table.
+    pub notes: Vec<String>,
+}
+
+/// What is wrong with one point of a derivative; the reader adds where it stands.
+#[derive(Debug, PartialEq)]
+pub struct PointProblem {
+    /// Position in test order, from 0.
+    pub index: usize,
+    /// What should be there.
+    pub expected: String,
+    /// What is there.
+    pub found: String,
+}
+
+/// Measured derivatives of one deck.
+///
+/// ```
+/// use aerodeck::aerodynamics::derivatives::Derivative;
+/// use aerodeck::prelude::*;
+///
+/// let table = named_table("LN21-5200", "".as_ref())?;
+/// let first = table.points(Derivative::H1)[0];
+/// assert!(first.v_hat > 0.0 && first.value < 0.0); // heave is damped
+/// # Ok::<(), Error>(())
+/// ```
+///
+/// There are 18 (or the eight of heave and rotation), each at its own points in test order.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DerivativeTable {
+    /// Name of the deck.
+    pub name: String,
+    /// Width `B` of the section model, m.
+    pub width_m: f64,
+    /// Where the table comes from.
+    pub header: TableHeader,
+    points: BTreeMap<Derivative, Vec<DerivativePoint>>,
+}
+
+impl DerivativeTable {
+    /// A table after checking it: positive width; the eight derivatives of heave and rotation present, others in
+    /// pairs; `V̂` positive and strictly monotone in each speed group of each derivative; finite values; mean
+    /// speeds everywhere or nowhere.
+    ///
+    /// # Errors
+    /// [`Error::Input`] naming the derivative and the point.
+    pub fn new(
+        name: impl Into<String>,
+        width_m: f64,
+        header: TableHeader,
+        points: BTreeMap<Derivative, Vec<DerivativePoint>>,
+    ) -> Result<Self> {
+        positive("width_m", width_m)?;
+        check_complete(&points)?;
+        for (derivative, of_one) in &points {
+            check_point_count(derivative.name(), of_one.len())?;
+            if let Some(problem) = check_points(of_one) {
+                let place = format!("{derivative}, point {}", problem.index + 1);
+                return Err(Error::input(place, problem.expected, problem.found));
+            }
+        }
+        check_speeds_agree(&points)?;
+        Ok(Self {
+            name: name.into(),
+            width_m,
+            header,
+            points,
+        })
+    }
+
+    /// The derivatives of a model at every pair of speed and frequency, as a test of a deck of `width_m` would find them.
+    pub fn sampled(
+        name: impl Into<String>,
+        model: &dyn Transfer,
+        width_m: f64,
+        speeds_m_s: &[f64],
+        frequencies_hz: &[f64],
+    ) -> Result<Self> {
+        let dofs = model.dofs();
+        let mut points = BTreeMap::<_, Vec<_>>::new();
+        let tests = speeds_m_s
+            .iter()
+            .flat_map(|v| frequencies_hz.iter().map(move |f| (*v, *f)));
+        for (speed, frequency) in tests {
+            let k = ReducedFrequency::from_hertz(frequency, width_m, speed);
+            let g = model.transfer(k)?;
+            for (i, j) in (0..dofs.len()).flat_map(|i| (0..dofs.len()).map(move |j| (i, j))) {
+                for (part, value) in [(Part::Real, g[(i, j)].re), (Part::Imaginary, g[(i, j)].im)] {
+                    let of_one = points.entry(Derivative::of(dofs[i], dofs[j], part));
+                    of_one.or_default().push(DerivativePoint {
+                        mean_speed_m_s: Some(speed),
+                        v_hat: k.v_hat(),
+                        value: value * k.v_hat() * k.v_hat(),
+                    });
+                }
+            }
+        }
+        Self::new(name, width_m, TableHeader::default(), points)
+    }
+
+    /// The derivatives in the table, in the order of [`Derivative::ALL`].
+    pub fn derivatives(&self) -> impl Iterator<Item = Derivative> + '_ {
+        self.points.keys().copied()
+    }
+
+    /// Points of one derivative in test order; empty when the table does not hold it.
+    pub fn points(&self, derivative: Derivative) -> &[DerivativePoint] {
+        self.points.get(&derivative).map_or(&[], Vec::as_slice)
+    }
+
+    /// The degrees of freedom that the table covers completely.
+    pub fn dofs(&self) -> &'static [Dof] {
+        if self.points.len() == Derivative::ALL.len() {
+            &Dof::THREE
+        } else {
+            &Dof::TWO
+        }
+    }
+
+    /// Checks that the table holds every derivative that couples `dofs`.
+    ///
+    /// # Errors
+    /// [`Error::Input`] listing those that are missing.
+    pub fn require(&self, dofs: &[Dof]) -> Result<()> {
+        let missing: Vec<&str> = coupling(dofs)
+            .filter(|d| !self.points.contains_key(d))
+            .map(Derivative::name)
+            .collect();
+        if missing.is_empty() {
+            return Ok(());
+        }
+        let words: Vec<&str> = dofs.iter().map(|d| d.name()).collect();
+        Err(Error::input(
+            format!("table {}", self.name),
+            format!("the derivatives of {} motion", words.join(", ")),
+            format!("none of {}", missing.join(", ")),
+        ))
+    }
+
+    /// All numbers that the table says about `G` among `dofs`: `K²` times each derivative at its own `K`.
+    /// Entries that the table does not hold (see `DerivativeTable::require`) are left out.
+    pub fn samples(&self, dofs: &[Dof]) -> Vec<TransferSample> {
+        coupling(dofs)
+            .flat_map(|d| self.points(d).iter().map(move |point| sample(d, point)))
+            .collect()
+    }
+
+    /// The range of `K` in which every derivative among `dofs` was tested, with the gaps of any of them.
+    pub fn tested_range(&self, dofs: &[Dof]) -> ReducedFrequencyRange {
+        let ranges = |d: Derivative| {
+            ReducedFrequencyRange::spanning(self.points(d).iter().map(DerivativePoint::k))
+        };
+        coupling(dofs)
+            .filter_map(ranges)
+            .reduce(ReducedFrequencyRange::intersection)
+            // Nothing asked for was tested: an empty range, which contains no K.
+            .unwrap_or(ReducedFrequencyRange::between(
+                ReducedFrequency::from_full_width(f64::INFINITY),
+                ReducedFrequency::from_full_width(f64::NEG_INFINITY),
+            ))
+    }
+
+    /// Mean wind speed of each group of test points, m/s, rising; empty when the source does not give speeds.
+    /// Speeds less than 5 % apart belong to one group.
+    pub fn speed_groups(&self) -> Vec<f64> {
+        self.grouped_speeds()
+            .iter()
+            .map(|group| group.iter().sum::<f64>() / group.len() as f64)
+            .collect()
+    }
+
+    /// Highest speed of each group, m/s, rising.
+    pub(super) fn speed_groups_end(&self) -> Vec<f64> {
+        let highest = |group: &Vec<f64>| group[group.len() - 1];
+        self.grouped_speeds().iter().map(highest).collect()
+    }
+
+    /// The part of the table that was measured at the `i`-th of [`DerivativeTable::speed_groups`].
+    ///
+    /// # Errors
+    /// [`Error::Input`] when there is no such group, or a derivative was not measured in it. A table without speeds is one
+    /// group.
+    pub fn at_speed_group(&self, i: usize) -> Result<Self> {
+        let groups = self.grouped_speeds();
+        if groups.is_empty() && i == 0 {
+            return Ok(self.clone());
+        }
+        let group = groups.get(i).ok_or_else(|| {
+            Error::input(
+                format!("table {}", self.name),
+                format!("a speed group below {}", groups.len()),
+                i.to_string(),
+            )
+        })?;
+        let (low, high) = (group[0], group[group.len() - 1]);
+        let inside = |p: &&DerivativePoint| p.mean_speed_m_s.is_some_and(|v| low <= v && v <= high);
+        let points = self
+            .points
+            .iter()
+            .map(|(d, all)| (*d, all.iter().filter(inside).copied().collect()))
+            .collect();
+        Self::new(self.name.clone(), self.width_m, self.header.clone(), points)
+    }
+
+    /// Mean speeds of all points, sorted and split into groups, none of them empty.
+    fn grouped_speeds(&self) -> Vec<Vec<f64>> {
+        let all = self.points.values().flatten();
+        near_groups(all.filter_map(|p| p.mean_speed_m_s), SAME_SPEED)
+    }
+}
+
+/// Derivatives whose force and motion are both among `dofs`.
+fn coupling(dofs: &[Dof]) -> impl Iterator<Item = Derivative> {
+    Derivative::ALL
+        .into_iter()
+        .filter(move |d| dofs.contains(&d.force()) && dofs.contains(&d.motion()))
+}
+
+fn sample(derivative: Derivative, point: &DerivativePoint) -> TransferSample {
+    TransferSample {
+        force: derivative.force(),
+        motion: derivative.motion(),
+        part: derivative.part(),
+        k: point.k(),
+        value: point.value / (point.v_hat * point.v_hat),
+        mean_speed_m_s: point.mean_speed_m_s,
+    }
+}
+
+fn check_complete(points: &BTreeMap<Derivative, Vec<DerivativePoint>>) -> Result<()> {
+    let has = |d: &Derivative| points.get(d).is_some_and(|p| !p.is_empty());
+    let is_missing = |d: &Derivative| {
+        let other = match d.part() {
+            Part::Real => Part::Imaginary,
+            Part::Imaginary => Part::Real,
+        };
+        let needed = d.force() != Dof::Lateral && d.motion() != Dof::Lateral
+            || has(&Derivative::of(d.force(), d.motion(), other))
+            || points.contains_key(d);
+        needed && !has(d)
+    };
+    let missing: Vec<&str> = Derivative::ALL
+        .iter()
+        .filter(|d| is_missing(d))
+        .map(|d| d.name())
+        .collect();
+    if missing.is_empty() {
+        return Ok(());
+    }
+    Err(Error::input(
+        "derivatives",
+        "points for H1 to H4 and A1 to A4, and for both members of every other pair",
+        format!("none for {}", missing.join(", ")),
+    ))
+}
+
+fn check_speeds_agree(points: &BTreeMap<Derivative, Vec<DerivativePoint>>) -> Result<()> {
+    let all: Vec<_> = points.values().flatten().collect();
+    let with_speed = all.iter().filter(|p| p.mean_speed_m_s.is_some()).count();
+    if with_speed == 0 || with_speed == all.len() {
+        return Ok(());
+    }
+    Err(Error::input(
+        "mean speeds",
+        "a mean speed at every point, or at none",
+        format!("one at {with_speed} of {} points", all.len()),
+    ))
+}
+
+/// The first point of one derivative that cannot be right, if any.
+pub fn check_points(points: &[DerivativePoint]) -> Option<PointProblem> {
+    let problem = |index: usize, expected: &str, found: String| {
+        Some(PointProblem {
+            index,
+            expected: expected.to_owned(),
+            found,
+        })
+    };
+    for (i, p) in points.iter().enumerate() {
+        if !(p.v_hat.is_finite() && p.v_hat > 0.0) {
+            return problem(i, "a positive reduced velocity V̂", p.v_hat.to_string());
+        }
+        if !p.value.is_finite() {
+            return problem(i, "a finite value of the derivative", p.value.to_string());
+        }
+        if let Some(v) = p.mean_speed_m_s
+            && !(v.is_finite() && v > 0.0)
+        {
+            return problem(i, "a positive mean wind speed, m/s", v.to_string());
+        }
+    }
+    check_monotone(points)
+}
+
+/// Within a speed group the frequencies are tested in rising or falling order, each once.
+fn check_monotone(points: &[DerivativePoint]) -> Option<PointProblem> {
+    let speeds = points.iter().filter_map(|p| p.mean_speed_m_s);
+    let mut groups = near_groups(speeds, SAME_SPEED);
+    if groups.is_empty() {
+        groups.push(vec![0.0, f64::INFINITY]);
+    }
+    groups.iter().find_map(|group| {
+        let (low, high) = (group[0], group[group.len() - 1]);
+        let inside = |p: &DerivativePoint| {
+            let v = p.mean_speed_m_s.unwrap_or(1.0);
+            low <= v && v <= high
+        };
+        let own: Vec<usize> = (0..points.len()).filter(|i| inside(&points[*i])).collect();
+        let falling = own.len() > 1 && points[own[1]].v_hat < points[own[0]].v_hat;
+        let broken = own.windows(2).find(|w| {
+            let (a, b) = (points[w[0]].v_hat, points[w[1]].v_hat);
+            a == b || (b < a) != falling
+        })?;
+        let (before, after) = (points[broken[0]].v_hat, points[broken[1]].v_hat);
+        Some(PointProblem {
+            index: broken[1],
+            expected: if before == after {
+                "every reduced velocity V̂ once in a speed group".to_owned()
+            } else {
+                let direction = if falling { "falling" } else { "rising" };
+                format!("reduced velocities V̂ {direction} steadily in a speed group")
+            },
+            found: format!("V̂ = {after} after {before}"),
+        })
+    })
+}
+
+#[cfg(test)]
+pub mod tests;

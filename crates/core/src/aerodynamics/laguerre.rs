@@ -1,0 +1,13 @@
+//! Orthonormal filter models: the thesis's discrete Laguerre model, and continuous Laguerre and
+//! Takenaka–Malmquist filters with feed-through.
+
+mod bank;
+mod continuous;
+mod discrete;
+mod guidelines;
+
+pub use bank::FilterBank;
+pub use continuous::{FilterTerm, LaguerreModel};
+pub use discrete::{DiscreteLaguerre, DiscreteTerm};
+pub use discrete::{Recursion, discrete_filter_matrices, impulse_response};
+pub use guidelines::{alpha_lower_bound, alpha_upper_bound, discrete_memory};

@@ -1,0 +1,168 @@
+//! Quasi-steady theory: forces from static coefficients and the relative wind (1.1)–(1.7), and its linearisation
+//! about a rotation (1.11)–(1.13, appendix A), with the corrections listed in `docs/quasi_steady.md`.
+//!
+//! The flow that a force component sees is that at a reference point at the distance `B₁` upwind of the axis; with
+//! `B₁ᵢ` of its own for each component the theory is the corrected quasi-steady one.
+
+mod arms;
+pub mod coefficients;
+mod linear;
+
+pub use arms::Arms;
+pub use coefficients::{CoefficientRow, CoefficientsAt, CoefficientsHeader, StaticCoefficients};
+pub use coefficients::{TABLE_SIGN_CONVENTION, TABLE_UNITS};
+pub use linear::LinearQuasiSteady;
+
+use crate::error::{Error, Result};
+use crate::section::Dof;
+
+/// Quasi-steady theory of one deck.
+///
+/// Component `i` sees the relative wind at its own reference point,
+///
+/// ```text
+/// a = V + u − ẋ,  bᵢ = w − ẏ − B₁ᵢ θ̇,  V_rel² = a² + bᵢ²,  ψᵢ = atan(bᵢ/a),  αᵢ = θ + ψᵢ
+/// F_x = ½ρB V_rel² (C_D(α_x) cos ψ_x − C_L(α_x) sin ψ_x)
+/// F_y = ½ρB V_rel² (C_D(α_y) sin ψ_y + C_L(α_y) cos ψ_y)
+/// M   = ½ρB² V_rel² C_M(α_θ)
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct QuasiSteady {
+    coefficients: StaticCoefficients,
+    arms: Arms,
+    dofs: Vec<Dof>,
+}
+
+/// What the deck feels of the wind at one instant: mean wind, gusts and its own velocity.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct RelativeWind {
+    /// `V + u − ẋ`, m/s.
+    pub along_m_s: f64,
+    /// `w − ẏ`, m/s.
+    pub vertical_m_s: f64,
+    /// `B θ̇`, m/s.
+    pub rotation_m_s: f64,
+}
+
+/// Static coefficients in the order of the degrees of freedom, n each.
+pub struct StaticForces {
+    /// Drag, lift and moment coefficient.
+    pub values: Vec<f64>,
+    /// Per rad.
+    pub slopes: Vec<f64>,
+}
+
+impl QuasiSteady {
+    /// The theory for a deck of these degrees of freedom.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when the degrees of freedom are neither [`Dof::TWO`] nor [`Dof::THREE`] or an arm is not finite.
+    pub fn new(coefficients: StaticCoefficients, arms: Arms, dofs: &[Dof]) -> Result<Self> {
+        arms.validate()?;
+        if dofs != Dof::TWO && dofs != Dof::THREE {
+            return Err(Error::input(
+                "quasi-steady theory",
+                "vertical and torsional degrees of freedom, with or without the lateral one between",
+                Dof::names(dofs),
+            ));
+        }
+        Ok(Self {
+            coefficients,
+            arms,
+            dofs: dofs.to_vec(),
+        })
+    }
+
+    /// The static coefficients.
+    pub fn coefficients(&self) -> &StaticCoefficients {
+        &self.coefficients
+    }
+
+    /// Degrees of freedom, in the order of the forces.
+    pub fn dofs(&self) -> &[Dof] {
+        &self.dofs
+    }
+
+    /// Forces `F/(½ρB)` and `M/(½ρB²)` (m²/s²) into the first n places, at the rotation `θ` (rad).
+    pub fn specific_forces(&self, rotation_rad: f64, wind: &RelativeWind) -> Result<[f64; 3]> {
+        let mut forces = [0.0; 3];
+        for (force, dof) in forces.iter_mut().zip(&self.dofs) {
+            let normal = wind.vertical_m_s - self.arms.of(*dof) * wind.rotation_m_s;
+            let square = wind.along_m_s * wind.along_m_s + normal * normal;
+            let psi = normal.atan2(wind.along_m_s);
+            let c = self.coefficients.at(rotation_rad + psi)?;
+            let direction = match dof {
+                Dof::Vertical => c.drag * psi.sin() + c.lift * psi.cos(),
+                Dof::Lateral => c.drag * psi.cos() - c.lift * psi.sin(),
+                Dof::Torsion => c.moment,
+            };
+            *force = square * direction;
+        }
+        Ok(forces)
+    }
+
+    /// Static coefficients of the force components at a rotation in smooth wind (1.9).
+    pub fn static_forces(&self, rotation_rad: f64) -> Result<StaticForces> {
+        let c = self.coefficients.at(rotation_rad)?;
+        let (values, slopes) = self.dofs.iter().map(|dof| c.of(*dof)).unzip();
+        Ok(StaticForces { values, slopes })
+    }
+
+    /// The linear theory about the rotation `θ₀` (rad) in smooth wind (1.11)–(1.13).
+    pub fn linearised(&self, rotation_rad: f64) -> Result<LinearQuasiSteady> {
+        let at = self.coefficients.at(rotation_rad)?;
+        Ok(LinearQuasiSteady::new(
+            &self.dofs,
+            self.arms,
+            rotation_rad,
+            at,
+        ))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::aerodynamics::RationalModel;
+    use crate::units::ReducedFrequency;
+    use std::f64::consts::PI;
+
+    #[test]
+    fn arms_of_a_linear_theory_are_found_again() {
+        let arms = Arms {
+            lateral: 0.2,
+            vertical: -0.25,
+            torsion: -0.31,
+        };
+        let at = CoefficientsAt {
+            drag: 0.07,
+            lift: -0.1,
+            moment: 0.02,
+            drag_slope: 0.3,
+            lift_slope: 4.4,
+            moment_slope: 1.1,
+        };
+        let model = LinearQuasiSteady::new(&Dof::THREE, arms, 0.0, at);
+        let found = Arms::from_model(&model, ReducedFrequency::from_full_width(0.3)).unwrap();
+        for dof in Dof::THREE {
+            assert!((found.of(dof) - arms.of(dof)).abs() < 1e-14);
+        }
+    }
+
+    /// Jones's plate at low K, by hand from its coefficients: `Im G_yθ/Im G_yy` and `Im G_θθ/Im G_θy`.
+    #[test]
+    fn arms_from_derivatives() {
+        let k = ReducedFrequency::from_full_width(0.4);
+        let arms = Arms::from_model(&RationalModel::jones_flat_plate(), k).unwrap();
+        let lag = |d: f64| 0.4 * d / (0.16 + d * d);
+        let (l1, l2) = (lag(0.091), lag(0.6));
+        let h1 = -PI * 0.4 - 0.094342 * l1 - 1.262920 * l2;
+        let h2 = 0.75 * PI * 0.4 - 1.013140 * l1 - 1.789137 * l2;
+        let a1 = -0.25 * PI * 0.4 - 0.023586 * l1 - 0.315730 * l2;
+        let a2 = -PI / 16.0 * 0.4 - 0.253285 * l1 - 0.447284 * l2;
+        // the coefficients have six decimals
+        assert!((arms.vertical - h2 / h1).abs() < 1e-5);
+        assert!((arms.torsion - a2 / a1).abs() < 1e-5);
+        assert_eq!(arms.lateral, 0.0);
+    }
+}

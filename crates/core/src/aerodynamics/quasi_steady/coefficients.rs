@@ -1,0 +1,227 @@
+//! Static coefficients of a deck over the angle of attack, smooth between the tested angles.
+
+use crate::aerodynamics::spline::{POINTS_AT_LEAST, Spline};
+use crate::error::{Error, Result};
+use crate::section::Dof;
+
+/// Sign convention and scaling of every table of static coefficients, as written in the header of its files.
+pub const TABLE_SIGN_CONVENTION: &str = "wind axes: drag along the relative wind, lift normal to it, up; moment and angle nose-up, moment about the axis of rotation; C_D = D/(rho V^2 B/2), C_L = L/(rho V^2 B/2), C_M = M/(rho V^2 B^2/2), B the full width";
+
+/// Units of the columns, as written in the header of the files.
+pub const TABLE_UNITS: &str = "angle_deg in degrees; c_d, c_l, c_m dimensionless";
+
+/// Tables of more than this range are no deck tests.
+const ANGLE_LIMIT_DEG: f64 = 180.0;
+
+/// An angle may stand beyond the last row by this much, rounding of its conversion, rad.
+const ROUNDING_RAD: f64 = 1e-12;
+
+/// One tested angle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CoefficientRow {
+    /// Angle of attack, degrees, nose-up positive.
+    pub angle_deg: f64,
+    /// `C_D`.
+    pub drag: f64,
+    /// `C_L`.
+    pub lift: f64,
+    /// `C_M`.
+    pub moment: f64,
+}
+
+/// Where a table comes from. Units and signs are `TABLE_UNITS` and `TABLE_SIGN_CONVENTION` for all tables.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct CoefficientsHeader {
+    /// Where the figures come from.
+    pub source: String,
+    /// Licence notice of the figures.
+    pub licence: String,
+    /// What wrote the table.
+    pub generator: String,
+}
+
+/// Coefficients and their slopes at one angle of attack.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+pub struct CoefficientsAt {
+    /// `C_D`.
+    pub drag: f64,
+    /// `C_L`.
+    pub lift: f64,
+    /// `C_M`.
+    pub moment: f64,
+    /// `dC_D/dα`, per rad.
+    pub drag_slope: f64,
+    /// `dC_L/dα`, per rad.
+    pub lift_slope: f64,
+    /// `dC_M/dα`, per rad.
+    pub moment_slope: f64,
+}
+
+impl CoefficientsAt {
+    /// The coefficient of the force on a degree of freedom and its slope, per rad.
+    pub fn of(&self, dof: Dof) -> (f64, f64) {
+        match dof {
+            Dof::Vertical => (self.lift, self.lift_slope),
+            Dof::Lateral => (self.drag, self.drag_slope),
+            Dof::Torsion => (self.moment, self.moment_slope),
+        }
+    }
+}
+
+/// Static coefficients `C_D`, `C_L`, `C_M` over the angle of attack: cubic splines with continuous curvature.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StaticCoefficients {
+    name: String,
+    header: CoefficientsHeader,
+    rows: Vec<CoefficientRow>,
+    drag: Spline,
+    lift: Spline,
+    moment: Spline,
+}
+
+/// What is wrong with one row; the reader adds where it stands.
+#[derive(Debug, PartialEq)]
+pub struct RowProblem {
+    /// Position, from 0.
+    pub index: usize,
+    /// What should be there.
+    pub expected: String,
+    /// What is there.
+    pub found: String,
+}
+
+impl StaticCoefficients {
+    /// A table after checking it: at least four rows, finite numbers, angles that rise strictly and lie within ±180°.
+    pub fn new(
+        name: impl Into<String>,
+        header: CoefficientsHeader,
+        rows: Vec<CoefficientRow>,
+    ) -> Result<Self> {
+        if let Some(problem) = check_rows(&rows) {
+            let place = format!("row {}", problem.index + 1);
+            return Err(Error::input(place, problem.expected, problem.found));
+        }
+        let spline = |pick: fn(&CoefficientRow) -> f64| {
+            let angles = rows.iter().map(|r| r.angle_deg.to_radians()).collect();
+            Spline::new(angles, rows.iter().map(pick).collect())
+        };
+        Ok(Self {
+            name: name.into(),
+            header,
+            drag: spline(|r| r.drag),
+            lift: spline(|r| r.lift),
+            moment: spline(|r| r.moment),
+            rows,
+        })
+    }
+
+    /// Name of the deck.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Where the figures come from.
+    pub fn header(&self) -> &CoefficientsHeader {
+        &self.header
+    }
+
+    /// The tested angles.
+    pub fn rows(&self) -> &[CoefficientRow] {
+        &self.rows
+    }
+
+    /// Lowest and highest tested angle, rad.
+    pub fn range_rad(&self) -> (f64, f64) {
+        let (low, high) = self.range_deg();
+        (low.to_radians(), high.to_radians())
+    }
+
+    fn range_deg(&self) -> (f64, f64) {
+        // `new` has checked that there are rows
+        let last = self.rows.len() - 1;
+        (self.rows[0].angle_deg, self.rows[last].angle_deg)
+    }
+
+    /// Coefficients and slopes at an angle of attack (rad).
+    pub fn at(&self, angle_rad: f64) -> Result<CoefficientsAt> {
+        let (low, high) = self.range_rad();
+        if !(low - ROUNDING_RAD..=high + ROUNDING_RAD).contains(&angle_rad) {
+            let (low, high) = self.range_deg();
+            return Err(Error::input(
+                format!("static coefficients {}", self.name),
+                format!("an angle of attack from {low} to {high} deg"),
+                format!("{:.4} deg", angle_rad.to_degrees()),
+            ));
+        }
+        let (drag, drag_slope) = self.drag.at(angle_rad);
+        let (lift, lift_slope) = self.lift.at(angle_rad);
+        let (moment, moment_slope) = self.moment.at(angle_rad);
+        Ok(CoefficientsAt {
+            drag,
+            lift,
+            moment,
+            drag_slope,
+            lift_slope,
+            moment_slope,
+        })
+    }
+}
+
+/// The first thing that is wrong with the rows.
+pub fn check_rows(rows: &[CoefficientRow]) -> Option<RowProblem> {
+    let problem = |index, expected: &str, found: String| {
+        Some(RowProblem {
+            index,
+            expected: expected.to_owned(),
+            found,
+        })
+    };
+    for (index, row) in rows.iter().enumerate() {
+        let values = [row.angle_deg, row.drag, row.lift, row.moment];
+        if let Some(bad) = values.iter().find(|v| !v.is_finite()) {
+            return problem(index, "finite numbers", bad.to_string());
+        }
+        if row.angle_deg.abs() > ANGLE_LIMIT_DEG {
+            let found = format!("{} deg", row.angle_deg);
+            return problem(index, "an angle within ±180 deg", found);
+        }
+        if index > 0 && row.angle_deg <= rows[index - 1].angle_deg {
+            let found = format!("{} after {}", row.angle_deg, rows[index - 1].angle_deg);
+            return problem(index, "angles that rise from row to row", found);
+        }
+    }
+    if rows.len() < POINTS_AT_LEAST {
+        let index = rows.len().saturating_sub(1);
+        let found = rows.len().to_string();
+        return problem(index, "at least 4 rows of the table", found);
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn slopes_are_per_radian_and_angles_outside_are_named() {
+        let rows = [-10.0, -4.0, 2.0, 10.0]
+            .map(|angle_deg: f64| CoefficientRow {
+                angle_deg,
+                drag: 0.05,
+                lift: 6.0 * angle_deg.to_radians(),
+                moment: 1.5 * angle_deg.to_radians(),
+            })
+            .to_vec();
+        let table = StaticCoefficients::new("line", CoefficientsHeader::default(), rows).unwrap();
+        let at = table.at(3f64.to_radians()).unwrap();
+        assert!((at.lift_slope - 6.0).abs() < 1e-13 && (at.moment_slope - 1.5).abs() < 1e-13);
+        assert!((at.drag - 0.05).abs() < 1e-15 && at.drag_slope.abs() < 1e-13);
+        assert!(table.at(10f64.to_radians()).is_ok());
+        let message = table.at(12f64.to_radians()).unwrap_err().to_string();
+        assert_eq!(
+            message,
+            "static coefficients line: expected an angle of attack from -10 to 10 deg, found 12.0000 deg"
+        );
+        assert!(table.at(f64::NAN).is_err());
+    }
+}

@@ -1,0 +1,400 @@
+//! Structure and self-excited forces as one linear system at a wind speed.
+//!
+//! The force model is taken to the axis of the section first, `G → Tᵀ G T` (see [`Structure`]).
+//! Continuous models: with `P(G) = diag(B, B, B²) G diag(1/B, 1/B, 1)`,
+//!
+//! ```text
+//! (M − ½ρB² P(e₂)) q̈ + (R − ½ρVB P(e₁)) q̇ + (K − ½ρV² P(e₀)) q = ½ρV² diag(B, B, B²) C x + w
+//! ẋ = (V/B) (A x + b diag(1/B, 1/B, 1) q)
+//! ```
+//!
+//! The added mass moves to the left and does not depend on `V`. Discrete model: equation (B.4) of the thesis,
+//! corrected; the force is held over each step `Δt = Δs B/V`.
+
+mod equilibrium;
+
+pub use equilibrium::{
+    EquilibriumEnd, EquilibriumPath, LastEquilibrium, StaticEquilibrium, static_equilibria,
+};
+
+use crate::aerodynamics::{ContinuousRealization, DiscreteRealization, Realizable, Realization};
+use crate::error::{Error, Result, non_negative, positive};
+use crate::section::Structure;
+use crate::state_space::{
+    Continuous, Damping, Discrete, StateEquation, StateSpace, c2d, first_order,
+};
+use nalgebra::{Complex, DMatrix, DVector};
+
+/// An elastically suspended section with a realised aerodynamic model.
+///
+/// ```
+/// use aerodeck::prelude::*;
+///
+/// let structure = SectionModel::iabse_1_1a().structure()?;
+/// let plate = RationalModel::jones_flat_plate();
+/// let section = CoupledSection::with_model(&structure, &plate)?;
+/// // four states of the motion, two filters of each of the two motions
+/// assert_eq!(section.at(45.0)?.eigenvalues()?.len(), 8);
+/// # Ok::<(), Error>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct CoupledSection {
+    structure: Structure,
+    /// About the axis of the section.
+    aerodynamics: Realization,
+    /// `(M − ½ρB² P(e₂))⁻¹`, n×n.
+    inverse_mass: DMatrix<f64>,
+}
+
+/// The coupled system at one wind speed. States `[q, q̇, x]`, inputs the external forces `w` (n, per unit length),
+/// outputs `[q, q̇, q̈, F]` (4n) with `F` the self-excited forces per unit length.
+#[derive(Debug, Clone)]
+pub enum CoupledSystem {
+    /// From a continuous model.
+    Continuous(StateSpace<Continuous>),
+    /// From the discrete Laguerre model; its step is in seconds.
+    Sampled(StateSpace<Discrete>),
+}
+
+impl CoupledSystem {
+    /// Natural frequencies (rad/s) and damping ratios of all eigenvalues.
+    pub fn damp(&self) -> Result<Vec<Damping>> {
+        match self {
+            Self::Continuous(s) => s.damp(),
+            Self::Sampled(s) => s.damp(),
+        }
+    }
+
+    /// Eigenvalues in continuous time, rad/s (`ln z / Δt` for the sampled system).
+    pub fn eigenvalues(&self) -> Result<Vec<Complex<f64>>> {
+        Ok(self.damp()?.iter().map(|d| d.pole).collect())
+    }
+
+    /// The state matrix: of `ż = A z`, or of `z(k+1) = A z(k)`.
+    pub fn state_matrix(&self) -> &DMatrix<f64> {
+        match self {
+            Self::Continuous(s) => &s.a,
+            Self::Sampled(s) => &s.a,
+        }
+    }
+
+    /// The eigenvalue of the state matrix that belongs to the continuous-time eigenvalue `lambda`.
+    pub fn matrix_eigenvalue(&self, lambda: Complex<f64>) -> Complex<f64> {
+        match self {
+            Self::Continuous(_) => lambda,
+            Self::Sampled(s) => (lambda * s.time.step).exp(),
+        }
+    }
+}
+
+impl CoupledSection {
+    /// Couples a structure and a force model that has a realisation.
+    pub fn with_model(structure: &Structure, model: &dyn Realizable) -> Result<Self> {
+        Self::new(structure.clone(), model.realize())
+    }
+
+    /// Couples a structure and a realisation of the same degrees of freedom.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when the sizes differ, [`Error::Numerical`] when mass and added mass together are singular or
+    /// negative.
+    pub fn new(structure: Structure, aerodynamics: Realization) -> Result<Self> {
+        let n = structure.dofs.len();
+        let forces = match &aerodynamics {
+            Realization::Continuous(c) => c.c.nrows().max(c.e0.nrows()),
+            Realization::Discrete(d) => d.c.nrows(),
+        };
+        if forces != n {
+            return Err(Error::input(
+                "coupled section",
+                format!("an aerodynamic model of {n} degrees of freedom"),
+                forces.to_string(),
+            ));
+        }
+        let aerodynamics = at_axis(&structure, aerodynamics);
+        let mut mass = structure.mass.clone();
+        if let Realization::Continuous(c) = &aerodynamics {
+            let half_rho_b2 = 0.5 * structure.air_density_kg_m3 * structure.width_m.powi(2);
+            mass -= structure.scaled(&c.e2) * half_rho_b2;
+        }
+        let symmetric_part = (&mass + mass.transpose()) * 0.5;
+        if symmetric_part.cholesky().is_none() {
+            return Err(Error::Numerical(
+                "coupled section: mass and added mass together are not positive definite".into(),
+            ));
+        }
+        let inverse_mass = mass.try_inverse().ok_or_else(|| {
+            Error::Numerical("coupled section: the mass matrix is singular".into())
+        })?;
+        Ok(Self {
+            structure,
+            aerodynamics,
+            inverse_mass,
+        })
+    }
+
+    /// The structure.
+    pub fn structure(&self) -> &Structure {
+        &self.structure
+    }
+
+    /// The realised aerodynamic model about the axis of the section.
+    pub fn aerodynamics(&self) -> &Realization {
+        &self.aerodynamics
+    }
+
+    /// `(M − ½ρB² P(e₂))⁻¹`, n×n.
+    pub fn inverse_mass(&self) -> &DMatrix<f64> {
+        &self.inverse_mass
+    }
+
+    /// Number of states `[q, q̇, x]`.
+    pub fn states(&self) -> usize {
+        2 * self.structure.dofs.len() + self.aerodynamics.states()
+    }
+
+    /// The coupled system at the wind speed `V` (m/s). `V = 0` is still air, for continuous models only.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a speed that is negative, not finite, or zero with the discrete model.
+    pub fn at(&self, speed_m_s: f64) -> Result<CoupledSystem> {
+        match &self.aerodynamics {
+            Realization::Continuous(c) => {
+                non_negative("wind speed", speed_m_s)?;
+                self.coupled_with(c, speed_m_s)
+                    .map(CoupledSystem::Continuous)
+            }
+            Realization::Discrete(d) => {
+                positive("wind speed", speed_m_s)?;
+                self.sampled_at(d, speed_m_s).map(CoupledSystem::Sampled)
+            }
+        }
+    }
+
+    /// The coupled system of a continuous model at the wind speed `V` (m/s).
+    pub fn continuous_at(&self, speed_m_s: f64) -> Result<StateSpace<Continuous>> {
+        match self.at(speed_m_s)? {
+            CoupledSystem::Continuous(s) => Ok(s),
+            CoupledSystem::Sampled(_) => Err(Error::Numerical("step: the model is sampled".into())),
+        }
+    }
+
+    fn coupled_with(
+        &self,
+        aero: &ContinuousRealization,
+        speed: f64,
+    ) -> Result<StateSpace<Continuous>> {
+        let s = &self.structure;
+        let (n, filters) = (s.dofs.len(), aero.a.nrows());
+        let rate = speed / s.width_m;
+        let half_rho = 0.5 * s.air_density_kg_m3;
+        let q = half_rho * speed * speed;
+        let stiffness = s.scaled(&aero.e0) * q - &s.stiffness;
+        let damping = s.scaled(&aero.e1) * (half_rho * speed * s.width_m) - &s.damping;
+        let force_of_filters = self.force_of_filters(&aero.c, speed);
+        let mut a = DMatrix::zeros(2 * n + filters, 2 * n + filters);
+        a.view_mut((0, n), (n, n)).fill_with_identity();
+        // [K, R, C] acting on the state; the accelerations are its product with the inverse mass
+        let mut force_rows = DMatrix::zeros(n, 2 * n + filters);
+        force_rows.view_mut((0, 0), (n, n)).copy_from(&stiffness);
+        force_rows.view_mut((0, n), (n, n)).copy_from(&damping);
+        force_rows
+            .view_mut((0, 2 * n), (n, filters))
+            .copy_from(&force_of_filters);
+        let acceleration = &self.inverse_mass * &force_rows;
+        a.view_mut((n, 0), (n, 2 * n + filters))
+            .copy_from(&acceleration);
+        for j in 0..n {
+            let scale = rate * s.dofs[j].motion_scale(s.width_m);
+            a.view_mut((2 * n, j), (filters, 1))
+                .copy_from(&(aero.b.column(j) * scale));
+        }
+        a.view_mut((2 * n, 2 * n), (filters, filters))
+            .copy_from(&(&aero.a * rate));
+        let mut b = DMatrix::zeros(2 * n + filters, n);
+        b.view_mut((n, 0), (n, n)).copy_from(&self.inverse_mass);
+        let (c, d) = self.outputs(&acceleration);
+        StateSpace::new(a, b, c, d, Continuous)
+    }
+
+    /// Output matrices of `[q, q̇, q̈, F]` from the rows that give `q̈` without external force.
+    /// The self-excited force is what accelerates the section beyond springs, dampers and external force:
+    /// `F = M q̈ + R q̇ + K q − w`, added mass included.
+    fn outputs(&self, acceleration: &DMatrix<f64>) -> (DMatrix<f64>, DMatrix<f64>) {
+        let s = &self.structure;
+        let n = s.dofs.len();
+        let states = acceleration.ncols();
+        let mut c = DMatrix::zeros(4 * n, states);
+        c.view_mut((0, 0), (2 * n, 2 * n)).fill_with_identity();
+        c.view_mut((2 * n, 0), (n, states)).copy_from(acceleration);
+        let mut force = &s.mass * acceleration;
+        let mut on_motion = force.view_mut((0, 0), (n, n));
+        on_motion += &s.stiffness;
+        let mut on_rate = force.view_mut((0, n), (n, n));
+        on_rate += &s.damping;
+        c.view_mut((3 * n, 0), (n, states)).copy_from(&force);
+        let mut d = DMatrix::zeros(4 * n, n);
+        d.view_mut((2 * n, 0), (n, n)).copy_from(&self.inverse_mass);
+        d.view_mut((3 * n, 0), (n, n))
+            .copy_from(&(&s.mass * &self.inverse_mass - DMatrix::identity(n, n)));
+        (c, d)
+    }
+
+    fn sampled_at(&self, aero: &DiscreteRealization, speed: f64) -> Result<StateSpace<Discrete>> {
+        let s = &self.structure;
+        let (n, filters) = (s.dofs.len(), aero.a.nrows());
+        let step = aero.delta_s * s.width_m / speed;
+        let alone = self.structure_alone();
+        let held = c2d(&alone.a, &alone.b, step)?;
+        let force = self.force_of_filters(&aero.c, speed);
+        let drive = DMatrix::from_fn(filters, 2 * n, |l, j| {
+            if j < n {
+                aero.b[(l, j)] * s.dofs[j].motion_scale(s.width_m)
+            } else {
+                0.0
+            }
+        });
+        let force_to_motion = &held.gamma_0 * &force;
+        let mut a = DMatrix::zeros(2 * n + filters, 2 * n + filters);
+        a.view_mut((0, 0), (2 * n, 2 * n)).copy_from(&held.phi);
+        a.view_mut((0, 2 * n), (2 * n, filters))
+            .copy_from(&force_to_motion);
+        a.view_mut((2 * n, 0), (filters, 2 * n))
+            .copy_from(&(&drive * &held.phi));
+        a.view_mut((2 * n, 2 * n), (filters, filters))
+            .copy_from(&(&aero.a + &drive * force_to_motion));
+        let mut b = DMatrix::zeros(2 * n + filters, n);
+        b.view_mut((0, 0), (2 * n, n)).copy_from(&held.gamma_0);
+        b.view_mut((2 * n, 0), (filters, n))
+            .copy_from(&(&drive * &held.gamma_0));
+        let (c, d) = self.sampled_outputs(&alone.a, &force);
+        StateSpace::new(a, b, c, d, Discrete { step })
+    }
+
+    /// Output matrices of `[q, q̇, q̈, F]` of the sampled system from the structure alone and the force of the filters.
+    fn sampled_outputs(
+        &self,
+        structure_alone: &DMatrix<f64>,
+        force: &DMatrix<f64>,
+    ) -> (DMatrix<f64>, DMatrix<f64>) {
+        let (n, filters) = force.shape();
+        let mut rows = DMatrix::zeros(n, 2 * n + filters);
+        rows.view_mut((0, 0), (n, 2 * n))
+            .copy_from(&structure_alone.view((n, 0), (n, 2 * n)));
+        rows.view_mut((0, 2 * n), (n, filters))
+            .copy_from(&(&self.inverse_mass * force));
+        self.outputs(&rows)
+    }
+
+    /// Output matrices of `[q, q̇, q̈, F]` at the wind speed `V` (m/s). Those of the sampled system do not depend on its
+    /// step, so that still air and the lightest breeze are no special cases.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a speed that is negative or not finite.
+    pub fn output_matrices(&self, speed_m_s: f64) -> Result<(DMatrix<f64>, DMatrix<f64>)> {
+        non_negative("wind speed", speed_m_s)?;
+        match &self.aerodynamics {
+            Realization::Continuous(c) => {
+                let system = self.coupled_with(c, speed_m_s)?;
+                Ok((system.c, system.d))
+            }
+            Realization::Discrete(d) => {
+                let alone = self.structure_alone();
+                Ok(self.sampled_outputs(&alone.a, &self.force_of_filters(&d.c, speed_m_s)))
+            }
+        }
+    }
+
+    /// `ẋ/V = (A x + b diag(1/B, 1/B, 1) q)/B` of the filters of a continuous model at the state `[q, q̇, x]`; none for a
+    /// sampled one.
+    pub fn filter_rates_per_wind(&self, state: &[f64]) -> DVector<f64> {
+        let Realization::Continuous(c) = &self.aerodynamics else {
+            return DVector::zeros(0);
+        };
+        let s = &self.structure;
+        let n = s.dofs.len();
+        let filters = DVector::from_column_slice(&state[2 * n..]);
+        let motion = DVector::from_fn(n, |i, _| state[i] * s.dofs[i].motion_scale(s.width_m));
+        (&c.a * filters + &c.b * motion) / s.width_m
+    }
+
+    /// `½ρV² diag(B, B, B²) C`, n×N.
+    pub fn force_of_filters(&self, c: &DMatrix<f64>, speed: f64) -> DMatrix<f64> {
+        let s = &self.structure;
+        let q = 0.5 * s.air_density_kg_m3 * speed * speed;
+        DMatrix::from_fn(c.nrows(), c.ncols(), |i, l| {
+            q * s.dofs[i].force_scale(s.width_m) * c[(i, l)]
+        })
+    }
+
+    /// `[[0, I], [−M⁻¹K, −M⁻¹R]]` and `[0; M⁻¹]` of the section without aerodynamic force.
+    pub fn structure_alone(&self) -> StateEquation {
+        let s = &self.structure;
+        let n = s.dofs.len();
+        let a = first_order(&self.inverse_mass, &-&s.stiffness, &-&s.damping);
+        let mut b = DMatrix::zeros(2 * n, n);
+        b.view_mut((n, 0), (n, n)).copy_from(&self.inverse_mass);
+        StateEquation { a, b }
+    }
+}
+
+/// The force model about the axis of the section.
+fn at_axis(s: &Structure, aerodynamics: Realization) -> Realization {
+    match aerodynamics {
+        Realization::Continuous(c) => Realization::Continuous(ContinuousRealization {
+            a: c.a,
+            b: s.motion_at_axis(c.b),
+            c: s.forces_at_axis(c.c),
+            e0: s.at_axis(c.e0),
+            e1: s.at_axis(c.e1),
+            e2: s.at_axis(c.e2),
+        }),
+        Realization::Discrete(d) => Realization::Discrete(DiscreteRealization {
+            b: s.motion_at_axis(d.b),
+            c: s.forces_at_axis(d.c),
+            ..d
+        }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::aerodynamics::{RationalModel, Realizable};
+    use crate::section::SectionModel;
+
+    /// Eigenvalues of the IABSE 1.1a structure with Jones's rational function, six printed decimals.
+    #[test]
+    fn jones_eigenvalues() {
+        let section = CoupledSection::new(
+            SectionModel::iabse_1_1a().structure().unwrap(),
+            RationalModel::jones_flat_plate().realize(),
+        )
+        .unwrap();
+        let cases = [
+            (
+                45.0,
+                [
+                    -0.110397, -0.053759, -0.870968, -0.743344, -0.132097, -0.122668,
+                ],
+                [0.641068, 1.601890],
+            ),
+            (
+                15.0,
+                [
+                    -0.023454, -0.016703, -0.290323, -0.283354, -0.044032, -0.043766,
+                ],
+                [0.620836, 1.724254],
+            ),
+        ];
+        for (speed, decays, frequencies) in cases {
+            let found = section.at(speed).unwrap().eigenvalues().unwrap();
+            assert_eq!(found.len(), 8);
+            let frequencies = frequencies.into_iter().chain([0.0; 4]);
+            for (re, im) in decays.into_iter().zip(frequencies) {
+                let is_near = |z: &Complex<f64>| (z - Complex::new(re, im)).norm() < 8e-7;
+                assert!(found.iter().any(is_near), "{re} {im}i at {speed} m/s");
+            }
+        }
+    }
+}

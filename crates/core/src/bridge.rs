@@ -1,0 +1,361 @@
+//! The whole bridge: nodes along the girder, modes, and strips of one section in one wind.
+//!
+//! A mode `m` has a generalised mass `M_m`, a frequency, a damping ratio and the shape `φ_m(i) = (vertical, lateral, rotation)` at
+//! node `i`, signs as everywhere in this crate. With the tributary length `w_i`, the section and the wind `p_i V` of node `i` the
+//! self-excited force on the modal coordinates `η` is
+//!
+//! ```text
+//! Q = Σ_i w_i Φ_iᵀ ½ρ(p_i V)² diag(B, B, B²) G(ωB/(p_i V)) diag(1/B, 1/B, 1) Φ_i η
+//! ```
+//!
+//! Nodes of one section in one wind are a group; for a group the sums over nodes are done once (`sums`), and what follows
+//! (`modal`) is a structure in generalised coordinates with a force model of as many rows: coupling, flutter, response and
+//! FMU treat it as they treat a section. A section is the bridge of one node of unit length with unit shapes
+//! ([`Bridge::of_section`]).
+
+mod banks;
+mod gusts;
+mod modal;
+mod similarity;
+mod sums;
+
+pub use gusts::GustChannels;
+pub use modal::ModalForces;
+pub use similarity::{Similarity, similarities};
+
+use crate::aerodynamics::Transfer;
+use crate::error::{Error, Result, counted, finite, non_negative, positive};
+use crate::section::{Dof, SectionModel, Translation};
+use nalgebra::DMatrix;
+use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+/// A point of the girder.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Node {
+    /// Name in the model it comes from, usually a number.
+    pub name: String,
+    /// Place along the girder, m, rising from node to node.
+    pub along_m: f64,
+    /// Length of girder whose wind forces act at this node, m.
+    pub length_m: f64,
+}
+
+/// A natural mode of the structure without wind.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BridgeMode {
+    /// Number in the model it comes from.
+    pub number: usize,
+    /// Natural frequency, Hz.
+    pub frequency_hz: f64,
+    /// Generalised mass that belongs to the shape as it is scaled, kg (kg·m² for shapes scaled by a rotation).
+    pub generalised_mass: f64,
+    /// Ratio to critical damping.
+    pub damping_ratio: f64,
+    /// Vertical (up), lateral (downwind) displacement and rotation (nose-up) at each node, per unit of the modal coordinate.
+    pub shape: Vec<[f64; 3]>,
+}
+
+/// Nodes of one section in one wind.
+#[derive(Clone)]
+pub struct StripGroup {
+    /// Name of the section.
+    pub name: String,
+    /// Width `B`, m.
+    pub width_m: f64,
+    /// Wind speed there over the wind speed of the bridge.
+    pub wind_factor: f64,
+    /// Places of the nodes in [`Bridge::nodes`].
+    pub nodes: Vec<usize>,
+    /// Self-excited forces, about the axis of rotation of the nodes.
+    pub forces: Arc<dyn Transfer>,
+}
+
+impl std::fmt::Debug for StripGroup {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("StripGroup")
+            .field("name", &self.name)
+            .field("width_m", &self.width_m)
+            .field("wind_factor", &self.wind_factor)
+            .field("nodes", &self.nodes)
+            .finish_non_exhaustive()
+    }
+}
+
+/// A bridge in the wind.
+#[derive(Debug, Clone)]
+pub struct Bridge {
+    /// Name in tables and figures.
+    pub name: String,
+    /// Air density `ρ`, kg/m³.
+    pub air_density_kg_m3: f64,
+    /// Nodes along the girder.
+    pub nodes: Vec<Node>,
+    /// Modes that take part.
+    pub modes: Vec<BridgeMode>,
+    /// Groups of nodes; each node is in one group at most, and without forces outside of them.
+    pub groups: Vec<StripGroup>,
+}
+
+impl Bridge {
+    /// A bridge after checking it.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for nodes that are not ordered, shapes that do not match the nodes, modes without mass or with a
+    /// frequency that is not positive, groups that claim one node twice, and wind that blows nowhere.
+    pub fn new(
+        name: impl Into<String>,
+        air_density_kg_m3: f64,
+        nodes: Vec<Node>,
+        modes: Vec<BridgeMode>,
+        groups: Vec<StripGroup>,
+    ) -> Result<Self> {
+        let bridge = Self {
+            name: name.into(),
+            air_density_kg_m3,
+            nodes,
+            modes,
+            groups,
+        };
+        positive("air_density_kg_m3", air_density_kg_m3)?;
+        check_nodes(&bridge.nodes)?;
+        if bridge.modes.is_empty() {
+            return Err(Error::input("modes", "at least one mode", "none"));
+        }
+        for mode in &bridge.modes {
+            check_mode(mode, bridge.nodes.len())?;
+        }
+        bridge.check_groups()?;
+        Ok(bridge)
+    }
+
+    /// The section as a bridge of one node of a metre with unit shapes.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a section that is wrong, or whose axis or centre of mass is off mid-chord: its motions are no
+    /// modes.
+    pub fn of_section(section: &SectionModel, forces: Arc<dyn Transfer>) -> Result<Self> {
+        let s = section.structure()?;
+        if s.axis_offset_m != 0.0 || section.static_coupling() != 0.0 {
+            let found = "an offset of axis or mass";
+            return Err(Error::input("section", "motions that are its modes", found));
+        }
+        let mode = |i: usize| {
+            let (m, k) = (s.mass[(i, i)], s.stiffness[(i, i)]);
+            let mut shape = [0.0; 3];
+            shape[motion_index(s.dofs[i])] = 1.0;
+            BridgeMode {
+                number: i + 1,
+                frequency_hz: (k / m).sqrt() / TAU,
+                generalised_mass: m,
+                damping_ratio: s.damping[(i, i)] / (2.0 * (k * m).sqrt()),
+                shape: vec![shape],
+            }
+        };
+        let group = StripGroup {
+            name: "section".to_owned(),
+            width_m: s.width_m,
+            wind_factor: 1.0,
+            nodes: vec![0],
+            forces,
+        };
+        let node = Node {
+            name: "1".to_owned(),
+            along_m: 0.0,
+            length_m: 1.0,
+        };
+        let modes = (0..s.dofs.len()).map(mode).collect();
+        Self::new(
+            "section",
+            s.air_density_kg_m3,
+            vec![node],
+            modes,
+            vec![group],
+        )
+    }
+
+    /// Width to which reduced frequencies of the bridge refer: that of the first group, m.
+    pub fn width_m(&self) -> f64 {
+        self.groups[0].width_m
+    }
+
+    /// The same bridge with only the modes for which `keep` is true of their place.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when none is left.
+    pub fn with_modes(&self, keep: impl Fn(usize) -> bool) -> Result<Self> {
+        let modes = self.modes.iter().enumerate();
+        let kept: Vec<BridgeMode> = modes
+            .filter(|(i, _)| keep(*i))
+            .map(|(_, m)| m.clone())
+            .collect();
+        if kept.is_empty() {
+            return Err(Error::input("modes", "at least one mode", "none"));
+        }
+        Ok(Self {
+            modes: kept,
+            ..self.clone()
+        })
+    }
+
+    /// Names of the modes: `mode 23`.
+    pub fn mode_names(&self) -> Vec<String> {
+        self.modes
+            .iter()
+            .map(|m| format!("mode {}", m.number))
+            .collect()
+    }
+
+    /// Displacements and rotations of the mass-normalised modes at some nodes: three rows per node, one column per mode.
+    pub fn shapes_at(&self, nodes: &[usize]) -> DMatrix<f64> {
+        DMatrix::from_fn(3 * nodes.len(), self.modes.len(), |row, m| {
+            let mode = &self.modes[m];
+            mode.shape[nodes[row / 3]][row % 3] / mode.generalised_mass.sqrt()
+        })
+    }
+
+    /// The section that a study of two modes would take: the first mode that moves mainly up and down, the first that mainly
+    /// turns and, where `dofs` has it, the first that moves mainly sideways, each with its mass per length `M/∫φ²`. A motion without a
+    /// mode of its own takes that of another, with the mass or inertia of a plate of one thickness, `I = mB²/12`.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when nothing moves.
+    pub fn equivalent_section(&self, dofs: &[Dof]) -> Result<SectionModel> {
+        let own = |dof: Dof| {
+            let i = motion_index(dof);
+            let mode = (0..self.modes.len()).find(|m| self.main_motion(*m) == i);
+            let mode = mode.map(|m| &self.modes[m])?;
+            let nodes = self.nodes.iter().zip(&mode.shape);
+            let square: f64 = nodes.map(|(n, s)| n.length_m * s[i] * s[i]).sum();
+            let inertia = mode.generalised_mass / square;
+            Some((inertia, mode.frequency_hz, mode.damping_ratio))
+        };
+        // mass per moment of inertia of a plate of one thickness
+        let per_inertia = 12.0 / (self.width_m() * self.width_m());
+        let support = |dof: Dof| {
+            let other = |of: Dof| {
+                let (inertia, hertz, damping) = own(of)?;
+                let factor = match (of, dof) {
+                    (Dof::Torsion, Dof::Vertical | Dof::Lateral) => per_inertia,
+                    (Dof::Vertical | Dof::Lateral, Dof::Torsion) => 1.0 / per_inertia,
+                    _ => 1.0,
+                };
+                Some((inertia * factor, hertz, damping))
+            };
+            let found = own(dof).or_else(|| Dof::THREE.into_iter().find_map(other));
+            found.ok_or_else(|| Error::input("modes", "modes that move", "none"))
+        };
+        let (vertical, torsion) = (support(Dof::Vertical)?, support(Dof::Torsion)?);
+        let mut section =
+            SectionModel::two_dof(self.width_m(), self.air_density_kg_m3, vertical, torsion);
+        if dofs.contains(&Dof::Lateral) {
+            let (mass_kg_m, frequency_hz, damping_ratio) = support(Dof::Lateral)?;
+            section.lateral = Some(Translation {
+                mass_kg_m,
+                frequency_hz: Some(frequency_hz),
+                stiffness_n_m2: None,
+                damping_ratio,
+            });
+        }
+        Ok(section)
+    }
+
+    fn check_groups(&self) -> Result<()> {
+        if self.groups.is_empty() {
+            return Err(Error::input("section", "at least one section", "none"));
+        }
+        let mut owner: Vec<Option<&str>> = vec![None; self.nodes.len()];
+        for group in &self.groups {
+            let place = format!("section {}", group.name);
+            positive(format!("{place}: width_m"), group.width_m)?;
+            non_negative(format!("{place}: wind factor"), group.wind_factor)?;
+            for &node in &group.nodes {
+                let claimed = owner.get_mut(node).ok_or_else(|| {
+                    Error::input(&place, "nodes of the bridge", format!("node {node}"))
+                })?;
+                if let Some(other) = claimed.replace(&group.name) {
+                    return Err(Error::input(
+                        place,
+                        "each node in one section",
+                        format!("node {} also in section {other}", self.nodes[node].name),
+                    ));
+                }
+            }
+        }
+        let wind = self
+            .groups
+            .iter()
+            .any(|g| g.wind_factor > 0.0 && !g.nodes.is_empty());
+        if wind {
+            return Ok(());
+        }
+        let expected = "wind somewhere along the bridge";
+        Err(Error::input("wind profile", expected, "zero everywhere"))
+    }
+}
+
+/// Index of a motion in a shape: vertical, lateral, rotation.
+pub fn motion_index(dof: Dof) -> usize {
+    match dof {
+        Dof::Vertical => 0,
+        Dof::Lateral => 1,
+        Dof::Torsion => 2,
+    }
+}
+
+/// Tributary lengths by the trapezoidal rule: half the way to each neighbour. One node alone has none.
+pub fn tributary_lengths(along_m: &[f64]) -> Vec<f64> {
+    let last = along_m.len().saturating_sub(1);
+    (0..along_m.len())
+        .map(|i| 0.5 * (along_m[(i + 1).min(last)] - along_m[i.saturating_sub(1)]))
+        .collect()
+}
+
+fn check_nodes(nodes: &[Node]) -> Result<()> {
+    if nodes.is_empty() {
+        return Err(Error::input("nodes", "at least one node", "none"));
+    }
+    let mut before: Option<&Node> = None;
+    for node in nodes {
+        let place = format!("node {}", node.name);
+        finite(format!("{place}: place along the bridge"), node.along_m)?;
+        positive(format!("{place}: tributary length"), node.length_m)?;
+        if let Some(b) = before.filter(|b| b.along_m >= node.along_m) {
+            return Err(Error::input(
+                place,
+                format!(
+                    "a place along the bridge beyond {} m, that of node {}",
+                    b.along_m, b.name
+                ),
+                format!("{} m", node.along_m),
+            ));
+        }
+        before = Some(node);
+    }
+    Ok(())
+}
+
+fn check_mode(mode: &BridgeMode, nodes: usize) -> Result<()> {
+    let place = format!("mode {}", mode.number);
+    positive(format!("{place}: frequency_hz"), mode.frequency_hz)?;
+    positive(format!("{place}: generalised mass"), mode.generalised_mass)?;
+    non_negative(format!("{place}: damping_ratio"), mode.damping_ratio)?;
+    if mode.shape.len() != nodes {
+        return Err(Error::input(
+            place,
+            format!("a shape at {}", counted(nodes, "node")),
+            counted(mode.shape.len(), "node"),
+        ));
+    }
+    if mode.shape.iter().flatten().all(|x| x.is_finite()) {
+        return Ok(());
+    }
+    Err(Error::input(
+        place,
+        "finite displacements",
+        "one that is not",
+    ))
+}

@@ -1,0 +1,234 @@
+//! The bridge as a structure in generalised coordinates with self-excited forces of as many rows.
+//!
+//! Modes are mass-normalised: `η' = √M_m η`, so that all rows are of one size. Reduced frequencies refer to the width of the first
+//! group and the wind speed of the bridge; a group of width `B_g` in the wind `p V` sees `K_g = K B_g/(p B)`.
+//!
+//! Filters live on modal coordinates, not on strips: the filter states of node `i` are `x_i = Φ_i X` with
+//! `X' = (V/B)(A X + b η)`, exact, modes × filters states for a group and a set of poles instead of nodes × filters × motions.
+//! Groups of one section in different winds share filters (`banks`).
+
+use super::banks::{ModalBank, merged};
+use super::sums::GroupSums;
+use super::{Bridge, StripGroup};
+use crate::aerodynamics::{ContinuousRealization, Realization, Transfer, TransferMatrix};
+use crate::error::{Error, Result};
+use crate::section::{Dof, Structure};
+use crate::units::{ReducedFrequency, ReducedFrequencyRange};
+use nalgebra::{Complex, DMatrix, DVector};
+use std::f64::consts::TAU;
+
+/// Self-excited forces on the mass-normalised modal coordinates, over `½ρV²B²` with the width and the wind of the bridge.
+#[derive(Debug, Clone)]
+pub struct ModalForces {
+    width_m: f64,
+    dofs: Vec<Dof>,
+    groups: Vec<(StripGroup, GroupSums)>,
+}
+
+impl Bridge {
+    /// Mass, damping and stiffness of the mass-normalised modes.
+    pub fn structure(&self) -> Structure {
+        let diagonal = |value: &dyn Fn(f64, f64) -> f64| {
+            let values = self
+                .modes
+                .iter()
+                .map(|m| value(TAU * m.frequency_hz, m.damping_ratio));
+            DMatrix::from_diagonal(&DVector::from_iterator(self.modes.len(), values))
+        };
+        Structure::modal(
+            (self.width_m(), self.air_density_kg_m3),
+            [
+                diagonal(&|_, _| 1.0),
+                diagonal(&|omega, zeta| 2.0 * zeta * omega),
+                diagonal(&|omega, _| omega * omega),
+            ],
+            self.mode_names(),
+        )
+    }
+
+    /// The forces of the wind on the mass-normalised modes.
+    pub fn forces(&self) -> ModalForces {
+        let blown = self.groups.iter().filter(|g| g.wind_factor > 0.0);
+        ModalForces {
+            width_m: self.width_m(),
+            dofs: vec![Dof::Torsion; self.modes.len()],
+            groups: blown
+                .map(|g| (g.clone(), GroupSums::new(self, g)))
+                .collect(),
+        }
+    }
+}
+
+impl ModalForces {
+    /// `B_g/(p B)`: the reduced frequency of a group over that of the bridge.
+    fn frequency_ratio(&self, group: &StripGroup) -> f64 {
+        group.width_m / (group.wind_factor * self.width_m)
+    }
+
+    /// Matrices of one group over those of the bridge: pressure and area.
+    fn pressure_ratio(&self, group: &StripGroup) -> f64 {
+        (group.wind_factor / self.width_m).powi(2)
+    }
+
+    /// Reduced frequencies of the bridge at which every group is inside the range that `of` states for it; `None` where no
+    /// group has one.
+    pub fn common_range(
+        &self,
+        of: impl Fn(&StripGroup) -> Option<ReducedFrequencyRange>,
+    ) -> Option<ReducedFrequencyRange> {
+        let ranges = self.groups.iter().filter_map(|(group, _)| {
+            let to_bridge = self.frequency_ratio(group).recip();
+            of(group).map(|range| range.scaled(to_bridge))
+        });
+        ranges.reduce(ReducedFrequencyRange::intersection)
+    }
+
+    /// Filters and feed-through on the modal coordinates.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when a group has forces without a realisation that is continuous in time.
+    pub fn realize(&self) -> Result<Realization> {
+        let n = self.dofs.len();
+        let mut total = ContinuousRealization {
+            a: DMatrix::zeros(0, 0),
+            b: DMatrix::zeros(0, n),
+            c: DMatrix::zeros(n, 0),
+            e0: DMatrix::zeros(n, n),
+            e1: DMatrix::zeros(n, n),
+            e2: DMatrix::zeros(n, n),
+        };
+        let mut banks: Vec<ModalBank> = Vec::new();
+        for (group, sums) in &self.groups {
+            let Some(Realization::Continuous(aero)) =
+                group.forces.realizable().map(|r| r.realize())
+            else {
+                return Err(Error::input(
+                    format!("section {}", group.name),
+                    "a model with filters continuous in time (continuous Laguerre, rational functions, quasi-steady)",
+                    "a table or a sampled model",
+                ));
+            };
+            let (pressure, k) = (self.pressure_ratio(group), self.frequency_ratio(group));
+            total.e0 += sums.modal(group.width_m, &aero.e0) * pressure;
+            total.e1 += sums.modal(group.width_m, &aero.e1) * (pressure * k);
+            total.e2 += sums.modal(group.width_m, &aero.e2) * (pressure * k * k);
+            for chain in section_chains(&aero) {
+                // filters run with the wind of their own group
+                let rate = 1.0 / k;
+                let alike =
+                    |bank: &ModalBank| bank.rate == rate && bank.a == chain.a && bank.b == chain.b;
+                let at = banks.iter().position(alike).unwrap_or_else(|| {
+                    let outputs = vec![DMatrix::zeros(n, n); chain.b.len()];
+                    let (a, b) = (chain.a.clone(), chain.b.clone());
+                    banks.push(ModalBank {
+                        a,
+                        b,
+                        rate,
+                        outputs,
+                    });
+                    banks.len() - 1
+                });
+                for (l, output) in banks[at].outputs.iter_mut().enumerate() {
+                    let c: Vec<f64> = chain.c.column(l).iter().copied().collect();
+                    *output += sums.modal_column(group.width_m, &c, chain.input) * pressure;
+                }
+            }
+        }
+        assemble(&mut total, &merged(banks));
+        Ok(Realization::Continuous(total))
+    }
+}
+
+/// The filters that one motion of a section drives.
+struct SectionChain {
+    input: usize,
+    a: DMatrix<f64>,
+    b: DVector<f64>,
+    c: DMatrix<f64>,
+}
+
+/// The filters of a section sorted by the motion that drives them. Filters without links are scaled to a unit drive, so
+/// that lags shared by several motions are one bank.
+fn section_chains(aero: &ContinuousRealization) -> Vec<SectionChain> {
+    let (states, inputs) = aero.b.shape();
+    let chain = |input: usize| {
+        let mut driven: Vec<bool> = (0..states).map(|l| aero.b[(l, input)] != 0.0).collect();
+        // what a driven filter feeds is driven too
+        while let Some(next) = (0..states)
+            .find(|&l| !driven[l] && (0..states).any(|m| driven[m] && aero.a[(l, m)] != 0.0))
+        {
+            driven[next] = true;
+        }
+        let kept: Vec<usize> = (0..states).filter(|l| driven[*l]).collect();
+        let a = aero.a.select_rows(&kept).select_columns(&kept);
+        let mut b = DVector::from_iterator(kept.len(), kept.iter().map(|l| aero.b[(*l, input)]));
+        let mut c = aero.c.select_columns(&kept);
+        if a.iter()
+            .enumerate()
+            .all(|(i, x)| i % (kept.len() + 1) == 0 || *x == 0.0)
+        {
+            for (l, drive) in b.iter_mut().enumerate() {
+                c.column_mut(l).scale_mut(*drive);
+                *drive = 1.0;
+            }
+        }
+        SectionChain { input, a, b, c }
+    };
+    (0..inputs).map(chain).filter(|c| !c.b.is_empty()).collect()
+}
+
+/// All banks side by side, mode by mode.
+fn assemble(total: &mut ContinuousRealization, banks: &[ModalBank]) {
+    let n = total.e0.nrows();
+    let states: usize = banks.iter().map(|bank| n * bank.b.len()).sum();
+    total.a = DMatrix::zeros(states, states);
+    total.b = DMatrix::zeros(states, n);
+    total.c = DMatrix::zeros(n, states);
+    let mut at = 0;
+    for bank in banks {
+        let filters = bank.b.len();
+        for mode in 0..n {
+            total
+                .a
+                .view_mut((at, at), (filters, filters))
+                .copy_from(&(&bank.a * bank.rate));
+            total
+                .b
+                .view_mut((at, mode), (filters, 1))
+                .copy_from(&(&bank.b * bank.rate));
+            for (l, output) in bank.outputs.iter().enumerate() {
+                total.c.column_mut(at + l).copy_from(&output.column(mode));
+            }
+            at += filters;
+        }
+    }
+}
+
+impl Transfer for ModalForces {
+    fn dofs(&self) -> &[Dof] {
+        &self.dofs
+    }
+
+    fn transfer(&self, k: ReducedFrequency) -> Result<TransferMatrix> {
+        let n = self.dofs.len();
+        let (mut real, mut imaginary) = (vec![0.0; n * n], vec![0.0; n * n]);
+        for (group, sums) in &self.groups {
+            let of_group = k.full_width() * self.frequency_ratio(group);
+            let g = group
+                .forces
+                .transfer(ReducedFrequency::from_full_width(of_group))?;
+            let pressure = self.pressure_ratio(group);
+            sums.add_modal(group.width_m, &g, pressure, &mut real, &mut imaginary);
+        }
+        let parts = real.into_iter().zip(imaginary);
+        Ok(TransferMatrix::from_iterator(
+            n,
+            n,
+            parts.map(|(re, im)| Complex::new(re, im)),
+        ))
+    }
+
+    fn known_range(&self) -> Option<ReducedFrequencyRange> {
+        self.common_range(|group| group.forces.known_range())
+    }
+}

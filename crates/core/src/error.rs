@@ -1,0 +1,238 @@
+//! What can go wrong, said so that a user can mend it: file, place, what was expected, what was found.
+
+mod place;
+
+pub use place::{Part, Place};
+
+use place::quoted;
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+/// Result of every fallible function of the crate.
+pub type Result<T> = std::result::Result<T, Error>;
+
+/// A problem in something the user supplied.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct InputError {
+    /// File in which the problem stands, if it came from a file.
+    pub file: Option<PathBuf>,
+    /// Line, key, column or run in that file.
+    pub place: Place,
+    /// What would have been accepted.
+    pub expected: String,
+    /// What stood there.
+    pub found: String,
+}
+
+impl fmt::Display for InputError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(file) = &self.file {
+            write!(f, "{}: ", file.display())?;
+        }
+        if !self.place.is_empty() {
+            write!(f, "{}: ", self.place)?;
+        }
+        write!(f, "expected {}, found {}", self.expected, self.found)
+    }
+}
+
+/// Errors of the library.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// Wrong input: the caller can mend it.
+    #[error("{0}")]
+    Input(Box<InputError>),
+    /// A file could not be read or written.
+    #[error("{}: {source}", path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// What the operating system said.
+        source: std::io::Error,
+    },
+    /// A computation did not reach a usable result.
+    #[error("{0}")]
+    Numerical(String),
+    /// Modes that are asked for one by one cannot be told apart.
+    #[error("{0}")]
+    NotDistinct(String),
+    /// The section grows where only a stable one has an answer, or may be exported.
+    #[error("{0}")]
+    Unstable(String),
+    /// Several of these, in the order of what they are about; one line each.
+    #[error("{}", lines(.0))]
+    Several(Vec<Error>),
+}
+
+fn lines(errors: &[Error]) -> String {
+    let each: Vec<String> = errors.iter().map(ToString::to_string).collect();
+    format!("{} errors\n  {}", each.len(), each.join("\n  "))
+}
+
+impl Error {
+    /// Wrong input at `place` (no file yet; see `Error::in_file`).
+    pub fn input(
+        place: impl Into<Place>,
+        expected: impl Into<String>,
+        found: impl Into<String>,
+    ) -> Self {
+        Self::Input(Box::new(InputError {
+            file: None,
+            place: place.into().quoted(),
+            expected: quoted(expected.into()),
+            found: quoted(found.into()),
+        }))
+    }
+
+    /// A failed file operation.
+    pub fn io(path: impl AsRef<Path>, source: std::io::Error) -> Self {
+        Self::Io {
+            path: path.as_ref().to_path_buf(),
+            source,
+        }
+    }
+
+    /// JSON that could not be read as what was `expected`.
+    pub fn json(expected: impl Into<String>, error: &serde_json::Error) -> Self {
+        let place = Place::position(error.line(), error.column());
+        Self::input(place, expected, error.to_string())
+    }
+
+    /// The same error at another place.
+    #[must_use]
+    pub fn at(mut self, place: impl Into<Place>) -> Self {
+        if let Self::Input(input) = &mut self {
+            input.place = place.into();
+        }
+        self
+    }
+
+    /// The same error with what it stands in before its place.
+    #[must_use]
+    pub fn within(mut self, outer: impl Into<Place>) -> Self {
+        if let Self::Input(input) = &mut self {
+            input.place = std::mem::take(&mut input.place).within(outer);
+        }
+        self
+    }
+
+    /// The same error, naming the file it came from (a file already named is kept).
+    #[must_use]
+    pub fn in_file(mut self, path: impl AsRef<Path>) -> Self {
+        let path = path.as_ref();
+        match &mut self {
+            Self::Input(input) if input.file.is_none() => {
+                input.file = Some(path.to_path_buf());
+            }
+            Self::Several(errors) => {
+                let all = std::mem::take(errors);
+                *errors = all.into_iter().map(|e| e.in_file(path)).collect();
+            }
+            _ => {}
+        }
+        self
+    }
+}
+
+/// All values, or all errors in their order: what is computed in parallel must not report whichever failed first.
+pub fn all_or_errors<T>(results: Vec<Result<T>>) -> Result<Vec<T>> {
+    let (mut values, mut errors) = (Vec::with_capacity(results.len()), Vec::new());
+    for result in results {
+        match result {
+            Ok(value) => values.push(value),
+            Err(error) => errors.push(error),
+        }
+    }
+    match errors.len() {
+        0 => Ok(values),
+        1 => Err(errors.remove(0)),
+        _ => Err(Error::Several(errors)),
+    }
+}
+
+/// `value` if it is finite and positive.
+///
+/// # Errors
+/// [`Error::Input`] naming `place` otherwise.
+pub fn positive(place: impl Into<Place>, value: f64) -> Result<f64> {
+    if value.is_finite() && value > 0.0 {
+        Ok(value)
+    } else {
+        Err(Error::input(place, "a positive number", value.to_string()))
+    }
+}
+
+/// `value` if it is finite.
+///
+/// # Errors
+/// [`Error::Input`] naming `place` otherwise.
+pub fn finite(place: impl Into<Place>, value: f64) -> Result<f64> {
+    if value.is_finite() {
+        return Ok(value);
+    }
+    Err(Error::input(place, "a finite number", value.to_string()))
+}
+
+/// Nothing if the schema that a file states is the one that is read.
+pub fn of_schema(expected: u32, found: u32) -> Result<()> {
+    if found == expected {
+        return Ok(());
+    }
+    Err(Error::input(
+        "schema",
+        expected.to_string(),
+        found.to_string(),
+    ))
+}
+
+/// Nothing if `values` are `count` finite numbers.
+pub fn finite_numbers(place: impl Into<Place>, values: &[f64], count: usize) -> Result<()> {
+    if values.len() == count && values.iter().all(|x| x.is_finite()) {
+        return Ok(());
+    }
+    let expected = format!("{count} finite numbers");
+    Err(Error::input(place, expected, format!("{values:?}")))
+}
+
+/// Nothing if `value` is at most `bound`: one that no real study reaches.
+pub fn at_most(place: impl Into<Place>, value: f64, bound: f64) -> Result<()> {
+    if value <= bound {
+        Ok(())
+    } else {
+        Err(Error::input(
+            place,
+            format!("at most {bound}"),
+            value.to_string(),
+        ))
+    }
+}
+
+/// `value` if it is finite and not negative.
+pub fn non_negative(place: impl Into<Place>, value: f64) -> Result<f64> {
+    if value.is_finite() && value >= 0.0 {
+        Ok(value)
+    } else {
+        Err(Error::input(
+            place,
+            "zero or a positive number",
+            value.to_string(),
+        ))
+    }
+}
+
+/// So many of something in words: `1 mode`, `3 modes`.
+pub fn counted(count: usize, noun: &str) -> String {
+    let plural = if count == 1 { "" } else { "s" };
+    format!("{count} {noun}{plural}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::counted;
+
+    #[test]
+    fn one_thing_is_no_plural() {
+        let in_words = [0, 1, 2].map(|n| counted(n, "mode"));
+        assert_eq!(in_words, ["0 modes", "1 mode", "2 modes"]);
+    }
+}

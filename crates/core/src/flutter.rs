@@ -1,0 +1,60 @@
+//! Flutter: modes tracked over wind speed, onset, divergence.
+//!
+//! Three independent routes: eigenvalues of the coupled state matrix (for models with a realisation); the
+//! determinant in `(V, ω)` and the p-k iteration (for any `G(K)`, tables and the flat plate included).
+
+mod answer;
+mod bridge_motion;
+mod characteristic;
+mod clusters;
+mod columns;
+mod critical;
+mod critical_point;
+mod curves;
+mod determinant;
+mod divergence;
+mod dynamic_stiffness;
+mod elimination;
+mod following;
+mod instability;
+mod judged;
+mod missed;
+mod modal_characteristic;
+mod onset;
+mod pk;
+mod pk_following;
+mod quasi_pk;
+mod quasi_steady;
+mod sanity;
+mod scan;
+mod search;
+mod still_air;
+mod sweep;
+mod tracking;
+mod unwanted;
+
+pub use answer::{FlutterSearch, UnstableStart};
+pub use bridge_motion::{
+    BridgeMotion, FoundOnset, ModeRatio, ModeShare, NearbyOnset, NodeMotion, motion_at_onset,
+    static_deflection,
+};
+pub use critical_point::{CriticalPoint, OnsetMethod};
+pub use curves::{FlutterCurves, ModeBranch, ModePoint, trace_modes};
+pub use determinant::{determinant_onset, impedance};
+pub use divergence::{AssumedAtRest, static_part};
+pub use divergence::{divergence_by_eigenvalues, divergence_speed};
+pub use instability::{Instability, ModeAtOnset, Participation, classify};
+pub use judged::StableRange;
+pub use onset::shown_m_s;
+pub use onset::{BetweenSpeeds, ErrorParts, Onset, OnsetInterval};
+pub use pk::{pk_curves, pk_onset, quasi_pk_mode};
+pub use quasi_steady::quasi_steady_modes;
+pub use quasi_steady::{QuasiSteadyOnset, quasi_steady_onset};
+pub use sanity::{SanityLines, sanity_lines};
+pub use scan::{GrowthBand, growth_scan};
+pub use search::{OnsetSearch, find_onset};
+pub use search::{curve_speeds_m_s, find_onset_of_modes, judged_speeds};
+pub use sweep::at_samples;
+pub use sweep::stands_at_samples;
+pub use sweep::{LinearForces, OnsetSweep, SweepOutcome, SweptOnset};
+pub use unwanted::{UnwantedGrowth, unwanted_growth};

@@ -1,0 +1,278 @@
+//! What a whole bridge does at an onset: the modes that take part and the motion of every node.
+
+use super::critical_point::CriticalPoint;
+use super::determinant::{impedance, null_vector};
+use super::following::{MIN_ASSURANCE, assurance};
+use super::modal_characteristic::ModalCharacteristic;
+use crate::aerodynamics::Transfer;
+use crate::aeroelastic::CoupledSection;
+use crate::bridge::Bridge;
+use crate::error::{Error, Result};
+use nalgebra::{Complex, DVector};
+use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
+
+/// First step of the secant, its longest, and the last, over the speed.
+const FIRST_STEP: f64 = 1e-3;
+const LONGEST_STEP: f64 = 0.1;
+const SETTLED: f64 = 1e-9;
+const MOST_STEPS: usize = 30;
+
+/// A mode in the motion at an onset.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ModeShare {
+    /// Number of the mode.
+    pub mode: usize,
+    /// Its natural frequency, Hz.
+    pub frequency_hz: f64,
+    /// Its share of the kinetic energy.
+    pub energy_share: f64,
+    /// Phase of its coordinate to that of the mode with the largest share, degrees in (−180, 180].
+    pub phase_deg: f64,
+}
+
+/// The motion of a node: displacement is the real part of the complex number times `e^{iωt}`.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct NodeMotion {
+    /// Name of the node.
+    pub node: String,
+    /// Place along the girder, m.
+    pub along_m: f64,
+    /// Vertical, lateral and rotation: real and imaginary part each, the greatest of vertical, lateral and half the width times
+    /// rotation being 1.
+    pub motion: [[f64; 2]; 3],
+}
+
+/// The motion at an onset.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct BridgeMotion {
+    /// Modes by falling share of the kinetic energy.
+    pub modes: Vec<ModeShare>,
+    /// Nodes in the order of the girder.
+    pub nodes: Vec<NodeMotion>,
+}
+
+/// Heave over rotation of one motion.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ModeRatio {
+    /// `|y|/(B|θ|)`.
+    pub ratio: f64,
+    /// Phase of `y` to `θ`, degrees.
+    pub phase_deg: f64,
+}
+
+impl BridgeMotion {
+    /// Heave over rotation where the girder turns most.
+    pub fn mode_ratio(&self, width_m: f64) -> ModeRatio {
+        let complex = |z: [f64; 2]| Complex::new(z[0], z[1]);
+        let turning = |n: &&NodeMotion| complex(n.motion[2]).norm();
+        let most = self
+            .nodes
+            .iter()
+            .max_by(|a, b| turning(a).total_cmp(&turning(b)));
+        let ratio = most.map_or(Complex::new(f64::NAN, f64::NAN), |n| {
+            complex(n.motion[0]) / (complex(n.motion[2]) * width_m)
+        });
+        ModeRatio {
+            ratio: ratio.norm(),
+            phase_deg: ratio.arg().to_degrees(),
+        }
+    }
+}
+
+/// The motion that the impedance of `forces` (of [`Bridge::forces`]) at an onset resists least.
+///
+/// # Errors
+/// [`Error::Input`] for forces that say nothing at its reduced frequency; [`Error::Numerical`] when there is no such
+/// motion.
+pub fn motion_at_onset(
+    bridge: &Bridge,
+    forces: &dyn Transfer,
+    at: &CriticalPoint,
+) -> Result<BridgeMotion> {
+    let shape = modal_shape(bridge, forces, at)?;
+    Ok(BridgeMotion {
+        modes: shares(bridge, &shape),
+        nodes: nodes(bridge, &shape),
+    })
+}
+
+/// The same in mass-normalised modal coordinates.
+fn modal_shape(
+    bridge: &Bridge,
+    forces: &dyn Transfer,
+    at: &CriticalPoint,
+) -> Result<DVector<Complex<f64>>> {
+    let structure = bridge.structure();
+    let omega = at
+        .reduced_frequency
+        .circular(structure.width_m, at.speed_m_s);
+    let resistance = impedance(&structure, forces, at.speed_m_s, omega)?;
+    null_vector(&structure, &resistance, omega)
+}
+
+/// Where a mode loses its damping.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FoundOnset {
+    /// Wind speed, m/s.
+    pub speed_m_s: f64,
+    /// Frequency, Hz.
+    pub frequency_hz: f64,
+}
+
+/// An onset from which those of bridges nearby are found without a search: by the mode that flutters, followed by its shape.
+#[derive(Debug, Clone)]
+pub struct NearbyOnset {
+    speed_m_s: f64,
+    lambda: Complex<f64>,
+    shape: DVector<Complex<f64>>,
+}
+
+impl NearbyOnset {
+    /// Starts from the onset `at` of `bridge`.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for forces that say nothing at its reduced frequency; [`Error::Numerical`] when there is no such
+    /// motion.
+    pub fn of(bridge: &Bridge, at: &CriticalPoint) -> Result<Self> {
+        let omega = at
+            .reduced_frequency
+            .circular(bridge.width_m(), at.speed_m_s);
+        Ok(Self {
+            speed_m_s: at.speed_m_s,
+            lambda: Complex::new(0.0, omega),
+            shape: modal_shape(bridge, &bridge.forces(), at)?,
+        })
+    }
+
+    /// Where the same mode of another bridge loses its damping; `None` where the mode cannot be followed that far.
+    pub fn find(&self, other: &CoupledSection) -> Option<FoundOnset> {
+        self.follow(other).map(|found| found.found())
+    }
+
+    /// The onset itself.
+    pub fn found(&self) -> FoundOnset {
+        FoundOnset {
+            speed_m_s: self.speed_m_s,
+            frequency_hz: self.lambda.im / TAU,
+        }
+    }
+
+    /// Whether this is the motion of `other`, hardly changed.
+    pub fn resembles(&self, other: &Self) -> bool {
+        assurance(&self.shape, &other.shape) >= MIN_ASSURANCE
+    }
+
+    /// The onset of the same mode of another bridge, by the secant, from which it goes on.
+    pub fn follow(&self, other: &CoupledSection) -> Option<Self> {
+        let problem = ModalCharacteristic::new(other)?;
+        let mut known = (self.lambda, self.shape.clone());
+        let mut at = |speed: f64| {
+            known = problem.at(speed).solve(known.0, &known.1, None)?;
+            Some(known.clone())
+        };
+        let (mut before, mut speed) = (self.speed_m_s, self.speed_m_s * (1.0 + FIRST_STEP));
+        let mut value = at(before)?.0;
+        for _ in 0..MOST_STEPS {
+            let (next, shape) = at(speed)?;
+            let slope = (next.re - value.re) / (speed - before);
+            // no further than a tenth at once: beyond, it may be another mode
+            let most = LONGEST_STEP * speed;
+            let step = (-next.re / slope).clamp(-most, most);
+            if !step.is_finite() {
+                return None;
+            }
+            if step.abs() <= SETTLED * speed {
+                return Some(Self {
+                    speed_m_s: speed + step,
+                    lambda: next,
+                    shape,
+                });
+            }
+            (before, value) = (speed, next);
+            speed += step;
+        }
+        None
+    }
+}
+
+fn shares(bridge: &Bridge, shape: &DVector<Complex<f64>>) -> Vec<ModeShare> {
+    let total = shape.norm_squared();
+    let largest = shape[shape.icamax()];
+    let share = |(mode, z): (&crate::bridge::BridgeMode, &Complex<f64>)| ModeShare {
+        mode: mode.number,
+        frequency_hz: mode.frequency_hz,
+        energy_share: z.norm_sqr() / total,
+        phase_deg: (z / largest).arg().to_degrees(),
+    };
+    let mut shares: Vec<ModeShare> = bridge.modes.iter().zip(shape).map(share).collect();
+    shares.sort_by(|a, b| b.energy_share.total_cmp(&a.energy_share));
+    shares
+}
+
+fn nodes(bridge: &Bridge, shape: &DVector<Complex<f64>>) -> Vec<NodeMotion> {
+    let half_width = 0.5 * bridge.width_m();
+    let at = |n: usize| -> [Complex<f64>; 3] {
+        std::array::from_fn(|i| {
+            let modes = bridge.modes.iter().zip(shape);
+            modes
+                .map(|(m, z)| z * (m.shape[n][i] / m.generalised_mass.sqrt()))
+                .sum()
+        })
+    };
+    let all: Vec<[Complex<f64>; 3]> = (0..bridge.nodes.len()).map(at).collect();
+    let in_metres = all.iter().flat_map(|[y, x, t]| [*y, *x, t * half_width]);
+    let greatest = in_metres.fold(
+        Complex::default(),
+        |a: Complex<f64>, b| if b.norm() > a.norm() { b } else { a },
+    );
+    let motion = |(node, z): (&crate::bridge::Node, &[Complex<f64>; 3])| NodeMotion {
+        node: node.name.clone(),
+        along_m: node.along_m,
+        motion: z.map(|z| z / greatest).map(|z| [z.re, z.im]),
+    };
+    bridge.nodes.iter().zip(&all).map(motion).collect()
+}
+
+/// Mean displacement of every node (m, m, rad) under steady wind, on which the forces of the deformed bridge act too.
+///
+/// `coefficients` are `(C_L, C_D, C_M)` of each group over its width; `static_forces` are the forces of unit modal coordinates
+/// at rest, `G(0)` of [`Bridge::forces`].
+///
+/// # Errors
+/// [`Error::Numerical`] at the speed of divergence.
+pub fn static_deflection(
+    bridge: &Bridge,
+    coefficients: &[[f64; 3]],
+    static_forces: &crate::aerodynamics::TransferMatrix,
+    speed_m_s: f64,
+) -> Result<Vec<[f64; 3]>> {
+    let s = bridge.structure();
+    let pressure = 0.5 * s.air_density_kg_m3 * speed_m_s * speed_m_s;
+    let mut load = DVector::zeros(bridge.modes.len());
+    for (group, c) in bridge.groups.iter().zip(coefficients) {
+        let q = pressure * group.wind_factor * group.wind_factor * group.width_m;
+        let force = [c[0] * q, c[1] * q, c[2] * q * group.width_m];
+        for &n in &group.nodes {
+            for (l, m) in load.iter_mut().zip(&bridge.modes) {
+                let work: f64 = m.shape[n].iter().zip(force).map(|(phi, f)| phi * f).sum();
+                *l += bridge.nodes[n].length_m * work / m.generalised_mass.sqrt();
+            }
+        }
+    }
+    let stiffness = &s.stiffness - s.to_physical(&static_forces.map(|z| z.re)) * pressure;
+    let eta = stiffness.lu().solve(&load).ok_or_else(|| {
+        Error::Numerical(format!(
+            "static deflection: the bridge diverges at {speed_m_s} m/s"
+        ))
+    })?;
+    let at = |n: usize| {
+        std::array::from_fn(|i| {
+            let modes = bridge.modes.iter().zip(&eta);
+            modes
+                .map(|(m, z)| z * m.shape[n][i] / m.generalised_mass.sqrt())
+                .sum()
+        })
+    };
+    Ok((0..bridge.nodes.len()).map(at).collect())
+}

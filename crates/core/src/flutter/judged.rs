@@ -1,0 +1,200 @@
+//! How far a search can be believed: the speeds at which every mode was inside what was tested.
+
+use crate::aerodynamics::TransferMatrix;
+use crate::error::Result;
+use crate::section::Dof;
+use crate::units::{LowerEnd, ReducedFrequency, ReducedFrequencyGap, ReducedFrequencyRange};
+use nalgebra::{DMatrix, SymmetricEigen};
+use serde::Serialize;
+
+/// Reduced frequencies above the tested range at which forces are asked whether they damp.
+const SAMPLES: usize = 120;
+/// The highest of them over the highest tested one.
+const REACH: f64 = 200.0;
+/// Energy that motion may gain there over what it exchanges at the end of the tested range: what a condition that holds at
+/// sampled `K` leaves between them.
+const GAIN: f64 = 1e-3;
+/// Part of the added mass that may be no mass at [`REACH`], where a stiffness of the same size is `1/REACH²` of it.
+const NO_MASS: f64 = 1e-2;
+
+/// Speeds between which every mode was looked at and none grows.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct StableRange {
+    /// Lowest speed at which all modes could be judged, m/s; 0 from still air.
+    pub from_m_s: f64,
+    /// Highest speed at which all modes could be judged, m/s.
+    pub to_m_s: f64,
+    /// Why nothing is known outside, where a speed that was asked for is.
+    pub not_judged: Option<String>,
+}
+
+impl StableRange {
+    /// Every speed from still air to this one, m/s.
+    pub fn up_to(to_m_s: f64) -> Self {
+        Self {
+            from_m_s: 0.0,
+            to_m_s,
+            not_judged: None,
+        }
+    }
+
+    /// The answer in words.
+    pub fn explain(&self) -> String {
+        if self.from_m_s > self.to_m_s {
+            let why = self
+                .not_judged
+                .as_deref()
+                .unwrap_or("no speed was looked at");
+            return format!("not judged: {why}");
+        }
+        let mut text = format!("no flutter up to {:.3} m/s", self.to_m_s);
+        if self.from_m_s > 0.0 {
+            text.push_str(&format!(", judged from {:.3} m/s", self.from_m_s));
+        }
+        if let Some(why) = &self.not_judged {
+            text.push_str(&format!(" ({why})"));
+        }
+        text
+    }
+
+    /// The speeds that are in both.
+    pub fn and(self, other: Self) -> Self {
+        let why: Vec<String> = [self.not_judged, other.not_judged]
+            .into_iter()
+            .flatten()
+            .collect();
+        Self {
+            from_m_s: self.from_m_s.max(other.from_m_s),
+            to_m_s: self.to_m_s.min(other.to_m_s),
+            not_judged: (!why.is_empty()).then(|| why.join("; ")),
+        }
+    }
+}
+
+/// Why a mode cannot be judged beyond a speed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Exit {
+    /// Its `K` falls below this, the lowest tested.
+    Below(ReducedFrequency),
+    /// Its `K` comes into a gap between tests.
+    Into(ReducedFrequencyGap),
+    /// It cannot be followed any further.
+    Lost,
+}
+
+impl Exit {
+    /// At one of the [lower ends](ReducedFrequencyRange::lower_ends) of a range.
+    pub(super) fn at((k, gap): LowerEnd) -> Self {
+        gap.map_or(Self::Below(k), Self::Into)
+    }
+
+    fn explain(self) -> String {
+        match self {
+            Self::Below(k) => format!(
+                "where its K falls below {:.3}, the lowest tested",
+                k.full_width()
+            ),
+            Self::Into(gap) => format!("where its K comes to lie {}", gap.explain()),
+            Self::Lost => "beyond which it cannot be followed".to_owned(),
+        }
+    }
+}
+
+/// Where modes come into the range of reduced frequencies that can be judged, and where they leave it.
+#[derive(Debug, Default)]
+pub(super) struct RangePassages {
+    /// Speed, m/s, and branch.
+    pub(super) entries: Vec<(f64, String)>,
+    /// The same at the other end, and why.
+    pub(super) exits: Vec<(f64, String, Exit)>,
+}
+
+impl RangePassages {
+    /// Adds the lower ends of `range` that the `K` of a branch passes between two speeds, and the upper end, if modes are
+    /// judged from there. In between `1/K` is all but linear in the speed.
+    pub(super) fn look(
+        &mut self,
+        range: ReducedFrequencyRange,
+        branch: &str,
+        before: (f64, ReducedFrequency),
+        after: (f64, ReducedFrequency),
+    ) {
+        let slowness = |k: ReducedFrequency| 1.0 / k.full_width();
+        let passes = |k: ReducedFrequency| {
+            let (a, b, c) = (slowness(before.1), slowness(after.1), slowness(k));
+            (a <= c && c < b).then(|| before.0 + (after.0 - before.0) * (c - a) / (b - a))
+        };
+        for end in range.lower_ends() {
+            let exit = passes(end.0).map(|speed| (speed, branch.to_owned(), Exit::at(end)));
+            self.exits.extend(exit);
+        }
+        let entry = passes(range.max).map(|speed| (speed, branch.to_owned()));
+        self.entries.extend(entry);
+    }
+
+    /// Of the speeds that were looked at those at which every mode was judged.
+    pub(super) fn judged(&self, looked_at: StableRange) -> StableRange {
+        let highest = looked_at.to_m_s;
+        let last = self.entries.iter().max_by(|a, b| a.0.total_cmp(&b.0));
+        let first = self.exits.iter().min_by(|a, b| a.0.total_cmp(&b.0));
+        let first = first.filter(|(speed, ..)| *speed < highest);
+        let from = last.map(|(speed, branch)| {
+            format!("the {branch} branch can be judged from {speed:.3} m/s on")
+        });
+        let to = first.map(|(speed, branch, exit)| {
+            format!(
+                "the {branch} branch can be judged up to {speed:.3} m/s, {}; above that these data say nothing",
+                exit.explain()
+            )
+        });
+        let why: Vec<String> = from.into_iter().chain(to).collect();
+        looked_at.and(StableRange {
+            from_m_s: last.map_or(0.0, |l| l.0),
+            to_m_s: first.map_or(highest, |f| f.0),
+            not_judged: (!why.is_empty()).then(|| why.join(", ")),
+        })
+    }
+}
+
+/// Why nothing is known below the speed at which a mode comes to the end `limit` of the range that can be judged.
+pub(super) fn entry_reason(limit: ReducedFrequency) -> String {
+    format!(
+        "there its motion enters the range that can be judged, which ends at K {:.4}",
+        limit.full_width()
+    )
+}
+
+/// Whether forces take energy out of every motion that is faster than was tested, so that slower wind than any test is
+/// known to be harmless although nothing was measured there: no shape of heave and rotation, and no sway, gains energy by
+/// `Im G(K)` above `k_max`, and what grows with `K²` is a mass.
+pub(super) fn damps_fast_motion(
+    dofs: &[Dof],
+    k_max: ReducedFrequency,
+    transfer: impl Fn(ReducedFrequency) -> Result<TransferMatrix>,
+) -> Result<bool> {
+    let (sway, others): (Vec<usize>, Vec<usize>) =
+        (0..dofs.len()).partition(|i| dofs[*i] == Dof::Lateral);
+    let mut size = 0.0;
+    for i in 0..SAMPLES {
+        let k = k_max.full_width() * REACH.powf(i as f64 / (SAMPLES as f64 - 1.0));
+        let g = transfer(ReducedFrequency::from_full_width(k))?;
+        for block in [&sway, &others].into_iter().filter(|b| !b.is_empty()) {
+            let part = |of: &dyn Fn(usize, usize) -> f64| {
+                DMatrix::from_fn(block.len(), block.len(), |i, j| of(block[i], block[j]))
+            };
+            let gain = part(&|i, j| 0.5 * (g[(i, j)].im + g[(j, i)].im) / k);
+            if i == 0 {
+                size = gain.norm().max(size);
+            }
+            if SymmetricEigen::new(gain).eigenvalues.max() > GAIN * size {
+                return Ok(false);
+            }
+            let inertia = part(&|i, j| g[(i, j)].re);
+            let skew = (&inertia - inertia.transpose()).norm();
+            if i == SAMPLES - 1 && skew > NO_MASS * (inertia.norm() + size) {
+                return Ok(false);
+            }
+        }
+    }
+    Ok(true)
+}

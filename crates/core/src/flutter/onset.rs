@@ -1,0 +1,324 @@
+//! The flutter onset as a result: everything a practitioner wants on the card.
+
+use super::critical_point::{CriticalPoint, OnsetMethod};
+use crate::section::Structure;
+use crate::units::{ReducedFrequency, ReducedFrequencyGap};
+use nalgebra::{Complex, DVector};
+use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
+
+/// A flutter onset.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Onset {
+    /// Onset speed `V_F` and the frequency there.
+    #[serde(flatten)]
+    pub at: CriticalPoint,
+    /// `|y|/(B|θ|)`.
+    pub mode_ratio: f64,
+    /// Phase of `y` relative to `θ`, degrees in (−180, 180].
+    pub phase_deg: f64,
+    /// `dζ/dV` at onset, s/m; `None` where the route does not give it.
+    pub damping_slope_s_m: Option<f64>,
+    /// Branch that loses its damping.
+    pub branch: String,
+    /// Whether `K` lies in the range in which the model was tested; `None` when there is no such range.
+    pub in_tested_range: Option<bool>,
+    /// The gap between tests in which `K` lies, where that is why it is not inside.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gap: Option<ReducedFrequencyGap>,
+    /// Further crossings below this one that lie outside the tested range, m/s: signs of an over-fitted model.
+    pub spurious_speeds_m_s: Vec<f64>,
+    /// What a reader must know before using the number.
+    pub warnings: Vec<String>,
+    /// How far the data leave the speed open.
+    pub interval: OnsetInterval,
+}
+
+/// Where the variance between mean speeds is from that an interval holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum BetweenSpeeds {
+    /// Tests at two mean speeds or more, and measured decks.
+    Tests,
+    /// Measured decks alone: the tests are at one mean speed, or do not state it.
+    Prior,
+}
+
+/// What the standard error of an onset is made of.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct ErrorParts {
+    /// Scatter of the data under the form of the model, m/s.
+    pub scatter_m_s: f64,
+    /// Spread between the forms that explain the data as well, m/s; none where no other form was asked.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub form_m_s: Option<f64>,
+    /// Where the scatter between mean speeds in it is from; none where it holds none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub between_speeds: Option<BetweenSpeeds>,
+}
+
+impl ErrorParts {
+    /// Both together, m/s.
+    pub fn standard_error_m_s(&self) -> f64 {
+        self.scatter_m_s.hypot(self.form_m_s.unwrap_or(0.0))
+    }
+
+    /// As it is printed beside an interval: `scatter 0.26, form 0.31 m/s`; the scatter alone where no other form was asked.
+    pub fn explain(&self) -> String {
+        match self.form_m_s {
+            Some(form) => format!("scatter {:.2}, form {form:.2} m/s", self.scatter_m_s),
+            None => format!("scatter {:.2} m/s", self.scatter_m_s),
+        }
+    }
+}
+
+/// 95 % interval of an onset speed, or why there is none.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case")]
+pub enum OnsetInterval {
+    /// The scatter of the data, carried to the onset, and what the form of the model leaves open.
+    Known {
+        /// Lower end, m/s.
+        low_m_s: f64,
+        /// Upper end, m/s.
+        high_m_s: f64,
+        /// Standard error, m/s.
+        standard_error_m_s: f64,
+        /// Degrees of freedom of the standard error.
+        degrees_of_freedom: f64,
+        /// What it is made of.
+        #[serde(default)]
+        parts: ErrorParts,
+    },
+    /// The speeds that several ways of reading the same data give, e.g. of interpolating a table: no statement of
+    /// probability.
+    Spread {
+        /// Lowest, m/s.
+        low_m_s: f64,
+        /// Highest, m/s.
+        high_m_s: f64,
+        /// Spread between what, and the speed by each way.
+        of: String,
+    },
+    /// The data leave the speed so far open that it is no result: the interval contains zero or is wider than the speed.
+    Undetermined {
+        /// Lower end, m/s.
+        low_m_s: f64,
+        /// Upper end, m/s.
+        high_m_s: f64,
+        /// Standard error, m/s.
+        standard_error_m_s: f64,
+        /// Degrees of freedom of the standard error.
+        degrees_of_freedom: f64,
+        /// What it is made of.
+        #[serde(default)]
+        parts: ErrorParts,
+        /// Which of the two, in words.
+        reason: String,
+    },
+    /// There is none.
+    None {
+        /// Why.
+        reason: String,
+    },
+}
+
+impl OnsetInterval {
+    /// The interval of `half_width_m_s` to both sides of a speed.
+    pub fn about(
+        speed_m_s: f64,
+        half_width_m_s: f64,
+        degrees_of_freedom: f64,
+        parts: ErrorParts,
+    ) -> Self {
+        let standard_error_m_s = parts.standard_error_m_s();
+        let (low_m_s, high_m_s) = (speed_m_s - half_width_m_s, speed_m_s + half_width_m_s);
+        let ends = format!("its 95 % interval, {low_m_s:.3} to {high_m_s:.3} m/s,");
+        // an error that is not a number is neither, and leaves the speed undetermined
+        let above_zero = low_m_s > 0.0;
+        let narrow = 2.0 * half_width_m_s <= speed_m_s;
+        let why = if !above_zero {
+            "contains zero"
+        } else if !narrow {
+            "is wider than the speed itself"
+        } else {
+            return Self::Known {
+                low_m_s,
+                high_m_s,
+                standard_error_m_s,
+                degrees_of_freedom,
+                parts,
+            };
+        };
+        Self::Undetermined {
+            low_m_s,
+            high_m_s,
+            standard_error_m_s,
+            degrees_of_freedom,
+            parts,
+            reason: format!("not determined by these data: {ends} {why}"),
+        }
+    }
+
+    /// Lower and upper end, m/s, of the interval or the spread of a speed that is a result.
+    pub fn ends(&self) -> Option<(f64, f64)> {
+        match *self {
+            Self::Known {
+                low_m_s, high_m_s, ..
+            }
+            | Self::Spread {
+                low_m_s, high_m_s, ..
+            } => Some((low_m_s, high_m_s)),
+            Self::Undetermined { .. } | Self::None { .. } => None,
+        }
+    }
+
+    /// The same where something besides its width leaves the speed open.
+    #[must_use]
+    pub fn undetermined(self, why: String) -> Self {
+        match self {
+            Self::Known {
+                low_m_s,
+                high_m_s,
+                standard_error_m_s,
+                degrees_of_freedom,
+                parts,
+            } => Self::Undetermined {
+                low_m_s,
+                high_m_s,
+                standard_error_m_s,
+                degrees_of_freedom,
+                parts,
+                reason: format!("not determined by these data: {why}"),
+            },
+            other => other,
+        }
+    }
+
+    /// What the standard error is made of.
+    pub fn parts(&self) -> Option<ErrorParts> {
+        match self {
+            Self::Known { parts, .. } | Self::Undetermined { parts, .. } => Some(*parts),
+            Self::Spread { .. } | Self::None { .. } => None,
+        }
+    }
+
+    /// Why there are none.
+    pub fn reason(&self) -> Option<&str> {
+        match self {
+            Self::Undetermined { reason, .. } | Self::None { reason } => Some(reason),
+            Self::Known { .. } | Self::Spread { .. } => None,
+        }
+    }
+
+    /// No interval, for this reason.
+    pub fn none(reason: impl Into<String>) -> Self {
+        Self::None {
+            reason: reason.into(),
+        }
+    }
+}
+
+impl Onset {
+    /// The speed, unless the data do not determine it: what may be printed as a result, m/s.
+    pub fn headline_m_s(&self) -> std::result::Result<f64, &str> {
+        match &self.interval {
+            OnsetInterval::Undetermined { reason, .. } => Err(reason),
+            OnsetInterval::Known { .. }
+            | OnsetInterval::Spread { .. }
+            | OnsetInterval::None { .. } => Ok(self.at.speed_m_s),
+        }
+    }
+
+    /// The answer in one line: speed, interval, and whether the data reach it, such as
+    /// `flutter onset 36.9 m/s, 36.6–37.3, inside the tested range`.
+    pub fn headline(&self) -> String {
+        let speed = match self.headline_m_s() {
+            Ok(speed) => speed,
+            Err(reason) => return format!("flutter onset {reason}"),
+        };
+        let spread = matches!(self.interval, OnsetInterval::Spread { .. });
+        let interval = match self.interval.ends() {
+            Some((low, high)) if spread => format!(" [{}–{}]", shown_m_s(low), shown_m_s(high)),
+            Some((low, high)) => format!(", {}–{}", shown_m_s(low), shown_m_s(high)),
+            None => ", interval not known".to_owned(),
+        };
+        let tested = match (self.gap, self.in_tested_range) {
+            (Some(gap), _) => format!(", {}", gap.explain()),
+            (None, Some(true)) => ", inside the tested range".to_owned(),
+            (None, Some(false)) => ", OUTSIDE the tested range".to_owned(),
+            (None, None) => String::new(),
+        };
+        format!("flutter onset {} m/s{interval}{tested}", shown_m_s(speed))
+    }
+
+    /// The onset at speed and frequency with a mode shape; nothing about ranges yet.
+    pub(super) fn new(
+        model: &str,
+        method: OnsetMethod,
+        structure: &Structure,
+        (speed_m_s, omega): (f64, f64),
+        shape: &DVector<Complex<f64>>,
+        branch: String,
+    ) -> Self {
+        let width = structure.width_m;
+        let y = shape[0] / width;
+        let theta = shape[shape.len() - 1];
+        let k = ReducedFrequency::from_circular(omega, width, speed_m_s);
+        Self {
+            at: CriticalPoint::new(model, method, speed_m_s, omega / TAU, k),
+            mode_ratio: y.norm() / theta.norm(),
+            phase_deg: (y / theta).arg().to_degrees(),
+            damping_slope_s_m: None,
+            branch,
+            in_tested_range: None,
+            gap: None,
+            spurious_speeds_m_s: Vec::new(),
+            warnings: Vec::new(),
+            interval: OnsetInterval::none("the data behind the model are not known here"),
+        }
+    }
+}
+
+/// A wind speed for people, m/s: a tenth, below 10 m/s a hundredth, which no measurement surpasses.
+pub fn shown_m_s(speed_m_s: f64) -> String {
+    let digits = if speed_m_s.abs() < 10.0 { 2 } else { 1 };
+    format!("{speed_m_s:.digits$}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_speed_that_the_data_leave_open_is_undetermined() {
+        let about = |speed, half| {
+            let parts = ErrorParts {
+                scatter_m_s: half / 2.0,
+                ..ErrorParts::default()
+            };
+            OnsetInterval::about(speed, half, 20.0, parts)
+        };
+        assert!(matches!(
+            about(37.0, 1.0),
+            OnsetInterval::Known {
+                low_m_s: 36.0,
+                high_m_s: 38.0,
+                ..
+            }
+        ));
+        // the whole width may be the speed, and no more
+        assert!(matches!(about(10.0, 5.0), OnsetInterval::Known { .. }));
+        for (speed, half, why) in [
+            (10.0, 5.1, "wider than the speed itself"),
+            (9.2, 114.0, "contains zero"),
+            (9.2, f64::NAN, "contains zero"),
+        ] {
+            let OnsetInterval::Undetermined { reason, .. } = about(speed, half) else {
+                panic!("{speed} ± {half} is determined");
+            };
+            assert!(reason.starts_with("not determined by these data"));
+            assert!(reason.ends_with(why), "{reason}");
+        }
+    }
+}

@@ -1,0 +1,367 @@
+//! All eigenvalues over wind speed: the speeds at which any oscillation grows, found without following modes.
+
+use super::critical::critical_speeds;
+use super::following::{dimensionless, growing, oscillates};
+use super::judged::StableRange;
+use super::still_air::lowest_speed;
+use super::tracking::{Tracker, mode_shape};
+use crate::aeroelastic::CoupledSection;
+use crate::error::{Error, Result, non_negative, positive};
+use crate::state_space::{boundary, golden_section};
+use crate::units::{ReducedFrequency, ReducedFrequencyRange};
+use nalgebra::Complex;
+use serde::Serialize;
+use std::f64::consts::TAU;
+
+/// Lowest speed of a scan from still air, as `V/(fB)` of the slowest mode: wind that no test and no site knows.
+const NEARLY_STILL: f64 = 0.01;
+/// Neighbouring speeds differ by at most this ratio, and at most this part of the highest speed.
+pub(super) const FINE: (f64, f64) = (1.05, 1.0 / 120.0);
+/// The same where the structural modes are followed besides.
+pub(super) const COARSE: (f64, f64) = (1.12, 1.0 / 50.0);
+/// Branch of an eigenvalue that belongs to no structural mode.
+pub(super) const AERODYNAMIC: &str = "aerodynamic";
+/// Relative width to which the ends of a band are halved.
+const EDGE_TOLERANCE: f64 = 1e-11;
+/// Relative distance from a critical speed, known to rounding, at which both sides of it are looked at.
+const BESIDE: f64 = 1e-7;
+/// Steps of the golden section between three speeds of the grid: a peak to 1e-5 of their distance.
+const PEAK_STEPS: usize = 24;
+
+/// A band of wind speeds in which an oscillating eigenvalue has a positive real part.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct GrowthBand {
+    /// Lowest speed with growth, m/s.
+    pub from_m_s: f64,
+    /// Highest speed with growth, m/s; the end of the scan where it goes on.
+    pub to_m_s: f64,
+    /// Whether there is growth at the lowest speed of the scan already, so that the band begins there or below.
+    pub from_start: bool,
+    /// Fastest growth rate that was met in the band, 1/s.
+    pub fastest_growth_per_s: f64,
+    /// Speed of the fastest growth, m/s.
+    pub fastest_at_m_s: f64,
+    /// Frequency of the fastest growth, Hz.
+    pub frequency_hz: f64,
+    /// `K` of the fastest growth.
+    pub reduced_frequency: ReducedFrequency,
+    /// Lowest speed of the band at which a motion with `K` inside the tested range grows, m/s; that of the band itself
+    /// where there is no such range, `None` where nothing grows inside.
+    pub tested_from_m_s: Option<f64>,
+    /// Name of the structural mode with the fastest growth; `aerodynamic` for an eigenvalue of the force model itself.
+    pub branch: String,
+}
+
+impl GrowthBand {
+    /// Whether all growth of the band lies outside the tested range: the model extrapolates there.
+    pub fn extrapolated(&self) -> bool {
+        self.tested_from_m_s.is_none()
+    }
+
+    /// The band in words.
+    pub fn explain(&self) -> String {
+        let tested = if self.extrapolated() {
+            ", outside the tested range"
+        } else {
+            ""
+        };
+        let below = if self.from_start { "at or below " } else { "" };
+        format!(
+            "grows from {below}{:.3} to {:.3} m/s, by {:.4} 1/s at {:.3} m/s ({} branch, {:.4} Hz, K {:.3}{tested})",
+            self.from_m_s,
+            self.to_m_s,
+            self.fastest_growth_per_s,
+            self.fastest_at_m_s,
+            self.branch,
+            self.frequency_hz,
+            self.reduced_frequency.full_width(),
+        )
+    }
+}
+
+/// Bands of wind speed between two speeds in which an oscillation grows, in rising order.
+///
+/// Sections find all speeds at which growth may begin or end at once (`critical`), so that no growth
+/// between two speeds is a statement about every one between; what is sampled or large looks at every eigenvalue at speeds a
+/// twentieth apart or closer, and at peaks between them. Zero for `from_m_s` is nearly still air. `tested` as in [`find_onset`](super::find_onset).
+///
+/// # Errors
+/// [`Error::Input`] for speeds that are no interval; [`Error::Numerical`] when eigenvalues cannot be computed.
+pub fn growth_scan(
+    section: &CoupledSection,
+    from_m_s: f64,
+    to_m_s: f64,
+    tested: Option<ReducedFrequencyRange>,
+) -> Result<Vec<GrowthBand>> {
+    Scan::new("", section, tested).bands(from_m_s, to_m_s, FINE)
+}
+
+/// The fastest growing oscillations at one speed.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Point {
+    pub(super) speed: f64,
+    /// The least damped oscillating eigenvalue, rad/s.
+    pub(super) fastest: Option<Complex<f64>>,
+    /// The fastest growing oscillation inside the tested range.
+    pub(super) inside: Option<Complex<f64>>,
+    /// Number of eigenvalues with a positive real part, oscillating or not.
+    unstable: usize,
+}
+
+impl Point {
+    fn grows(&self) -> bool {
+        self.fastest.is_some_and(|z| growing(&z))
+    }
+
+    fn rate(&self) -> f64 {
+        self.fastest.map_or(f64::NEG_INFINITY, |z| z.re)
+    }
+}
+
+/// A section whose eigenvalues are looked at.
+pub(super) struct Scan<'a> {
+    pub(super) model: &'a str,
+    pub(super) section: &'a CoupledSection,
+    pub(super) tested: Option<ReducedFrequencyRange>,
+}
+
+impl<'a> Scan<'a> {
+    pub(super) fn new(
+        model: &'a str,
+        section: &'a CoupledSection,
+        tested: Option<ReducedFrequencyRange>,
+    ) -> Self {
+        Self {
+            model,
+            section,
+            tested,
+        }
+    }
+
+    /// Lowest speed of a scan from still air, m/s.
+    pub(super) fn lowest(&self, to_m_s: f64) -> Result<f64> {
+        let s = self.section.structure();
+        let slowest_hz = s
+            .still_air_rad_s()
+            .map(|omega| omega / TAU)
+            .filter(|f| *f > 0.0)
+            .fold(f64::INFINITY, f64::min);
+        let nearly_still = (NEARLY_STILL * slowest_hz * s.width_m).min(1e-3 * to_m_s);
+        Ok(nearly_still.max(lowest_speed(self.section)?))
+    }
+
+    /// What a scan from still air covers.
+    pub(super) fn looked_at(&self, to_m_s: f64) -> Result<StableRange> {
+        let lowest = lowest_speed(self.section)?;
+        if lowest >= to_m_s {
+            return Err(Error::input(
+                "highest wind speed",
+                format!(
+                    "more than {lowest:.3} m/s, below which the sampled model has too few samples per period"
+                ),
+                format!("{to_m_s} m/s"),
+            ));
+        }
+        Ok(StableRange {
+            from_m_s: lowest,
+            to_m_s,
+            not_judged: (lowest > 0.0)
+                .then(|| "below, the sampled model has too few samples per period".to_owned()),
+        })
+    }
+
+    /// Speeds of a scan, m/s.
+    fn speeds(&self, from_m_s: f64, to_m_s: f64, (ratio, part): (f64, f64)) -> Result<Vec<f64>> {
+        non_negative("lowest wind speed", from_m_s)?;
+        positive("highest wind speed", to_m_s)?;
+        if from_m_s >= to_m_s {
+            return Err(Error::input(
+                "highest wind speed",
+                format!("a number above the lowest, {from_m_s} m/s"),
+                to_m_s.to_string(),
+            ));
+        }
+        let mut all = Vec::new();
+        let mut speed = from_m_s.max(self.lowest(to_m_s)?);
+        while speed < to_m_s {
+            all.push(speed);
+            speed = (ratio * speed).min(speed + to_m_s * part);
+        }
+        all.push(to_m_s);
+        Ok(all)
+    }
+
+    pub(super) fn bands(
+        &self,
+        from_m_s: f64,
+        to_m_s: f64,
+        density: (f64, f64),
+    ) -> Result<Vec<GrowthBand>> {
+        let grid = self.speeds(from_m_s, to_m_s, density)?;
+        let points = match critical_speeds(self.section) {
+            Some(critical) => self.between(&critical, &grid)?,
+            None => {
+                let mut points = self.all_at(&grid)?;
+                self.add_peaks(&mut points)?;
+                points
+            }
+        };
+        let mut bands = Vec::new();
+        let mut i = 0;
+        while i < points.len() {
+            let count = points[i..].iter().take_while(|p| p.grows()).count();
+            if count > 0 {
+                bands.push(self.band(&points, i, i + count)?);
+            }
+            i += count.max(1);
+        }
+        Ok(bands)
+    }
+
+    /// Whether the motion with this eigenvalue lies between the lowest and the highest tested `K`; `None` when there are none.
+    pub(super) fn inside(&self, speed: f64, lambda: Complex<f64>) -> Option<bool> {
+        let width = self.section.structure().width_m;
+        let k = ReducedFrequency::from_circular(lambda.im, width, speed);
+        self.tested.map(|range| range.spans(k))
+    }
+
+    pub(super) fn at(&self, speed: f64) -> Result<Point> {
+        let mut all = self.section.at(speed)?.eigenvalues()?;
+        let unstable = all.iter().filter(|z| z.re > 0.0).count();
+        all.retain(oscillates);
+        all.sort_by(|a, b| b.re.total_cmp(&a.re));
+        let inside = |z: &&Complex<f64>| growing(z) && self.inside(speed, **z) != Some(false);
+        Ok(Point {
+            speed,
+            fastest: all.first().copied(),
+            inside: all.iter().find(inside).copied(),
+            unstable,
+        })
+    }
+
+    fn all_at(&self, speeds: &[f64]) -> Result<Vec<Point>> {
+        speeds.iter().map(|v| self.at(*v)).collect()
+    }
+
+    /// Points on both sides of all critical speeds and half way between them. Where no two eigenvalues have a positive real
+    /// part there, none have up to the next, and no oscillation grows. Where two have, the speeds of the grid are added: for the
+    /// fastest growth and the tested range, and since two that are real may meet and oscillate.
+    fn between(&self, critical: &[f64], grid: &[f64]) -> Result<Vec<Point>> {
+        let (low, high) = (grid[0], grid[grid.len() - 1]);
+        let inside = critical.iter().filter(|v| (low..high).contains(*v));
+        let sides = inside.flat_map(|v| [v * (1.0 - BESIDE), *v, v * (1.0 + BESIDE)]);
+        let mut ends: Vec<f64> = sides.filter(|v| (low..high).contains(v)).collect();
+        ends.extend([low, high]);
+        ends.sort_by(f64::total_cmp);
+        let middles: Vec<f64> = ends.windows(2).map(|w| (w[0] * w[1]).sqrt()).collect();
+        ends.extend(middles);
+        ends.sort_by(f64::total_cmp);
+        ends.dedup();
+        let mut points = self.all_at(&ends)?;
+        let two = |w: &[Point]| w[0].unstable > 1 || w[1].unstable > 1;
+        let within = |w: &[Point], v: f64| w[0].speed < v && v < w[1].speed;
+        let more = |v: &&f64| points.windows(2).any(|w| two(w) && within(w, **v));
+        let more: Vec<f64> = grid.iter().filter(more).copied().collect();
+        points.extend(self.all_at(&more)?);
+        points.sort_by(|a, b| a.speed.total_cmp(&b.speed));
+        if points.iter().any(|p| p.unstable > 1 && !p.grows()) {
+            self.add_peaks(&mut points)?;
+        }
+        Ok(points)
+    }
+
+    /// Adds growth that is met only between the speeds looked at.
+    fn add_peaks(&self, points: &mut Vec<Point>) -> Result<()> {
+        let mut peaks = Vec::new();
+        for three in points.windows(3) {
+            let rate = |i: usize| three[i].rate();
+            if !three[1].grows() && rate(1) >= rate(0) && rate(1) >= rate(2) {
+                peaks.extend(self.peak(three[0].speed, three[2].speed)?);
+            }
+        }
+        points.extend(peaks);
+        points.sort_by(|a, b| a.speed.total_cmp(&b.speed));
+        Ok(())
+    }
+
+    /// The highest point between two speeds, if it grows.
+    fn peak(&self, low: f64, high: f64) -> Result<Option<Point>> {
+        let mut steps = 0;
+        let done = |_, left: &Point, right: &Point| {
+            steps += 1;
+            left.grows() || right.grows() || steps > PEAK_STEPS
+        };
+        let higher = |a: &Point, b: &Point| a.rate() > b.rate();
+        let (_, [left, right]) = golden_section((low, high), |v| self.at(v), higher, done)?;
+        let highest = if higher(&left, &right) { left } else { right };
+        Ok(highest.grows().then_some(highest))
+    }
+
+    /// The band of the points `from..to`, its ends refined.
+    fn band(&self, points: &[Point], from: usize, to: usize) -> Result<GrowthBand> {
+        let within = &points[from..to];
+        let from_m_s = match from.checked_sub(1) {
+            Some(before) => self.edge(points[from].speed, points[before].speed, Point::grows)?,
+            None => points[0].speed,
+        };
+        let to_m_s = match points.get(to) {
+            Some(after) => self.edge(points[to - 1].speed, after.speed, Point::grows)?,
+            None => points[to - 1].speed,
+        };
+        let fastest = within
+            .iter()
+            .max_by(|a, b| a.rate().total_cmp(&b.rate()))
+            .unwrap_or(&points[from]);
+        let lambda = fastest.fastest.unwrap_or_default();
+        let width = self.section.structure().width_m;
+        Ok(GrowthBand {
+            from_m_s,
+            to_m_s,
+            from_start: from == 0,
+            fastest_growth_per_s: lambda.re,
+            fastest_at_m_s: fastest.speed,
+            frequency_hz: lambda.im / TAU,
+            reduced_frequency: ReducedFrequency::from_circular(lambda.im, width, fastest.speed),
+            tested_from_m_s: self.tested_from(from_m_s, within)?,
+            branch: self.branch(fastest.speed, lambda),
+        })
+    }
+
+    fn tested_from(&self, from_m_s: f64, within: &[Point]) -> Result<Option<f64>> {
+        let Some(first) = within.iter().position(|p| p.inside.is_some()) else {
+            return Ok(None);
+        };
+        let before = first.checked_sub(1).map_or(from_m_s, |i| within[i].speed);
+        self.edge(within[first].speed, before, |p| p.inside.is_some())
+            .map(Some)
+    }
+
+    /// The last speed from `yes` towards `no` at which the test still holds.
+    fn edge(&self, yes: f64, no: f64, test: impl Fn(&Point) -> bool) -> Result<f64> {
+        let found = boundary(yes, no, EDGE_TOLERANCE, |v| {
+            Ok::<_, Error>(test(&self.at(v)?))
+        })?;
+        Ok(found.holds)
+    }
+
+    /// The structural mode that `lambda` belongs to, followed from still air; where modes cannot be followed, the degree
+    /// of freedom that moves most.
+    pub(super) fn branch(&self, speed: f64, lambda: Complex<f64>) -> String {
+        let structure = self.section.structure();
+        match Tracker::new(self.section).at(speed) {
+            Ok(tracked) => tracked
+                .all
+                .iter()
+                .find(|m| (m.lambda - lambda).norm() < 1e-6 * lambda.norm())
+                .map_or(AERODYNAMIC.to_owned(), |m| structure.branch_name(m.branch)),
+            Err(_) => self
+                .section
+                .at(speed)
+                .and_then(|system| mode_shape(self.section, &system, lambda))
+                .map_or(AERODYNAMIC.to_owned(), |shape| {
+                    let sizes = dimensionless(structure, &shape).map(|z| z.norm());
+                    structure.branch_name(sizes.imax())
+                }),
+        }
+    }
+}

@@ -1,0 +1,215 @@
+//! Onset by the eigenvalues of the coupled state matrix.
+
+use super::answer::{Findings, FlutterSearch, choose};
+use super::following::{Follower, OnsetWatch, growing, oscillates};
+use super::judged::{Exit, StableRange, damps_fast_motion};
+use super::scan::Scan;
+use super::tracking::Tracker;
+use crate::aeroelastic::CoupledSection;
+use crate::error::{Error, Result, positive};
+use crate::units::{ReducedFrequency, ReducedFrequencyRange};
+use serde::{Deserialize, Serialize};
+
+/// States at most of which all eigenvalues are looked at, a hundred times or more: those of some 700 take a second each.
+const SCANNED_STATES: usize = 700;
+
+/// Where and how densely to look.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct OnsetSearch {
+    /// Highest wind speed searched, m/s.
+    pub speed_max_m_s: f64,
+    /// Number of speeds between still air and the highest.
+    pub speeds: usize,
+}
+
+impl Default for OnsetSearch {
+    fn default() -> Self {
+        Self {
+            speed_max_m_s: 100.0,
+            speeds: 200,
+        }
+    }
+}
+
+impl OnsetSearch {
+    /// The wind speeds that are looked at, m/s: equally spaced, still air left out.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a highest speed that is not positive or fewer than two speeds.
+    pub fn speeds_m_s(&self) -> Result<Vec<f64>> {
+        let highest = positive("flutter.speed_max_m_s", self.speed_max_m_s)?;
+        if self.speeds < 2 {
+            return Err(Error::input(
+                "flutter.speeds",
+                "at least 2",
+                self.speeds.to_string(),
+            ));
+        }
+        let speed = |i: usize| highest * i as f64 / self.speeds as f64;
+        Ok((1..=self.speeds).map(speed).collect())
+    }
+}
+
+/// Wind speeds of curves, m/s: `count` of them from the lowest to the highest, equally spaced.
+pub fn curve_speeds_m_s(lowest_m_s: f64, highest_m_s: f64, count: usize) -> Vec<f64> {
+    let last = count.saturating_sub(1) as f64;
+    let span = highest_m_s - lowest_m_s;
+    let speed = |i: usize| lowest_m_s + span * i as f64 / last;
+    (0..count).map(speed).collect()
+}
+
+/// First wind speed at which a mode of `section` loses its damping.
+///
+/// Modes are followed from nearly still air and every crossing up to the highest speed is refined; beside that all
+/// eigenvalues are looked at ([`growth_scan`](super::growth_scan)), so that growth of what is not followed, between the
+/// speeds, or of modes that cannot be told apart, is found too. See [`FlutterSearch`] for which one is the answer.
+/// `tested` is the range of reduced frequencies in which the model was tested: a mode that grows already where it
+/// enters it is unstable at and below that speed, whatever the model says outside.
+///
+/// # Errors
+/// [`Error::Input`] for a search range that is none; [`Error::Numerical`] when eigenvalues cannot be computed.
+pub fn find_onset(
+    model: &str,
+    section: &CoupledSection,
+    search: &OnsetSearch,
+    tested: Option<ReducedFrequencyRange>,
+) -> Result<FlutterSearch> {
+    let scan = Scan::new(model, section, tested);
+    let (mut found, ended) = followed(model, &scan, search)?;
+    let lost = ended.is_some();
+    if let Some(why) = ended {
+        // without names the answer still stands
+        found.warnings.push(format!(
+            "{why}: modes beyond that were not followed but found among all eigenvalues"
+        ));
+    }
+    if section.states() <= SCANNED_STATES {
+        scan.add_missed(&mut found, search.speed_max_m_s)?;
+    } else {
+        found.warnings.push(format!(
+            "{} states are too many to look at all eigenvalues: the {} structural modes alone were followed",
+            section.states(),
+            section.structure().dofs.len()
+        ));
+    }
+    if found.is_empty() {
+        scan.bound(&mut found, lost, &search.speeds_m_s()?)?;
+    }
+    Ok(choose(found, tested))
+}
+
+/// The speeds at which every mode of `section` is inside what was tested, as [`find_onset`] judges them, whether anything
+/// grows or not.
+///
+/// # Errors
+/// As [`find_onset`].
+pub fn judged_speeds(
+    section: &CoupledSection,
+    search: &OnsetSearch,
+    tested: Option<ReducedFrequencyRange>,
+) -> Result<StableRange> {
+    let scan = Scan::new("", section, tested);
+    let (mut found, ended) = followed("", &scan, search)?;
+    scan.bound(&mut found, ended.is_some(), &search.speeds_m_s()?)?;
+    Ok(found.reach.judged(found.looked_at))
+}
+
+/// The same by the modes that are followed alone, without all eigenvalues: for one of many sections of which another was searched
+/// whole. Where modes cannot be told apart all eigenvalues are looked at after all.
+///
+/// # Errors
+/// As [`find_onset`].
+pub fn find_onset_of_modes(
+    model: &str,
+    section: &CoupledSection,
+    search: &OnsetSearch,
+    tested: Option<ReducedFrequencyRange>,
+) -> Result<FlutterSearch> {
+    let scan = Scan::new(model, section, tested);
+    match followed(model, &scan, search)? {
+        (mut found, None) => {
+            if found.is_empty() {
+                scan.bound(&mut found, false, &search.speeds_m_s()?)?;
+            }
+            Ok(choose(found, tested))
+        }
+        (_, Some(_)) => find_onset(model, section, search, tested),
+    }
+}
+
+/// What the structural modes do, and why they could not be followed to the end, if so.
+fn followed(
+    model: &str,
+    scan: &Scan<'_>,
+    search: &OnsetSearch,
+) -> Result<(Findings, Option<String>)> {
+    let speeds = search.speeds_m_s()?;
+    let mut found = Findings::between(scan.looked_at(search.speed_max_m_s)?);
+    let ended = match follow(model, scan, &speeds, &mut found) {
+        Err(Error::NotDistinct(why) | Error::Numerical(why)) => Some(why),
+        other => other.map(|()| None)?,
+    };
+    Ok((found, ended))
+}
+
+/// What the structural modes do between the lowest and the highest speed of a scan.
+fn follow(model: &str, scan: &Scan<'_>, speeds: &[f64], found: &mut Findings) -> Result<()> {
+    let tracker = Tracker::new(scan.section);
+    let watch = OnsetWatch {
+        model,
+        follower: &tracker,
+        tested: scan.tested,
+        judged: scan.tested,
+    };
+    let highest = speeds[speeds.len() - 1];
+    let lowest = scan.lowest(highest)?;
+    let mut modes = tracker.at(lowest)?;
+    for mode in modes.all.iter().filter(|m| growing(&m.lambda)) {
+        let reason = "the lowest speed looked at".to_owned();
+        found.starts.push(watch.start(lowest, mode, reason));
+    }
+    found.followed_to_m_s = lowest;
+    for &speed in speeds.iter().filter(|v| **v > lowest) {
+        let next = tracker.advance(&modes, speed)?;
+        watch.step(&modes, &next, found)?;
+        modes = next;
+        found.followed_to_m_s = speed;
+    }
+    Ok(())
+}
+
+impl Scan<'_> {
+    /// Completes what is known of the speeds that can be judged: beyond where modes were `lost` by all eigenvalues, each of
+    /// which has to lie inside the tested range or above it; in slow wind by what the forces do to fast motion.
+    fn bound(&self, found: &mut Findings, lost: bool, speeds: &[f64]) -> Result<()> {
+        let Some(range) = self.tested else {
+            return Ok(());
+        };
+        let s = self.section.structure();
+        // of a whole bridge the forces of each strip would have to be asked
+        let damps = s.is_modal() || {
+            let forces = self.section.aerodynamics();
+            damps_fast_motion(&s.dofs, range.max, |k| forces.transfer(k))?
+        };
+        found.reach.entries.retain(|_| !damps);
+        let beyond = speeds
+            .iter()
+            .filter(|v| lost && **v > found.followed_to_m_s);
+        for &speed in beyond {
+            let all = self.section.at(speed)?.eigenvalues()?;
+            let ks = all
+                .iter()
+                .filter(|z| oscillates(z))
+                .map(|z| ReducedFrequency::from_circular(z.im, s.width_m, speed));
+            let known = ks.map(|k| range.contains(k) || k > range.max);
+            let known: Vec<bool> = known.collect();
+            if known.len() < s.dofs.len() || known.contains(&false) {
+                let nameless = "slowest".to_owned();
+                found.reach.exits.push((speed, nameless, Exit::Lost));
+                break;
+            }
+        }
+        Ok(())
+    }
+}

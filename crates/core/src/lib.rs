@@ -1,0 +1,37 @@
+//! What a deck, a force model and a structure are, and what their coupling does: the part of aerodeck that every other part sees.
+//!
+//! Every aerodynamic model is a transfer matrix `q̂(K) = G(K) r̂(K)` ([`aerodynamics`]) and, where it has one, a state-space
+//! realisation. A structure is `(M, R, K)` ([`section`], [`bridge`]). Their coupling at a wind speed is one linear system
+//! ([`aeroelastic`]), whose modes and onsets [`flutter`] finds and whose exact steps [`response`] takes. [`trained_model`] is what is
+//! saved, [`plausibility`] judges what is given, [`verdict`] what was found.
+#![deny(unsafe_code, missing_docs)]
+// the process is the caller's: no abrupt end, and no word on its terminal
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::unwrap_used,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::todo,
+        clippy::unimplemented,
+        clippy::unreachable,
+        clippy::print_stdout,
+        clippy::print_stderr,
+        clippy::dbg_macro
+    )
+)]
+
+pub mod aerodynamics;
+pub mod aeroelastic;
+pub mod bridge;
+pub mod error;
+pub mod flutter;
+pub mod plausibility;
+pub mod response;
+pub mod section;
+pub mod state_space;
+pub mod trained_model;
+pub mod units;
+pub mod verdict;
+
+pub use error::{Error, Result};

@@ -1,0 +1,242 @@
+//! Bridges: the line of the nodes, modes against each other, masses and frequencies against what a span and a width suggest.
+
+mod line;
+
+use super::limits::{DECK_WIDTH, beyond, significant};
+use super::section::{unusual_air, unusual_damping, unusual_radius};
+use super::{Finding, Kind};
+use crate::bridge::{Bridge, BridgeMode, Node};
+use line::{LENGTH, length_m, of_line};
+use std::f64::consts::{PI, TAU};
+
+/// Unit-norm shapes of one bridge and a generalised mass of 1: the greatest displacement of a mass-normalised shape of
+/// anything as heavy as a bridge is far below this.
+const MASS_NORMALISED_AT_MOST: f64 = 0.1;
+/// Two modes are one when shapes (as the cosine of their angle, squared), masses and frequencies differ by less than these.
+const SAME_SHAPE: f64 = 0.999;
+const SAME_MASS: f64 = 0.02;
+const SAME_FREQUENCY: f64 = 0.02;
+/// Mass per length over that of the air in a square of the width.
+const MASS_RATIOS: (f64, f64) = (2.0, 300.0);
+/// Frequency of a vertical mode times the length of its half wave, the least of all modes, m/s: 100 for girders of usual
+/// slenderness whatever their span, 50 to 160 for suspended ones.
+const WAVE_SPEEDS: (f64, f64) = (15.0, 250.0);
+
+/// Nodes and modes as they were read, before sections are known.
+#[derive(Debug, Clone, Copy)]
+pub struct Girder<'a> {
+    /// Nodes along the girder.
+    pub nodes: &'a [Node],
+    /// Places of the nodes downwind and up, m; empty where the file knows only places along the girder.
+    pub offsets_m: &'a [[f64; 2]],
+    /// Modes that take part.
+    pub modes: &'a [BridgeMode],
+}
+
+/// What is odd about modes by themselves: lengths, axes, modes given twice, rotations in degrees, norms, damping.
+pub fn of_modes(girder: &Girder<'_>) -> Vec<Finding> {
+    let modes = girder.modes;
+    let mut found = of_line(girder.nodes, girder.offsets_m);
+    if let Some(mode) = modes.iter().find(|m| moves_less_than_it_turns(m)) {
+        let (turns, moves) = (greatest(mode, 2), greatest_displacement(mode));
+        let text = format!(
+            "it turns by {turns:.3} where it moves by {moves:.3} m at most, and rotations are in radians"
+        );
+        let otherwise = format!(
+            "in degrees it would be {} rad",
+            significant(turns.to_radians())
+        );
+        found.push(Finding::doubt(Kind::Unit, place(mode), text).otherwise(otherwise));
+    }
+    if let Some(mode) = modes.iter().find(|m| is_of_another_norm(m)) {
+        let moves = greatest_displacement(mode).max(greatest(mode, 2));
+        let text = format!(
+            "a generalised mass of 1 belongs to a mass-normalised shape, which moves by about 1e-3, and this one moves by up to {moves:.3}"
+        );
+        found.push(
+            Finding::doubt(Kind::Contradiction, place(mode), text)
+                .otherwise("is the mass that of a shape of another norm?".to_owned()),
+        );
+    }
+    found.extend(twice(girder));
+    let damping = modes
+        .iter()
+        .find_map(|m| unusual_damping("modes.damping_ratio", m.damping_ratio));
+    found.extend(damping);
+    found
+}
+
+/// What is odd about a whole bridge beside [`of_modes`]: widths, air, and what modes and sections say of each other.
+pub fn of_bridge(bridge: &Bridge) -> Vec<Finding> {
+    let density = bridge.air_density_kg_m3;
+    let mut found: Vec<Finding> = unusual_air("air_density_kg_m3", density)
+        .into_iter()
+        .collect();
+    let mut named: Vec<&str> = Vec::new();
+    for group in &bridge.groups {
+        if !named.contains(&group.name.as_str()) {
+            named.push(&group.name);
+            let key = format!("section {}: width_m", group.name);
+            found.extend(beyond(&key, group.width_m, &DECK_WIDTH));
+        }
+    }
+    let length = length_m(&bridge.nodes);
+    let scale_is_usual = found.is_empty() && beyond("", length, &LENGTH).is_none();
+    if scale_is_usual && bridge.nodes.len() > 2 {
+        found.extend(masses(bridge));
+        found.extend(frequencies(bridge, length));
+    }
+    found
+}
+
+fn place(mode: &BridgeMode) -> String {
+    format!("mode {}", mode.number)
+}
+
+fn greatest(mode: &BridgeMode, motion: usize) -> f64 {
+    mode.shape
+        .iter()
+        .map(|s| s[motion].abs())
+        .fold(0.0, f64::max)
+}
+
+fn greatest_displacement(mode: &BridgeMode) -> f64 {
+    greatest(mode, 0).max(greatest(mode, 1))
+}
+
+fn moves_less_than_it_turns(mode: &BridgeMode) -> bool {
+    greatest(mode, 2) > PI && greatest_displacement(mode) <= 2.0
+}
+
+fn is_of_another_norm(mode: &BridgeMode) -> bool {
+    let moves = greatest_displacement(mode).max(greatest(mode, 2));
+    (mode.generalised_mass - 1.0).abs() < 1e-9 && moves > MASS_NORMALISED_AT_MOST
+}
+
+/// `∫φ_a φ_b` of one motion over the girder.
+fn product(nodes: &[Node], a: &BridgeMode, b: &BridgeMode, motion: usize) -> f64 {
+    let shapes = a.shape.iter().zip(&b.shape);
+    let parts = nodes.iter().zip(shapes);
+    parts
+        .map(|(n, (a, b))| n.length_m * a[motion] * b[motion])
+        .sum()
+}
+
+/// Modes that are one mode: the same shape with the same mass at the same frequency. Modes of cables may share a frequency or the
+/// shape of the girder, never both and the mass.
+fn twice(girder: &Girder<'_>) -> Vec<Finding> {
+    let all = |a: &BridgeMode, b: &BridgeMode| -> f64 {
+        (0..3).map(|i| product(girder.nodes, a, b, i)).sum()
+    };
+    let near = |a: f64, b: f64, part: f64| (a / b - 1.0).abs() < part;
+    let mut found = Vec::new();
+    for (i, a) in girder.modes.iter().enumerate() {
+        for b in &girder.modes[..i] {
+            if !near(a.frequency_hz, b.frequency_hz, SAME_FREQUENCY) {
+                continue;
+            }
+            let (aa, bb, ab) = (all(a, a), all(b, b), all(a, b));
+            let alike = ab * ab / (aa * bb);
+            if alike > SAME_SHAPE
+                && near(a.generalised_mass / aa, b.generalised_mass / bb, SAME_MASS)
+            {
+                let text = format!(
+                    "it has the shape and the mass of mode {} ({:.4} and {:.4} Hz), and a mode that is counted twice is twice as \
+                     easily moved",
+                    b.number, a.frequency_hz, b.frequency_hz
+                );
+                found.push(
+                    Finding::doubt(Kind::Duplicate, place(a), text)
+                        .otherwise("modes.select can leave it out".to_owned()),
+                );
+                break;
+            }
+        }
+    }
+    found
+}
+
+/// Mass and inertia per length: `M/∫φ²` of each mode is no less than they are, since the rest of the mode has mass as well, and
+/// equal to them in a mode of one motion.
+fn masses(bridge: &Bridge) -> Vec<Finding> {
+    let least = |motion: usize| {
+        let each = bridge.modes.iter().enumerate().filter_map(|(i, m)| {
+            let square = product(&bridge.nodes, m, m, motion);
+            (square > 0.0).then(|| (m.generalised_mass / square, i))
+        });
+        each.min_by(|a, b| a.0.total_cmp(&b.0))
+    };
+    let Some((mass, vertical)) = least(0).filter(|(_, i)| bridge.main_motion(*i) == 0) else {
+        return Vec::new();
+    };
+    let width = bridge.width_m();
+    let ratio = mass / (bridge.air_density_kg_m3 * width * width);
+    let (low, high) = MASS_RATIOS;
+    if !(low..=high).contains(&ratio) {
+        let thousand = (low..=high).contains(&(1e3 * ratio));
+        let otherwise =
+            thousand.then(|| format!("in t it would be {} kg/m", significant(1e3 * mass)));
+        let key = format!("{}: generalised mass", place(&bridge.modes[vertical]));
+        let text = format!(
+            "with the shape that is {} kg/m, {ratio:.3} times the air in a square of the width ({low} to {high} is usual)",
+            significant(mass)
+        );
+        return vec![Finding::doubt(Kind::Unit, key, text).otherwise(otherwise)];
+    }
+    let Some((inertia, torsional)) = least(2).filter(|(_, i)| bridge.main_motion(*i) == 2) else {
+        return Vec::new();
+    };
+    let ratio = (inertia / mass).sqrt() / width;
+    let key = format!("{}: rotations", place(&bridge.modes[torsional]));
+    let found = unusual_radius(&key, width, ratio).map(|f| {
+        let in_radians = ratio * 1f64.to_degrees();
+        match unusual_radius(&key, width, in_radians) {
+            None => f.otherwise(format!(
+                "were they in degrees, it would be {in_radians:.3} widths"
+            )),
+            Some(_) => f,
+        }
+    });
+    found.into_iter().collect()
+}
+
+/// The least product of frequency and half wave of the modes that move mainly up and down.
+fn frequencies(bridge: &Bridge, length_m: f64) -> Vec<Finding> {
+    let vertical = (0..bridge.modes.len()).filter(|m| bridge.main_motion(*m) == 0);
+    let speeds = vertical.map(|i| {
+        let mode = &bridge.modes[i];
+        (mode.frequency_hz * length_m / half_waves(mode) as f64, mode)
+    });
+    let Some((speed, mode)) = speeds.min_by(|a, b| a.0.total_cmp(&b.0)) else {
+        return Vec::new();
+    };
+    let (low, high) = WAVE_SPEEDS;
+    let is_usual = |x: f64| (low..=high).contains(&x);
+    if is_usual(speed) {
+        return Vec::new();
+    }
+    let hertz = mode.frequency_hz;
+    let otherwise = is_usual(speed / TAU)
+        .then(|| format!("in rad/s it would be {} Hz", significant(hertz / TAU)));
+    let usual = |x: f64| significant(x * hertz / speed);
+    let text = format!(
+        "with half waves of {:.0} m {} to {} Hz is usual",
+        speed / hertz,
+        usual(low),
+        usual(high)
+    );
+    let found = Finding::unit(format!("{}: frequency_hz", place(mode)), hertz, text);
+    vec![found.otherwise(otherwise)]
+}
+
+/// Half waves of the vertical shape over the whole girder.
+fn half_waves(mode: &BridgeMode) -> usize {
+    let least = 0.05 * greatest(mode, 0);
+    let signs: Vec<bool> = mode
+        .shape
+        .iter()
+        .filter(|s| s[0].abs() > least)
+        .map(|s| s[0] > 0.0)
+        .collect();
+    1 + signs.windows(2).filter(|pair| pair[0] != pair[1]).count()
+}

@@ -1,0 +1,289 @@
+//! Sections: width, air, masses, frequencies, damping, each by itself and against the others.
+
+use super::limits::{DECK_WIDTH, FREQUENCIES, Limits, beyond, significant};
+use super::{Finding, Kind, Severity};
+use crate::section::SectionModel;
+use std::f64::consts::TAU;
+
+/// Air between a high mountain and a cold day, kg/m³.
+const AIR: Limits = Limits {
+    unit: "kg/m³",
+    usual: (0.7, 1.6),
+    meant: &[("g/m³", 1e-3), ("kg/l", 1e3)],
+};
+/// Ratio to critical damping of a structure without devices. Less is on the safe side, zero an idealisation.
+const DAMPING: (f64, f64) = (5e-4, 0.03);
+/// From here on it is no ratio of a structure.
+const MOST_DAMPING: f64 = 0.1;
+/// Decks narrower than this are models, m …
+pub const WIDEST_MODEL_M: f64 = 2.0;
+/// … and those wider than this carry roads: long bridges, with low frequencies, m.
+const NARROWEST_ROAD_M: f64 = 10.0;
+/// Mass over that of the air in a square of the width, `m/(ρB²)`: steel boxes have 10 to 30, concrete decks to 100, footbridges to
+/// 200; models may be as heavy as their rig.
+const MASS_RATIOS: (f64, f64) = (3.0, 300.0);
+const MASS_RATIOS_OF_MODELS: (f64, f64) = (1.5, 1000.0);
+/// Radius of gyration over the width, `√(J/m)/B`: 0.289 for a uniform plate, 0.5 for all mass in both edges.
+const RADII: (f64, f64) = (0.2, 0.45);
+/// Nothing inside the width has more; less than the other only a girder without a deck.
+const POSSIBLE_RADII: (f64, f64) = (0.15, 0.5);
+/// Flutter of a flat plate with these numbers above this is that of no long bridge and of no model, m/s …
+const FASTEST_PLATE_M_S: f64 = 200.0;
+/// … and of no footbridge, which are stiff.
+const FASTEST_FOOTBRIDGE_M_S: f64 = 350.0;
+
+/// What is odd about a section. One cause is said once: ratios are judged only where width and density are usual.
+pub fn of_section(section: &SectionModel) -> Vec<Finding> {
+    let (heave, twist) = (&section.vertical, &section.torsion);
+    let sway = section.lateral.as_ref();
+    let mut found: Vec<Finding> = beyond("section.width_m", section.width_m, &DECK_WIDTH)
+        .into_iter()
+        .chain(unusual_air(
+            "section.air_density_kg_m3",
+            section.air_density_kg_m3,
+        ))
+        .collect();
+    let scale_is_usual = found.is_empty();
+    let mut damping = |name: &str, ratio| {
+        let key = format!("section.{name}.damping_ratio");
+        found.extend(unusual_damping(&key, ratio));
+    };
+    damping("vertical", heave.damping_ratio);
+    damping("torsion", twist.damping_ratio);
+    if let Some(s) = sway {
+        damping("lateral", s.damping_ratio);
+    }
+    if scale_is_usual {
+        let of_mass = masses(section);
+        let masses_are_usual = of_mass.iter().all(|f| f.severity < Severity::Doubt);
+        found.extend(of_mass);
+        found.extend(frequencies(section, masses_are_usual));
+    }
+    found
+}
+
+/// A density that is not that of air.
+pub fn unusual_air(key: &str, density_kg_m3: f64) -> Option<Finding> {
+    beyond(key, density_kg_m3, &AIR)
+}
+
+/// A damping ratio that no structure has.
+pub fn unusual_damping(key: &str, ratio: f64) -> Option<Finding> {
+    let (least, most) = DAMPING;
+    if ratio == 0.0 || (least..=most).contains(&ratio) {
+        return None;
+    }
+    let text = format!("a ratio to critical damping is usually {least} to {most}");
+    let found = Finding::unit(key, ratio, text);
+    if ratio < least {
+        return Some(found.into_note());
+    }
+    let as_decrement = format!(
+        "as a logarithmic decrement it would be a ratio of {}",
+        significant(ratio / TAU)
+    );
+    if ratio <= MOST_DAMPING {
+        return Some(found.otherwise(as_decrement).into_note());
+    }
+    let as_per_cent = format!("in per cent it would be {}", significant(ratio / 100.0));
+    Some(found.otherwise(as_per_cent))
+}
+
+fn masses(section: &SectionModel) -> Vec<Finding> {
+    let mut found = Vec::new();
+    found.extend(mass("vertical", section.vertical.mass_kg_m, section));
+    let sway = section.lateral.as_ref();
+    found.extend(sway.and_then(|s| mass("lateral", s.mass_kg_m, section)));
+    // with a mass in another unit the radius says the same once more
+    if found.is_empty() {
+        found.extend(radius(section));
+    }
+    found
+}
+
+fn mass(name: &str, mass_kg_m: f64, section: &SectionModel) -> Option<Finding> {
+    let air = section.air_density_kg_m3 * section.width_m.powi(2);
+    let (least, most) = if section.width_m < WIDEST_MODEL_M {
+        MASS_RATIOS_OF_MODELS
+    } else {
+        MASS_RATIOS
+    };
+    let ratio = mass_kg_m / air;
+    let is_usual = |x: f64| (least..=most).contains(&x);
+    if is_usual(ratio) {
+        return None;
+    }
+    let otherwise = if is_usual(1e3 * ratio) {
+        format!("in t/m it would be {} kg/m", significant(1e3 * mass_kg_m))
+    } else if ratio > most {
+        "it would be usual as that of the whole model or span".to_owned()
+    } else {
+        format!("at half the width it would be {:.3} times", 4.0 * ratio)
+    };
+    let text = format!(
+        "that is {ratio:.3} times the air in a square of the width ({least} to {most} is usual)"
+    );
+    let key = format!("section.{name}.mass_kg_m");
+    Some(Finding::unit(key, mass_kg_m, text).otherwise(otherwise))
+}
+
+fn radius(section: &SectionModel) -> Option<Finding> {
+    let inertia = section.torsion.inertia_kg_m2_m;
+    let ratio = (inertia / section.vertical.mass_kg_m).sqrt() / section.width_m;
+    unusual_radius("section.torsion.inertia_kg_m2_m", section.width_m, ratio).map(|f| Finding {
+        value: Some(inertia),
+        ..f
+    })
+}
+
+/// A radius of gyration, over the width, that no deck has.
+pub(super) fn unusual_radius(key: &str, width_m: f64, ratio: f64) -> Option<Finding> {
+    let within = |(least, most): (f64, f64), x: f64| (least..=most).contains(&x);
+    if within(RADII, ratio) {
+        return None;
+    }
+    let text = format!(
+        "with the mass that is a radius of gyration of {ratio:.3} widths (decks have {} to {}; 0.5 is all mass in both edges)",
+        RADII.0, RADII.1
+    );
+    let found = Finding::doubt(Kind::Unit, key, text);
+    if within(POSSIBLE_RADII, ratio) {
+        return Some(found.into_note());
+    }
+    let thousand = 1e3_f64.sqrt();
+    // the factor on the ratio if it was meant so
+    let meant = [
+        (
+            0.5,
+            format!(
+                "were width_m the semi-chord, B would be {} m",
+                2.0 * width_m
+            ),
+        ),
+        (thousand, "were J in t·m²/m, it".to_owned()),
+        (1.0 / thousand, "were the mass in t/m, it".to_owned()),
+        (1e-3, "were lengths of J in mm, it".to_owned()),
+    ];
+    let meant = meant
+        .into_iter()
+        .find(|(factor, _)| within(RADII, factor * ratio));
+    let otherwise = meant.map(|(factor, words)| {
+        let what = if words.ends_with("it") {
+            words
+        } else {
+            format!("{words} and this")
+        };
+        format!("{what} would be {:.3} widths", factor * ratio)
+    });
+    Some(found.otherwise(otherwise))
+}
+
+/// Natural frequencies against what the width suggests, by themselves and by the speed at which a flat plate with them flutters.
+fn frequencies(section: &SectionModel, masses_are_usual: bool) -> Vec<Finding> {
+    let natural = |given: Option<f64>, stiffness: Option<f64>, inertia: f64| {
+        given.unwrap_or_else(|| (stiffness.unwrap_or(0.0) / inertia).sqrt() / TAU)
+    };
+    let (v, t) = (&section.vertical, &section.torsion);
+    let heave = natural(v.frequency_hz, v.stiffness_n_m2, v.mass_kg_m);
+    let twist = natural(t.frequency_hz, t.stiffness_n, t.inertia_kg_m2_m);
+    let sway = section.lateral.as_ref().map(|s| {
+        let f = natural(s.frequency_hz, s.stiffness_n_m2, s.mass_kg_m);
+        ("lateral", f)
+    });
+    let all = [("vertical", heave), ("torsion", twist)];
+    let all = all.into_iter().chain(sway);
+    let mut found: Vec<Finding> = all
+        .filter_map(|(name, hertz)| {
+            let key = format!("section.{name}.frequency_hz");
+            unusual_frequency(&key, name, hertz, section.width_m)
+        })
+        .collect();
+    if masses_are_usual && found.iter().all(|f| f.severity < Severity::Doubt) {
+        found.extend(fast_plate(section, heave, twist));
+    }
+    found
+}
+
+/// Usual natural frequencies of a motion at a width, and those beyond which it is another unit, Hz.
+fn frequency_limits(name: &str, width_m: f64) -> [(f64, f64); 2] {
+    let [usual, possible] = if width_m < WIDEST_MODEL_M {
+        [(1.0, 20.0), (0.3, 20.0)]
+    } else if width_m < NARROWEST_ROAD_M {
+        [(0.1, 6.0), (0.05, 10.0)]
+    } else {
+        [(0.05, 1.0), (0.03, 3.0)]
+    };
+    let times = |(low, high): (f64, f64), factor: (f64, f64)| (low * factor.0, high * factor.1);
+    let factor = match (name, width_m < WIDEST_MODEL_M) {
+        // one to four times that of heave, and half of it in sway
+        ("torsion", false) => (1.0, 3.0),
+        ("lateral", false) => (0.5, 1.0),
+        ("lateral", true) => (0.3, 1.0),
+        _ => (1.0, 1.0),
+    };
+    [times(usual, factor), times(possible, factor)]
+}
+
+fn unusual_frequency(key: &str, name: &str, hertz: f64, width_m: f64) -> Option<Finding> {
+    let [usual, possible] = frequency_limits(name, width_m);
+    let within = |(low, high): (f64, f64), x: f64| (low..=high).contains(&x);
+    // a motion without a spring has none
+    if hertz == 0.0 || within(usual, hertz) {
+        return None;
+    }
+    let meant = FREQUENCIES.iter().find(|(_, f)| within(usual, f * hertz));
+    let otherwise = match meant {
+        Some((unit, f)) => Some(format!(
+            "in {unit} it would be {} Hz",
+            significant(f * hertz)
+        )),
+        None if hertz < usual.0 && width_m < WIDEST_MODEL_M => {
+            Some("is it that of the bridge beside the width of a model?".to_owned())
+        }
+        None => None,
+    };
+    let (low, high) = usual;
+    let text = format!("{low} to {high} Hz is usual at a width of {width_m} m");
+    let found = Finding::unit(key, hertz, text).otherwise(otherwise);
+    Some(if within(possible, hertz) {
+        found.into_note()
+    } else {
+        found
+    })
+}
+
+/// A flat plate of these numbers flutters at `V = 3.7 f_t B √(m r/(ρB³) (1 − (f_v/f_t)²))` (Selberg's formula, within some per
+/// cent): a speed beyond every bridge says that frequencies, or all masses, stand in another unit.
+fn fast_plate(section: &SectionModel, heave_hz: f64, twist_hz: f64) -> Option<Finding> {
+    let (width, density) = (section.width_m, section.air_density_kg_m3);
+    let mass = section.vertical.mass_kg_m;
+    let radius = (section.torsion.inertia_kg_m2_m / mass).sqrt();
+    if twist_hz <= heave_hz {
+        return None;
+    }
+    let apart = 1.0 - (heave_hz / twist_hz).powi(2);
+    let speed = 3.7 * twist_hz * width * (mass * radius / (density * width.powi(3)) * apart).sqrt();
+    let fastest = if (WIDEST_MODEL_M..NARROWEST_ROAD_M).contains(&width) {
+        FASTEST_FOOTBRIDGE_M_S
+    } else {
+        FASTEST_PLATE_M_S
+    };
+    if speed <= fastest {
+        return None;
+    }
+    let otherwise = format!(
+        "in rad/s the frequencies would be {} and {} Hz, and the plate would flutter at {:.0} m/s",
+        significant(heave_hz / TAU),
+        significant(twist_hz / TAU),
+        speed / TAU
+    );
+    let text = format!(
+        "with these masses and frequencies ({heave_hz:.4} and {twist_hz:.4} Hz) a flat plate flutters near {speed:.0} m/s, above \
+         {fastest:.0} m/s as no deck of {width} m"
+    );
+    let found = Finding::unit("section.torsion.frequency_hz", twist_hz, text);
+    Some(found.otherwise(otherwise))
+}
+
+#[cfg(test)]
+mod tests;

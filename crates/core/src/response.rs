@@ -1,0 +1,382 @@
+//! Time response of the coupled section by exact steps.
+//!
+//! A step of any size is exact for wind and forces that are held or run on a straight line over it. At constant wind
+//! speed it is one product with a matrix exponential, cached per wind speed and step; where the wind changes, within the
+//! step or since the last one, a Taylor series of the motion, which needs no matrix. With the discrete Laguerre model the
+//! dimensionless force is sampled every `Δt = Δs B/V`; between samples the section moves exactly under that force and
+//! the present dynamic pressure.
+
+mod gusts;
+mod packed;
+mod prescribed;
+mod quasi_steady;
+mod rates;
+mod sampled;
+mod sampling;
+mod series;
+mod step_cache;
+mod strip_gusts;
+mod values;
+
+pub use prescribed::{ForceAhead, GivenMotion, KnownMotion, PrescribedForces, StripFlow};
+pub use quasi_steady::{NonlinearRun, NonlinearSection};
+pub use strip_gusts::StripGusts;
+pub use values::{Inputs, Outputs, SectionState, wind_at_rest};
+
+use crate::aerodynamics::{GustForce, RationalAdmittance, Realization};
+use crate::aeroelastic::CoupledSection;
+use crate::error::{Error, Result, finite_numbers, non_negative, positive};
+use gusts::Gusts;
+use nalgebra::{DMatrix, DVector};
+use packed::{advanced, apply, settled};
+use sampling::Sampling;
+use series::{Drive, Moving, Series};
+use step_cache::{StepCache, active_columns, load};
+
+/// Samples of the force, or parts of a changing wind, that one step may take: beyond, it is refused at once. Each costs
+/// about a microsecond.
+const MAX_SUBSTEPS: f64 = 1e4;
+/// What a sample costs, in sub-steps, where its way is one product with a matrix.
+const SAMPLE_BY_MATRIX: f64 = 0.125;
+/// Parts of a series that cost as much as a matrix exponential.
+const PARTS_OF_A_MATRIX: f64 = 32.0;
+/// States at most whose step becomes a matrix: that of more takes seconds to make and leaves the caches of any processor.
+const STATES_OF_A_MATRIX: usize = 800;
+
+/// A step by a matrix that may be taken again as it is, as long as nobody touches inputs and state in between.
+#[derive(Debug, Clone, Copy)]
+pub struct RepeatableStep {
+    /// Its size, s.
+    pub step_s: f64,
+    /// Columns of the matrix that meet something other than zero.
+    pub columns: usize,
+}
+
+/// Steps a coupled section.
+///
+/// ```
+/// use aerodeck::prelude::*;
+/// use aerodeck::response::{Inputs, Stepper};
+///
+/// let structure = SectionModel::table_4_1().structure()?;
+/// let section = CoupledSection::with_model(&structure, &RationalModel::jones_flat_plate())?;
+/// let mut stepper = Stepper::new(section);
+/// let mut state = stepper.released(&[0.01, 0.0], &[0.0, 0.0])?; // m, rad
+/// for _ in 0..1000 {
+///     stepper.advance(&mut state, &Inputs::steady(20.0, 2), 0.01)?;
+/// }
+/// assert!(state.values[0].abs() < 0.001); // far below the onset the motion dies down
+/// # Ok::<(), Error>(())
+/// ```
+///
+/// A step is a pure function of state, inputs and step size: the cache only saves time.
+#[derive(Debug, Clone)]
+pub struct Stepper {
+    section: CoupledSection,
+    cache: StepCache,
+    series: Series,
+    /// Of the discrete model.
+    sampling: Option<Sampling>,
+    /// `[z, w, ẇ]` of the step at hand.
+    operand: Vec<f64>,
+    /// State after it.
+    next: Vec<f64>,
+    /// Accelerations and forces of the outputs at hand.
+    both: Vec<f64>,
+}
+
+impl Stepper {
+    /// A stepper with an empty cache.
+    pub fn new(section: CoupledSection) -> Self {
+        Self::in_gusts(section, None)
+    }
+
+    /// A stepper on whose section gusts act with these forces.
+    pub fn in_gusts(section: CoupledSection, force: Option<&GustForce>) -> Self {
+        let gusts = force.map(|force| Gusts::new(force, section.structure()));
+        Self::with_gusts(section, gusts)
+    }
+
+    /// A stepper of modes in gusts: see [`Inputs::gust_m_s`]; `passing` is the wind factor over the width (1/m) of each group
+    /// of strips, so many inputs as there are modes for each.
+    pub fn in_modal_gusts(
+        section: CoupledSection,
+        passing: &[f64],
+        admittance: RationalAdmittance,
+    ) -> Self {
+        let modes = section.structure().dofs.len();
+        Self::with_gusts(section, Some(Gusts::on_modes(modes, passing, admittance)))
+    }
+
+    fn with_gusts(section: CoupledSection, gusts: Option<Gusts>) -> Self {
+        let (states, n) = (section.states(), section.structure().dofs.len());
+        let operand = vec![0.0; states + 2 * n];
+        Self {
+            next: vec![0.0; states],
+            both: vec![0.0; 2 * n],
+            series: Series::new(&section, gusts),
+            sampling: Sampling::of(&section),
+            section,
+            cache: StepCache::default(),
+            operand,
+        }
+    }
+
+    /// Numbers of the state of the gusts.
+    pub fn gust_states(&self) -> usize {
+        self.series.gusts().map_or(0, Gusts::states)
+    }
+
+    /// The section that is stepped.
+    pub fn section(&self) -> &CoupledSection {
+        &self.section
+    }
+
+    /// The section held at `displacement` until the flow has settled, then released with `rate`.
+    /// The filters hold the value that the constant displacement gives.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when the vectors have not n finite entries.
+    pub fn released(&self, displacement: &[f64], rate: &[f64]) -> Result<SectionState> {
+        let s = self.section.structure();
+        let n = s.dofs.len();
+        finite_numbers("initial displacement", displacement, n)?;
+        finite_numbers("initial rate", rate, n)?;
+        let motion = DVector::from_fn(n, |i, _| {
+            displacement[i] * s.dofs[i].motion_scale(s.width_m)
+        });
+        let (settle, drive) = match self.section.aerodynamics() {
+            Realization::Continuous(c) => (-&c.a, &c.b),
+            Realization::Discrete(d) => (DMatrix::identity(d.a.nrows(), d.a.nrows()) - &d.a, &d.b),
+        };
+        let mut values = [displacement, rate].concat();
+        if !settle.is_empty() {
+            let filters = settle.lu().solve(&(drive * motion)).ok_or_else(|| {
+                Error::Numerical("released section: a filter does not settle".into())
+            })?;
+            values.extend(filters.iter());
+        }
+        Ok(SectionState {
+            values,
+            gusts: vec![0.0; self.gust_states()],
+            ..SectionState::default()
+        })
+    }
+
+    /// Advances `state` by `step_s` seconds. On an error the state is as it was.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a step that is not positive or inputs that are not finite, a wind speed that becomes
+    /// negative by more than rounding, a step of more than ten thousand sub-steps; [`Error::Numerical`] when the motion has
+    /// grown beyond what a number can hold.
+    #[inline]
+    pub fn advance(
+        &mut self,
+        state: &mut SectionState,
+        inputs: &Inputs,
+        step_s: f64,
+    ) -> Result<()> {
+        if let Some(step) = self.repeatable(state, inputs, step_s)
+            && self.repeat(state, inputs, step.columns)
+        {
+            return Ok(());
+        }
+        self.advance_anew(state, inputs, step_s)
+    }
+
+    /// A step of which nothing is known yet.
+    #[inline(never)]
+    fn advance_anew(
+        &mut self,
+        state: &mut SectionState,
+        inputs: &Inputs,
+        step_s: f64,
+    ) -> Result<()> {
+        positive("step size", step_s)?;
+        inputs.check(self.section.structure().dofs.len())?;
+        if inputs.wind_speed_m_s < 0.0 {
+            let mut at_rest = inputs.clone();
+            at_rest.wind_speed_m_s = 0.0;
+            return self.advance_anew(state, &at_rest, step_s);
+        }
+        if inputs.wind_speed_rate_m_s2 != 0.0 {
+            let before = inputs.wind_speed_m_s;
+            let end = before + inputs.wind_speed_rate_m_s2 * step_s;
+            non_negative(
+                "wind speed at the end of the step",
+                wind_at_rest(end, before),
+            )?;
+        }
+        if self.sampling.is_some() {
+            return self.advance_sampled(state, inputs, step_s);
+        }
+        let same_wind = state
+            .last_wind_m_s
+            .is_none_or(|last| last == inputs.wind_speed_m_s);
+        let steady = inputs.wind_speed_rate_m_s2 == 0.0 && same_wind;
+        if steady && self.may_have_matrix() && !self.gusts_act(state, inputs) {
+            self.advance_by_matrix(state, inputs, step_s)?;
+        } else {
+            self.advance_by_series(state, inputs, step_s)?;
+        }
+        state.last_wind_m_s = Some(inputs.wind_speed_m_s);
+        Ok(())
+    }
+
+    fn may_have_matrix(&self) -> bool {
+        self.section.states() <= STATES_OF_A_MATRIX
+    }
+
+    /// Whether a gust blows or has not yet passed.
+    fn gusts_act(&self, state: &SectionState, inputs: &Inputs) -> bool {
+        let blowing = inputs.gust_m_s.iter().chain(&inputs.gust_rate_m_s2);
+        self.series.gusts().is_some() && blowing.chain(&state.gusts).any(|x| *x != 0.0)
+    }
+
+    /// The step if wind and size are those of the last one by a matrix, and so are known to be right.
+    #[inline]
+    pub fn repeatable(
+        &self,
+        state: &SectionState,
+        inputs: &Inputs,
+        step_s: f64,
+    ) -> Option<RepeatableStep> {
+        let wind = inputs.wind_speed_m_s;
+        let forces = [inputs.force.len(), inputs.force_rate.len()];
+        let repeatable = inputs.wind_speed_rate_m_s2 == 0.0
+            && self.sampling.is_none()
+            && state.values.len() == self.next.len()
+            && forces == [(self.operand.len() - self.next.len()) / 2; 2]
+            && state.last_wind_m_s == Some(wind)
+            && self.cache.is_newest(wind, step_s)
+            && !self.gusts_act(state, inputs);
+        repeatable.then(|| RepeatableStep {
+            step_s,
+            columns: active_columns(inputs, state.values.len()),
+        })
+    }
+
+    /// Takes the newest step of the cache with so many columns of its matrix, see [`RepeatableStep`]. Whatever is wrong
+    /// with the forces leaves the state as it was.
+    #[inline(always)]
+    pub fn repeat(&mut self, state: &mut SectionState, inputs: &Inputs, columns: usize) -> bool {
+        let Some(step) = self.cache.newest() else {
+            return false;
+        };
+        let operand = if columns == state.values.len() {
+            &state.values
+        } else {
+            load(&mut self.operand, &state.values, inputs);
+            &self.operand[..columns]
+        };
+        let right = advanced(step, operand, &mut self.next);
+        if right {
+            std::mem::swap(&mut state.values, &mut self.next);
+        }
+        right
+    }
+
+    fn advance_by_matrix(
+        &mut self,
+        state: &mut SectionState,
+        inputs: &Inputs,
+        step: f64,
+    ) -> Result<()> {
+        self.cache
+            .full_system(&self.section, inputs.wind_speed_m_s, step)?;
+        let columns = active_columns(inputs, state.values.len());
+        if self.repeat(state, inputs, columns) {
+            return Ok(());
+        }
+        Err(overgrown())
+    }
+
+    fn advance_by_series(
+        &mut self,
+        state: &mut SectionState,
+        inputs: &Inputs,
+        step: f64,
+    ) -> Result<()> {
+        let (wind, wind_rate) = (inputs.wind_speed_m_s, inputs.wind_speed_rate_m_s2);
+        let gusts = self.gusts_act(state, inputs);
+        let parts = self
+            .series
+            .parts(wind + wind_rate.abs() * step, step, gusts);
+        let long = parts.is_nan() || parts > PARTS_OF_A_MATRIX;
+        if wind_rate == 0.0 && !gusts && long && self.may_have_matrix() {
+            return self.advance_by_matrix(state, inputs, step);
+        }
+        check_substeps(parts, step)?;
+        let drive = Drive {
+            wind,
+            wind_rate,
+            force: [&inputs.force, &inputs.force_rate, &[]],
+            gust: inputs.gusts_from(0.0),
+        };
+        let moving = Moving {
+            values: &mut state.values,
+            gusts: gusts.then_some(&mut state.gusts),
+        };
+        if self.series.advance(moving, &drive, step, parts) {
+            settled(&mut state.values);
+            settled(&mut state.gusts);
+            Ok(())
+        } else {
+            Err(overgrown())
+        }
+    }
+
+    /// Motion, accelerations and self-excited forces at the instant of `state`.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for inputs that are not finite.
+    pub fn outputs(
+        &mut self,
+        state: &SectionState,
+        inputs: &Inputs,
+        outputs: &mut Outputs,
+    ) -> Result<()> {
+        let n = self.section.structure().dofs.len();
+        inputs.check(n)?;
+        outputs.displacement.clear();
+        outputs.displacement.extend_from_slice(&state.values[..n]);
+        outputs.rate.clear();
+        outputs.rate.extend_from_slice(&state.values[n..2 * n]);
+        outputs.acceleration.resize(n, 0.0);
+        outputs.self_excited_force.resize(n, 0.0);
+        let wind = inputs.wind_speed_m_s.max(0.0);
+        self.operand[..state.values.len()].copy_from_slice(&state.values);
+        let external = &mut self.operand[state.values.len()..][..n];
+        external.copy_from_slice(&inputs.force);
+        if let Some(gusts) = self.series.gusts() {
+            let by_gusts = &mut self.both[..n];
+            gusts.force_per_wind(&inputs.gust_m_s, &state.gusts, by_gusts);
+            for (w, gust) in external.iter_mut().zip(by_gusts) {
+                *w += wind * *gust;
+            }
+        }
+        let rows = self.cache.output_rows(&self.section, wind)?;
+        let columns = state.values.len() + n;
+        let both = &mut self.both[..];
+        apply(rows, &self.operand[..columns], both);
+        outputs.acceleration.copy_from_slice(&both[..n]);
+        outputs.self_excited_force.copy_from_slice(&both[n..]);
+        Ok(())
+    }
+}
+
+/// Whether a step may take so many sub-steps.
+fn check_substeps(count: f64, step: f64) -> Result<()> {
+    if count <= MAX_SUBSTEPS {
+        return Ok(());
+    }
+    Err(Error::input(
+        "step size",
+        format!("a step of at most {MAX_SUBSTEPS} sub-steps"),
+        format!("{step} s, {count:.1e} sub-steps"),
+    ))
+}
+
+fn overgrown() -> Error {
+    Error::Numerical("step: the motion has overflowed".into())
+}

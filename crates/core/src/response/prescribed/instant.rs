@@ -1,0 +1,95 @@
+//! Forces and rates of the filters at one instant, for importers that integrate the filters themselves.
+
+use super::course::MotionCubic;
+use super::{ForceAhead, PrescribedForces};
+use crate::aerodynamics::Realization;
+use crate::error::Result;
+use nalgebra::{DMatrix, DVector};
+use std::ops::Range;
+
+impl PrescribedForces {
+    /// Entries of the state that are the filters of strip `s`.
+    pub fn filters(&self, s: usize) -> Range<usize> {
+        let first = self.strip(s).start + 1;
+        first..first + self.realization.states()
+    }
+
+    /// Whether rates, and whether accelerations of coordinate `dof` of a strip enter the forces.
+    pub fn feels(&self, dof: usize) -> [bool; 2] {
+        match &self.realization {
+            Realization::Continuous(c) => {
+                [&c.e1, &c.e2].map(|e| e.column(dof).iter().any(|x| *x != 0.0))
+            }
+            Realization::Discrete(_) => [false; 2],
+        }
+    }
+
+    /// What the filters hold behind a deck held still, per dimensionless displacement of each coordinate.
+    ///
+    /// # Errors
+    /// [`crate::Error::Numerical`] for a filter that does not settle.
+    pub fn settling(&self) -> Result<DMatrix<f64>> {
+        let (matrix, drive) = match &self.realization {
+            Realization::Continuous(c) => (-&c.a, &c.b),
+            Realization::Discrete(d) => (DMatrix::identity(d.a.nrows(), d.a.nrows()) - &d.a, &d.b),
+        };
+        if matrix.is_empty() {
+            return Ok(drive.clone());
+        }
+        matrix.lu().solve(drive).ok_or_else(super::unsettled)
+    }
+
+    /// Enters the filters of a strip of this width (m) held at a displacement (m or rad) until the flow has settled.
+    pub fn settle_at(
+        &self,
+        settling: &DMatrix<f64>,
+        displacement: &[f64],
+        width: f64,
+        filters: &mut [f64],
+    ) {
+        let settled = settling * self.dimensionless(displacement, width);
+        filters.copy_from_slice(settled.as_slice());
+    }
+
+    /// Forces on a strip now, from its filters and the displacement, rate and acceleration of each coordinate, in a wind (m/s)
+    /// on a deck of this width (m) in air of this density (kg/m³).
+    pub fn at_instant(
+        &mut self,
+        filters: &[f64],
+        motion: &[[f64; 3]],
+        (wind, width, density): (f64, f64, f64),
+        forces: &mut [ForceAhead],
+    ) {
+        self.courses.clear();
+        for (dof, now) in self.dofs.iter().zip(motion) {
+            self.courses
+                .push(MotionCubic::now(*now).times(dof.motion_scale(width)));
+        }
+        self.forces(filters, (wind, width, density), forces);
+    }
+
+    /// `ż = (V/B)(A z + B r)` of a strip, 1/s; sampled filters have no rate.
+    pub fn filter_rates(
+        &self,
+        filters: &[f64],
+        displacement: &[f64],
+        (wind, width): (f64, f64),
+        rates: &mut [f64],
+    ) {
+        let Realization::Continuous(c) = &self.realization else {
+            rates.fill(0.0);
+            return;
+        };
+        let r = self.dimensionless(displacement, width);
+        let rate = &c.a * DVector::from_column_slice(filters) + &c.b * r;
+        for (slot, value) in rates.iter_mut().zip(rate.iter()) {
+            *slot = wind / width * value;
+        }
+    }
+
+    fn dimensionless(&self, displacement: &[f64], width: f64) -> DVector<f64> {
+        let scaled = self.dofs.iter().zip(displacement);
+        let scaled = scaled.map(|(dof, x)| x * dof.motion_scale(width));
+        DVector::from_iterator(self.dofs.len(), scaled)
+    }
+}

@@ -1,0 +1,373 @@
+//! The elastically suspended deck section: what the user states, and its matrices.
+//!
+//! Degrees of freedom stand in the order vertical `y` (up), lateral `x` (downwind), rotation `θ` (nose-up);
+//! everything is per unit length of span. Heave and rotation are those of the axis about which the section turns; the
+//! aerodynamic models speak of a reference point, mid-chord unless the data say otherwise. [`Structure`] takes their
+//! forces to the axis and the motion back, and nothing else does.
+
+mod structure;
+
+pub use structure::Structure;
+
+use crate::error::{Error, Place, Result, finite, non_negative, positive};
+use nalgebra::DMatrix;
+use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
+
+/// A degree of freedom of the section.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Dof {
+    /// Vertical displacement `y` and lift, positive up.
+    Vertical,
+    /// Lateral displacement `x` and drag, positive downwind.
+    Lateral,
+    /// Rotation `θ` and moment, positive nose-up (windward edge up).
+    Torsion,
+}
+
+impl Dof {
+    /// The two degrees of freedom of classical flutter.
+    pub const TWO: [Dof; 2] = [Dof::Vertical, Dof::Torsion];
+    /// All three.
+    pub const THREE: [Dof; 3] = [Dof::Vertical, Dof::Lateral, Dof::Torsion];
+
+    /// Factor from motion to dimensionless motion: `1/B` for displacements, 1 for rotation.
+    pub fn motion_scale(self, width_m: f64) -> f64 {
+        if self == Dof::Torsion {
+            1.0
+        } else {
+            1.0 / width_m
+        }
+    }
+    /// Factor from dimensionless force to force over `½ρV²`: `B` for forces, `B²` for the moment.
+    pub fn force_scale(self, width_m: f64) -> f64 {
+        if self == Dof::Torsion {
+            width_m * width_m
+        } else {
+            width_m
+        }
+    }
+    /// Symbol of the motion: `y`, `x`, `θ`.
+    pub fn symbol(self) -> &'static str {
+        match self {
+            Dof::Vertical => "y",
+            Dof::Lateral => "x",
+            Dof::Torsion => "θ",
+        }
+    }
+    /// Names of several in words: `vertical, torsion`.
+    pub fn names(dofs: &[Dof]) -> String {
+        dofs.iter().map(|d| d.name()).collect::<Vec<_>>().join(", ")
+    }
+    /// Factor and unit in which people read a motion: degrees, or m.
+    pub fn shown_in(self) -> (f64, &'static str) {
+        match self {
+            Dof::Torsion => (1f64.to_degrees(), "deg"),
+            Dof::Vertical | Dof::Lateral => (1.0, "m"),
+        }
+    }
+    /// Name of the force in words.
+    pub fn force_name(self) -> &'static str {
+        match self {
+            Dof::Vertical => "lift",
+            Dof::Lateral => "drag",
+            Dof::Torsion => "moment",
+        }
+    }
+    /// Name of the motion in words.
+    pub fn name(self) -> &'static str {
+        match self {
+            Dof::Vertical => "vertical",
+            Dof::Lateral => "lateral",
+            Dof::Torsion => "torsion",
+        }
+    }
+}
+
+/// Spring support of a displacement: mass with either frequency or stiffness.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Translation {
+    /// Mass per length, kg/m.
+    pub mass_kg_m: f64,
+    /// Still-air natural frequency, Hz; give this or the stiffness.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub frequency_hz: Option<f64>,
+    /// Stiffness per length, N/m²; give this or the frequency.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stiffness_n_m2: Option<f64>,
+    /// Ratio to critical damping, dimensionless.
+    pub damping_ratio: f64,
+}
+
+/// Spring support of the rotation: mass moment of inertia with either frequency or stiffness.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Rotation {
+    /// Mass moment of inertia per length, kg·m²/m.
+    pub inertia_kg_m2_m: f64,
+    /// Still-air natural frequency, Hz; give this or the stiffness.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub frequency_hz: Option<f64>,
+    /// Rotational stiffness per length, N·m/(rad·m); give this or the frequency.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stiffness_n: Option<f64>,
+    /// Ratio to critical damping, dimensionless.
+    pub damping_ratio: f64,
+}
+
+/// An elastically suspended deck section in smooth flow.
+///
+/// ```
+/// use aerodeck::prelude::*;
+///
+/// let section = SectionModel { width_m: 0.6, ..SectionModel::table_4_1() };
+/// let structure = section.structure()?;
+/// assert_eq!(structure.mass[(0, 0)], 15.0); // kg/m
+/// assert!(SectionModel { width_m: -1.0, ..section }.structure().is_err());
+/// # Ok::<(), Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SectionModel {
+    /// Full deck width `B`, m.
+    pub width_m: f64,
+    /// Air density `ρ`, kg/m³.
+    pub air_density_kg_m3: f64,
+    /// Distance `a` of the axis about which the section turns from the reference point of the aerodynamic forces, m,
+    /// positive downwind (towards the trailing edge); left out: zero.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub axis_offset_m: Option<f64>,
+    /// Distance `e` of the centre of mass from that axis, m, positive downwind; left out: zero. The static unbalance is
+    /// `m e`; frequencies and damping ratios of the supports stay those of each motion by itself.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mass_offset_m: Option<f64>,
+    /// Vertical support.
+    pub vertical: Translation,
+    /// Lateral support; leaving it out gives a section of two degrees of freedom.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lateral: Option<Translation>,
+    /// Torsional support.
+    pub torsion: Rotation,
+}
+
+impl SectionModel {
+    /// The section of Table 4.1 of the thesis (B 0.5 m, m 15 kg/m, J 0.6 kg·m²/m, 2 Hz, 5 Hz, ζ 0.3 %, ρ 1.19 kg/m³).
+    pub fn table_4_1() -> Self {
+        Self::two_dof(0.5, 1.19, (15.0, 2.0, 0.003), (0.6, 5.0, 0.003))
+    }
+
+    /// The deck of IABSE Task Group 3.1, step 1.1a (B 31 m, m 22 740 kg/m, J 2.47e6 kg·m²/m, 0.100 and 0.278 Hz, ζ 0.3 %, ρ 1.22 kg/m³).
+    pub fn iabse_1_1a() -> Self {
+        Self::two_dof(31.0, 1.22, (22_740.0, 0.100, 0.003), (2.47e6, 0.278, 0.003))
+    }
+
+    /// Width (m), density (kg/m³) and, for heave and rotation, (inertia, frequency in Hz, damping ratio).
+    pub fn two_dof(
+        width_m: f64,
+        air_density_kg_m3: f64,
+        vertical: (f64, f64, f64),
+        torsion: (f64, f64, f64),
+    ) -> Self {
+        Self {
+            width_m,
+            air_density_kg_m3,
+            axis_offset_m: None,
+            mass_offset_m: None,
+            vertical: Translation {
+                mass_kg_m: vertical.0,
+                frequency_hz: Some(vertical.1),
+                stiffness_n_m2: None,
+                damping_ratio: vertical.2,
+            },
+            lateral: None,
+            torsion: Rotation {
+                inertia_kg_m2_m: torsion.0,
+                frequency_hz: Some(torsion.1),
+                stiffness_n: None,
+                damping_ratio: torsion.2,
+            },
+        }
+    }
+
+    /// Degrees of freedom in the order of every matrix of this crate.
+    pub fn dofs(&self) -> Vec<Dof> {
+        if self.lateral.is_some() {
+            Dof::THREE.to_vec()
+        } else {
+            Dof::TWO.to_vec()
+        }
+    }
+
+    /// `M_yθ = −m e`, kg: with the centre of mass downwind of the axis a nose-up acceleration moves it down.
+    pub fn static_coupling(&self) -> f64 {
+        -self.vertical.mass_kg_m * self.mass_offset_m.unwrap_or(0.0)
+    }
+
+    /// Mass, damping and stiffness of the section about its axis; `R = 2ζ√(K M)` and `K` on the diagonal, `M` with the
+    /// static unbalance.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a value that is not finite, not positive where it must be, for a support that states
+    /// both or neither of frequency and stiffness, and for a centre of mass as far from the axis as the radius of
+    /// gyration or farther.
+    pub fn structure(&self) -> Result<Structure> {
+        let supports: Vec<_> = self.supports()?.into_iter().flatten().collect();
+        let diagonal = |pick: fn(&Support) -> f64| {
+            DMatrix::from_diagonal(&supports.iter().map(pick).collect::<Vec<_>>().into())
+        };
+        let mut mass = diagonal(|s| s.mass);
+        let torsion = supports.len() - 1;
+        if self.mass_offset_m.is_some() {
+            mass[(0, torsion)] = self.static_coupling();
+            mass[(torsion, 0)] = mass[(0, torsion)];
+        }
+        Ok(Structure {
+            dofs: self.dofs(),
+            width_m: self.width_m,
+            air_density_kg_m3: self.air_density_kg_m3,
+            axis_offset_m: self.axis_offset_m.unwrap_or(0.0),
+            mass,
+            damping: diagonal(|s| s.damping),
+            stiffness: diagonal(|s| s.stiffness),
+            mode_names: Vec::new(),
+        })
+    }
+
+    /// The vertical, lateral and torsional support.
+    pub fn supports(&self) -> Result<[Option<Support>; 3]> {
+        positive("section.width_m", self.width_m)?;
+        positive("section.air_density_kg_m3", self.air_density_kg_m3)?;
+        let heave = translation_support("section.vertical", &self.vertical)?;
+        let sway = self.lateral.as_ref();
+        let sway = sway.map(|s| translation_support("section.lateral", s));
+        let twist = rotation_support("section.torsion", &self.torsion)?;
+        if let Some(a) = self.axis_offset_m {
+            finite("section.axis_offset_m", a)?;
+        }
+        if let Some(e) = self.mass_offset_m {
+            finite("section.mass_offset_m", e)?;
+            // about the axis J = J_cg + m e²
+            let radius = (twist.mass / heave.mass).sqrt();
+            if e.abs() >= radius {
+                return Err(Error::input(
+                    "section.mass_offset_m",
+                    format!("less than the radius of gyration about the axis, {radius:.4} m"),
+                    e.to_string(),
+                ));
+            }
+        }
+        Ok([Some(heave), sway.transpose()?, Some(twist)])
+    }
+}
+
+fn rotation_support(place: &str, s: &Rotation) -> Result<Support> {
+    support(
+        place,
+        ("inertia_kg_m2_m", s.inertia_kg_m2_m),
+        s.frequency_hz,
+        ("stiffness_n", s.stiffness_n),
+        s.damping_ratio,
+    )
+}
+
+fn translation_support(place: &str, s: &Translation) -> Result<Support> {
+    support(
+        place,
+        ("mass_kg_m", s.mass_kg_m),
+        s.frequency_hz,
+        ("stiffness_n_m2", s.stiffness_n_m2),
+        s.damping_ratio,
+    )
+}
+
+/// One degree of freedom by itself, in the units of its row of the structure's matrices.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Support {
+    /// kg/m or kg·m²/m.
+    pub mass: f64,
+    /// N·s/m² or N·s.
+    pub damping: f64,
+    /// N/m² or N.
+    pub stiffness: f64,
+}
+
+fn support(
+    place: &str,
+    (inertia_key, inertia): (&str, f64),
+    frequency_hz: Option<f64>,
+    (stiffness_key, stiffness): (&str, Option<f64>),
+    damping_ratio: f64,
+) -> Result<Support> {
+    // the place is put together only where something is wrong: this is called for every sample of a random section
+    let at = |key: &str, checked: fn(&'static str, f64) -> Result<f64>, value: f64| {
+        checked("", value).map_err(|e| e.at(Place::from(place).key(key)))
+    };
+    let inertia = at(inertia_key, positive, inertia)?;
+    let damping_ratio = at("damping_ratio", non_negative, damping_ratio)?;
+    let stiffness = match (frequency_hz, stiffness) {
+        (Some(f), None) => {
+            let omega = TAU * at("frequency_hz", positive, f)?;
+            inertia * omega * omega
+        }
+        (None, Some(k)) => at(stiffness_key, non_negative, k)?,
+        (given, _) => {
+            return Err(Error::input(
+                place,
+                format!("either `frequency_hz` or `{stiffness_key}`"),
+                if given.is_some() { "both" } else { "neither" },
+            ));
+        }
+    };
+    Ok(Support {
+        mass: inertia,
+        damping: 2.0 * damping_ratio * (stiffness * inertia).sqrt(),
+        stiffness,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frequency_and_stiffness_are_interchangeable() {
+        let by_frequency = SectionModel::table_4_1();
+        let mut by_stiffness = by_frequency.clone();
+        by_stiffness.vertical.frequency_hz = None;
+        by_stiffness.vertical.stiffness_n_m2 = Some(15.0 * (TAU * 2.0) * (TAU * 2.0));
+        let (a, b) = (
+            by_frequency.structure().unwrap(),
+            by_stiffness.structure().unwrap(),
+        );
+        assert!((a.stiffness - b.stiffness).amax() < 1e-9);
+        assert!((a.damping - b.damping).amax() < 1e-12);
+    }
+
+    #[test]
+    fn impossible_sections_are_refused_by_key() {
+        let mut section = SectionModel::table_4_1();
+        section.vertical.mass_kg_m = -3.0;
+        let message = section.structure().unwrap_err().to_string();
+        assert_eq!(
+            message,
+            "section.vertical.mass_kg_m: expected a positive number, found -3"
+        );
+        let mut section = SectionModel::table_4_1();
+        section.torsion.stiffness_n = Some(1.0);
+        assert!(
+            section
+                .structure()
+                .unwrap_err()
+                .to_string()
+                .contains("found both")
+        );
+        let mut section = SectionModel::table_4_1();
+        section.mass_offset_m = Some(-0.21);
+        assert_eq!(
+            section.structure().unwrap_err().to_string(),
+            "section.mass_offset_m: expected less than the radius of gyration about the axis, 0.2000 m, found -0.21"
+        );
+    }
+}

@@ -1,0 +1,104 @@
+//! Zeros and extrema of functions of one number.
+
+use crate::error::Result;
+
+/// Relative width of the bracket at which the root search stops: rounding of eigenvalues.
+const ROOT_TOLERANCE: f64 = 1e-13;
+/// The secant steps converge in about ten; bisection alone in fifty.
+const MAX_ROOT_STEPS: usize = 80;
+/// Part of an interval that a step of the golden section keeps, `(√5 − 1)/2`.
+const GOLDEN: f64 = 0.618_033_988_749_894_9;
+
+/// Zero of `f` in a bracket with a sign change, by secant steps kept inside (Illinois) and bisection. Both ends are given
+/// with their values.
+pub fn root(low: (f64, f64), high: (f64, f64), f: impl Fn(f64) -> Result<f64>) -> Result<f64> {
+    let (mut a, mut fa) = low;
+    let (mut b, mut fb) = high;
+    for step in 0..MAX_ROOT_STEPS {
+        if fb == 0.0 || (b - a).abs() <= ROOT_TOLERANCE * b.abs() {
+            break;
+        }
+        let secant = b - fb * (b - a) / (fb - fa);
+        let middle = 0.5 * (a + b);
+        let inside = (secant - a) * (secant - b) < 0.0;
+        let x = if inside && step % 4 != 3 {
+            secant
+        } else {
+            middle
+        };
+        let fx = f(x)?;
+        if (fx >= 0.0) == (fb >= 0.0) {
+            (b, fb) = (x, fx);
+            fa *= 0.5;
+        } else {
+            (a, fa) = (x, fx);
+            fb *= 0.5;
+        }
+    }
+    Ok(b)
+}
+
+/// The last two numbers at which a test was made, on either side of where its answer changes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Boundary {
+    /// Where it held.
+    pub holds: f64,
+    /// Where it failed.
+    pub fails: f64,
+}
+
+impl Boundary {
+    /// Half way between both.
+    pub fn middle(self) -> f64 {
+        0.5 * (self.holds + self.fails)
+    }
+}
+
+/// Where a test that holds at one number and fails at another changes, by bisection, no more than `tolerance` of the number
+/// wide; for zero between neighbours.
+pub fn boundary<E>(
+    mut holds: f64,
+    mut fails: f64,
+    tolerance: f64,
+    mut test: impl FnMut(f64) -> std::result::Result<bool, E>,
+) -> std::result::Result<Boundary, E> {
+    while (holds - fails).abs() > tolerance * holds.abs() {
+        let middle = 0.5 * (holds + fails);
+        if middle == holds || middle == fails {
+            break;
+        }
+        if test(middle)? {
+            holds = middle;
+        } else {
+            fails = middle;
+        }
+    }
+    Ok(Boundary { holds, fails })
+}
+
+/// Interval about the maximum of a function with one maximum, by the golden section, with the two values inside.
+///
+/// `at` gives the value at a number, `left_is_higher` compares two, `done` is asked before each step with the width of the
+/// interval and the two values.
+pub fn golden_section<T, E>(
+    (mut low, mut high): (f64, f64),
+    mut at: impl FnMut(f64) -> std::result::Result<T, E>,
+    left_is_higher: impl Fn(&T, &T) -> bool,
+    mut done: impl FnMut(f64, &T, &T) -> bool,
+) -> std::result::Result<((f64, f64), [T; 2]), E> {
+    let mut left = high - GOLDEN * (high - low);
+    let mut right = low + GOLDEN * (high - low);
+    let (mut at_left, mut at_right) = (at(left)?, at(right)?);
+    while !done(high - low, &at_left, &at_right) {
+        if left_is_higher(&at_left, &at_right) {
+            (high, right, at_right) = (right, left, at_left);
+            left = high - GOLDEN * (high - low);
+            at_left = at(left)?;
+        } else {
+            (low, left, at_left) = (left, right, at_right);
+            right = low + GOLDEN * (high - low);
+            at_right = at(right)?;
+        }
+    }
+    Ok(((low, high), [at_left, at_right]))
+}

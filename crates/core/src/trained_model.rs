@@ -1,0 +1,384 @@
+//! What is saved after training: section, model, tested range, provenance, as JSON with a schema version.
+
+use crate::aerodynamics::{
+    DiscreteLaguerre, Lags, LaguerreModel, MinimumStateModel, RationalModel, Realizable,
+    Realization, Transfer, TransferMatrix,
+};
+use crate::error::{Error, Result, finite, positive};
+use crate::section::{Dof, SectionModel};
+use crate::units::{ReducedFrequency, ReducedFrequencyRange};
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+
+/// Version of the file layout of models that need nothing newer, so that programs of that version read them; raised when
+/// a field of all files is added or changed.
+pub const SCHEMA_VERSION: u32 = 1;
+/// Newest version that is read and written. Version 2: discrete Laguerre filters of single transfer functions, rational
+/// functions with lags of each force, minimum-state form.
+pub const NEWEST_SCHEMA_VERSION: u32 = 2;
+
+/// States of a realisation at most, a hundred times those of any model that was ever fitted: its matrices are full.
+const MAX_STATES: usize = 1000;
+
+/// The models that can be saved and exported.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case")]
+pub enum Model {
+    /// Continuous Laguerre or Takenaka–Malmquist filters with feed-through.
+    Laguerre(LaguerreModel),
+    /// The thesis's discrete Laguerre model.
+    DiscreteLaguerre(DiscreteLaguerre),
+    /// Rational functions in Roger's form.
+    Rational(RationalModel),
+    /// Rational functions in Karpel's minimum-state form.
+    MinimumState(MinimumStateModel),
+}
+
+impl Model {
+    /// The kind in words.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::Laguerre(_) => "continuous Laguerre",
+            Self::DiscreteLaguerre(_) => "discrete Laguerre",
+            Self::Rational(_) => "rational functions",
+            Self::MinimumState(_) => "minimum-state rational functions",
+        }
+    }
+
+    /// Lowest version of the file layout that can hold the model.
+    pub fn schema_version(&self) -> u32 {
+        match self {
+            Self::Rational(m) if matches!(m.lags, Lags::PerForce(_)) => NEWEST_SCHEMA_VERSION,
+            Self::MinimumState(_) => NEWEST_SCHEMA_VERSION,
+            Self::DiscreteLaguerre(m) if m.shared_parameters().is_none() => NEWEST_SCHEMA_VERSION,
+            _ => SCHEMA_VERSION,
+        }
+    }
+
+    fn inner(&self) -> &dyn Realizable {
+        match self {
+            Self::Laguerre(m) => m,
+            Self::DiscreteLaguerre(m) => m,
+            Self::Rational(m) => m,
+            Self::MinimumState(m) => m,
+        }
+    }
+
+    /// Number of states of the realisation at most, without making it.
+    fn states_at_most(&self) -> usize {
+        match self {
+            Self::Laguerre(m) => m.terms.iter().map(|t| t.poles.len()).sum(),
+            Self::DiscreteLaguerre(m) => m.terms.iter().map(|t| t.coefficients.ncols()).sum(),
+            Self::Rational(m) => {
+                let lags = match &m.lags {
+                    Lags::Shared(lags) => lags.len(),
+                    Lags::PerForce(rows) => rows.iter().map(Vec::len).sum(),
+                };
+                lags.saturating_mul(m.dofs.len())
+            }
+            Self::MinimumState(m) => m.lags.len(),
+        }
+    }
+
+    fn validate(&self) -> Result<()> {
+        let states = self.states_at_most();
+        if states > MAX_STATES {
+            return Err(Error::input(
+                "model",
+                format!("filters or lags of at most {MAX_STATES} states"),
+                states.to_string(),
+            ));
+        }
+        match self {
+            Self::Laguerre(m) => m.validate(),
+            Self::DiscreteLaguerre(m) => m.validate(),
+            Self::Rational(m) => m.validate(),
+            Self::MinimumState(m) => m.validate(),
+        }
+    }
+}
+
+impl Transfer for Model {
+    fn dofs(&self) -> &[Dof] {
+        self.inner().dofs()
+    }
+    fn transfer(&self, k: ReducedFrequency) -> Result<TransferMatrix> {
+        self.inner().transfer(k)
+    }
+    fn realizable(&self) -> Option<&dyn Realizable> {
+        Some(self)
+    }
+}
+
+impl Realizable for Model {
+    fn realize(&self) -> Realization {
+        self.inner().realize()
+    }
+}
+
+/// Where a model comes from.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Provenance {
+    /// The data: deck, laboratory, publication.
+    pub source: String,
+    /// Licence of the data.
+    pub licence: String,
+    /// How the model was fitted, in words.
+    pub method: String,
+    /// Version of this program that fitted it.
+    pub aerodeck_version: String,
+    /// Remarks of the fit that a user of the model must know (bias, conditioning, range).
+    #[serde(default)]
+    pub notes: Vec<String>,
+}
+
+/// What an exported section does when an importer just runs it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Experiment {
+    /// Start value of the wind speed, m/s.
+    pub wind_speed_m_s: f64,
+    /// Release from this vertical displacement, m.
+    pub initial_vertical_m: f64,
+    /// Release from this rotation, rad.
+    pub initial_rotation_rad: f64,
+    /// Length of the run, s.
+    pub stop_time_s: f64,
+    /// Communication step, s.
+    pub step_size_s: f64,
+    /// Onset and divergence are searched up to this wind speed, m/s.
+    pub onset_search_limit_m_s: f64,
+}
+
+/// A trained model with the section it is coupled with, as `model.json` holds it.
+///
+/// ```
+/// use aerodeck::prelude::*;
+///
+/// let refused = TrainedModel::from_json("{ \"schema_version\": 99 }").unwrap_err();
+/// assert_eq!(refused.to_string(), "schema_version: expected 1 to 2, found 99");
+/// ```
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TrainedModel {
+    /// Version of the file layout, at least `Model::schema_version`.
+    pub schema_version: u32,
+    /// Name of the deck or study.
+    pub name: String,
+    /// The suspended section.
+    pub section: SectionModel,
+    /// The force model.
+    pub model: Model,
+    /// Reduced frequencies `K = ωB/V` at which the data were taken.
+    pub tested_range: ReducedFrequencyRange,
+    /// Where it comes from.
+    pub provenance: Provenance,
+    /// Default experiment of the exported section.
+    pub experiment: Experiment,
+}
+
+impl TrainedModel {
+    /// Reads and checks the file of a model.
+    ///
+    /// # Errors
+    /// [`Error::Io`] when it cannot be read; [`Error::Input`] with file, line and column.
+    pub fn read(path: &Path) -> Result<Self> {
+        let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, e))?;
+        Self::from_json(&text).map_err(|e| e.in_file(path))
+    }
+
+    /// Reads and checks a model.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with line and column for text that is not such a file, and for every value that cannot be.
+    pub fn from_json(text: &str) -> Result<Self> {
+        let version: SchemaOnly = serde_json::from_str(text).map_err(|e| json_error(&e))?;
+        if !(SCHEMA_VERSION..=NEWEST_SCHEMA_VERSION).contains(&version.schema_version) {
+            return Err(Error::input(
+                "schema_version",
+                format!("{SCHEMA_VERSION} to {NEWEST_SCHEMA_VERSION}"),
+                version.schema_version.to_string(),
+            ));
+        }
+        let model: Self = serde_json::from_str(text).map_err(|e| json_error(&e))?;
+        model.validate()?;
+        Ok(model)
+    }
+
+    /// Writes the model as indented JSON; numbers survive the round trip bit for bit.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when the model could not be read back.
+    pub fn to_json(&self) -> Result<String> {
+        self.validate()?;
+        let mut text =
+            serde_json::to_string_pretty(self).map_err(|e| Error::Numerical(e.to_string()))?;
+        text.push('\n');
+        Ok(text)
+    }
+
+    /// Checks every value.
+    pub fn validate(&self) -> Result<()> {
+        self.section.structure()?;
+        self.model.validate()?;
+        if self.schema_version < self.model.schema_version() {
+            return Err(Error::input(
+                "schema_version",
+                format!("at least {} for this model", self.model.schema_version()),
+                self.schema_version.to_string(),
+            ));
+        }
+        if self.model.dofs() != self.section.dofs() {
+            let own = Dof::names(&self.section.dofs());
+            let expected = format!("the section's degrees of freedom {own}");
+            let found = Dof::names(self.model.dofs());
+            return Err(Error::input("model.dofs", expected, found));
+        }
+        positive("tested_range.min", self.tested_range.min.full_width())?;
+        if self.tested_range.max < self.tested_range.min
+            || !self.tested_range.max.full_width().is_finite()
+        {
+            return Err(Error::input(
+                "tested_range.max",
+                "a finite number not below tested_range.min",
+                self.tested_range.max.full_width().to_string(),
+            ));
+        }
+        self.experiment.validate()
+    }
+}
+
+impl Experiment {
+    fn validate(&self) -> Result<()> {
+        positive("experiment.wind_speed_m_s", self.wind_speed_m_s)?;
+        positive("experiment.stop_time_s", self.stop_time_s)?;
+        positive("experiment.step_size_s", self.step_size_s)?;
+        let limit = self.onset_search_limit_m_s;
+        positive("experiment.onset_search_limit_m_s", limit)?;
+        finite("experiment.initial_vertical_m", self.initial_vertical_m)?;
+        finite("experiment.initial_rotation_rad", self.initial_rotation_rad).map(drop)
+    }
+}
+
+#[derive(Deserialize)]
+struct SchemaOnly {
+    schema_version: u32,
+}
+
+fn json_error(e: &serde_json::Error) -> Error {
+    Error::json("a trained model as written by `aerodeck train`", e)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::units::ReducedFrequency as K;
+
+    fn jones() -> TrainedModel {
+        TrainedModel {
+            schema_version: SCHEMA_VERSION,
+            name: "flat plate".into(),
+            section: SectionModel::table_4_1(),
+            model: Model::Rational(RationalModel::jones_flat_plate()),
+            tested_range: ReducedFrequencyRange::between(
+                K::from_full_width(0.07),
+                K::from_full_width(1.5),
+            ),
+            provenance: Provenance {
+                source: "R. T. Jones".into(),
+                licence: "public".into(),
+                method: "closed form".into(),
+                aerodeck_version: env!("CARGO_PKG_VERSION").into(),
+                notes: vec![],
+            },
+            experiment: Experiment {
+                wind_speed_m_s: 38.0,
+                initial_vertical_m: 0.01,
+                initial_rotation_rad: 0.0,
+                stop_time_s: 10.0,
+                step_size_s: 0.01,
+                onset_search_limit_m_s: 100.0,
+            },
+        }
+    }
+
+    #[test]
+    fn json_round_trip_is_bit_exact() {
+        let model = jones();
+        let text = model.to_json().unwrap();
+        let again = TrainedModel::from_json(&text).unwrap();
+        assert_eq!(model, again);
+        assert_eq!(text, again.to_json().unwrap());
+    }
+
+    /// Filters of single transfer functions need the newer layout and survive it; shared ones stay in the older one.
+    #[test]
+    fn own_filters_take_the_newer_layout() {
+        let shared = DiscreteLaguerre::shared(
+            Dof::TWO.to_vec(),
+            0.6,
+            0.0817,
+            vec![nalgebra::DMatrix::from_element(2, 3, 0.1); 2],
+            vec![0.0; 2],
+        );
+        let mut own = shared.clone();
+        own.terms[1].alpha = 0.8;
+        for (model, version) in [(shared, 1), (own, 2)] {
+            let mut trained = jones();
+            trained.model = Model::DiscreteLaguerre(model);
+            assert_eq!(trained.model.schema_version(), version);
+            let error = trained.to_json().err().map(|e| e.to_string());
+            let expected = "schema_version: expected at least 2 for this model, found 1";
+            assert_eq!(error.as_deref(), (version == 2).then_some(expected));
+            trained.schema_version = version;
+            let again = TrainedModel::from_json(&trained.to_json().unwrap()).unwrap();
+            assert_eq!(again, trained);
+        }
+    }
+
+    #[test]
+    fn damaged_files_are_refused_with_their_place() {
+        let text = jones().to_json().unwrap();
+        let newer = text.replace("\"schema_version\": 1", "\"schema_version\": 99");
+        let refusal = |text: &str| TrainedModel::from_json(text).unwrap_err().to_string();
+        assert_eq!(refusal(&newer), "schema_version: expected 1 to 2, found 99");
+        assert!(refusal(&text[..text.len() / 2]).contains("line"));
+        let negative = text.replace("\"mass_kg_m\": 15.0", "\"mass_kg_m\": -15.0");
+        assert!(refusal(&negative).contains("mass_kg_m"));
+    }
+
+    /// Newer forms take the newer layout and survive it; a file of the older layout cannot hold them.
+    #[test]
+    fn newer_forms_take_the_newer_layout() {
+        let shared = jones();
+        assert_eq!(shared.model.schema_version(), SCHEMA_VERSION);
+        let mut own = RationalModel::jones_flat_plate();
+        own.lags = Lags::PerForce(vec![vec![0.08, 0.7], vec![0.1, 0.5]]);
+        let roger = RationalModel::jones_flat_plate();
+        let small = MinimumStateModel {
+            dofs: roger.dofs,
+            a1: roger.a1,
+            a2: roger.a2,
+            a3: roger.a3,
+            lags: vec![0.2],
+            d: nalgebra::DMatrix::from_element(2, 1, 0.5),
+            e: nalgebra::DMatrix::from_element(1, 2, -1.5),
+        };
+        for model in [Model::Rational(own), Model::MinimumState(small)] {
+            let trained = TrainedModel {
+                schema_version: model.schema_version(),
+                model,
+                ..jones()
+            };
+            assert_eq!(trained.schema_version, 2);
+            let text = trained.to_json().unwrap();
+            assert_eq!(TrainedModel::from_json(&text).unwrap(), trained);
+            let older = text.replace("\"schema_version\": 2", "\"schema_version\": 1");
+            assert_eq!(
+                TrainedModel::from_json(&older).unwrap_err().to_string(),
+                "schema_version: expected at least 2 for this model, found 1"
+            );
+        }
+    }
+}
