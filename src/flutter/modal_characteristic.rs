@@ -47,6 +47,8 @@ struct Chain<Output = RealColumns> {
 pub(super) struct ModalCharacteristic {
     width: f64,
     mass: RealColumns,
+    /// Determinant of the mass.
+    mass_determinant: f64,
     damping: DMatrix<f64>,
     stiffness: DMatrix<f64>,
     /// `½ρ P(e₀)`, `½ρB P(e₁)`; the added mass is in `mass`.
@@ -69,6 +71,7 @@ impl ModalCharacteristic {
         Some(Self {
             width,
             mass: RealColumns::of(&mass),
+            mass_determinant: mass.determinant(),
             damping: s.damping.clone(),
             stiffness: s.stiffness.clone(),
             on_motion: s.scaled(&aero.e0) * half_rho,
@@ -85,6 +88,15 @@ impl ModalCharacteristic {
             damping: RealColumns::of(&(&self.damping - &self.on_rate * speed)),
             stiffness: RealColumns::of(&(&self.stiffness - &self.on_motion * (speed * speed))),
         }
+    }
+
+    /// Sizes of the poles of the filters at a wind speed, rad/s, one for each of the filters that are alike: the geometric mean.
+    pub(super) fn filter_rates(&self, speed: f64) -> impl Iterator<Item = f64> {
+        let rate = move |chain: &Chain| {
+            let product = chain.a.determinant().abs();
+            product.powf(1.0 / chain.b.len() as f64) * speed / self.width
+        };
+        self.chains.iter().map(rate).filter(|rate| *rate > 0.0)
     }
 }
 
@@ -167,6 +179,18 @@ impl AtSpeed<'_> {
         )
     }
 
+    /// `det D(λ)` over that of the mass, as the product of what `each` makes of the pivots; `None` at an eigenvalue.
+    pub(super) fn determinant(
+        &self,
+        lambda: Complex64,
+        each: impl FnMut(Complex64) -> Complex64,
+    ) -> Option<Complex64> {
+        let terms = self.terms(lambda)?;
+        let factors = pulp::Arch::new().dispatch(Triangles { terms })?;
+        let product: Complex64 = factors.pivots().map(each).product();
+        Some(product / self.problem.mass_determinant)
+    }
+
     /// `D(λ)` as a sum.
     fn terms(&self, lambda: Complex64) -> Option<Vec<Term<'_>>> {
         let p = self.problem;
@@ -204,6 +228,20 @@ impl pulp::NullaryFnOnce for Iteration<'_> {
     fn call(self) -> Option<Columns> {
         let (value, slope) = Columns::sum(&self.terms);
         Some(value.factors()?.solve(slope.times(&self.basis)))
+    }
+}
+
+/// `D` as a product of triangles.
+struct Triangles<'a> {
+    terms: Vec<Term<'a>>,
+}
+
+impl pulp::NullaryFnOnce for Triangles<'_> {
+    type Output = Option<Factors>;
+
+    #[inline(always)]
+    fn call(self) -> Option<Factors> {
+        Columns::value(&self.terms).factors()
     }
 }
 

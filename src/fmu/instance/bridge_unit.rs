@@ -185,6 +185,10 @@ impl MonitoredUnit for BridgeUnit {
         &mut self.built.damping
     }
 
+    fn damping_at(&mut self, wind: f64) -> Result<f64> {
+        self.built.damping_at(wind)
+    }
+
     fn wind_speed(&self, memory: &Memory) -> f64 {
         memory.values[self.places.inputs[0]]
     }

@@ -1,0 +1,161 @@
+//! The modes of a bridge at a wind speed that changes a little at a time, without the eigenvalue problem of all states.
+//!
+//! The modes of the structure are followed from the last wind speed by their shapes. That no other eigenvalue has as little damping is
+//! counted, not assumed: with the modes `λ_i` that were followed divided out,
+//!
+//! ```text
+//! g(λ) = det D(λ) / (det M · Π (λ − λ_i)(λ − λ̄_i))
+//! ```
+//!
+//! has the poles of the filters, on the left, as its poles, all other eigenvalues as its zeros, and the value 1 at infinity. On the
+//! way along a ray `λ = r e^{iφ}` from infinity to zero its argument turns by `π` for each zero in the sector between the ray and its
+//! mirror image (the principle of the argument): one that does not turn has none there.
+
+use super::following::{Follower, Modes};
+use super::modal_characteristic::ModalCharacteristic;
+use super::tracking::Tracker;
+use crate::aeroelastic::CoupledSection;
+use crate::state_space::damping_ratio;
+use nalgebra::Complex;
+use std::f64::consts::FRAC_PI_2;
+use std::sync::Arc;
+
+/// Damping ratio by which the ray lies beyond the least of the modes: an eigenvalue that comes from far away meets it before it
+/// matters. Beyond [`STEEPEST`] the ray would come close to the filters.
+const MARGIN: f64 = 0.1;
+const STEEPEST: f64 = 0.8;
+/// First and last distance on the ray, over the smallest and the largest of frequencies and poles.
+const ENDS: [f64; 2] = [0.03, 30.0];
+/// Ratio of the distances looked at first.
+const FIRST_RATIO: f64 = 3.0;
+/// Turn (rad) and ratio of size between neighbours up to which nothing is missed between them.
+const SMALL_TURN: f64 = 0.7;
+const SMALL_RATIO: f64 = 3.0;
+/// Distances looked at before the count is given up.
+const MOST_DISTANCES: usize = 200;
+/// What is left of a turn at the ends, rad, where it has to be none.
+const AT_THE_ENDS: f64 = 0.5;
+
+/// See the module.
+#[derive(Debug)]
+pub(crate) struct PresentModes {
+    problem: Arc<ModalCharacteristic>,
+    /// At the last wind speed, all of them.
+    last: Option<Modes>,
+}
+
+impl PresentModes {
+    /// The modes of `section`; `None` where they are not followed by shapes: sections, whose eigenvalues are quickly found, and
+    /// sampled models.
+    pub(crate) fn new(section: &CoupledSection) -> Option<Self> {
+        let many = section.structure().is_modal();
+        let problem = ModalCharacteristic::new(section).filter(|_| many)?;
+        Some(Self {
+            problem: Arc::new(problem),
+            last: None,
+        })
+    }
+
+    /// The smallest damping ratio of `section`, that of which they are the modes, at `wind`, m/s; `None` where it has to be
+    /// found among all eigenvalues.
+    pub(crate) fn smallest_damping(&mut self, section: &CoupledSection, wind: f64) -> Option<f64> {
+        let tracker = Tracker::by_shapes(section, Arc::clone(&self.problem));
+        let all = section.structure().dofs.len();
+        let from = match self.last.take() {
+            Some(last) => last,
+            None => tracker.start().ok()?,
+        };
+        // one that has stopped to oscillate may begin again
+        let now = tracker.advance(&from, wind).ok();
+        let now = now.filter(|modes| modes.all.len() == all)?;
+        let damping = now.all.iter().map(|m| damping_ratio(m.lambda));
+        let least = damping.reduce(f64::min)?;
+        let alone = self.none_below(&now, (least + MARGIN).min(STEEPEST));
+        self.last = Some(now);
+        (alone == Some(true) && least < STEEPEST).then_some(least)
+    }
+
+    /// Whether no eigenvalue but the modes has a damping ratio below `ratio`; `None` where it cannot be counted.
+    fn none_below(&self, modes: &Modes, ratio: f64) -> Option<bool> {
+        let at = self.problem.at(modes.speed);
+        let ray = Complex::from_polar(1.0, FRAC_PI_2 + ratio.asin());
+        let rest = |distance: f64| -> Option<Complex<f64>> {
+            let lambda = ray * distance;
+            let mut modes = modes.all.iter().map(|m| m.lambda);
+            let rest = at.determinant(lambda, |pivot| {
+                let mode = modes.next().unwrap_or_default();
+                pivot / ((lambda - mode) * (lambda - mode.conj()))
+            })?;
+            (rest.re.is_finite() && rest.im.is_finite()).then_some(rest)
+        };
+        let sizes = modes.all.iter().map(|m| m.lambda.norm());
+        let sizes = sizes.chain(self.problem.filter_rates(modes.speed));
+        let (low, high) = sizes.fold((f64::INFINITY, 0.0_f64), |(low, high), size| {
+            (low.min(size), high.max(size))
+        });
+        turn(rest, [ENDS[0] * low, ENDS[1] * high])
+    }
+}
+
+/// Whether a number that is real at zero and 1 at infinity turns not at all from the second distance down to the first; `None` where
+/// it changes too fast.
+fn turn(value: impl Fn(f64) -> Option<Complex<f64>>, [first, last]: [f64; 2]) -> Option<bool> {
+    let mut at = (last, value(last)?);
+    let mut turned = at.1.arg();
+    if turned.abs() > AT_THE_ENDS {
+        return None;
+    }
+    let mut next = last / FIRST_RATIO;
+    for _ in 0..MOST_DISTANCES {
+        let found = value(next.max(first))?;
+        let change = found / at.1;
+        let size = change.norm();
+        if change.arg().abs() > SMALL_TURN || !(SMALL_RATIO.recip()..SMALL_RATIO).contains(&size) {
+            next = (next * at.0).sqrt();
+            continue;
+        }
+        turned += change.arg();
+        if next <= first {
+            return Some(turned.abs() < AT_THE_ENDS);
+        }
+        let ratio = (at.0 / next).powi(2).min(FIRST_RATIO);
+        at = (next, found);
+        next /= ratio;
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::turn;
+    use nalgebra::Complex;
+
+    /// Zeros over as many poles on the negative axis, on a ray close to the imaginary axis.
+    fn counted(zeros: &[Complex<f64>]) -> Option<bool> {
+        let ray = Complex::from_polar(1.0, 1.6);
+        turn(
+            |r| {
+                let lambda = ray * r;
+                let factor = |z: &Complex<f64>| (lambda - z) / (lambda + 1.5);
+                Some(zeros.iter().map(factor).product())
+            },
+            [1e-2, 1e3],
+        )
+    }
+
+    #[test]
+    fn zeros_in_the_sector_are_seen() {
+        let pair = |re: f64, im: f64| [Complex::new(re, im), Complex::new(re, -im)];
+        let left = [pair(-1.0, 0.3), pair(-0.4, 2.0)].concat();
+        assert_eq!(counted(&left), Some(true));
+        // beyond the ray by little, on the right, and at the origin's other side
+        for (re, im) in [(-0.01, 2.0), (0.3, 1.0), (1e-4, 30.0), (2.0, 0.0)] {
+            let found = counted(&[&left[..], &pair(re, im)].concat());
+            assert_ne!(found, Some(true), "{re}, {im}: {found:?}");
+        }
+        assert_ne!(counted(&[&left[..], &[2.0.into()]].concat()), Some(true));
+        // as close to it, on the left
+        let near = [&left[..], &pair(-0.2, 2.0)].concat();
+        assert_eq!(counted(&near), Some(true));
+    }
+}
