@@ -11,6 +11,7 @@
 //! The added mass moves to the left and does not depend on `V`. Discrete model: equation (B.4) of the thesis,
 //! corrected; the force is held over each step `Δt = Δs B/V`.
 
+mod by_wind;
 mod equilibrium;
 
 pub use equilibrium::{

@@ -49,7 +49,7 @@ pub use judged::StableRange;
 pub(crate) use onset::shown_m_s;
 pub use onset::{BetweenSpeeds, ErrorParts, Onset, OnsetInterval};
 pub use pk::{pk_curves, pk_onset, quasi_pk_mode};
-pub(crate) use present_modes::PresentModes;
+pub(crate) use present_modes::{LeastDamping, smallest_damping};
 pub use quasi_steady::quasi_steady_modes;
 pub(crate) use quasi_steady::{QuasiSteadyOnset, quasi_steady_onset};
 pub(crate) use sanity::{SanityLines, sanity_lines};

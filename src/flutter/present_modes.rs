@@ -15,11 +15,14 @@ use super::following::{Follower, Modes};
 use super::modal_characteristic::ModalCharacteristic;
 use super::tracking::Tracker;
 use crate::aeroelastic::CoupledSection;
-use crate::state_space::damping_ratio;
-use nalgebra::Complex;
+use crate::error::Result;
+use crate::state_space::{RepeatedEigenvalues, damping_ratio};
+use nalgebra::{Complex, DMatrix};
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
+/// States up to which all eigenvalues are found before a mode is followed.
+const MOST_STATES_SOLVED: usize = 40;
 /// Damping ratio by which the ray lies beyond the least of the modes: an eigenvalue that comes from far away meets it before it
 /// matters. Beyond [`STEEPEST`] the ray would come close to the filters.
 const MARGIN: f64 = 0.1;
@@ -42,6 +45,86 @@ pub(crate) struct PresentModes {
     problem: Arc<ModalCharacteristic>,
     /// At the last wind speed, all of them.
     last: Option<Modes>,
+}
+
+/// The smallest damping ratio of all modes, asked for again and again.
+#[derive(Debug)]
+pub(crate) enum LeastDamping {
+    /// Of a few states, by their eigenvalues, in memory of its own.
+    Solved(Box<Solved>),
+    /// Of many, by the modes.
+    Followed(PresentModes),
+    /// Of sampled models.
+    Unprepared,
+}
+
+/// A state matrix at the winds to come, and room for it.
+#[derive(Debug)]
+pub(crate) struct Solved {
+    by_wind: [DMatrix<f64>; 3],
+    matrix: DMatrix<f64>,
+    eigenvalues: RepeatedEigenvalues,
+}
+
+impl LeastDamping {
+    /// That of `section`.
+    pub(crate) fn new(section: &CoupledSection) -> Self {
+        let states = section.states();
+        let followed = (states > MOST_STATES_SOLVED).then(|| PresentModes::new(section));
+        if let Some(modes) = followed.flatten() {
+            return Self::Followed(modes);
+        }
+        let by_wind = section.state_matrix_by_wind();
+        by_wind.map_or(Self::Unprepared, |by_wind| {
+            Self::Solved(Box::new(Solved {
+                matrix: by_wind[0].clone(),
+                by_wind,
+                eigenvalues: RepeatedEigenvalues::new(states),
+            }))
+        })
+    }
+
+    /// At `wind`, m/s, of the same section; one where nothing oscillates.
+    ///
+    /// # Errors
+    /// As [`smallest_damping`].
+    pub(crate) fn at(&mut self, section: &CoupledSection, wind: f64) -> Result<f64> {
+        let prepared = match self {
+            Self::Solved(solved) => solved.at(wind),
+            Self::Followed(modes) => modes.smallest_damping(section, wind),
+            Self::Unprepared => None,
+        };
+        prepared.map_or_else(|| smallest_damping(section, wind), Ok)
+    }
+}
+
+impl Solved {
+    /// `None` for what is no wind speed, and where the eigenvalues are not found.
+    fn at(&mut self, wind: f64) -> Option<f64> {
+        let [a0, a1, a2] = &self.by_wind;
+        for (to, ((a0, a1), a2)) in self.matrix.iter_mut().zip(a0.iter().zip(a1).zip(a2)) {
+            *to = a0 + wind * (a1 + wind * a2);
+        }
+        let all = self
+            .eigenvalues
+            .of(&mut self.matrix)
+            .filter(|_| wind >= 0.0);
+        all.map(least)
+    }
+}
+
+/// Smallest damping ratio of the modes at a wind speed (m/s), by all eigenvalues; one where nothing oscillates.
+///
+/// # Errors
+/// As [`CoupledSection::at`], and where the eigenvalues are not found.
+pub(crate) fn smallest_damping(section: &CoupledSection, wind: f64) -> Result<f64> {
+    Ok(least(&section.at(wind)?.eigenvalues()?))
+}
+
+fn least(eigenvalues: &[Complex<f64>]) -> f64 {
+    let oscillating = eigenvalues.iter().filter(|z| z.im > 0.0);
+    let damping = oscillating.map(|z| damping_ratio(*z));
+    damping.reduce(f64::min).unwrap_or(1.0)
 }
 
 impl PresentModes {
@@ -126,36 +209,4 @@ fn turn(value: impl Fn(f64) -> Option<Complex<f64>>, [first, last]: [f64; 2]) ->
 }
 
 #[cfg(test)]
-mod tests {
-    use super::turn;
-    use nalgebra::Complex;
-
-    /// Zeros over as many poles on the negative axis, on a ray close to the imaginary axis.
-    fn counted(zeros: &[Complex<f64>]) -> Option<bool> {
-        let ray = Complex::from_polar(1.0, 1.6);
-        turn(
-            |r| {
-                let lambda = ray * r;
-                let factor = |z: &Complex<f64>| (lambda - z) / (lambda + 1.5);
-                Some(zeros.iter().map(factor).product())
-            },
-            [1e-2, 1e3],
-        )
-    }
-
-    #[test]
-    fn zeros_in_the_sector_are_seen() {
-        let pair = |re: f64, im: f64| [Complex::new(re, im), Complex::new(re, -im)];
-        let left = [pair(-1.0, 0.3), pair(-0.4, 2.0)].concat();
-        assert_eq!(counted(&left), Some(true));
-        // beyond the ray by little, on the right, and at the origin's other side
-        for (re, im) in [(-0.01, 2.0), (0.3, 1.0), (1e-4, 30.0), (2.0, 0.0)] {
-            let found = counted(&[&left[..], &pair(re, im)].concat());
-            assert_ne!(found, Some(true), "{re}, {im}: {found:?}");
-        }
-        assert_ne!(counted(&[&left[..], &[2.0.into()]].concat()), Some(true));
-        // as close to it, on the left
-        let near = [&left[..], &pair(-0.2, 2.0)].concat();
-        assert_eq!(counted(&near), Some(true));
-    }
-}
+mod tests;

@@ -12,6 +12,7 @@ mod bridge_followed;
 mod bridge_places;
 mod bridge_search;
 mod bridge_unit;
+mod damping;
 pub(in crate::fmu) mod derivatives;
 mod force_ahead;
 mod force_derivatives;

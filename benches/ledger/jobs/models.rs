@@ -55,10 +55,10 @@ pub(crate) fn four_filters() -> TrainedModel {
     })
 }
 
-/// The same by the form of the thesis: one bank of three filters per motion.
-pub(crate) fn three_filters() -> TrainedModel {
+/// The same with as many filters as asked for: three are the form of the thesis, five those that a fit takes by itself.
+pub(crate) fn by_filters(filters: usize) -> TrainedModel {
     of_deck(FrequencyFit {
-        form: laguerre(3),
+        form: laguerre(filters),
         ..FrequencyFit::default()
     })
 }

@@ -44,6 +44,21 @@ pub(crate) static ENTRIES: &[Entry] = &[
         ..BRIDGE
     },
     Entry {
+        name: "bridge-damping",
+        what: "the same unit, damping_now in another wind",
+        job: bridge::damping,
+        times: 100,
+        baseline: Baseline::Here {
+            name: "all eigenvalues, by this library",
+            package: None,
+            job: bridge::all_eigenvalues,
+            units: 1,
+            times: 5,
+        },
+        count: Some([10, 60]),
+        ..BRIDGE
+    },
+    Entry {
         name: "bridge-onset",
         what: "FMU of a bridge, onset_speed after another density",
         size: "8 modes",

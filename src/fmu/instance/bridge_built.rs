@@ -1,11 +1,10 @@
 //! What follows from the parameters of an exported bridge: its coupled modes, and what gusts do to them.
 
+use super::damping::PresentDamping;
 use crate::bridge::{Bridge, GustChannels};
 use crate::error::{Error, Result};
-use crate::flutter::PresentModes;
 use crate::fmu::bridge_gusts::GustRecord;
 use crate::fmu::bridge_options::BridgeOptions;
-use crate::fmu::onset_start::smallest_damping;
 use crate::fmu::resources::Resources;
 use crate::fmu::variables::{ModeParameter, Role, SectionParameter};
 use crate::response::{Inputs, SectionState, Stepper};
@@ -22,10 +21,7 @@ pub(super) struct Built {
     pub stepper: Stepper,
     gusts: Option<GustChannels>,
     turbulence: Option<GustRecord>,
-    /// Smallest damping ratio at a wind speed, where it has been asked for.
-    pub damping: Option<(f64, f64)>,
-    /// All modes at the wind speed at which they were asked for last, where they are followed.
-    modes: Option<PresentModes>,
+    damping: PresentDamping,
 }
 
 impl Built {
@@ -52,21 +48,17 @@ impl Built {
             _ => None,
         };
         Ok(Self {
-            modes: PresentModes::new(stepper.section()),
             bridge,
             stepper,
             gusts,
             turbulence,
-            damping: None,
+            damping: PresentDamping::default(),
         })
     }
 
     /// Smallest damping ratio of all modes at a wind speed, m/s.
     pub(super) fn damping_at(&mut self, wind: f64) -> Result<f64> {
-        let section = self.stepper.section();
-        let modes = self.modes.as_mut();
-        let followed = modes.and_then(|modes| modes.smallest_damping(section, wind));
-        followed.map_or_else(|| smallest_damping(section, wind), Ok)
+        self.damping.at(self.stepper.section(), wind)
     }
 
     /// Nothing moves.

@@ -10,8 +10,8 @@ use super::sensitivity::{SectionValues, add, central_difference, parameter_step}
 use super::trust::{Known, MonitoredUnit, is_of_onset, without_motion};
 use super::unit::{Differentiable, Prepared};
 use crate::error::Result;
+use crate::flutter::smallest_damping;
 use crate::fmu::lifecycle::State;
-use crate::fmu::onset_start::smallest_damping;
 use crate::fmu::refusal::CallResult;
 use crate::fmu::resources::Resources;
 use crate::fmu::variables::{Calculated, Role, Status};

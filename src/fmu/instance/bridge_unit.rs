@@ -181,10 +181,6 @@ impl MonitoredUnit for BridgeUnit {
         Some(self.built.stepper.section())
     }
 
-    fn known_damping(&mut self) -> &mut Option<(f64, f64)> {
-        &mut self.built.damping
-    }
-
     fn damping_at(&mut self, wind: f64) -> Result<f64> {
         self.built.damping_at(wind)
     }
@@ -344,7 +340,7 @@ impl Prepared for BridgeUnit {
         }
         let limit = memory.values[self.places.limit];
         let known = self.searched.as_ref();
-        let followed = known.and_then(|known| known.followed(&self.built, limit));
+        let followed = known.and_then(|known| known.followed(&mut self.built, limit));
         let card = match followed {
             Some(onset) => OnsetCard::of_followed(&self.built, self.tested, (limit, onset)),
             None => {

@@ -4,7 +4,7 @@ use super::memory::Memory;
 use super::unit::Prepared;
 use crate::aeroelastic::CoupledSection;
 use crate::error::Result;
-use crate::fmu::onset_start::smallest_damping;
+use crate::flutter::smallest_damping;
 use crate::fmu::resources::Resources;
 use crate::fmu::variables::{Calculated, Role, Status};
 use crate::response::Stepper;
@@ -99,14 +99,8 @@ pub(super) trait MonitoredUnit: Prepared {
     /// The motion in its forces; `None` while there is none.
     fn coupled(&self) -> Option<&CoupledSection>;
 
-    /// A wind speed, m/s, and the smallest damping ratio there; forgotten where the system is made anew.
-    fn known_damping(&mut self) -> &mut Option<(f64, f64)>;
-
     /// Smallest damping ratio at a wind speed, m/s; 0 while there is no motion in its forces.
-    fn damping_at(&mut self, wind: f64) -> Result<f64> {
-        self.coupled()
-            .map_or(Ok(0.0), |s| smallest_damping(s, wind))
-    }
+    fn damping_at(&mut self, wind: f64) -> Result<f64>;
 
     fn wind_speed(&self, memory: &Memory) -> f64;
 
@@ -153,21 +147,12 @@ pub(super) trait MonitoredUnit: Prepared {
         }
     }
 
-    /// Smallest damping ratio, that of the last time where the wind is the same.
+    /// Smallest damping ratio; 0, with the reason, where it is not known.
     fn damping(&mut self, wind: f64, notices: &mut Vec<String>) -> f64 {
-        if let Some((_, known)) = self.known_damping().filter(|(at, _)| *at == wind) {
-            return known;
-        }
-        match self.damping_at(wind) {
-            Ok(damping) => {
-                *self.known_damping() = Some((wind, damping));
-                damping
-            }
-            Err(why) => {
-                notices.push(format!("damping_now is not known: {why}"));
-                0.0
-            }
-        }
+        self.damping_at(wind).unwrap_or_else(|why| {
+            notices.push(format!("damping_now is not known: {why}"));
+            0.0
+        })
     }
 
     /// Derivative of such a number with respect to the wind speed, per m/s.
