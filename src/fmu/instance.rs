@@ -62,6 +62,8 @@ pub struct Instance {
     /// The memory at the beginning.
     fresh: Memory,
     outputs_current: bool,
+    /// Rates of the states at hand.
+    rates: Vec<f64>,
     notices: Vec<String>,
 }
 
@@ -87,6 +89,7 @@ impl Instance {
             unit,
             interface: Interface::CoSimulation,
             outputs_current: false,
+            rates: Vec::new(),
             notices: Vec::new(),
             layout,
             resources,

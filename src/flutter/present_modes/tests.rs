@@ -1,7 +1,7 @@
 //! All eigenvalues, and bridges of which a mode is left out.
 
 use super::*;
-use crate::aerodynamics::{RationalModel, Realizable};
+use crate::aerodynamics::RationalModel;
 use crate::bridge::{Bridge, StripGroup};
 use crate::files::bridge::embedded;
 

@@ -317,10 +317,11 @@ impl Prepared for BridgeUnit {
         Ok(false)
     }
 
-    fn state_rates(&mut self, _: &Resources, memory: &Memory) -> CallResult<Vec<f64>> {
+    fn state_rates(&mut self, memory: &Memory, rates: &mut [f64]) -> CallResult<()> {
         self.load_inputs(memory);
         let stepper = &mut self.built.stepper;
-        finite(stepper.state_derivative(&memory.system, &self.inputs)?)
+        stepper.write_derivative(&memory.system, &self.inputs, rates)?;
+        finite(rates)
     }
 
     fn outputs(&mut self, _: &Resources, memory: &mut Memory) -> CallResult<()> {

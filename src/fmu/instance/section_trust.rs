@@ -14,8 +14,8 @@ impl MonitoredUnit for SectionUnit {
     }
 
     fn damping_at(&mut self, wind: f64) -> Result<f64> {
-        match &self.stepper {
-            Some(stepper) => self.damping.at(stepper.section(), wind),
+        match &mut self.stepper {
+            Some(stepper) => self.damping.at(stepper, wind),
             None => Ok(0.0),
         }
     }

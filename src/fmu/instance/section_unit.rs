@@ -323,12 +323,13 @@ impl Prepared for SectionUnit {
         Ok(false)
     }
 
-    fn state_rates(&mut self, _: &Resources, memory: &Memory) -> CallResult<Vec<f64>> {
+    fn state_rates(&mut self, memory: &Memory, rates: &mut [f64]) -> CallResult<()> {
         self.load_inputs(memory);
         let Some(stepper) = &mut self.stepper else {
-            return Ok(Vec::new());
+            return Ok(());
         };
-        finite(stepper.state_derivative(&memory.system, &self.inputs)?)
+        stepper.write_derivative(&memory.system, &self.inputs, rates)?;
+        finite(rates)
     }
 
     fn outputs(&mut self, _: &Resources, memory: &mut Memory) -> CallResult<()> {
