@@ -24,6 +24,8 @@ mod registry;
 mod stored;
 mod table;
 mod timing;
+#[path = "../../tests/common/trained.rs"]
+mod trained;
 
 use entry::Entry;
 use std::process::ExitCode;
