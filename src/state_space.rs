@@ -7,7 +7,7 @@ mod roots;
 pub mod rows;
 
 pub use discretize::{StepMatrices, c2d};
-pub(crate) use poles::eigenvector;
+pub(crate) use poles::{RepeatedEigenvalues, eigenvector};
 pub use poles::{balance, eigenvalues};
 pub(crate) use roots::golden_section;
 pub use roots::{boundary, root};
