@@ -225,7 +225,7 @@ impl RangeCount {
             let (scatter_m_s, form_m_s) = d.interval_m_s.and(d.parts_m_s)?;
             Some((d.onset_m_s? - d.truth_m_s) / scatter_m_s.hypot(form_m_s))
         };
-        let squares: Vec<f64> = own.iter().filter_map(|d| error(d)).map(|z| z * z).collect();
+        let squares: Vec<f64> = own.iter().filter_map(error).map(|z| z * z).collect();
         (!own.is_empty()).then(|| Self {
             range,
             decks: own.len(),

@@ -251,12 +251,15 @@ pub(super) fn tangent_of(
 /// What a constraint asks of one transfer function, as a row over its columns.
 type ConstraintGradient = dyn Fn(&ActiveConstraint, (usize, usize), &Basis) -> Vec<f64>;
 
+/// The same of one constraint.
+type RowOfEntry<'a> = dyn Fn((usize, usize), &Basis) -> Vec<f64> + 'a;
+
 /// Gradient of what a constraint holds with respect to all parameters.
 fn constraint_gradient(
     report: &FitReport,
     (form, poles): (&Form, &FreePoles),
     (first, parameters): (&[usize], usize),
-    row: &dyn Fn((usize, usize), &Basis) -> Vec<f64>,
+    row: &RowOfEntry<'_>,
 ) -> Result<DVector<f64>> {
     let mut gradient = DVector::zeros(parameters);
     let n = report.entries.len().isqrt();
