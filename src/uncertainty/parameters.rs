@@ -232,62 +232,54 @@ pub(super) fn tangent_of(
     let Some(constraints) = &report.constraints else {
         return Ok(None);
     };
-    let gradients = constraints.active.iter().map(|active| {
-        let of = |gradient: &ConstraintGradient| {
-            constraint_gradient(report, (form, poles), (first, parameters), &|e, basis| {
-                gradient(active, e, basis)
-            })
-        };
-        let held = of(&|active, e, basis| active.gradient(e, basis))?;
-        let beyond = of(&|active, e, basis| active.gradient_beyond_limit(e, basis))?;
-        Ok((beyond.norm() > NOTHING_HELD * held.norm()).then_some(beyond))
-    });
-    let gradients: Vec<Option<DVector<f64>>> = gradients.collect::<Result<_>>()?;
-    Ok(Some(
-        Tangent::new(gradients.into_iter().flatten()).basis(parameters),
-    ))
-}
-
-/// What a constraint asks of one transfer function, as a row over its columns.
-type ConstraintGradient = dyn Fn(&ActiveConstraint, (usize, usize), &Basis) -> Vec<f64>;
-
-/// The same of one constraint.
-type RowOfEntry<'a> = dyn Fn((usize, usize), &Basis) -> Vec<f64> + 'a;
-
-/// Gradient of what a constraint holds with respect to all parameters.
-fn constraint_gradient(
-    report: &FitReport,
-    (form, poles): (&Form, &FreePoles),
-    (first, parameters): (&[usize], usize),
-    row: &RowOfEntry<'_>,
-) -> Result<DVector<f64>> {
-    let mut gradient = DVector::zeros(parameters);
+    let mut gradients = vec![DVector::zeros(parameters); constraints.active.len()];
+    // squares of the gradients of what is held, whatever the limit does
+    let mut held_squares = vec![0.0; gradients.len()];
     let n = report.entries.len().isqrt();
     for (e, entry) in report.entries.iter().enumerate() {
         let place = (e / n, e % n);
         let values = entry.values();
         let free = form.collapse(&entry.poles);
-        let own = row(place, &Basis::new(form, &entry.poles)?);
-        for (c, x) in own.iter().enumerate() {
-            gradient[first[e] + c] = *x;
+        let basis = Basis::new(form, &entry.poles)?;
+        let each = gradients.iter_mut().zip(&mut held_squares);
+        for ((gradient, square), active) in each.zip(&constraints.active) {
+            let own = active.gradient_beyond_limit(place, &basis);
+            gradient.as_mut_slice()[first[e]..][..own.len()].copy_from_slice(&own);
+            *square += norm_squared(&active.gradient(place, &basis));
         }
         for (m, pole) in poles.searched.iter().enumerate() {
             if pole.entry.is_some_and(|entry| entry != place) {
                 continue;
             }
+            let step = 2.0 * STEP * free[pole.index];
             let (up, down) = moved_pole(form, &free, pole.index)?;
-            let held = |b: &Basis| {
-                row(place, b)
-                    .iter()
-                    .zip(&values)
-                    .map(|(g, v)| g * v)
-                    .sum::<f64>()
-            };
-            gradient[parameters - poles.searched.len() + m] +=
-                (held(&up) - held(&down)) / (2.0 * STEP * free[pole.index]);
+            for (gradient, active) in gradients.iter_mut().zip(&constraints.active) {
+                let value = |b: &Basis| beyond_limit(active, place, b, &values);
+                let at = parameters - poles.searched.len() + m;
+                gradient[at] += (value(&up) - value(&down)) / step;
+            }
         }
     }
-    Ok(gradient)
+    let holding = gradients.into_iter().zip(held_squares);
+    let holding = holding
+        .filter(|(gradient, square)| gradient.norm_squared() > NOTHING_HELD.powi(2) * square)
+        .map(|(gradient, _)| gradient);
+    Ok(Some(Tangent::new(holding).basis(parameters)))
+}
+
+/// What a transfer function adds to what a constraint holds beyond its limit.
+fn beyond_limit(
+    active: &ActiveConstraint,
+    place: (usize, usize),
+    basis: &Basis,
+    values: &[f64],
+) -> f64 {
+    let gradient = active.gradient_beyond_limit(place, basis);
+    gradient.iter().zip(values).map(|(g, v)| g * v).sum()
+}
+
+fn norm_squared(numbers: &[f64]) -> f64 {
+    numbers.iter().map(|x| x * x).sum()
 }
 
 /// How active constraints enter, in words.
