@@ -9,7 +9,9 @@ mod interval;
 mod scaled_forces;
 mod scatter;
 
-pub use answers::{BridgeAnswer, BridgeFlutter, LeftOut, TableDivergence, bridge_flutter};
+pub use answers::{
+    BridgeAnswer, BridgeFlutter, BridgeRotation, LeftOut, TableDivergence, bridge_flutter,
+};
 pub use buffeting::{BridgeBuffeting, BridgeRecord, BuffetingBlock, ModelsBesideTables};
 pub use export::BridgeExportOptions;
 pub use forces::SectionForces;
@@ -137,6 +139,17 @@ impl BridgeStudy {
                 .find_map(|(_, s)| s.tested)
         };
         self.by_model.forces().common_range(of)
+    }
+
+    /// Angle of the tests at each node, deg; 0 where nothing is stated, or the forces are no tests.
+    pub(crate) fn tested_angles_deg(&self) -> Vec<f64> {
+        let mut angles = vec![0.0; self.by_model.nodes.len()];
+        let groups = self.by_model.groups.iter().zip(&self.section_of_group);
+        for (group, section) in groups {
+            let angle = self.sections[*section].angle_deg.unwrap_or(0.0);
+            group.nodes.iter().for_each(|n| angles[*n] = angle);
+        }
+        angles
     }
 
     /// Static coefficients `(C_L, C_D, C_M)` of each group, `None` where a section does not state them.
