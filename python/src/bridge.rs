@@ -297,11 +297,12 @@ impl Bridge {
             generated: None,
         };
         let written = Work::new(None).run(py, || {
-            let export = self.0.export(&BridgeExportOptions {
+            let mut export = self.0.export(&BridgeExportOptions {
                 nodes: nodes.unwrap_or_default(),
                 allow_unstable,
                 ..BridgeExportOptions::default()
             })?;
+            export.verdict = Some(self.0.verdict()?);
             let (runtimes, label) = (Runtime::available()?, label.dated()?);
             let bytes = package_bridge(&export, &runtimes, &label, FmiVersion::Two)?;
             write_archive(&path, &bytes, existing(overwrite))

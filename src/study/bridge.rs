@@ -24,7 +24,7 @@ use crate::bridge::{Bridge, Similarity, StripGroup, similarities};
 use crate::error::{Error, Result};
 use crate::files::bridge::{BridgeFile, Modes, SectionBlock};
 use crate::flutter::OnsetSearch;
-use crate::plausibility::{Finding, of_bridge, sentences};
+use crate::plausibility::{Finding, of_bridge, of_coefficients, sentences};
 use crate::trained_model::TrainedModel;
 use crate::units::ReducedFrequencyRange;
 use std::collections::BTreeMap;
@@ -103,6 +103,12 @@ impl BridgeStudy {
         let has_table = sections.iter().any(|s| s.table.is_some());
         let by_model = bridge(false)?;
         findings.extend(of_bridge(&by_model));
+        for block in &file.sections {
+            let place = format!("section {}: static.", block.name);
+            let statics = block.statics.iter();
+            findings
+                .extend(statics.flat_map(|s| of_coefficients(&place, &s.coefficients(), &s.arms)));
+        }
         Ok(Self {
             by_model,
             by_table: has_table.then(|| bridge(true)).transpose()?,

@@ -354,6 +354,7 @@ impl SectionBlock {
                 Dof::names(&self.motions),
             ));
         }
-        Ok(())
+        let statics = self.statics.unwrap_or_default();
+        statics.arms.validate(&format!("{place}.static."))
     }
 }

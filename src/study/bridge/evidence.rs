@@ -1,13 +1,14 @@
 //! What is known of a bridge, as evidence for its verdict.
 
 use super::BridgeStudy;
-use super::answers::{BridgeAnswer, BridgeFlutter, coupled};
+use super::answers::{BridgeAnswer, BridgeFlutter, bridge_flutter, coupled};
 use crate::aerodynamics::Transfer;
 use crate::error::Result;
 use crate::flutter::{FastMotion, damps_fast_motion, judged_speeds};
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use crate::verdict::{
-    Basis, DivergenceReading, Evidence, Failure, FlutterReading, MeanRotation, Reach, RequiredSpeed,
+    Basis, DivergenceReading, Evidence, Failure, FlutterReading, MeanRotation, Reach,
+    RequiredSpeed, Verdict,
 };
 use std::sync::Arc;
 
@@ -61,6 +62,15 @@ impl BridgeStudy {
             remarks,
             ..Evidence::default()
         }
+    }
+
+    /// What everything that is found on the bridge amounts to.
+    ///
+    /// # Errors
+    /// As [`bridge_flutter`].
+    pub fn verdict(&self) -> Result<Verdict> {
+        let results = bridge_flutter(self)?;
+        Ok(Verdict::of(&self.evidence(&results, &results.failed)))
     }
 
     /// The speeds at which every mode is among the tests of every section.

@@ -38,7 +38,7 @@ fn angle_and_amplitude_of_the_tests_are_kept() {
         .unwrap();
     let other = table.header.state_angle("deck.angle_deg", Some(0.0));
     let said = other.unwrap_err().to_string();
-    let expected = "deck.angle_deg: expected -3, which the table states, found `0`";
+    let expected = "deck.angle_deg: expected -3, which the table states, found 0";
     assert_eq!(said, expected);
 }
 
