@@ -41,11 +41,13 @@ pub use bridge_motion::{
 };
 pub use critical_point::{CriticalPoint, OnsetMethod};
 pub use curves::{FlutterCurves, ModeBranch, ModePoint, trace_modes};
+pub(crate) use determinant::table_tested_from;
 pub use determinant::{determinant_onset, impedance};
 pub(crate) use divergence::{AssumedAtRest, static_part};
 pub use divergence::{divergence_by_eigenvalues, divergence_speed};
 pub use instability::{Instability, ModeAtOnset, Participation, classify};
-pub use judged::StableRange;
+pub use judged::{FastMotion, StableRange, TestedFrom};
+pub(crate) use judged::{JudgedSpeeds, damps_fast_motion};
 pub(crate) use onset::shown_m_s;
 pub use onset::{BetweenSpeeds, ErrorParts, Onset, OnsetInterval};
 pub use pk::{pk_curves, pk_onset, quasi_pk_mode};

@@ -6,6 +6,8 @@
 
 #[cfg(feature = "cli")]
 mod bridge;
+#[cfg(feature = "cli")]
+mod coefficients;
 mod limits;
 mod section;
 #[cfg(feature = "cli")]
@@ -13,6 +15,8 @@ mod table;
 
 #[cfg(feature = "cli")]
 pub use bridge::{Girder, of_bridge, of_modes};
+#[cfg(feature = "cli")]
+pub(crate) use coefficients::of_coefficients;
 pub(crate) use limits::{
     DECK_WIDTH, MODEL_LENGTH, MODEL_WIDTH, MOTION_FREQUENCY, SAMPLING, WIND_SPEED, beyond,
     ratio_hint,
