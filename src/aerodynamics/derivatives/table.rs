@@ -72,7 +72,7 @@ impl TableHeader {
         let Some(stated) = angle_deg else {
             return Ok(());
         };
-        if !(stated.abs() <= 90.0) {
+        if stated.is_nan() || stated.abs() > 90.0 {
             let expected = "an angle between -90 and 90 degrees";
             return Err(Error::input(key, expected, stated.to_string()));
         }

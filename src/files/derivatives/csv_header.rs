@@ -216,7 +216,7 @@ pub(super) fn write_head(
         ("rotation_amplitude_deg", header.rotation_amplitude_deg),
     ] {
         if let Some(value) = value {
-            CommentHeader::write_line(out, key, &value.to_string())?;
+            CommentHeader::write_line(out, key, value)?;
         }
     }
     for note in &header.notes {
