@@ -134,7 +134,7 @@ pub fn main() -> ExitCode {
             figures::leave_out();
         }
         let progress = progress::Progress::new(!cli.quiet && !cli.json, cli.verbose);
-        let result = run(&cli.command, &progress);
+        let result = readable_arguments().and_then(|()| run(&cli.command, &progress));
         // a signal that is being obeyed ends the program with a code of its own
         let _busy = interrupt::uninterrupted();
         match result {
@@ -143,6 +143,18 @@ pub fn main() -> ExitCode {
         }
     });
     ExitCode::from(code)
+}
+
+/// Names that are no UTF-8 cannot be said in results, which are text.
+fn readable_arguments() -> Result<()> {
+    match std::env::args_os().find(|a| a.to_str().is_none()) {
+        None => Ok(()),
+        Some(argument) => Err(Error::input(
+            "arguments",
+            "names and paths in UTF-8",
+            argument.to_string_lossy(),
+        )),
+    }
 }
 
 /// Help, the version, or a wrong command line, which is said as JSON where JSON was asked for.

@@ -8,4 +8,5 @@ pub mod derivatives;
 pub mod gusts;
 pub(crate) mod header_csv;
 pub mod lab;
+pub(crate) mod text;
 pub(crate) mod toml_lines;

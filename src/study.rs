@@ -116,6 +116,8 @@ pub struct DeckSource {
     pub interpolation: Interpolation,
     /// Width of the section model, m, for a table that does not state it.
     pub width_m: Option<f64>,
+    /// Mean angle of the section in the tests, deg, nose-up positive, for a table that does not state it; left out, 0.
+    pub angle_deg: Option<f64>,
     /// What stands for H4*, A4* in a table without them: `zero` (as when nothing is stated, with a warning) or
     /// `quasi_steady`.
     pub missing: Option<Missing>,

@@ -24,6 +24,8 @@ mod registry;
 mod stored;
 mod table;
 mod timing;
+#[path = "../../tests/common/trained.rs"]
+mod trained;
 
 use entry::Entry;
 use std::process::ExitCode;
@@ -61,7 +63,10 @@ fn run(words: &[&str]) -> Result<(), String> {
         ["--peak", name] => peak::print(registry::named(name)?),
         ["--count", "--store"] => counting::store(),
         ["--count", names @ ..] => counting::judge(&chosen(names)?),
-        ["--write"] => performance::write(&table::print(&chosen(&[])?)?),
+        ["--write"] => {
+            let head = performance::head();
+            performance::write(&head, &table::print(&chosen(&[])?)?)
+        }
         names => table::print(&chosen(names)?).map(drop),
     }
 }

@@ -7,8 +7,8 @@ use std::process::Command;
 const BEGIN: &str = "<!-- ledger:begin -->\n";
 const END: &str = "<!-- ledger:end -->";
 
-/// Puts the table in its place, with machine and date above it.
-pub(crate) fn write(table: &str) -> Result<(), String> {
+/// Puts the table in its place, with a head above it.
+pub(crate) fn write(head: &str, table: &str) -> Result<(), String> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/performance.md");
     let said = |e: std::io::Error| format!("{}: {e}", path.display());
     let page = std::fs::read_to_string(&path).map_err(said)?;
@@ -16,12 +16,12 @@ pub(crate) fn write(table: &str) -> Result<(), String> {
         .split_once(BEGIN)
         .and_then(|(before, rest)| Some((before, rest.split_once(END)?.1)));
     let (before, after) = parts.ok_or_else(|| format!("{}: no markers", path.display()))?;
-    let text = format!("{before}{BEGIN}\n{}\n\n{table}\n{END}{after}", head());
+    let text = format!("{before}{BEGIN}\n{head}\n\n{table}\n{END}{after}");
     std::fs::write(&path, text).map_err(said)
 }
 
-/// Processor, cores, compiler, day.
-fn head() -> String {
+/// Processor, cores, compiler, day, and how busy the machine was before.
+pub(crate) fn head() -> String {
     let cpus = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let name = cpus
         .lines()
@@ -34,8 +34,13 @@ fn head() -> String {
     let day = day.map_or(String::new(), |o| {
         String::from_utf8_lossy(&o.stdout).trim().to_owned()
     });
+    let busy = std::fs::read_to_string("/proc/loadavg").unwrap_or_default();
+    let busy = busy.split(' ').next().filter(|load| !load.is_empty());
+    let busy = busy.map_or(String::new(), |load| {
+        format!(" Busy with others in the minute before: {load} cores.")
+    });
     format!(
-        "{day}, {name}, {cores} cores, {} ({}), {}.",
+        "{day}, {name}, {cores} cores, {} ({}), {}.{busy}",
         std::env::consts::OS,
         std::env::consts::ARCH,
         compiler()

@@ -138,7 +138,7 @@ impl Bridge {
         })?;
         let card = json!({
             "search": answer.search, "motion": answer.motion, "left_out": found.left_out,
-            "divergence_m_s": found.divergence_m_s, "mean_rotation_deg": found.mean_rotation_deg, "failed": found.failed,
+            "divergence_m_s": found.divergence_m_s, "mean_rotation_deg": found.mean_rotation.map(|mean| mean.rotation_deg), "failed": found.failed,
         });
         let verdict = Verdict::of(&self.0.evidence(&found, &found.failed));
         Onset::with_card(&answer.search, method, &verdict, &card)
@@ -297,11 +297,12 @@ impl Bridge {
             generated: None,
         };
         let written = Work::new(None).run(py, || {
-            let export = self.0.export(&BridgeExportOptions {
+            let mut export = self.0.export(&BridgeExportOptions {
                 nodes: nodes.unwrap_or_default(),
                 allow_unstable,
                 ..BridgeExportOptions::default()
             })?;
+            export.verdict = Some(self.0.verdict()?);
             let (runtimes, label) = (Runtime::available()?, label.dated()?);
             let bytes = package_bridge(&export, &runtimes, &label, FmiVersion::Two)?;
             write_archive(&path, &bytes, existing(overwrite))

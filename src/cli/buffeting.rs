@@ -43,7 +43,7 @@ pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
     }
     out.answer(
         account(&study, &results),
-        serde_json::json!({ "buffeting": results }),
+        serde_json::json!({ "buffeting": results, "findings": study.findings() }),
     )
 }
 

@@ -2,6 +2,7 @@
 
 use super::answer::plain;
 use crate::error::{Error, Result};
+use crate::files::text::read_text;
 use crate::plausibility::sentences;
 use crate::section::Dof;
 use crate::study::{Study, study_findings};
@@ -69,11 +70,10 @@ impl StudyArgs {
     /// Reads the study and keeps its text.
     pub(crate) fn read_with_text(&self) -> Result<(Study, String)> {
         let text = if self.is_stdin() {
-            std::io::read_to_string(std::io::stdin())
+            std::io::read_to_string(std::io::stdin()).map_err(|e| Error::io(&self.study, e))?
         } else {
-            std::fs::read_to_string(&self.study)
+            read_text(&self.study)?
         };
-        let text = text.map_err(|e| Error::io(&self.study, e))?;
         let text = with_values(text, &self.set)?;
         let directory = self.study.parent().unwrap_or(Path::new(""));
         let study = Study::from_toml(&text, directory.to_path_buf());

@@ -100,7 +100,7 @@ pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
 /// The family by where tests lie.
 fn family(report: &FamilyReport) -> String {
     let mut text = format!(
-        "{:<26} {:>5} {:>6} {:>14} {:>10} {:>7} {:>11} {:>6} {:>6} {:>8}\n",
+        "{:<26} {:>5} {:>6} {:>14} {:>10} {:>7} {:>11} {:>6} {:>6} {:>8} {:>6}\n",
         "tests",
         "decks",
         "onsets",
@@ -110,14 +110,16 @@ fn family(report: &FamilyReport) -> String {
         "false none",
         "unsafe",
         "met",
-        "half"
+        "half",
+        "error"
     );
     for r in &report.ranges {
         text.push_str(&family_row(r));
     }
     text.push_str(
         "\nheld: stated 95 % intervals that hold the truth; false none: \"no flutter\" above the true onset; unsafe: intervals \
-         above it; met: required speeds above it that are called met; half: median half width of the intervals\n",
+         above it; met: required speeds above it that are called met; half: median half width of the intervals; error: of the \
+         stated onsets over their standard errors (root mean square), one where those are right\n",
     );
     text
 }
@@ -126,8 +128,11 @@ fn family_row(r: &RangeCount) -> String {
     let half = r
         .median_half_width_percent
         .map_or_else(|| "–".to_owned(), |h| format!("{h:.1} %"));
+    let error = r
+        .error_over_standard_error
+        .map_or_else(|| "–".to_owned(), |e| format!("{e:.2}"));
     format!(
-        "{:<26} {:>5} {:>6} {:>5} ({:5.1} %) {:>10} {:>7} {:>11} {:>6} {:>6} {:>8}\n",
+        "{:<26} {:>5} {:>6} {:>5} ({:5.1} %) {:>10} {:>7} {:>11} {:>6} {:>6} {:>8} {:>6}\n",
         r.range.title(),
         r.decks,
         r.held.of,
@@ -138,7 +143,8 @@ fn family_row(r: &RangeCount) -> String {
         r.false_no_flutter,
         r.unsafe_side,
         r.met_against_truth,
-        half
+        half,
+        error
     )
 }
 

@@ -6,6 +6,7 @@ use super::output::OutputDir;
 use super::progress::Progress;
 use super::{figures, stages};
 use crate::error::{Result, counted};
+use crate::files::text::read_text;
 use crate::report::onset_distribution_figure;
 use crate::uncertainty::monte_carlo::{MonteCarloPlan, MonteCarloResult, monte_carlo};
 use std::path::{Path, PathBuf};
@@ -31,7 +32,7 @@ pub(crate) struct Args {
 
 /// Runs the command.
 pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
-    let text = std::fs::read_to_string(&args.plan).map_err(|e| crate::Error::io(&args.plan, e))?;
+    let text = read_text(&args.plan)?;
     let folder = args.plan.parent().unwrap_or(Path::new(""));
     let mut plan = MonteCarloPlan::from_toml(&text, folder.to_path_buf())
         .map_err(|e| e.in_file(&args.plan))?;

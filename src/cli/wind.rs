@@ -3,7 +3,7 @@
 use super::common::{folder_of, warn};
 use super::output::OutputDir;
 use crate::error::Result;
-use crate::plausibility::{of_section, sentences};
+use crate::plausibility::sentences;
 use crate::study::{WindStudy, example_wind_study_text};
 use std::path::{Path, PathBuf};
 
@@ -37,8 +37,7 @@ impl WindArgs {
             return Ok((study, out));
         };
         let study = WindStudy::read(file)?;
-        let section = study.section.as_ref();
-        warn(file, &sentences(&section.map_or_else(Vec::new, of_section)));
+        warn(file, &sentences(&study.findings()));
         let directory = self.out.as_deref().unwrap_or(folder_of(file));
         Ok((study, OutputDir::new(directory)?))
     }

@@ -15,6 +15,7 @@
 use crate::aerodynamics::GustSeries;
 use crate::error::{Error, Place, Result};
 use crate::files::header_csv::{CommentHeader, csv_error, find_columns, number, table_reader};
+use crate::files::text::read_text;
 use std::io::Write;
 use std::path::Path;
 
@@ -36,7 +37,7 @@ pub(crate) const GUST_COLUMNS: [&str; 3] = ["time_s", "u_m_s", "w_m_s"];
 /// [`Error::Io`] when the file cannot be read; [`Error::Input`] with file and line, what was expected and what was found.
 pub fn read_gusts(path: impl AsRef<Path>) -> Result<GustSeries> {
     let path = path.as_ref();
-    let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, e))?;
+    let text = read_text(path)?;
     parse_gusts(&text).map_err(|e| e.in_file(path))
 }
 

@@ -1,6 +1,7 @@
 //! TOML files of ours: read, checked, and every complaint with its line.
 
 use crate::error::{Error, Part, Place, Result};
+use crate::files::text::read_text;
 use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};
 use toml::de::{DeArray, DeTable};
@@ -14,7 +15,7 @@ fn line_of(text: &str, offset: usize) -> usize {
 
 /// The file at `path` by `parse`, which is given its text and its directory.
 pub(crate) fn read<T>(path: &Path, parse: impl FnOnce(&str, PathBuf) -> Result<T>) -> Result<T> {
-    let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, e))?;
+    let text = read_text(path)?;
     let directory = path.parent().unwrap_or(Path::new("")).to_path_buf();
     parse(&text, directory).map_err(|e| e.in_file(path))
 }

@@ -12,6 +12,7 @@ mod bridge_followed;
 mod bridge_places;
 mod bridge_search;
 mod bridge_unit;
+mod damping;
 pub(in crate::fmu) mod derivatives;
 mod force_ahead;
 mod force_derivatives;
@@ -61,6 +62,8 @@ pub struct Instance {
     /// The memory at the beginning.
     fresh: Memory,
     outputs_current: bool,
+    /// Rates of the states at hand.
+    rates: Vec<f64>,
     notices: Vec<String>,
 }
 
@@ -86,6 +89,7 @@ impl Instance {
             unit,
             interface: Interface::CoSimulation,
             outputs_current: false,
+            rates: Vec::new(),
             notices: Vec::new(),
             layout,
             resources,

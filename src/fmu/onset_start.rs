@@ -4,6 +4,7 @@ use crate::aeroelastic::CoupledSection;
 use crate::error::{Result, finite, positive};
 #[cfg(feature = "cli")]
 use crate::flutter::Onset;
+use crate::flutter::smallest_damping;
 use serde::{Deserialize, Serialize};
 
 /// Speeds below the onset, as parts of it, at which the damping of all modes is compared with that of the search.
@@ -47,12 +48,4 @@ impl OnsetStart {
         let mut damping = self.damping_below.into_iter();
         damping.try_for_each(|d| finite("damping_below", d).map(drop))
     }
-}
-
-/// Smallest damping ratio of the modes at a wind speed; one where nothing oscillates.
-pub(super) fn smallest_damping(section: &CoupledSection, wind: f64) -> Result<f64> {
-    let modes = section.at(wind)?.eigenvalues()?;
-    let oscillating = modes.iter().filter(|z| z.im > 0.0);
-    let least = oscillating.map(|z| -z.re / z.norm()).reduce(f64::min);
-    Ok(least.unwrap_or(1.0))
 }

@@ -168,6 +168,8 @@ pub struct BridgeExport {
     pub bridge: BridgeOptions,
     /// Turbulence that blows on it.
     pub turbulence: Option<TurbulenceOptions>,
+    /// What is known of the bridge, for the page that documents it; `None` where nothing was judged.
+    pub verdict: Option<Verdict>,
     /// Which variables its description lists.
     pub listing: Listing,
 }
@@ -198,7 +200,7 @@ pub fn package_bridge(
         options.as_bytes(),
         field.as_deref().map(str::as_bytes),
     )?;
-    let page = bridge_page::documentation(&resources, &export.bridge);
+    let page = bridge_page::documentation(&resources, &export.bridge, export.verdict.as_ref());
     let files = [(MODEL_FILE, json), (BRIDGE_FILE, options)].into_iter();
     let files = files.chain(field.map(|field| (TURBULENCE_FILE, field)));
     assembled(

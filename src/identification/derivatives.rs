@@ -42,6 +42,7 @@ pub fn identify_derivatives(
     let mut result = IdentifiedDerivatives {
         width_m: points.width_m,
         dofs: points.dofs.clone(),
+        rotation_amplitude_deg: points.rotation_amplitude_deg(),
         estimates: Vec::new(),
         warnings: points.warnings,
     };

@@ -36,6 +36,7 @@ pub(crate) use equations::FitRequirements;
 use equations::{Equation, equations, satisfy};
 use motions::Motions;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
+use report::GrowthLimit;
 use stated::{Condition, Stated};
 
 pub use report::{ActiveConstraint, ConstraintCost, ConstraintKind, ConstraintReport, OnsetEffect};
@@ -45,6 +46,8 @@ pub(crate) use tangent::{LinearEntry, Tangent};
 const TOLERANCE: f64 = 1e-9;
 /// A condition is held by what comes closer than this to its bound.
 const ACTIVE: f64 = 1e-7;
+/// Part of the gradient of a condition that rounding leaves where its limit changes as it does itself.
+pub(crate) const NOTHING_HELD: f64 = 1e-6;
 /// Times that further `K` are stated; two or three are the rule.
 const ROUNDS: usize = 30;
 
@@ -220,23 +223,10 @@ impl<'a> Dissipation<'a> {
                 if *excess <= -ACTIVE {
                     continue;
                 }
-                let v = self
-                    .motions
-                    .whole(s.condition.part, directions.column(m).as_slice());
-                let weights = &v * v.transpose();
-                gradients.push(s.gradient(&self.motions, &weights, entries));
-                let value = |x: &[Vec<f64>]| {
-                    let d = directions.column(m);
-                    d.dot(&(s.matrix(&self.motions, x) * d))
-                };
-                active.push(ActiveConstraint {
-                    kind: s.condition.kind,
-                    k: s.condition.k,
-                    entry: None,
-                    direction: v.iter().copied().collect(),
-                    alone: value(&alone),
-                    held: value(&coefficients),
-                });
+                let direction = directions.column(m).into_owned();
+                let constraint = self.held_back((s, &direction), edges, (&alone, &coefficients));
+                gradients.extend(self.free_gradient(s, &constraint, entries));
+                active.push(constraint);
             }
         }
         Solution {
@@ -245,5 +235,51 @@ impl<'a> Dissipation<'a> {
             active,
             tangent: Tangent::new(gradients.into_iter()),
         }
+    }
+
+    /// The constraint that a condition is in one direction of its motions.
+    fn held_back(
+        &self,
+        (stated, direction): (&Stated, &DVector<f64>),
+        edges: &[TestedRangeEnd],
+        (alone, coefficients): (&[Vec<f64>], &[Vec<f64>]),
+    ) -> ActiveConstraint {
+        let Condition {
+            kind, k, part, own, ..
+        } = stated.condition;
+        let value = |x: &[Vec<f64>]| direction.dot(&(stated.matrix(&self.motions, x) * direction));
+        let follows = (own > 0.0).then(|| edges[part].change(direction)).flatten();
+        ActiveConstraint {
+            kind,
+            k,
+            entry: None,
+            direction: self.motions.whole(part, direction.as_slice()).data.into(),
+            alone: value(alone),
+            held: value(coefficients),
+            limit: follows.map(|weights| GrowthLimit {
+                k_max: self.k_max,
+                weights: self.motions.whole_matrix(part, &(weights * own)),
+            }),
+        }
+    }
+
+    /// Its gradient in the free numbers; none where it holds nothing but the growth that the tests end with.
+    fn free_gradient(
+        &self,
+        stated: &Stated,
+        constraint: &ActiveConstraint,
+        entries: &[LinearEntry],
+    ) -> Option<DVector<f64>> {
+        let v = DVector::from_column_slice(&constraint.direction);
+        let held = stated.gradient(&self.motions, &(&v * v.transpose()), entries);
+        let Some(limit) = &constraint.limit else {
+            return Some(held);
+        };
+        let part = stated.condition.part;
+        let end = Condition::above(self.k_max, 1.0, self.bases[0].feed(), part);
+        let follows = Stated::new(end, &self.motions);
+        let norm = held.norm();
+        let free = held - follows.gradient(&self.motions, &limit.weights, entries);
+        (free.norm() > NOTHING_HELD * norm).then_some(free)
     }
 }

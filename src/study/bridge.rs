@@ -9,7 +9,9 @@ mod interval;
 mod scaled_forces;
 mod scatter;
 
-pub use answers::{BridgeAnswer, BridgeFlutter, LeftOut, TableDivergence, bridge_flutter};
+pub use answers::{
+    BridgeAnswer, BridgeFlutter, BridgeRotation, LeftOut, TableDivergence, bridge_flutter,
+};
 pub use buffeting::{BridgeBuffeting, BridgeRecord, BuffetingBlock, ModelsBesideTables};
 pub use export::BridgeExportOptions;
 pub use forces::SectionForces;
@@ -22,7 +24,7 @@ use crate::bridge::{Bridge, Similarity, StripGroup, similarities};
 use crate::error::{Error, Result};
 use crate::files::bridge::{BridgeFile, Modes, SectionBlock};
 use crate::flutter::OnsetSearch;
-use crate::plausibility::{Finding, of_bridge, sentences};
+use crate::plausibility::{Finding, of_bridge, of_coefficients, sentences};
 use crate::trained_model::TrainedModel;
 use crate::units::ReducedFrequencyRange;
 use std::collections::BTreeMap;
@@ -101,6 +103,12 @@ impl BridgeStudy {
         let has_table = sections.iter().any(|s| s.table.is_some());
         let by_model = bridge(false)?;
         findings.extend(of_bridge(&by_model));
+        for block in &file.sections {
+            let place = format!("section {}: static.", block.name);
+            let statics = block.statics.iter();
+            findings
+                .extend(statics.flat_map(|s| of_coefficients(&place, &s.coefficients(), &s.arms)));
+        }
         Ok(Self {
             by_model,
             by_table: has_table.then(|| bridge(true)).transpose()?,
@@ -137,6 +145,17 @@ impl BridgeStudy {
                 .find_map(|(_, s)| s.tested)
         };
         self.by_model.forces().common_range(of)
+    }
+
+    /// Angle of the tests at each node, deg; 0 where nothing is stated, or the forces are no tests.
+    pub(crate) fn tested_angles_deg(&self) -> Vec<f64> {
+        let mut angles = vec![0.0; self.by_model.nodes.len()];
+        let groups = self.by_model.groups.iter().zip(&self.section_of_group);
+        for (group, section) in groups {
+            let angle = self.sections[*section].angle_deg.unwrap_or(0.0);
+            group.nodes.iter().for_each(|n| angles[*n] = angle);
+        }
+        angles
     }
 
     /// Static coefficients `(C_L, C_D, C_M)` of each group, `None` where a section does not state them.

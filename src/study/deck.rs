@@ -78,7 +78,11 @@ impl Deck {
             };
             let read = read_table_with(study.directory.join(name), &options)?;
             convention = read.convention;
-            Source::Table(read.table)
+            let mut table = read.table;
+            table
+                .header
+                .state_angle("deck.angle_deg", study.deck.angle_deg)?;
+            Source::Table(table)
         } else {
             Source::Table(embedded::deck(name)?)
         };
@@ -89,10 +93,13 @@ impl Deck {
                 format!("`{name}`, whose convention is known"),
             ));
         }
-        if !is_file && (study.deck.width_m.is_some() || study.deck.missing.is_some()) {
+        let states = study.deck.width_m.is_some()
+            || study.deck.angle_deg.is_some()
+            || study.deck.missing.is_some();
+        if !is_file && states {
             return Err(Error::input(
                 "deck",
-                "`width_m` and `missing` for a table in a file (.csv, .xlsx) only",
+                "`width_m`, `angle_deg` and `missing` for a table in a file (.csv, .xlsx) only",
                 format!("source `{name}`"),
             ));
         }

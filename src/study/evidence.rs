@@ -3,7 +3,9 @@
 use super::{Deck, FlutterStudy, KnownUncertainty, StageFailure, Study, study_findings};
 use crate::aeroelastic::{CoupledSection, EquilibriumEnd, static_equilibria};
 use crate::error::{Error, Result};
-use crate::flutter::{FlutterSearch, Instability, OnsetMethod, StableRange, judged_speeds};
+use crate::flutter::{
+    FlutterSearch, Instability, OnsetMethod, StableRange, judged_speeds, table_tested_from,
+};
 use crate::identification::FitReport;
 use crate::trained_model::TrainedModel;
 use crate::verdict::{
@@ -11,8 +13,6 @@ use crate::verdict::{
     MovedOnset, Reach,
 };
 
-/// The rotation to which derivatives belong, deg: tables do not state another.
-const TESTED_ROTATION_DEG: f64 = 0.0;
 /// Stages that draw and write, without which the answer is the same.
 const DRAWING: [&str; 2] = ["figure", "curves"];
 
@@ -51,11 +51,14 @@ pub(crate) fn section_evidence(
         constraints: own.fit.and_then(moved),
         test_speeds: own.uncertainty.and_then(one_test_speed),
         implausible: [deck.findings(), &study_findings(study)[..]].concat(),
+        tested_rotation_deg: deck.table().and_then(|t| t.header.rotation_amplitude_deg),
         remarks: deck.notes(),
         ..Evidence::default()
     };
     let table = deck.own_model_name();
-    evidence.flutter.extend(of_deck(deck, results, &table));
+    evidence
+        .flutter
+        .extend(of_deck(study, deck, results, &table));
     let of_answer = |model: &str| Some(model) == name || model == table;
     let divergence = results.divergence.iter().filter(|d| of_answer(&d.model));
     evidence.divergence = divergence
@@ -66,7 +69,8 @@ pub(crate) fn section_evidence(
             assumed: d.assumed.clone(),
         })
         .collect();
-    if let Err(e) = add_coefficients(study, results, &mut evidence) {
+    let angle_deg = deck.table().and_then(|t| t.header.angle_deg);
+    if let Err(e) = add_coefficients(study, results, angle_deg, &mut evidence) {
         evidence.failures.push(Failure {
             stage: "quasi-steady theory".to_owned(),
             reason: e.to_string(),
@@ -102,14 +106,23 @@ fn reach(study: &Study, results: &FlutterStudy, model: &TrainedModel) -> Result<
     Ok(Reach::of(judged, curves, study.section.width_m))
 }
 
-fn of_deck(deck: &Deck, results: &FlutterStudy, name: &str) -> Option<FlutterReading> {
-    let tested = deck.model().ok()?.1;
+fn of_deck(
+    study: &Study,
+    deck: &Deck,
+    results: &FlutterStudy,
+    name: &str,
+) -> Option<FlutterReading> {
+    let (table, tested) = deck.model().ok()?;
     Some(FlutterReading {
         forces: forces(name, name),
         search: results.search_of(name, OnsetMethod::Determinant)?,
         basis: match tested {
             // a table is searched no further than it reaches
-            Some(range) => Basis::tested(range, Reach::everywhere()),
+            Some(range) => {
+                let structure = study.section.structure().ok()?;
+                let from = table_tested_from(&structure, &*table, range).ok()?;
+                Basis::tested(range, Reach::of_table(from))
+            }
             None => Basis::Exact,
         },
     })
@@ -152,7 +165,12 @@ fn one_test_speed(known: &KnownUncertainty) -> Option<usize> {
 }
 
 /// What static coefficients say beside the derivatives: galloping, divergence about the equilibrium, mean rotation.
-fn add_coefficients(study: &Study, results: &FlutterStudy, evidence: &mut Evidence) -> Result<()> {
+fn add_coefficients(
+    study: &Study,
+    results: &FlutterStudy,
+    tested_deg: Option<f64>,
+    evidence: &mut Evidence,
+) -> Result<()> {
     let (Some(block), Some(found)) = (&study.coefficients, &results.quasi_steady) else {
         return Ok(());
     };
@@ -192,13 +210,15 @@ fn add_coefficients(study: &Study, results: &FlutterStudy, evidence: &mut Eviden
         .flutter
         .first()
         .and_then(|r| r.search.critical_speed_m_s());
-    if let Some(speed) = critical {
+    // without an onset the speed that is required is the one that counts
+    if let Some(speed) = critical.or(evidence.required.map(|r| r.speed_m_s)) {
         let structure = study.section.structure()?;
         let theory = block.theory(&study.directory, &study.section.dofs())?;
         let path = static_equilibria(&structure, &theory, &[speed])?;
         evidence.mean_rotation = path.points.first().map(|p| MeanRotation {
+            speed_m_s: speed,
             at_onset_deg: p.rotation_rad.to_degrees(),
-            tested_deg: TESTED_ROTATION_DEG,
+            tested_deg,
         });
     }
     Ok(())

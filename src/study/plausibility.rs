@@ -32,5 +32,8 @@ pub(crate) fn study_findings(study: &Study) -> Vec<Finding> {
         found.push(found_there.otherwise(meant));
     }
     found.extend(plan.findings());
+    if let Some(block) = &study.coefficients {
+        found.extend(block.findings(&study.directory, &study.section.dofs()));
+    }
     found
 }

@@ -36,6 +36,7 @@ pub(crate) fn processed_study_text(
         convention: StatedConvention::default(),
         interpolation: Interpolation::default(),
         width_m: None,
+        angle_deg: None,
         missing: None,
         source: table.to_owned(),
         speed_groups: None,

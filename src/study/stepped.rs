@@ -112,7 +112,7 @@ pub fn stepped_onset(
                     ..OnsetSearch::default()
                 };
                 let judged = judged_speeds(&section, &search, Some(model.tested_range))?;
-                return Ok(FlutterSearch::StableUpTo(range.and(judged)).into());
+                return Ok(FlutterSearch::StableUpTo(range.and(judged.range)).into());
             }
         }
     }

@@ -17,6 +17,7 @@ use crate::error::{Error, Result, finite, of_schema, positive};
 use crate::files::coefficients::named_coefficients;
 use crate::files::derivatives::named_table;
 use crate::files::toml_lines;
+use crate::plausibility::{Finding, of_coefficients, of_section};
 use crate::section::{Dof, SectionModel};
 use crate::trained_model::TrainedModel;
 use serde::{Deserialize, Serialize};
@@ -172,6 +173,18 @@ impl WindStudy {
         TrainedModel::read(&self.directory.join(&self.aerodynamics)).map(Some)
     }
 
+    /// What is odd about section and coefficients.
+    pub(crate) fn findings(&self) -> Vec<Finding> {
+        let Ok(section) = self.section() else {
+            return Vec::new();
+        };
+        let mut found = of_section(&section);
+        if let Some(block) = &self.coefficients {
+            found.extend(block.findings(&self.directory, &section.dofs()));
+        }
+        found
+    }
+
     /// The section: that of the file, else that of the trained model.
     pub(crate) fn section(&self) -> Result<SectionModel> {
         if let Some(section) = &self.section {
@@ -225,6 +238,21 @@ impl CoefficientsBlock {
         QuasiSteady::new(named_coefficients(&self.source, directory)?, arms, dofs)
     }
 
+    /// What is odd about the coefficients at no rotation, or the angle of the table next to it; of a table that cannot be read the
+    /// computation says so.
+    pub(in crate::study) fn findings(&self, directory: &Path, dofs: &[Dof]) -> Vec<Finding> {
+        let Ok(theory) = self.theory(directory, dofs) else {
+            return Vec::new();
+        };
+        let (low, high) = theory.coefficients().range_rad();
+        let at = theory.coefficients().at(0.0_f64.clamp(low, high));
+        let arms = self.arms.unwrap_or_default();
+        at.map_or_else(
+            |_| Vec::new(),
+            |at| of_coefficients("coefficients.", &at, &arms),
+        )
+    }
+
     /// Refuses arms from two sources; `place` is the key of the block.
     pub(in crate::study) fn validate(&self, place: &str) -> Result<()> {
         if self.arms.is_some() && self.arms_from.is_some() {
@@ -234,6 +262,6 @@ impl CoefficientsBlock {
                 "both",
             ));
         }
-        Ok(())
+        self.arms.unwrap_or_default().validate(&format!("{place}."))
     }
 }

@@ -74,6 +74,8 @@ pub struct RangeCount {
     pub met_against_truth: usize,
     /// Median half width of the stated intervals, percent of the onset.
     pub median_half_width_percent: Option<f64>,
+    /// Root mean square of the errors of stated onsets over their standard errors: one where those are right.
+    pub error_over_standard_error: Option<f64>,
 }
 
 /// What the family came to.
@@ -219,6 +221,11 @@ impl RangeCount {
             .map(|(_, (low, high))| 100.0 * (high - low) / (high + low))
             .collect();
         halves.sort_by(f64::total_cmp);
+        let error = |d: &&DeckOutcome| {
+            let (scatter_m_s, form_m_s) = d.interval_m_s.and(d.parts_m_s)?;
+            Some((d.onset_m_s? - d.truth_m_s) / scatter_m_s.hypot(form_m_s))
+        };
+        let squares: Vec<f64> = own.iter().filter_map(error).map(|z| z * z).collect();
         (!own.is_empty()).then(|| Self {
             range,
             decks: own.len(),
@@ -231,6 +238,8 @@ impl RangeCount {
             unsafe_side: stated().filter(|(truth, (low, _))| truth < low).count(),
             met_against_truth: own.iter().map(|d| d.met_above_truth.len()).sum(),
             median_half_width_percent: super::sample_quantile(&halves, halves.len(), 0.5),
+            error_over_standard_error: (!squares.is_empty())
+                .then(|| (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()),
         })
     }
 }

@@ -3,7 +3,7 @@
 
 use crate::error::Result;
 use crate::identification::basis::Basis;
-use crate::identification::dissipative::Tangent;
+use crate::identification::dissipative::{NOTHING_HELD, Tangent};
 use crate::identification::{ActiveConstraint, FitReport, Form, PoleSearch};
 use crate::section::Dof;
 use nalgebra::{DMatrix, DVector};
@@ -233,16 +233,19 @@ pub(super) fn tangent_of(
         return Ok(None);
     };
     let mut gradients = vec![DVector::zeros(parameters); constraints.active.len()];
+    // squares of the gradients of what is held, whatever the limit does
+    let mut held_squares = vec![0.0; gradients.len()];
     let n = report.entries.len().isqrt();
     for (e, entry) in report.entries.iter().enumerate() {
         let place = (e / n, e % n);
         let values = entry.values();
         let free = form.collapse(&entry.poles);
         let basis = Basis::new(form, &entry.poles)?;
-        for (gradient, active) in gradients.iter_mut().zip(&constraints.active) {
-            for (c, x) in active.gradient(place, &basis).iter().enumerate() {
-                gradient[first[e] + c] = *x;
-            }
+        let each = gradients.iter_mut().zip(&mut held_squares);
+        for ((gradient, square), active) in each.zip(&constraints.active) {
+            let own = active.gradient_beyond_limit(place, &basis);
+            gradient.as_mut_slice()[first[e]..][..own.len()].copy_from_slice(&own);
+            *square += norm_squared(&active.gradient(place, &basis));
         }
         for (m, pole) in poles.searched.iter().enumerate() {
             if pole.entry.is_some_and(|entry| entry != place) {
@@ -251,28 +254,48 @@ pub(super) fn tangent_of(
             let step = 2.0 * STEP * free[pole.index];
             let (up, down) = moved_pole(form, &free, pole.index)?;
             for (gradient, active) in gradients.iter_mut().zip(&constraints.active) {
-                let value = |b: &Basis| held(active, place, b, &values);
-                let place = parameters - poles.searched.len() + m;
-                gradient[place] += (value(&up) - value(&down)) / step;
+                let value = |b: &Basis| beyond_limit(active, place, b, &values);
+                let at = parameters - poles.searched.len() + m;
+                gradient[at] += (value(&up) - value(&down)) / step;
             }
         }
     }
-    Ok(Some(Tangent::new(gradients.into_iter()).basis(parameters)))
+    let holding = gradients.into_iter().zip(held_squares);
+    let holding = holding
+        .filter(|(gradient, square)| gradient.norm_squared() > NOTHING_HELD.powi(2) * square)
+        .map(|(gradient, _)| gradient);
+    Ok(Some(Tangent::new(holding).basis(parameters)))
 }
 
-/// What a transfer function adds to what a constraint holds.
-fn held(active: &ActiveConstraint, place: (usize, usize), basis: &Basis, values: &[f64]) -> f64 {
-    let gradient = active.gradient(place, basis);
+/// What a transfer function adds to what a constraint holds beyond its limit.
+fn beyond_limit(
+    active: &ActiveConstraint,
+    place: (usize, usize),
+    basis: &Basis,
+    values: &[f64],
+) -> f64 {
+    let gradient = active.gradient_beyond_limit(place, basis);
     gradient.iter().zip(values).map(|(g, v)| g * v).sum()
+}
+
+fn norm_squared(numbers: &[f64]) -> f64 {
+    numbers.iter().map(|x| x * x).sum()
 }
 
 /// How active constraints enter, in words.
 pub(super) fn held_sentence(report: &FitReport) -> String {
     match &report.constraints {
-        Some(c) => format!(
-            "; what {} active constraint(s) hold counts as known",
-            c.active.len()
-        ),
+        Some(c) => {
+            let follows = if c.active.iter().any(|a| a.limit.is_some()) {
+                ", but not the growth with which the tests end: it follows the data"
+            } else {
+                ""
+            };
+            format!(
+                "; what {} active constraint(s) hold counts as known{follows}",
+                c.active.len()
+            )
+        }
         None => String::new(),
     }
 }

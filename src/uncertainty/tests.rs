@@ -1,6 +1,7 @@
 //! The two routes to the error of an onset against each other and against re-solved onsets.
 
 mod between_speeds;
+mod growth_limit;
 
 use super::onset::{ResamplingPlan, onset_error, onset_gradient, resample_onset};
 use super::*;

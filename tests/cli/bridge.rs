@@ -3,6 +3,7 @@
 use crate::bridges::{TWO, langenuen_text};
 use crate::browser;
 use crate::command::{aerodeck, listing, refused, succeeds};
+use crate::report::fmu_page;
 use serde_json::Value;
 use std::fs;
 use tempfile::TempDir;
@@ -239,6 +240,13 @@ fn an_exported_bridge_passes_the_check() {
     ];
     let text = succeeds(folder.path(), &export);
     assert!(text.contains("8 modes") && text.contains("1156"), "{text}");
+    // the page says what the command does
+    let headline = text.lines().next().unwrap();
+    let verdict = headline.strip_prefix("Langenuen: ").unwrap();
+    assert!(verdict.starts_with("flutter onset 7"), "{headline}");
+    let page = fmu_page(&folder.path().join("bridge.fmu"));
+    assert!(page.contains(&format!("<p>{verdict}.</p>")), "{page}");
+    assert!(page.contains("Static divergence at"), "{page}");
     let text = succeeds(folder.path(), &["fmu", "check", "bridge.fmu"]);
     assert!(text.ends_with("passed\n"), "{text}");
     refused(folder.path(), &export, &["expected no file there yet"]);

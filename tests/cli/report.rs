@@ -126,7 +126,8 @@ fn a_required_speed_is_judged_by_the_lower_end_of_the_interval() {
     );
 }
 
-fn fmu_page(path: &Path) -> String {
+/// The page that documents an FMU.
+pub fn fmu_page(path: &Path) -> String {
     let mut archive = zip::ZipArchive::new(fs::File::open(path).unwrap()).unwrap();
     let mut page = archive.by_name("documentation/index.html").unwrap();
     let mut text = String::new();

@@ -1,6 +1,6 @@
 //! FMUs of whole bridges: what their parameters change, and bridges that are not as most.
 
-use crate::bridges::{SEARCH, TWO, coupled, langenuen, langenuen_text, read};
+use crate::bridges::{SEARCH, TWO, coupled, langenuen, langenuen_text, lively, read};
 use aerodeck::flutter::{OnsetSearch, find_onset};
 use aerodeck::fmu::importer::{CheckReport, Fmu, Slave, Value};
 use aerodeck::fmu::package::{
@@ -57,6 +57,39 @@ fn the_onset_is_that_of_the_parameters() {
         eprintln!("{density} kg/m³: {found} m/s in {took:?}, searched {expected}");
         // a motion that is followed settles to 1e-9
         assert!((found / expected - 1.0).abs() < 1e-8, "{found}, {expected}");
+    }
+}
+
+/// The smallest damping in winds that go up, down and far, below and above the onset, and after a parameter: that of all
+/// eigenvalues of another bridge, whatever was read before.
+#[test]
+fn the_damping_is_that_of_the_present_wind() {
+    for (study, tolerance) in [(langenuen("LN21-5200", TWO), 1e-9), (lively(), 1e-11)] {
+        let export = study.export(&BridgeExportOptions::default()).unwrap();
+        let (_folder, fmu) = opened(&export);
+        let mut slave = fmu.instantiate("bridge").unwrap();
+        slave.setup(0.0, None, None).unwrap();
+        slave.enter_initialization().unwrap();
+        slave.exit_initialization().unwrap();
+        let own = export.bridge.air_density_kg_m3;
+        for density in [own, 1.6, own] {
+            slave.set("air_density", &Value::Real(density)).unwrap();
+            let mut other = study.by_model.clone();
+            other.air_density_kg_m3 = density;
+            let section = coupled(&other);
+            for wind in [30.0, 30.25, 30.0, 44.0, 61.0, 95.0, 60.0, 3.0, 0.0, 12.0] {
+                slave.set("wind_speed", &Value::Real(wind)).unwrap();
+                let (found, took) = timed(&slave, "damping_now");
+                let all = section.at(wind).unwrap().eigenvalues().unwrap();
+                let oscillating = all.iter().filter(|z| z.im > 0.0);
+                let expected = oscillating.map(|z| -z.re / z.norm()).fold(1.0, f64::min);
+                eprintln!("{density} kg/m³, {wind} m/s: {found} in {took:?}");
+                assert!(
+                    (found - expected).abs() < tolerance,
+                    "{density} kg/m³, {wind} m/s: {found}, {expected}"
+                );
+            }
+        }
     }
 }
 

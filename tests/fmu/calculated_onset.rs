@@ -1,50 +1,17 @@
 //! The onset that an instance calculates for its parameters is that of the search of all eigenvalues, on every deck; so is
 //! its word on growth below.
 
+use crate::trained::of_deck;
 use aerodeck::aerodynamics::Realizable;
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::files::derivatives::embedded;
 use aerodeck::flutter::{OnsetSearch, find_onset, unwanted_growth};
 use aerodeck::fmu::instance::Instance;
 use aerodeck::fmu::resources::{OptionFiles, Resources};
-use aerodeck::identification::{FeedThrough, Fitted, Form, FrequencyFit, PoleSearch, fit_table};
-use aerodeck::section::{Dof, SectionModel};
-use aerodeck::trained_model::{Experiment, Provenance, SCHEMA_VERSION, TrainedModel};
+use aerodeck::identification::{FeedThrough, Form, FrequencyFit, PoleSearch};
 
 const LIMIT: f64 = 60.0;
 const CALCULATED: [&str; 3] = ["onset_speed", "onset_frequency", "onset_reduced_velocity"];
-
-fn trained(deck: &str, form: Form, poles: &[f64]) -> TrainedModel {
-    let deck = embedded::deck(deck).unwrap();
-    let fit = FrequencyFit {
-        form,
-        poles: PoleSearch::fixed(poles),
-        ..FrequencyFit::default()
-    };
-    let Fitted { model, report } = fit_table(&deck.samples(&Dof::TWO), &Dof::TWO, &fit).unwrap();
-    TrainedModel {
-        schema_version: SCHEMA_VERSION,
-        name: deck.header.source.clone(),
-        section: SectionModel::table_4_1(),
-        model,
-        tested_range: report.tested_range,
-        provenance: Provenance {
-            source: deck.header.source.clone(),
-            licence: deck.header.licence.clone(),
-            method: report.method,
-            aerodeck_version: env!("CARGO_PKG_VERSION").into(),
-            notes: vec![],
-        },
-        experiment: Experiment {
-            wind_speed_m_s: 20.0,
-            initial_vertical_m: 0.01,
-            initial_rotation_rad: 0.0,
-            stop_time_s: 10.0,
-            step_size_s: 0.01,
-            onset_search_limit_m_s: LIMIT,
-        },
-    }
-}
 
 fn reference(instance: &Instance, name: &str) -> u32 {
     let variables = instance.table().variables();
@@ -77,7 +44,12 @@ fn calculated_onsets_are_those_of_the_search() {
     let mut onsets = 0;
     for deck in embedded::names() {
         for (form, poles) in [(&laguerre, &[0.5][..]), (&rational, &[0.2, 0.8])] {
-            let model = trained(deck, form.clone(), poles);
+            let fit = FrequencyFit {
+                form: form.clone(),
+                poles: PoleSearch::fixed(poles),
+                ..FrequencyFit::default()
+            };
+            let model = of_deck(deck, &fit, LIMIT);
             let tested = Some(model.tested_range);
             let json = model.to_json().unwrap();
             let mut instance = Instance::new(

@@ -12,6 +12,8 @@ mod matrix;
 mod models;
 #[path = "../common/three_dof.rs"]
 mod three_dof;
+#[path = "../common/trained.rs"]
+mod trained;
 
 mod bridge;
 mod calculated_onset;

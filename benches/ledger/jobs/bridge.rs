@@ -80,6 +80,34 @@ fn stepped(mut before: impl FnMut(&Unit, f64) + 'static) -> Job {
     })
 }
 
+/// `damping_now` of the unit of all modes in another wind, which goes up and down.
+pub(crate) fn damping() -> Job {
+    let unit = unit(&folder("bridge"));
+    let [wind, damping] = unit.references(["wind_speed", "damping_now"]);
+    let mut n = 0.0;
+    Job::new(move || {
+        unit.set(&[wind], &[another_wind(n)]);
+        unit.get(&[damping], &mut [0.0]);
+        n += 1.0;
+    })
+}
+
+/// All eigenvalues in the same winds.
+pub(crate) fn all_eigenvalues() -> Job {
+    let section = langenuen();
+    let mut n = 0.0;
+    Job::new(move || {
+        let system = section.at(another_wind(n)).expect("a system");
+        black_box(system.eigenvalues().expect("eigenvalues"));
+        n += 1.0;
+    })
+}
+
+/// m/s; at most 0.25 a step.
+fn another_wind(n: f64) -> f64 {
+    30.0 + 5.0 * (0.05 * n).sin()
+}
+
 pub(crate) fn prepare_few_modes() {
     static ONCE: Once = Once::new();
     ONCE.call_once(|| write_unit(&folder("few_modes"), &bridges::lively()));

@@ -3,7 +3,9 @@
 use super::models::{POLE, folder, full_set, laguerre, records, records_as_json, sources};
 use crate::entry::Job;
 use aerodeck::flutter::OnsetSearch;
-use aerodeck::identification::{Grid, GridAxis, PoleSearch, TimeFit, TimeWeights, fit_records};
+use aerodeck::identification::{
+    Constraints, Grid, GridAxis, PoleSearch, TimeFit, TimeWeights, fit_records,
+};
 use aerodeck::section::SectionModel;
 use aerodeck::selection::{SelectionPlan, select};
 use aerodeck::study::demo_study_text;
@@ -37,12 +39,13 @@ pub(crate) fn short_record() -> Job {
     })
 }
 
-/// Six filters and least squares over the full set with a given pole.
+/// Six filters and least squares alone, as the baseline does it, over the full set with a given pole.
 pub(crate) fn training() -> Job {
     let records = full_set();
     let fit = TimeFit {
         form: laguerre(6),
         poles: PoleSearch::fixed(&[POLE]),
+        constraints: Constraints::None,
         weights: TimeWeights::None,
         ..TimeFit::default()
     };

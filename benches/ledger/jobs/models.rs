@@ -1,15 +1,17 @@
 //! Models and records that several jobs use.
 
+use crate::trained;
 use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::files::derivatives::embedded;
-use aerodeck::identification::{FeedThrough, Fitted, Form, FrequencyFit, PoleSearch, fit_table};
-use aerodeck::section::{Dof, SectionModel};
-use aerodeck::trained_model::{Experiment, Provenance, SCHEMA_VERSION, TrainedModel};
+use aerodeck::identification::{FeedThrough, Form, FrequencyFit, PoleSearch};
+use aerodeck::section::Dof;
+use aerodeck::trained_model::TrainedModel;
 use aerodeck::wind_tunnel::{Record, RecordSource, TunnelPlan};
 use nalgebra::DMatrix;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
+const DECK: &str = "LN21-5200";
 pub(crate) const POLE: f64 = 0.5;
 pub(crate) const SPEED_MAX_M_S: f64 = 60.0;
 
@@ -48,47 +50,22 @@ pub(crate) fn laguerre(filters: usize) -> Form {
 
 /// The deck LN21-5200 by four filters per motion at a given pole: twelve states with the section.
 pub(crate) fn four_filters() -> TrainedModel {
-    of_deck(FrequencyFit {
+    let fit = FrequencyFit {
         form: laguerre(4),
         poles: PoleSearch::fixed(&[POLE]),
         ..FrequencyFit::default()
-    })
+    };
+    trained::of_deck(DECK, &fit, SPEED_MAX_M_S)
 }
 
-/// The same by the form of the thesis: one bank of three filters per motion.
-pub(crate) fn three_filters() -> TrainedModel {
-    of_deck(FrequencyFit {
-        form: laguerre(3),
+/// The same with as many filters as asked for, at the pole that fits best: three are the form of the thesis, five those that a
+/// fit takes by itself.
+pub(crate) fn by_filters(filters: usize) -> TrainedModel {
+    let fit = FrequencyFit {
+        form: laguerre(filters),
         ..FrequencyFit::default()
-    })
-}
-
-fn of_deck(fit: FrequencyFit) -> TrainedModel {
-    let deck = embedded::deck("LN21-5200").expect("an embedded deck");
-    let Fitted { model, report } =
-        fit_table(&deck.samples(&Dof::TWO), &Dof::TWO, &fit).expect("a fit");
-    TrainedModel {
-        schema_version: SCHEMA_VERSION,
-        name: "LN21-5200".into(),
-        section: SectionModel::table_4_1(),
-        model,
-        tested_range: report.tested_range,
-        provenance: Provenance {
-            source: deck.header.source.clone(),
-            licence: deck.header.licence.clone(),
-            method: report.method,
-            aerodeck_version: env!("CARGO_PKG_VERSION").into(),
-            notes: vec![],
-        },
-        experiment: Experiment {
-            wind_speed_m_s: 30.0,
-            initial_vertical_m: 0.01,
-            initial_rotation_rad: 0.0,
-            stop_time_s: 10.0,
-            step_size_s: 0.01,
-            onset_search_limit_m_s: SPEED_MAX_M_S,
-        },
-    }
+    };
+    trained::of_deck(DECK, &fit, SPEED_MAX_M_S)
 }
 
 /// Records of 43 200 samples, four for each motion: 172 800 samples per motion.

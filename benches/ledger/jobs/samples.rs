@@ -1,9 +1,10 @@
 //! Onsets of many random sections.
 
-use super::models::{SPEED_MAX_M_S, rows, three_filters};
+use super::models::{SPEED_MAX_M_S, by_filters, rows};
 use crate::entry::Job;
 use aerodeck::aerodynamics::{LaguerreModel, Realizable, Realization};
 use aerodeck::flutter::{LinearForces, OnsetSweep, SweepOutcome};
+use aerodeck::identification::LEAST_CHOSEN;
 use aerodeck::section::SectionModel;
 use aerodeck::trained_model::Model;
 use aerodeck::uncertainty::monte_carlo::{MonteCarloPlan, monte_carlo};
@@ -42,7 +43,7 @@ distribution = { kind = "uniform", lower = 1.15, upper = 1.28 }
 fn analysis(samples: usize) -> Job {
     let mut plan = MonteCarloPlan::from_toml(PLAN, "".into()).expect("a plan");
     plan.samples = samples;
-    let trained = three_filters();
+    let trained = by_filters(LEAST_CHOSEN);
     Job::new(move || {
         black_box(monte_carlo(&plan, &trained, &|_, _| ()).expect("an analysis"));
     })
@@ -57,7 +58,7 @@ pub(crate) fn million() -> Job {
 }
 
 fn laguerre() -> LaguerreModel {
-    match three_filters().model {
+    match by_filters(LEAST_CHOSEN).model {
         Model::Laguerre(model) => model,
         other => panic!("not {}", other.kind()),
     }

@@ -1,12 +1,13 @@
 //! Steps, rates and instances of a section through the C interface, and strips of forces.
 
 use super::c_interface::{Archive, Kind, Unit};
-use super::models::text;
+use super::models::{by_filters, text};
 use crate::entry::Job;
 use aerodeck::aerodynamics::{GustForce, RationalAdmittance};
 use aerodeck::fmu::force_options::ForceOptions;
 use aerodeck::fmu::instance::Instance;
 use aerodeck::fmu::resources::{OptionFiles, Resources};
+use aerodeck::identification::{LEAST_CHOSEN, MOST_CHOSEN};
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::TAU;
 use std::hint::black_box;
@@ -40,6 +41,21 @@ fn calls(unit: Unit, names: [&str; 4], before: impl Fn(&Unit, f64) + 'static) ->
 pub(crate) fn motion() -> Job {
     let archive = Archive::of_section(&text("continuous_laguerre"), None);
     stepped(archive, MOTION, |_, _| ())
+}
+
+/// The same of a deck by filters as many as a fit takes by itself.
+pub(crate) fn motion_of_most() -> Job {
+    motion_of_deck(MOST_CHOSEN)
+}
+
+/// And by the fewest, those of the thesis.
+pub(crate) fn motion_of_least() -> Job {
+    motion_of_deck(LEAST_CHOSEN)
+}
+
+fn motion_of_deck(filters: usize) -> Job {
+    let json = by_filters(filters).to_json().expect("a model");
+    stepped(Archive::of_section(&json, None), MOTION, |_, _| ())
 }
 
 /// The calls of [`motion`] with nothing behind them.

@@ -5,7 +5,7 @@ use crate::entry::{Baseline, Entry, Script, Threads};
 use crate::jobs::bridge;
 
 const BRIDGE: Entry = Entry {
-    size: "39 modes, 195 states",
+    size: "39 modes, 195 states, L = 3",
     prepare: Some(bridge::prepare_whole),
     times: 2000,
     ..PLAIN
@@ -44,9 +44,24 @@ pub(crate) static ENTRIES: &[Entry] = &[
         ..BRIDGE
     },
     Entry {
+        name: "bridge-damping",
+        what: "the same unit, damping_now in another wind",
+        job: bridge::damping,
+        times: 100,
+        baseline: Baseline::Here {
+            name: "all eigenvalues, by this library",
+            package: None,
+            job: bridge::all_eigenvalues,
+            units: 1,
+            times: 5,
+        },
+        count: Some([10, 60]),
+        ..BRIDGE
+    },
+    Entry {
         name: "bridge-onset",
         what: "FMU of a bridge, onset_speed after another density",
-        size: "8 modes",
+        size: "8 modes, L = 3",
         prepare: Some(bridge::prepare_few_modes),
         job: bridge::onset,
         times: 5,
@@ -57,7 +72,7 @@ pub(crate) static ENTRIES: &[Entry] = &[
     Entry {
         name: "bridge-sweep",
         what: "modes of a bridge over wind speed",
-        size: "39 modes, 195 states, 60 speeds",
+        size: "39 modes, 195 states, L = 3, 60 speeds",
         job: bridge::sweep,
         baseline: Baseline::Python(Script {
             name: "NumPy eigvals of the same matrices",

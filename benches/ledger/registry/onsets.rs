@@ -25,7 +25,7 @@ const fn search(job: fn() -> Job) -> Baseline {
 }
 
 const CHANGE: Entry = Entry {
-    size: "12 states",
+    size: "12 states, L = 4",
     times: 2000,
     ..PLAIN
 };
@@ -48,7 +48,7 @@ pub(crate) static ENTRIES: &[Entry] = &[
     Entry {
         name: "change-wind-discrete",
         what: "the same of the discrete model",
-        size: "10 states",
+        size: "10 states, L = 3",
         job: changes::held_discrete,
         baseline: exponential(changes::exponential_discrete),
         ..CHANGE
@@ -63,7 +63,7 @@ pub(crate) static ENTRIES: &[Entry] = &[
     Entry {
         name: "change-ramps-discrete",
         what: "the same of the discrete model",
-        size: "10 states",
+        size: "10 states, L = 3",
         job: changes::ramps_discrete,
         baseline: exponential(changes::exponential_discrete),
         ..CHANGE
@@ -71,7 +71,7 @@ pub(crate) static ENTRIES: &[Entry] = &[
     Entry {
         name: "change-gusts",
         what: "step with gusts on top of the ramp",
-        size: "16 states",
+        size: "16 states, L = 4",
         job: changes::gusts_on_ramps,
         baseline: Baseline::Here {
             name: "wind on ramps alone",
@@ -94,7 +94,7 @@ pub(crate) static ENTRIES: &[Entry] = &[
     Entry {
         name: "onset-discrete",
         what: "the same of the discrete model",
-        size: "10 states",
+        size: "10 states, L = 3",
         job: changes::onset_discrete,
         times: 20,
         baseline: search(changes::search_discrete),
@@ -104,7 +104,7 @@ pub(crate) static ENTRIES: &[Entry] = &[
     Entry {
         name: "sweep",
         what: "V-g sweep with modes",
-        size: "12 states, 24 speeds",
+        size: "12 states, L = 4, 24 speeds",
         job: onset::sweep,
         times: 50,
         baseline: Baseline::Python(Script {
@@ -121,7 +121,7 @@ pub(crate) static ENTRIES: &[Entry] = &[
     Entry {
         name: "pk",
         what: "p-k iteration",
-        size: "two motions, 24 speeds",
+        size: "two motions, L = 4, 24 speeds",
         job: onset::pk,
         times: 20,
         baseline: NOBODY,
@@ -131,7 +131,7 @@ pub(crate) static ENTRIES: &[Entry] = &[
     Entry {
         name: "samples",
         what: "an onset of a random section",
-        size: "10 states, 300 sections",
+        size: "10 states, L = 3, 300 sections",
         job: samples::onsets,
         units: samples::SAMPLES,
         times: 20,
@@ -148,7 +148,7 @@ pub(crate) static ENTRIES: &[Entry] = &[
     Entry {
         name: "monte-carlo",
         what: "a whole analysis, 28 random numbers a sample",
-        size: "10 states, 1000 samples",
+        size: "10 states, L = 3, 1000 samples",
         job: samples::thousand,
         times: 5,
         baseline: NOBODY,
@@ -158,7 +158,7 @@ pub(crate) static ENTRIES: &[Entry] = &[
     Entry {
         name: "large-monte-carlo",
         what: "the same",
-        size: "10 states, 1 000 000 samples",
+        size: "10 states, L = 3, 1 000 000 samples",
         threads: Threads::All,
         job: samples::million,
         baseline: NOBODY,

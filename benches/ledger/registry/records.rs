@@ -26,7 +26,7 @@ pub(crate) static ENTRIES: &[Entry] = &[
     Entry {
         name: "fit",
         what: "fit of one short set of records, default form",
-        size: "two speeds, 50 Hz, 4 s a frequency",
+        size: "two speeds, 50 Hz, 4 s a frequency, L chosen (3 to 5)",
         job: fits::short_record,
         times: 5,
         baseline: NOBODY,
@@ -51,7 +51,7 @@ pub(crate) static ENTRIES: &[Entry] = &[
     Entry {
         name: "large-training",
         what: "`aerodeck train`, from its files",
-        size: "four records of one hour at 200 Hz",
+        size: "four records of one hour at 200 Hz, L chosen (3 to 5)",
         threads: Threads::All,
         prepare: Some(fits::prepare_hours),
         job: fits::hours,
@@ -62,7 +62,7 @@ pub(crate) static ENTRIES: &[Entry] = &[
     Entry {
         name: "grid-discrete",
         what: "grid over L and α, all models and residuals",
-        size: "500 cells, 172 800 samples a motion",
+        size: "500 cells, L = 1 to 10, 172 800 samples a motion",
         threads: Threads::All,
         job: fits::grid_discrete,
         baseline: grid(fits::grid_discrete_argument),
@@ -71,7 +71,7 @@ pub(crate) static ENTRIES: &[Entry] = &[
     Entry {
         name: "grid-continuous",
         what: "grid over L and p, all models and residuals",
-        size: "500 cells, 172 800 samples a motion",
+        size: "500 cells, L = 1 to 10, 172 800 samples a motion",
         threads: Threads::All,
         job: fits::grid_continuous,
         baseline: grid(fits::grid_continuous_argument),
@@ -80,7 +80,7 @@ pub(crate) static ENTRIES: &[Entry] = &[
     Entry {
         name: "judging",
         what: "its cells judged: data left out, onsets, guards",
-        size: "500 cells",
+        size: "500 cells, L = 1 to 10",
         threads: Threads::All,
         job: fits::judging,
         baseline: NOBODY,

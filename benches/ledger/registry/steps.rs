@@ -15,7 +15,7 @@ const PRODUCT: Baseline = Baseline::Here {
 
 /// A step of a section through the C interface.
 const STEP: Entry = Entry {
-    size: "12 states",
+    size: "12 states, L = 4",
     times: 50_000,
     baseline: PRODUCT,
     count: Some([2_000, 12_000]),
@@ -28,6 +28,20 @@ pub(crate) static ENTRIES: &[Entry] = &[
         name: "step",
         what: "FMU, doStep and getReal of four motions",
         job: steps::motion,
+        ..STEP
+    },
+    Entry {
+        name: "step-most",
+        what: "the same of a deck as it is fitted by default",
+        size: "14 states, L = 5",
+        job: steps::motion_of_most,
+        ..STEP
+    },
+    Entry {
+        name: "step-least",
+        what: "the same of a deck with the filters of the thesis",
+        size: "10 states, L = 3",
+        job: steps::motion_of_least,
         ..STEP
     },
     Entry {
@@ -45,14 +59,14 @@ pub(crate) static ENTRIES: &[Entry] = &[
     Entry {
         name: "step-gusts",
         what: "the motions, two gusts set at every step",
-        size: "16 states",
+        size: "16 states, L = 4",
         job: steps::gusts,
         ..STEP
     },
     Entry {
         name: "step-discrete",
         what: "discrete model, the motions",
-        size: "10 states",
+        size: "10 states, L = 3",
         job: steps::discrete,
         ..STEP
     },
@@ -75,7 +89,7 @@ pub(crate) static ENTRIES: &[Entry] = &[
     Entry {
         name: "instance",
         what: "FMU, an instance made and freed",
-        size: "12 states",
+        size: "12 states, L = 4",
         job: steps::instance,
         times: 500,
         baseline: NO_FMU,
@@ -85,7 +99,7 @@ pub(crate) static ENTRIES: &[Entry] = &[
     Entry {
         name: "instance-rational",
         what: "the same of rational functions",
-        size: "10 states",
+        size: "8 states, two lags",
         job: steps::instance_rational,
         times: 500,
         baseline: NO_FMU,
@@ -95,7 +109,7 @@ pub(crate) static ENTRIES: &[Entry] = &[
     Entry {
         name: "instance-discrete",
         what: "the same of the discrete model",
-        size: "10 states",
+        size: "10 states, L = 3",
         job: steps::instance_discrete,
         times: 500,
         baseline: NO_FMU,
@@ -122,7 +136,7 @@ pub(crate) static ENTRIES: &[Entry] = &[
     Entry {
         name: "growth-steps",
         what: "ten million steps: memory must not grow",
-        size: "12 states",
+        size: "12 states, L = 4",
         job: steps::ten_million,
         baseline: OWN_FORMAT,
         judged_peak: true,
@@ -131,7 +145,7 @@ pub(crate) static ENTRIES: &[Entry] = &[
     Entry {
         name: "growth-loads",
         what: "a thousand loads of the library: memory must not grow",
-        size: "12 states",
+        size: "12 states, L = 4",
         job: steps::loads,
         baseline: OWN_FORMAT,
         judged_peak: true,

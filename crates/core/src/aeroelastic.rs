@@ -11,6 +11,7 @@
 //! The added mass moves to the left and does not depend on `V`. Discrete model: equation (B.4) of the thesis,
 //! corrected; the force is held over each step `Δt = Δs B/V`.
 
+mod by_wind;
 mod equilibrium;
 
 pub use equilibrium::{
@@ -23,7 +24,7 @@ use crate::section::Structure;
 use crate::state_space::{
     Continuous, Damping, Discrete, StateEquation, StateSpace, c2d, first_order,
 };
-use nalgebra::{Complex, DMatrix, DVector};
+use nalgebra::{Complex, DMatrix};
 
 /// An elastically suspended section with a realised aerodynamic model.
 ///
@@ -305,17 +306,25 @@ impl CoupledSection {
         }
     }
 
-    /// `ẋ/V = (A x + b diag(1/B, 1/B, 1) q)/B` of the filters of a continuous model at the state `[q, q̇, x]`; none for a
+    /// `ẋ/V = (A x + b diag(1/B, 1/B, 1) q)/B` of the filters of a continuous model at the state `[q, q̇, x]`; zero for a
     /// sampled one.
-    pub fn filter_rates_per_wind(&self, state: &[f64]) -> DVector<f64> {
+    pub fn filter_rates_per_wind(&self, state: &[f64], rates: &mut [f64]) {
+        rates.fill(0.0);
         let Realization::Continuous(c) = &self.aerodynamics else {
-            return DVector::zeros(0);
+            return;
         };
         let s = &self.structure;
         let n = s.dofs.len();
-        let filters = DVector::from_column_slice(&state[2 * n..]);
-        let motion = DVector::from_fn(n, |i, _| state[i] * s.dofs[i].motion_scale(s.width_m));
-        (&c.a * filters + &c.b * motion) / s.width_m
+        let motion = s.dofs.iter().zip(state);
+        let motion = motion.map(|(dof, x)| x * dof.motion_scale(s.width_m));
+        let drives = state[2 * n..].iter().copied().chain(motion);
+        let columns = c.a.column_iter().chain(c.b.column_iter());
+        for (column, drive) in columns.zip(drives) {
+            for (rate, a) in rates.iter_mut().zip(&column) {
+                *rate += a * drive;
+            }
+        }
+        rates.iter_mut().for_each(|rate| *rate /= s.width_m);
     }
 
     /// `½ρV² diag(B, B, B²) C`, n×N.

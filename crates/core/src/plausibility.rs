@@ -5,11 +5,13 @@
 //! otherwise. Whoever gives an answer shows the findings of what the answer rests on; none of them may vanish on the way.
 
 mod bridge;
+mod coefficients;
 mod limits;
 mod section;
 mod table;
 
 pub use bridge::{Girder, of_bridge, of_modes};
+pub use coefficients::of_coefficients;
 pub use limits::{
     DECK_WIDTH, MODEL_LENGTH, MODEL_WIDTH, MOTION_FREQUENCY, SAMPLING, WIND_SPEED, beyond,
     ratio_hint,

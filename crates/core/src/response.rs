@@ -83,6 +83,10 @@ pub struct Stepper {
     next: Vec<f64>,
     /// Accelerations and forces of the outputs at hand.
     both: Vec<f64>,
+    /// Outputs at the instant of the rates at hand.
+    now: Outputs,
+    /// State of a sampled model in the step at hand.
+    sampled: SectionState,
 }
 
 impl Stepper {
@@ -114,6 +118,8 @@ impl Stepper {
         Self {
             next: vec![0.0; states],
             both: vec![0.0; 2 * n],
+            now: Outputs::default(),
+            sampled: SectionState::default(),
             series: Series::new(&section, gusts),
             sampling: Sampling::of(&section),
             section,

@@ -7,7 +7,7 @@ mod roots;
 pub mod rows;
 
 pub use discretize::{StepMatrices, c2d};
-pub use poles::eigenvector;
+pub use poles::{RepeatedEigenvalues, eigenvector};
 pub use poles::{balance, eigenvalues};
 pub use roots::golden_section;
 pub use roots::{boundary, root};

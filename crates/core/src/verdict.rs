@@ -14,6 +14,7 @@
 //! assert!(verdict.headline.starts_with("✗ NOT MET, required 100 m/s: static divergence at 79.9 m/s"));
 //! ```
 
+mod below;
 mod critical;
 mod doubt;
 mod doubts;

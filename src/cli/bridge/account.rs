@@ -57,8 +57,11 @@ pub(super) fn beside_the_onset(results: &BridgeFlutter) -> Vec<String> {
     let divergence = results
         .divergence_m_s
         .map_or("none".to_owned(), |v| format!("{v:.3} m/s"));
-    let rotation = results.mean_rotation_deg.map(|rotation| {
-        format!("Greatest mean rotation at the onset: {rotation:.3}° (nose-up positive)")
+    let rotation = results.mean_rotation.map(|mean| {
+        format!(
+            "Greatest mean rotation at {:.2} m/s: {:.3}° (nose-up positive)",
+            mean.speed_m_s, mean.rotation_deg
+        )
     });
     let divergence = format!("Divergence of the model: {divergence}");
     let of_tables = results.table_divergence.as_ref().map(|d| {

@@ -3,8 +3,9 @@
 use crate::cli::common::{folder_of, warn};
 use crate::cli::output::OutputDir;
 use crate::cli::progress::Progress;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::files::bridge::BridgeFile;
+use crate::files::text::read_text;
 use crate::study::bridge::BridgeStudy;
 use std::path::{Path, PathBuf};
 
@@ -21,7 +22,7 @@ pub(crate) struct BridgeArgs {
 impl BridgeArgs {
     /// The file as it stands there.
     pub(super) fn text(&self) -> Result<String> {
-        std::fs::read_to_string(&self.bridge).map_err(|e| Error::io(&self.bridge, e))
+        read_text(&self.bridge)
     }
 
     /// The bridge.

@@ -34,7 +34,8 @@ pub(crate) fn run(directory: &Path, force: bool, progress: &Progress) -> Result<
     let study = BridgeStudy::with_trained(file, |_| Some(at_hand.clone()))?;
     let (results, mut failed) = computed(&study, &mut out, progress)?;
     let stage = progress.stage("packing the FMU");
-    if let Err(e) = packed(&study, &mut out) {
+    let verdict = Verdict::of(&study.evidence(&results, &failed));
+    if let Err(e) = packed(&study, &verdict, &mut out) {
         failed.push(format!("FMU: {e}"));
     }
     drop(stage);
@@ -56,8 +57,9 @@ pub(crate) fn run(directory: &Path, force: bool, progress: &Progress) -> Result<
 }
 
 /// The FMU of the bridge.
-fn packed(study: &BridgeStudy, out: &mut OutputDir) -> Result<()> {
-    let export = study.export(&BridgeExportOptions::default())?;
+fn packed(study: &BridgeStudy, verdict: &Verdict, out: &mut OutputDir) -> Result<()> {
+    let mut export = study.export(&BridgeExportOptions::default())?;
+    export.verdict = Some(verdict.clone());
     let label = Label::default().dated()?;
     let bytes = package_bridge(&export, &Runtime::available()?, &label, FmiVersion::Two)?;
     out.write(BRIDGE_FMU, bytes)

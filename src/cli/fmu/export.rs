@@ -210,6 +210,8 @@ impl Args {
         });
         let mut export = export.map_err(stages::or_allow_unstable)?;
         export.listing = self.listing();
+        let verdict = study.verdict()?;
+        export.verdict = Some(verdict.clone());
         let bytes = package_bridge(&export, &self.runtimes()?, &self.label()?, self.fmi)?;
         let overwrite = if self.force {
             Overwrite::Replace
@@ -222,15 +224,16 @@ impl Args {
             .map(|n| export.bridge.node_name(n))
             .collect();
         let text = format!(
-            "wrote {}: {} with {}; inputs and outputs at the {} {}\n",
+            "{}: {}\nwrote {}: {} with {}; inputs and outputs at the {} {}\n",
+            export.bridge.name,
+            verdict.headline,
             path.display(),
             export.bridge.name,
             counted(export.bridge.modes.len(), "mode"),
             if named.len() == 1 { "node" } else { "nodes" },
             named.join(", ")
         );
-        let json =
-            serde_json::json!({ "fmu": path, "nodes": named, "modes": export.bridge.modes.len() });
+        let json = serde_json::json!({ "fmu": path, "nodes": named, "modes": export.bridge.modes.len(), "verdict": verdict });
         Answer::new(text, &json)
     }
 }

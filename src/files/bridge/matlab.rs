@@ -62,13 +62,14 @@ fn parse(bytes: Vec<u8>, span: &SpanBlock) -> Result<Modes> {
                 return Err(Error::input(place, expected, omega.to_string()));
             }
             let values = phi.iter().skip(at).step_by(3 * modes).take(points);
-            all.push(mode_of(
-                omega,
-                motion,
-                values.copied().collect(),
-                &lengths,
-                span,
-            ));
+            let found = mode_of(omega, motion, values.copied().collect(), &lengths, span);
+            if !(found.generalised_mass > 0.0 && found.generalised_mass.is_finite()) {
+                let place = format!("phi({}, {}, :)", row + 1, mode + 1);
+                let expected = "a shape with a finite mass, m ∫φ² dx > 0";
+                let mass = found.generalised_mass.to_string();
+                return Err(Error::input(place, expected, mass));
+            }
+            all.push(found);
         }
     }
     all.sort_by(|a, b| a.frequency_hz.total_cmp(&b.frequency_hz));

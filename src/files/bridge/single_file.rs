@@ -17,6 +17,7 @@ use super::table::Table;
 use crate::bridge::{BridgeMode, Node};
 use crate::error::{Error, Result, positive};
 use crate::files::header_csv::CommentHeader;
+use crate::files::text::read_text;
 use std::io::Write;
 use std::path::Path;
 
@@ -27,7 +28,7 @@ const MODE: &str = "mode";
 const KEYS: &[&str] = &["source", "licence", "axes", "units", "generator", MODE];
 
 pub(super) fn read(path: &Path) -> Result<Modes> {
-    let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, e))?;
+    let text = read_text(path)?;
     parse(&text).map_err(|e| e.in_file(path))
 }
 

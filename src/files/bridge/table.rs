@@ -1,6 +1,7 @@
 //! Tables of numbers as programs write them: commas, semicolons, tabs or blanks between, comments and headings in front.
 
 use crate::error::{Error, Place, Result};
+use crate::files::text::read_text;
 use std::path::Path;
 
 /// Rows of a file at most: a thousand nodes by thousands of modes.
@@ -31,7 +32,7 @@ fn cells(line: &str) -> Vec<String> {
 impl Table {
     /// The table in a file.
     pub(super) fn read(path: &Path) -> Result<Self> {
-        let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, e))?;
+        let text = read_text(path)?;
         Self::parse(&text).map_err(|e| e.in_file(path))
     }
 

@@ -147,6 +147,9 @@ pub struct SectionBlock {
     /// Notation, argument and axes of the table, as far as it does not state them itself.
     #[serde(default, skip_serializing_if = "StatedConvention::is_empty")]
     pub convention: StatedConvention,
+    /// Mean angle of the section in the tests, deg, nose-up positive; left out, what the table states, or 0.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub angle_deg: Option<f64>,
     /// How the table is read between its points.
     #[serde(default)]
     pub interpolation: Interpolation,
@@ -351,6 +354,7 @@ impl SectionBlock {
                 Dof::names(&self.motions),
             ));
         }
-        Ok(())
+        let statics = self.statics.unwrap_or_default();
+        statics.arms.validate(&format!("{place}.static."))
     }
 }

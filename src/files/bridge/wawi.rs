@@ -4,6 +4,7 @@
 
 use super::modal_data::{ModalData, RawMode};
 use crate::error::{Error, Result, counted};
+use crate::files::text::read_text;
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use std::f64::consts::TAU;
@@ -38,7 +39,7 @@ pub(super) fn read(folder: &Path) -> Result<ModalData> {
 }
 
 fn json<T: DeserializeOwned>(path: &Path) -> Result<T> {
-    let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, e))?;
+    let text = read_text(path)?;
     serde_json::from_str(&text)
         .map_err(|e| Error::json("a file of wawi's model folder", &e).in_file(path))
 }

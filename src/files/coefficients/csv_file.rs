@@ -20,6 +20,7 @@ use crate::aerodynamics::quasi_steady::{
 };
 use crate::error::{Error, Place, Result};
 use crate::files::header_csv::{CommentHeader, csv_error, find_columns, number, table_reader};
+use crate::files::text::read_text;
 use std::io::Write;
 use std::path::Path;
 
@@ -42,7 +43,7 @@ const KEYS: [&str; 6] = [
 /// Reads a table of static coefficients.
 pub(crate) fn read_coefficients(path: impl AsRef<Path>) -> Result<StaticCoefficients> {
     let path = path.as_ref();
-    let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, e))?;
+    let text = read_text(path)?;
     parse_coefficients(&text).map_err(|e| e.in_file(path))
 }
 

@@ -32,6 +32,7 @@ use crate::error::{Error, Place, Result};
 use crate::files::derivatives::csv_header::{Head, ReadOptions, TableInConvention, write_head};
 use crate::files::derivatives::csv_wide;
 use crate::files::header_csv::{csv_error, find_columns, missing_column, number, table_reader};
+use crate::files::text::read_text;
 use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::Path;
@@ -84,7 +85,7 @@ pub(crate) fn read_csv_with(
         let found = format!("{} MiB", size >> 20);
         return Err(Error::input("", expected, found).in_file(path));
     }
-    let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, e))?;
+    let text = read_text(path)?;
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     let table = if csv_wide::is_wide(&text) {
         csv_wide::parse(&text, &stem, options)
@@ -105,7 +106,7 @@ pub(crate) fn parse_csv(text: &str) -> Result<DerivativeTable> {
 }
 
 /// As [`parse_csv`], with what the caller states about the convention; the second value is the one the text is in.
-pub(crate) fn parse_csv_in(text: &str, stated: StatedConvention) -> Result<TableInConvention> {
+pub fn parse_csv_in(text: &str, stated: StatedConvention) -> Result<TableInConvention> {
     let options = ReadOptions {
         convention: stated,
         ..ReadOptions::default()

@@ -36,7 +36,7 @@ pub struct ReadOptions {
 const FORMATS: [&str; 2] = ["aerodeck derivative table 2", "aerodeck derivative table 1"];
 
 /// Keys of the header; `sign_convention` stands in files of the first format only.
-const KEYS: [&str; 13] = [
+const KEYS: [&str; 15] = [
     "name",
     "source",
     "licence",
@@ -45,6 +45,8 @@ const KEYS: [&str; 13] = [
     "generator",
     "width_m",
     "model_length_m",
+    "angle_deg",
+    "rotation_amplitude_deg",
     "notation",
     "argument",
     "axes",
@@ -141,17 +143,27 @@ impl Head {
     /// Where the table comes from.
     pub(crate) fn provenance(&self) -> Result<TableHeader> {
         let head = &self.header;
-        let length = head.optional("model_length_m");
+        let stated = |key| head.optional(key).filter(|e| !e.value.is_empty());
         Ok(TableHeader {
             source: head.text("source"),
             licence: head.text("licence"),
             generator: head.text("generator"),
-            model_length_m: length
-                .filter(|e| !e.value.is_empty())
+            model_length_m: stated("model_length_m").map(Entry::positive).transpose()?,
+            angle_deg: stated("angle_deg").map(angle_deg).transpose()?,
+            rotation_amplitude_deg: stated("rotation_amplitude_deg")
                 .map(Entry::positive)
                 .transpose()?,
             notes: head.all("note").map(|e| e.value.clone()).collect(),
         })
+    }
+}
+
+/// The mean angle of tests; beyond a right angle it is in another unit.
+fn angle_deg(entry: &Entry) -> Result<f64> {
+    let angle = entry.number()?;
+    match angle.abs() <= 90.0 {
+        true => Ok(angle),
+        false => Err(entry.wrong("an angle between -90 and 90 degrees")),
     }
 }
 
@@ -198,6 +210,14 @@ pub(super) fn write_head(
         ("model_length_m", &length),
     ] {
         CommentHeader::write_line(out, key, value)?;
+    }
+    for (key, value) in [
+        ("angle_deg", header.angle_deg),
+        ("rotation_amplitude_deg", header.rotation_amplitude_deg),
+    ] {
+        if let Some(value) = value {
+            CommentHeader::write_line(out, key, value)?;
+        }
     }
     for note in &header.notes {
         CommentHeader::write_line(out, "note", note)?;

@@ -1,5 +1,6 @@
 //! What follows from the parameters of an exported bridge: its coupled modes, and what gusts do to them.
 
+use super::damping::PresentDamping;
 use crate::bridge::{Bridge, GustChannels};
 use crate::error::{Error, Result};
 use crate::fmu::bridge_gusts::GustRecord;
@@ -20,8 +21,10 @@ pub(super) struct Built {
     pub stepper: Stepper,
     gusts: Option<GustChannels>,
     turbulence: Option<GustRecord>,
-    /// Smallest damping ratio at a wind speed, where it has been asked for.
-    pub damping: Option<(f64, f64)>,
+    damping: PresentDamping,
+    /// State before the step at hand, and inputs within it.
+    before: SectionState,
+    now: Inputs,
 }
 
 impl Built {
@@ -52,8 +55,15 @@ impl Built {
             stepper,
             gusts,
             turbulence,
-            damping: None,
+            damping: PresentDamping::default(),
+            before: SectionState::default(),
+            now: Inputs::steady(0.0, 0),
         })
+    }
+
+    /// Smallest damping ratio of all modes at a wind speed, m/s.
+    pub(super) fn damping_at(&mut self, wind: f64) -> Result<f64> {
+        self.damping.at(&mut self.stepper, wind)
     }
 
     /// Nothing moves.
@@ -112,19 +122,20 @@ impl Built {
                 format!("{step} s"),
             ));
         }
-        let before = state.clone();
+        self.before.set_to(state);
         let mut done = 0.0;
         while done < step {
             let to_next = record.to_next(time + done);
             // a rest that rounding leaves is no piece
             let last = done + to_next >= step * (1.0 - LAST_PIECE);
             let piece = if last { step - done } else { to_next };
-            let mut now = inputs.clone();
-            run_on(&mut now, done);
+            let now = &mut self.now;
+            now.set_to(inputs);
+            run_on(now, done);
             let (gust, rate) = (&mut now.gust_m_s, &mut now.gust_rate_m_s2);
             record.add(time + done, factor, gust, rate);
-            if let Err(why) = self.stepper.advance(state, &now, piece) {
-                *state = before;
+            if let Err(why) = self.stepper.advance(state, now, piece) {
+                state.set_to(&self.before);
                 return Err(why);
             }
             done = if last { step } else { done + piece };

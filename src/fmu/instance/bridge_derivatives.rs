@@ -7,11 +7,11 @@ use super::layout::Source;
 use super::memory::Memory;
 use super::section::OnsetCard;
 use super::sensitivity::{SectionValues, add, central_difference, parameter_step};
-use super::trust::{MonitoredUnit, is_of_onset, without_motion};
+use super::trust::{Known, MonitoredUnit, is_of_onset, without_motion};
 use super::unit::{Differentiable, Prepared};
 use crate::error::Result;
+use crate::flutter::smallest_damping;
 use crate::fmu::lifecycle::State;
-use crate::fmu::onset_start::smallest_damping;
 use crate::fmu::refusal::CallResult;
 use crate::fmu::resources::Resources;
 use crate::fmu::variables::{Calculated, Role, Status};
@@ -105,15 +105,26 @@ impl BridgeUnit {
             let is = |which, value| place(which).is_some_and(|p| memory.values[p] == value);
             is(found, 0.0) && is(speed, limit)
         };
-        let slope = |role: &Role| match role {
-            Role::Calculated(Calculated::OnsetSpeed)
-            | Role::Status(Status::FlutterSpeed | Status::FlutterMargin) => {
-                none(Calculated::OnsetFound, Calculated::OnsetSpeed)
-            }
-            Role::Calculated(Calculated::DivergenceSpeed) => {
-                none(Calculated::DivergenceFound, Calculated::DivergenceSpeed)
-            }
-            _ => false,
+        let slope = |role: &Role| match Known::of(*role) {
+            Some(Known::Calculated(which)) => match which {
+                Calculated::OnsetSpeed => none(Calculated::OnsetFound, which),
+                Calculated::DivergenceSpeed => none(Calculated::DivergenceFound, which),
+                Calculated::OnsetFrequency
+                | Calculated::OnsetReducedVelocity
+                | Calculated::OnsetFound
+                | Calculated::OnsetInTestedRange
+                | Calculated::DivergenceFound
+                | Calculated::StableBelowOnset => false,
+            },
+            Some(Known::Status(status)) => match status {
+                Status::FlutterSpeed | Status::FlutterMargin => {
+                    none(Calculated::OnsetFound, Calculated::OnsetSpeed)
+                }
+                Status::DampingNow | Status::WindInTestedRange | Status::AmplitudeInLinearRange => {
+                    false
+                }
+            },
+            None => false,
         };
         unknowns
             .iter()

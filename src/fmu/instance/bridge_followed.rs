@@ -8,7 +8,7 @@ use super::bridge_built::Built;
 use crate::bridge::Bridge;
 use crate::error::Result;
 use crate::flutter::{CriticalPoint, FoundOnset, NearbyOnset, Onset, OnsetMethod};
-use crate::fmu::onset_start::{COMPARED_AT, OnsetStart, smallest_damping};
+use crate::fmu::onset_start::{COMPARED_AT, OnsetStart};
 use crate::units::ReducedFrequency;
 
 /// Change of a parameter, as a part of it, beyond which an onset is searched for.
@@ -54,25 +54,25 @@ impl SearchedOnset {
     }
 
     /// The onset of a bridge up to `limit`, m/s; `None` where it has to be searched for.
-    pub(super) fn followed(&self, built: &Built, limit: f64) -> Option<FoundOnset> {
+    pub(super) fn followed(&self, built: &mut Built, limit: f64) -> Option<FoundOnset> {
         let now = parameters(&built.bridge);
         let near = |(now, then): (&f64, &f64)| (now - then).abs() <= NEAR * then.abs();
         if now.len() != self.parameters.len() || !now.iter().zip(&self.parameters).all(near) {
             return None;
         }
-        let section = built.stepper.section();
-        let next = self.motion.follow(section)?;
+        let next = self.motion.follow(built.stepper.section())?;
         let found = next.found();
         let within = found.speed_m_s > 0.0 && found.speed_m_s <= limit;
         if !within || !next.resembles(&self.motion) {
             return None;
         }
-        let damping = |part: f64| smallest_damping(section, part * found.speed_m_s).ok();
-        let left = |(part, before): (&f64, &f64)| damping(*part).is_some_and(|d| d > LEFT * before);
+        let mut damping = |part: f64| built.damping_at(part * found.speed_m_s).ok();
         let positive = self.damping_below.iter().all(|before| *before > 0.0);
+        let mut left =
+            |(part, before): (&f64, &f64)| damping(*part).is_some_and(|d| d > LEFT * before);
         let stable = positive
-            && damping(JUST_BELOW).is_some_and(|d| d > 0.0)
-            && COMPARED_AT.iter().zip(&self.damping_below).all(left);
+            && COMPARED_AT.iter().zip(&self.damping_below).all(&mut left)
+            && damping(JUST_BELOW).is_some_and(|d| d > 0.0);
         stable.then_some(found)
     }
 }

@@ -181,8 +181,8 @@ impl MonitoredUnit for BridgeUnit {
         Some(self.built.stepper.section())
     }
 
-    fn known_damping(&mut self) -> &mut Option<(f64, f64)> {
-        &mut self.built.damping
+    fn damping_at(&mut self, wind: f64) -> Result<f64> {
+        self.built.damping_at(wind)
     }
 
     fn wind_speed(&self, memory: &Memory) -> f64 {
@@ -317,10 +317,11 @@ impl Prepared for BridgeUnit {
         Ok(false)
     }
 
-    fn state_rates(&mut self, _: &Resources, memory: &Memory) -> CallResult<Vec<f64>> {
+    fn state_rates(&mut self, memory: &Memory, rates: &mut [f64]) -> CallResult<()> {
         self.load_inputs(memory);
         let stepper = &mut self.built.stepper;
-        finite(stepper.state_derivative(&memory.system, &self.inputs)?)
+        stepper.write_derivative(&memory.system, &self.inputs, rates)?;
+        finite(rates)
     }
 
     fn outputs(&mut self, _: &Resources, memory: &mut Memory) -> CallResult<()> {
@@ -340,7 +341,7 @@ impl Prepared for BridgeUnit {
         }
         let limit = memory.values[self.places.limit];
         let known = self.searched.as_ref();
-        let followed = known.and_then(|known| known.followed(&self.built, limit));
+        let followed = known.and_then(|known| known.followed(&mut self.built, limit));
         let card = match followed {
             Some(onset) => OnsetCard::of_followed(&self.built, self.tested, (limit, onset)),
             None => {

@@ -1,14 +1,13 @@
 //! Forces alone in co-simulation: where the motion goes on until the instant at which they act.
 
-use super::force_unit::{Conditions, ForceUnit, NOT_SET, SET_AS_DERIVATIVE, check_forces};
+use super::force_unit::{ForceUnit, ForceWork, NOT_SET, SET_AS_DERIVATIVE, check_forces};
 use super::memory::Memory;
 use crate::error::Result;
 use crate::response::{ForceAhead, GivenMotion, KnownMotion, PrescribedForces, StripFlow};
-use std::borrow::Cow;
 
 impl ForceUnit {
     /// The motion as it has been set.
-    pub(super) fn motion(&self, memory: &Memory) -> Vec<KnownMotion> {
+    pub(super) fn motion(&self, memory: &Memory, motion: &mut Vec<KnownMotion>) {
         let set = &memory.system.values[1..self.first()];
         let stated = memory.values[self.derivatives];
         let coordinate = |i: usize| {
@@ -26,37 +25,50 @@ impl ForceUnit {
             };
             KnownMotion { values, known }
         };
-        (0..self.motions() / 3).map(coordinate).collect()
+        motion.clear();
+        motion.extend((0..self.motions() / 3).map(coordinate));
     }
 
-    /// Forces of all strips in the order of the motion. `renewed` says that there is motion of the present time.
-    pub(super) fn ahead(&mut self, memory: &Memory, renewed: bool) -> Result<Vec<ForceAhead>> {
-        let Conditions { flows, density } = self.conditions(&memory.values);
-        let mut state = Cow::Borrowed(&memory.system.values[self.first()..]);
-        let mut ahead_s = memory.system.values[0];
+    /// Finds the forces of all strips. `renewed` says that there is motion of the present time.
+    pub(super) fn ahead_into(
+        &mut self,
+        memory: &Memory,
+        renewed: bool,
+        work: &mut ForceWork,
+    ) -> Result<()> {
+        work.flows.clear();
+        work.flows.extend(self.flows(&memory.values));
+        let density = self.air_density(&memory.values);
+        let first = self.first();
+        let mut system = &memory.system;
+        let mut ahead_s = system.values[0];
         if renewed {
-            let motion = self.motion(memory);
-            if let Some(newest) = PrescribedForces::newest_s(&state) {
+            self.motion(memory, &mut work.motion);
+            if let Some(newest) = PrescribedForces::newest_s(&system.values[first..]) {
                 ahead_s = (newest + ahead_s - memory.time).max(0.0);
             }
             let given = GivenMotion {
                 time_s: memory.time,
                 wind_speed_m_s: memory.values[self.inputs[0]],
-                motion: &motion,
+                motion: &work.motion,
             };
-            self.forces.take(state.to_mut(), &given, &flows)?;
+            work.renewed.set_to(system);
+            let state = &mut work.renewed.values[first..];
+            self.forces.take(state, &given, &work.flows)?;
+            let before = &memory.system.values[first..];
+            self.take_gusts(&mut work.renewed.gusts, before, memory, &work.flows);
+            system = &work.renewed;
         }
+        let (state, gusts) = (&system.values[first..], &system.gusts);
         let n = self.forces.dofs().len();
-        let mut gusts = Cow::Borrowed(memory.system.gusts.as_slice());
-        if renewed {
-            let before = &memory.system.values[self.first()..];
-            self.take_gusts(gusts.to_mut(), before, memory, &flows);
-        }
-        let wind = PrescribedForces::newest_wind_m_s(&state);
-        let mut found = vec![ForceAhead::default(); self.coordinates()];
-        for (s, (flow, forces)) in flows.iter().zip(found.chunks_mut(n)).enumerate() {
+        let wind = PrescribedForces::newest_wind_m_s(state);
+        work.forces.clear();
+        work.forces
+            .resize(self.coordinates(), ForceAhead::default());
+        let each = work.flows.iter().zip(work.forces.chunks_mut(n));
+        for (s, (flow, forces)) in each.enumerate() {
             self.forces
-                .ahead(&state, (s, flow), ahead_s, density, forces)?;
+                .ahead(state, (s, flow), ahead_s, density, forces)?;
             if let Some((strips, _)) = &self.gusts {
                 let of = strips.per_strip();
                 let strip = &gusts[s * of..(s + 1) * of];
@@ -65,7 +77,7 @@ impl ForceUnit {
                 strips.add_ahead(strip, [rates[0], rates[1]], ahead_s, air, forces);
             }
         }
-        check_forces(found)
+        check_forces(&work.forces)
     }
 
     /// The gusts go to the present time, from the state of the forces before.

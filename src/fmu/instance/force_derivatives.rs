@@ -15,8 +15,8 @@ const RELATIVE_STEP: f64 = 1e-5;
 
 impl Differentiable for ForceUnit {
     fn output_rates(&mut self, memory: &mut Memory, outputs: &[Role]) -> CallResult<Vec<f64>> {
-        let forces = self.ahead(memory, self.renewed(memory))?;
-        let rate = |role: &Role| self.entry(memory, &forces, *role).rate;
+        self.ahead(memory, self.renewed(memory))?;
+        let rate = |role: &Role| self.entry(memory, &self.work.forces, *role).rate;
         Ok(outputs.iter().map(rate).collect())
     }
 
@@ -66,16 +66,15 @@ impl ForceUnit {
             self.settle(memory)?;
         }
         let wants = |wanted: fn(&Role) -> bool| unknowns.iter().any(wanted);
-        let forces = match wants(|role| matches!(role, Role::Force(..))) {
-            true => self.present(memory, renewed)?,
-            false => Vec::new(),
-        };
-        let rates = match wants(|role| matches!(role, Role::FilterRate(_))) {
-            true => self.rates_now(memory),
-            false => Vec::new(),
-        };
+        if wants(|role| matches!(role, Role::Force(..))) {
+            self.present(memory, renewed)?;
+        }
+        let mut rates = vec![0.0; self.entries.len()];
+        if wants(|role| matches!(role, Role::FilterRate(_))) {
+            self.rates_now(memory, &mut rates);
+        }
         let value = |role: &Role| match role {
-            Role::Force(..) => self.entry(memory, &forces, *role).force,
+            Role::Force(..) => self.entry(memory, &self.work.forces, *role).force,
             Role::FilterRate(i) => rates.get(*i).copied().unwrap_or(0.0),
             other => {
                 let entry = self.entry_of(*other);

@@ -3,13 +3,14 @@
 //! Nothing is predicted and nothing derived from earlier motion, so that the rates of the motion have to be set. A displacement
 //! that moves while its rate has never been set is a motion that was not connected: it ends the run.
 
-use super::force_unit::{ForceUnit, NOT_SET, SET};
+use super::force_unit::{ForceUnit, ForceWork, NOT_SET, SET, check_forces};
 use super::memory::Memory;
 use crate::error::{Error, Result};
 use crate::fmu::lifecycle::State;
 use crate::fmu::refusal::{CallResult, Refusal};
 use crate::fmu::variables::{Role, VariableTable};
 use crate::response::ForceAhead;
+use crate::section::Dof;
 
 /// A displacement that has changed between events.
 const MOVES: f64 = 3.0;
@@ -28,7 +29,7 @@ impl ForceUnit {
     }
 
     /// Displacement, rate and acceleration of each coordinate of strip `s` as they count now.
-    fn motion_now(&self, memory: &Memory, s: usize) -> Vec<[f64; 3]> {
+    fn motion_now(&self, memory: &Memory, s: usize) -> [[f64; 3]; Dof::THREE.len()] {
         let stated = memory.values[self.derivatives];
         let counts = |order: usize| stated < 0.0 || order as f64 <= stated;
         let number = |i: usize, order: usize| {
@@ -36,78 +37,90 @@ impl ForceUnit {
             if counts(order) { value } else { 0.0 }
         };
         let n = self.forces.dofs().len();
-        (s * n..(s + 1) * n)
-            .map(|i| [0, 1, 2].map(|order| number(i, order)))
-            .collect()
+        let mut motion = [[0.0; 3]; Dof::THREE.len()];
+        for (i, motion) in (s * n..(s + 1) * n).zip(&mut motion) {
+            *motion = [0, 1, 2].map(|order| number(i, order));
+        }
+        motion
     }
 
     /// Numbers of the gusts at strip `s`, of which the first two are those that blow now.
-    fn gusts_now(&self, memory: &Memory, s: usize) -> Option<Vec<f64>> {
+    fn gusts_now<'a>(
+        &self,
+        memory: &Memory,
+        s: usize,
+        strip: &'a mut Vec<f64>,
+    ) -> Option<&'a [f64]> {
         let (strips, places) = self.gusts.as_ref()?;
         let of = strips.per_strip();
-        let mut strip = memory.system.gusts[s * of..(s + 1) * of].to_vec();
+        strip.clear();
+        strip.extend_from_slice(&memory.system.gusts[s * of..(s + 1) * of]);
         for (gust, place) in strip.iter_mut().zip(places[s]) {
             *gust = memory.values[place];
         }
         Some(strip)
     }
 
-    /// Forces of the instant, of all strips in the order of the motion.
-    pub(super) fn at_instant(&mut self, memory: &Memory) -> Result<Vec<ForceAhead>> {
-        let conditions = self.conditions(&memory.values);
+    /// Finds the forces of the instant, of all strips.
+    pub(super) fn at_instant(&mut self, memory: &Memory, work: &mut ForceWork) -> Result<()> {
+        let density = self.air_density(&memory.values);
         let n = self.forces.dofs().len();
         let wind = memory.values[self.inputs[0]];
-        let mut found = vec![ForceAhead::default(); self.coordinates()];
-        for (s, forces) in found.chunks_mut(n).enumerate() {
-            let flow = &conditions.flows[s];
-            let air = (wind * flow.wind_factor, flow.width_m, conditions.density);
+        work.forces.clear();
+        work.forces
+            .resize(self.coordinates(), ForceAhead::default());
+        for (s, forces) in work.forces.chunks_mut(n).enumerate() {
+            let flow = self.flow(&memory.values, s);
+            let air = (wind * flow.wind_factor, flow.width_m, density);
             let state = &memory.system.values[self.first()..];
             let filters = &state[self.forces.filters(s)];
             let motion = self.motion_now(memory, s);
-            self.forces.at_instant(filters, &motion, air, forces);
-            if let (Some((gusts, _)), Some(strip)) = (&self.gusts, self.gusts_now(memory, s)) {
-                gusts.add_ahead(&strip, [0.0; 2], 0.0, air, forces);
+            self.forces.at_instant(filters, &motion[..n], air, forces);
+            let strip = self.gusts_now(memory, s, &mut work.strip);
+            if let (Some((gusts, _)), Some(strip)) = (&self.gusts, strip) {
+                gusts.add_ahead(strip, [0.0; 2], 0.0, air, forces);
             }
         }
-        super::force_unit::check_forces(found)
+        check_forces(&work.forces)
     }
 
-    /// Rates of filters and lagging gusts, per second, in the order of [`Role::Filter`].
-    pub(super) fn rates_now(&self, memory: &Memory) -> Vec<f64> {
+    /// Writes the rates of filters and lagging gusts, per second, in the order of [`Role::Filter`].
+    pub(super) fn rates_now(&mut self, memory: &Memory, rates: &mut [f64]) {
         let strips = self.strips();
-        let mut rates = vec![0.0; self.entries.len()];
+        let mut work = std::mem::take(&mut self.work);
         for s in 0..strips {
-            let of_strip = self.rates_of(memory, s);
-            for (slot, rate) in rates[s..].iter_mut().step_by(strips).zip(of_strip) {
-                *slot = rate;
+            self.rates_of(memory, s, &mut work);
+            for (slot, rate) in rates[s..].iter_mut().step_by(strips).zip(&work.rates) {
+                *slot = *rate;
             }
         }
-        rates
+        self.work = work;
     }
 
-    /// Those of strip `s`.
-    pub(super) fn rates_of(&self, memory: &Memory, s: usize) -> Vec<f64> {
+    /// Finds those of strip `s`.
+    pub(super) fn rates_of(&self, memory: &Memory, s: usize, work: &mut ForceWork) {
         let flow = self.flow(&memory.values, s);
         let wind = memory.values[self.inputs[0]] * flow.wind_factor;
-        let motion = self.motion_now(memory, s);
-        let displacement: Vec<f64> = motion.iter().map(|m| m[0]).collect();
+        let displacement = self.motion_now(memory, s).map(|m| m[0]);
         let state = &memory.system.values[self.first()..];
         let filters = &state[self.forces.filters(s)];
-        let mut rates = vec![0.0; filters.len()];
+        work.rates.clear();
+        work.rates.resize(filters.len(), 0.0);
+        let air = (wind, flow.width_m);
         self.forces
-            .filter_rates(filters, &displacement, (wind, flow.width_m), &mut rates);
-        if let (Some((gusts, _)), Some(strip)) = (&self.gusts, self.gusts_now(memory, s)) {
-            rates.extend(gusts.rates(&strip, wind / flow.width_m));
+            .filter_rates(filters, &displacement, air, &mut work.rates);
+        let strip = self.gusts_now(memory, s, &mut work.strip);
+        if let (Some((gusts, _)), Some(strip)) = (&self.gusts, strip) {
+            work.rates.extend(gusts.rates(strip, wind / flow.width_m));
         }
-        rates
     }
 
     /// The flow settles around the deck where it is held, in the gusts that blow.
     pub(super) fn settle(&self, memory: &mut Memory) -> Result<()> {
         let settling = self.forces.settling()?;
         let n = self.forces.dofs().len();
-        let flows = self.conditions(&memory.values).flows;
-        for (s, flow) in flows.iter().enumerate() {
+        for s in 0..self.strips() {
+            let flow = self.flow(&memory.values, s);
             let at = |i: usize| memory.values[self.inputs[1 + 3 * i]];
             let displacement: Vec<f64> = (s * n..(s + 1) * n).map(at).collect();
             let first = self.first();

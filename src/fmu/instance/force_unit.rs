@@ -16,7 +16,8 @@ use crate::fmu::refusal::{CallResult, Refusal};
 use crate::fmu::resources::Resources;
 use crate::fmu::variables::{ForceOutput, Role, SectionParameter, VariableTable};
 use crate::response::{
-    ForceAhead, GivenMotion, PrescribedForces, SectionState, StripFlow, StripGusts, wind_at_rest,
+    ForceAhead, GivenMotion, KnownMotion, PrescribedForces, SectionState, StripFlow, StripGusts,
+    wind_at_rest,
 };
 
 /// How a number of the motion has been set since the last step.
@@ -55,12 +56,23 @@ pub(super) struct ForceUnit {
     warned: bool,
     /// Whether it has been said that the added mass is missing.
     pub warned_of_mass: bool,
+    pub work: ForceWork,
 }
 
-/// What acts on the strips.
-pub(super) struct Conditions {
+/// Memory of a step.
+#[derive(Debug, Default)]
+pub(super) struct ForceWork {
+    pub motion: Vec<KnownMotion>,
     pub flows: Vec<StripFlow>,
-    pub density: f64,
+    /// Forces of all strips in the order of the motion.
+    pub forces: Vec<ForceAhead>,
+    /// State of the forces with the motion of the present, and the gusts.
+    pub renewed: SectionState,
+    /// Gusts of a strip.
+    pub strip: Vec<f64>,
+    /// Rates of a strip.
+    pub rates: Vec<f64>,
+    before: SectionState,
 }
 
 impl ForceUnit {
@@ -114,6 +126,7 @@ impl ForceUnit {
             settle_pending: true,
             warned: false,
             warned_of_mass: false,
+            work: ForceWork::default(),
         };
         unit.find_states(table);
         Ok(unit)
@@ -165,12 +178,13 @@ impl ForceUnit {
         }
     }
 
-    pub(super) fn conditions(&self, values: &[f64]) -> Conditions {
-        let each = 0..self.strips.len();
-        Conditions {
-            flows: each.map(|s| self.flow(values, s)).collect(),
-            density: values[self.density],
-        }
+    /// The air around all of them.
+    pub(super) fn flows<'a>(&'a self, values: &'a [f64]) -> impl Iterator<Item = StripFlow> + 'a {
+        (0..self.strips.len()).map(|s| self.flow(values, s))
+    }
+
+    pub(super) fn air_density(&self, values: &[f64]) -> f64 {
+        values[self.density]
     }
 
     pub(super) fn entry(&self, memory: &Memory, forces: &[ForceAhead], role: Role) -> ForceAhead {
@@ -284,17 +298,20 @@ impl Unit for ForceUnit {
 }
 
 impl Prepared for ForceUnit {
-    fn state_rates(&mut self, _: &Resources, memory: &Memory) -> CallResult<Vec<f64>> {
-        let rates = self.rates_now(memory);
+    fn state_rates(&mut self, memory: &Memory, rates: &mut [f64]) -> CallResult<()> {
+        self.rates_now(memory, rates);
         if rates.iter().all(|x| x.is_finite()) {
-            return Ok(rates);
+            return Ok(());
         }
         Err(Refusal::discard("derivatives: the filters have overflowed"))
     }
 
     fn filter_rate(&mut self, memory: &Memory, i: usize) -> Option<f64> {
         let strips = self.strips();
-        self.rates_of(memory, i % strips).get(i / strips).copied()
+        let mut work = std::mem::take(&mut self.work);
+        self.rates_of(memory, i % strips, &mut work);
+        self.work = work;
+        self.work.rates.get(i / strips).copied()
     }
 
     fn advance(&mut self, _: &Resources, memory: &mut Memory, step: f64) -> CallResult<bool> {
@@ -305,64 +322,88 @@ impl Prepared for ForceUnit {
                 "wind_speed: expected zero or a positive wind speed, found {end} m/s at the end of the step"
             )));
         }
-        let motion = self.motion(memory);
-        let flows = self.conditions(&memory.values).flows;
-        let given = GivenMotion {
-            time_s: memory.time,
-            wind_speed_m_s: wind,
-            motion: &motion,
-        };
-        let first = self.first();
-        let before = memory.system.clone();
-        self.forces
-            .take(&mut memory.system.values[first..], &given, &flows)?;
-        let mut gusts = std::mem::take(&mut memory.system.gusts);
-        self.take_gusts(&mut gusts, &before.values[first..], memory, &flows);
-        memory.system.gusts = gusts;
+        let mut before = std::mem::take(&mut self.work.before);
+        before.set_to(&memory.system);
+        let taken = self.take_motion(memory, &before);
         memory.system.values[0] = memory.values[self.prediction] * step;
+        let first = self.first();
         memory.system.values[1..first].fill(NOT_SET);
         // a force that cannot be put out is refused with its step
-        match self.ahead(memory, false) {
-            Ok(forces) => {
-                self.put_out(memory, &forces);
-                Ok(true)
-            }
-            Err(why) => {
-                memory.system = before;
-                Err(why.into())
-            }
+        let found = taken.and_then(|()| self.ahead(memory, false));
+        match &found {
+            Ok(()) => self.put_out(memory),
+            Err(_) => memory.system.set_to(&before),
         }
+        self.work.before = before;
+        found?;
+        Ok(true)
     }
 
     fn outputs(&mut self, _: &Resources, memory: &mut Memory) -> CallResult<()> {
         let renewed = self.renewed(memory);
-        let forces = self.present(memory, renewed);
-        let forces = forces.map_err(|why| Refusal::discard(format!("outputs: {why}")))?;
-        self.put_out(memory, &forces);
+        let found = self.present(memory, renewed);
+        found.map_err(|why| Refusal::discard(format!("outputs: {why}")))?;
+        self.put_out(memory);
         Ok(())
     }
 }
 
 /// Refuses forces that no number holds any more.
-pub(super) fn check_forces(found: Vec<ForceAhead>) -> Result<Vec<ForceAhead>> {
+pub(super) fn check_forces(found: &[ForceAhead]) -> Result<()> {
     if found.iter().all(|f| f.force.is_finite()) {
-        return Ok(found);
+        return Ok(());
     }
     Err(Error::Numerical("the forces have overflowed".into()))
 }
 
 impl ForceUnit {
-    /// Forces of all strips as they are put out, see the module.
-    pub(super) fn present(&mut self, memory: &Memory, renewed: bool) -> Result<Vec<ForceAhead>> {
-        if self.integrated {
-            return self.at_instant(memory);
-        }
-        self.ahead(memory, renewed)
+    /// Finds the forces of all strips as they are put out, see the module.
+    pub(super) fn present(&mut self, memory: &Memory, renewed: bool) -> Result<()> {
+        let mut work = std::mem::take(&mut self.work);
+        let found = if self.integrated {
+            self.at_instant(memory, &mut work)
+        } else {
+            self.ahead_into(memory, renewed, &mut work)
+        };
+        self.work = work;
+        found
     }
 
-    fn put_out(&self, memory: &mut Memory, forces: &[ForceAhead]) {
+    /// Those of co-simulation.
+    pub(super) fn ahead(&mut self, memory: &Memory, renewed: bool) -> Result<()> {
+        let mut work = std::mem::take(&mut self.work);
+        let found = self.ahead_into(memory, renewed, &mut work);
+        self.work = work;
+        found
+    }
+
+    /// Takes the motion of the present into the state, from that before.
+    fn take_motion(&mut self, memory: &mut Memory, before: &SectionState) -> Result<()> {
+        let mut work = std::mem::take(&mut self.work);
+        self.motion(memory, &mut work.motion);
+        work.flows.clear();
+        work.flows.extend(self.flows(&memory.values));
+        let given = GivenMotion {
+            time_s: memory.time,
+            wind_speed_m_s: memory.values[self.inputs[0]],
+            motion: &work.motion,
+        };
+        let first = self.first();
+        let state = &mut memory.system.values[first..];
+        let taken = self.forces.take(state, &given, &work.flows);
+        if taken.is_ok() {
+            let mut gusts = std::mem::take(&mut memory.system.gusts);
+            self.take_gusts(&mut gusts, &before.values[first..], memory, &work.flows);
+            memory.system.gusts = gusts;
+        }
+        self.work = work;
+        taken
+    }
+
+    fn put_out(&self, memory: &mut Memory) {
         let n = self.forces.dofs().len();
-        for (i, ([per_length, total], force)) in self.outputs.iter().zip(forces).enumerate() {
+        let found = self.outputs.iter().zip(&self.work.forces);
+        for (i, ([per_length, total], force)) in found.enumerate() {
             let length = memory.values[self.strips[i / n][1]];
             memory.values[*per_length] = force.force;
             memory.values[*total] = force.force * length;

@@ -90,8 +90,7 @@ impl Instance {
         self.check_states("derivatives", rates.len())?;
         let (resources, memory) = (&self.resources, &mut self.memory);
         let unit = self.unit.prepared(resources, memory)?;
-        rates.copy_from_slice(&unit.state_rates(resources, memory)?);
-        Ok(())
+        unit.state_rates(memory, rates)
     }
 
     /// Their usual sizes.
@@ -128,10 +127,13 @@ impl Instance {
         {
             return Ok(rate);
         }
-        let mut rates = vec![0.0; self.layout.state_rates.len()];
-        self.state_rates(&mut rates)?;
+        let mut rates = std::mem::take(&mut self.rates);
+        rates.resize(self.layout.state_rates.len(), 0.0);
+        let found = self.state_rates(&mut rates);
         let entry = self.layout.state_rates.iter().position(|p| *p == place);
-        Ok(entry.map_or(0.0, |entry| rates[entry]))
+        let rate = entry.map_or(0.0, |entry| rates[entry]);
+        self.rates = rates;
+        found.map(|()| rate)
     }
 
     fn check_states(&self, what: &str, found: usize) -> CallResult<()> {

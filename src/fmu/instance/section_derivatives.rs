@@ -11,7 +11,7 @@ use super::sensitivity::{
 use super::trust::{MonitoredUnit, is_of_onset, without_motion};
 use super::unit::Differentiable;
 use crate::error::Result;
-use crate::fmu::onset_start::smallest_damping;
+use crate::flutter::smallest_damping;
 use crate::fmu::refusal::CallResult;
 use crate::fmu::resources::Resources;
 use crate::fmu::variables::{Role, Status};

@@ -4,6 +4,7 @@ use super::memory::Memory;
 use super::section_unit::SectionUnit;
 use super::trust::{LINEAR_ROTATION_RAD, MonitoredUnit, beyond_linear};
 use crate::aeroelastic::CoupledSection;
+use crate::error::Result;
 use crate::fmu::resources::Resources;
 use crate::response::Stepper;
 
@@ -12,8 +13,11 @@ impl MonitoredUnit for SectionUnit {
         self.stepper.as_ref().map(Stepper::section)
     }
 
-    fn known_damping(&mut self) -> &mut Option<(f64, f64)> {
-        &mut self.damping
+    fn damping_at(&mut self, wind: f64) -> Result<f64> {
+        match &mut self.stepper {
+            Some(stepper) => self.damping.at(stepper, wind),
+            None => Ok(0.0),
+        }
     }
 
     fn wind_speed(&self, memory: &Memory) -> f64 {

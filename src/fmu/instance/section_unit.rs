@@ -1,6 +1,7 @@
 //! The coupled section: a structure in self-excited wind forces. Onset and divergence are searched for when first asked
 //! for after a change of parameters.
 
+use super::damping::PresentDamping;
 use super::layout::Source;
 use super::memory::Memory;
 use super::section::{self, OnsetCard};
@@ -44,8 +45,8 @@ pub(super) struct SectionUnit {
     pub stepper: Option<Stepper>,
     /// Wind speeds (m/s) at which it was tested, see [`tested_winds`].
     pub tested_winds: Option<[f64; 2]>,
-    /// Smallest damping ratio at a wind speed with that stepper.
-    pub damping: Option<(f64, f64)>,
+    /// With that stepper.
+    pub damping: PresentDamping,
     /// While initialising: the state has to be made anew from the values at release.
     release_pending: bool,
     onset_current: bool,
@@ -80,7 +81,7 @@ impl SectionUnit {
             aerodynamics: resources.model.model.realize(),
             stepper: None,
             tested_winds: None,
-            damping: None,
+            damping: PresentDamping::default(),
             release_pending: true,
             onset_current: false,
             growth_known: false,
@@ -267,7 +268,7 @@ impl Unit for SectionUnit {
             let stepper = self.new_stepper(resources, &memory.values)?;
             self.tested_winds = tested_winds(&stepper, resources);
             self.stepper = Some(stepper);
-            self.damping = None;
+            self.damping = PresentDamping::default();
         }
         if self.release_pending && memory.state == State::Initialization {
             if let Some(stepper) = &self.stepper {
@@ -322,12 +323,13 @@ impl Prepared for SectionUnit {
         Ok(false)
     }
 
-    fn state_rates(&mut self, _: &Resources, memory: &Memory) -> CallResult<Vec<f64>> {
+    fn state_rates(&mut self, memory: &Memory, rates: &mut [f64]) -> CallResult<()> {
         self.load_inputs(memory);
         let Some(stepper) = &mut self.stepper else {
-            return Ok(Vec::new());
+            return Ok(());
         };
-        finite(stepper.state_derivative(&memory.system, &self.inputs)?)
+        stepper.write_derivative(&memory.system, &self.inputs, rates)?;
+        finite(rates)
     }
 
     fn outputs(&mut self, _: &Resources, memory: &mut Memory) -> CallResult<()> {

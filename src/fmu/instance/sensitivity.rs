@@ -136,7 +136,7 @@ pub(super) fn speed_sensitivity(
         }
         Realization::Discrete(d) => scale * (&d.c * filters) * (rho * speed),
     };
-    let gusts = DVector::from_vec(stepper.gusts_per_wind(state, inputs).0);
+    let gusts = DVector::from_vec(stepper.gusts_per_wind(state, inputs));
     let acceleration = section.inverse_mass() * (direct + &gusts);
     // gusts are no self-excited force
     let force = &s.mass * &acceleration - gusts;
@@ -151,10 +151,12 @@ pub(super) fn speed_sensitivity(
 /// `∂ż/∂V` of the filters and of the lagging gusts; zero for the motion, which [`speed_sensitivity`] gives.
 fn rate_by_speed(stepper: &Stepper, state: &SectionState, inputs: &Inputs) -> Vec<f64> {
     let section = stepper.section();
-    let motion = vec![0.0; 2 * section.structure().dofs.len()];
-    let filters = section.filter_rates_per_wind(&state.values);
-    let (_, lagging) = stepper.gusts_per_wind(state, inputs);
-    [&motion, filters.as_slice(), &lagging].concat()
+    let first = 2 * section.structure().dofs.len();
+    let mut rates = vec![0.0; state.values.len() + state.gusts.len()];
+    let (values, lagging) = rates.split_at_mut(state.values.len());
+    section.filter_rates_per_wind(&state.values, &mut values[first..]);
+    stepper.lag_rates_per_wind(state, inputs, lagging);
+    rates
 }
 
 /// The step of a central difference over a parameter of this value.
@@ -196,9 +198,9 @@ pub(super) fn check_finite(outputs: &Outputs) -> CallResult<()> {
 }
 
 /// The same for rates of states.
-pub(super) fn finite(rates: Vec<f64>) -> CallResult<Vec<f64>> {
+pub(super) fn finite(rates: &[f64]) -> CallResult<()> {
     if rates.iter().all(|x| x.is_finite()) {
-        return Ok(rates);
+        return Ok(());
     }
     Err(overgrown())
 }

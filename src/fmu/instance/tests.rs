@@ -3,15 +3,19 @@
 mod after_changes;
 #[allow(unsafe_code)]
 mod allocations;
+mod damping;
 mod followed;
 mod unknown;
 
 use super::Instance;
+use crate::aerodynamics::{GustForce, RationalAdmittance};
 use crate::bridge::Bridge;
+use crate::fmu::bridge_gusts::{BridgeGusts, TurbulenceOptions};
 use crate::fmu::bridge_options::{BridgeOptions, GroupOptions};
 use crate::fmu::force_options::ForceOptions;
 use crate::fmu::lifecycle::State;
 use crate::fmu::resources::{OptionFiles, Resources};
+use crate::section::Dof;
 use crate::trained_model::{Model, TrainedModel};
 use std::sync::Arc;
 
@@ -67,26 +71,62 @@ fn bridge_of(model: &TrainedModel) -> BridgeOptions {
 }
 
 fn resources(kind: Kind) -> Resources {
+    resources_in(kind, false)
+}
+
+/// With gusts among the inputs, of a bridge also turbulence in the archive, or without.
+fn resources_in(kind: Kind, gusts: bool) -> Resources {
+    let force = GustForce {
+        dofs: Dof::TWO.to_vec(),
+        coefficients: vec![[0.3, -5.0], [0.05, 1.2]],
+        admittance: RationalAdmittance::Sears,
+        source: "test".into(),
+    };
+    let gust_text = gusts.then(|| serde_json::to_string(&force).unwrap());
+    let of_files = |name, force: Option<&str>| {
+        let files = OptionFiles {
+            force: force.map(str::as_bytes),
+            gusts: gust_text.as_deref().map(str::as_bytes),
+            ..OptionFiles::default()
+        };
+        Resources::from_bytes(&fixture(name), files).unwrap()
+    };
     match kind {
-        Kind::Section(name) => {
-            Resources::from_bytes(&fixture(name), OptionFiles::default()).unwrap()
-        }
+        Kind::Section(name) => of_files(name, None),
         Kind::Forces(name) => {
             let options = ForceOptions::single(0.5).to_json().unwrap();
-            let force = Some(options.as_bytes());
-            let files = OptionFiles {
-                force,
-                ..OptionFiles::default()
-            };
-            Resources::from_bytes(&fixture(name), files).unwrap()
+            of_files(name, Some(&options))
         }
         Kind::Bridge => {
             let json = fixture("rational");
             let model = TrainedModel::from_json(std::str::from_utf8(&json).unwrap()).unwrap();
-            let options = bridge_of(&model).to_json().unwrap();
-            Resources::of_bridge(&json, options.as_bytes(), None).unwrap()
+            let mut options = bridge_of(&model);
+            options.gusts = gusts.then(|| BridgeGusts {
+                coefficients: vec![[[0.3, -5.0], [0.1, 0.2], [0.05, 1.2]]],
+                admittance: force.admittance,
+                strips: vec![vec![0]],
+                source: force.source.clone(),
+            });
+            let wave = |phase: f64| {
+                (0..64)
+                    .map(|i| (0.3 * f64::from(i) + phase).sin())
+                    .collect()
+            };
+            let field = gusts.then(|| TurbulenceOptions {
+                step_s: 0.007,
+                u: vec![wave(0.0)],
+                w: vec![wave(1.0)],
+            });
+            let field = field.map(|field| serde_json::to_string(&field).unwrap());
+            let options = options.to_json().unwrap();
+            let turbulence = field.as_deref().map(str::as_bytes);
+            Resources::of_bridge(&json, options.as_bytes(), turbulence).unwrap()
         }
     }
+}
+
+fn driven(kind: Kind, gusts: bool) -> Instance {
+    Instance::new(resources_in(kind, gusts)).unwrap()
 }
 
 /// A new instance whose importer integrates, or does not; `None` where it cannot.

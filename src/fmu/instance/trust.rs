@@ -4,7 +4,7 @@ use super::memory::Memory;
 use super::unit::Prepared;
 use crate::aeroelastic::CoupledSection;
 use crate::error::Result;
-use crate::fmu::onset_start::smallest_damping;
+use crate::flutter::smallest_damping;
 use crate::fmu::resources::Resources;
 use crate::fmu::variables::{Calculated, Role, Status};
 use crate::response::Stepper;
@@ -23,27 +23,74 @@ fn damping_slope(section: &CoupledSection, wind: f64) -> Result<f64> {
     Ok(rise / (wind + step - low))
 }
 
-/// Whether an unknown follows from the search for the onset.
-pub(super) fn is_of_onset(unknown: &Role) -> bool {
-    matches!(
-        unknown,
-        Role::Calculated(_) | Role::Status(Status::FlutterMargin | Status::FlutterSpeed)
-    )
+/// What is known without the motion: numbers of the parameters, and of the present moment.
+pub(super) enum Known {
+    Calculated(Calculated),
+    Status(Status),
 }
 
-/// An unknown that follows from what is calculated or from the smallest damping ratio at a wind speed; `None` for the motion.
+impl Known {
+    /// `None` for inputs, parameters, states and the motion.
+    pub(super) fn of(role: Role) -> Option<Self> {
+        match role {
+            Role::Calculated(which) => Some(Self::Calculated(which)),
+            Role::Status(status) => Some(Self::Status(status)),
+            Role::WindSpeed
+            | Role::ExternalForce(_)
+            | Role::Gust(..)
+            | Role::Response(..)
+            | Role::Section(_)
+            | Role::InitialDisplacement(_)
+            | Role::InitialRate(_)
+            | Role::OnsetSearchLimit
+            | Role::Filter(_)
+            | Role::FilterRate(_)
+            | Role::Constant
+            | Role::Motion(..)
+            | Role::Force(..)
+            | Role::Strip(..)
+            | Role::Prediction
+            | Role::MotionDerivatives
+            | Role::NodeForce(..)
+            | Role::NodeMotion(..)
+            | Role::Mode(..)
+            | Role::InitialMode(_)
+            | Role::ModeParameter(..)
+            | Role::TurbulenceFactor => None,
+        }
+    }
+}
+
+/// Whether an unknown follows from the search for the onset; flags, which have no derivative, are none.
+pub(super) fn is_of_onset(unknown: &Role) -> bool {
+    match Known::of(*unknown) {
+        Some(Known::Calculated(_)) => true,
+        Some(Known::Status(status)) => match status {
+            Status::FlutterMargin | Status::FlutterSpeed => true,
+            Status::DampingNow | Status::WindInTestedRange | Status::AmplitudeInLinearRange => {
+                false
+            }
+        },
+        None => false,
+    }
+}
+
+/// An unknown that follows from what is calculated or from the smallest damping ratio at a wind speed; `None` for the motion, and
+/// for flags, which have no derivative.
 pub(super) fn without_motion(
     unknown: Role,
     calculated: impl Fn(Calculated) -> f64,
     wind: f64,
     damping: f64,
 ) -> Option<f64> {
-    match unknown {
-        Role::Calculated(which) => Some(calculated(which)),
-        Role::Status(Status::FlutterSpeed) => Some(calculated(Calculated::OnsetSpeed)),
-        Role::Status(Status::FlutterMargin) => Some(calculated(Calculated::OnsetSpeed) - wind),
-        Role::Status(Status::DampingNow) => Some(damping),
-        _ => None,
+    match Known::of(unknown)? {
+        Known::Calculated(which) => Some(calculated(which)),
+        Known::Status(status) => match status {
+            Status::FlutterSpeed => Some(calculated(Calculated::OnsetSpeed)),
+            Status::FlutterMargin => Some(calculated(Calculated::OnsetSpeed) - wind),
+            Status::DampingNow => Some(damping),
+            Status::WindInTestedRange | Status::AmplitudeInLinearRange => None,
+        },
     }
 }
 
@@ -52,8 +99,8 @@ pub(super) trait MonitoredUnit: Prepared {
     /// The motion in its forces; `None` while there is none.
     fn coupled(&self) -> Option<&CoupledSection>;
 
-    /// A wind speed, m/s, and the smallest damping ratio there; forgotten where the system is made anew.
-    fn known_damping(&mut self) -> &mut Option<(f64, f64)>;
+    /// Smallest damping ratio at a wind speed, m/s; 0 while there is no motion in its forces.
+    fn damping_at(&mut self, wind: f64) -> Result<f64>;
 
     fn wind_speed(&self, memory: &Memory) -> f64;
 
@@ -100,32 +147,29 @@ pub(super) trait MonitoredUnit: Prepared {
         }
     }
 
-    /// Smallest damping ratio, that of the last time where the wind is the same.
+    /// Smallest damping ratio; 0, with the reason, where it is not known.
     fn damping(&mut self, wind: f64, notices: &mut Vec<String>) -> f64 {
-        if let Some((_, known)) = self.known_damping().filter(|(at, _)| *at == wind) {
-            return known;
-        }
-        let damping = self.coupled().map(|s| smallest_damping(s, wind));
-        match damping.unwrap_or(Ok(0.0)) {
-            Ok(damping) => {
-                *self.known_damping() = Some((wind, damping));
-                damping
-            }
-            Err(why) => {
-                notices.push(format!("damping_now is not known: {why}"));
-                0.0
-            }
-        }
+        self.damping_at(wind).unwrap_or_else(|why| {
+            notices.push(format!("damping_now is not known: {why}"));
+            0.0
+        })
     }
 
     /// Derivative of such a number with respect to the wind speed, per m/s.
     fn present_by_wind(&self, memory: &Memory, role: Role) -> Result<f64> {
-        match (role, self.coupled()) {
-            (Role::Status(Status::FlutterMargin), _) => Ok(-1.0),
-            (Role::Status(Status::DampingNow), Some(section)) => {
-                damping_slope(section, self.wind_speed(memory))
-            }
-            _ => Ok(0.0),
+        match Known::of(role) {
+            Some(Known::Status(status)) => match status {
+                Status::FlutterMargin => Ok(-1.0),
+                Status::DampingNow => {
+                    let wind = self.wind_speed(memory);
+                    self.coupled().map_or(Ok(0.0), |s| damping_slope(s, wind))
+                }
+                Status::FlutterSpeed
+                | Status::WindInTestedRange
+                | Status::AmplitudeInLinearRange => Ok(0.0),
+            },
+            // of the parameters, or of the motion, which is differentiated elsewhere
+            Some(Known::Calculated(_)) | None => Ok(0.0),
         }
     }
 }

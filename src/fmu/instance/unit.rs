@@ -96,13 +96,11 @@ pub(super) trait Prepared: Unit {
         step: f64,
     ) -> CallResult<bool>;
 
-    /// Rates of the state, per second, where an importer may integrate it.
+    /// Writes the rates of the state, per second, where an importer may integrate it.
     ///
     /// # Errors
     /// When they cannot be computed.
-    fn state_rates(&mut self, _resources: &Resources, _memory: &Memory) -> CallResult<Vec<f64>> {
-        Ok(Vec::new())
-    }
+    fn state_rates(&mut self, memory: &Memory, rates: &mut [f64]) -> CallResult<()>;
 
     /// Rate of one state that is nothing else, by its index in [`Role::Filter`], where that needs less than all.
     fn filter_rate(&mut self, _memory: &Memory, _i: usize) -> Option<f64> {

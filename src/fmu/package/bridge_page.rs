@@ -1,12 +1,18 @@
 //! The page that documents the FMU of a bridge, in its archive.
 
+use super::documentation::sentences;
 use crate::fmu::bridge_options::BridgeOptions;
 use crate::fmu::resources::Resources;
 use crate::fmu::variables::{Role, Variable};
+use crate::verdict::Verdict;
 use std::fmt::Write as _;
 
 /// The page.
-pub(super) fn documentation(resources: &Resources, bridge: &BridgeOptions) -> String {
+pub(super) fn documentation(
+    resources: &Resources,
+    bridge: &BridgeOptions,
+    verdict: Option<&Verdict>,
+) -> String {
     let model = &resources.model;
     let mut page = format!(
         "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{name}</title></head><body>\n\
@@ -16,7 +22,8 @@ pub(super) fn documentation(resources: &Resources, bridge: &BridgeOptions) -> St
          <code>wind_speed</code>.</p>\n<p>Forces: {kind}. Data: {source}. Licence: {licence}.</p>\n\
          <p>At constant wind a communication step of any size is exact for forces that are held or run on straight lines; where \
          the wind changes the motion follows its Taylor series. The mode coordinates are those of the shapes as they were \
-         given.</p>\n<h2>Variables</h2>\n<table>\n<tr><th>name</th><th>unit</th><th>meaning</th></tr>\n",
+         given.</p>\n<h2>Stability</h2>\n{stability}\
+         <h2>Variables</h2>\n<table>\n<tr><th>name</th><th>unit</th><th>meaning</th></tr>\n",
         name = escaped(&bridge.name),
         modes = bridge.modes.len(),
         nodes = bridge.nodes.len(),
@@ -24,6 +31,7 @@ pub(super) fn documentation(resources: &Resources, bridge: &BridgeOptions) -> St
         kind = model.model.kind(),
         source = escaped(&model.provenance.source),
         licence = escaped(&model.provenance.licence),
+        stability = stability(verdict),
     );
     // those of further modes differ by their number
     let first = |v: &&Variable| !matches!(v.role, Role::Mode(1.., _) | Role::InitialMode(1..));
@@ -38,6 +46,16 @@ pub(super) fn documentation(resources: &Resources, bridge: &BridgeOptions) -> St
     }
     page.push_str("</table>\n</body></html>\n");
     page
+}
+
+/// The verdict on the bridge as it was exported.
+fn stability(verdict: Option<&Verdict>) -> String {
+    let all = match verdict {
+        Some(verdict) => sentences(verdict, None),
+        None => vec!["Nothing was judged when this bridge was exported.".to_owned()],
+    };
+    let all = all.iter().map(|s| format!("<p>{}</p>\n", escaped(s)));
+    all.collect()
 }
 
 fn escaped(text: &str) -> String {

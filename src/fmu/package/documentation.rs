@@ -239,6 +239,11 @@ fn stability(model: &TrainedModel, verdict: Option<&Verdict>) -> Result<Vec<Stri
             &own
         }
     };
+    Ok(sentences(verdict, motion))
+}
+
+/// A verdict, sentence by sentence, with what is known of the motion at the onset.
+pub(super) fn sentences(verdict: &Verdict, motion: Option<String>) -> Vec<String> {
     let mut sentences = vec![
         format!("{}.", verdict.headline),
         verdict.explanation.clone(),
@@ -257,7 +262,7 @@ fn stability(model: &TrainedModel, verdict: Option<&Verdict>) -> Result<Vec<Stri
         Severity::Severe => format!("Severe doubt: {}.", d.text),
         Severity::Minor => format!("To be known: {}.", d.text),
     }));
-    Ok(sentences)
+    sentences
 }
 
 /// The motion at the onset.

@@ -5,6 +5,37 @@ use crate::aerodynamics::{GustForce, Realizable, Realization};
 use crate::section::Dof;
 use crate::trained_model::TrainedModel;
 
+/// What is set from outside: depends on nothing.
+macro_rules! stated {
+    () => {
+        Role::WindSpeed
+            | Role::ExternalForce(_)
+            | Role::Gust(..)
+            | Role::Section(_)
+            | Role::InitialDisplacement(_)
+            | Role::InitialRate(_)
+            | Role::OnsetSearchLimit
+    };
+}
+
+/// What no section has, and what never changes.
+macro_rules! of_other_units {
+    () => {
+        Role::Constant
+            | Role::Motion(..)
+            | Role::Force(..)
+            | Role::Strip(..)
+            | Role::Prediction
+            | Role::MotionDerivatives
+            | Role::NodeForce(..)
+            | Role::NodeMotion(..)
+            | Role::Mode(..)
+            | Role::InitialMode(_)
+            | Role::ModeParameter(..)
+            | Role::TurbulenceFactor
+    };
+}
+
 /// Fills in the dependencies of every output, state, rate of a state and calculated parameter. States count as known only
 /// where importers see them.
 pub(super) fn fill(variables: &mut [Variable], model: &TrainedModel, gusts: Option<&GustForce>) {
@@ -42,10 +73,11 @@ pub(super) fn fill(variables: &mut [Variable], model: &TrainedModel, gusts: Opti
             ),
             Role::Calculated(_) => (Vec::new(), parameters(known)),
             Role::Status(status) => {
-                let windless = [Status::AmplitudeInLinearRange, Status::FlutterSpeed];
-                let wind = places(known, |role| {
-                    role == Role::WindSpeed && !windless.contains(&status)
-                });
+                let of_wind = match status {
+                    Status::FlutterMargin | Status::DampingNow | Status::WindInTestedRange => true,
+                    Status::AmplitudeInLinearRange | Status::FlutterSpeed => false,
+                };
+                let wind = places(known, |role| role == Role::WindSpeed && of_wind);
                 let by_wind = dependent(wind.iter().copied());
                 let stated = parameters(known).into_iter();
                 let release = dependent(places(known, |role| {
@@ -53,11 +85,14 @@ pub(super) fn fill(variables: &mut [Variable], model: &TrainedModel, gusts: Opti
                 }));
                 let initial = match status {
                     Status::AmplitudeInLinearRange => release,
-                    _ => stated.chain(by_wind).collect(),
+                    Status::FlutterMargin
+                    | Status::DampingNow
+                    | Status::WindInTestedRange
+                    | Status::FlutterSpeed => stated.chain(by_wind).collect(),
                 };
                 (wind, initial)
             }
-            _ => continue,
+            stated!() | of_other_units!() => continue,
         };
         direct.extend(states_behind(known, variable.role, filters));
         direct.sort_unstable();
@@ -95,16 +130,25 @@ impl UnknownSources {
 /// filters.
 fn states_behind(known: &UnknownSources, of: Role, filters: usize) -> impl Iterator<Item = usize> {
     let depends = move |on: Role| match of {
-        Role::Status(Status::AmplitudeInLinearRange) => {
-            on == Role::Response(Response::Displacement, Dof::Torsion)
-        }
-        Role::Response(Response::Acceleration | Response::SelfExcitedForce, _) => true,
+        Role::Status(status) => match status {
+            Status::AmplitudeInLinearRange => {
+                on == Role::Response(Response::Displacement, Dof::Torsion)
+            }
+            Status::FlutterMargin
+            | Status::DampingNow
+            | Status::WindInTestedRange
+            | Status::FlutterSpeed => false,
+        },
+        Role::Response(response, _) => match response {
+            Response::Acceleration | Response::SelfExcitedForce => true,
+            Response::Displacement | Response::Rate => on == of,
+        },
         Role::FilterRate(i) => match on {
             Role::Filter(j) => (i < filters && j < filters) || i == j,
             on => i < filters && !matches!(on, Role::Response(Response::Rate, _)),
         },
-        own @ (Role::Response(..) | Role::Filter(_)) => on == own,
-        _ => false,
+        Role::Filter(_) => on == of,
+        Role::Calculated(_) | stated!() | of_other_units!() => false,
     };
     let states = known.states.iter();
     states
@@ -160,13 +204,26 @@ fn direct_inputs(
     coupling: Coupling,
 ) -> Vec<usize> {
     let coupled = coupling.of(response);
-    let acts = |role: Role| match (response, role) {
-        (Response::Acceleration | Response::SelfExcitedForce, Role::WindSpeed) => true,
-        (Response::Acceleration, Role::ExternalForce(on)) => coupled || on == dof,
-        (Response::SelfExcitedForce, Role::ExternalForce(_)) => coupled,
-        (Response::Acceleration, Role::Gust(..)) => coupling.gusts_at_once,
-        (Response::SelfExcitedForce, Role::Gust(..)) => coupling.gusts_at_once && coupled,
-        _ => false,
+    // what acts on the motion at once, and what on the forces
+    let accelerates = match response {
+        Response::Displacement | Response::Rate => return Vec::new(),
+        Response::Acceleration => true,
+        Response::SelfExcitedForce => false,
+    };
+    let acts = |role: Role| match role {
+        Role::WindSpeed => true,
+        Role::ExternalForce(on) => coupled || (accelerates && on == dof),
+        Role::Gust(..) => coupling.gusts_at_once && (coupled || accelerates),
+        Role::Section(_)
+        | Role::InitialDisplacement(_)
+        | Role::InitialRate(_)
+        | Role::OnsetSearchLimit
+        | Role::Response(..)
+        | Role::Filter(_)
+        | Role::FilterRate(_)
+        | Role::Calculated(_)
+        | Role::Status(_)
+        | of_other_units!() => false,
     };
     places(known, acts)
 }
@@ -180,7 +237,7 @@ fn initial_knowns(
     let release = match response {
         Response::Displacement => Some(Role::InitialDisplacement(dof)),
         Response::Rate => Some(Role::InitialRate(dof)),
-        _ => None,
+        Response::Acceleration | Response::SelfExcitedForce => None,
     };
     if let Some(role) = release {
         let constant = |on| InitialDependency { on, constant: true };
@@ -201,7 +258,15 @@ fn initial_knowns(
             | SectionParameter::Frequency(of)
             | SectionParameter::DampingRatio(of),
         ) => coupled || (accelerates && of == dof),
-        _ => false,
+        Role::WindSpeed
+        | Role::ExternalForce(_)
+        | Role::OnsetSearchLimit
+        | Role::Response(..)
+        | Role::Filter(_)
+        | Role::FilterRate(_)
+        | Role::Calculated(_)
+        | Role::Status(_)
+        | of_other_units!() => false,
     };
     let inputs = direct_inputs(known, response, dof, coupling);
     dependent(inputs.into_iter().chain(places(known, acts)))

@@ -78,6 +78,8 @@ pub struct IdentifiedDerivatives {
     pub width_m: f64,
     /// Degrees of freedom of the forces.
     pub dofs: Vec<Dof>,
+    /// Largest amplitude of rotation, deg; `None` where nothing rotates.
+    pub rotation_amplitude_deg: Option<f64>,
     /// By derivative and group of speeds, rising; in a group by frequency, rising (V̂ falls).
     pub estimates: Vec<DerivativeEstimate>,
     /// What the user should know.
@@ -102,6 +104,10 @@ impl IdentifiedDerivatives {
     /// # Errors
     /// [`Error::Input`] when the runs did not drive both heave and rotation.
     pub fn table(&self, name: &str, header: TableHeader) -> Result<DerivativeTable> {
+        let header = TableHeader {
+            rotation_amplitude_deg: self.rotation_amplitude_deg,
+            ..header
+        };
         DerivativeTable::new(name, self.width_m, header, self.points())
     }
 

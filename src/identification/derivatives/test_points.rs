@@ -39,6 +39,17 @@ pub(super) struct TestPoints {
     pub warnings: Vec<String>,
 }
 
+impl TestPoints {
+    /// Largest amplitude of rotation, deg; `None` where no run drives it.
+    pub(super) fn rotation_amplitude_deg(&self) -> Option<f64> {
+        let torsion = self.dofs.iter().position(|d| *d == Dof::Torsion)?;
+        let driven = self.groups.iter().flatten().filter(|s| s.driven == torsion);
+        driven
+            .map(|s| s.amplitude[torsion].to_degrees())
+            .reduce(f64::max)
+    }
+}
+
 /// Takes the steady stretches of all records and groups them.
 pub(super) fn collect(
     records: &[&dyn RecordSource],

@@ -41,6 +41,12 @@ fn a_known_transfer_matrix_comes_back() {
     }
     let table = found.table("plate", Default::default()).unwrap();
     assert_eq!(table.speed_groups().len(), 2);
+    // the table says how far the section was turned
+    let amplitude = table.header.rotation_amplitude_deg.unwrap();
+    assert!(
+        (amplitude - plan.torsion_amplitude_deg).abs() < 1e-3,
+        "{amplitude}"
+    );
 }
 
 /// Neighbours within 5 %, the ends are not: one group, whatever the order of the records, and a table.

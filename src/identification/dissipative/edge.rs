@@ -1,6 +1,6 @@
 //! The end of the tested range, as the data alone have it.
 
-use nalgebra::{DMatrix, SymmetricEigen};
+use nalgebra::{DMatrix, DVector, Dyn, SymmetricEigen};
 
 /// What the fit that the data alone give says of one part of the motions at the end of the tested range.
 pub(super) struct TestedRangeEnd {
@@ -8,6 +8,8 @@ pub(super) struct TestedRangeEnd {
     pub size: f64,
     /// Its part that feeds energy in, positive semidefinite; zero for decks that are damped there.
     pub own: DMatrix<f64>,
+    /// Eigenvalues and eigenvectors of the whole, where it feeds energy in.
+    eigen: Option<SymmetricEigen<f64, Dyn>>,
 }
 
 impl TestedRangeEnd {
@@ -15,17 +17,37 @@ impl TestedRangeEnd {
     pub(crate) fn new(matrix: DMatrix<f64>) -> Self {
         let n = matrix.nrows();
         let norm = matrix.norm();
-        let mut eigen = SymmetricEigen::new(matrix);
+        let eigen = SymmetricEigen::new(matrix);
         let fed = eigen.eigenvalues.iter().any(|value| *value > 0.0);
-        eigen.eigenvalues.apply(|value| *value = value.max(0.0));
+        let own = fed.then(|| {
+            let mut positive = eigen.clone();
+            positive.eigenvalues.apply(|value| *value = value.max(0.0));
+            positive.recompose()
+        });
         Self {
             size: if norm > 0.0 { norm } else { 1.0 },
-            own: if fed {
-                eigen.recompose()
-            } else {
-                DMatrix::zeros(n, n)
-            },
+            own: own.unwrap_or_else(|| DMatrix::zeros(n, n)),
+            eigen: fed.then_some(eigen),
         }
+    }
+
+    /// Weights `W` with which a change `dS` of the whole matrix changes `vᵀ P v` by `Σ W ∘ dS`; none where nothing is fed in.
+    ///
+    /// Derivative of a function of a symmetric matrix by divided differences (Daleckii & Krein, 1965).
+    pub(super) fn change(&self, v: &DVector<f64>) -> Option<DMatrix<f64>> {
+        let eigen = self.eigen.as_ref()?;
+        let along = eigen.eigenvectors.tr_mul(v);
+        let values = &eigen.eigenvalues;
+        let weights = DMatrix::from_fn(v.len(), v.len(), |i, j| {
+            let (a, b) = (values[i], values[j]);
+            let divided = match (a > 0.0, b > 0.0) {
+                (true, true) => 1.0,
+                (false, false) => 0.0,
+                _ => (a.max(0.0) - b.max(0.0)) / (a - b),
+            };
+            divided * along[i] * along[j]
+        });
+        Some(&eigen.eigenvectors * weights * eigen.eigenvectors.transpose())
     }
 }
 
@@ -46,5 +68,26 @@ mod tests {
         assert!(edge.own[(1, 1)] > 0.2, "{}", edge.own);
         let none = TestedRangeEnd::new(DMatrix::zeros(1, 1));
         assert!(none.size == 1.0 && none.own[(0, 0)] == 0.0);
+    }
+
+    /// Against central differences.
+    #[test]
+    fn a_change_of_the_matrix_changes_what_is_fed_in() {
+        let matrix = DMatrix::from_row_slice(2, 2, &[-3.0, 0.4, 0.4, 0.2]);
+        let change = DMatrix::from_row_slice(2, 2, &[0.7, -0.3, -0.3, 1.1]);
+        let v = DVector::from_vec(vec![0.6, 0.8]);
+        let fed = |step: f64| {
+            let own = TestedRangeEnd::new(&matrix + &change * step).own;
+            v.dot(&(own * &v))
+        };
+        let expected = (fed(1e-5) - fed(-1e-5)) / 2e-5;
+        let weights = TestedRangeEnd::new(matrix.clone()).change(&v);
+        let found = weights.map(|w| w.component_mul(&change).sum());
+        assert!(
+            found.is_some_and(|f| (f - expected).abs() < 1e-9),
+            "{found:?} {expected}"
+        );
+        let damped = DMatrix::from_row_slice(2, 2, &[-3.0, 0.4, 0.4, -0.2]);
+        assert!(TestedRangeEnd::new(damped).change(&v).is_none());
     }
 }

@@ -132,6 +132,7 @@ impl Equation {
             direction: vec![0.0; n],
             alone: self.value(alone),
             held: self.value(held),
+            limit: None,
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::identification::basis::Basis;
 use crate::section::Dof;
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 
 /// The motions of a model whose transfer functions have given bases.
 pub(super) struct Motions<'a> {
@@ -46,5 +46,16 @@ impl<'a> Motions<'a> {
             v[i] = *x;
         }
         v
+    }
+
+    /// A matrix over the motions of a part as one over all of them.
+    pub(super) fn whole_matrix(&self, part: usize, matrix: &DMatrix<f64>) -> DMatrix<f64> {
+        let mut whole = DMatrix::zeros(self.count, self.count);
+        for (a, &i) in self.parts[part].iter().enumerate() {
+            for (b, &j) in self.parts[part].iter().enumerate() {
+                whole[(i, j)] = matrix[(a, b)];
+            }
+        }
+        whole
     }
 }

@@ -4,7 +4,7 @@ use crate::identification::basis::Basis;
 use crate::identification::entry_report::EntryReport;
 use crate::section::Dof;
 use crate::trained_model::Model;
-use nalgebra::Complex;
+use nalgebra::{Complex, DMatrix};
 use serde::Serialize;
 
 /// Share of the square of a mode shape that makes it the motion of one degree of freedom.
@@ -45,6 +45,18 @@ pub struct ActiveConstraint {
     pub alone: f64,
     /// The same in the fit.
     pub held: f64,
+    /// What its limit follows, where that is the growth with which the tests end.
+    #[serde(skip)]
+    pub(crate) limit: Option<GrowthLimit>,
+}
+
+/// A limit that follows the data: `Σ W ∘ Im G(K_max)/K_max` changes by as much as it does.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct GrowthLimit {
+    /// `K_max`.
+    pub k_max: f64,
+    /// `W`, symmetric, over all degrees of freedom.
+    pub weights: DMatrix<f64>,
 }
 
 /// What constraints cost one transfer function.
@@ -115,6 +127,18 @@ impl ActiveConstraint {
         let row = self.kind.row(self.k, basis);
         let weight = self.weight(i, j);
         row.into_iter().map(|x| weight * x).collect()
+    }
+
+    /// The same of what it holds beyond its limit, where that follows the data.
+    pub(crate) fn gradient_beyond_limit(&self, (i, j): (usize, usize), basis: &Basis) -> Vec<f64> {
+        let mut gradient = self.gradient((i, j), basis);
+        if let Some(limit) = &self.limit {
+            let row = ConstraintKind::AboveTestedRange.row(Some(limit.k_max), basis);
+            for (to, x) in gradient.iter_mut().zip(row) {
+                *to -= limit.weights[(i, j)] * x;
+            }
+        }
+        gradient
     }
 
     fn weight(&self, i: usize, j: usize) -> f64 {

@@ -1,7 +1,7 @@
 //! Flutter and divergence of a bridge, with the modes behind them.
 
 use super::BridgeStudy;
-use crate::aerodynamics::{Lags, RationalModel, Transfer};
+use crate::aerodynamics::{Lags, RationalModel, Transfer, TransferMatrix};
 use crate::aeroelastic::CoupledSection;
 use crate::bridge::Bridge;
 use crate::error::Result;
@@ -65,8 +65,9 @@ pub struct BridgeFlutter {
     pub table_divergence: Option<TableDivergence>,
     /// Growth of the bridge by its models below their onset, where nothing was tested; `None` where the scan failed.
     pub growth: Option<UnwantedGrowth>,
-    /// Greatest mean rotation along the girder at the onset, deg, where static coefficients are stated.
-    pub mean_rotation_deg: Option<f64>,
+    /// Mean rotation where it is farthest from the tests, at the onset or else at the required speed, where static coefficients are
+    /// stated.
+    pub mean_rotation: Option<BridgeRotation>,
     /// What could not be computed, and why.
     pub failed: Vec<String>,
 }
@@ -76,6 +77,37 @@ impl BridgeFlutter {
     pub fn onsets(&self) -> impl Iterator<Item = &Onset> {
         self.answers.iter().filter_map(|a| a.search.onset())
     }
+}
+
+/// Rotation of a bridge in the mean wind.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct BridgeRotation {
+    /// Wind speed, m/s.
+    pub speed_m_s: f64,
+    /// Where it is farthest from that of the tests, deg; nose-up positive.
+    pub rotation_deg: f64,
+    /// That of the tests there, deg; 0 where it is not stated.
+    pub tested_deg: f64,
+}
+
+/// The rotation in the mean wind; `None` where sections state no static coefficients.
+fn mean_rotation(
+    study: &BridgeStudy,
+    at_rest: &TransferMatrix,
+    speed_m_s: f64,
+) -> Result<Option<BridgeRotation>> {
+    let Some(coefficients) = study.static_coefficients() else {
+        return Ok(None);
+    };
+    let mean = static_deflection(&study.by_model, &coefficients, at_rest, speed_m_s)?;
+    let nodes = mean.iter().zip(study.tested_angles_deg());
+    let rotations = nodes.map(|(deflection, tested_deg)| BridgeRotation {
+        speed_m_s,
+        rotation_deg: deflection[2].to_degrees(),
+        tested_deg,
+    });
+    let away = |r: &BridgeRotation| (r.rotation_deg - r.tested_deg).abs();
+    Ok(rotations.max_by(|a, b| away(a).total_cmp(&away(b))))
 }
 
 /// Searches the onset by every route and says what takes part.
@@ -124,15 +156,10 @@ pub fn bridge_flutter(study: &BridgeStudy) -> Result<BridgeFlutter> {
     let critical = critical
         .filter_map(|a| a.search.critical_speed_m_s())
         .next();
-    let statics = study.static_coefficients().zip(critical);
-    let mean_rotation_deg = statics.and_then(|(c, speed)| {
-        let mean = static_deflection(&study.by_model, &c, &at_rest, speed);
-        let mean = mean.map_err(|e| failed.push(e.to_string())).ok()?;
-        let largest = mean
-            .iter()
-            .map(|m| m[2])
-            .fold(0.0, |a: f64, b| if b.abs() > a.abs() { b } else { a });
-        Some(largest.to_degrees())
+    let required = study.file.flutter.required_speed_m_s;
+    let mean_rotation = critical.or(required).and_then(|speed| {
+        let mean = mean_rotation(study, &at_rest, speed);
+        mean.map_err(|e| failed.push(e.to_string())).ok()?
     });
     answers.push(by_model);
     Ok(BridgeFlutter {
@@ -142,7 +169,7 @@ pub fn bridge_flutter(study: &BridgeStudy) -> Result<BridgeFlutter> {
         divergence_m_s,
         table_divergence: of_tables.ok().flatten(),
         growth,
-        mean_rotation_deg,
+        mean_rotation,
         failed,
     })
 }

@@ -1,19 +1,20 @@
 //! What is known of a bridge, as evidence for its verdict.
 
 use super::BridgeStudy;
-use super::answers::{BridgeAnswer, BridgeFlutter, coupled};
+use super::answers::{BridgeAnswer, BridgeFlutter, bridge_flutter, coupled};
+use crate::aerodynamics::Transfer;
 use crate::error::Result;
-use crate::flutter::judged_speeds;
-use crate::units::ReducedFrequencyRange;
+use crate::flutter::{FastMotion, damps_fast_motion, judged_speeds};
+use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use crate::verdict::{
-    Basis, DivergenceReading, Evidence, Failure, FlutterReading, MeanRotation, Reach, RequiredSpeed,
+    Basis, DivergenceReading, Evidence, Failure, FlutterReading, MeanRotation, Reach,
+    RequiredSpeed, Verdict,
 };
+use std::sync::Arc;
 
 /// Whose forces the two routes take, in the order of the answers.
 const TABLES: &str = "the tables";
 const MODELS: &str = "the models";
-/// The rotation to which derivatives belong, deg: tables do not state another.
-const TESTED_ROTATION_DEG: f64 = 0.0;
 /// What can fail without another answer.
 const BESIDE: [&str; 4] = ["figures", "fewer modes", "scatter", "FMU"];
 
@@ -37,6 +38,7 @@ impl BridgeStudy {
             assumed: Some(d.assumed.clone()),
         }));
         let mut remarks = self.notes.clone();
+        let stated = self.sections.iter().all(|s| s.angle_deg.is_some());
         let ended = results.curves.ended.iter();
         remarks.extend(ended.map(|why| format!("The curves end early: {why}")));
         Evidence {
@@ -45,21 +47,67 @@ impl BridgeStudy {
             divergence,
             growth: results.growth.clone(),
             failures: failed.iter().map(|f| failure(f)).collect(),
-            mean_rotation: results.mean_rotation_deg.map(|at_onset_deg| MeanRotation {
-                at_onset_deg,
-                tested_deg: TESTED_ROTATION_DEG,
+            mean_rotation: results.mean_rotation.map(|mean| MeanRotation {
+                speed_m_s: mean.speed_m_s,
+                at_onset_deg: mean.rotation_deg,
+                tested_deg: stated.then_some(mean.tested_deg),
             }),
+            // the section that was moved least is what the answer rests on
+            tested_rotation_deg: self
+                .sections
+                .iter()
+                .filter_map(|s| s.rotation_amplitude_deg)
+                .reduce(f64::min),
             implausible: self.findings.clone(),
             remarks,
             ..Evidence::default()
         }
     }
 
+    /// What everything that is found on the bridge amounts to.
+    ///
+    /// # Errors
+    /// As [`bridge_flutter`].
+    pub fn verdict(&self) -> Result<Verdict> {
+        let results = bridge_flutter(self)?;
+        Ok(Verdict::of(&self.evidence(&results, &results.failed)))
+    }
+
     /// The speeds at which every mode is among the tests of every section.
     fn reach(&self, results: &BridgeFlutter, tested: ReducedFrequencyRange) -> Result<Reach> {
         let section = coupled(&self.by_model)?;
-        let judged = judged_speeds(&section, &self.search(), Some(tested))?;
+        let mut judged = judged_speeds(&section, &self.search(), Some(tested))?;
+        if let Some(from) = &mut judged.tested_from {
+            from.below = match self.damps_fast_motion(tested.max)? {
+                true => FastMotion::Damped,
+                false => FastMotion::Open,
+            };
+        }
         Ok(Reach::of(judged, &results.curves, self.by_model.width_m()))
+    }
+
+    /// Whether the model of every section takes energy out of each motion faster than `k`, a reduced frequency of the bridge.
+    fn damps_fast_motion(&self, k: ReducedFrequency) -> Result<bool> {
+        let bridge = &self.by_model;
+        let mut asked: Vec<(&Arc<dyn Transfer>, f64)> = Vec::new();
+        for group in bridge.groups.iter().filter(|g| g.wind_factor > 0.0) {
+            let of_group = k.full_width() * group.width_m / (group.wind_factor * bridge.width_m());
+            // sections in many winds are asked once, from the lowest on
+            match asked
+                .iter_mut()
+                .find(|(forces, _)| Arc::ptr_eq(forces, &group.forces))
+            {
+                Some((_, least)) => *least = least.min(of_group),
+                None => asked.push((&group.forces, of_group)),
+            }
+        }
+        for (forces, k_max) in asked {
+            let k_max = ReducedFrequency::from_full_width(k_max);
+            if !damps_fast_motion(forces.dofs(), k_max, |k| forces.transfer(k))? {
+                return Ok(false);
+            }
+        }
+        Ok(true)
     }
 
     /// By the tables, where there are some, then by the models.

@@ -68,6 +68,7 @@ impl BridgeStudy {
                 .as_ref()
                 .map(|field| self.turbulence(field))
                 .transpose()?,
+            verdict: None,
             listing: Listing::All,
         })
     }

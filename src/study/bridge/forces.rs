@@ -1,7 +1,9 @@
 //! The self-excited forces of one section of a bridge file.
 
 use super::super::{KnownUncertainty, uncertainty_beside};
-use crate::aerodynamics::derivatives::{DerivativeTable, Extrapolation, InterpolatedTable};
+use crate::aerodynamics::derivatives::{
+    DerivativeTable, Extrapolation, InterpolatedTable, TableHeader,
+};
 use crate::aerodynamics::quasi_steady::LinearQuasiSteady;
 use crate::aerodynamics::{FlatPlate, Lags, RationalModel, Transfer};
 use crate::error::{Error, Result};
@@ -37,6 +39,10 @@ pub struct SectionForces {
     pub licence: String,
     /// Reduced frequencies of the tests, of the section.
     pub tested: Option<ReducedFrequencyRange>,
+    /// Mean angle of the section in the tests, deg, nose-up positive; `None` where it is not stated.
+    pub angle_deg: Option<f64>,
+    /// Largest amplitude of rotation in the tests, deg; `None` where it is not stated.
+    pub rotation_amplitude_deg: Option<f64>,
     /// What a user should know of the fit.
     pub notes: Vec<String>,
     /// How far the data leave the coefficients of the model open, or why that is not known; `None` for stated coefficients.
@@ -80,7 +86,11 @@ impl SectionForces {
             .as_ref()
             .map(|name| by_table(block, name, directory, trained.is_none(), findings));
         let (table, fitted) = of_table.transpose()?.unzip();
-        let table = table.map(|t: InterpolatedTable| Arc::new(t) as Arc<dyn Transfer>);
+        let (angle_deg, rotation_amplitude_deg) = match &table {
+            Some(Tabulated { header, .. }) => (header.angle_deg, header.rotation_amplitude_deg),
+            None => (block.angle_deg, None),
+        };
+        let table = table.map(|t: Tabulated| Arc::new(t.between) as Arc<dyn Transfer>);
         if let Some((trained, known)) = trained {
             let model = Arc::new(trained.model.clone());
             return Ok(Self {
@@ -91,6 +101,8 @@ impl SectionForces {
                 source: trained.provenance.source,
                 licence: trained.provenance.licence,
                 tested: Some(trained.tested_range),
+                angle_deg,
+                rotation_amplitude_deg,
                 notes: Vec::new(),
                 degrees_of_freedom: known
                     .as_ref()
@@ -100,7 +112,12 @@ impl SectionForces {
             });
         }
         if let Some(Some(fitted)) = fitted {
-            return Ok(Self { table, ..fitted });
+            return Ok(Self {
+                table,
+                angle_deg,
+                rotation_amplitude_deg,
+                ..fitted
+            });
         }
         let Some(statics) = &block.statics else {
             return Err(Error::input(
@@ -136,6 +153,8 @@ impl SectionForces {
             source: "flat plate, Theodorsen's theory".to_owned(),
             licence: "none needed: a formula".to_owned(),
             tested: None,
+            angle_deg: None,
+            rotation_amplitude_deg: None,
             notes: Vec::new(),
             uncertainty: Ok(None),
             degrees_of_freedom: None,
@@ -164,6 +183,8 @@ impl SectionForces {
             source: format!("static coefficients of {}", block.name),
             licence: "that of the bridge file".to_owned(),
             tested: None,
+            angle_deg: None,
+            rotation_amplitude_deg: None,
             notes: Vec::new(),
             uncertainty: Ok(None),
             degrees_of_freedom: None,
@@ -204,6 +225,12 @@ pub(crate) fn block_table(
     words.read(&format!("section {}: convention", block.name))
 }
 
+/// A table between its points, with what it says of its tests.
+struct Tabulated {
+    between: InterpolatedTable,
+    header: TableHeader,
+}
+
 /// The table between its points, and the model fitted to it.
 fn by_table(
     block: &SectionBlock,
@@ -211,8 +238,10 @@ fn by_table(
     directory: &Path,
     fit: bool,
     findings: &mut Vec<Finding>,
-) -> Result<(InterpolatedTable, Option<SectionForces>)> {
-    let table = block_table(block, name, directory)?;
+) -> Result<(Tabulated, Option<SectionForces>)> {
+    let mut table = block_table(block, name, directory)?;
+    let key = format!("section {}: angle_deg", block.name);
+    table.header.state_angle(&key, block.angle_deg)?;
     let convention = block.convention.or_usual();
     let odd = of_table(&table, &convention).into_iter();
     findings.extend(odd.map(|f| Finding {
@@ -225,8 +254,9 @@ fn by_table(
         &block.motions,
         Extrapolation::Hold,
     )?;
+    let header = table.header.clone();
     if !fit {
-        return Ok((between, None));
+        return Ok((Tabulated { between, header }, None));
     }
     let options = match &block.fit {
         Some(stated) => stated.clone().try_into().map_err(|e: toml::de::Error| {
@@ -250,9 +280,11 @@ fn by_table(
         model: Arc::new(model.clone()),
         saved: Some(model),
         method: report.method.clone(),
-        source: table.header.source.clone(),
-        licence: table.header.licence.clone(),
+        source: header.source.clone(),
+        licence: header.licence.clone(),
         tested: Some(between.tested_range()),
+        angle_deg: None,
+        rotation_amplitude_deg: None,
         notes: report
             .notes
             .iter()
@@ -261,5 +293,5 @@ fn by_table(
         uncertainty: uncertainty.map(Some).map_err(|e| e.to_string()),
         degrees_of_freedom: None,
     };
-    Ok((between, Some(forces)))
+    Ok((Tabulated { between, header }, Some(forces)))
 }

@@ -10,7 +10,6 @@ use crate::buffeting::{BuffetingProblem, GustForces, synthesise};
 use crate::error::{Error, Result};
 use crate::files::gusts::read_gusts;
 use crate::flutter::{FlutterCurves, QuasiSteadyOnset, quasi_steady_modes, quasi_steady_onset};
-use crate::plausibility::of_section;
 use crate::response::{Inputs, NonlinearSection, Stepper};
 use crate::section::{Dof, Structure};
 use crate::verdict::{Basis, DivergenceReading, Evidence, FlutterReading, Verdict};
@@ -91,7 +90,7 @@ fn evidence(study: &WindStudy, onset: &QuasiSteadyOnset) -> Result<Evidence> {
             search: onset.search.clone(),
             basis: Basis::Stated,
         }],
-        implausible: of_section(&study.section()?),
+        implausible: study.findings(),
         ..Evidence::default()
     };
     match onset.equilibrium_end {

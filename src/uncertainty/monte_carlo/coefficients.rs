@@ -34,7 +34,7 @@ pub(super) fn of(model: &Model) -> (Vec<f64>, Vec<String>) {
             return (values, names);
         }
     };
-    (forces.coefficients().to_vec(), forces.names().to_vec())
+    (forces.coefficients().to_vec(), forces.names())
 }
 
 /// Puts `values`, in the order of [`of`], into the model. Coefficients of their own have no place in the minimum-state

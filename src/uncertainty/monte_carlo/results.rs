@@ -5,6 +5,7 @@ use crate::flutter::{SweepOutcome, SweptOnset};
 use crate::signal::mean_and_deviation;
 use crate::uncertainty::statistics::{clopper_pearson, sample_quantile};
 use serde::Serialize;
+use std::borrow::Cow;
 
 /// Failed samples that are named one by one; of more, their number is given.
 const NAMED_FAILURES: usize = 20;
@@ -129,6 +130,14 @@ pub(super) struct Tally {
 }
 
 impl Tally {
+    /// Empty, and ready to take all of these.
+    pub(super) fn with_room_for(parts: &[Self]) -> Self {
+        Self {
+            onsets: Vec::with_capacity(parts.iter().map(|t| t.onsets.len()).sum()),
+            ..Self::default()
+        }
+    }
+
     pub(super) fn onset(&mut self, onset: &SweptOnset) {
         self.onsets.push(onset.speed_m_s);
         self.outside += usize::from(!onset.in_tested_range);
@@ -173,8 +182,8 @@ impl Tally {
         model: &str,
         nominal: SweepOutcome,
     ) -> MonteCarloResult {
-        self.onsets.sort_by(f64::total_cmp);
-        self.starts.sort_by(f64::total_cmp);
+        self.onsets.sort_unstable_by(f64::total_cmp);
+        self.starts.sort_unstable_by(f64::total_cmp);
         let nominal_or_below = matches!(nominal, SweepOutcome::UnstableAtOrBelow(_));
         let nominal_m_s = match nominal {
             SweepOutcome::Onset(o) | SweepOutcome::UnstableAtOrBelow(o) => Some(o.speed_m_s),
@@ -182,13 +191,9 @@ impl Tally {
         };
         let answered = self.onsets.len() + self.starts.len() + self.stable.len();
         let open = || self.stable.iter().copied().filter(|v| *v < speed_max_m_s);
-        let mut unsafe_speeds: Vec<(f64, bool)> = self.onsets.iter().map(|v| (*v, false)).collect();
-        unsafe_speeds.extend(self.starts.iter().map(|v| (*v, true)));
-        unsafe_speeds.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let unsafe_speeds = joined(&self.onsets, self.starts.iter().copied());
         // an onset of a sample that was not judged to the end may lie anywhere beyond
-        let mut earliest = unsafe_speeds.clone();
-        earliest.extend(open().map(|v| (v, false)));
-        earliest.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let earliest = joined(&unsafe_speeds, open());
         let (mean, deviation) = mean_and_deviation(self.onsets.iter().copied());
         MonteCarloResult {
             model: model.to_owned(),
@@ -213,10 +218,13 @@ impl Tally {
                 .quantiles
                 .iter()
                 .map(|p| {
-                    let known = quantile(&earliest, answered, *p);
-                    let mut found = quantile(&unsafe_speeds, answered, *p);
-                    found.speed_m_s = found.speed_m_s.filter(|v| known.speed_m_s == Some(*v));
-                    found
+                    let known = sample_quantile(&earliest, answered, *p);
+                    let found = sample_quantile(&unsafe_speeds, answered, *p);
+                    Quantile {
+                        probability: *p,
+                        speed_m_s: found.filter(|v| known == Some(*v)),
+                        or_below: is_a_start(&unsafe_speeds, &self.starts, rank(answered, *p)),
+                    }
                 })
                 .collect(),
             histogram: histogram(&self.onsets),
@@ -229,16 +237,26 @@ impl Tally {
     }
 }
 
-/// The quantile of speeds of which some are known to be at or below.
-fn quantile(sorted: &[(f64, bool)], answered: usize, probability: f64) -> Quantile {
-    let speeds: Vec<f64> = sorted.iter().map(|s| s.0).collect();
-    let below = (probability * (answered.max(1) - 1) as f64).floor() as usize;
-    let mut around = sorted.iter().skip(below).take(2);
-    Quantile {
-        probability,
-        speed_m_s: sample_quantile(&speeds, answered, probability),
-        or_below: around.any(|s| s.1),
+/// Sorted speeds and others among them; the sorted ones themselves where there are no others, as mostly.
+fn joined(sorted: &[f64], others: impl Iterator<Item = f64>) -> Cow<'_, [f64]> {
+    let mut others = others.peekable();
+    if others.peek().is_none() {
+        return Cow::Borrowed(sorted);
     }
+    let mut all: Vec<f64> = sorted.iter().copied().chain(others).collect();
+    all.sort_unstable_by(f64::total_cmp);
+    Cow::Owned(all)
+}
+
+/// Place at or below that of a quantile.
+fn rank(answered: usize, probability: f64) -> usize {
+    (probability * (answered.max(1) - 1) as f64).floor() as usize
+}
+
+/// Whether the quantile at a place among sorted speeds is that of one of `starts`, sorted as well: known to lie there or below.
+fn is_a_start(sorted: &[f64], starts: &[f64], rank: usize) -> bool {
+    let mut around = sorted.iter().skip(rank).take(2);
+    around.any(|v| starts.binary_search_by(|s| s.total_cmp(v)).is_ok())
 }
 
 /// Bins of Freedman and Diaconis's width.

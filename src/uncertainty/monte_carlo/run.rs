@@ -72,7 +72,7 @@ pub fn monte_carlo(
             tally
         })
         .collect();
-    let mut total = Tally::default();
+    let mut total = Tally::with_room_for(&tallies);
     for tally in tallies {
         total.add(tally);
     }

@@ -58,7 +58,7 @@ impl QuasiSteady {
     /// # Errors
     /// [`Error::Input`] when the degrees of freedom are neither [`Dof::TWO`] nor [`Dof::THREE`] or an arm is not finite.
     pub fn new(coefficients: StaticCoefficients, arms: Arms, dofs: &[Dof]) -> Result<Self> {
-        arms.validate()?;
+        arms.validate("")?;
         if dofs != Dof::TWO && dofs != Dof::THREE {
             return Err(Error::input(
                 "quasi-steady theory",

@@ -6,7 +6,7 @@
 
 use super::answer::{Findings, FlutterSearch, UnstableStart, choose};
 use super::critical_point::OnsetMethod;
-use super::judged::{Exit, StableRange, entry_reason};
+use super::judged::{Exit, FastMotion, StableRange, TestedFrom, damps_at, entry_reason};
 use super::onset::Onset;
 use crate::aerodynamics::{Transfer, TransferMatrix};
 use crate::error::{Error, Result, positive};
@@ -128,6 +128,34 @@ pub fn determinant_onset(
         .exits
         .extend(exits(&roots, (range.min, None)));
     Ok(choose(findings, Some(range)))
+}
+
+/// The last mode that comes to the highest `K` of a table as the wind rises, and whether the table takes energy out of motions
+/// there.
+///
+/// # Errors
+/// As [`determinant_onset`].
+pub fn table_tested_from(
+    structure: &Structure,
+    table: &dyn Transfer,
+    range: ReducedFrequencyRange,
+) -> Result<Option<TestedFrom>> {
+    let k = positive("range of reduced frequencies", range.max.full_width())?;
+    let problem = Problem {
+        structure,
+        model: table,
+    };
+    let roots = problem.named_roots(k)?;
+    let last = roots.iter().max_by(|a, b| a.0.re.total_cmp(&b.0.re));
+    let damped = damps_at(table.dofs(), &table.transfer(range.max)?);
+    Ok(last.map(|(omega, row)| TestedFrom {
+        speed_m_s: omega.re * structure.width_m / k,
+        branch: structure.branch_name(*row),
+        below: match damped {
+            true => FastMotion::DampedAtTheEnd,
+            false => FastMotion::Open,
+        },
+    }))
 }
 
 /// For every root the nearest of `current` that is not nearer to another; `None` where there are too few.

@@ -61,6 +61,15 @@ pub(super) struct Factors {
 }
 
 impl Factors {
+    /// Numbers whose product is the determinant.
+    pub(super) fn pivots(&self) -> impl Iterator<Item = Complex64> {
+        let all = self.swaps.iter().enumerate();
+        all.map(|(k, row)| {
+            let pivot = self.lu.at(k, k);
+            if k == *row { pivot } else { -pivot }
+        })
+    }
+
     /// The solution `x` of `A x = sides`.
     #[inline(always)]
     pub(super) fn solve(&self, mut sides: Columns) -> Columns {

@@ -14,7 +14,7 @@ const REACH: f64 = 200.0;
 /// Energy that motion may gain there over what it exchanges at the end of the tested range: what a condition that holds at
 /// sampled `K` leaves between them.
 const GAIN: f64 = 1e-3;
-/// Part of the added mass that may be no mass at [`REACH`], where a stiffness of the same size is `1/REACH²` of it.
+/// Part that what grows with `K²` may be no mass, of it and of what is exchanged at the end of the tested range.
 const NO_MASS: f64 = 1e-2;
 
 /// Speeds between which every mode was looked at and none grows.
@@ -71,6 +71,37 @@ impl StableRange {
     }
 }
 
+/// What is known of motions that are faster than every test, so that slower wind than any test is known to be harmless or not.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FastMotion {
+    /// The forces of the fit take energy out of each of them.
+    Damped,
+    /// Forces take energy out of every motion at the highest tested `K`; above, nothing is known.
+    DampedAtTheEnd,
+    /// Neither: forces may feed some.
+    Open,
+}
+
+/// The last mode that comes down among the tests as the wind rises.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TestedFrom {
+    /// Wind speed at which it does, m/s; the highest that was looked at where it lies above the tests at all of them.
+    pub speed_m_s: f64,
+    /// Its branch.
+    pub branch: String,
+    /// What is known of it at lower speeds.
+    pub below: FastMotion,
+}
+
+/// The speeds at which data judge a structure.
+#[derive(Debug, Clone, PartialEq)]
+pub struct JudgedSpeeds {
+    /// Speeds at which every mode is among the tests, or above them where the forces damp every such motion.
+    pub range: StableRange,
+    /// From where on every mode is among the tests or below; `None` where all are from the beginning.
+    pub tested_from: Option<TestedFrom>,
+}
+
 /// Why a mode cannot be judged beyond a speed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Exit {
@@ -105,6 +136,8 @@ impl Exit {
 pub(super) struct RangePassages {
     /// Speed, m/s, and branch.
     pub(super) entries: Vec<(f64, String)>,
+    /// Whether forces take energy out of every motion before its entry.
+    pub(super) damped_before: bool,
     /// The same at the other end, and why.
     pub(super) exits: Vec<(f64, String, Exit)>,
 }
@@ -132,10 +165,26 @@ impl RangePassages {
         self.entries.extend(entry);
     }
 
+    fn last_entry(&self) -> Option<&(f64, String)> {
+        self.entries.iter().max_by(|a, b| a.0.total_cmp(&b.0))
+    }
+
+    /// The last of the entries, with what is known of motions before it.
+    pub(super) fn tested_from(&self) -> Option<TestedFrom> {
+        self.last_entry().map(|(speed_m_s, branch)| TestedFrom {
+            speed_m_s: *speed_m_s,
+            branch: branch.clone(),
+            below: match self.damped_before {
+                true => FastMotion::Damped,
+                false => FastMotion::Open,
+            },
+        })
+    }
+
     /// Of the speeds that were looked at those at which every mode was judged.
     pub(super) fn judged(&self, looked_at: StableRange) -> StableRange {
         let highest = looked_at.to_m_s;
-        let last = self.entries.iter().max_by(|a, b| a.0.total_cmp(&b.0));
+        let last = self.last_entry().filter(|_| !self.damped_before);
         let first = self.exits.iter().min_by(|a, b| a.0.total_cmp(&b.0));
         let first = first.filter(|(speed, ..)| *speed < highest);
         let from = last.map(|(speed, branch)| {
@@ -167,21 +216,18 @@ pub(super) fn entry_reason(limit: ReducedFrequency) -> String {
 /// Whether forces take energy out of every motion that is faster than was tested, so that slower wind than any test is
 /// known to be harmless although nothing was measured there: no shape of heave and rotation, and no sway, gains energy by
 /// `Im G(K)` above `k_max`, and what grows with `K²` is a mass.
-pub(super) fn damps_fast_motion(
+pub fn damps_fast_motion(
     dofs: &[Dof],
     k_max: ReducedFrequency,
     transfer: impl Fn(ReducedFrequency) -> Result<TransferMatrix>,
 ) -> Result<bool> {
-    let (sway, others): (Vec<usize>, Vec<usize>) =
-        (0..dofs.len()).partition(|i| dofs[*i] == Dof::Lateral);
     let mut size = 0.0;
+    let mut before: Option<(f64, TransferMatrix)> = None;
     for i in 0..SAMPLES {
         let k = k_max.full_width() * REACH.powf(i as f64 / (SAMPLES as f64 - 1.0));
         let g = transfer(ReducedFrequency::from_full_width(k))?;
-        for block in [&sway, &others].into_iter().filter(|b| !b.is_empty()) {
-            let part = |of: &dyn Fn(usize, usize) -> f64| {
-                DMatrix::from_fn(block.len(), block.len(), |i, j| of(block[i], block[j]))
-            };
+        for block in blocks(dofs) {
+            let part = |of: &dyn Fn(usize, usize) -> f64| part(&block, of);
             let gain = part(&|i, j| 0.5 * (g[(i, j)].im + g[(j, i)].im) / k);
             if i == 0 {
                 size = gain.norm().max(size);
@@ -189,12 +235,41 @@ pub(super) fn damps_fast_motion(
             if SymmetricEigen::new(gain).eigenvalues.max() > GAIN * size {
                 return Ok(false);
             }
-            let inertia = part(&|i, j| g[(i, j)].re);
-            let skew = (&inertia - inertia.transpose()).norm();
-            if i == SAMPLES - 1 && skew > NO_MASS * (inertia.norm() + size) {
-                return Ok(false);
+            // of the last two `K`, so that a stiffness, which may well be skew, is not in it
+            if let Some((k_before, last)) = before.as_ref().filter(|_| i == SAMPLES - 1) {
+                let rise =
+                    (k / k_max.full_width()).powi(2) - (k_before / k_max.full_width()).powi(2);
+                let inertia = part(&|i, j| (g[(i, j)].re - last[(i, j)].re) / rise);
+                let skew = (&inertia - inertia.transpose()).norm();
+                if skew > NO_MASS * (inertia.norm() + size * k_max.full_width()) {
+                    return Ok(false);
+                }
             }
         }
+        before = Some((k, g));
     }
     Ok(true)
+}
+
+/// Whether forces take energy out of every motion at one reduced frequency: no shape of heave and rotation, and no sway, gains
+/// energy by `Im G`.
+pub(super) fn damps_at(dofs: &[Dof], g: &TransferMatrix) -> bool {
+    blocks(dofs).iter().all(|block| {
+        let gain = part(block, &|i, j| 0.5 * (g[(i, j)].im + g[(j, i)].im));
+        SymmetricEigen::new(gain).eigenvalues.max() <= 0.0
+    })
+}
+
+/// The motions that are asked together: sway by itself, and the others.
+fn blocks(dofs: &[Dof]) -> Vec<Vec<usize>> {
+    let (sway, others): (Vec<usize>, Vec<usize>) =
+        (0..dofs.len()).partition(|i| dofs[*i] == Dof::Lateral);
+    [sway, others]
+        .into_iter()
+        .filter(|b| !b.is_empty())
+        .collect()
+}
+
+fn part(block: &[usize], of: &dyn Fn(usize, usize) -> f64) -> DMatrix<f64> {
+    DMatrix::from_fn(block.len(), block.len(), |i, j| of(block[i], block[j]))
 }

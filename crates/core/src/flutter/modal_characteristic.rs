@@ -9,10 +9,13 @@
 //! one, which it is where the matrix is symmetric, as that of a structure alone. What is left after a round is taken away with
 //! the triangles at hand (residual inverse iteration: Neumaier, SIAM J. Numer. Anal. 22, 1985), for a third of the work.
 
+mod chains;
+
 use super::columns::{Columns, RealColumns, Term};
 use super::elimination::{Factors, solve};
-use crate::aerodynamics::{ContinuousRealization, Realization};
+use crate::aerodynamics::Realization;
 use crate::aeroelastic::CoupledSection;
+use chains::{Chain, chains};
 use nalgebra::{Complex, DMatrix, DVector};
 
 type Complex64 = Complex<f64>;
@@ -31,22 +34,13 @@ const SMALL_PART: f64 = 0.1;
 /// Part of an eigenvalue by which it is moved where the problem is exactly singular; below the tolerance, so that it settles.
 const NUDGE: f64 = 1e-11;
 
-/// Filters that are driven by one coordinate each, alike for all coordinates of the chain.
-#[derive(Debug, Clone)]
-struct Chain<Output = RealColumns> {
-    /// L×L.
-    a: DMatrix<f64>,
-    /// L.
-    b: DVector<f64>,
-    /// What each filter does, n×n: column `j` for the chain that coordinate `j` drives, times `½ρB²`.
-    outputs: Vec<Output>,
-}
-
 /// Matrices of the problem, scaled to physical motion and force once.
 #[derive(Debug)]
 pub(super) struct ModalCharacteristic {
     width: f64,
     mass: RealColumns,
+    /// Determinant of the mass.
+    mass_determinant: f64,
     damping: DMatrix<f64>,
     stiffness: DMatrix<f64>,
     /// `½ρ P(e₀)`, `½ρB P(e₁)`; the added mass is in `mass`.
@@ -69,6 +63,7 @@ impl ModalCharacteristic {
         Some(Self {
             width,
             mass: RealColumns::of(&mass),
+            mass_determinant: mass.determinant(),
             damping: s.damping.clone(),
             stiffness: s.stiffness.clone(),
             on_motion: s.scaled(&aero.e0) * half_rho,
@@ -85,6 +80,15 @@ impl ModalCharacteristic {
             damping: RealColumns::of(&(&self.damping - &self.on_rate * speed)),
             stiffness: RealColumns::of(&(&self.stiffness - &self.on_motion * (speed * speed))),
         }
+    }
+
+    /// Sizes of the poles of the filters at a wind speed, rad/s, one for each of the filters that are alike: the geometric mean.
+    pub(super) fn filter_rates(&self, speed: f64) -> impl Iterator<Item = f64> {
+        let rate = move |chain: &Chain| {
+            let product = chain.a.determinant().abs();
+            product.powf(1.0 / chain.b.len() as f64) * speed / self.width
+        };
+        self.chains.iter().map(rate).filter(|rate| *rate > 0.0)
     }
 }
 
@@ -167,6 +171,18 @@ impl AtSpeed<'_> {
         )
     }
 
+    /// `det D(λ)` over that of the mass, as the product of what `each` makes of the pivots; `None` at an eigenvalue.
+    pub(super) fn determinant(
+        &self,
+        lambda: Complex64,
+        each: impl FnMut(Complex64) -> Complex64,
+    ) -> Option<Complex64> {
+        let terms = self.terms(lambda)?;
+        let factors = pulp::Arch::new().dispatch(Triangles { terms })?;
+        let product: Complex64 = factors.pivots().map(each).product();
+        Some(product / self.problem.mass_determinant)
+    }
+
     /// `D(λ)` as a sum.
     fn terms(&self, lambda: Complex64) -> Option<Vec<Term<'_>>> {
         let p = self.problem;
@@ -204,6 +220,20 @@ impl pulp::NullaryFnOnce for Iteration<'_> {
     fn call(self) -> Option<Columns> {
         let (value, slope) = Columns::sum(&self.terms);
         Some(value.factors()?.solve(slope.times(&self.basis)))
+    }
+}
+
+/// `D` as a product of triangles.
+struct Triangles<'a> {
+    terms: Vec<Term<'a>>,
+}
+
+impl pulp::NullaryFnOnce for Triangles<'_> {
+    type Output = Option<Factors>;
+
+    #[inline(always)]
+    fn call(self) -> Option<Factors> {
+        Columns::value(&self.terms).factors()
     }
 }
 
@@ -301,83 +331,4 @@ pub(super) fn inverse_step(
     }
     *shape = better.unscale(size);
     Some(step)
-}
-
-impl Chain {
-    /// `x = (λB I − V A)⁻¹ b` and `dx/dλ`.
-    fn response(&self, lambda: Complex64, width: f64, speed: f64) -> Option<(Shape, Shape)> {
-        let n = self.b.len();
-        let matrix = DMatrix::from_fn(n, n, |i, j| {
-            let diagonal = if i == j {
-                lambda * width
-            } else {
-                Complex64::default()
-            };
-            diagonal - self.a[(i, j)] * speed
-        });
-        let lu = matrix.lu();
-        let x = lu.solve(&self.b.map(Complex64::from))?;
-        let dx = lu.solve(&(&x * Complex64::from(-width)))?;
-        Some((x, dx))
-    }
-}
-
-/// The chains of a realisation: for every coordinate the filters it drives, those that are alike together; `force` makes the
-/// force of what a filter does.
-fn chains(
-    aero: &ContinuousRealization,
-    force: impl Fn(&DMatrix<f64>) -> RealColumns,
-) -> Vec<Chain> {
-    let n = aero.b.ncols();
-    let mut chains: Vec<Chain<DMatrix<f64>>> = Vec::new();
-    for input in 0..n {
-        for states in driven(aero, input) {
-            let a = aero.a.select_rows(&states).select_columns(&states);
-            let b =
-                DVector::from_iterator(states.len(), states.iter().map(|s| aero.b[(*s, input)]));
-            let alike = chains.iter().position(|c| c.a == a && c.b == b);
-            let at = alike.unwrap_or_else(|| {
-                let outputs = vec![DMatrix::zeros(n, n); states.len()];
-                chains.push(Chain { a, b, outputs });
-                chains.len() - 1
-            });
-            for (output, state) in chains[at].outputs.iter_mut().zip(&states) {
-                let mut column = output.column_mut(input);
-                column += aero.c.column(*state);
-            }
-        }
-    }
-    let chain = |c: Chain<DMatrix<f64>>| Chain {
-        a: c.a,
-        b: c.b,
-        outputs: c.outputs.iter().map(&force).collect(),
-    };
-    chains.into_iter().map(chain).collect()
-}
-
-/// The filters that one coordinate drives, those that feed one another together.
-fn driven(aero: &ContinuousRealization, input: usize) -> Vec<Vec<usize>> {
-    let n = aero.a.nrows();
-    let mut seen = vec![false; n];
-    let mut groups = Vec::new();
-    for first in (0..n).filter(|i| aero.b[(*i, input)] != 0.0) {
-        if std::mem::replace(&mut seen[first], true) {
-            continue;
-        }
-        let mut group = vec![first];
-        let mut next = 0;
-        while next < group.len() {
-            let at = group[next];
-            next += 1;
-            for (other, seen) in seen.iter_mut().enumerate() {
-                let linked = aero.a[(at, other)] != 0.0 || aero.a[(other, at)] != 0.0;
-                if linked && !std::mem::replace(seen, true) {
-                    group.push(other);
-                }
-            }
-        }
-        group.sort_unstable();
-        groups.push(group);
-    }
-    groups
 }

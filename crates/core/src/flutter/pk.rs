@@ -132,7 +132,7 @@ pub fn pk_onset(
     match tested.filter(|_| known.is_none()) {
         Some(range) => {
             let damps = damps_fast_motion(&structure.dofs, range.max, |k| model.transfer(k))?;
-            found.reach.entries.retain(|_| !damps);
+            found.reach.damped_before = damps;
         }
         None => found.reach.entries = reach.entries,
     }

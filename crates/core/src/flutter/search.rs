@@ -2,7 +2,7 @@
 
 use super::answer::{Findings, FlutterSearch, choose};
 use super::following::{Follower, OnsetWatch, growing, oscillates};
-use super::judged::{Exit, StableRange, damps_fast_motion};
+use super::judged::{Exit, JudgedSpeeds, damps_fast_motion};
 use super::scan::Scan;
 use super::tracking::Tracker;
 use crate::aeroelastic::CoupledSection;
@@ -108,11 +108,14 @@ pub fn judged_speeds(
     section: &CoupledSection,
     search: &OnsetSearch,
     tested: Option<ReducedFrequencyRange>,
-) -> Result<StableRange> {
+) -> Result<JudgedSpeeds> {
     let scan = Scan::new("", section, tested);
     let (mut found, ended) = followed("", &scan, search)?;
     scan.bound(&mut found, ended.is_some(), &search.speeds_m_s()?)?;
-    Ok(found.reach.judged(found.looked_at))
+    Ok(JudgedSpeeds {
+        tested_from: found.reach.tested_from(),
+        range: found.reach.judged(found.looked_at),
+    })
 }
 
 /// The same by the modes that are followed alone, without all eigenvalues: for one of many sections of which another was searched
@@ -176,6 +179,12 @@ fn follow(model: &str, scan: &Scan<'_>, speeds: &[f64], found: &mut Findings) ->
         modes = next;
         found.followed_to_m_s = speed;
     }
+    let above = modes.all.iter().filter(|mode| {
+        let k = tracker.k(highest, mode);
+        scan.tested.is_some_and(|range| k > range.max)
+    });
+    let never = above.map(|mode| (highest, tracker.name(mode.branch)));
+    found.reach.entries.extend(never);
     Ok(())
 }
 
@@ -192,7 +201,7 @@ impl Scan<'_> {
             let forces = self.section.aerodynamics();
             damps_fast_motion(&s.dofs, range.max, |k| forces.transfer(k))?
         };
-        found.reach.entries.retain(|_| !damps);
+        found.reach.damped_before = damps;
         let beyond = speeds
             .iter()
             .filter(|v| lost && **v > found.followed_to_m_s);

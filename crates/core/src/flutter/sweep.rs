@@ -20,7 +20,6 @@ pub use samples::stands_at_samples;
 
 use crate::error::{Error, Result, positive};
 use crate::section::{Dof, SectionModel, Structure};
-use crate::units::ReducedFrequency;
 use crossing::{Crossing, refine};
 use nalgebra::Complex;
 use pencil::{Pencil, Supports};
@@ -93,6 +92,8 @@ pub struct OnsetSweep {
     speed_max: f64,
     /// Reduced frequencies, falling.
     grid: Vec<f64>,
+    /// Those of them at which modes leave the tested range.
+    lower_ends: Vec<f64>,
     /// Functions of the force model at each of them.
     table: Vec<Complex64>,
 }
@@ -115,11 +116,11 @@ impl OnsetSweep {
         }
         let slowest = nominal.still_air_rad_s().fold(f64::INFINITY, f64::min);
         let k_min = (LOWEST_PART * slowest * nominal.width_m / speed_max).clamp(1e-3, 0.5 * K_MAX);
-        let ends = forces.tested.iter().flat_map(|range| {
-            let lower = range.lower_ends().map(|(k, _)| k);
-            lower.chain([range.max]).map(ReducedFrequency::full_width)
-        });
-        let grid = grid(k_min, ends);
+        let tested = forces.tested.iter();
+        let lower = tested.flat_map(|range| range.lower_ends().map(|(k, _)| k.full_width()));
+        let lower_ends: Vec<f64> = lower.collect();
+        let upper = forces.tested.map(|range| range.max.full_width());
+        let grid = grid(k_min, lower_ends.iter().copied().chain(upper));
         let count = forces.count();
         let mut table = vec![Complex64::new(0.0, 0.0); count * grid.len()];
         for (k, row) in grid.iter().zip(table.chunks_mut(count)) {
@@ -129,6 +130,7 @@ impl OnsetSweep {
             forces,
             speed_max,
             grid,
+            lower_ends,
             table,
         })
     }

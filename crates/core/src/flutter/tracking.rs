@@ -18,6 +18,7 @@ use crate::error::{Error, Result};
 use crate::section::{Dof, Structure};
 use crate::state_space::{damping_ratio, eigenvector};
 use nalgebra::{Complex, DVector};
+use std::sync::Arc;
 
 /// A step is halved until every mode is clearly nearest to one eigenvalue, at most this many times.
 const MAX_HALVINGS: usize = 14;
@@ -46,7 +47,7 @@ enum Correction {
     /// Newton's method on the determinant, up to three degrees of freedom.
     Determinant(Box<Characteristic>),
     /// Inverse iteration from the shape before, for modes of a whole bridge.
-    Shapes(Box<ModalCharacteristic>),
+    Shapes(Arc<ModalCharacteristic>),
     /// The nearest eigenvalue of the state matrix.
     Nearest,
 }
@@ -55,7 +56,7 @@ impl Correction {
     fn of(section: &CoupledSection) -> Self {
         let small = Characteristic::new(section).map(|c| Self::Determinant(Box::new(c)));
         small
-            .or_else(|| ModalCharacteristic::new(section).map(|c| Self::Shapes(Box::new(c))))
+            .or_else(|| ModalCharacteristic::new(section).map(|c| Self::Shapes(Arc::new(c))))
             .unwrap_or(Self::Nearest)
     }
 }
@@ -65,6 +66,17 @@ impl<'a> Tracker<'a> {
         Self {
             section,
             correction: Correction::of(section),
+        }
+    }
+
+    /// With a problem that has been made of `section` before.
+    pub(super) fn by_shapes(
+        section: &'a CoupledSection,
+        problem: Arc<ModalCharacteristic>,
+    ) -> Self {
+        Self {
+            section,
+            correction: Correction::Shapes(problem),
         }
     }
 

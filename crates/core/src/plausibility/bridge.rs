@@ -178,8 +178,9 @@ fn masses(bridge: &Bridge) -> Vec<Finding> {
             thousand.then(|| format!("in t it would be {} kg/m", significant(1e3 * mass)));
         let key = format!("{}: generalised mass", place(&bridge.modes[vertical]));
         let text = format!(
-            "with the shape that is {} kg/m, {ratio:.3} times the air in a square of the width ({low} to {high} is usual)",
-            significant(mass)
+            "with the shape that is {} kg/m, {} times the air in a square of the width ({low} to {high} is usual)",
+            significant(mass),
+            significant(ratio)
         );
         return vec![Finding::doubt(Kind::Unit, key, text).otherwise(otherwise)];
     }

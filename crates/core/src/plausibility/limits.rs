@@ -75,8 +75,12 @@ pub fn beyond(key: &str, value: f64, limits: &Limits) -> Option<Finding> {
 
 /// A number with four significant digits and no zeros behind them.
 pub(super) fn significant(x: f64) -> String {
-    let rounded: f64 = format!("{x:.3e}").parse().unwrap_or(x);
-    rounded.to_string()
+    let short = format!("{x:.3e}");
+    let rounded: f64 = short.parse().unwrap_or(x);
+    match (1e-6..1e9).contains(&rounded.abs()) || rounded == 0.0 {
+        true => rounded.to_string(),
+        false => short,
+    }
 }
 
 /// What the ratio of a stated to a measured value suggests, as the end of a sentence; empty when nothing.

@@ -123,13 +123,13 @@ impl Gusts {
     }
 
     /// Rates of the lagging gusts per 1 m/s of wind.
-    pub(super) fn rates_per_wind(&self, gust: &[f64], lagging: &[f64]) -> Vec<f64> {
-        let of_channel = |j: usize| {
+    pub(super) fn rates_per_wind(&self, gust: &[f64], lagging: &[f64], rates: &mut [f64]) {
+        for j in 0..self.channels {
             let (gust, range) = (stated(gust, j), self.of_channel(j));
-            let lags = lagging[range.clone()].iter().zip(&self.speeds[range]);
-            lags.map(move |(g, speed)| speed * (gust - g))
-        };
-        (0..self.channels).flat_map(of_channel).collect()
+            for i in range {
+                rates[i] = self.speeds[i] * (gust - lagging[i]);
+            }
+        }
     }
 
     /// Begins the series of one part at the present lagging gusts.

@@ -15,7 +15,7 @@ mod instant;
 use crate::aerodynamics::Realization;
 use crate::error::{Error, Result};
 use crate::section::Dof;
-use course::{MotionCubic, NUMBERS, POINTS};
+use course::{COEFFICIENTS, MotionCubic, NUMBERS, POINTS};
 use filters::{Buffers, MotionInterval, advance_continuous, advance_discrete};
 use nalgebra::{DMatrix, DVector};
 
@@ -70,6 +70,8 @@ pub struct PrescribedForces {
     buffers: Buffers,
     courses: Vec<MotionCubic>,
     filters: Vec<f64>,
+    /// State at the point of time that is being taken.
+    next: Vec<f64>,
 }
 
 impl PrescribedForces {
@@ -82,6 +84,7 @@ impl PrescribedForces {
         Self {
             courses: Vec::with_capacity(dofs.len()),
             filters: Vec::with_capacity(realization.states()),
+            next: Vec::new(),
             realization,
             dofs,
             size,
@@ -151,18 +154,36 @@ impl PrescribedForces {
                 format!("{} s", given.time_s),
             ));
         }
-        let mut new = state.to_vec();
-        self.enter(&mut new, given);
-        let points = Self::points(&new);
+        let mut new = std::mem::take(&mut self.next);
+        new.clear();
+        new.extend_from_slice(state);
+        let taken = self.take_into(&mut new, state[1], given, strips);
+        if taken.is_ok() {
+            state.copy_from_slice(&new);
+        }
+        self.next = new;
+        taken
+    }
+
+    /// The same in place, from the wind before.
+    fn take_into(
+        &mut self,
+        new: &mut [f64],
+        wind_before_m_s: f64,
+        given: &GivenMotion,
+        strips: &[StripFlow],
+    ) -> Result<()> {
+        self.enter(new, given);
+        let points = Self::points(new);
         for (s, flow) in strips.iter().enumerate() {
             if points == 1 {
-                self.settle(&mut new, s, flow)?;
+                self.settle(new, s, flow)?;
                 continue;
             }
             let (now, before) = (new[2], new[3]);
             // to second order in the change of the wind over the step
-            let wind = 0.5 * (state[1] + given.wind_speed_m_s);
-            self.load_courses(&new, s, flow, before - now);
+            let wind = 0.5 * (wind_before_m_s + given.wind_speed_m_s);
+            self.load_courses(new, s, flow, before - now);
             let from = self.strip(s);
             let (phase, filters) = new[from].split_at_mut(1);
             let filters = &mut filters[..self.realization.states()];
@@ -180,7 +201,6 @@ impl PrescribedForces {
                 &mut self.buffers,
             )?;
         }
-        state.copy_from_slice(&new);
         Ok(())
     }
 
@@ -287,7 +307,10 @@ impl PrescribedForces {
         (wind, width, density): (f64, f64, f64),
         forces: &mut [ForceAhead],
     ) {
-        let motion: Vec<_> = self.courses.iter().map(MotionCubic::derivatives).collect();
+        let mut motion = [[0.0; COEFFICIENTS]; Dof::THREE.len()];
+        for (motion, course) in motion.iter_mut().zip(&self.courses) {
+            *motion = course.derivatives();
+        }
         let flow_rate = wind / width;
         // q V², and its rate
         let row = |c: &DMatrix<f64>, i: usize, z: &dyn Fn(usize) -> f64| -> f64 {

@@ -1,6 +1,6 @@
 //! Rates of the state, for importers that integrate and for derivatives.
 
-use super::{Inputs, Outputs, SectionState, Stepper};
+use super::{Inputs, SectionState, Stepper};
 use crate::error::Result;
 use crate::state_space::StateEquation;
 use nalgebra::DVector;
@@ -11,40 +11,71 @@ impl Stepper {
     /// # Errors
     /// [`crate::Error::Input`] for inputs that are not finite.
     pub fn state_derivative(&mut self, state: &SectionState, inputs: &Inputs) -> Result<Vec<f64>> {
+        let mut derivative = vec![0.0; state.values.len() + self.gust_states()];
+        self.write_derivative(state, inputs, &mut derivative)?;
+        Ok(derivative)
+    }
+
+    /// The same in place, of so many numbers; of a continuous model without memory from the system.
+    ///
+    /// # Errors
+    /// As [`state_derivative`](Self::state_derivative).
+    pub fn write_derivative(
+        &mut self,
+        state: &SectionState,
+        inputs: &Inputs,
+        derivative: &mut [f64],
+    ) -> Result<()> {
         let n = self.section.structure().dofs.len();
         inputs.check(n)?;
+        let wind = inputs.wind_speed_m_s.max(0.0);
+        let (values, lagging) = derivative.split_at_mut(state.values.len());
+        self.lag_rates_per_wind(state, inputs, lagging);
+        lagging.iter_mut().for_each(|rate| *rate *= wind);
         if let Some(sampling) = &self.sampling {
             let z = DVector::from_column_slice(&state.values);
-            let (gusts, _) = self.gusts_per_wind(state, inputs);
-            let wind = inputs.wind_speed_m_s.max(0.0);
+            let gusts = self.gusts_per_wind(state, inputs);
             let w = DVector::from_fn(n, |i, _| inputs.force[i] + wind * gusts[i]);
             let force = sampling.force(&state.values, wind);
             let force = DVector::from_column_slice(&force[..n]);
             let StateEquation { a, b } = self.section.structure_alone();
             let motion = a * z.rows(0, 2 * n) + b * (w + force);
-            let mut derivative = vec![0.0; state.values.len()];
-            derivative[..2 * n].copy_from_slice(motion.as_slice());
-            return Ok(derivative);
+            values[2 * n..].fill(0.0);
+            values[..2 * n].copy_from_slice(motion.as_slice());
+            return Ok(());
         }
-        let mut now = Outputs::default();
-        self.outputs(state, inputs, &mut now)?;
-        let mut derivative = [now.rate, now.acceleration].concat();
-        let by_wind = self.section.filter_rates_per_wind(&state.values);
-        let wind = inputs.wind_speed_m_s.max(0.0);
-        derivative.extend(by_wind.iter().map(|x| wind * x));
-        let (_, lagging) = self.gusts_per_wind(state, inputs);
-        derivative.extend(lagging.iter().map(|x| wind * x));
-        Ok(derivative)
+        let mut now = std::mem::take(&mut self.now);
+        let found = self.outputs(state, inputs, &mut now);
+        if found.is_ok() {
+            values[..n].copy_from_slice(&now.rate);
+            values[n..2 * n].copy_from_slice(&now.acceleration);
+        }
+        self.now = now;
+        found?;
+        let filters = &mut values[2 * n..];
+        self.section.filter_rates_per_wind(&state.values, filters);
+        filters.iter_mut().for_each(|rate| *rate *= wind);
+        Ok(())
     }
 
-    /// Force of the gusts per unit length and 1 m/s of wind, and the rates of their lags per 1 m/s.
-    pub fn gusts_per_wind(&self, state: &SectionState, inputs: &Inputs) -> (Vec<f64>, Vec<f64>) {
+    /// Force of the gusts per unit length and 1 m/s of wind.
+    pub fn gusts_per_wind(&self, state: &SectionState, inputs: &Inputs) -> Vec<f64> {
         let mut force = vec![0.0; self.section.structure().dofs.len()];
-        let Some(gusts) = self.series.gusts() else {
-            return (force, Vec::new());
-        };
-        gusts.force_per_wind(&inputs.gust_m_s, &state.gusts, &mut force);
-        let rates = gusts.rates_per_wind(&inputs.gust_m_s, &state.gusts);
-        (force, rates)
+        if let Some(gusts) = self.series.gusts() {
+            gusts.force_per_wind(&inputs.gust_m_s, &state.gusts, &mut force);
+        }
+        force
+    }
+
+    /// Rates of the lagging gusts per 1 m/s of wind.
+    pub fn lag_rates_per_wind(
+        &self,
+        state: &SectionState,
+        inputs: &Inputs,
+        rates: &mut [f64],
+    ) {
+        if let Some(gusts) = self.series.gusts() {
+            gusts.rates_per_wind(&inputs.gust_m_s, &state.gusts, rates);
+        }
     }
 }

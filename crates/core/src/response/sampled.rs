@@ -7,6 +7,7 @@ use super::series::{Drive, Moving};
 use super::values::{Inputs, SectionState};
 use super::{PARTS_OF_A_MATRIX, SAMPLE_BY_MATRIX, Stepper, check_substeps, overgrown};
 use crate::error::{Error, Result};
+use nalgebra::DMatrix;
 
 /// A sample closer to the end of the step than this part of `Δs` is taken: the phase is known to rounding only.
 const SAMPLE_TOLERANCE: f64 = 1e-10;
@@ -21,19 +22,29 @@ impl Stepper {
         inputs: &Inputs,
         step: f64,
     ) -> Result<()> {
+        let mut next = std::mem::take(&mut self.sampled);
+        next.set_to(state);
+        let moved = self.move_sampled(&mut next, inputs, step);
+        if moved.is_ok() {
+            std::mem::swap(state, &mut next);
+        }
+        self.sampled = next;
+        moved
+    }
+
+    fn move_sampled(&mut self, next: &mut SectionState, inputs: &Inputs, step: f64) -> Result<()> {
         let way = self.sampling()?.way_m;
         let mean = inputs.wind_speed_m_s + 0.5 * inputs.wind_speed_rate_m_s2 * step;
         let samples = (mean * step / way).ceil();
-        let gusts = self.gusts_act(state, inputs);
+        let gusts = self.gusts_act(next, inputs);
         let parts = if inputs.wind_speed_rate_m_s2 == 0.0 && !gusts {
             0.0
         } else {
             let fastest = inputs.wind_speed_m_s.max(wind_after(inputs, step));
             self.series.parts(fastest, step, gusts)
         };
-        let mut next = state.clone();
         // a wind that stays is worth a matrix for the way from sample to sample
-        let known = state.last_wind_m_s == Some(inputs.wind_speed_m_s);
+        let known = next.last_wind_m_s == Some(inputs.wind_speed_m_s);
         let stays = inputs.wind_speed_rate_m_s2 == 0.0 && (known || samples > PARTS_OF_A_MATRIX);
         let of_sample = if stays { SAMPLE_BY_MATRIX } else { 1.0 };
         check_substeps(of_sample * samples + parts, step)?;
@@ -45,7 +56,7 @@ impl Stepper {
             let sampled = remaining >= wait * (1.0 - SAMPLE_TOLERANCE);
             let piece = if sampled { wait } else { remaining };
             let again = stays && sampled && next.phase == 0.0;
-            self.move_structure(&mut next, inputs, (time, piece), again)?;
+            self.move_structure(next, inputs, (time, piece), again)?;
             if sampled {
                 self.sampling()?.sample(&mut next.values);
                 next.phase = 0.0;
@@ -60,8 +71,40 @@ impl Stepper {
         if !settled(&mut next.values) {
             return Err(overgrown());
         }
-        *state = next;
         Ok(())
+    }
+
+    /// Writes the state matrix from one sample to the next in a steady wind on a resting section (`steady`): each number of the
+    /// state is stepped by itself. The time between samples, s; `None` for a continuous model and without wind.
+    ///
+    /// # Errors
+    /// As for a step.
+    pub fn write_sample_matrix(
+        &mut self,
+        steady: &Inputs,
+        matrix: &mut DMatrix<f64>,
+    ) -> Result<Option<f64>> {
+        let wind = steady.wind_speed_m_s;
+        let Some(sampling) = self.sampling.as_ref().filter(|_| wind > 0.0) else {
+            return Ok(None);
+        };
+        let step = sampling.way_m / wind;
+        let mut state = std::mem::take(&mut self.sampled);
+        let mut written = Ok(());
+        for (j, mut column) in matrix.column_iter_mut().enumerate() {
+            state.values.clear();
+            state.values.resize(column.len(), 0.0);
+            state.values[j] = 1.0;
+            state.gusts.clear();
+            written = self.move_structure(&mut state, steady, (0.0, step), false);
+            if written.is_err() {
+                break;
+            }
+            self.sampling()?.sample(&mut state.values);
+            column.copy_from_slice(&state.values);
+        }
+        self.sampled = state;
+        written.map(|()| Some(step))
     }
 
     fn sampling(&mut self) -> Result<&mut Sampling> {

@@ -35,6 +35,18 @@ pub struct Inputs {
 }
 
 impl SectionState {
+    /// Becomes equal to `other`; takes no memory where there is room.
+    pub fn set_to(&mut self, other: &Self) {
+        for (to, from) in [
+            (&mut self.values, &other.values),
+            (&mut self.gusts, &other.gusts),
+        ] {
+            to.clear();
+            to.extend_from_slice(from);
+        }
+        (self.phase, self.last_wind_m_s) = (other.phase, other.last_wind_m_s);
+    }
+
     /// All numbers in one list: those of the section, then the lagging gusts.
     pub fn all(&self) -> Vec<f64> {
         [self.values.as_slice(), &self.gusts].concat()
@@ -81,6 +93,21 @@ impl Inputs {
             force_rate: vec![0.0; dofs],
             gust_m_s: Vec::new(),
             gust_rate_m_s2: Vec::new(),
+        }
+    }
+
+    /// Becomes equal to `other`; takes no memory where there is room.
+    pub fn set_to(&mut self, other: &Self) {
+        self.wind_speed_m_s = other.wind_speed_m_s;
+        self.wind_speed_rate_m_s2 = other.wind_speed_rate_m_s2;
+        for (to, from) in [
+            (&mut self.force, &other.force),
+            (&mut self.force_rate, &other.force_rate),
+            (&mut self.gust_m_s, &other.gust_m_s),
+            (&mut self.gust_rate_m_s2, &other.gust_rate_m_s2),
+        ] {
+            to.clear();
+            to.extend_from_slice(from);
         }
     }
 

@@ -19,27 +19,59 @@ struct Shifts {
     w: f64,
 }
 
+/// Makes a matrix upper Hessenberg by elimination with pivots, which keeps its eigenvalues.
+pub(super) fn reduce(a: &mut DMatrix<f64>) {
+    let n = a.nrows();
+    for k in 1..n.saturating_sub(1) {
+        let column = a.column(k - 1);
+        let pivot = k + column.rows(k, n - k).iamax();
+        a.swap_rows(k, pivot);
+        a.swap_columns(k, pivot);
+        let head = a[(k, k - 1)];
+        if head == 0.0 {
+            continue;
+        }
+        for i in k + 1..n {
+            let factor = a[(i, k - 1)] / head;
+            a[(i, k - 1)] = 0.0;
+            if factor != 0.0 {
+                (k..n).for_each(|j| a[(i, j)] -= factor * a[(k, j)]);
+                (0..n).for_each(|j| a[(j, k)] += factor * a[(j, i)]);
+            }
+        }
+    }
+}
+
 /// Eigenvalues of an upper Hessenberg matrix; `None` when the iteration does not converge.
 pub(super) fn hessenberg_eigenvalues(mut h: DMatrix<f64>) -> Option<Vec<Complex<f64>>> {
-    let norm: f64 = h.iter().map(|x| x.abs()).sum();
     let mut found = Vec::with_capacity(h.nrows());
+    append_eigenvalues(&mut h, &mut found)?;
+    Some(found)
+}
+
+/// The same in place; takes no memory where there is room for them.
+pub(super) fn append_eigenvalues(
+    h: &mut DMatrix<f64>,
+    found: &mut Vec<Complex<f64>>,
+) -> Option<()> {
+    let norm: f64 = h.iter().map(|x| x.abs()).sum();
     // what exceptional shifts took off the diagonal
     let mut taken = 0.0;
     let mut size = h.nrows();
     let mut sweeps = 0;
     while size > 0 {
         let last = size - 1;
-        let first = deflate(&mut h, last, norm);
+        let first = deflate(h, last, norm);
         match size - first {
             1 => found.push(Complex::new(h[(last, last)] + taken, 0.0)),
-            2 => found.extend(pair(&h, last).map(|l| l + taken)),
+            2 => found.extend(pair(h, last).map(|l| l + taken)),
             _ => {
                 if sweeps == MAX_SWEEPS {
                     return None;
                 }
                 let exceptional = sweeps > 0 && sweeps % EXCEPTIONAL == 0;
                 let shifts = if exceptional {
-                    exceptional_shifts(&mut h, last, &mut taken)
+                    exceptional_shifts(h, last, &mut taken)
                 } else {
                     Shifts {
                         x: h[(last, last)],
@@ -48,14 +80,14 @@ pub(super) fn hessenberg_eigenvalues(mut h: DMatrix<f64>) -> Option<Vec<Complex<
                     }
                 };
                 sweeps += 1;
-                sweep(&mut h, first, last, shifts);
+                sweep(h, first, last, shifts);
                 continue;
             }
         }
         size = first;
         sweeps = 0;
     }
-    Some(found)
+    Some(())
 }
 
 /// First row of the block that ends at `last`: the subdiagonal entry before it is negligible.
@@ -192,7 +224,14 @@ mod tests {
 
     /// Every value found is an exact eigenvalue of a matrix that differs by rounding.
     fn check(a: &DMatrix<f64>) {
-        let found = hessenberg_eigenvalues(Hessenberg::new(a.clone()).unpack_h()).unwrap();
+        let mut reduced = a.clone();
+        reduce(&mut reduced);
+        judge(a, hessenberg_eigenvalues(reduced).unwrap());
+        let reflected = Hessenberg::new(a.clone()).unpack_h();
+        judge(a, hessenberg_eigenvalues(reflected).unwrap());
+    }
+
+    fn judge(a: &DMatrix<f64>, found: Vec<Complex<f64>>) {
         let n = a.nrows();
         assert_eq!(found.len(), n);
         for l in &found {

@@ -1,7 +1,7 @@
 //! Eigenvalues of balanced matrices and single eigenvectors.
 
 use super::complex;
-use super::francis::hessenberg_eigenvalues;
+use super::francis::{append_eigenvalues, hessenberg_eigenvalues, reduce};
 use crate::error::{Error, Result};
 use nalgebra::{Complex, DMatrix, DVector, Hessenberg, Schur};
 
@@ -12,8 +12,13 @@ const MAX_SCHUR_SWEEPS_PER_ROW: usize = 60;
 ///
 /// Exact in floating point and eigenvalue-preserving; lag states in newtons beside metres otherwise cost digits.
 pub fn balance(a: &DMatrix<f64>) -> DMatrix<f64> {
-    let n = a.nrows();
     let mut m = a.clone();
+    balance_in_place(&mut m);
+    m
+}
+
+fn balance_in_place(m: &mut DMatrix<f64>) {
+    let n = m.nrows();
     loop {
         let mut settled = true;
         for i in 0..n {
@@ -37,7 +42,7 @@ pub fn balance(a: &DMatrix<f64>) -> DMatrix<f64> {
             }
         }
         if settled {
-            return m;
+            return;
         }
     }
 }
@@ -65,6 +70,33 @@ pub fn eigenvalues(a: &DMatrix<f64>) -> Result<Vec<Complex<f64>>> {
     }
     hessenberg_eigenvalues(Hessenberg::new(balanced).unpack_h())
         .ok_or_else(|| Error::Numerical("eigenvalues: the QR iteration did not converge".into()))
+}
+
+/// Memory for the eigenvalues of matrices of one size, again and again: only the first time takes any from the system.
+#[derive(Debug, Clone)]
+pub struct RepeatedEigenvalues {
+    found: Vec<Complex<f64>>,
+}
+
+impl RepeatedEigenvalues {
+    /// For matrices of so many rows.
+    pub fn new(rows: usize) -> Self {
+        Self {
+            found: Vec::with_capacity(rows),
+        }
+    }
+
+    /// All eigenvalues of `a`, which is spoilt; `None` when an entry is not finite or the iteration does not converge.
+    pub fn of(&mut self, a: &mut DMatrix<f64>) -> Option<&[Complex<f64>]> {
+        self.found.clear();
+        if !a.iter().all(|x| x.is_finite()) {
+            return None;
+        }
+        balance_in_place(a);
+        reduce(a);
+        append_eigenvalues(a, &mut self.found)?;
+        Some(&self.found)
+    }
 }
 
 /// Eigenvector of `a` for the known eigenvalue `lambda`, by inverse iteration, scaled to unit norm.

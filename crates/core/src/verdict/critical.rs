@@ -63,7 +63,7 @@ pub struct Critical {
     pub governs: Option<CriticalSpeed>,
     /// The others, in rising order.
     pub others: Vec<CriticalSpeed>,
-    /// Lowest speed at which every mode was judged by data, m/s.
+    /// Lowest speed from which on every mode lies among the tests or below them, m/s: the tests judge from here on.
     pub judged_from_m_s: f64,
     /// Highest, m/s; beyond, nothing is known.
     pub judged_to_m_s: f64,
@@ -90,8 +90,11 @@ impl Critical {
         }));
         all.extend(growth(evidence));
         all.sort_by(|a, b| a.least_m_s().total_cmp(&b.least_m_s()));
-        let judged = evidence.flutter.first().map(FlutterReading::judged_m_s);
-        let (judged_from_m_s, judged_to_m_s) = judged.unwrap_or((0.0, 0.0));
+        let first = evidence.flutter.first();
+        let judged = first.map(FlutterReading::judged_m_s);
+        let (from_m_s, judged_to_m_s) = judged.unwrap_or((0.0, 0.0));
+        let tested_from = first.and_then(FlutterReading::tested_from);
+        let judged_from_m_s = tested_from.map_or(from_m_s, |t| from_m_s.max(t.speed_m_s));
         let mut all = all.into_iter();
         Self {
             governs: all.next(),

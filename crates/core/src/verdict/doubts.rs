@@ -1,5 +1,6 @@
 //! The doubts that evidence leaves, and how much each weighs against what is required.
 
+use super::below::not_judged_below;
 use super::critical::{Critical, contradict};
 use super::doubt::{Doubt, DoubtKind, Severity};
 use super::evidence::{Basis, Evidence, FlutterReading};
@@ -8,9 +9,9 @@ use super::words::{found, k_range, speed};
 use crate::flutter::{BetweenSpeeds, FlutterSearch, OnsetInterval};
 use crate::plausibility;
 
-/// Mean rotation away from the tests from which it is to be known, and from which derivatives are others, deg: decks are
-/// tested at steps of two to three degrees.
-const ROTATION_DEG: (f64, f64) = (1.0, 3.0);
+/// Mean rotation away from the tests from which it is to be known, and from which derivatives are others, deg: codes ask for tests
+/// at 0 and ±3°, and beyond half of that step those of the next angle would be nearer.
+const ROTATION_DEG: (f64, f64) = (1.0, 1.5);
 
 /// All of them, the gravest first.
 pub(super) fn all(evidence: &Evidence, critical: &Critical) -> Vec<Doubt> {
@@ -143,23 +144,8 @@ impl Weighed<'_> {
         {
             found.push(remark(why));
         }
-        let looked = self.evidence.growth.is_some();
         if from > 0.0 && !matches!(first.search, FlutterSearch::UnstableAtOrBelow(_)) {
-            let kind = DoubtKind::NotJudgedBelow { speed_m_s: from };
-            let (severity, text) = match looked {
-                true => (
-                    Severity::Minor,
-                    format!(
-                        "Below {} the fastest motions lie above the tested K; the model alone says that they do not grow there",
-                        speed(from)
-                    ),
-                ),
-                false => (
-                    Severity::Severe,
-                    format!("Below {} not every motion was tested", speed(from)),
-                ),
-            };
-            found.push(Doubt::new(severity, kind, text).settled_by("tests at higher K"));
+            found.push(not_judged_below(first, from));
         }
         found
     }
@@ -360,7 +346,8 @@ fn contradiction(first: &FlutterReading, second: &FlutterReading) -> Doubt {
 
 fn rotation(evidence: &Evidence) -> Option<Doubt> {
     let mean = evidence.mean_rotation?;
-    let away = (mean.at_onset_deg - mean.tested_deg).abs();
+    let tested_deg = mean.tested_deg.unwrap_or(0.0);
+    let away = (mean.at_onset_deg - tested_deg).abs();
     let (known, others) = ROTATION_DEG;
     if away < known {
         return None;
@@ -371,11 +358,16 @@ fn rotation(evidence: &Evidence) -> Option<Doubt> {
     };
     let kind = DoubtKind::MeanRotation {
         at_onset_deg: mean.at_onset_deg,
-        tested_deg: mean.tested_deg,
+        tested_deg,
+    };
+    let assumed = match mean.tested_deg {
+        Some(_) => "",
+        None => ", assumed since no `angle_deg` of the tests is stated",
     };
     let text = format!(
-        "The deck stands at {:.1}° in the mean wind at the critical speed, the forces are those at {:.1}°",
-        mean.at_onset_deg, mean.tested_deg
+        "The deck stands at {:.1}° in the mean wind of {}, the forces are those at {tested_deg:.1}°{assumed}",
+        mean.at_onset_deg,
+        speed(mean.speed_m_s)
     );
     let settled = format!("forces measured at {:.1}°", mean.at_onset_deg);
     Some(Doubt::new(severity, kind, text).settled_by(settled))

@@ -1,7 +1,7 @@
 //! Everything that is known before a verdict: answers of searches, limits of tests, failures, findings.
 
 use super::reach::Reach;
-use crate::flutter::{FlutterSearch, Onset, OnsetInterval, UnwantedGrowth};
+use crate::flutter::{FlutterSearch, Onset, OnsetInterval, TestedFrom, UnwantedGrowth};
 use crate::plausibility::Finding;
 use crate::units::ReducedFrequencyRange;
 use serde::{Deserialize, Serialize};
@@ -121,6 +121,14 @@ impl FlutterReading {
         inside == Some(false)
     }
 
+    /// The last mode that comes among the tests as the wind rises; `None` where all are from the beginning, or nothing was tested.
+    pub(super) fn tested_from(&self) -> Option<&TestedFrom> {
+        match &self.basis {
+            Basis::Tested { reach, .. } => reach.tested_from.as_ref(),
+            Basis::Exact | Basis::Stated => None,
+        }
+    }
+
     /// Lowest and highest speed between which every mode was looked at and its forces rest on something, m/s.
     pub(super) fn judged_m_s(&self) -> (f64, f64) {
         let searched = match &self.search {
@@ -191,11 +199,13 @@ pub struct MovedOnset {
     pub with_m_s: Option<f64>,
 }
 
-/// Rotation in the mean wind at the critical speed, and at the tests.
+/// Rotation in the mean wind, and at the tests.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeanRotation {
-    /// Greatest, at the critical speed, deg; nose-up positive.
+    /// The critical wind speed, or else the required one, m/s.
+    pub speed_m_s: f64,
+    /// Greatest, there, deg; nose-up positive.
     pub at_onset_deg: f64,
-    /// That of the tests, deg.
-    pub tested_deg: f64,
+    /// That of the tests, deg; 0 where it is not stated.
+    pub tested_deg: Option<f64>,
 }

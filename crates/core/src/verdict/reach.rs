@@ -1,13 +1,15 @@
 //! The wind speeds at which every mode has a reduced frequency that was tested.
 
-use crate::flutter::{FlutterCurves, ModePoint, StableRange};
+use crate::flutter::{FlutterCurves, JudgedSpeeds, ModePoint, TestedFrom};
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 
 /// How far tests reach as the wind rises.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reach {
-    /// Lowest speed at which every mode lies among the tests, m/s.
+    /// Lowest speed at which every mode lies among the tests, or above them where the forces damp every such motion, m/s.
     pub from_m_s: f64,
+    /// The last mode that comes among the tests as the wind rises; `None` where all are from the beginning.
+    pub tested_from: Option<TestedFrom>,
     /// Highest, m/s.
     pub to_m_s: f64,
     /// Why nothing is known outside.
@@ -21,9 +23,18 @@ impl Reach {
     pub fn everywhere() -> Self {
         Self {
             from_m_s: 0.0,
+            tested_from: None,
             to_m_s: f64::INFINITY,
             why: None,
             lowest: Vec::new(),
+        }
+    }
+
+    /// Tests of a table, beyond which nothing is searched.
+    pub fn of_table(tested_from: Option<TestedFrom>) -> Self {
+        Self {
+            tested_from,
+            ..Self::everywhere()
         }
     }
 
@@ -36,7 +47,7 @@ impl Reach {
     }
 
     /// The speeds that a search of a structure of this width could judge; its modes are in `curves`.
-    pub fn of(judged: StableRange, curves: &FlutterCurves, width_m: f64) -> Self {
+    pub fn of(judged: JudgedSpeeds, curves: &FlutterCurves, width_m: f64) -> Self {
         let mut all: Vec<&ModePoint> = curves.branches.iter().flat_map(|b| &b.points).collect();
         all.sort_by(|a, b| a.speed_m_s.total_cmp(&b.speed_m_s));
         let mut lowest: Vec<(f64, f64)> = Vec::new();
@@ -48,9 +59,10 @@ impl Reach {
             }
         }
         Self {
-            from_m_s: judged.from_m_s,
-            to_m_s: judged.to_m_s,
-            why: judged.not_judged,
+            from_m_s: judged.range.from_m_s,
+            tested_from: judged.tested_from,
+            to_m_s: judged.range.to_m_s,
+            why: judged.range.not_judged,
             lowest,
         }
     }

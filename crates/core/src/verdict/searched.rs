@@ -7,7 +7,7 @@ use crate::aeroelastic::CoupledSection;
 use crate::error::Result;
 use crate::flutter::{
     AssumedAtRest, FlutterSearch, OnsetSearch, divergence_speed, judged_speeds, static_part,
-    trace_modes, unwanted_growth,
+    table_tested_from, trace_modes, unwanted_growth,
 };
 use crate::section::Structure;
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
@@ -55,10 +55,12 @@ impl Evidence {
         found: FlutterSearch,
     ) -> Self {
         let mut evidence = Self::default();
+        let tested_from = table_tested_from(structure, table, range);
+        let tested_from = evidence.noted("modes at the highest K", tested_from);
         evidence.flutter.push(FlutterReading {
             forces: forces.to_owned(),
             search: found,
-            basis: Basis::tested(range, Reach::everywhere()),
+            basis: Basis::tested(range, Reach::of_table(tested_from.flatten())),
         });
         let divergence = table.transfer(range.min).and_then(|lowest| {
             let speed = divergence_speed(structure, &static_part(table.dofs(), &lowest))?;

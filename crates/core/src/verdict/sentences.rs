@@ -1,7 +1,7 @@
 //! The sentences of a verdict.
 
 use super::critical::{Critical, CriticalSpeed, Phenomenon, contradict};
-use super::doubt::Severity;
+use super::doubt::{Doubt, DoubtKind, Severity};
 use super::evidence::{Evidence, FlutterReading, RequiredSpeed};
 use super::judgement::Judgement;
 use super::outcome::{Below, Outcome};
@@ -84,7 +84,7 @@ fn tested(inside: Option<bool>) -> &'static str {
 pub(super) fn explanation(judgement: &Judgement, required: Option<RequiredSpeed>) -> String {
     let critical = &judgement.critical;
     match (&judgement.outcome, required) {
-        (Some(Outcome::Met), Some(_)) => met(critical),
+        (Some(Outcome::Met), Some(required)) => met(judgement, required.speed_m_s),
         (Some(Outcome::NotMet { below }), Some(required)) => {
             not_met(critical, *below, required.speed_m_s)
         }
@@ -122,20 +122,27 @@ fn one(c: &CriticalSpeed) -> String {
     )
 }
 
-fn met(critical: &Critical) -> String {
+fn met(judgement: &Judgement, required_m_s: f64) -> String {
+    let critical = &judgement.critical;
     let all: Vec<String> = critical
         .governs
         .iter()
         .chain(&critical.others)
         .map(one)
         .collect();
-    match all.is_empty() {
+    let mut text = match all.is_empty() {
         true => format!(
             "Met: nothing critical up to {}.",
             speed(critical.judged_to_m_s)
         ),
         false => format!("Met: everything critical lies above: {}.", all.join("; ")),
+    };
+    // not one test is at so slow a wind
+    let below = |d: &&Doubt| matches!(d.kind, DoubtKind::NotJudgedBelow { speed_m_s } if required_m_s < speed_m_s);
+    if let Some(doubt) = judgement.doubts.iter().find(below) {
+        text.push_str(&format!(" {}.", doubt.text));
     }
+    text
 }
 
 fn not_met(critical: &Critical, below: Below, required_m_s: f64) -> String {

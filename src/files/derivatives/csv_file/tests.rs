@@ -18,6 +18,30 @@ fn write_and_read_give_the_same_table_and_file() {
     assert_eq!(written(&again), text);
 }
 
+/// What a table says of its tests, and what a user may add to it.
+#[test]
+fn angle_and_amplitude_of_the_tests_are_kept() {
+    let mut table = embedded::deck("LN20-5500").unwrap();
+    assert_eq!(table.header.angle_deg, None);
+    table.header.angle_deg = Some(-3.0);
+    table.header.rotation_amplitude_deg = Some(1.5);
+    let text = written(&table);
+    assert!(text.contains("# angle_deg: -3\n# rotation_amplitude_deg: 1.5\n"));
+    assert_eq!(parse_csv(&text).unwrap(), table);
+    let wrong = text.replace("# angle_deg: -3", "# angle_deg: 300");
+    let said = parse_csv(&wrong).unwrap_err().to_string();
+    let expected = "(angle_deg): expected an angle between -90 and 90 degrees, found `300`";
+    assert!(said.ends_with(expected), "{said}");
+    table
+        .header
+        .state_angle("deck.angle_deg", Some(-3.0))
+        .unwrap();
+    let other = table.header.state_angle("deck.angle_deg", Some(0.0));
+    let said = other.unwrap_err().to_string();
+    let expected = "deck.angle_deg: expected -3, which the table states, found 0";
+    assert_eq!(said, expected);
+}
+
 #[test]
 fn bad_files_are_explained() {
     let good = written(&embedded::deck("LN21-5200").unwrap());

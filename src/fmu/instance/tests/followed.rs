@@ -39,8 +39,8 @@ fn what_is_followed_is_what_a_search_finds() {
             ("mode[1].damping_ratio", 0.0038),
         ],
     ] {
-        let now = built(&resources, changed);
-        let found = known.followed(&now, LIMIT).unwrap();
+        let mut now = built(&resources, changed);
+        let found = known.followed(&mut now, LIMIT).unwrap();
         let (card, _) = searched(&now);
         for (found, which) in [
             (found.speed_m_s, Calculated::OnsetSpeed),
@@ -59,12 +59,12 @@ fn what_is_followed_is_what_a_search_finds() {
 #[test]
 fn what_cannot_be_trusted_is_not_followed() {
     let resources = resources(Kind::Bridge);
-    let default = built(&resources, &[]);
+    let mut default = built(&resources, &[]);
     let (card, known) = searched(&default);
     let onset = card.value(Calculated::OnsetSpeed);
-    assert!(known.followed(&default, 0.99 * onset).is_none());
-    let far = built(&resources, &[("air_density", 1.7)]);
-    assert!(known.followed(&far, LIMIT).is_none());
+    assert!(known.followed(&mut default, 0.99 * onset).is_none());
+    let mut far = built(&resources, &[("air_density", 1.7)]);
+    assert!(known.followed(&mut far, LIMIT).is_none());
     // a search that had seen three times the damping below the onset
     let start = OnsetStart::at(
         onset,
@@ -75,14 +75,14 @@ fn what_cannot_be_trusted_is_not_followed() {
     assert!(
         SearchedOnset::from(&default, &start)
             .unwrap()
-            .followed(&default, LIMIT)
+            .followed(&mut default, LIMIT)
             .is_some()
     );
     start.damping_below[0] *= 3.0;
     assert!(
         SearchedOnset::from(&default, &start)
             .unwrap()
-            .followed(&default, LIMIT)
+            .followed(&mut default, LIMIT)
             .is_none()
     );
 }

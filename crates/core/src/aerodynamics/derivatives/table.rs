@@ -54,8 +54,38 @@ pub struct TableHeader {
     pub generator: String,
     /// Length of the section model, m, if known.
     pub model_length_m: Option<f64>,
+    /// Mean angle of the section in the tests, deg, nose-up positive; `None` where it is not stated.
+    pub angle_deg: Option<f64>,
+    /// Largest amplitude of rotation in the tests, deg; `None` where it is not stated.
+    pub rotation_amplitude_deg: Option<f64>,
     /// What was assumed in reading the table.
     pub notes: Vec<String>,
+}
+
+impl TableHeader {
+    /// Takes the mean angle of the tests that stands under `key`, deg, where the table does not state it itself.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for an angle beyond a right angle, and for another than the table states.
+    pub fn state_angle(&mut self, key: &str, angle_deg: Option<f64>) -> Result<()> {
+        let Some(stated) = angle_deg else {
+            return Ok(());
+        };
+        if stated.is_nan() || stated.abs() > 90.0 {
+            let expected = "an angle between -90 and 90 degrees";
+            return Err(Error::input(key, expected, stated.to_string()));
+        }
+        match self.angle_deg.filter(|own| *own != stated) {
+            Some(own) => {
+                let expected = format!("{own}, which the table states");
+                Err(Error::input(key, expected, stated.to_string()))
+            }
+            None => {
+                self.angle_deg = angle_deg;
+                Ok(())
+            }
+        }
+    }
 }
 
 /// What is wrong with one point of a derivative; the reader adds where it stands.

@@ -9,6 +9,9 @@ use serde::{Deserialize, Serialize};
 /// An entry of `G` below this part of the largest in its row gives no arm: it is noise.
 const SMALLEST_DIVISOR: f64 = 1e-6;
 
+/// No reference point is farther from a deck than this, in widths.
+const LARGEST: f64 = 100.0;
+
 /// `B₁ᵢ/B` of each force component: the reference point stands this part of the width upwind of the axis (downwind when
 /// negative). All zero: quasi-steady theory without correction.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -32,10 +35,14 @@ impl Arms {
         }
     }
 
-    /// Checks that all are finite.
-    pub fn validate(&self) -> Result<()> {
+    /// Checks that all are parts of a width; `place` goes before their keys.
+    pub fn validate(&self, place: &str) -> Result<()> {
         for dof in Dof::THREE {
-            finite(format!("arms.{}", dof.name()), self.of(dof))?;
+            let (key, arm) = (format!("{place}arms.{}", dof.name()), self.of(dof));
+            if finite(key.as_str(), arm)?.abs() > LARGEST {
+                let expected = format!("a part of the width, {LARGEST} at most");
+                return Err(Error::input(key, expected, format!("{arm:e}")));
+            }
         }
         Ok(())
     }

@@ -29,6 +29,33 @@ struct HeldFilter {
     delta_s: f64,
 }
 
+/// What a coefficient is called, in the letters of its model; in words where somebody reads it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Term {
+    /// A power of `p`.
+    Power(&'static str),
+    /// A filter of the motion's chain.
+    Filter(usize),
+    /// A filter of one chain of several.
+    OfChain { chain: usize, filter: usize },
+    /// A lag.
+    Lag(usize),
+    /// A lag by which another force than that of the coefficient is delayed.
+    OfOther { lag: f64, term: usize },
+}
+
+impl std::fmt::Display for Term {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Power(name) => f.write_str(name),
+            Self::Filter(l) => write!(f, "c{l}"),
+            Self::OfChain { chain, filter } => write!(f, "chain{chain}.c{filter}"),
+            Self::Lag(term) => write!(f, "a{term}"),
+            Self::OfOther { lag, term } => write!(f, "lag{lag}.a{term}"),
+        }
+    }
+}
+
 /// Functions and coefficients of a force model. Coefficients stand by motion, then function, then force.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LinearForces {
@@ -37,7 +64,7 @@ pub struct LinearForces {
     /// First function of each motion, and one past the last.
     pub(super) starts: Vec<usize>,
     coefficients: Vec<f64>,
-    names: Vec<String>,
+    terms: Vec<Term>,
     pub(super) tested: Option<ReducedFrequencyRange>,
 }
 
@@ -58,12 +85,12 @@ impl LinearForces {
                 for l in 0..poles.len() {
                     let function = Function::Filter(poles[..=l].to_vec());
                     let value = |i: usize| term.coefficients[(i, l)];
-                    forces.add(input, function, value, |i| {
-                        if own(i) {
-                            format!("c{l}")
-                        } else {
-                            format!("chain{t}.c{l}")
-                        }
+                    forces.add(function, value, |i| match own(i) {
+                        true => Term::Filter(l),
+                        false => Term::OfChain {
+                            chain: t,
+                            filter: l,
+                        },
                     });
                 }
             }
@@ -91,12 +118,11 @@ impl LinearForces {
                         order: order as i32,
                         delta_s: model.delta_s,
                     });
-                    forces.add(
-                        input,
-                        function,
-                        |i| column[i],
-                        |_| format!("chain{t}.c{order}"),
-                    );
+                    let term = Term::OfChain {
+                        chain: t,
+                        filter: order,
+                    };
+                    forces.add(function, |i| column[i], |_| term);
                 }
             }
             forces.starts.push(forces.functions.len());
@@ -122,11 +148,11 @@ impl LinearForces {
                             0.0
                         }
                     };
-                    forces.add(input, Function::Lag(lag), value, |i| {
-                        if forces_of_it[i] {
-                            format!("a{}", l + 4)
-                        } else {
-                            format!("lag{lag}.a{}", l + 4)
+                    forces.add(Function::Lag(lag), value, |i| {
+                        let term = l + 4;
+                        match forces_of_it[i] {
+                            true => Term::Lag(term),
+                            false => Term::OfOther { lag, term },
                         }
                     });
                 }
@@ -142,29 +168,27 @@ impl LinearForces {
             functions: Vec::new(),
             starts: vec![0],
             coefficients: Vec::new(),
-            names: Vec::new(),
+            terms: Vec::new(),
             tested,
         }
     }
 
-    fn add_powers(&mut self, input: usize, terms: [(&str, &DMatrix<f64>); 3]) {
+    fn add_powers(&mut self, input: usize, terms: [(&'static str, &DMatrix<f64>); 3]) {
         for ((name, matrix), power) in terms.into_iter().zip(0..) {
             let value = |i: usize| matrix[(i, input)];
-            self.add(input, Function::Power(power), value, |_| name.to_owned());
+            self.add(Function::Power(power), value, |_| Term::Power(name));
         }
     }
 
     fn add(
         &mut self,
-        input: usize,
         function: Function,
         value: impl Fn(usize) -> f64,
-        name: impl Fn(usize) -> String,
+        term: impl Fn(usize) -> Term,
     ) {
         self.functions.push(function);
         for i in 0..self.dofs.len() {
-            let (force, motion) = (self.dofs[i].name(), self.dofs[input].name());
-            self.names.push(format!("{force}.{motion}.{}", name(i)));
+            self.terms.push(term(i));
             self.coefficients.push(value(i));
         }
     }
@@ -175,8 +199,14 @@ impl LinearForces {
     }
 
     /// Their names, `force.motion.term`, e.g. `vertical.torsion.e0`.
-    pub fn names(&self) -> &[String] {
-        &self.names
+    pub fn names(&self) -> Vec<String> {
+        let count = self.dofs.len();
+        let name = |(place, term): (usize, &Term)| {
+            let (function, force) = (place / count, self.dofs[place % count].name());
+            let motion = self.starts[1..].partition_point(|end| *end <= function);
+            format!("{force}.{}.{term}", self.dofs[motion].name())
+        };
+        self.terms.iter().enumerate().map(name).collect()
     }
 
     pub(super) fn count(&self) -> usize {

@@ -7,10 +7,7 @@ use crate::units::ReducedFrequency;
 impl<const N: usize> Sweep<'_, N> {
     /// Notes the speed of the slowest mode where modes leave the tested range.
     pub(super) fn leave(&mut self, roots: &Roots<N>) {
-        let Some(range) = self.sweep.forces.tested else {
-            return;
-        };
-        if range.lower_ends().any(|(k, _)| k.full_width() == roots.k) {
+        if self.sweep.lower_ends.contains(&roots.k) {
             let alive = (0..N).filter(|i| roots.alive[*i]);
             let speeds = alive.map(|i| roots.omega[i].re * self.supports.width / roots.k);
             self.left = speeds.fold(self.left, f64::min);

@@ -113,7 +113,7 @@ fn power_of(k: usize) -> Option<usize> {
     (k < COEFFICIENTS).then_some(k)
 }
 
-fn add_product(matrix: &DMatrix<f64>, vector: &[f64], sum: &mut [f64]) {
+pub(super) fn add_product(matrix: &DMatrix<f64>, vector: &[f64], sum: &mut [f64]) {
     let rows = matrix.nrows();
     for (column, x) in matrix.as_slice().chunks(rows.max(1)).zip(vector) {
         if *x != 0.0 {

@@ -1,6 +1,7 @@
 //! Forces and rates of the filters at one instant, for importers that integrate the filters themselves.
 
 use super::course::MotionCubic;
+use super::filters::add_product;
 use super::{ForceAhead, PrescribedForces};
 use crate::aerodynamics::Realization;
 use crate::error::Result;
@@ -80,11 +81,16 @@ impl PrescribedForces {
             rates.fill(0.0);
             return;
         };
-        let r = self.dimensionless(displacement, width);
-        let rate = &c.a * DVector::from_column_slice(filters) + &c.b * r;
-        for (slot, value) in rates.iter_mut().zip(rate.iter()) {
-            *slot = wind / width * value;
+        rates.fill(0.0);
+        add_product(&c.a, filters, rates);
+        let scaled = self.dofs.iter().zip(displacement);
+        let scaled = scaled.map(|(dof, x)| x * dof.motion_scale(width));
+        for (column, r) in c.b.column_iter().zip(scaled) {
+            for (rate, b) in rates.iter_mut().zip(&column) {
+                *rate += b * r;
+            }
         }
+        rates.iter_mut().for_each(|rate| *rate *= wind / width);
     }
 
     fn dimensionless(&self, displacement: &[f64], width: f64) -> DVector<f64> {

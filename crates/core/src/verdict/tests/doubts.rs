@@ -191,13 +191,23 @@ fn failures_input_and_rotation_are_weighed() {
     let turned = |at_onset_deg| Evidence {
         mean_rotation: Some(MeanRotation {
             at_onset_deg,
-            tested_deg: 0.0,
+            tested_deg: None,
+            speed_m_s: 36.9,
         }),
         ..clean.clone()
     };
     // a bridge at −5.8° with tables of 0°
     assert_eq!(words(&turned(-5.8)), "CANNOT BE JUDGED");
-    assert_eq!(words(&turned(-2.0)), "MET");
+    assert_eq!(words(&turned(-2.0)), "CANNOT BE JUDGED");
+    let text = "The deck stands at -1.4° in the mean wind of 36.9 m/s, the forces are those at 0.0°, assumed since no `angle_deg` \
+                of the tests is stated";
+    assert_eq!(Verdict::of(&turned(-1.4)).doubts[0].text, text);
+    assert_eq!(words(&turned(-1.4)), "MET");
+    // tests at the angle at which the deck stands
+    let mut tested = turned(-5.8);
+    tested.mean_rotation.as_mut().unwrap().tested_deg = Some(-5.0);
+    assert_eq!(words(&tested), "MET");
+    assert!(Verdict::of(&tested).doubts.is_empty());
     assert!(Verdict::of(&turned(0.5)).doubts.is_empty());
     let theory = Evidence {
         flutter: vec![FlutterReading {
@@ -221,4 +231,52 @@ fn failures_input_and_rotation_are_weighed() {
             "a remark"
         ]
     );
+}
+
+/// Tests at K 0.54–0.97, 10 m/s required, torsion at K 1.6 there: it was met without a word.
+#[test]
+fn slow_wind_in_which_a_motion_is_faster_than_the_tests_is_told() {
+    let mut evidence = of(10.0, vec![found("the model", 36.9, 0.3)]);
+    let mut below = |below| {
+        let from = TestedFrom {
+            speed_m_s: 16.4,
+            branch: "torsion".to_owned(),
+            below,
+        };
+        let range = ReducedFrequencyRange::between(k(0.54), k(0.97));
+        evidence.flutter[0].basis = Basis::tested(range, Reach::of_table(Some(from)));
+        Verdict::of(&evidence)
+    };
+    // what the conditions of a fit answer for is said, where no test is as slow in the explanation
+    let verdict = below(FastMotion::Damped);
+    assert!(verdict.is_met());
+    assert_eq!(verdict.critical.judged_from_m_s, 16.4);
+    let text = "Below 16.4 m/s the torsion branch lies at K above the tests (0.97): there the model takes energy out of every \
+                motion above them, and no test, answers for it";
+    assert_eq!(verdict.doubts[0].text, text);
+    assert_eq!(verdict.doubts[0].severity, Severity::Minor);
+    assert!(verdict.explanation.contains(text));
+    let of_table = below(FastMotion::DampedAtTheEnd);
+    assert!(of_table.is_met() && of_table.doubts[0].text.contains("at its highest K"));
+    // what no condition holds cannot be judged
+    let open = below(FastMotion::Open);
+    assert_eq!(open.outcome.unwrap().words(), "CANNOT BE JUDGED");
+    let kind = DoubtKind::NotJudgedBelow { speed_m_s: 16.4 };
+    assert_eq!(open.doubts[0].kind, kind);
+    assert_eq!(
+        open.doubts[0].settled_by.as_deref(),
+        Some("tests at K above 0.97")
+    );
+    // above, it is a note
+    evidence.required = Some(RequiredSpeed { speed_m_s: 30.0 });
+    let from = TestedFrom {
+        speed_m_s: 16.4,
+        branch: "torsion".to_owned(),
+        below: FastMotion::Damped,
+    };
+    let range = ReducedFrequencyRange::between(k(0.54), k(0.97));
+    evidence.flutter[0].basis = Basis::tested(range, Reach::of_table(Some(from)));
+    let verdict = Verdict::of(&evidence);
+    assert!(verdict.is_met() && !verdict.explanation.contains("Below"));
+    assert_eq!(verdict.doubts.len(), 1);
 }

@@ -1,0 +1,212 @@
+//! The modes of a bridge at a wind speed that changes a little at a time, without the eigenvalue problem of all states.
+//!
+//! The modes of the structure are followed from the last wind speed by their shapes. That no other eigenvalue has as little damping is
+//! counted, not assumed: with the modes `λ_i` that were followed divided out,
+//!
+//! ```text
+//! g(λ) = det D(λ) / (det M · Π (λ − λ_i)(λ − λ̄_i))
+//! ```
+//!
+//! has the poles of the filters, on the left, as its poles, all other eigenvalues as its zeros, and the value 1 at infinity. On the
+//! way along a ray `λ = r e^{iφ}` from infinity to zero its argument turns by `π` for each zero in the sector between the ray and its
+//! mirror image (the principle of the argument): one that does not turn has none there.
+
+use super::following::{Follower, Modes};
+use super::modal_characteristic::ModalCharacteristic;
+use super::tracking::Tracker;
+use crate::aeroelastic::CoupledSection;
+use crate::error::Result;
+use crate::state_space::{RepeatedEigenvalues, damping_ratio};
+use nalgebra::{Complex, DMatrix};
+use std::f64::consts::FRAC_PI_2;
+use std::sync::Arc;
+
+/// States up to which all eigenvalues are found before a mode is followed.
+const MOST_STATES_SOLVED: usize = 40;
+/// Damping ratio by which the ray lies beyond the least of the modes: an eigenvalue that comes from far away meets it before it
+/// matters. Beyond [`STEEPEST`] the ray would come close to the filters.
+const MARGIN: f64 = 0.1;
+const STEEPEST: f64 = 0.8;
+/// First and last distance on the ray, over the smallest and the largest of frequencies and poles.
+const ENDS: [f64; 2] = [0.03, 30.0];
+/// Ratio of the distances looked at first.
+const FIRST_RATIO: f64 = 3.0;
+/// Turn (rad) and ratio of size between neighbours up to which nothing is missed between them.
+const SMALL_TURN: f64 = 0.7;
+const SMALL_RATIO: f64 = 3.0;
+/// Distances looked at before the count is given up.
+const MOST_DISTANCES: usize = 200;
+/// What is left of a turn at the ends, rad, where it has to be none.
+const AT_THE_ENDS: f64 = 0.5;
+
+/// See the module.
+#[derive(Debug)]
+pub struct PresentModes {
+    problem: Arc<ModalCharacteristic>,
+    /// At the last wind speed, all of them.
+    last: Option<Modes>,
+}
+
+/// The smallest damping ratio of all modes, asked for again and again.
+#[derive(Debug)]
+pub enum LeastDamping {
+    /// Of a few states, by their eigenvalues, in memory of its own.
+    Solved(Box<Solved>),
+    /// Of many, by the modes.
+    Followed(PresentModes),
+    /// Of sampled models.
+    Unprepared,
+}
+
+/// A state matrix at the winds to come, and room for it.
+#[derive(Debug)]
+pub struct Solved {
+    by_wind: [DMatrix<f64>; 3],
+    matrix: DMatrix<f64>,
+    eigenvalues: RepeatedEigenvalues,
+}
+
+impl LeastDamping {
+    /// That of `section`.
+    pub fn new(section: &CoupledSection) -> Self {
+        let states = section.states();
+        let followed = (states > MOST_STATES_SOLVED).then(|| PresentModes::new(section));
+        if let Some(modes) = followed.flatten() {
+            return Self::Followed(modes);
+        }
+        let by_wind = section.state_matrix_by_wind();
+        by_wind.map_or(Self::Unprepared, |by_wind| {
+            Self::Solved(Box::new(Solved {
+                matrix: by_wind[0].clone(),
+                by_wind,
+                eigenvalues: RepeatedEigenvalues::new(states),
+            }))
+        })
+    }
+
+    /// At `wind`, m/s, of the same section; one where nothing oscillates.
+    ///
+    /// # Errors
+    /// As [`smallest_damping`].
+    pub fn at(&mut self, section: &CoupledSection, wind: f64) -> Result<f64> {
+        let prepared = match self {
+            Self::Solved(solved) => solved.at(wind),
+            Self::Followed(modes) => modes.smallest_damping(section, wind),
+            Self::Unprepared => None,
+        };
+        prepared.map_or_else(|| smallest_damping(section, wind), Ok)
+    }
+}
+
+impl Solved {
+    /// `None` for what is no wind speed, and where the eigenvalues are not found.
+    fn at(&mut self, wind: f64) -> Option<f64> {
+        let [a0, a1, a2] = &self.by_wind;
+        for (to, ((a0, a1), a2)) in self.matrix.iter_mut().zip(a0.iter().zip(a1).zip(a2)) {
+            *to = a0 + wind * (a1 + wind * a2);
+        }
+        let all = self
+            .eigenvalues
+            .of(&mut self.matrix)
+            .filter(|_| wind >= 0.0);
+        all.map(least)
+    }
+}
+
+/// Smallest damping ratio of the modes at a wind speed (m/s), by all eigenvalues; one where nothing oscillates.
+///
+/// # Errors
+/// As [`CoupledSection::at`], and where the eigenvalues are not found.
+pub fn smallest_damping(section: &CoupledSection, wind: f64) -> Result<f64> {
+    Ok(least(&section.at(wind)?.eigenvalues()?))
+}
+
+fn least(eigenvalues: &[Complex<f64>]) -> f64 {
+    let oscillating = eigenvalues.iter().filter(|z| z.im > 0.0);
+    let damping = oscillating.map(|z| damping_ratio(*z));
+    damping.reduce(f64::min).unwrap_or(1.0)
+}
+
+impl PresentModes {
+    /// The modes of `section`; `None` where they are not followed by shapes: sections, whose eigenvalues are quickly found, and
+    /// sampled models.
+    pub fn new(section: &CoupledSection) -> Option<Self> {
+        let many = section.structure().is_modal();
+        let problem = ModalCharacteristic::new(section).filter(|_| many)?;
+        Some(Self {
+            problem: Arc::new(problem),
+            last: None,
+        })
+    }
+
+    /// The smallest damping ratio of `section`, that of which they are the modes, at `wind`, m/s; `None` where it has to be
+    /// found among all eigenvalues.
+    pub fn smallest_damping(&mut self, section: &CoupledSection, wind: f64) -> Option<f64> {
+        let tracker = Tracker::by_shapes(section, Arc::clone(&self.problem));
+        let all = section.structure().dofs.len();
+        let from = match self.last.take() {
+            Some(last) => last,
+            None => tracker.start().ok()?,
+        };
+        // one that has stopped to oscillate may begin again
+        let now = tracker.advance(&from, wind).ok();
+        let now = now.filter(|modes| modes.all.len() == all)?;
+        let damping = now.all.iter().map(|m| damping_ratio(m.lambda));
+        let least = damping.reduce(f64::min)?;
+        let alone = self.none_below(&now, (least + MARGIN).min(STEEPEST));
+        self.last = Some(now);
+        (alone == Some(true) && least < STEEPEST).then_some(least)
+    }
+
+    /// Whether no eigenvalue but the modes has a damping ratio below `ratio`; `None` where it cannot be counted.
+    fn none_below(&self, modes: &Modes, ratio: f64) -> Option<bool> {
+        let at = self.problem.at(modes.speed);
+        let ray = Complex::from_polar(1.0, FRAC_PI_2 + ratio.asin());
+        let rest = |distance: f64| -> Option<Complex<f64>> {
+            let lambda = ray * distance;
+            let mut modes = modes.all.iter().map(|m| m.lambda);
+            let rest = at.determinant(lambda, |pivot| {
+                let mode = modes.next().unwrap_or_default();
+                pivot / ((lambda - mode) * (lambda - mode.conj()))
+            })?;
+            (rest.re.is_finite() && rest.im.is_finite()).then_some(rest)
+        };
+        let sizes = modes.all.iter().map(|m| m.lambda.norm());
+        let sizes = sizes.chain(self.problem.filter_rates(modes.speed));
+        let (low, high) = sizes.fold((f64::INFINITY, 0.0_f64), |(low, high), size| {
+            (low.min(size), high.max(size))
+        });
+        turn(rest, [ENDS[0] * low, ENDS[1] * high])
+    }
+}
+
+/// Whether a number that is real at zero and 1 at infinity turns not at all from the second distance down to the first; `None` where
+/// it changes too fast.
+fn turn(value: impl Fn(f64) -> Option<Complex<f64>>, [first, last]: [f64; 2]) -> Option<bool> {
+    let mut at = (last, value(last)?);
+    let mut turned = at.1.arg();
+    if turned.abs() > AT_THE_ENDS {
+        return None;
+    }
+    let mut next = last / FIRST_RATIO;
+    for _ in 0..MOST_DISTANCES {
+        let found = value(next.max(first))?;
+        let change = found / at.1;
+        let size = change.norm();
+        if change.arg().abs() > SMALL_TURN || !(SMALL_RATIO.recip()..SMALL_RATIO).contains(&size) {
+            next = (next * at.0).sqrt();
+            continue;
+        }
+        turned += change.arg();
+        if next <= first {
+            return Some(turned.abs() < AT_THE_ENDS);
+        }
+        let ratio = (at.0 / next).powi(2).min(FIRST_RATIO);
+        at = (next, found);
+        next /= ratio;
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests;

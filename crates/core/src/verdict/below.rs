@@ -1,0 +1,40 @@
+//! The doubt about slow wind, in which motions are faster than every test.
+
+use super::doubt::{Doubt, DoubtKind, Severity};
+use super::evidence::{Basis, FlutterReading};
+use super::words::speed;
+use crate::flutter::FastMotion;
+
+/// What to say of wind slower than `from_m_s`, where the fastest motion has a reduced frequency above the tests. There the forces
+/// come close to those in still air; that they feed no motion is known only of forces that damp each of them.
+pub(super) fn not_judged_below(first: &FlutterReading, from_m_s: f64) -> Doubt {
+    let kind = DoubtKind::NotJudgedBelow {
+        speed_m_s: from_m_s,
+    };
+    let (Basis::Tested { range, .. }, Some(tested)) = (&first.basis, first.tested_from()) else {
+        let text = format!("Below {} not every motion was tested", speed(from_m_s));
+        return Doubt::new(Severity::Severe, kind, text).settled_by("tests at higher K");
+    };
+    let k = range.max.full_width();
+    let (severity, answers) = match tested.below {
+        FastMotion::Damped => (
+            Severity::Minor,
+            "takes energy out of every motion above them, and no test, answers for it",
+        ),
+        FastMotion::DampedAtTheEnd => (
+            Severity::Minor,
+            "takes energy out of every motion at its highest K, and no test, answers for it",
+        ),
+        FastMotion::Open => (
+            Severity::Severe,
+            "may feed motion above them, and no test says whether it grows",
+        ),
+    };
+    let text = format!(
+        "Below {} the {} branch lies at K above the tests ({k:.2}): there {} {answers}",
+        speed(from_m_s),
+        tested.branch,
+        first.forces
+    );
+    Doubt::new(severity, kind, text).settled_by(format!("tests at K above {k:.2}"))
+}

@@ -1,0 +1,88 @@
+//! The smallest damping ratio at the present wind, which importers may read at every step.
+
+use crate::aerodynamics::Realization;
+use crate::error::Result;
+use crate::flutter::{LeastDamping, smallest_damping};
+use crate::response::{Inputs, Stepper};
+use crate::state_space::{RepeatedEigenvalues, damping_ratio};
+use nalgebra::DMatrix;
+
+/// What is known of it; made anew, as [`Default`] is, where the system is.
+#[derive(Debug, Default)]
+pub(super) struct PresentDamping {
+    way: Option<Way>,
+    last: Option<KnownDamping>,
+}
+
+/// How it is found again and again.
+#[derive(Debug)]
+enum Way {
+    Continuous(LeastDamping),
+    Sampled(Sampled),
+}
+
+/// The matrix from sample to sample, and room for its eigenvalues.
+#[derive(Debug)]
+struct Sampled {
+    steady: Inputs,
+    matrix: DMatrix<f64>,
+    eigenvalues: RepeatedEigenvalues,
+}
+
+/// A wind speed, m/s, and the smallest damping ratio there.
+#[derive(Debug, Clone, Copy)]
+struct KnownDamping {
+    wind_m_s: f64,
+    ratio: f64,
+}
+
+impl PresentDamping {
+    /// The ratio of the section of `stepper`, the same at every call, at a wind speed, m/s.
+    ///
+    /// # Errors
+    /// Where the eigenvalues are not found.
+    pub(super) fn at(&mut self, stepper: &mut Stepper, wind_m_s: f64) -> Result<f64> {
+        if let Some(known) = self.last.filter(|known| known.wind_m_s == wind_m_s) {
+            return Ok(known.ratio);
+        }
+        let way = self.way.get_or_insert_with(|| Way::of(stepper));
+        let ratio = match way {
+            Way::Continuous(least) => least.at(stepper.section(), wind_m_s)?,
+            Way::Sampled(sampled) => match sampled.at(stepper, wind_m_s)? {
+                Some(ratio) => ratio,
+                None => smallest_damping(stepper.section(), wind_m_s)?,
+            },
+        };
+        self.last = Some(KnownDamping { wind_m_s, ratio });
+        Ok(ratio)
+    }
+}
+
+impl Way {
+    fn of(stepper: &Stepper) -> Self {
+        let section = stepper.section();
+        let states = section.states();
+        match section.aerodynamics() {
+            Realization::Continuous(_) => Self::Continuous(LeastDamping::new(section)),
+            Realization::Discrete(_) => Self::Sampled(Sampled {
+                steady: Inputs::steady(0.0, section.structure().dofs.len()),
+                matrix: DMatrix::zeros(states, states),
+                eigenvalues: RepeatedEigenvalues::new(states),
+            }),
+        }
+    }
+}
+
+impl Sampled {
+    /// By the rates `ln z/Δt`; what has died out after a sample (`z = 0`) has none. `None` where the eigenvalues are not found.
+    fn at(&mut self, stepper: &mut Stepper, wind_m_s: f64) -> Result<Option<f64>> {
+        self.steady.wind_speed_m_s = wind_m_s;
+        let step = stepper.write_sample_matrix(&self.steady, &mut self.matrix)?;
+        let found = self.eigenvalues.of(&mut self.matrix);
+        Ok(step.zip(found).map(|(step, all)| {
+            let alive = all.iter().filter(|z| z.im > 0.0 && z.norm() > 0.0);
+            let ratios = alive.map(|z| damping_ratio(z.ln() / step));
+            ratios.reduce(f64::min).unwrap_or(1.0)
+        }))
+    }
+}

@@ -1,0 +1,46 @@
+//! `damping_now` of every kind is the smallest damping of all eigenvalues, whatever wind was before.
+
+use super::{Kind, fixture, instance, place, start};
+use crate::aerodynamics::Realizable;
+use crate::aeroelastic::CoupledSection;
+use crate::flutter::smallest_damping;
+use crate::trained_model::TrainedModel;
+
+#[test]
+fn the_damping_is_that_of_all_eigenvalues() {
+    let kinds = [
+        (
+            Kind::Section("continuous_laguerre"),
+            "continuous_laguerre",
+            1e-12,
+        ),
+        (Kind::Section("rational"), "rational", 1e-12),
+        // by steps of a series against a matrix exponential
+        (
+            Kind::Section("discrete_laguerre"),
+            "discrete_laguerre",
+            1e-11,
+        ),
+        // of modes, which are normalised
+        (Kind::Bridge, "rational", 1e-11),
+    ];
+    for (kind, name, tolerance) in kinds {
+        let json = String::from_utf8(fixture(name)).unwrap();
+        let model = TrainedModel::from_json(&json).unwrap();
+        let structure = model.section.structure().unwrap();
+        let section = CoupledSection::new(structure, model.model.realize()).unwrap();
+        let mut unit = instance(kind, false).unwrap();
+        start(&mut unit);
+        let [wind, damping] = ["wind_speed", "damping_now"].map(|name| place(&unit, name));
+        for speed in [12.0, 12.1, 3.0, 40.0, 0.5, 25.0, 12.0] {
+            unit.set_reals(&[wind], &[speed]).unwrap();
+            let mut found = [f64::NAN];
+            unit.reals(&[damping], &mut found).unwrap();
+            let expected = smallest_damping(&section, speed).unwrap();
+            assert!(
+                (found[0] - expected).abs() < tolerance,
+                "{kind:?}, {speed} m/s: {found:?}, {expected}"
+            );
+        }
+    }
+}
