@@ -6,7 +6,6 @@ use aerodeck::aerodynamics::FlatPlate;
 use aerodeck::aerodynamics::derivatives::notation::*;
 use aerodeck::aerodynamics::derivatives::{Derivative, Part};
 use aerodeck::aerodynamics::derivatives::{DerivativePoint, DerivativeTable, TableHeader};
-use aerodeck::error::Error;
 use aerodeck::files::derivatives::{TableInConvention, parse_csv_in, write_csv_in};
 use aerodeck::section::Dof;
 use aerodeck::units::ReducedFrequency;

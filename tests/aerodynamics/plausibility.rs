@@ -1,10 +1,9 @@
 //! Tests of the hints: silent on what is right, right on what is mislabelled.
 
-use aerodeck::aerodynamics::FlatPlate;
 use aerodeck::aerodynamics::derivatives::notation::{Argument, Axes, Convention, Notation};
-use aerodeck::aerodynamics::derivatives::{Derivative, DerivativePoint, DerivativeTable, Part};
+use aerodeck::aerodynamics::derivatives::{Derivative, DerivativeTable};
 use aerodeck::files::derivatives::embedded;
-use aerodeck::plausibility::{Severity, of_table, sentences};
+use aerodeck::plausibility::{Kind, Severity, of_table, sentences};
 use aerodeck::section::Dof;
 
 /// What `deck`, written in `truth`, becomes when it is read as `label`.
@@ -37,13 +36,6 @@ fn right_tables_give_no_hint() {
         for group in 0..2 {
             assert!(of_table(&deck.at_speed_group(group).unwrap(), &label).is_empty());
         }
-    }
-    for v_hats in [
-        vec![0.6, 1.0, 2.0, 4.0, 8.0],
-        vec![0.1, 0.4, 0.8],
-        vec![5.0, 20.0, 40.0],
-    ] {
-        assert!(of_table(&flat_plate_table(&[4.0], &v_hats), &label).is_empty());
     }
 }
 
@@ -155,12 +147,10 @@ fn v_hat_labelled_v_star_is_a_doubt() {
     }
 }
 
-/// A table of some derivatives is judged by those; a bluff deck that gallops is worth a note, no more.
+/// A bluff deck that gallops is worth a note, no more.
 #[test]
-fn what_is_missing_or_bluff_is_no_doubt() {
+fn what_is_bluff_is_no_doubt() {
     let label = Convention::default();
-    let part = Signature([Some(0.85), None, None, None, Some(0.9)]);
-    assert!(part.score() < 1e-9);
     let deck = embedded::deck("LN21-5200").unwrap();
     let mut bluff = label.express(&deck);
     for d in &mut bluff.derivatives {

@@ -1,11 +1,10 @@
 //! Linearised quasi-steady forces against finite differences, their quasi-steady limit and their realisation.
 
-use aerodeck::aerodynamics::quasi_steady::{Arms, LinearQuasiSteady, QuasiSteady, RelativeWind};
-use aerodeck::aerodynamics::{Realizable, Realization, Transfer};
+use aerodeck::aerodynamics::quasi_steady::{Arms, QuasiSteady, RelativeWind};
+use aerodeck::aerodynamics::{Realizable, Transfer};
 use aerodeck::files::coefficients::embedded;
 use aerodeck::section::Dof;
 use aerodeck::units::ReducedFrequency;
-use nalgebra::{Complex, DMatrix};
 
 /// Fourth-order central difference: error `h⁴/30` of the fifth derivative plus rounding over `h`, both near 1e-12.
 fn derivative(f: impl Fn(f64) -> [f64; 3]) -> [f64; 3] {
@@ -41,16 +40,16 @@ fn agrees_with_finite_differences_of_the_nonlinear_forces() {
             let by_turn = derivative(|h| at(0.0, 0.0, 0.0, h));
             for (i, _) in dofs.iter().enumerate() {
                 let close = |a: f64, b: f64| assert!((a - b).abs() < 1e-8, "{a} {b}");
-                close(linear.buffeting[(i, 0)], by_u[i]);
-                close(linear.buffeting[(i, 1)], by_w[i]);
+                close(linear.buffeting()[(i, 0)], by_u[i]);
+                close(linear.buffeting()[(i, 1)], by_w[i]);
                 for (j, dof) in dofs.iter().enumerate() {
                     let (e0, e1) = match dof {
                         Dof::Vertical => (0.0, -by_w[i]),
                         Dof::Lateral => (0.0, -by_u[i]),
                         Dof::Torsion => (by_turn[i], by_rate[i]),
                     };
-                    close(linear.e0[(i, j)], e0);
-                    close(linear.e1[(i, j)], e1);
+                    close(linear.feed_through().0[(i, j)], e0);
+                    close(linear.feed_through().1[(i, j)], e1);
                 }
             }
         }

@@ -4,7 +4,8 @@ use aerodeck::aerodynamics::FlatPlate;
 use aerodeck::bridge::{Bridge, BridgeMode, Node};
 use aerodeck::bridge::{StripGroup, tributary_lengths};
 use aerodeck::files::bridge::{Modes, embedded};
-use aerodeck::plausibility::{Finding, Girder, Severity, of_bridge, of_modes, sentences};
+use aerodeck::plausibility::{Finding, Girder, Kind, Severity, of_bridge, of_modes, sentences};
+use std::f64::consts::TAU;
 use std::sync::Arc;
 
 fn langenuen() -> Modes {

@@ -5,7 +5,7 @@
 #[path = "../common/steppers.rs"]
 mod steppers;
 
-mod changing_wind;
 mod beside_a_structure;
+mod changing_wind;
 mod quasi_steady;
 mod stepping;

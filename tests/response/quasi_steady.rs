@@ -6,13 +6,11 @@ use aerodeck::aerodynamics::quasi_steady::Arms;
 use aerodeck::aerodynamics::quasi_steady::LinearQuasiSteady;
 use aerodeck::aerodynamics::quasi_steady::QuasiSteady;
 use aerodeck::aeroelastic::{CoupledSection, StaticEquilibrium, static_equilibria};
-use aerodeck::error::Error;
 use aerodeck::files::coefficients::embedded;
-use aerodeck::response::*;
-use aerodeck::response::{Inputs, Stepper};
-use aerodeck::section::{Dof, Structure};
+
+use aerodeck::response::{Inputs, NonlinearSection, Stepper, largest_difference};
+use aerodeck::section::Structure;
 use aerodeck::section::{SectionModel, Translation};
-use nalgebra::{DMatrix, DVector};
 
 const SPEED: f64 = 14.0;
 

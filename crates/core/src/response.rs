@@ -19,7 +19,7 @@ mod strip_gusts;
 mod values;
 
 pub use prescribed::{ForceAhead, GivenMotion, KnownMotion, PrescribedForces, StripFlow};
-pub use quasi_steady::{NonlinearRun, NonlinearSection};
+pub use quasi_steady::{NonlinearRun, NonlinearSection, largest_difference};
 pub use strip_gusts::StripGusts;
 pub use values::{Inputs, Outputs, SectionState, wind_at_rest};
 

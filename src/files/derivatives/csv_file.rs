@@ -106,6 +106,9 @@ pub(crate) fn parse_csv(text: &str) -> Result<DerivativeTable> {
 }
 
 /// As [`parse_csv`], with what the caller states about the convention; the second value is the one the text is in.
+///
+/// # Errors
+/// As [`parse_csv`]; a stated convention that contradicts the text.
 pub fn parse_csv_in(text: &str, stated: StatedConvention) -> Result<TableInConvention> {
     let options = ReadOptions {
         convention: stated,

@@ -192,3 +192,28 @@ fn flat_plate(derivative: Derivative, point: &DerivativePoint) -> f64 {
     };
     part * point.v_hat * point.v_hat
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::aerodynamics::derivatives::table::tests::flat_plate_table;
+
+    /// A table of some derivatives is judged by those.
+    #[test]
+    fn what_is_missing_is_no_doubt() {
+        let part = Signature([Some(0.85), None, None, None, Some(0.9)]);
+        assert!(part.score() < 1e-9);
+    }
+
+    #[test]
+    fn the_flat_plate_is_in_its_own_notation() {
+        for v_hats in [
+            vec![0.6, 1.0, 2.0, 4.0, 8.0],
+            vec![0.1, 0.4, 0.8],
+            vec![5.0, 20.0, 40.0],
+        ] {
+            let found = of_table(&flat_plate_table(&[4.0], &v_hats), &Convention::default());
+            assert!(found.is_empty(), "{v_hats:?}: {found:?}");
+        }
+    }
+}

@@ -68,12 +68,7 @@ impl Stepper {
     }
 
     /// Rates of the lagging gusts per 1 m/s of wind.
-    pub fn lag_rates_per_wind(
-        &self,
-        state: &SectionState,
-        inputs: &Inputs,
-        rates: &mut [f64],
-    ) {
+    pub fn lag_rates_per_wind(&self, state: &SectionState, inputs: &Inputs, rates: &mut [f64]) {
         if let Some(gusts) = self.series.gusts() {
             gusts.rates_per_wind(&inputs.gust_m_s, &state.gusts, rates);
         }

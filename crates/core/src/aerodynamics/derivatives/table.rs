@@ -412,4 +412,4 @@ fn check_monotone(points: &[DerivativePoint]) -> Option<PointProblem> {
 }
 
 #[cfg(test)]
-pub mod tests;
+pub(crate) mod tests;

@@ -88,9 +88,11 @@ impl Convention {
     }
 }
 
-#[cfg(test)]
 impl ExpressedTable {
     /// The table in the crate's convention.
+    ///
+    /// # Errors
+    /// As [`DerivativeTable::new`].
     pub fn to_table(&self) -> crate::Result<DerivativeTable> {
         let points = self
             .derivatives
