@@ -31,7 +31,7 @@ def linked():
         "--prefix", "none", "--format", "{p}", "--no-dedupe",
     )
     crates = {tuple(line.split()[:2]) for line in tree.splitlines() if line.strip()}
-    return sorted((name, version.lstrip("v")) for name, version in crates if name != "aerodeck")
+    return sorted((name, version.lstrip("v")) for name, version in crates if not name.startswith("aerodeck"))
 
 
 def texts(folder, licence):

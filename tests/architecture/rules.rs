@@ -129,9 +129,11 @@ const FOR_ALL: &[&str] = &["error"];
 /// Files are written for about 400 lines; this is where they must be split.
 pub const LINES_AT_MOST: usize = 420;
 
-/// Module path of a file of `src`: `src/a.rs` is `a`, `src/a/b.rs` is `a::b`, `src/lib.rs` the root.
+/// Module path of a file: `src/a.rs` is `a`, `src/a/b.rs` is `a::b`, `src/lib.rs` the root. The rooms of the inner crates stand
+/// beside those of `src`, whose root passes them on: `crates/core/src/a.rs` is `a` too.
 pub fn module_of(path: &str) -> Vec<String> {
-    let inner = path.trim_start_matches("src/").trim_end_matches(".rs");
+    let inner = path.split_once("src/").map_or(path, |(_, inner)| inner);
+    let inner = inner.trim_end_matches(".rs");
     if inner == "lib" {
         return Vec::new();
     }

@@ -29,14 +29,17 @@ use nalgebra::{Complex, DMatrix};
 /// An elastically suspended section with a realised aerodynamic model.
 ///
 /// ```
-/// use aerodeck::prelude::*;
+/// # extern crate aerodeck_core as aerodeck;
+/// use aerodeck::aerodynamics::RationalModel;
+/// use aerodeck::aeroelastic::CoupledSection;
+/// use aerodeck::section::SectionModel;
 ///
 /// let structure = SectionModel::iabse_1_1a().structure()?;
 /// let plate = RationalModel::jones_flat_plate();
 /// let section = CoupledSection::with_model(&structure, &plate)?;
 /// // four states of the motion, two filters of each of the two motions
 /// assert_eq!(section.at(45.0)?.eigenvalues()?.len(), 8);
-/// # Ok::<(), Error>(())
+/// # Ok::<(), aerodeck::Error>(())
 /// ```
 #[derive(Debug, Clone)]
 pub struct CoupledSection {

@@ -55,7 +55,10 @@ pub struct RepeatableStep {
 /// Steps a coupled section.
 ///
 /// ```
-/// use aerodeck::prelude::*;
+/// # extern crate aerodeck_core as aerodeck;
+/// use aerodeck::aerodynamics::RationalModel;
+/// use aerodeck::aeroelastic::CoupledSection;
+/// use aerodeck::section::SectionModel;
 /// use aerodeck::response::{Inputs, Stepper};
 ///
 /// let structure = SectionModel::table_4_1().structure()?;
@@ -66,7 +69,7 @@ pub struct RepeatableStep {
 ///     stepper.advance(&mut state, &Inputs::steady(20.0, 2), 0.01)?;
 /// }
 /// assert!(state.values[0].abs() < 0.001); // far below the onset the motion dies down
-/// # Ok::<(), Error>(())
+/// # Ok::<(), aerodeck::Error>(())
 /// ```
 ///
 /// A step is a pure function of state, inputs and step size: the cache only saves time.

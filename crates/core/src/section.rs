@@ -120,13 +120,14 @@ pub struct Rotation {
 /// An elastically suspended deck section in smooth flow.
 ///
 /// ```
-/// use aerodeck::prelude::*;
+/// # extern crate aerodeck_core as aerodeck;
+/// use aerodeck::section::SectionModel;
 ///
 /// let section = SectionModel { width_m: 0.6, ..SectionModel::table_4_1() };
 /// let structure = section.structure()?;
 /// assert_eq!(structure.mass[(0, 0)], 15.0); // kg/m
 /// assert!(SectionModel { width_m: -1.0, ..section }.structure().is_err());
-/// # Ok::<(), Error>(())
+/// # Ok::<(), aerodeck::Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

@@ -154,7 +154,8 @@ pub struct Experiment {
 /// A trained model with the section it is coupled with, as `model.json` holds it.
 ///
 /// ```
-/// use aerodeck::prelude::*;
+/// # extern crate aerodeck_core as aerodeck;
+/// use aerodeck::trained_model::TrainedModel;
 ///
 /// let refused = TrainedModel::from_json("{ \"schema_version\": 99 }").unwrap_err();
 /// assert_eq!(refused.to_string(), "schema_version: expected 1 to 2, found 99");

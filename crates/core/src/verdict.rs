@@ -4,6 +4,7 @@
 //! only place that says what it amounts to; every page, line and colour follows it.
 //!
 //! ```
+//! # extern crate aerodeck_core as aerodeck;
 //! use aerodeck::verdict::{DivergenceReading, Evidence, RequiredSpeed, Verdict};
 //!
 //! let mut evidence = Evidence::default();

@@ -74,8 +74,10 @@ pub struct SweptOnset {
 /// Finds onsets of many sections with one kind of force model.
 ///
 /// ```
+/// # extern crate aerodeck_core as aerodeck;
 /// use aerodeck::flutter::{LinearForces, OnsetSweep, SweepOutcome};
-/// use aerodeck::prelude::*;
+/// use aerodeck::aerodynamics::RationalModel;
+/// use aerodeck::section::SectionModel;
 ///
 /// let nominal = SectionModel::iabse_1_1a();
 /// let forces = LinearForces::of_rational(&RationalModel::jones_flat_plate(), None);
@@ -84,7 +86,7 @@ pub struct SweptOnset {
 ///     panic!("the plate flutters")
 /// };
 /// assert!((onset.speed_m_s - 76.679).abs() < 0.001);
-/// # Ok::<(), Error>(())
+/// # Ok::<(), aerodeck::Error>(())
 /// ```
 #[derive(Debug, Clone)]
 pub struct OnsetSweep {

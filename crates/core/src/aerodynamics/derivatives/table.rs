@@ -102,13 +102,17 @@ pub struct PointProblem {
 /// Measured derivatives of one deck.
 ///
 /// ```
-/// use aerodeck::aerodynamics::derivatives::Derivative;
-/// use aerodeck::prelude::*;
+/// # extern crate aerodeck_core as aerodeck;
+/// use aerodeck::aerodynamics::derivatives::{Derivative, DerivativePoint, DerivativeTable, TableHeader};
 ///
-/// let table = named_table("LN21-5200", "".as_ref())?;
+/// let point = |v_hat, value| DerivativePoint { mean_speed_m_s: None, v_hat, value };
+/// let of_heave_and_rotation = |d: &Derivative| !d.to_string().contains(['P', '5', '6']);
+/// let eight = Derivative::ALL.into_iter().filter(of_heave_and_rotation);
+/// let points = eight.map(|d| (d, vec![point(2.0, -0.5), point(4.0, -1.2)])).collect();
+/// let table = DerivativeTable::new("a deck", 0.5, TableHeader::default(), points)?;
 /// let first = table.points(Derivative::H1)[0];
 /// assert!(first.v_hat > 0.0 && first.value < 0.0); // heave is damped
-/// # Ok::<(), Error>(())
+/// # Ok::<(), aerodeck::Error>(())
 /// ```
 ///
 /// There are 18 (or the eight of heave and rotation), each at its own points in test order.

@@ -23,11 +23,11 @@ fn section(modes: usize) -> CoupledSection {
             shape[motion] = (PI * waves * along(node)).sin();
         }
         // a cable's frequencies rise with their waves, a girder's faster
-        let first_hz = [0.08, 0.04, 0.25][motion];
+        let first_hz = [0.08, 0.04, 0.32][motion];
         BridgeMode {
             number: number + 1,
             frequency_hz: first_hz * waves * (1.0 + 0.05 * waves),
-            generalised_mass: [1.2e7, 1.2e7, 8e8][motion],
+            generalised_mass: [1.2e7, 1.2e7, 1.6e9][motion],
             damping_ratio: 0.003,
             shape,
         }
@@ -56,6 +56,7 @@ fn the_least_damping_is_that_of_all_eigenvalues() {
     for modes in [3, 12, 39] {
         let section = section(modes);
         let mut present = PresentModes::new(&section).unwrap();
+        let mut growing = 0;
         for wind in [30.0, 30.2, 31.0, 8.0, 0.5, 45.0, 44.9, 90.0, 2.0, 60.0] {
             let found = present.smallest_damping(&section, wind);
             let expected = by_all_eigenvalues(&section, wind);
@@ -65,7 +66,9 @@ fn the_least_damping_is_that_of_all_eigenvalues() {
                 (found - expected).abs() < 1e-10,
                 "{modes} modes, {wind} m/s: {found}, {expected}"
             );
+            growing += usize::from(expected < 0.0);
         }
+        assert!((1..9).contains(&growing), "{modes} modes: {growing}");
     }
 }
 

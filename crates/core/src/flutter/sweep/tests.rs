@@ -275,7 +275,7 @@ fn impossible_samples_are_refused_by_name() {
 fn sampled_sections_flutter_where_their_eigenvalues_say() {
     let file = concat!(
         env!("CARGO_MANIFEST_DIR"),
-        "/tests/data/models/discrete_laguerre.json"
+        "/../../tests/data/models/discrete_laguerre.json"
     );
     let trained = TrainedModel::from_json(&std::fs::read_to_string(file).unwrap()).unwrap();
     let Model::DiscreteLaguerre(model) = &trained.model else {
@@ -316,7 +316,7 @@ fn sampled_sections_flutter_where_their_eigenvalues_say() {
 fn functions_know_their_derivatives() {
     let file = concat!(
         env!("CARGO_MANIFEST_DIR"),
-        "/tests/data/models/discrete_laguerre.json"
+        "/../../tests/data/models/discrete_laguerre.json"
     );
     let trained = TrainedModel::from_json(&std::fs::read_to_string(file).unwrap()).unwrap();
     let Model::DiscreteLaguerre(model) = &trained.model else {
