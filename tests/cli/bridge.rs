@@ -241,9 +241,10 @@ fn an_exported_bridge_passes_the_check() {
     let text = succeeds(folder.path(), &export);
     assert!(text.contains("8 modes") && text.contains("1156"), "{text}");
     // the page says what the command does
-    let headline = text.lines().next().unwrap();
-    let verdict = headline.strip_prefix("Langenuen: ").unwrap();
-    assert!(verdict.starts_with("flutter onset 7"), "{headline}");
+    let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let verdict = text.strip_prefix("Langenuen LN21-5200: ").unwrap();
+    let verdict = verdict.split(" wrote ").next().unwrap();
+    assert!(verdict.starts_with("flutter onset 7"), "{text}");
     let page = fmu_page(&folder.path().join("bridge.fmu"));
     assert!(page.contains(&format!("<p>{verdict}.</p>")), "{page}");
     assert!(page.contains("Static divergence at"), "{page}");

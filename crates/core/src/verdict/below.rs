@@ -16,22 +16,16 @@ pub(super) fn not_judged_below(first: &FlutterReading, from_m_s: f64) -> Doubt {
         return Doubt::new(Severity::Severe, kind, text).settled_by("tests at higher K");
     };
     let k = range.max.full_width();
-    let (severity, answers) = match tested.below {
-        FastMotion::Damped => (
-            Severity::Minor,
-            "takes energy out of every motion above them, and no test, answers for it",
-        ),
+    let (severity, what) = match tested.below {
+        FastMotion::Damped => (Severity::Minor, "every motion loses energy at all higher K"),
         FastMotion::DampedAtTheEnd => (
             Severity::Minor,
-            "takes energy out of every motion at its highest K, and no test, answers for it",
+            "every motion loses energy at the highest K tested",
         ),
-        FastMotion::Open => (
-            Severity::Severe,
-            "may feed motion above them, and no test says whether it grows",
-        ),
+        FastMotion::Open => (Severity::Severe, "a motion may gain energy there"),
     };
     let text = format!(
-        "Below {} the {} branch lies at K above the tests ({k:.2}): there {} {answers}",
+        "Below {} the {} branch lies at K above {k:.2}, where nothing was tested; by {} {what}",
         speed(from_m_s),
         tested.branch,
         first.forces
