@@ -55,6 +55,7 @@ impl FilterBank {
     }
 
     /// Number of filters `L`.
+    #[allow(clippy::len_without_is_empty)] // a bank has filters
     pub fn len(&self) -> usize {
         self.poles.len()
     }
