@@ -20,7 +20,7 @@ pub enum RationalAdmittance {
 }
 
 /// Pole `pⱼ` and weight `wⱼ` of one lag.
-pub type Lag = [f64; 2];
+pub(super) type Lag = [f64; 2];
 
 /// Least squares of the logarithm of the modulus over 400 values of K from 0.001 to 20, evenly spread on a logarithmic scale.
 const SEARS: [Lag; 4] = [

@@ -63,12 +63,12 @@ pub fn of_section(section: &SectionModel) -> Vec<Finding> {
 }
 
 /// A density that is not that of air.
-pub fn unusual_air(key: &str, density_kg_m3: f64) -> Option<Finding> {
+pub(super) fn unusual_air(key: &str, density_kg_m3: f64) -> Option<Finding> {
     beyond(key, density_kg_m3, &AIR)
 }
 
 /// A damping ratio that no structure has.
-pub fn unusual_damping(key: &str, ratio: f64) -> Option<Finding> {
+pub(super) fn unusual_damping(key: &str, ratio: f64) -> Option<Finding> {
     let (least, most) = DAMPING;
     if ratio == 0.0 || (least..=most).contains(&ratio) {
         return None;

@@ -21,7 +21,7 @@ pub struct StepMatrices {
 /// # Errors
 /// [`Error::Numerical`] when an entry is not finite or so large that no digit of the result would be right (scaling and
 /// squaring would take for ever), or when the result overflows.
-pub fn matrix_exponential(m: &DMatrix<f64>) -> Result<DMatrix<f64>> {
+pub(super) fn matrix_exponential(m: &DMatrix<f64>) -> Result<DMatrix<f64>> {
     let column = |c: nalgebra::DVectorView<'_, f64>| c.iter().map(|x| x.abs()).sum::<f64>();
     let norm = m.column_iter().map(column).fold(0.0, f64::max);
     // a number that is none is not greater than any

@@ -127,7 +127,7 @@ pub(super) struct Curve {
 
 impl Curve {
     /// `points` of one derivative with the number of the speed group of each; there is at least one.
-    pub fn new(
+    pub(super) fn new(
         interpolation: Interpolation,
         part: Part,
         points: &[(DerivativePoint, usize)],
@@ -168,7 +168,7 @@ impl Curve {
     }
 
     /// The part of `G` at `k`; beyond the points the quantity keeps its value at the nearest one.
-    pub fn at(&self, k: ReducedFrequency) -> f64 {
+    pub(super) fn at(&self, k: ReducedFrequency) -> f64 {
         let full = k.full_width();
         let value = self.quantity(self.interpolation.abscissa(k));
         // from the quantity to G; at K = 0 only what is held matters

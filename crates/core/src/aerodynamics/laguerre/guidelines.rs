@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 
 /// A filter has died out when its impulse response stays below this for good (2.37); the squares of all samples of one
 /// response add up to one.
-pub const MEMORY_LIMIT: f64 = 0.01;
+pub(super) const MEMORY_LIMIT: f64 = 0.01;
 
 /// Memory is counted up to here: longer than any record.
 const LONGEST_MEMORY: usize = 10_000_000;
