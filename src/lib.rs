@@ -73,15 +73,9 @@ pub mod buffeting;
 #[cfg(feature = "cli")]
 #[allow(clippy::print_stdout, clippy::print_stderr)]
 pub mod cli;
-#[cfg(feature = "cli")]
-pub mod comparison;
-#[cfg(feature = "cli")]
-pub mod files;
 // the module of a report has no use for it
 #[cfg(not(target_arch = "wasm32"))]
 pub mod fmu;
-#[cfg(feature = "cli")]
-pub mod identification;
 pub mod live;
 pub mod prelude;
 #[cfg(feature = "cli")]
@@ -89,18 +83,15 @@ pub mod reference;
 #[cfg(feature = "cli")]
 pub mod report;
 #[cfg(feature = "cli")]
-pub mod selection;
-#[cfg(feature = "cli")]
-pub mod signal;
-#[cfg(feature = "cli")]
 pub mod study;
-#[cfg(feature = "cli")]
-pub mod uncertainty;
-#[cfg(feature = "cli")]
-pub mod wind_tunnel;
 
 #[cfg(all(test, feature = "cli"))]
 mod tests;
+
+#[cfg(feature = "cli")]
+pub use aerodeck_fit::{comparison, identification, selection, uncertainty};
+#[cfg(feature = "cli")]
+pub use aerodeck_lab::{files, signal, wind_tunnel};
 
 pub use aerodeck_core::{
     Error, Result, aerodynamics, aeroelastic, bridge, error, flutter, plausibility, response,

@@ -4,7 +4,7 @@ use super::*;
 use crate::aerodynamics::FlatPlate;
 
 /// The eight derivatives of the flat plate at `v_hats` for each speed.
-pub fn flat_plate_table(speeds_m_s: &[f64], v_hats: &[f64]) -> DerivativeTable {
+pub(crate) fn flat_plate_table(speeds_m_s: &[f64], v_hats: &[f64]) -> DerivativeTable {
     let mut points = BTreeMap::new();
     for d in coupling(&Dof::TWO) {
         let row = Dof::TWO.iter().position(|x| *x == d.force()).unwrap();

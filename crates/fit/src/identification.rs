@@ -1,0 +1,48 @@
+//! From records and tables to models: regressors, fits, reports.
+
+pub(crate) mod basis;
+mod constrained;
+mod degenerate;
+pub mod derivatives;
+pub(crate) mod discrete;
+pub(crate) mod dissipative;
+mod entry_report;
+pub(crate) mod form;
+mod frequency;
+pub(crate) mod frequency_options;
+mod grid;
+pub(crate) mod least_squares;
+mod minimum_state;
+pub(crate) mod options;
+pub(crate) mod own;
+pub(crate) mod records;
+pub(crate) mod report;
+pub(crate) mod samples;
+mod search;
+#[cfg(test)]
+mod testing;
+#[cfg(test)]
+mod tests;
+pub(crate) mod time;
+
+pub use discrete::DiscreteFit;
+pub use discrete::fit_discrete;
+pub use dissipative::{
+    ActiveConstraint, ConstraintCost, ConstraintKind, ConstraintReport, Constraints, OnsetEffect,
+};
+pub use entry_report::{Coefficient, EntryReport};
+pub use form::{FeedThrough, Form, LEAST_CHOSEN, MOST_CHOSEN, PoleSearch};
+pub use frequency::fit_table;
+pub use frequency_options::{FrequencyFit, FrequencyWeights, QuasiSteadyLimit};
+pub use grid::{CellFit, Grid, GridAxis, StretchLabel};
+pub use options::{TimeFit, TimeWeights};
+pub use own::{OwnDecay, OwnFilters, StaticTerm};
+pub use records::fit_records;
+pub(crate) use report::CANCELLATION_LIMIT;
+pub use report::{
+    AlphaGuideline, FitReport, Fitted, MemoryReport, OrderReport, SearchPoint, SearchReport,
+    StaticReport,
+};
+pub use samples::sample_model;
+pub use time::pass::OnProgress;
+pub use time::pass::Progress;

@@ -1,0 +1,141 @@
+//! Identified derivatives with their standard errors, and the table made of them.
+
+use crate::aerodynamics::derivatives::{Derivative, DerivativePoint, DerivativeTable, TableHeader};
+use crate::error::{Error, Result};
+use crate::section::Dof;
+use crate::units::{SAME_SPEED, group_of, near_groups};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// How test points are taken from records.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct DerivativeOptions {
+    /// A period is steady when its amplitude is at least this part of the typical one; default 0.99.
+    pub full_amplitude: f64,
+    /// Speeds within this ratio are one test point, default 1.05 as in the tables.
+    pub same_speed: f64,
+    /// Frequencies within this ratio are one test point, default 1.03.
+    pub same_frequency: f64,
+}
+
+impl Default for DerivativeOptions {
+    fn default() -> Self {
+        Self {
+            full_amplitude: 0.99,
+            same_speed: SAME_SPEED,
+            same_frequency: 1.03,
+        }
+    }
+}
+
+impl DerivativeOptions {
+    pub(super) fn validate(&self) -> Result<()> {
+        let share = self.full_amplitude;
+        if !(share > 0.0 && share < 1.0) {
+            let found = share.to_string();
+            return Err(Error::input("full_amplitude", "between 0 and 1", found));
+        }
+        for (key, ratio) in [
+            ("same_speed", self.same_speed),
+            ("same_frequency", self.same_frequency),
+        ] {
+            if !(ratio.is_finite() && ratio >= 1.0) {
+                return Err(Error::input(key, "at least 1", ratio.to_string()));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// One derivative at one test point.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct DerivativeEstimate {
+    /// Which one.
+    pub derivative: Derivative,
+    /// Run that drove its motion.
+    pub run: String,
+    /// Mean wind speed, m/s.
+    pub mean_speed_m_s: f64,
+    /// Frequency of the motion, Hz.
+    pub frequency_hz: f64,
+    /// `V̂ = V/(ωB)`.
+    pub v_hat: f64,
+    /// The derivative.
+    pub value: f64,
+    /// Its standard error.
+    pub standard_error: f64,
+    /// Whole periods that were fitted.
+    pub periods: usize,
+    /// RMS of the residual of the force over that of the force, both without constant and trend.
+    pub residual: f64,
+}
+
+/// Derivatives of a deck from its records.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct IdentifiedDerivatives {
+    /// Width of the section model, m.
+    pub width_m: f64,
+    /// Degrees of freedom of the forces.
+    pub dofs: Vec<Dof>,
+    /// Largest amplitude of rotation, deg; `None` where nothing rotates.
+    pub rotation_amplitude_deg: Option<f64>,
+    /// By derivative and group of speeds, rising; in a group by frequency, rising (V̂ falls).
+    pub estimates: Vec<DerivativeEstimate>,
+    /// What the user should know.
+    pub warnings: Vec<String>,
+}
+
+impl IdentifiedDerivatives {
+    /// The estimates of one derivative, by speed group and frequency.
+    pub fn of(&self, derivative: Derivative) -> impl Iterator<Item = &DerivativeEstimate> {
+        self.estimates
+            .iter()
+            .filter(move |e| e.derivative == derivative)
+    }
+
+    /// Mean speeds of all estimates, m/s, rising and in groups of test points.
+    pub fn speed_groups(&self) -> Vec<Vec<f64>> {
+        near_groups(self.estimates.iter().map(|e| e.mean_speed_m_s), SAME_SPEED)
+    }
+
+    /// The table, without standard errors; the header says how it was made.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when the runs did not drive both heave and rotation.
+    pub fn table(&self, name: &str, header: TableHeader) -> Result<DerivativeTable> {
+        let header = TableHeader {
+            rotation_amplitude_deg: self.rotation_amplitude_deg,
+            ..header
+        };
+        DerivativeTable::new(name, self.width_m, header, self.points())
+    }
+
+    /// The points of every derivative that was identified, in the order of a table.
+    pub fn points(&self) -> BTreeMap<Derivative, Vec<DerivativePoint>> {
+        let mut points = BTreeMap::<Derivative, Vec<DerivativePoint>>::new();
+        for e in &self.estimates {
+            points
+                .entry(e.derivative)
+                .or_default()
+                .push(DerivativePoint {
+                    mean_speed_m_s: Some(e.mean_speed_m_s),
+                    v_hat: e.v_hat,
+                    value: e.value,
+                });
+        }
+        points
+    }
+
+    pub(super) fn sort(&mut self) {
+        let groups = self.speed_groups();
+        let group = |e: &DerivativeEstimate| group_of(&groups, e.mean_speed_m_s);
+        // within a group V̂ falls steadily, as a table wants it, also when its speeds are not quite one
+        self.estimates.sort_by(|a, b| {
+            a.derivative
+                .cmp(&b.derivative)
+                .then(group(a).cmp(&group(b)))
+                .then(b.v_hat.total_cmp(&a.v_hat))
+        });
+    }
+}

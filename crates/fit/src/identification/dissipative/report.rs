@@ -1,0 +1,322 @@
+//! What active constraints are called, what they cost and what they change.
+
+use crate::identification::basis::Basis;
+use crate::identification::entry_report::EntryReport;
+use crate::section::Dof;
+use crate::trained_model::Model;
+use nalgebra::{Complex, DMatrix};
+use serde::Serialize;
+
+/// Share of the square of a mode shape that makes it the motion of one degree of freedom.
+const ONE_MOTION: f64 = 0.95;
+
+/// What a constraint holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ConstraintKind {
+    /// `−vᵀ Im G(K)/K v ≥ 0`, or no more than the growth with which the tests end, at one `K` above the tested range.
+    AboveTestedRange,
+    /// `−vᵀ e₁ v ≥ δ/2`.
+    FastMotion,
+    /// `−vᵀ e₂ v ≥ 0`.
+    AddedMass,
+    /// `e₂ = e₂ᵀ` for one pair of motions.
+    SymmetricAddedMass,
+    /// `G(0)` of one transfer function, as it was asked for.
+    ValueAtZero,
+    /// `dG/d(iK)` of one transfer function at 0, as it was asked for.
+    SlopeAtZero,
+}
+
+/// A constraint that holds a fit back.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ActiveConstraint {
+    /// What it holds.
+    pub kind: ConstraintKind,
+    /// Reduced frequency `K`, where it is one of a reduced frequency.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub k: Option<f64>,
+    /// Row and column of the transfer function, where it is one of a transfer function (for symmetry, one of the pair).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub entry: Option<(usize, usize)>,
+    /// Mode shape `v` of unit length in the order of the degrees of freedom, positive `y/B`, `x/B`, `θ`; else zero.
+    pub direction: Vec<f64>,
+    /// The quadratic form that the data alone would give (the difference of the pair, for symmetry), dimensionless.
+    pub alone: f64,
+    /// The same in the fit.
+    pub held: f64,
+    /// What its limit follows, where that is the growth with which the tests end.
+    #[serde(skip)]
+    pub(crate) limit: Option<GrowthLimit>,
+}
+
+/// A limit that follows the data: `Σ W ∘ Im G(K_max)/K_max` changes by as much as it does.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct GrowthLimit {
+    /// `K_max`.
+    pub k_max: f64,
+    /// `W`, symmetric, over all degrees of freedom.
+    pub weights: DMatrix<f64>,
+}
+
+/// What constraints cost one transfer function.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ConstraintCost {
+    /// Force (row of `G`).
+    pub force: Dof,
+    /// Motion (column of `G`).
+    pub motion: Dof,
+    /// Relative root mean square of the residuals without constraints, as in [`EntryReport::relative_rms`].
+    pub without: Option<f64>,
+    /// The same with them.
+    pub with: Option<f64>,
+}
+
+/// The onset of one section with and without constraints; `None` where there is none in the range searched.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct OnsetEffect {
+    /// Of the fit that the data alone would give, m/s.
+    pub without_m_s: Option<f64>,
+    /// Of the fit as it is, m/s.
+    pub with_m_s: Option<f64>,
+}
+
+/// Account of the constraints that hold a fit.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ConstraintReport {
+    /// The constraints, one by one.
+    pub active: Vec<ActiveConstraint>,
+    /// The same in sentences.
+    pub sentences: Vec<String>,
+    /// What they cost, one account per transfer function, row by row.
+    pub costs: Vec<ConstraintCost>,
+    /// What they do to the onset; filled in where the section is known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub onset: Option<OnsetEffect>,
+    /// The model that the data alone would give.
+    #[serde(skip)]
+    pub unconstrained: Box<Model>,
+}
+
+impl ConstraintKind {
+    /// What a transfer function contributes, as a row over its columns.
+    pub(super) fn row(self, k: Option<f64>, basis: &Basis) -> Vec<f64> {
+        let column = |order: usize| basis.feed().orders().position(|o| o == order);
+        let unit = |order: usize| {
+            let one = column(order);
+            (0..basis.len())
+                .map(|c| f64::from(u8::from(Some(c) == one)))
+                .collect()
+        };
+        match (self, k) {
+            (Self::AboveTestedRange, Some(k)) => {
+                let columns = basis.columns(Complex::new(0.0, k));
+                columns.iter().map(|z| z.im / k).collect()
+            }
+            (Self::AboveTestedRange | Self::FastMotion, _) => unit(1),
+            (Self::AddedMass | Self::SymmetricAddedMass, _) => unit(2),
+            (Self::ValueAtZero, _) => basis.at_zero()[0].clone(),
+            (Self::SlopeAtZero, _) => basis.at_zero()[1].clone(),
+        }
+    }
+}
+
+impl ActiveConstraint {
+    /// Gradient of what it holds with respect to the coefficients of entry `(i, j)`.
+    pub(crate) fn gradient(&self, (i, j): (usize, usize), basis: &Basis) -> Vec<f64> {
+        let row = self.kind.row(self.k, basis);
+        let weight = self.weight(i, j);
+        row.into_iter().map(|x| weight * x).collect()
+    }
+
+    /// The same of what it holds beyond its limit, where that follows the data.
+    pub(crate) fn gradient_beyond_limit(&self, (i, j): (usize, usize), basis: &Basis) -> Vec<f64> {
+        let mut gradient = self.gradient((i, j), basis);
+        if let Some(limit) = &self.limit {
+            let row = ConstraintKind::AboveTestedRange.row(Some(limit.k_max), basis);
+            for (to, x) in gradient.iter_mut().zip(row) {
+                *to -= limit.weights[(i, j)] * x;
+            }
+        }
+        gradient
+    }
+
+    fn weight(&self, i: usize, j: usize) -> f64 {
+        match self.entry {
+            Some(entry) if entry == (i, j) => 1.0,
+            Some(entry) if entry == (j, i) && self.kind == ConstraintKind::SymmetricAddedMass => {
+                -1.0
+            }
+            Some(_) => 0.0,
+            None => self.direction[i] * self.direction[j],
+        }
+    }
+
+    /// What it would hold in another model, from its bases and coefficients, row by row.
+    fn of(&self, bases: &[Basis], coefficients: &[Vec<f64>]) -> f64 {
+        let n = self.direction.len();
+        let part = |(e, (basis, values)): (usize, (&Basis, &Vec<f64>))| -> f64 {
+            let gradient = self.gradient((e / n, e % n), basis);
+            gradient.iter().zip(values).map(|(g, v)| g * v).sum()
+        };
+        bases.iter().zip(coefficients).enumerate().map(part).sum()
+    }
+
+    /// Whose motion it is.
+    fn whose(&self, dofs: &[Dof]) -> String {
+        let one = self.direction.iter().position(|v| v * v > ONE_MOTION);
+        if let Some(i) = one {
+            return dofs[i].name().to_owned();
+        }
+        let largest = self
+            .direction
+            .iter()
+            .copied()
+            .fold(0.0, |a: f64, v| if v.abs() > a.abs() { v } else { a });
+        let parts = self
+            .direction
+            .iter()
+            .zip(dofs)
+            .filter(|(v, _)| v.abs() > 0.05);
+        let parts: Vec<_> = parts
+            .map(|(v, d)| format!("{:.2} {}", v * largest.signum(), d.name()))
+            .collect();
+        format!("coupled ({})", parts.join(", "))
+    }
+}
+
+impl OnsetEffect {
+    /// How far the constraints move the onset, relative to the one without them; infinite where only one of the two fits has
+    /// an onset, zero where none has.
+    pub fn shift(&self) -> f64 {
+        match (self.without_m_s, self.with_m_s) {
+            (Some(without), Some(with)) => with / without - 1.0,
+            (None, None) => 0.0,
+            _ => f64::INFINITY,
+        }
+    }
+}
+
+impl ConstraintReport {
+    /// The account of a fit beside the one without constraints.
+    pub(crate) fn new(
+        mut active: Vec<ActiveConstraint>,
+        dofs: &[Dof],
+        (alone, bases): (&[EntryReport], &[Basis]),
+        with: &[EntryReport],
+        unconstrained: Model,
+    ) -> Self {
+        let values: Vec<Vec<f64>> = alone.iter().map(EntryReport::values).collect();
+        for constraint in &mut active {
+            constraint.alone = constraint.of(bases, &values);
+        }
+        let cost = |(a, b): (&EntryReport, &EntryReport)| ConstraintCost {
+            force: b.force,
+            motion: b.motion,
+            without: a.relative_rms,
+            with: b.relative_rms,
+        };
+        Self {
+            sentences: sentences(&active, dofs),
+            active,
+            costs: alone.iter().zip(with).map(cost).collect(),
+            onset: None,
+            unconstrained: Box::new(unconstrained),
+        }
+    }
+
+    /// Largest rise of a residual, in percentage points, and where.
+    pub fn dearest(&self) -> Option<(&ConstraintCost, f64)> {
+        self.costs
+            .iter()
+            .filter_map(|c| Some((c, 100.0 * (c.with? - c.without?))))
+            .max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+}
+
+/// One sentence a constraint; neighbouring reduced frequencies of one motion share theirs.
+fn sentences(active: &[ActiveConstraint], dofs: &[Dof]) -> Vec<String> {
+    let mut all = Vec::new();
+    let mut at = 0;
+    while at < active.len() {
+        let first = &active[at];
+        let whose = first.whose(dofs);
+        let mut end = at + 1;
+        while first.kind == ConstraintKind::AboveTestedRange
+            && active
+                .get(end)
+                .is_some_and(|c| c.kind == first.kind && c.whose(dofs) == whose)
+        {
+            end += 1;
+        }
+        all.push(sentence(&active[at..end], &whose, dofs));
+        at = end;
+    }
+    all
+}
+
+fn sentence(run: &[ActiveConstraint], whose: &str, dofs: &[Dof]) -> String {
+    let first = &run[0];
+    let would = |what: &str, symbol: &str| data_alone(run, what, symbol);
+    let (i, j) = first.entry.unwrap_or_default();
+    let (force, motion) = (dofs[i].name(), dofs[j].name());
+    let at_zero = |what: &str| {
+        format!(
+            "{what} of the {force} force due to {motion} motion at K → 0 is {:.4} as stated: the data alone would make it {:.4}",
+            first.held, first.alone
+        )
+    };
+    match first.kind {
+        ConstraintKind::AboveTestedRange => format!(
+            "{whose} damping at {}: {}",
+            place_and_limit(run),
+            would("damping", "Im G/K")
+        ),
+        ConstraintKind::FastMotion => format!(
+            "{whose} damping in the limit of fast motion is held at a thousandth of what was tested: {}",
+            would("damping", "e1")
+        ),
+        ConstraintKind::AddedMass => format!(
+            "added mass of the {whose} motion is held at zero: {}",
+            would("a mass", "e2")
+        ),
+        ConstraintKind::SymmetricAddedMass => format!(
+            "added mass that couples {motion} and {force} motion is symmetric: the data alone would make its two numbers differ \
+             (e2 by {:+.3})",
+            first.alone
+        ),
+        ConstraintKind::ValueAtZero => at_zero("the value"),
+        ConstraintKind::SlopeAtZero => at_zero("the slope"),
+    }
+}
+
+/// What the data alone would give at the worst of a run of constraints.
+fn data_alone(run: &[ActiveConstraint], what: &str, symbol: &str) -> String {
+    let alone = run.iter().map(|c| c.alone).fold(f64::MIN, f64::max);
+    if alone > 0.0 {
+        format!("the data alone would make it negative ({symbol} {alone:+.3})")
+    } else {
+        format!(
+            "the data alone give {what} there ({symbol} {alone:+.3}), but not with the other constraints"
+        )
+    }
+}
+
+/// The reduced frequencies of a run of constraints, and at what they hold the damping.
+fn place_and_limit(run: &[ActiveConstraint]) -> String {
+    let ks: Vec<f64> = run.iter().filter_map(|c| c.k).collect();
+    let (low, high) = (ks[0], ks[ks.len() - 1]);
+    let place = if low < high {
+        format!("K = {low:.3} to {high:.3}")
+    } else {
+        format!("K = {low:.3}")
+    };
+    let own = run.iter().map(|c| c.held).fold(0.0, f64::max);
+    if own > 0.0 {
+        format!(
+            "{place} is held at the growth with which the tests end, fading with K² (Im G/K {own:+.3} there)"
+        )
+    } else {
+        format!("{place} is held at zero")
+    }
+}

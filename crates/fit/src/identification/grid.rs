@@ -1,0 +1,371 @@
+//! Grids over the number of filters and their pole or decay factor, in one pass over the records.
+//!
+//! Columns are nested in `L`, so one factorisation of the largest number of filters serves all smaller ones; and every
+//! segment is factored by itself, so that leaving segments out costs no further pass.
+
+use super::basis::{Basis, assemble};
+use super::discrete::discrete_pass;
+use super::dissipative::Strictness;
+use super::form::{Form, number_of_filters};
+use super::least_squares::Factor;
+use super::options::{TimeFit, TimeWeights};
+use super::own::StaticTerm;
+use super::time::continuous::{RecordFit, Rows};
+use super::time::fitted::Joint;
+use super::time::pass::{ColumnOrder, OnProgress, Pass, Stretch};
+use super::time::record::Records;
+use super::time::systems::{ForceSystems, Systems};
+use crate::aerodynamics::DiscreteLaguerre;
+use crate::error::{Error, Result};
+use crate::section::Dof;
+use crate::trained_model::Model;
+use crate::units::ReducedFrequencyRange;
+use crate::wind_tunnel::RecordSource;
+use nalgebra::DMatrix;
+use std::rc::Rc;
+
+/// What a grid is laid over.
+#[derive(Debug, Clone, PartialEq)]
+pub enum GridAxis {
+    /// Discrete Laguerre filters: decay factors `α`, and the weights of the fit.
+    Discrete(Vec<f64>, TimeWeights),
+    /// Continuous Laguerre filters with feed-through: poles `p`; form, weights and low-pass are those of the fit.
+    Continuous(Vec<f64>, Box<TimeFit>),
+}
+
+/// A stretch of a record that was kept apart.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StretchLabel {
+    /// Mean speed of the record, m/s.
+    pub mean_speed_m_s: f64,
+    /// Frequency of the motion, Hz; `None` for other motions.
+    pub frequency_hz: Option<f64>,
+}
+
+/// Factors of all candidates and stretches.
+pub struct Grid {
+    axis: GridAxis,
+    dofs: Vec<Dof>,
+    filters_max: usize,
+    tested: ReducedFrequencyRange,
+    delta_s: f64,
+    pass: Pass,
+    labels: Vec<StretchLabel>,
+}
+
+/// Fit of one cell.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CellFit {
+    /// The model.
+    pub model: Model,
+    /// Root mean square, over the transfer functions, of the relative residuals, as in the search of poles.
+    pub objective: f64,
+    /// Largest single term over the norm of the fit, of any transfer function.
+    pub cancellation: f64,
+    coefficients: Vec<DMatrix<f64>>,
+}
+
+impl Grid {
+    /// One pass over the records.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for an axis without values, no filters, records that cannot be read, do not fit together or move
+    /// several degrees of freedom at once.
+    pub fn new(
+        records: &[&dyn RecordSource],
+        axis: GridAxis,
+        filters_max: usize,
+        progress: OnProgress<'_>,
+    ) -> Result<Self> {
+        if axis.values().is_empty() || filters_max == 0 {
+            return Err(Error::input(
+                "grid",
+                "at least one value and one filter",
+                "none",
+            ));
+        }
+        number_of_filters("grid.filters", filters_max)?;
+        let records = Records::read(records, StaticTerm::None)?;
+        let tested = records.tested_range()?;
+        let pass = axis.pass(&records, filters_max, progress)?;
+        let label = |s: &Stretch| {
+            let record = &records.each[s.record];
+            StretchLabel {
+                mean_speed_m_s: record.mean_speed_m_s(),
+                frequency_hz: s.segment.map(|i| record.segments()[i].frequency_hz),
+            }
+        };
+        if pass.stretches.iter().any(|s| s.set.len() > 1) {
+            return Err(Error::input(
+                "records",
+                "one moving degree of freedom a record",
+                "several that move at once",
+            ));
+        }
+        Ok(Self {
+            labels: pass.stretches.iter().map(label).collect(),
+            axis,
+            delta_s: records.longest_step(),
+            dofs: records.dofs,
+            filters_max,
+            tested,
+            pass,
+        })
+    }
+
+    /// Values along the axis.
+    pub fn values(&self) -> &[f64] {
+        self.axis.values()
+    }
+
+    /// Symbol of the axis.
+    pub(crate) fn symbol(&self) -> &'static str {
+        self.axis.symbol()
+    }
+
+    /// Greatest number of filters.
+    pub(crate) fn filters_max(&self) -> usize {
+        self.filters_max
+    }
+
+    /// Reduced frequencies of the records.
+    pub(crate) fn tested_range(&self) -> ReducedFrequencyRange {
+        self.tested
+    }
+
+    /// Degrees of freedom of rows and columns.
+    pub(crate) fn dofs(&self) -> &[Dof] {
+        &self.dofs
+    }
+
+    /// The stretches, in the order in which `keep` sees them.
+    pub(crate) fn labels(&self) -> &[StretchLabel] {
+        &self.labels
+    }
+
+    /// All numbers of filters, from one to the greatest, of one value of the axis, fitted to the stretches for which
+    /// `keep` is true.
+    ///
+    /// # Errors
+    /// Stretches that do not determine the coefficients: as an entry of the list.
+    pub fn fits(&self, value: usize, keep: &dyn Fn(usize) -> bool) -> Vec<Result<CellFit>> {
+        let chosen = self
+            .pass
+            .stretches
+            .iter()
+            .enumerate()
+            .filter(|(s, _)| keep(*s));
+        let systems = Systems::new(self.pass.order, chosen.map(|(_, c)| c), value);
+        let systems = Rc::new(systems);
+        (1..=self.filters_max)
+            .map(|filters| self.cell(&systems, value, filters))
+            .collect()
+    }
+
+    fn leading(&self, filters: usize) -> usize {
+        let feed = self.pass.order.per_input - self.filters_max;
+        feed + filters
+    }
+
+    fn cell(&self, systems: &Rc<Systems>, value: usize, filters: usize) -> Result<CellFit> {
+        let per_input = self.leading(filters);
+        let leading = self.pass.order.leading(per_input, self.dofs.len());
+        let mut coefficients = systems
+            .whole
+            .iter()
+            .map(|factor| factor.solve(leading))
+            .collect::<Result<Vec<_>>>()?;
+        let mut objective = systems.objective(per_input, &|_, _| true);
+        if let Some(held) = self.constrained(systems, value, filters)? {
+            objective = held.objective();
+            for (i, all) in coefficients.iter_mut().enumerate() {
+                for j in 0..self.dofs.len() {
+                    for (c, x) in held.values(i * self.dofs.len() + j).iter().enumerate() {
+                        all[self.pass.order.index(c, j)] = *x;
+                    }
+                }
+            }
+        }
+        let mut cancellation: f64 = 0.0;
+        for (set, factors) in systems.sets.iter().filter(|(set, _)| !set.is_empty()) {
+            for (factor, all) in factors.iter().zip(&coefficients) {
+                let own = self.own(set[0], per_input, all);
+                cancellation = cancellation.max(factor.cancellation(&own, 0));
+            }
+        }
+        Ok(CellFit {
+            model: self.model(value, filters, &coefficients)?,
+            objective,
+            cancellation,
+            coefficients,
+        })
+    }
+
+    /// The fit under its constraints, where these are asked for and bind.
+    fn constrained(
+        &self,
+        systems: &Rc<Systems>,
+        value: usize,
+        filters: usize,
+    ) -> Result<Option<Joint>> {
+        let GridAxis::Continuous(poles, fit) = &self.axis else {
+            return Ok(None);
+        };
+        let wishes = fit.wishes(&self.dofs, self.tested)?;
+        if !wishes.any() {
+            return Ok(None);
+        }
+        let entries = self.dofs.len() * self.dofs.len();
+        let form = with_filters(&fit.form, filters);
+        let basis = Basis::orthonormal(&form, &vec![poles[value]; filters])?;
+        let systems = ForceSystems {
+            counts: vec![self.leading(filters); entries],
+            systems: vec![Rc::clone(systems)],
+        };
+        let joint = Joint::new(
+            &systems,
+            &vec![basis; entries],
+            &wishes,
+            Strictness::Sampled,
+        )?;
+        Ok(Some(joint).filter(|j| j.held.is_some()))
+    }
+
+    /// Coefficients that a system of input `j` alone takes: the constant, if any, then that input's.
+    fn own(&self, j: usize, per_input: usize, all: &DMatrix<f64>) -> Vec<f64> {
+        let constant = self.pass.order.constant.then(|| all[0]);
+        let columns = (0..per_input).map(|c| all[self.pass.order.index(c, j)]);
+        constant.into_iter().chain(columns).collect()
+    }
+
+    fn model(&self, value: usize, filters: usize, all: &[DMatrix<f64>]) -> Result<Model> {
+        let n = self.dofs.len();
+        let per_input = self.leading(filters);
+        match &self.axis {
+            GridAxis::Discrete(alphas, _) => {
+                let of_motion =
+                    |j| DMatrix::from_fn(n, filters, |i, l| all[i][self.pass.order.index(l, j)]);
+                let model = DiscreteLaguerre::shared(
+                    self.dofs.clone(),
+                    alphas[value],
+                    self.delta_s,
+                    (0..n).map(of_motion).collect(),
+                    all.iter().map(|c| c[0]).collect(),
+                );
+                model.validate()?;
+                Ok(Model::DiscreteLaguerre(model))
+            }
+            GridAxis::Continuous(poles, fit) => {
+                let form = with_filters(&fit.form, filters);
+                let chain = vec![vec![vec![poles[value]; filters]; n]; n];
+                let coefficients: Vec<Vec<Vec<f64>>> = (0..n)
+                    .map(|i| {
+                        (0..n)
+                            .map(|j| {
+                                (0..per_input)
+                                    .map(|c| all[i][self.pass.order.index(c, j)])
+                                    .collect()
+                            })
+                            .collect()
+                    })
+                    .collect();
+                assemble(&form, &self.dofs, &chain, &coefficients)
+            }
+        }
+    }
+
+    /// Sum of squared residuals and of squared data of every force, weighted, in one stretch; `None` in one at rest.
+    pub(crate) fn residuals(
+        &self,
+        stretch: usize,
+        value: usize,
+        fit: &CellFit,
+    ) -> Option<Vec<(f64, f64)>> {
+        let stretch = &self.pass.stretches[stretch];
+        let &j = stretch.set.first()?;
+        let factor: &Factor = &stretch.factors[value];
+        let sums = fit.coefficients.iter().enumerate().map(|(i, all)| {
+            let per_input = (all.len() - usize::from(self.pass.order.constant)) / self.dofs.len();
+            let mut own = self.own(j, per_input, all);
+            own.resize(factor.columns(), 0.0);
+            let square = stretch.weights[i].powi(2);
+            let residual = factor.residual_sum_of(&own, i);
+            (square * residual, square * factor.total_sum(i))
+        });
+        Some(sums.collect())
+    }
+
+    /// Input that moves in a stretch.
+    pub(crate) fn motion(&self, stretch: usize) -> Option<Dof> {
+        self.pass.stretches[stretch]
+            .set
+            .first()
+            .map(|j| self.dofs[*j])
+    }
+}
+
+impl GridAxis {
+    /// Values along the axis.
+    pub fn values(&self) -> &[f64] {
+        match self {
+            Self::Discrete(values, _) | Self::Continuous(values, _) => values,
+        }
+    }
+
+    /// One pass over the records with the filters of all values, every segment factored by itself.
+    fn pass(&self, records: &Records, filters: usize, progress: OnProgress<'_>) -> Result<Pass> {
+        let inputs = records.dofs.len();
+        match self {
+            Self::Discrete(alphas, weights) => {
+                if let Some(bad) = alphas.iter().find(|a| !(**a > 0.0 && **a < 1.0)) {
+                    return Err(Error::input("alpha", "0 < alpha < 1", bad.to_string()));
+                }
+                let order = ColumnOrder {
+                    inputs,
+                    per_input: filters,
+                    constant: true,
+                };
+                let alphas: Vec<Vec<f64>> = alphas.iter().map(|a| vec![*a; inputs]).collect();
+                let columns = (order, alphas.as_slice());
+                discrete_pass(records, columns, (*weights, 1), progress)
+            }
+            Self::Continuous(poles, fit) => {
+                let task = RecordFit {
+                    fit: &TimeFit {
+                        form: with_filters(&fit.form, filters),
+                        static_term: StaticTerm::None,
+                        ..(**fit).clone()
+                    },
+                    records,
+                    progress,
+                };
+                let chains = |p: &f64| vec![vec![*p; filters]; inputs];
+                let candidates: Vec<_> = poles.iter().map(chains).collect();
+                let rows = Rows {
+                    stretches: 1,
+                    ..Rows::THINNED
+                };
+                task.pass(&candidates, rows, (1, 1))
+            }
+        }
+    }
+
+    /// Symbol of the parameter.
+    pub(crate) fn symbol(&self) -> &'static str {
+        match self {
+            Self::Discrete(..) => "α",
+            Self::Continuous(..) => "p",
+        }
+    }
+}
+
+fn with_filters(form: &Form, filters: usize) -> Form {
+    Form::Laguerre {
+        filters: Some(filters),
+        feed_through: form.feed_through(),
+        pole_per_transfer_function: false,
+    }
+}
+
+#[cfg(test)]
+mod tests;

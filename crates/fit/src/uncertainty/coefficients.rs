@@ -1,0 +1,407 @@
+//! Estimated parameters of a model, their covariance, and the model as a function of them.
+
+use super::columns::LinearModel;
+use super::design::Design;
+use super::parameters::{Coordinates, Parameter, per_chain};
+use super::speed_groups::speed_groups;
+use super::speed_prior::SpeedPrior;
+use super::speed_scatter::{self, Effect, POINTS, Slopes, SpeedScatter};
+use crate::aerodynamics::{DiscreteLaguerre, Transfer, TransferMatrix};
+use crate::error::{Error, Result};
+use crate::identification::basis::assemble;
+use crate::identification::report::FitReport;
+use crate::section::Dof;
+use crate::trained_model::Model;
+use crate::units::{ReducedFrequency, ReducedFrequencyRange};
+use nalgebra::{DMatrix, DVector};
+use serde::{Deserialize, Serialize};
+
+/// Relative step of the differences with respect to the parameters.
+const STEP: f64 = 1e-5;
+/// A model whose transfer matrix differs by more than this, relatively, is another one.
+const SAME_MODEL: f64 = 1e-6;
+
+/// Estimates with their covariance.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CoefficientUncertainty {
+    /// What the covariance means and under which assumption it holds.
+    pub assumption: String,
+    /// Degrees of freedom of rows and columns.
+    pub dofs: Vec<Dof>,
+    /// How the parameters make the model.
+    pub coordinates: Coordinates,
+    /// The estimates.
+    pub parameters: Vec<Parameter>,
+    /// Covariance of the estimates, P×P, in their order.
+    #[serde(with = "crate::state_space::rows")]
+    pub covariance: DMatrix<f64>,
+    /// The independent blocks of data.
+    pub blocks: Vec<String>,
+    /// Scatter between mean speeds.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub speeds: Option<SpeedScatter>,
+    #[serde(skip)]
+    pub(super) design: Option<Design>,
+    /// Reduced frequencies over which the scatter between mean speeds was asked.
+    #[serde(skip)]
+    tested: Option<ReducedFrequencyRange>,
+    #[serde(skip)]
+    pub(super) effects: Vec<Effect>,
+}
+
+impl CoefficientUncertainty {
+    /// The estimates of a fit with the blocks it was made from; `tested` holds their reduced frequencies where
+    /// the scatter between mean speeds is asked.
+    pub(super) fn new(
+        (assumption, tested): (String, Option<ReducedFrequencyRange>),
+        dofs: Vec<Dof>,
+        coordinates: Coordinates,
+        parameters: Vec<Parameter>,
+        design: Design,
+    ) -> Result<Self> {
+        let contributions = design.contributions();
+        let mut estimate = Self {
+            assumption,
+            dofs,
+            coordinates,
+            parameters,
+            covariance: &contributions * contributions.transpose(),
+            blocks: design.names(),
+            speeds: None,
+            design: None,
+            tested,
+            effects: Vec::new(),
+        };
+        if let Some(tested) = tested {
+            estimate.add_speeds(&design, tested, SpeedPrior::measured(None))?;
+        }
+        estimate.state_errors();
+        estimate.design = Some(design);
+        Ok(estimate)
+    }
+
+    /// The same without what an embedded measured deck says of the scatter between mean speeds: for that deck itself.
+    ///
+    /// # Errors
+    /// [`Error::Numerical`] when the covariance cannot be made again.
+    pub fn leaving_out(mut self, deck: &str) -> Result<Self> {
+        let (Some(design), Some(speeds), Some(tested)) =
+            (self.design.take(), &self.speeds, self.tested)
+        else {
+            return Ok(self);
+        };
+        let said = format!("; {}", speeds.describe());
+        if let Some(without) = self.assumption.strip_suffix(&said) {
+            self.assumption = without.to_owned();
+        }
+        let contributions = design.contributions();
+        self.covariance = &contributions * contributions.transpose();
+        self.add_speeds(&design, tested, SpeedPrior::measured(Some(deck)))?;
+        self.state_errors();
+        self.design = Some(design);
+        Ok(self)
+    }
+
+    fn state_errors(&mut self) {
+        for (i, parameter) in self.parameters.iter_mut().enumerate() {
+            parameter.standard_error = self.covariance[(i, i)].max(0.0).sqrt();
+        }
+    }
+
+    /// Adds the scatter between mean speeds.
+    fn add_speeds(
+        &mut self,
+        design: &Design,
+        tested: ReducedFrequencyRange,
+        prior: SpeedPrior,
+    ) -> Result<()> {
+        let at = self.slopes_over(tested)?;
+        let values = DVector::from_vec(self.values());
+        let own = self.own_coefficients();
+        let (scatter, effects) =
+            speed_scatter::between_speeds((design, prior), &self.dofs, (&values, &own), &at)?;
+        self.assumption = format!("{}; {}", self.assumption, scatter.describe());
+        for effect in &effects {
+            self.covariance += &effect.columns * effect.columns.transpose();
+        }
+        self.effects = effects;
+        self.speeds = Some(scatter);
+        Ok(())
+    }
+
+    /// Transfer functions with their slopes at points over a range, logarithmic.
+    fn slopes_over(&self, range: ReducedFrequencyRange) -> Result<Vec<Slopes>> {
+        let (low, high) = (range.min.full_width(), range.max.full_width());
+        let step = (high / low).ln() / (POINTS as f64 - 1.0);
+        let k = |i: usize| ReducedFrequency::from_full_width(low * (step * i as f64).exp());
+        let ks: Vec<_> = (0..POINTS).map(k).collect();
+        let all = self.transfer_slopes(&ks)?;
+        let of = |(k, (value, slopes)): (&ReducedFrequency, _)| Slopes {
+            k: k.full_width(),
+            value,
+            slopes,
+        };
+        Ok(ks.iter().zip(all).map(of).collect())
+    }
+
+    /// The transfer matrix at every `K`, and its derivatives with respect to the parameters, by central differences.
+    pub(crate) fn transfer_slopes(
+        &self,
+        ks: &[ReducedFrequency],
+    ) -> Result<Vec<(TransferMatrix, Vec<TransferMatrix>)>> {
+        let values = self.values();
+        let model = self.model_at(&values)?;
+        let mut pairs = Vec::with_capacity(values.len());
+        for p in 0..values.len() {
+            let step = STEP * values[p].abs().max(1e-2);
+            let moved = |by: f64| {
+                let mut moved = values.clone();
+                moved[p] += by;
+                self.model_at(&moved)
+            };
+            pairs.push((moved(step)?, moved(-step)?, 2.0 * step));
+        }
+        ks.iter()
+            .map(|&k| {
+                let slope = |(up, down, step): &(Model, Model, f64)| {
+                    Ok((up.transfer(k)? - down.transfer(k)?).unscale(*step))
+                };
+                let slopes = pairs.iter().map(slope).collect::<Result<_>>()?;
+                Ok((model.transfer(k)?, slopes))
+            })
+            .collect()
+    }
+
+    /// Places of the coefficients of every transfer function, row by row; poles and static terms are nobody's.
+    pub(crate) fn own_coefficients(&self) -> Vec<Vec<usize>> {
+        let coefficients = match &self.coordinates {
+            Coordinates::Continuous { searched, .. } => self.parameters.len() - searched.len(),
+            Coordinates::Discrete { .. } => self.parameters.len(),
+        };
+        let of = |force: Dof, motion: Dof| -> Vec<usize> {
+            let is_own = |p: &usize| {
+                let q = &self.parameters[*p];
+                (q.force, q.motion) == (Some(force), Some(motion))
+            };
+            (0..coefficients).filter(is_own).collect()
+        };
+        let pairs = self
+            .dofs
+            .iter()
+            .flat_map(|f| self.dofs.iter().map(move |m| (*f, *m)));
+        pairs.map(|(f, m)| of(f, m)).collect()
+    }
+
+    /// What is wrong with the form of the model whatever the data, if anything: its onset is biased, and no scatter shows it.
+    pub(crate) fn known_bias(&self) -> Option<&'static str> {
+        match &self.coordinates {
+            Coordinates::Continuous { .. } => None,
+            Coordinates::Discrete { .. } => Some(
+                "the sampled model has no feed-through and holds its force over a step: its bias is known to be there, and \
+                 not in the scatter",
+            ),
+        }
+    }
+
+    /// The estimates.
+    pub fn values(&self) -> Vec<f64> {
+        self.parameters.iter().map(|p| p.value).collect()
+    }
+
+    /// The model with other parameters.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for another number of parameters or a pole that is not positive.
+    pub fn model_at(&self, values: &[f64]) -> Result<Model> {
+        let n = self.dofs.len();
+        let expected = self.parameters.len();
+        if values.len() != expected {
+            let found = values.len().to_string();
+            return Err(Error::input("parameters", expected.to_string(), found));
+        }
+        match &self.coordinates {
+            Coordinates::Continuous {
+                form,
+                chains,
+                searched,
+            } => {
+                let first_pole = expected.saturating_sub(searched.len());
+                let mut chains = chains.clone();
+                for (pole, value) in searched.iter().zip(&values[first_pole..]) {
+                    pole.move_to(*value, form, &mut chains);
+                }
+                let coefficients = per_chain(form, &chains, values);
+                assemble(form, &self.dofs, &chains, &coefficients)
+            }
+            Coordinates::Discrete {
+                alpha,
+                delta_s,
+                filters,
+            } => {
+                let each = 1 + n * filters;
+                let of_motion = |j| {
+                    DMatrix::from_fn(n, *filters, |i, l| values[i * each + 1 + j * filters + l])
+                };
+                let model = DiscreteLaguerre::shared(
+                    self.dofs.clone(),
+                    *alpha,
+                    *delta_s,
+                    (0..n).map(of_motion).collect(),
+                    (0..n).map(|i| values[i * each]).collect(),
+                );
+                model.validate()?;
+                Ok(Model::DiscreteLaguerre(model))
+            }
+        }
+    }
+
+    /// The model as a linear function of its parameters, where poles are among them.
+    ///
+    /// # Errors
+    /// Chains whose columns cannot be told apart.
+    pub(crate) fn linear(&self) -> Result<Option<LinearModel>> {
+        match &self.coordinates {
+            Coordinates::Continuous {
+                form,
+                chains,
+                searched,
+            } if !searched.is_empty() => {
+                let of = (form, self.dofs.as_slice());
+                LinearModel::new(of, chains, searched, self.values()).map(Some)
+            }
+            _ => Ok(None),
+        }
+    }
+
+    /// Standard error of `gradient · parameters`.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a gradient of another length.
+    pub fn standard_error(&self, gradient: &[f64]) -> Result<f64> {
+        if gradient.len() != self.parameters.len() {
+            return Err(Error::input(
+                "gradient",
+                self.parameters.len().to_string(),
+                gradient.len().to_string(),
+            ));
+        }
+        let g = DVector::from_column_slice(gradient);
+        Ok(g.dot(&(&self.covariance * &g)).max(0.0).sqrt())
+    }
+
+    /// Degrees of freedom of that standard error; `None` for an estimate that was read from a file, which no longer knows
+    /// its data.
+    pub fn degrees_of_freedom(&self, gradient: &[f64]) -> Option<f64> {
+        let design = self.design.as_ref()?;
+        let gradient = DVector::from_column_slice(gradient);
+        Some(speed_scatter::degrees_of_freedom(
+            design,
+            &self.effects,
+            &gradient,
+        ))
+    }
+
+    /// Adds a draw of the scatter between speeds to parameters that were drawn from the blocks.
+    pub(crate) fn scatter_speeds(&self, values: &mut [f64], normal: &mut dyn FnMut() -> f64) {
+        for column in self.effects.iter().flat_map(|e| e.columns.column_iter()) {
+            let z = normal();
+            for (value, change) in values.iter_mut().zip(column.iter()) {
+                *value += z * change;
+            }
+        }
+    }
+
+    /// Parameters of the fit in which each block counts as often as its weight says: exact for coefficients, one
+    /// Gauss–Newton step for searched poles, along what active constraints leave free. `None` for an estimate that was read from a file.
+    ///
+    /// # Errors
+    /// [`Error::Numerical`] when the weighted blocks do not determine all parameters.
+    pub(crate) fn reweighted(&self, weights: &[f64]) -> Result<Option<Vec<f64>>> {
+        let Some(design) = &self.design else {
+            return Ok(None);
+        };
+        Ok(Some(self.moved_by(&design.reweighted(weights)?)))
+    }
+
+    /// The estimates and a step from them.
+    pub(super) fn moved_by(&self, step: &DVector<f64>) -> Vec<f64> {
+        let moved = self.parameters.iter().zip(step.iter());
+        moved.map(|(p, d)| p.value + d).collect()
+    }
+
+    /// Whether these coefficients make `model`, as its transfer matrix at one `K` tells.
+    pub(super) fn makes(&self, model: &dyn Transfer, k: ReducedFrequency) -> Result<bool> {
+        let own = self.model_at(&self.values())?;
+        if own.dofs() != model.dofs() {
+            return Ok(false);
+        }
+        let (a, b) = (own.transfer(k)?, model.transfer(k)?);
+        Ok((a - &b).norm() <= SAME_MODEL * b.norm())
+    }
+
+    /// The fit to the tests at each mean speed alone, with the poles of the fit to all; empty for tests at one speed and
+    /// for an estimate that was read from a file.
+    ///
+    /// The second value is why a speed alone does not tell.
+    pub(crate) fn at_each_speed(&self) -> Vec<(f64, Result<Self>)> {
+        let Some(design) = &self.design else {
+            return Vec::new();
+        };
+        let Some((groups, speeds_m_s)) = speed_groups(design.blocks()) else {
+            return Vec::new();
+        };
+        let alone = |(g, speed): (usize, f64)| (speed, self.alone(design, &groups, g));
+        speeds_m_s.into_iter().enumerate().map(alone).collect()
+    }
+
+    /// Reduced frequencies of the blocks, where they have one and are known.
+    pub(crate) fn tested_range(&self) -> Option<ReducedFrequencyRange> {
+        let ks = self.design.as_ref()?.blocks().iter().filter_map(|b| b.k);
+        ReducedFrequencyRange::spanning(ks.map(ReducedFrequency::from_full_width))
+    }
+
+    fn alone(&self, design: &Design, groups: &[usize], group: usize) -> Result<Self> {
+        let mut coordinates = self.coordinates.clone();
+        let mut kept = self.parameters.len();
+        if let Coordinates::Continuous { searched, .. } = &mut coordinates {
+            kept -= searched.len();
+            searched.clear();
+        }
+        let (own, step) = design.alone(groups, group, kept)?;
+        let mut moved = self.parameters[..kept].to_vec();
+        for (parameter, change) in moved.iter_mut().zip(step.iter()) {
+            parameter.value += change;
+        }
+        let assumption = ("blocks of one mean speed".into(), None);
+        Self::new(assumption, self.dofs.clone(), coordinates, moved, own)
+    }
+
+    /// Puts these standard errors and covariances in the place of those of a fit that took residuals for independent.
+    ///
+    /// The covariance of an entry is its block of the covariance of all parameters, so that standard errors are the roots of
+    /// its diagonal. Coefficients move with the searched poles: whoever draws models needs all parameters.
+    pub fn enter(&self, report: &mut FitReport) {
+        let own = self.own_coefficients();
+        for (entry, own) in report.entries.iter_mut().zip(&own) {
+            if own.len() != entry.coefficients.len() {
+                continue;
+            }
+            for (coefficient, &p) in entry.coefficients.iter_mut().zip(own) {
+                coefficient.standard_error = Some(self.parameters[p].standard_error);
+            }
+            let row = |&p: &usize| own.iter().map(|&q| self.covariance[(p, q)]).collect();
+            entry.covariance = own.iter().map(row).collect();
+        }
+        report.covariance_assumption.clone_from(&self.assumption);
+    }
+}
+
+/// `points` reduced frequencies from one end of a range to the other, logarithmic.
+pub(super) fn spread_over(range: ReducedFrequencyRange, points: usize) -> Vec<ReducedFrequency> {
+    let (low, high) = (range.min.full_width(), range.max.full_width());
+    let last = points.max(2) as f64 - 1.0;
+    (0..points)
+        .map(|i| ReducedFrequency::from_full_width(low * (high / low).powf(i as f64 / last)))
+        .collect()
+}

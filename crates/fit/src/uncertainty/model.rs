@@ -1,0 +1,279 @@
+//! All that is known of the uncertainty of one trained model, as it is saved beside it.
+
+use super::coefficients::{CoefficientUncertainty, spread_over};
+use super::forms::{FormEnsemble, FormSpread, interval_with_forms};
+use super::onset::{
+    CONFIDENCE, OnsetError, ResampledOnset, Resampling, ResamplingPlan, onset_error, resample_onset,
+};
+use super::speed_onsets::{Contradiction, SpeedOnsets, speed_onsets};
+use super::statistics::two_sided_quantile;
+use crate::aerodynamics::derivatives::{Derivative, Part};
+use crate::aerodynamics::{Transfer, TransferMatrix};
+use crate::error::{Error, Result};
+use crate::flutter::{Onset, OnsetInterval, OnsetMethod, OnsetSearch};
+use crate::section::Structure;
+use crate::units::{ReducedFrequency, ReducedFrequencyRange};
+use serde::{Deserialize, Serialize};
+
+/// Replicates of each resampling.
+const REPLICATES: usize = 400;
+/// Seed of the resamplings.
+const SEED: u64 = 1;
+/// Onsets closer than this, relatively, are that of the section of the training.
+const SAME_ONSET: f64 = 1e-9;
+/// How far above the onset of a model those of other forms are looked for.
+const REACH: f64 = 2.0;
+/// Reduced frequencies at which derivatives are stated.
+const DERIVATIVE_POINTS: usize = 9;
+
+/// Uncertainty of a trained model.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ModelUncertainty {
+    /// Coefficients and their covariance.
+    pub coefficients: CoefficientUncertainty,
+    /// Onset of the section it was trained for, if that flutters.
+    pub onset: Option<OnsetError>,
+    /// The same onset by the block bootstrap.
+    pub block_bootstrap: Option<ResampledOnset>,
+    /// The same onset by coefficients drawn from their covariance.
+    pub drawn_coefficients: Option<ResampledOnset>,
+    /// Onsets by the tests at each mean speed alone.
+    #[serde(default)]
+    pub speeds: SpeedOnsets,
+    /// Other forms that explain the data as well; none where none were fitted.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub forms: Option<FormEnsemble>,
+    /// Their onsets with the section that the model was trained for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub form_spread: Option<FormSpread>,
+    /// Derivatives over the tested range.
+    pub derivatives: Vec<DerivativeInterval>,
+}
+
+impl ModelUncertainty {
+    /// Carries the covariance of the coefficients to derivatives and onset.
+    pub fn new(
+        coefficients: CoefficientUncertainty,
+        structure: &Structure,
+        onset: Option<&Onset>,
+        search: OnsetSearch,
+        tested: ReducedFrequencyRange,
+    ) -> Result<Self> {
+        let mut uncertainty = Self {
+            derivatives: coefficients.derivatives(tested)?,
+            coefficients,
+            onset: None,
+            block_bootstrap: None,
+            drawn_coefficients: None,
+            speeds: SpeedOnsets::default(),
+            forms: None,
+            form_spread: None,
+        };
+        let Some(onset) = onset else {
+            return Ok(uncertainty);
+        };
+        let estimate = &uncertainty.coefficients;
+        let resampled = |resampling| {
+            let plan = ResamplingPlan {
+                resampling,
+                replicates: REPLICATES,
+                seed: SEED,
+                search,
+                tested: Some(tested),
+            };
+            resample_onset(estimate, structure, onset, &plan)
+        };
+        let error = onset_error(estimate, structure, onset, None)?;
+        let blocks = resampled(Resampling::Blocks)?;
+        let drawn = resampled(Resampling::Normal)?;
+        let speeds = speed_onsets(estimate, structure, onset, (&search, tested))?;
+        uncertainty.onset = Some(error);
+        uncertainty.block_bootstrap = blocks;
+        uncertainty.drawn_coefficients = drawn;
+        uncertainty.speeds = speeds;
+        Ok(uncertainty)
+    }
+
+    /// Adds other forms that explain the data as well, and their onsets with the section that the model was trained for.
+    ///
+    /// # Errors
+    /// [`Error::Numerical`] when the eigenvalues of a form cannot be computed.
+    pub fn with_forms(
+        mut self,
+        forms: FormEnsemble,
+        structure: &Structure,
+        search: &OnsetSearch,
+    ) -> Result<Self> {
+        self.form_spread = Some(forms.spread(structure, search)?);
+        self.forms = Some(forms);
+        Ok(self)
+    }
+
+    /// What the choice of the form leaves open of an onset, with any section: the spread that was computed in training where its onset is
+    /// asked, a new one otherwise.
+    fn spread_of(&self, structure: &Structure, onset: &Onset) -> Result<Option<FormSpread>> {
+        let same = |own: &OnsetError| (own.speed_m_s / onset.at.speed_m_s - 1.0).abs() < SAME_ONSET;
+        if self.onset.as_ref().is_some_and(same) {
+            return Ok(self.form_spread.clone());
+        }
+        let search = OnsetSearch {
+            speed_max_m_s: REACH * onset.at.speed_m_s,
+            ..OnsetSearch::default()
+        };
+        let forms = self.forms.as_ref();
+        forms.map(|f| f.spread(structure, &search)).transpose()
+    }
+
+    /// Interval of an onset of `model`, on any structure.
+    pub fn interval(
+        &self,
+        model: &dyn Transfer,
+        structure: &Structure,
+        onset: &Onset,
+    ) -> Result<OnsetInterval> {
+        if onset.at.method == OnsetMethod::Determinant {
+            return Ok(OnsetInterval::none("found without the model's realisation"));
+        }
+        if !self.coefficients.makes(model, onset.at.reduced_frequency)? {
+            return Ok(OnsetInterval::none(
+                "the covariance on file belongs to another training",
+            ));
+        }
+        let known = self.onset.as_ref().map(|o| o.degrees_of_freedom);
+        if self.coefficients.known_bias().is_some() {
+            return self.coefficients.interval_knowing(structure, onset, known);
+        }
+        let error = onset_error(&self.coefficients, structure, onset, known)?;
+        Ok(match self.spread_of(structure, onset)? {
+            Some(spread) => interval_with_forms(&error, &spread),
+            None => error.interval(),
+        })
+    }
+
+    /// Reads what was saved.
+    pub fn from_json(text: &str) -> Result<Self> {
+        serde_json::from_str(text).map_err(|e| {
+            Error::json(
+                "the uncertainty of a model as written by `aerodeck train`",
+                &e,
+            )
+        })
+    }
+
+    /// Indented JSON.
+    pub fn to_json(&self) -> Result<String> {
+        let text =
+            serde_json::to_string_pretty(self).map_err(|e| Error::Numerical(e.to_string()))?;
+        Ok(text + "\n")
+    }
+
+    /// What a reader must know of the onset: that the mean speeds contradict each other.
+    pub fn warning(&self) -> Option<String> {
+        self.speeds
+            .contradiction
+            .as_ref()
+            .map(Contradiction::explain)
+    }
+
+    /// The onset's interval with its two checks, in words.
+    pub fn explain(&self) -> Option<String> {
+        let onset = self.onset.as_ref()?;
+        let stated = match &self.form_spread {
+            Some(spread) => interval_with_forms(onset, spread),
+            None => onset.interval(),
+        };
+        let OnsetInterval::Known {
+            low_m_s,
+            high_m_s,
+            degrees_of_freedom,
+            parts,
+            ..
+        } = stated
+        else {
+            return stated.reason().map(|reason| format!("onset {reason}"));
+        };
+        let other = |r: &Option<ResampledOnset>| {
+            r.as_ref().map_or_else(
+                || "–".to_owned(),
+                |r| format!("{:.3}", r.standard_deviation_m_s),
+            )
+        };
+        let interval = match self.coefficients.known_bias() {
+            Some(bias) => format!("no 95 % interval, since {bias}"),
+            None => format!(
+                "95 % interval {low_m_s:.3} to {high_m_s:.3} ({degrees_of_freedom:.1} degrees of freedom; {})",
+                parts.explain()
+            ),
+        };
+        Some(format!(
+            "onset {:.3} m/s, {interval}; standard error of the scatter by sensitivities \
+             {:.3}, by block bootstrap {}, by drawn coefficients {} m/s",
+            onset.speed_m_s,
+            onset.standard_error_m_s,
+            other(&self.block_bootstrap),
+            other(&self.drawn_coefficients),
+        ))
+    }
+}
+
+impl CoefficientUncertainty {
+    /// All derivatives of the model with their intervals, at a few reduced frequencies of the tested range.
+    pub fn derivatives(&self, tested: ReducedFrequencyRange) -> Result<Vec<DerivativeInterval>> {
+        derivative_intervals(self, &spread_over(tested, DERIVATIVE_POINTS))
+    }
+}
+
+/// One derivative at one reduced frequency.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DerivativeInterval {
+    /// Which one.
+    pub derivative: Derivative,
+    /// Reduced frequency `K = ωB/V`.
+    pub k: f64,
+    /// Value of the model.
+    pub value: f64,
+    /// Standard error.
+    pub standard_error: f64,
+    /// Lower end of the 95 % interval.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+}
+
+/// All derivatives of the model at the reduced frequencies `ks`.
+pub(crate) fn derivative_intervals(
+    estimate: &CoefficientUncertainty,
+    ks: &[ReducedFrequency],
+) -> Result<Vec<DerivativeInterval>> {
+    let mut intervals = Vec::new();
+    for (&k, (here, slopes)) in ks.iter().zip(estimate.transfer_slopes(ks)?) {
+        for (i, &force) in estimate.dofs.iter().enumerate() {
+            for (j, &motion) in estimate.dofs.iter().enumerate() {
+                for part in [Part::Imaginary, Part::Real] {
+                    let at = |g: &TransferMatrix| match part {
+                        Part::Real => g[(i, j)].re,
+                        Part::Imaginary => g[(i, j)].im,
+                    } / k.full_width().powi(2);
+                    let gradient: Vec<f64> = slopes.iter().map(at).collect();
+                    let standard_error = estimate.standard_error(&gradient)?;
+                    let nu = estimate
+                        .degrees_of_freedom(&gradient)
+                        .unwrap_or(f64::INFINITY);
+                    let half = two_sided_quantile(CONFIDENCE, nu.min(1e6)) * standard_error;
+                    let value = at(&here);
+                    intervals.push(DerivativeInterval {
+                        derivative: Derivative::of(force, motion, part),
+                        k: k.full_width(),
+                        value,
+                        standard_error,
+                        low: value - half,
+                        high: value + half,
+                    });
+                }
+            }
+        }
+    }
+    Ok(intervals)
+}

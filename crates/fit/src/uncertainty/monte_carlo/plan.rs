@@ -1,0 +1,344 @@
+//! The file of a Monte Carlo analysis.
+
+use super::distribution::Distribution;
+use crate::error::{Error, Result, positive};
+use crate::files::toml_lines;
+use crate::section::{SectionModel, Translation};
+use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
+
+/// Version of the file.
+pub(crate) const PLAN_SCHEMA: u32 = 1;
+/// More samples than this do not fit into memory.
+const MAX_SAMPLES: usize = 100_000_000;
+
+/// What is random, and what is asked.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MonteCarloPlan {
+    /// `PLAN_SCHEMA`.
+    pub schema: u32,
+    /// The trained model (section and forces), a path against the folder of the file.
+    pub model: PathBuf,
+    /// Number of samples.
+    pub samples: usize,
+    /// Seed of the random numbers; the same seed gives the same samples on every machine and number of threads.
+    #[serde(default)]
+    pub seed: u64,
+    /// Onsets are searched up to this wind speed, m/s; left out, as far as the study of the model did.
+    pub speed_max_m_s: Option<f64>,
+    /// The probability of an onset below this wind speed is asked, m/s.
+    pub design_speed_m_s: Option<f64>,
+    /// Level of the confidence interval of that probability.
+    #[serde(default = "usual_confidence")]
+    pub confidence: f64,
+    /// Probabilities whose quantiles are printed.
+    #[serde(default = "usual_quantiles")]
+    pub quantiles: Vec<f64>,
+    /// Random numbers of the section.
+    #[serde(rename = "parameter", default)]
+    pub parameters: Vec<RandomParameter>,
+    /// Correlations between them.
+    #[serde(rename = "correlation", default)]
+    pub correlations: Vec<Correlation>,
+    /// Scatter of the force model.
+    #[serde(default)]
+    pub aerodynamics: AerodynamicScatter,
+    /// Folder of the file.
+    #[serde(skip)]
+    pub directory: PathBuf,
+}
+
+/// One random number of the section.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RandomParameter {
+    /// Which.
+    pub name: Parameter,
+    /// Its distribution.
+    pub distribution: Distribution,
+}
+
+/// Correlation of two random numbers (of the Gaussian variables behind them).
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Correlation {
+    /// The two.
+    pub between: [Parameter; 2],
+    /// Between −1 and 1.
+    pub coefficient: f64,
+}
+
+/// Scatter of the coefficients of the force model: nothing, a relative one, or a covariance.
+#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AerodynamicScatter {
+    /// Standard deviation of every coefficient over its value, Gaussian and independent.
+    pub relative_scatter: Option<f64>,
+    /// Covariance of the coefficients: that of all parameters of a fit (`fits/<model>.uncertainty.json` as `train` writes it,
+    /// also found beside the fit's report `fits/<model>.json`), or a table (`.csv`: names of the coefficients in the first
+    /// line, then the matrix).
+    pub covariance: Option<PathBuf>,
+}
+
+fn usual_confidence() -> f64 {
+    0.95
+}
+
+fn usual_quantiles() -> Vec<f64> {
+    vec![0.001, 0.01, 0.05, 0.5, 0.95, 0.99]
+}
+
+impl MonteCarloPlan {
+    /// Reads and checks the text of a file; paths in it are read against `directory`.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with line and key.
+    pub fn from_toml(text: &str, directory: PathBuf) -> Result<Self> {
+        toml_lines::parse("a Monte Carlo file", text, |plan: &mut Self| {
+            plan.directory = directory;
+            plan.validate()
+        })
+    }
+
+    /// The same error with the line of the key it names in `text`, for what shows only beside the model.
+    pub fn locate(text: &str, error: Error) -> Error {
+        toml_lines::with_line(text, error)
+    }
+
+    /// Checks every value that does not need the model.
+    pub(crate) fn validate(&self) -> Result<()> {
+        let wrong =
+            |key: &str, expected: &str, found: String| Err(Error::input(key, expected, found));
+        if self.schema != PLAN_SCHEMA {
+            return wrong("schema", &PLAN_SCHEMA.to_string(), self.schema.to_string());
+        }
+        if self.samples == 0 || self.samples > MAX_SAMPLES {
+            return wrong(
+                "samples",
+                "a number from 1 to 1e8",
+                self.samples.to_string(),
+            );
+        }
+        if let Some(speed) = self.speed_max_m_s {
+            positive("speed_max_m_s", speed)?;
+        }
+        if let Some(speed) = self.design_speed_m_s {
+            positive("design_speed_m_s", speed)?;
+            self.check_design_speed(self.speed_max_m_s.unwrap_or(f64::INFINITY))?;
+        }
+        let inside = |p: f64| p > 0.0 && p < 1.0;
+        if !inside(self.confidence) {
+            return wrong(
+                "confidence",
+                "a number between 0 and 1",
+                self.confidence.to_string(),
+            );
+        }
+        for (i, p) in self.quantiles.iter().enumerate() {
+            if !inside(*p) {
+                return wrong(
+                    &format!("quantiles[{i}]"),
+                    "probabilities between 0 and 1",
+                    p.to_string(),
+                );
+            }
+        }
+        self.validate_parameters()?;
+        self.aerodynamics.validate()?;
+        let fixed =
+            self.parameters.is_empty() && self.aerodynamics == AerodynamicScatter::default();
+        if fixed {
+            return wrong(
+                "parameter",
+                "something random: a [[parameter]] or [aerodynamics]",
+                "nothing".into(),
+            );
+        }
+        Ok(())
+    }
+
+    /// The design speed has to lie where onsets are searched.
+    pub(super) fn check_design_speed(&self, speed_max_m_s: f64) -> Result<()> {
+        match self.design_speed_m_s {
+            Some(speed) if speed > speed_max_m_s => Err(Error::input(
+                "design_speed_m_s",
+                format!(
+                    "a speed not above speed_max_m_s ({speed_max_m_s}), up to which onsets are searched"
+                ),
+                speed.to_string(),
+            )),
+            _ => Ok(()),
+        }
+    }
+
+    fn validate_parameters(&self) -> Result<()> {
+        for (i, random) in self.parameters.iter().enumerate() {
+            if self.parameters[..i].iter().any(|p| p.name == random.name) {
+                return Err(Error::input(
+                    format!("parameter[{i}].name"),
+                    "every parameter once",
+                    format!("`{}` a second time", random.name.name()),
+                ));
+            }
+        }
+        for (i, c) in self.correlations.iter().enumerate() {
+            let key = format!("correlation[{i}]");
+            if !(c.coefficient > -1.0 && c.coefficient < 1.0) {
+                return Err(Error::input(
+                    format!("{key}.coefficient"),
+                    "a number between -1 and 1",
+                    c.coefficient.to_string(),
+                ));
+            }
+            let random = |p: &Parameter| self.parameters.iter().any(|r| r.name == *p);
+            let missing = c.between.iter().find(|p| !random(p));
+            let pair = |o: &Correlation| {
+                o.between == c.between || o.between == [c.between[1], c.between[0]]
+            };
+            let twice = c.between[0] == c.between[1] || self.correlations[..i].iter().any(pair);
+            if missing.is_some() || twice {
+                return Err(Error::input(
+                    format!("{key}.between"),
+                    "two different random parameters, every pair once",
+                    match missing {
+                        Some(p) => format!("`{}`, which is not random", p.name()),
+                        None => "a pair of one parameter, or a pair a second time".into(),
+                    },
+                ));
+            }
+        }
+        Ok(())
+    }
+}
+
+impl AerodynamicScatter {
+    fn validate(&self) -> Result<()> {
+        if let Some(scatter) = self.relative_scatter {
+            positive("aerodynamics.relative_scatter", scatter)?;
+            if self.covariance.is_some() {
+                return Err(Error::input(
+                    "aerodynamics.covariance",
+                    "either `relative_scatter` or `covariance`",
+                    "both",
+                ));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A number of the section that may be random, by the name it has in a study file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Parameter {
+    /// Deck width, m.
+    #[serde(rename = "width_m")]
+    Width,
+    /// Air density, kg/m³.
+    #[serde(rename = "air_density_kg_m3")]
+    AirDensity,
+    /// Distance of the axis from the reference point of the forces, m.
+    #[serde(rename = "axis_offset_m")]
+    AxisOffset,
+    /// Distance of the centre of mass from the axis, m.
+    #[serde(rename = "mass_offset_m")]
+    MassOffset,
+    /// Mass of the vertical motion, kg/m.
+    #[serde(rename = "vertical.mass_kg_m")]
+    VerticalMass,
+    /// Natural frequency of the vertical motion, Hz; the stiffness follows from it and the mass.
+    #[serde(rename = "vertical.frequency_hz")]
+    VerticalFrequency,
+    /// Stiffness of the vertical motion, N/m².
+    #[serde(rename = "vertical.stiffness_n_m2")]
+    VerticalStiffness,
+    /// Damping ratio of the vertical motion.
+    #[serde(rename = "vertical.damping_ratio")]
+    VerticalDamping,
+    /// Mass of the lateral motion, kg/m.
+    #[serde(rename = "lateral.mass_kg_m")]
+    LateralMass,
+    /// Natural frequency of the lateral motion, Hz.
+    #[serde(rename = "lateral.frequency_hz")]
+    LateralFrequency,
+    /// Stiffness of the lateral motion, N/m².
+    #[serde(rename = "lateral.stiffness_n_m2")]
+    LateralStiffness,
+    /// Damping ratio of the lateral motion.
+    #[serde(rename = "lateral.damping_ratio")]
+    LateralDamping,
+    /// Mass moment of inertia, kg·m²/m.
+    #[serde(rename = "torsion.inertia_kg_m2_m")]
+    Inertia,
+    /// Natural frequency of the rotation, Hz.
+    #[serde(rename = "torsion.frequency_hz")]
+    TorsionFrequency,
+    /// Stiffness of the rotation, N·m/(rad·m).
+    #[serde(rename = "torsion.stiffness_n")]
+    TorsionStiffness,
+    /// Damping ratio of the rotation.
+    #[serde(rename = "torsion.damping_ratio")]
+    TorsionDamping,
+}
+
+impl Parameter {
+    /// Where the number stands; `None` when the section states it otherwise (a stiffness instead of a frequency) or has
+    /// no such support.
+    pub fn place(self, section: &mut SectionModel) -> Option<&mut f64> {
+        fn frequency(t: &mut Translation) -> Option<&mut f64> {
+            t.frequency_hz.as_mut()
+        }
+        fn stiffness(t: &mut Translation) -> Option<&mut f64> {
+            t.stiffness_n_m2.as_mut()
+        }
+        match self {
+            Self::Width => Some(&mut section.width_m),
+            Self::AirDensity => Some(&mut section.air_density_kg_m3),
+            Self::AxisOffset => section.axis_offset_m.as_mut(),
+            Self::MassOffset => section.mass_offset_m.as_mut(),
+            Self::VerticalMass => Some(&mut section.vertical.mass_kg_m),
+            Self::VerticalFrequency => frequency(&mut section.vertical),
+            Self::VerticalStiffness => stiffness(&mut section.vertical),
+            Self::VerticalDamping => Some(&mut section.vertical.damping_ratio),
+            Self::LateralMass => section.lateral.as_mut().map(|t| &mut t.mass_kg_m),
+            Self::LateralFrequency => section.lateral.as_mut().and_then(frequency),
+            Self::LateralStiffness => section.lateral.as_mut().and_then(stiffness),
+            Self::LateralDamping => section.lateral.as_mut().map(|t| &mut t.damping_ratio),
+            Self::Inertia => Some(&mut section.torsion.inertia_kg_m2_m),
+            Self::TorsionFrequency => section.torsion.frequency_hz.as_mut(),
+            Self::TorsionStiffness => section.torsion.stiffness_n.as_mut(),
+            Self::TorsionDamping => Some(&mut section.torsion.damping_ratio),
+        }
+    }
+
+    /// The value in `section`.
+    pub(super) fn nominal(self, key: &str, section: &SectionModel) -> Result<f64> {
+        let mut copy = section.clone();
+        self.place(&mut copy).copied().ok_or_else(|| {
+            Error::input(
+                key,
+                "a number that the section of the model states (a support has either a frequency or a stiffness)",
+                format!("`{}`", self.name()),
+            )
+        })
+    }
+
+    /// The number of this name in files.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a name that none has.
+    pub fn named(name: &str) -> Result<Self> {
+        serde_json::from_value(name.into()).map_err(|_| {
+            let expected = "a number of the section, such as vertical.mass_kg_m";
+            Error::input("parameter", expected, format!("`{name}`"))
+        })
+    }
+
+    /// The name in files.
+    pub(crate) fn name(self) -> String {
+        match serde_json::to_value(self) {
+            Ok(serde_json::Value::String(name)) => name,
+            _ => String::new(),
+        }
+    }
+}

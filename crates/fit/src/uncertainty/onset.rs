@@ -1,0 +1,365 @@
+//! Interval of an onset: by its gradient, and by solving it anew for other weights of the blocks or drawn parameters.
+//!
+//! For a simple eigenvalue `λ` of the state matrix `A(V, θ)` with right and left vectors `v`, `u`,
+//! `dλ = uᴴ dA v / uᴴ v` (Murthy & Haftka, "Derivatives of eigenvalues and eigenvectors of a general complex matrix",
+//! IJNME 26, 1988). At the onset `Re λ = 0`, so `dV_F/dθ = −Re(∂λ/∂θ)/Re(∂λ/∂V)`.
+
+use super::coefficients::CoefficientUncertainty;
+use super::draws::ModelDraws;
+use super::statistics::{sample_quantile, two_sided_quantile};
+use crate::aerodynamics::Realizable;
+use crate::aeroelastic::{CoupledSection, CoupledSystem};
+use crate::error::{Error, Result};
+use crate::flutter::{
+    BetweenSpeeds, ErrorParts, FlutterSearch, Onset, OnsetInterval, OnsetSearch, find_onset,
+};
+use crate::section::Structure;
+use crate::signal::{mean_and_deviation, random_stream};
+use crate::state_space::{complex, eigenvector};
+use crate::units::ReducedFrequencyRange;
+use nalgebra::{Complex, DMatrix, DVector};
+use rand_distr::{Distribution, Exp1, StandardNormal};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
+
+/// Confidence of every interval.
+pub(crate) const CONFIDENCE: f64 = 0.95;
+/// Relative step of the difference of state matrices.
+const STEP: f64 = 1e-6;
+/// Secant steps to a zero of the growth rate.
+const MAX_STEPS: usize = 40;
+/// Relative size of the last secant step.
+const TOLERANCE: f64 = 1e-10;
+/// An onset this far from the estimate, relatively, is looked for afresh.
+const REACH: f64 = 0.5;
+
+/// Onset with its standard error.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct OnsetError {
+    /// Onset speed, m/s.
+    pub speed_m_s: f64,
+    /// Standard error of the scatter of the data, by the gradient, m/s.
+    pub standard_error_m_s: f64,
+    /// Its degrees of freedom.
+    pub degrees_of_freedom: f64,
+    /// Where the scatter between mean speeds in it is from; none where it holds none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub between_speeds: Option<BetweenSpeeds>,
+}
+
+/// Standard error of an onset by the delta method, `√(gᵀ C g)` with the gradient `g` of the onset speed.
+///
+/// `degrees_of_freedom` stands in where the estimate no longer knows its data.
+pub(crate) fn onset_error(
+    estimate: &CoefficientUncertainty,
+    structure: &Structure,
+    onset: &Onset,
+    degrees_of_freedom: Option<f64>,
+) -> Result<OnsetError> {
+    let at = (onset.at.speed_m_s, TAU * onset.at.frequency_hz);
+    error_at(estimate, structure, at, degrees_of_freedom)
+}
+
+/// The same for an onset at a speed and circular frequency.
+pub(super) fn error_at(
+    estimate: &CoefficientUncertainty,
+    structure: &Structure,
+    at: (f64, f64),
+    degrees_of_freedom: Option<f64>,
+) -> Result<OnsetError> {
+    let gradient = onset_gradient(estimate, structure, at)?;
+    Ok(OnsetError {
+        speed_m_s: at.0,
+        standard_error_m_s: estimate.standard_error(&gradient)?,
+        degrees_of_freedom: estimate
+            .degrees_of_freedom(&gradient)
+            .or(degrees_of_freedom)
+            .unwrap_or(1.0),
+        between_speeds: estimate.speeds.as_ref().map(|s| s.source),
+    })
+}
+
+impl CoefficientUncertainty {
+    /// 95 % interval of an onset of the model with these coefficients, on any structure: as far as its data carry.
+    ///
+    /// # Errors
+    /// [`Error::Numerical`] when the onset cannot be followed to nearby coefficients.
+    pub fn onset_interval(&self, structure: &Structure, onset: &Onset) -> Result<OnsetInterval> {
+        self.interval_knowing(structure, onset, None)
+    }
+
+    /// The same with the degrees of freedom of an estimate that no longer knows its data.
+    pub(super) fn interval_knowing(
+        &self,
+        structure: &Structure,
+        onset: &Onset,
+        degrees_of_freedom: Option<f64>,
+    ) -> Result<OnsetInterval> {
+        let error = onset_error(self, structure, onset, degrees_of_freedom)?;
+        Ok(match self.known_bias() {
+            Some(bias) => OnsetInterval::none(format!(
+                "{bias} (standard error of the scatter alone {:.3} m/s)",
+                error.standard_error_m_s
+            )),
+            None => error.interval(),
+        })
+    }
+}
+
+impl OnsetError {
+    /// Half the width of the interval, m/s: Student's quantile times the standard error.
+    pub(crate) fn half_width_m_s(&self) -> f64 {
+        two_sided_quantile(CONFIDENCE, self.degrees_of_freedom) * self.standard_error_m_s
+    }
+
+    /// The interval for a card.
+    pub fn interval(&self) -> OnsetInterval {
+        OnsetInterval::about(
+            self.speed_m_s,
+            self.half_width_m_s(),
+            self.degrees_of_freedom,
+            ErrorParts {
+                scatter_m_s: self.standard_error_m_s,
+                form_m_s: None,
+                between_speeds: self.between_speeds,
+            },
+        )
+    }
+}
+
+/// How parameters are drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Resampling {
+    /// Block bootstrap: every block counts with a weight drawn from the exponential distribution (Rubin's form, which
+    /// never leaves a frequency out), and the fit is solved again from the factors of the blocks.
+    Blocks,
+    /// Normal draws from the covariance of the parameters.
+    Normal,
+}
+
+/// Onsets of many resampled fits, each solved anew.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ResampledOnset {
+    /// How parameters were drawn.
+    pub resampling: Resampling,
+    /// Number of replicates.
+    pub replicates: usize,
+    /// Replicates without an onset up to the highest speed, or whose parameters make no model.
+    pub without_onset: usize,
+    /// Mean of the onsets, m/s.
+    pub mean_m_s: f64,
+    /// Their standard deviation, m/s.
+    pub standard_deviation_m_s: f64,
+    /// 2.5 % quantile, m/s.
+    pub low_m_s: f64,
+    /// 97.5 % quantile, m/s.
+    pub high_m_s: f64,
+}
+
+/// What a resampling needs besides the estimate.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ResamplingPlan {
+    /// How parameters are drawn.
+    pub resampling: Resampling,
+    /// Number of replicates.
+    pub replicates: usize,
+    /// Seed; each replicate draws from a stream of its own.
+    pub seed: u64,
+    /// Where to look for an onset that is not near the estimate.
+    pub search: OnsetSearch,
+    /// Reduced frequencies in which the model was tested.
+    pub tested: Option<ReducedFrequencyRange>,
+}
+
+/// Draws parameters and solves the onset anew for each draw, in parallel. Searched poles move the transfer function
+/// along its slope (see [`super::LinearModel`]). The answer does not depend on the number of
+/// threads. `None` for blocks of an estimate that no longer knows its data.
+pub(crate) fn resample_onset(
+    estimate: &CoefficientUncertainty,
+    structure: &Structure,
+    onset: &Onset,
+    plan: &ResamplingPlan,
+) -> Result<Option<ResampledOnset>> {
+    let draws = ModelDraws::of(estimate)?;
+    let at = (onset.at.speed_m_s, TAU * onset.at.frequency_hz);
+    let found: Vec<Option<Option<f64>>> = (0..plan.replicates)
+        .into_par_iter()
+        .map(|r| {
+            let Some(values) = drawn((estimate, &draws), plan, r)? else {
+                return Ok(None);
+            };
+            let model = draws.model_at(&values).ok();
+            Ok(Some(model.and_then(|m| solve(&m, structure, at, plan))))
+        })
+        .collect::<Result<_>>()?;
+    if found.iter().any(Option::is_none) {
+        return Ok(None);
+    }
+    let mut speeds: Vec<f64> = found.iter().filter_map(|d| d.flatten()).collect();
+    speeds.sort_by(f64::total_cmp);
+    let (mean_m_s, standard_deviation_m_s) = mean_and_deviation(speeds.iter().copied());
+    let quantile = |part| sample_quantile(&speeds, speeds.len(), part).unwrap_or(f64::NAN);
+    Ok(Some(ResampledOnset {
+        resampling: plan.resampling,
+        replicates: plan.replicates,
+        without_onset: plan.replicates - speeds.len(),
+        mean_m_s,
+        standard_deviation_m_s,
+        low_m_s: quantile(0.5 * (1.0 - CONFIDENCE)),
+        high_m_s: quantile(0.5 * (1.0 + CONFIDENCE)),
+    }))
+}
+
+/// Onset of one draw.
+fn solve(
+    model: &dyn Realizable,
+    structure: &Structure,
+    at: (f64, f64),
+    plan: &ResamplingPlan,
+) -> Option<f64> {
+    let section = CoupledSection::with_model(structure, model).ok()?;
+    if let Ok(Some(speed)) = onset_nearby(&section, at) {
+        return Some(speed);
+    }
+    match find_onset("", &section, &plan.search, plan.tested) {
+        Ok(FlutterSearch::Onset(onset)) => Some(onset.at.speed_m_s),
+        _ => None,
+    }
+}
+
+/// Parameters of one replicate; `None` for blocks of an estimate that no longer knows its data.
+fn drawn(
+    (estimate, draws): (&CoefficientUncertainty, &ModelDraws<'_>),
+    plan: &ResamplingPlan,
+    replicate: usize,
+) -> Result<Option<Vec<f64>>> {
+    let mut random = random_stream(plan.seed, replicate as u64);
+    if plan.resampling == Resampling::Normal {
+        return Ok(Some(draws.parameters(&mut random)));
+    }
+    let exponential = (0..estimate.blocks.len()).map(|_| Exp1.sample(&mut random));
+    let weights: Vec<f64> = exponential.collect();
+    let mut drawn = estimate.reweighted(&weights)?;
+    if let Some(values) = &mut drawn {
+        estimate.scatter_speeds(values, &mut || StandardNormal.sample(&mut random));
+    }
+    Ok(drawn)
+}
+
+/// The section with the model that the parameters make.
+///
+/// # Errors
+/// Parameters that make no model, or a model that cannot be coupled.
+fn section_at(
+    structure: &Structure,
+    estimate: &CoefficientUncertainty,
+    values: &[f64],
+) -> Result<CoupledSection> {
+    CoupledSection::with_model(structure, &estimate.model_at(values)?)
+}
+
+/// Gradient of the onset speed (m/s) with respect to the parameters.
+///
+/// # Errors
+/// [`Error::Numerical`] when the growth rate does not cross zero with speed.
+pub(crate) fn onset_gradient(
+    estimate: &CoefficientUncertainty,
+    structure: &Structure,
+    (speed_m_s, omega): (f64, f64),
+) -> Result<Vec<f64>> {
+    let values = estimate.values();
+    let section = section_at(structure, estimate, &values)?;
+    let start = Complex::new(0.0, omega);
+    let lambda = nearest(&section.at(speed_m_s)?, start)?;
+    let h = STEP * speed_m_s;
+    let ahead = nearest(&section.at(speed_m_s + h)?, lambda)?;
+    let behind = nearest(&section.at(speed_m_s - h)?, lambda)?;
+    let with_speed = (ahead.re - behind.re) / (2.0 * h);
+    if with_speed == 0.0 {
+        return Err(Error::Numerical(
+            "onset sensitivity: the growth rate does not change with wind speed".into(),
+        ));
+    }
+    let here = section.at(speed_m_s)?;
+    let mu = here.matrix_eigenvalue(lambda);
+    let right = eigenvector(here.state_matrix(), mu)?;
+    let left = eigenvector(&here.state_matrix().transpose(), mu)?;
+    // the transposed matrix has the conjugate of the left vector, so no conjugation here
+    let scale = bilinear(
+        &left,
+        &complex(&DMatrix::identity(right.len(), right.len())),
+        &right,
+    );
+    let matrix_at = |p: usize, step: f64| -> Result<DMatrix<f64>> {
+        let mut moved = values.clone();
+        moved[p] += step;
+        let section = section_at(structure, estimate, &moved)?;
+        Ok(section.at(speed_m_s)?.state_matrix().clone())
+    };
+    (0..values.len())
+        .map(|p| {
+            let step = STEP * values[p].abs().max(1e-2);
+            let change = (matrix_at(p, step)? - matrix_at(p, -step)?) / (2.0 * step);
+            let slope = bilinear(&left, &complex(&change), &right) / scale;
+            Ok(-rate_change(&here, mu, slope).re / with_speed)
+        })
+        .collect()
+}
+
+/// `xᵀ m y`.
+fn bilinear(
+    x: &DVector<Complex<f64>>,
+    m: &DMatrix<Complex<f64>>,
+    y: &DVector<Complex<f64>>,
+) -> Complex<f64> {
+    x.iter().zip((m * y).iter()).map(|(a, b)| a * b).sum()
+}
+
+/// Change of the continuous-time eigenvalue for a change of that of the state matrix.
+fn rate_change(system: &CoupledSystem, mu: Complex<f64>, change: Complex<f64>) -> Complex<f64> {
+    match system {
+        CoupledSystem::Continuous(_) => change,
+        CoupledSystem::Sampled(s) => change / (mu * s.time.step),
+    }
+}
+
+/// The eigenvalue nearest to `target`, rad/s.
+fn nearest(system: &CoupledSystem, target: Complex<f64>) -> Result<Complex<f64>> {
+    system
+        .eigenvalues()?
+        .into_iter()
+        .min_by(|a, b| (a - target).norm().total_cmp(&(b - target).norm()))
+        .ok_or_else(|| Error::Numerical("onset: no eigenvalues".into()))
+}
+
+/// Onset speed near a known one: the zero of the growth rate of the same eigenvalue, by secants. `None` when it does not
+/// settle or ends up far away.
+pub(super) fn onset_nearby(
+    section: &CoupledSection,
+    (speed_m_s, omega): (f64, f64),
+) -> Result<Option<f64>> {
+    let mut followed = Complex::new(0.0, omega);
+    let (mut v0, mut v1) = (speed_m_s, speed_m_s * 1.001);
+    followed = nearest(&section.at(v0)?, followed)?;
+    let mut f0 = followed.re;
+    for _ in 0..MAX_STEPS {
+        followed = nearest(&section.at(v1)?, followed)?;
+        let f1 = followed.re;
+        if f1 == f0 {
+            return Ok((f1 == 0.0).then_some(v1));
+        }
+        let next = v1 - f1 * (v1 - v0) / (f1 - f0);
+        if !(next.is_finite() && (next / speed_m_s - 1.0).abs() < REACH) {
+            return Ok(None);
+        }
+        if (next - v1).abs() <= TOLERANCE * v1 {
+            return Ok(Some(next));
+        }
+        (v0, f0, v1) = (v1, f1, next);
+    }
+    Ok(None)
+}

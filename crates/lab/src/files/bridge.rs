@@ -1,0 +1,72 @@
+//! How bridges are written down: `bridge.toml` ([`BridgeFile`]) and the modes of finite-element programs.
+//!
+//! Every reader of modes ends in `ModalData`: nodes, and for every mode three displacements and three rotations a node along
+//! the axes of the program. [`Axes`] says which way is up and downwind, and nothing is assumed about either. Files that know
+//! vertical, lateral and rotation themselves (our own single file, MATLAB `phi`) are in those axes already.
+
+mod abaqus;
+mod axes;
+mod field;
+mod matlab;
+mod modal_data;
+mod opensees;
+mod single_file;
+mod table;
+mod tables;
+mod toml_file;
+mod turbsim;
+mod wawi;
+mod wind_block;
+
+pub use axes::{Axes, Direction};
+pub use field::FieldTable;
+pub use modal_data::{Modes, RawMode};
+pub use single_file::write_modes;
+pub use toml_file::{
+    BridgeFile, DampingRatios, ModesBlock, ModesFormat, SearchBlock, SectionBlock, StaticBlock,
+};
+pub use wind_block::{ProfilePoint, WindBlock};
+
+use crate::error::Result;
+use std::path::Path;
+
+/// Reads turbulence along the span: a table of columns, or a binary file of TurbSim (`.bts`).
+///
+/// # Errors
+/// [`Error::Io`](crate::Error::Io) when it cannot be read; [`Error::Input`](crate::Error::Input) with file and place for what is
+/// wrong in it.
+pub fn read_field(path: &Path) -> Result<FieldTable> {
+    match path.extension() {
+        Some(ending) if ending == turbsim::ENDING => turbsim::read(path),
+        _ => field::read(path),
+    }
+}
+
+/// Modes of bridges that come with the program.
+pub mod embedded {
+    use super::{Modes, single_file};
+    use crate::error::{Error, Result};
+
+    /// The Langenuen suspension bridge, MIT © 2022 juelpb.
+    const LANGENUEN: &str = include_str!("../../../../data/bridges/langenuen.csv");
+
+    /// Goland's cantilever wing, made for this program.
+    const GOLAND: &str = include_str!("../../../../data/bridges/goland.csv");
+
+    /// Modes of an embedded bridge by name.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a name that is none.
+    pub fn modes(name: &str) -> Result<Modes> {
+        for (known, text) in [("langenuen", LANGENUEN), ("goland", GOLAND)] {
+            if name.eq_ignore_ascii_case(known) {
+                return single_file::parse(text);
+            }
+        }
+        Err(Error::input(
+            "modes",
+            "the embedded bridges langenuen and goland",
+            format!("`{name}`"),
+        ))
+    }
+}

@@ -1,0 +1,206 @@
+//! Turbulence along the span as a file: `time_s,u[x1],u[x2],…,w[x1],…`, m/s, the places along the girder in metres.
+
+use super::table::Table;
+use crate::error::{Error, Place, Result};
+use std::path::Path;
+
+/// Nodes and columns this close are at one place, m: places are written with a few digits.
+const SAME_PLACE: f64 = 1e-3;
+/// Steps may differ by this part: times are written with a few digits.
+const SAME_STEP: f64 = 1e-6;
+
+/// Turbulence at places along a girder.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FieldTable {
+    /// Time step, s.
+    pub step_s: f64,
+    /// Places of the columns, m.
+    pub along_m: Vec<f64>,
+    /// Whether places count from the middle of the bridge; else they are those of the girder.
+    pub from_middle: bool,
+    /// `u` then `w`: a row of samples per place.
+    pub gusts: [Vec<Vec<f64>>; 2],
+}
+
+/// Reads a table of columns.
+pub(super) fn read(path: &Path) -> Result<FieldTable> {
+    parse(&Table::read(path)?).map_err(|e| e.in_file(path))
+}
+
+impl FieldTable {
+    /// The field at other places, m: its own where a place is one of them, else on the straight line between its neighbours.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for places of the file that do not rise, and for wanted ones beyond them.
+    pub fn at(&self, wanted: &[f64]) -> Result<Self> {
+        let ends = (wanted.first().copied(), wanted.last().copied());
+        let (Some(first), Some(last)) = ends else {
+            return Err(Error::input("places", "one or more", "none"));
+        };
+        let shift = if self.from_middle {
+            0.5 * (first + last)
+        } else {
+            0.0
+        };
+        let own: Vec<f64> = self.along_m.iter().map(|x| x + shift).collect();
+        if let Some(i) = own.windows(2).position(|x| x[1] <= x[0]) {
+            let place = format!("heading, u[{}]", self.along_m[i + 1]);
+            return Err(Error::input(
+                place,
+                "places that rise",
+                format!("after {}", self.along_m[i]),
+            ));
+        }
+        let covered = (own[0] - SAME_PLACE)..=(own[own.len() - 1] + SAME_PLACE);
+        if !wanted.iter().all(|x| covered.contains(x)) {
+            return Err(Error::input(
+                "places of the turbulence",
+                format!("{first} to {last} m, where the nodes of the bridge are"),
+                format!("{} to {} m", own[0], own[own.len() - 1]),
+            ));
+        }
+        let of = |rows: &Vec<Vec<f64>>| wanted.iter().map(|x| between(&own, rows, *x)).collect();
+        Ok(Self {
+            step_s: self.step_s,
+            along_m: wanted.to_vec(),
+            from_middle: false,
+            gusts: [of(&self.gusts[0]), of(&self.gusts[1])],
+        })
+    }
+}
+
+/// A row at `x` among those at rising `places`.
+fn between(places: &[f64], rows: &[Vec<f64>], x: f64) -> Vec<f64> {
+    if let Some(same) = places.iter().position(|p| (p - x).abs() < SAME_PLACE) {
+        return rows[same].clone();
+    }
+    let above = places
+        .partition_point(|p| *p < x)
+        .clamp(1, places.len() - 1);
+    let share = (x - places[above - 1]) / (places[above] - places[above - 1]);
+    let both = rows[above - 1].iter().zip(&rows[above]);
+    both.map(|(a, b)| a + share * (b - a)).collect()
+}
+
+fn parse(table: &Table) -> Result<FieldTable> {
+    let time = table.required(&["time_s"])?;
+    let columns = |name: &str| -> Result<Vec<(usize, f64)>> {
+        let named = table.heading.iter().enumerate().filter_map(|(i, h)| {
+            let inner = h.strip_prefix(name)?.strip_prefix('[')?.strip_suffix(']')?;
+            Some((i, inner))
+        });
+        named
+            .map(|(i, place)| {
+                let along = place.parse().map_err(|_| {
+                    let at = format!("heading, column {}", i + 1);
+                    Error::input(at, "a place along the girder, m", format!("`{place}`"))
+                })?;
+                Ok((i, along))
+            })
+            .collect()
+    };
+    let (u, w) = (columns("u")?, columns("w")?);
+    let places = |columns: &[(usize, f64)]| -> Vec<f64> { columns.iter().map(|c| c.1).collect() };
+    if u.is_empty() || places(&u) != places(&w) {
+        let found = format!("{} columns u[…] and {} columns w[…]", u.len(), w.len());
+        return Err(Error::input(
+            "heading",
+            "columns u[x] and w[x] at the same places",
+            found,
+        ));
+    }
+    let times: Vec<f64> = table
+        .rows
+        .iter()
+        .map(|r| Table::number(r, time))
+        .collect::<Result<_>>()?;
+    let step_s = step(&times, table)?;
+    let samples = |columns: &[(usize, f64)]| -> Result<Vec<Vec<f64>>> {
+        let row = |c: &(usize, f64)| table.rows.iter().map(|r| Table::number(r, c.0)).collect();
+        columns.iter().map(row).collect()
+    };
+    Ok(FieldTable {
+        step_s,
+        along_m: places(&u),
+        from_middle: false,
+        gusts: [samples(&u)?, samples(&w)?],
+    })
+}
+
+fn step(times: &[f64], table: &Table) -> Result<f64> {
+    if times.len() < 3 {
+        return Err(Error::input(
+            "",
+            "three samples or more",
+            times.len().to_string(),
+        ));
+    }
+    let mean = (times[times.len() - 1] - times[0]) / (times.len() - 1) as f64;
+    let wrong = |t: &[f64]| (t[1] - t[0] - mean).abs() > SAME_STEP * mean.abs().max(t[1].abs());
+    match times.windows(2).position(wrong) {
+        None if mean > 0.0 => Ok(mean),
+        at => {
+            let place = Place::line(table.rows[at.unwrap_or(0) + 1].0).column("time_s");
+            Err(Error::input(
+                place,
+                format!("times that rise by {mean} s"),
+                times[at.unwrap_or(0) + 1].to_string(),
+            ))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fields_are_read_by_their_headings() {
+        let text = "# a comment\ntime_s,u[-10],u[10.5],w[-10],w[10.5]\n0,1,2,3,4\n0.1,5,6,7,8\n0.2,9,10,11,12\n";
+        let field = parse(&Table::parse(text).unwrap()).unwrap();
+        assert_eq!(field.along_m, [-10.0, 10.5]);
+        assert!((field.step_s - 0.1).abs() < 1e-15);
+        assert_eq!(field.gusts[1][1], [4.0, 8.0, 12.0]);
+        for (from, to, expected) in [
+            ("w[10.5]", "w[11]", "u[x] and w[x] at the same places"),
+            (
+                "0.1,",
+                "0.15,",
+                "line 4, column time_s: expected times that rise by 0.1 s",
+            ),
+            ("u[-10]", "u[here]", "heading, column 2: expected a place"),
+        ] {
+            let message = parse(&Table::parse(&text.replace(from, to)).unwrap())
+                .unwrap_err()
+                .to_string();
+            assert!(message.contains(expected), "{message}");
+        }
+    }
+
+    #[test]
+    fn fields_are_taken_to_other_places() {
+        let field = FieldTable {
+            step_s: 0.1,
+            along_m: vec![-10.0, 0.0, 20.0],
+            from_middle: true,
+            gusts: [
+                vec![vec![1.0, 2.0], vec![3.0, 4.0], vec![7.0, 9.0]],
+                vec![vec![0.0, 0.0]; 3],
+            ],
+        };
+        let moved = field.at(&[90.0, 100.0, 105.0, 110.0]).unwrap();
+        let u = &moved.gusts[0];
+        assert_eq!(u[0], [1.0, 2.0]);
+        assert_eq!(u[1], [3.0, 4.0]);
+        assert_eq!(u[2], [4.0, 5.25]);
+        let message = field.at(&[-30.0, 30.0]).unwrap_err().to_string();
+        assert!(message.contains("expected -30 to 30 m"), "{message}");
+        assert!(message.contains("found -10 to 20 m"), "{message}");
+        let falling = FieldTable {
+            along_m: vec![0.0, -10.0, 20.0],
+            ..field
+        };
+        let message = falling.at(&[0.0]).unwrap_err().to_string();
+        assert!(message.contains("places that rise"), "{message}");
+    }
+}

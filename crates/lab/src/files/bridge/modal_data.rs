@@ -1,0 +1,147 @@
+//! Nodes and modes as finite-element programs write them, and as the bridge takes them.
+
+use super::axes::Frame;
+use crate::bridge::{BridgeMode, Node, tributary_lengths};
+use crate::error::{Error, Result};
+use crate::plausibility::{Finding, Girder, Kind, of_modes};
+
+/// A mode with displacements and rotations along the axes of its program.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RawMode {
+    /// Its number.
+    pub number: usize,
+    /// Natural frequency, Hz.
+    pub frequency_hz: f64,
+    /// Generalised mass that belongs to the shape.
+    pub generalised_mass: f64,
+    /// `ux, uy, uz, rx, ry, rz` at each node.
+    pub shape: Vec<[f64; 6]>,
+}
+
+/// Nodes and modes in the axes of a program.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct ModalData {
+    /// Name, and place in x, y, z, m.
+    pub(super) nodes: Vec<(String, [f64; 3])>,
+    pub(super) modes: Vec<RawMode>,
+}
+
+/// Nodes and modes of a bridge, in vertical, lateral and rotation, before its sections and its damping are known.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Modes {
+    /// Where they come from, in words.
+    pub source: String,
+    /// Nodes, rising along the girder.
+    pub nodes: Vec<Node>,
+    /// Places of the nodes downwind and up, m, from the origin of the file; empty where it knows only places along the girder.
+    pub offsets_m: Vec<[f64; 2]>,
+    /// Modes; the damping ratio is zero where the file does not state it.
+    pub modes: Vec<BridgeMode>,
+    /// Whether the files have the nodes in the opposite order: places along the girder count along up × downwind.
+    pub reversed: bool,
+}
+
+impl ModalData {
+    /// The modes in vertical, lateral and rotation, with tributary lengths by the trapezoidal rule. Nodes that all run against
+    /// up × downwind, since the wind blows from the other side, are taken in the opposite order.
+    pub(super) fn in_frame(mut self, frame: &Frame, source: String) -> Result<Modes> {
+        let mut pairs = self.nodes.windows(2);
+        let reversed = self.nodes.len() > 1
+            && pairs.all(|pair| frame.along(&pair[1].1) < frame.along(&pair[0].1));
+        if reversed {
+            self.nodes.reverse();
+            self.modes.iter_mut().for_each(|m| m.shape.reverse());
+        }
+        let along: Vec<f64> = self.nodes.iter().map(|(_, p)| frame.along(p)).collect();
+        let lengths = tributary_lengths(&along);
+        let nodes = self.nodes.iter().zip(along.iter().zip(lengths));
+        let nodes: Vec<Node> = nodes
+            .map(|((name, _), (along_m, length_m))| Node {
+                name: name.clone(),
+                along_m: *along_m,
+                length_m,
+            })
+            .collect();
+        check_order(&nodes)?;
+        let offsets_m = self.nodes.iter().map(|(_, p)| frame.across(p)).collect();
+        let modes = self.modes.into_iter().map(|m| BridgeMode {
+            number: m.number,
+            frequency_hz: m.frequency_hz,
+            generalised_mass: m.generalised_mass,
+            damping_ratio: 0.0,
+            shape: m.shape.iter().map(|u| frame.motion(u)).collect(),
+        });
+        Ok(Modes {
+            source,
+            modes: modes.collect(),
+            nodes,
+            offsets_m,
+            reversed,
+        })
+    }
+}
+
+/// Refuses nodes that do not rise along the girder, before the tributary lengths complain of it.
+pub(super) fn check_order(nodes: &[Node]) -> Result<()> {
+    for pair in nodes.windows(2) {
+        if pair[1].along_m <= pair[0].along_m {
+            return Err(Error::input(
+                format!("node {}", pair[1].name),
+                format!(
+                    "a place along the girder beyond {} m, that of node {} before it (nodes in the order of the girder, \
+                     along up × downwind)",
+                    pair[0].along_m, pair[0].name
+                ),
+                format!("{} m", pair[1].along_m),
+            ));
+        }
+    }
+    Ok(())
+}
+
+impl Modes {
+    /// Takes only every `n`-th node, both ends kept; tributary lengths follow by the trapezoidal rule.
+    #[must_use]
+    pub fn thinned(&self, n: usize) -> Self {
+        let last = self.nodes.len() - 1;
+        let kept: Vec<usize> = (0..=last).filter(|i| i % n == 0 || *i == last).collect();
+        let along: Vec<f64> = kept.iter().map(|i| self.nodes[*i].along_m).collect();
+        let lengths = tributary_lengths(&along);
+        let nodes = kept.iter().zip(lengths).map(|(i, length_m)| Node {
+            length_m,
+            ..self.nodes[*i].clone()
+        });
+        let modes = self.modes.iter().map(|m| BridgeMode {
+            shape: kept.iter().map(|i| m.shape[*i]).collect(),
+            ..m.clone()
+        });
+        Self {
+            source: self.source.clone(),
+            nodes: nodes.collect(),
+            offsets_m: kept
+                .iter()
+                .filter_map(|i| self.offsets_m.get(*i).copied())
+                .collect(),
+            modes: modes.collect(),
+            reversed: self.reversed,
+        }
+    }
+
+    /// What is odd about them.
+    pub fn findings(&self) -> Vec<Finding> {
+        let mut findings = of_modes(&Girder {
+            nodes: &self.nodes,
+            offsets_m: &self.offsets_m,
+            modes: &self.modes,
+        });
+        if let (true, [first, .., last]) = (self.reversed, &self.nodes[..]) {
+            let text = format!(
+                "taken in the opposite order, since places along the girder (wind profile, turbulence) count along \
+                 up × downwind: from {} m at node {} to {} m at node {}",
+                first.along_m, first.name, last.along_m, last.name
+            );
+            findings.push(Finding::doubt(Kind::Axes, "nodes", text).into_note());
+        }
+        findings
+    }
+}

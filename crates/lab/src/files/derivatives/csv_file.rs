@@ -1,0 +1,272 @@
+//! This project's own file of derivatives: CSV with a header of `# key: value` lines.
+//!
+//! ```text
+//! # aerodeck derivative table 2
+//! # name: LN21-5200
+//! # source: …
+//! # licence: …
+//! # notation: scanlan       or classical, polimi, starossek
+//! # argument: v_hat = V/(omega B)
+//! # axes: heave and lift up, rotation and moment nose-up, sway and drag downwind
+//! # definition: …           the notation in words
+//! # units: …
+//! # generator: …
+//! # width_m: 0.5023
+//! # model_length_m: 2.68
+//! derivative,point,mean_speed_m_s,v_hat,value
+//! P1,1,8.187888031368372,10.377701906401262,-2.5444751604141307
+//! ```
+//!
+//! One row is one test point of one derivative, numbered from 1 in test order. Derivatives are called as in the
+//! notation, the fourth column as the argument. Numbers are written with as many digits as it takes to read the same
+//! double back. The mean speed may be left empty throughout. Files of the first format, without notation, argument and
+//! axes but with a `sign_convention`, are read as what they are: Scanlan with ½ over V̂, heave up.
+
+use crate::aerodynamics::derivatives::missing::fill_in;
+use crate::aerodynamics::derivatives::notation::{
+    Argument, Convention, ExpressedPoint, StatedConvention,
+};
+use crate::aerodynamics::derivatives::table::{check_point_count, check_points};
+use crate::aerodynamics::derivatives::{Derivative, DerivativePoint, DerivativeTable, TableHeader};
+use crate::error::{Error, Place, Result};
+use crate::files::derivatives::csv_header::{Head, ReadOptions, TableInConvention, write_head};
+use crate::files::derivatives::csv_wide;
+use crate::files::header_csv::{csv_error, find_columns, missing_column, number, table_reader};
+use crate::files::text::read_text;
+use std::collections::BTreeMap;
+use std::io::Write;
+use std::path::Path;
+
+/// Names of the columns in the crate's own convention; the fourth is called as the argument.
+pub(crate) const CSV_COLUMNS: [&str; 5] =
+    ["derivative", "point", "mean_speed_m_s", "v_hat", "value"];
+/// Place of the argument among them.
+const ARGUMENT: usize = 3;
+
+/// A file of tables, bytes: 18 derivatives at ten thousand points in full precision.
+const BYTES_AT_MOST: u64 = 100 << 20;
+
+/// Points of one derivative and the lines they stand on.
+type Rows = BTreeMap<Derivative, (Vec<DerivativePoint>, Vec<u64>)>;
+
+/// Reads a table in this project's CSV, in whatever convention its header states.
+///
+/// # Errors
+/// [`Error::Io`] when the file cannot be read; [`Error::Input`] with file and line, what was expected and what was found.
+pub fn read_csv(path: impl AsRef<Path>) -> Result<DerivativeTable> {
+    read_csv_in(path, StatedConvention::default()).map(|read| read.table)
+}
+
+/// Reads a table in this project's CSV whose convention the caller states, all of it or in part; the second value is
+/// the convention that the file is in.
+pub(crate) fn read_csv_in(
+    path: impl AsRef<Path>,
+    stated: StatedConvention,
+) -> Result<TableInConvention> {
+    let options = ReadOptions {
+        convention: stated,
+        ..ReadOptions::default()
+    };
+    read_csv_with(path, &options)
+}
+
+/// Reads a CSV table, this project's or a wide one (one row per reduced velocity, one column per derivative), with what the
+/// caller states.
+pub(crate) fn read_csv_with(
+    path: impl AsRef<Path>,
+    options: &ReadOptions,
+) -> Result<TableInConvention> {
+    let path = path.as_ref();
+    let size = std::fs::metadata(path)
+        .map_err(|e| Error::io(path, e))?
+        .len();
+    if size > BYTES_AT_MOST {
+        let expected = format!("a table of at most {} MiB", BYTES_AT_MOST >> 20);
+        let found = format!("{} MiB", size >> 20);
+        return Err(Error::input("", expected, found).in_file(path));
+    }
+    let text = read_text(path)?;
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let table = if csv_wide::is_wide(&text) {
+        csv_wide::parse(&text, &stem, options)
+    } else {
+        parse_long(&text, options)
+    };
+    table.map_err(|e| e.in_file(path))
+}
+
+/// The table in `text`, which is the content of a file in this project's CSV.
+///
+/// # Errors
+/// [`Error::Input`] naming line, expectation and finding: missing or unknown header keys and columns, a convention that
+/// is not stated or contradicts itself, text in numbers, points out of order or twice, `V̂` not positive or not monotone
+/// in a speed group, missing derivatives.
+pub(crate) fn parse_csv(text: &str) -> Result<DerivativeTable> {
+    parse_csv_in(text, StatedConvention::default()).map(|read| read.table)
+}
+
+/// As [`parse_csv`], with what the caller states about the convention; the second value is the one the text is in.
+///
+/// # Errors
+/// As [`parse_csv`]; a stated convention that contradicts the text.
+pub fn parse_csv_in(text: &str, stated: StatedConvention) -> Result<TableInConvention> {
+    let options = ReadOptions {
+        convention: stated,
+        ..ReadOptions::default()
+    };
+    parse_long(text, &options)
+}
+
+fn parse_long(text: &str, options: &ReadOptions) -> Result<TableInConvention> {
+    let head = Head::read(text)?;
+    let mut reader = table_reader(text);
+    let names = reader.headers().map_err(csv_error)?.clone();
+    let line = head.lines() + 1;
+    let mut in_file = head.stated()?;
+    let column = find_argument(&names, line)?;
+    if let Some(said) = in_file.argument.filter(|said| *said != column) {
+        return Err(Error::input(
+            Place::line(line),
+            format!("a column `{said}` as the header says"),
+            format!("`{column}`"),
+        ));
+    }
+    in_file.argument = Some(column);
+    let convention = options.convention.with_file(in_file)?;
+    let mut wanted = CSV_COLUMNS;
+    wanted[ARGUMENT] = column.name();
+    let columns = find_columns(&names, wanted, line)?;
+    let rows = read_rows(&mut reader, &columns, &convention)?;
+    for (derivative, (points, lines)) in &rows {
+        if let Some(problem) = check_points(points) {
+            let name = convention.notation.name_of(*derivative);
+            let place = Place::line(lines[problem.index]).about(name);
+            return Err(Error::input(place, problem.expected, problem.found));
+        }
+    }
+    let mut points = rows
+        .into_iter()
+        .map(|(d, (points, _))| (d, points))
+        .collect();
+    let mut header = head.provenance()?;
+    header.notes.extend(fill_in(&mut points, options.missing));
+    let width = head.width_m(options.width_m)?;
+    let table = DerivativeTable::new(head.name()?, width, header, points)?;
+    Ok(TableInConvention { table, convention })
+}
+
+/// Writes a table in this project's CSV and convention; `parse_csv` gives the same table back, bit for bit.
+pub fn write_csv(table: &DerivativeTable, out: &mut dyn Write) -> std::io::Result<()> {
+    write_csv_in(table, &Convention::default(), out)
+}
+
+/// Writes points of a few derivatives, too few for a table, in the columns and convention of [`write_csv`]: what one motion alone tells.
+pub fn write_points(
+    (name, width_m, header): (&str, f64, &TableHeader),
+    points: &BTreeMap<Derivative, Vec<DerivativePoint>>,
+    out: &mut dyn Write,
+) -> std::io::Result<()> {
+    write_head(out, (name, width_m, header), &Convention::default())?;
+    writeln!(out, "{}", CSV_COLUMNS.join(","))?;
+    for (derivative, of_one) in points {
+        for (i, p) in of_one.iter().enumerate() {
+            let speed = p.mean_speed_m_s.map_or_else(String::new, |v| v.to_string());
+            writeln!(
+                out,
+                "{derivative},{},{speed},{},{}",
+                i + 1,
+                p.v_hat,
+                p.value
+            )?;
+        }
+    }
+    Ok(())
+}
+
+/// Writes a table in this project's CSV in `convention`, which its header states.
+pub fn write_csv_in(
+    table: &DerivativeTable,
+    convention: &Convention,
+    out: &mut dyn Write,
+) -> std::io::Result<()> {
+    write_head(out, (&table.name, table.width_m, &table.header), convention)?;
+    let mut columns = CSV_COLUMNS;
+    columns[ARGUMENT] = convention.argument.name();
+    writeln!(out, "{}", columns.join(","))?;
+    for derivative in convention.express(table).derivatives {
+        for (i, p) in derivative.points.iter().enumerate() {
+            let speed = p.mean_speed_m_s.map_or_else(String::new, |v| v.to_string());
+            let (name, argument) = (derivative.name, p.argument);
+            writeln!(out, "{name},{},{speed},{argument},{}", i + 1, p.value)?;
+        }
+    }
+    Ok(())
+}
+
+fn read_rows(
+    reader: &mut csv::Reader<&[u8]>,
+    columns: &[usize; CSV_COLUMNS.len()],
+    convention: &Convention,
+) -> Result<Rows> {
+    let mut rows = Rows::new();
+    for record in reader.records() {
+        let record = record.map_err(csv_error)?;
+        let line = record.position().map_or(0, csv::Position::line);
+        let cell = |column: usize| record.get(columns[column]).unwrap_or("");
+        let place = |column: usize| {
+            let name = if column == ARGUMENT {
+                convention.argument.name()
+            } else {
+                CSV_COLUMNS[column]
+            };
+            Place::line(line).column(name)
+        };
+        let derivative = convention
+            .notation
+            .derivative(cell(0))
+            .map_err(|e| e.at(place(0)))?;
+        let (points, lines) = rows.entry(derivative).or_default();
+        let expected = (points.len() + 1).to_string();
+        if cell(1) != expected {
+            let expected = format!("point {expected} of {}", cell(0));
+            return Err(Error::input(place(1), expected, format!("`{}`", cell(1))));
+        }
+        let mean_speed_m_s = match cell(2) {
+            "" => None,
+            text => Some(number(place(2), text)?),
+        };
+        let argument = number(place(ARGUMENT), cell(ARGUMENT))?;
+        if convention.argument != Argument::VHat {
+            crate::error::positive(place(ARGUMENT), argument)?;
+        }
+        let value = number(place(4), cell(4))?;
+        let point = ExpressedPoint {
+            mean_speed_m_s,
+            argument,
+            value,
+        };
+        check_point_count(place(0), points.len() + 1)?;
+        points.push(convention.read_point(derivative, &point));
+        lines.push(line);
+    }
+    Ok(rows)
+}
+
+/// The argument that the file has a column of.
+fn find_argument(names: &csv::StringRecord, line: usize) -> Result<Argument> {
+    let mut found = Argument::ALL
+        .into_iter()
+        .filter(|a| names.iter().any(|name| name == a.name()));
+    match (found.next(), found.next()) {
+        (Some(argument), None) => Ok(argument),
+        (None, _) => Err(missing_column(names, line, Argument::VHat.name())),
+        (Some(first), Some(second)) => Err(Error::input(
+            Place::line(line),
+            "one column of reduced velocities or frequencies",
+            format!("`{first}` and `{second}`"),
+        )),
+    }
+}
+
+#[cfg(test)]
+mod tests;

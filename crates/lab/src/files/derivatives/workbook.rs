@@ -1,0 +1,360 @@
+//! Workbooks of derivatives as NTNU keeps them (.xlsx).
+//!
+//! Three sheets, `Mean wind velocity`, `Reduced Velocities`, `Aerodynamic Derivatives`, in any order; in each a
+//! row of names and below it one row per test point; one column per derivative, named `MeanWind_H1`, `Vred_H1`, `H1`, or
+//! in all sheets `H1` or `H_1` as the laboratory's own package writes them, with a column of row numbers that is not looked
+//! at. Derivatives of sway may be left out, in all three sheets alike, likewise H4, A4 ([`super::Missing`]).
+//! Every derivative has its own `V̂ = V/(ωB)`. The width is that of a sheet `Dim section model` (names `D`, `B`, `L` over
+//! values in m) or of the notes; else it follows from the frequencies, `B = V/(2πf V̂)`; else 1 m is assumed, with a note:
+//! only the frequencies of virtual records depend on it. NTNU's workbooks do not state their convention, which is that of this project
+//! ([`super::SIGN_CONVENTION`]). Any other is stated by the reader or by a sheet `Notes` (keys `notation`, `argument`,
+//! `axes` beside their values); the columns are then called as in that notation (`MeanWind_h1`, `Vred_h1`, `h1`),
+//! whatever the sheet `Reduced Velocities` holds.
+
+use crate::aerodynamics::derivatives::missing::fill_in;
+use crate::aerodynamics::derivatives::notation::{Convention, ExpressedPoint, StatedConvention};
+use crate::aerodynamics::derivatives::table::check_point_count;
+use crate::aerodynamics::derivatives::{
+    Derivative, DerivativePoint, DerivativeTable, Missing, TableHeader,
+};
+use crate::error::{Error, Result, positive};
+use crate::files::derivatives::csv_header::TableInConvention;
+use crate::files::derivatives::xlsx_cells::{Cell, CheckedWorkbook, Sheet};
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+use std::path::Path;
+
+/// Frequencies of the tests, Hz, in test order at each speed (Table 3.2 of the thesis).
+pub const TABLE_3_2_FREQUENCIES_HZ: [f64; 8] = [0.25, 0.5, 0.8, 1.1, 1.4, 1.7, 2.0, 2.5];
+
+/// Name of the sheet of notes.
+pub(super) const NOTES: &str = "Notes";
+
+/// Name of the sheet of dimensions that the laboratory's own package writes.
+const DIMENSIONS: &str = "Dim section model";
+
+/// What is said when nothing gives the width.
+pub const WIDTH_ASSUMED: &str = "the width of the section model is not stated and does not follow from the table: 1 m is assumed, which affects only the \
+     frequencies of virtual records (`width_m` states it)";
+
+/// The same width must follow from every point to within this fraction.
+const WIDTH_TOLERANCE: f64 = 0.01;
+
+/// Kind of sheet: its name and what its column names begin with.
+pub(super) const SPEEDS: (&str, &str) = ("Mean wind velocity", "MeanWind_");
+pub(super) const REDUCED_VELOCITIES: (&str, &str) = ("Reduced Velocities", "Vred_");
+pub(super) const DERIVATIVES: (&str, &str) = ("Aerodynamic Derivatives", "");
+
+/// What a workbook does not say of itself.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct WorkbookOptions {
+    /// Name of the deck; `None` takes the file name without `AerodynamicDerivatives_` and extension.
+    pub name: Option<String>,
+    /// Width of the section model, m; `None` takes it from the workbook or derives it from `frequencies_hz`.
+    pub width_m: Option<f64>,
+    /// What is known about notation, argument and axes of the figures; a sheet `Notes` must not contradict it.
+    pub convention: StatedConvention,
+    /// Frequencies of motion, Hz, in test order, repeated for every further speed; `None` tries those of Table 3.2.
+    pub frequencies_hz: Option<Vec<f64>>,
+    /// What stands for H4*, A4* when there are none.
+    pub missing: Option<Missing>,
+    /// Provenance; an empty `source` is filled with the file name, an empty `generator` with this program.
+    pub header: TableHeader,
+}
+
+/// Reads an NTNU workbook of derivatives.
+///
+/// # Errors
+/// [`Error::Input`] with file, sheet and cell: not a workbook, a missing sheet or column, an empty cell or text in place
+/// of a number, sheets of unequal length, no common width, points out of order or twice.
+pub fn read_workbook(path: impl AsRef<Path>, options: &WorkbookOptions) -> Result<DerivativeTable> {
+    read_workbook_in(path, options).map(|read| read.table)
+}
+
+/// The same; the second value is the convention that the workbook is in.
+pub(crate) fn read_workbook_in(
+    path: impl AsRef<Path>,
+    options: &WorkbookOptions,
+) -> Result<TableInConvention> {
+    let path = path.as_ref();
+    let read = || {
+        let mut book = CheckedWorkbook::open(path)?;
+        let notes = pairs(&book.sheet(NOTES)?.unwrap_or_default());
+        let convention = convention_of(options.convention, &notes)?;
+        let mut points = read_sheets(&mut book, &convention)?;
+        let mut header = options.header.clone();
+        header.notes.extend(fill_in(&mut points, options.missing));
+        let stated = width_in_book(&mut book, &notes)?;
+        let table = table_from(path, options, header, points, stated)?;
+        Ok(TableInConvention { table, convention })
+    };
+    read().map_err(|e: Error| e.in_file(path))
+}
+
+/// Keys and values of the sheet `Notes`, the first two columns.
+fn pairs(sheet: &Sheet) -> BTreeMap<String, String> {
+    let cell = |row: u32, column: u32| sheet.cells.get(&(row, column)).map(Cell::text);
+    let rows = sheet.cells.keys().filter(|(_, column)| *column == 0);
+    rows.filter_map(|(row, _)| Some((cell(*row, 0)?, cell(*row, 1)?)))
+        .collect()
+}
+
+/// The width that the workbook states, m, and where.
+fn width_in_book(
+    book: &mut CheckedWorkbook,
+    notes: &BTreeMap<String, String>,
+) -> Result<Option<(f64, String)>> {
+    if let Some(sheet) = book.sheet(DIMENSIONS)? {
+        let place = || format!("sheet {DIMENSIONS}, B");
+        let column = sheet.titles().into_iter().find(|t| t.1.trim() == "B");
+        if let Some((column, _)) = column {
+            let width = number(&sheet, DIMENSIONS, sheet.first_row() + 1, column)?;
+            return Ok(Some((positive(place(), width)?, place())));
+        }
+    }
+    let Some(text) = notes.get("width_m") else {
+        return Ok(None);
+    };
+    let place = format!("sheet {NOTES}, width_m");
+    let width = text
+        .parse()
+        .map_err(|_| Error::input(&place, "a number", format!("`{text}`")))?;
+    Ok(Some((positive(&place, width)?, place)))
+}
+
+/// What the notes and the caller say of the convention; when neither says anything, it is NTNU's, this project's own.
+fn convention_of(stated: StatedConvention, notes: &BTreeMap<String, String>) -> Result<Convention> {
+    let mut file = StatedConvention {
+        notation: parse_note(notes, "notation")?,
+        argument: parse_note(notes, "argument")?,
+        axes: parse_note(notes, "axes")?,
+    };
+    if file.is_empty() && stated.notation.is_none() {
+        // without a notation the workbook is NTNU's in all that is not stated otherwise
+        let own = Convention::default();
+        file = StatedConvention {
+            notation: Some(own.notation),
+            argument: stated.argument.or(Some(own.argument)),
+            axes: stated.axes.or(Some(own.axes)),
+        };
+    }
+    stated.with_file(file)
+}
+
+fn parse_note<T: std::str::FromStr<Err = Error>>(
+    notes: &BTreeMap<String, String>,
+    key: &str,
+) -> Result<Option<T>> {
+    let parse = |text: &String| {
+        text.parse().map_err(|e| match e {
+            Error::Input(input) => {
+                Error::input(format!("sheet {NOTES}, {key}"), input.expected, input.found)
+            }
+            other => other,
+        })
+    };
+    notes.get(key).map(parse).transpose()
+}
+
+type Points = BTreeMap<Derivative, Vec<DerivativePoint>>;
+
+fn read_sheets(book: &mut CheckedWorkbook, convention: &Convention) -> Result<Points> {
+    let mut sheet = |kind: (&str, &str)| -> Result<Sheet> {
+        book.sheet(kind.0)?.ok_or_else(|| {
+            let expected = format!("a sheet `{}`", kind.0);
+            let found = format!("`{}`", book.names().join("`, `"));
+            Error::input("workbook", expected, found)
+        })
+    };
+    let sheets = [
+        (sheet(SPEEDS)?, SPEEDS),
+        (sheet(REDUCED_VELOCITIES)?, REDUCED_VELOCITIES),
+        (sheet(DERIVATIVES)?, DERIVATIVES),
+    ];
+    // tests without sway have no columns for what it couples; a column in one sheet must be in all
+    let names = |d| convention.notation.name_of(d);
+    let is_held = |d: &Derivative| {
+        let column = |(sheet, kind): &(Sheet, (&str, &str))| column_of(sheet, kind.1, names(*d));
+        sheets.iter().any(|s| column(s).is_some())
+    };
+    let held: Vec<Derivative> = Derivative::ALL.into_iter().filter(is_held).collect();
+    if held.is_empty() {
+        let expected = format!("columns named {}", convention.notation.names());
+        return Err(Error::input(
+            format!("sheet {}, first row", DERIVATIVES.0),
+            expected,
+            sheets[2].0.title_words(),
+        ));
+    }
+    let columns = |i: usize| read_columns(&sheets[i].0, sheets[i].1, &held, convention);
+    let (speeds, arguments, values) = (columns(0)?, columns(1)?, columns(2)?);
+    let points = held.iter().map(|&d| {
+        let (speeds, arguments, values) = (&speeds[&d], &arguments[&d], &values[&d]);
+        for (sheet, column) in [(REDUCED_VELOCITIES, arguments), (DERIVATIVES, values)] {
+            if column.len() != speeds.len() {
+                let expected = format!("{} test points as in sheet {}", speeds.len(), SPEEDS.0);
+                let found = column.len().to_string();
+                return Err(Error::input(format!("sheet {}", sheet.0), expected, found));
+            }
+        }
+        let point = |((speed, argument), value): ((&f64, &f64), &f64)| {
+            let point = ExpressedPoint {
+                mean_speed_m_s: Some(*speed),
+                argument: *argument,
+                value: *value,
+            };
+            convention.read_point(d, &point)
+        };
+        let columns = speeds.iter().zip(arguments).zip(values);
+        Ok((d, columns.map(point).collect()))
+    });
+    points.collect()
+}
+
+/// The column of the derivative of this name: with the prefix of the sheet, or bare, as `H1` or `H_1`. Capitals count in
+/// the name: h1 and H1 are different numbers.
+fn column_of(sheet: &Sheet, prefix: &str, name: &str) -> Option<u32> {
+    let underscored = name
+        .char_indices()
+        .nth(1)
+        .map(|(i, _)| format!("{}_{}", &name[..i], &name[i..]));
+    let titles = sheet.titles();
+    let named = |wanted: &str, ending: &str| {
+        let same = |title: &str| {
+            let title = title.trim().trim_end_matches('*');
+            title.eq_ignore_ascii_case(wanted) && title.ends_with(ending)
+        };
+        titles.iter().find(|t| same(&t.1)).map(|t| t.0)
+    };
+    named(&format!("{prefix}{name}"), name)
+        .or_else(|| named(name, name))
+        .or_else(|| named(underscored.as_deref()?, underscored.as_deref()?))
+}
+
+/// The columns of one sheet that belong to the derivatives `held`.
+fn read_columns(
+    sheet: &Sheet,
+    (name, prefix): (&str, &str),
+    held: &[Derivative],
+    convention: &Convention,
+) -> Result<BTreeMap<Derivative, Vec<f64>>> {
+    let column = |d: &Derivative| {
+        let derivative = convention.notation.name_of(*d);
+        column_of(sheet, prefix, derivative).ok_or_else(|| {
+            let place = format!("sheet {name}, first row");
+            let expected = format!("a column `{prefix}{derivative}`");
+            Error::input(place, expected, sheet.title_words())
+        })
+    };
+    let columns: Vec<u32> = held.iter().map(column).collect::<Result<_>>()?;
+    let rows = sheet.first_row() + 1..sheet.last_row(&columns) + 1;
+    check_point_count(format!("sheet {name}"), rows.len())?;
+    let numbers = |column: u32| {
+        let rows = rows.clone();
+        rows.map(|row| number(sheet, name, row, column))
+            .collect::<Result<Vec<f64>>>()
+    };
+    held.iter()
+        .zip(&columns)
+        .map(|(d, column)| Ok((*d, numbers(*column)?)))
+        .collect()
+}
+
+fn number(sheet: &Sheet, name: &str, row: u32, column: u32) -> Result<f64> {
+    let found = match sheet.cells.get(&(row, column)) {
+        Some(Cell::Number(x)) => return Ok(*x),
+        None => "an empty cell".to_owned(),
+        Some(Cell::Text(text)) => format!("`{text}`"),
+    };
+    let letter = column_letters(column as usize);
+    let place = format!("sheet {name}, cell {letter}{}", row + 1);
+    Err(Error::input(place, "a number", found))
+}
+
+/// `A` … `Z`, `AA` … for a column counted from 0.
+fn column_letters(mut column: usize) -> String {
+    let mut letters = Vec::new();
+    loop {
+        letters.insert(0, char::from(b'A' + (column % 26) as u8));
+        if column < 26 {
+            return letters.into_iter().collect();
+        }
+        column = column / 26 - 1;
+    }
+}
+
+fn table_from(
+    path: &Path,
+    options: &WorkbookOptions,
+    mut header: TableHeader,
+    points: Points,
+    in_book: Option<(f64, String)>,
+) -> Result<DerivativeTable> {
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let name = options.name.clone().unwrap_or_else(|| {
+        let bare = stem.trim_start_matches("AerodynamicDerivatives_");
+        bare.replace('_', "-")
+    });
+    if header.source.is_empty() {
+        header.source = format!("workbook {stem}.xlsx");
+    }
+    if header.generator.is_empty() {
+        header.generator = concat!("aerodeck ", env!("CARGO_PKG_VERSION")).to_owned();
+    }
+    // Impossible points are found by the table's own check; the width is asked of possible ones only.
+    let mut table = DerivativeTable::new(name, 1.0, header, points)?;
+    let derived = |frequencies| width_from_frequencies(&table, frequencies);
+    let (width, note) = match (options.width_m, &options.frequencies_hz, in_book) {
+        (Some(width), _, _) => (positive("width_m", width)?, None),
+        (None, Some(frequencies), _) => (derived(frequencies)?, None),
+        (None, None, Some((width, place))) => {
+            (width, Some(format!("width {width} m from {place}")))
+        }
+        (None, None, None) => derived(&TABLE_3_2_FREQUENCIES_HZ).map_or_else(
+            |e| (1.0, Some(format!("{WIDTH_ASSUMED}; {e}"))),
+            |width| (width, None),
+        ),
+    };
+    table.width_m = width;
+    table.header.notes.extend(note);
+    Ok(table)
+}
+
+/// `B = V/(2πf V̂)`: the median over all points, all of which must agree.
+fn width_from_frequencies(table: &DerivativeTable, frequencies_hz: &[f64]) -> Result<f64> {
+    let mut widths = Vec::new();
+    for derivative in table.derivatives() {
+        let points = table.points(derivative);
+        if frequencies_hz.is_empty() || !points.len().is_multiple_of(frequencies_hz.len()) {
+            let expected = format!(
+                "{} test points per speed, one per frequency (or the width stated)",
+                frequencies_hz.len()
+            );
+            return Err(Error::input(
+                derivative.name(),
+                expected,
+                points.len().to_string(),
+            ));
+        }
+        for (p, f) in points.iter().zip(frequencies_hz.iter().cycle()) {
+            let speed = p.mean_speed_m_s.unwrap_or(f64::NAN);
+            widths.push(speed / (TAU * f * p.v_hat));
+        }
+    }
+    widths.sort_by(f64::total_cmp);
+    let median = widths[widths.len() / 2];
+    let (low, high) = (widths[0], widths[widths.len() - 1]);
+    if low > median * (1.0 - WIDTH_TOLERANCE) && high < median * (1.0 + WIDTH_TOLERANCE) {
+        return Ok(median);
+    }
+    Err(Error::input(
+        "width B = V/(2πf V̂)",
+        format!(
+            "one width from all points at the frequencies {frequencies_hz:?} Hz (or the width or other frequencies stated)"
+        ),
+        format!("{low:.4} m to {high:.4} m"),
+    ))
+}
+
+#[cfg(test)]
+mod tests;

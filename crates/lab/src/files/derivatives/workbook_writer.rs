@@ -1,0 +1,185 @@
+//! Workbooks of derivatives written as NTNU keeps them; [`super::read_workbook`] reads them.
+//!
+//! Three sheets, each with a row of names and one row per test point; see [`super::workbook`] for the layout. Derivatives that the
+//! table does not hold have no columns. A fourth sheet, `Notes`, which other readers of the layout do not look at, says where
+//! the figures come from, in which convention they are, and which width belongs to them.
+
+use crate::aerodynamics::derivatives::notation::{Convention, ExpressedPoint, ExpressedTable};
+use crate::aerodynamics::derivatives::{Derivative, DerivativeTable};
+use crate::error::{Error, Result};
+use crate::files::derivatives::workbook::{DERIVATIVES, NOTES, REDUCED_VELOCITIES, SPEEDS};
+use rust_xlsxwriter::{Workbook, Worksheet, XlsxError};
+
+/// One number of a test point.
+type Number = fn(&ExpressedPoint) -> f64;
+
+/// The bytes of a workbook with the figures of `table`, in this project's convention, which is NTNU's.
+pub fn workbook_bytes(table: &DerivativeTable) -> Result<Vec<u8>> {
+    workbook_bytes_in(table, &Convention::default())
+}
+
+/// The bytes of a workbook with the figures of `table` in `convention`: columns called as in the notation, the argument
+/// in the sheet of reduced velocities; the notes state it, and the reader obeys them.
+///
+/// # Errors
+/// [`Error::Input`] when a point has no mean speed, which the layout needs; [`Error::Numerical`] when the workbook cannot be made.
+pub fn workbook_bytes_in(table: &DerivativeTable, convention: &Convention) -> Result<Vec<u8>> {
+    let place = |d: Derivative| format!("table {}, {d}", table.name);
+    for d in table.derivatives() {
+        if table.points(d).iter().any(|p| p.mean_speed_m_s.is_none()) {
+            return Err(Error::input(
+                place(d),
+                "the mean speed of every point",
+                "a point without",
+            ));
+        }
+    }
+    let failed = |e: XlsxError| Error::Numerical(format!("workbook: {e}"));
+    let mut book = Workbook::new();
+    let expressed = convention.express(table);
+    let columns: [(_, Number); 3] = [
+        (SPEEDS, |p| p.mean_speed_m_s.unwrap_or(f64::NAN)),
+        (REDUCED_VELOCITIES, |p| p.argument),
+        (DERIVATIVES, |p| p.value),
+    ];
+    for ((name, prefix), value) in columns {
+        let sheet = book.add_worksheet();
+        write_sheet(sheet, name, prefix, &expressed, value).map_err(failed)?;
+    }
+    write_notes(book.add_worksheet(), table, convention).map_err(failed)?;
+    book.save_to_buffer().map_err(failed)
+}
+
+fn write_sheet(
+    sheet: &mut Worksheet,
+    name: &str,
+    prefix: &str,
+    table: &ExpressedTable,
+    value: Number,
+) -> std::result::Result<(), XlsxError> {
+    sheet.set_name(name)?;
+    for (column, derivative) in (0_u16..).zip(&table.derivatives) {
+        sheet.write_string(0, column, format!("{prefix}{}", derivative.name))?;
+        for (row, point) in (1_u32..).zip(&derivative.points) {
+            sheet.write_number(row, column, value(point))?;
+        }
+    }
+    Ok(())
+}
+
+fn write_notes(
+    sheet: &mut Worksheet,
+    table: &DerivativeTable,
+    convention: &Convention,
+) -> std::result::Result<(), XlsxError> {
+    sheet.set_name(NOTES)?;
+    let header = &table.header;
+    let lines = [
+        ("name", table.name.clone()),
+        ("width_m", table.width_m.to_string()),
+        ("source", header.source.clone()),
+        ("licence", header.licence.clone()),
+        ("generator", header.generator.clone()),
+        ("notation", convention.notation.name().to_owned()),
+        ("argument", convention.argument.definition().to_owned()),
+        ("axes", convention.axes.words().to_owned()),
+        ("definition", convention.notation.definition().to_owned()),
+    ];
+    for (row, (key, value)) in (0_u32..).zip(lines) {
+        sheet.write_string(row, 0, key)?;
+        sheet.write_string(row, 1, value)?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::files::derivatives::WorkbookOptions;
+    use crate::files::derivatives::embedded;
+    use crate::files::derivatives::read_workbook;
+    use crate::files::derivatives::workbook_writer::*;
+    use std::collections::BTreeMap;
+
+    fn round_trip(table: &DerivativeTable) -> DerivativeTable {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("AerodynamicDerivatives_round.xlsx");
+        std::fs::write(&path, workbook_bytes(table).unwrap()).unwrap();
+        let options = WorkbookOptions {
+            width_m: Some(table.width_m),
+            ..WorkbookOptions::default()
+        };
+        read_workbook(&path, &options).unwrap()
+    }
+
+    fn same(a: &DerivativeTable, b: &DerivativeTable) {
+        assert!(a.derivatives().eq(b.derivatives()));
+        for d in a.derivatives() {
+            assert_eq!(a.points(d).len(), b.points(d).len());
+            for (p, q) in a.points(d).iter().zip(b.points(d)) {
+                for (x, y) in [
+                    (p.value, q.value),
+                    (p.v_hat, q.v_hat),
+                    (p.mean_speed_m_s.unwrap(), q.mean_speed_m_s.unwrap()),
+                ] {
+                    // sixteen digits are written
+                    assert!((x - y).abs() <= 1e-12 * x.abs(), "{d}: {x} {y}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn all_eighteen_come_back() {
+        let table = embedded::deck("LN21-5200").unwrap();
+        same(&table, &round_trip(&table));
+        // and without being told the width, which the frequencies give
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("w.xlsx");
+        std::fs::write(&path, workbook_bytes(&table).unwrap()).unwrap();
+        let again = read_workbook(&path, &WorkbookOptions::default()).unwrap();
+        assert!((again.width_m / table.width_m - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn eight_come_back_as_eight() {
+        let whole = embedded::deck("LN21-5200").unwrap();
+        let eight: BTreeMap<_, _> = whole
+            .derivatives()
+            .filter(|d| {
+                let lateral = crate::section::Dof::Lateral;
+                d.force() != lateral && d.motion() != lateral
+            })
+            .map(|d| (d, whole.points(d).to_vec()))
+            .collect();
+        let table = DerivativeTable::new("eight", 0.5, Default::default(), eight).unwrap();
+        same(&table, &round_trip(&table));
+    }
+
+    /// In every notation, with nothing stated: the notes are obeyed, and a contradiction is refused.
+    #[test]
+    fn notes_state_the_convention() {
+        use crate::aerodynamics::derivatives::notation::Notation;
+        use crate::aerodynamics::derivatives::notation::StatedConvention;
+        use crate::files::derivatives::{TableInConvention, read_workbook_in};
+        let table = embedded::deck("LN21-5200").unwrap();
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("w.xlsx");
+        for notation in Notation::ALL {
+            let convention = Convention::usual(notation);
+            std::fs::write(&path, workbook_bytes_in(&table, &convention).unwrap()).unwrap();
+            let TableInConvention {
+                table: again,
+                convention: said,
+            } = read_workbook_in(&path, &WorkbookOptions::default()).unwrap();
+            assert_eq!(said, convention);
+            same(&table, &again);
+        }
+        let options = WorkbookOptions {
+            convention: StatedConvention::notation(Notation::Polimi),
+            ..WorkbookOptions::default()
+        };
+        let message = read_workbook(&path, &options).unwrap_err().to_string();
+        let expected = "notation: expected `polimi` as stated on import, found `starossek`";
+        assert!(message.contains(expected), "{message}");
+    }
+}

@@ -1,0 +1,167 @@
+//! This project's file of gusts: CSV with a header of `# key: value` lines.
+//!
+//! ```text
+//! # aerodeck gust series 1
+//! # name: …
+//! # source: …
+//! # units: time_s in s; u_m_s, w_m_s in m/s
+//! # sign_convention: u along the mean wind without the mean; w up
+//! time_s,u_m_s,w_m_s
+//! 0,0.31,-0.12
+//! ```
+//!
+//! Times start at zero and are equally spaced.
+
+use crate::aerodynamics::GustSeries;
+use crate::error::{Error, Place, Result};
+use crate::files::header_csv::{CommentHeader, csv_error, find_columns, number, table_reader};
+use crate::files::text::read_text;
+use std::io::Write;
+use std::path::Path;
+
+/// First line of the file.
+const FORMAT: &str = "aerodeck gust series 1";
+/// Keys of the header.
+const KEYS: [&str; 4] = ["name", "source", "units", "sign_convention"];
+const UNITS: &str = "time_s in s; u_m_s, w_m_s in m/s";
+const SIGNS: &str = "u along the mean wind without the mean; w up";
+/// A sample may stand off its place by this part of the step: time stamps are often rounded.
+const JITTER: f64 = 1e-3;
+
+/// Names of the columns, which may stand in any order.
+pub(crate) const GUST_COLUMNS: [&str; 3] = ["time_s", "u_m_s", "w_m_s"];
+
+/// Reads a series of gusts.
+///
+/// # Errors
+/// [`Error::Io`] when the file cannot be read; [`Error::Input`] with file and line, what was expected and what was found.
+pub fn read_gusts(path: impl AsRef<Path>) -> Result<GustSeries> {
+    let path = path.as_ref();
+    let text = read_text(path)?;
+    parse_gusts(&text).map_err(|e| e.in_file(path))
+}
+
+/// The series in `text`, the content of such a file.
+///
+/// # Errors
+/// [`Error::Input`] naming the line: wrong header or columns, text or NaN in numbers, times that do not start at zero or
+/// are not equally spaced, fewer than two samples.
+pub(crate) fn parse_gusts(text: &str) -> Result<GustSeries> {
+    let header = CommentHeader::read(text, &[FORMAT], &KEYS, &[])?;
+    header.must_say("units", UNITS)?;
+    header.must_say("sign_convention", SIGNS)?;
+    let mut reader = table_reader(text);
+    let names = reader.headers().map_err(csv_error)?.clone();
+    let columns = find_columns(&names, GUST_COLUMNS, header.lines() + 1)?;
+    let (mut along, mut vertical, mut step) = (Vec::new(), Vec::new(), 0.0);
+    for record in reader.records() {
+        let record = record.map_err(csv_error)?;
+        let line = record.position().map_or(0, csv::Position::line);
+        let cell = |i: usize| -> Result<f64> {
+            let place = Place::line(line).column(GUST_COLUMNS[i]);
+            let value = number(&place, record.get(columns[i]).unwrap_or(""))?;
+            if value.is_finite() {
+                return Ok(value);
+            }
+            Err(Error::input(place, "a finite number", value.to_string()))
+        };
+        let time = cell(0)?;
+        if along.len() == 1 {
+            step = crate::error::positive(Place::line(line).column("time_s"), time)?;
+        }
+        let expected = step * along.len() as f64;
+        if (time - expected).abs() > JITTER * step {
+            return Err(Error::input(
+                Place::line(line).column("time_s"),
+                format!("{expected} (equal steps from zero)"),
+                time.to_string(),
+            ));
+        }
+        along.push(cell(1)?);
+        vertical.push(cell(2)?);
+    }
+    if along.len() < 2 {
+        return Err(Error::input(
+            Place::line(header.lines() + 1 + along.len()),
+            "at least 2 samples",
+            along.len().to_string(),
+        ));
+    }
+    GustSeries::new(step, along, vertical)
+}
+
+/// Writes a series; [`parse_gusts`] gives the same gusts back, bit for bit.
+pub fn write_gusts(
+    name: &str,
+    source: &str,
+    gusts: &GustSeries,
+    out: &mut dyn Write,
+) -> std::io::Result<()> {
+    CommentHeader::write_format(out, FORMAT)?;
+    for (key, value) in KEYS.iter().zip([name, source, UNITS, SIGNS]) {
+        CommentHeader::write_line(out, key, value)?;
+    }
+    writeln!(out, "{}", GUST_COLUMNS.join(","))?;
+    let pairs = gusts.along_m_s().iter().zip(gusts.vertical_m_s());
+    for (i, (u, w)) in pairs.enumerate() {
+        writeln!(out, "{},{u},{w}", gusts.step_s() * i as f64)?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::files::gusts::*;
+
+    fn written() -> String {
+        let gusts =
+            GustSeries::new(0.05, vec![0.1, -0.3, 0.7, 1e-9], vec![0.0, 1.25, -3.5, 2.0]).unwrap();
+        let mut out = Vec::new();
+        write_gusts("made up", "a test", &gusts, &mut out).unwrap();
+        let text = String::from_utf8(out).unwrap();
+        assert_eq!(parse_gusts(&text).unwrap(), gusts);
+        text
+    }
+
+    #[test]
+    fn bad_files_are_explained() {
+        let good = written();
+        let cases = [
+            (
+                "\n0.05,",
+                "\n0.06,",
+                "line 9, column time_s: expected 0.12 (equal steps from zero), found 0.1",
+            ),
+            (
+                "\n0.05,",
+                "\n-0.05,",
+                "line 8, column time_s: expected a positive number",
+            ),
+            (
+                "-3.5",
+                "inf",
+                "line 9, column w_m_s: expected a finite number, found inf",
+            ),
+            (
+                "-3.5",
+                "calm",
+                "line 9, column w_m_s: expected a number, found `calm`",
+            ),
+            (
+                "w up",
+                "w down",
+                "line 5 (sign_convention): expected `u along",
+            ),
+            ("u_m_s,w_m_s\n", "u_m_s,w\n", "expected a column `w_m_s`"),
+        ];
+        for (old, new, expected) in cases {
+            let bad = good.replacen(old, new, 1);
+            assert_ne!(bad, good, "{old}");
+            let message = parse_gusts(&bad).unwrap_err().to_string();
+            assert!(message.contains(expected), "{message}");
+        }
+        let short: Vec<&str> = good.lines().take(7).collect();
+        let message = parse_gusts(&short.join("\n")).unwrap_err().to_string();
+        assert!(message.contains("at least 2 samples, found 1"), "{message}");
+    }
+}

@@ -1,0 +1,159 @@
+//! What a laboratory file holds: channels, single values and what was left out.
+
+use crate::error::{Error, Place, Result};
+use std::collections::BTreeMap;
+
+/// What one file, or one group of it, holds.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ChannelSet {
+    /// Sampled channels in the order of the file.
+    pub channels: Vec<Channel>,
+    /// Single numbers and texts by name.
+    pub attributes: BTreeMap<String, Attribute>,
+    /// Sampling frequency, Hz, where the file states it.
+    pub sampling_hz: Option<f64>,
+    /// What was not read: name and reason.
+    pub left_out: Vec<(String, String)>,
+}
+
+/// One sampled channel.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Channel {
+    /// Name, as a channel map has it.
+    pub name: String,
+    /// Samples in the unit of the file.
+    pub samples: Vec<f64>,
+    /// Unit, where the file states it.
+    pub unit: Option<String>,
+}
+
+/// A single value.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Attribute {
+    /// A number.
+    Number(f64),
+    /// A text.
+    Text(String),
+}
+
+/// Numbers in one file, or one group of it, at most: all channels of 46 for an hour at 200 Hz. With it each reader works within
+/// 1 GiB for files of 100 MB.
+pub(super) const NUMBERS_AT_MOST: u64 = 32 << 20;
+/// Names in a message at most.
+const NAMES_AT_MOST: usize = 60;
+
+/// Refuses more numbers than a recording has.
+pub(super) fn check_count(place: impl Into<Place>, numbers: u64) -> Result<()> {
+    if numbers <= NUMBERS_AT_MOST {
+        return Ok(());
+    }
+    let expected = format!(
+        "at most {NUMBERS_AT_MOST} numbers in a file or group (cut the recording, or give each run a group)"
+    );
+    Err(Error::input(place, expected, numbers.to_string()))
+}
+
+/// Names under which files state their sampling frequency in Hz, in lower case.
+const SAMPLING_NAMES: [&str; 8] = [
+    "sampling frequency",
+    "sampling_frequency",
+    "samplingfrequency",
+    "sampling_hz",
+    "sampling_rate",
+    "sample_rate",
+    "samplerate",
+    "fs",
+];
+
+impl ChannelSet {
+    /// The channel of this name.
+    pub fn channel(&self, name: &str) -> Option<&Channel> {
+        self.channels.iter().find(|c| c.name == name)
+    }
+
+    /// The attribute of this name as a number.
+    pub(crate) fn number(&self, name: &str) -> Option<f64> {
+        match self.attributes.get(name) {
+            Some(Attribute::Number(x)) => Some(*x),
+            _ => None,
+        }
+    }
+
+    /// Everything that is there, in words, for a message.
+    pub fn listing(&self) -> String {
+        let names: Vec<&str> = self.channels.iter().map(|c| c.name.as_str()).collect();
+        let mut text = if names.is_empty() {
+            "no channel".to_owned()
+        } else {
+            format!("the channels {}", shortened(&names))
+        };
+        let numbers: Vec<&str> = self
+            .attributes
+            .iter()
+            .filter(|(_, a)| matches!(a, Attribute::Number(_)))
+            .map(|(name, _)| name.as_str())
+            .collect();
+        if !numbers.is_empty() {
+            text.push_str(&format!("; the numbers {}", shortened(&numbers)));
+        }
+        for (name, reason) in self.left_out.iter().take(NAMES_AT_MOST) {
+            text.push_str(&format!("; not read: {name} ({reason})"));
+        }
+        text
+    }
+
+    /// Takes the sampling frequency from an attribute of a usual name where the file states it no other way.
+    pub(super) fn find_sampling(&mut self) {
+        if self.sampling_hz.is_none() {
+            let found = self.attributes.iter().find_map(|(name, value)| {
+                let last = name.rsplit(['/', '.']).next().unwrap_or(name);
+                match value {
+                    Attribute::Number(hz)
+                        if SAMPLING_NAMES.contains(&last.to_lowercase().as_str()) =>
+                    {
+                        Some(*hz)
+                    }
+                    _ => None,
+                }
+            });
+            self.sampling_hz = found.filter(|hz| hz.is_finite() && *hz > 0.0);
+        }
+    }
+
+    pub(super) fn push(
+        &mut self,
+        name: impl Into<String>,
+        samples: Vec<f64>,
+        unit: Option<String>,
+    ) {
+        self.channels.push(Channel {
+            name: name.into(),
+            samples,
+            unit,
+        });
+    }
+
+    pub(super) fn leave_out(&mut self, name: impl Into<String>, reason: impl Into<String>) {
+        self.left_out.push((name.into(), reason.into()));
+    }
+}
+
+/// Names in a row, no more than a message should hold.
+fn shortened(names: &[&str]) -> String {
+    let shown = names[..names.len().min(NAMES_AT_MOST)].join(", ");
+    match names.len().saturating_sub(NAMES_AT_MOST) {
+        0 => shown,
+        more => format!("{shown} and {more} more"),
+    }
+}
+
+/// The error that there is no such group.
+pub(super) fn no_group(wanted: &str, groups: &[String]) -> Error {
+    let groups: Vec<&str> = groups.iter().map(String::as_str).collect();
+    let expected = if groups.is_empty() {
+        "no group: the file has none".to_owned()
+    } else {
+        format!("one of the groups {}", shortened(&groups))
+    };
+    Error::input("group", expected, format!("`{wanted}`"))
+}

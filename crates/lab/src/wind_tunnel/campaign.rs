@@ -1,0 +1,26 @@
+//! The campaign file: one TOML file that says what was tested, on which rig, in which air, and where the samples are.
+//!
+//! `docs/campaigns.md` has a complete example. `Campaign::read` reads and checks the file itself,
+//! `Campaign::load` the recordings it names; what does not stop reading is a list of findings.
+
+mod air;
+mod channel;
+mod channel_map;
+mod file;
+mod findings;
+mod load;
+mod ntnu;
+mod quantity;
+mod recording;
+mod section_forces;
+mod write;
+
+pub use file::Campaign;
+pub use load::CampaignReading;
+pub use load::RecordingSummary;
+pub use load::{LoadedCampaign, read_campaign};
+pub use write::FileFormat;
+pub use write::write_virtual_campaign;
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,201 @@
+//! The channel map: which channel of the files is what, in which unit, with which sign.
+
+use super::channel::{CellChannel, ChannelRef};
+use super::quantity::Quantity;
+use super::section_forces::SectionForces;
+use crate::error::{Error, Result};
+use crate::files::lab::Channel;
+use crate::section::Dof;
+use crate::wind_tunnel::{CELL_CHANNELS, Rig};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Which channel is what. Cells are named as in the rig.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ChannelMap {
+    /// Time; may be left out where the sampling frequency is known.
+    pub time: Option<ChannelRef>,
+    /// Heave, positive up.
+    pub vertical: Option<ChannelRef>,
+    /// Sway, positive downwind.
+    pub lateral: Option<ChannelRef>,
+    /// Rotation, positive nose-up.
+    pub torsion: Option<ChannelRef>,
+    /// Wind speed.
+    pub wind_speed: Option<ChannelRef>,
+    /// Air density, a channel or a single number.
+    pub air_density: Option<ChannelRef>,
+    /// Air temperature, a channel or a single number.
+    pub temperature: Option<ChannelRef>,
+    /// Static pressure, a channel or a single number.
+    pub pressure: Option<ChannelRef>,
+    /// Forces on the whole section, in place of cells.
+    pub section: Option<SectionForces>,
+    /// For each cell its channels `fx`, `fy`, `fz`, `mx`, `my`, `mz` in local axes.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub cells: BTreeMap<String, BTreeMap<String, CellChannel>>,
+}
+
+impl ChannelMap {
+    /// The channel of a motion.
+    pub(crate) fn motion(&self, dof: Dof) -> Option<&ChannelRef> {
+        match dof {
+            Dof::Vertical => self.vertical.as_ref(),
+            Dof::Lateral => self.lateral.as_ref(),
+            Dof::Torsion => self.torsion.as_ref(),
+        }
+    }
+
+    /// The channels that are no cell's, with their keys and what they measure.
+    fn single(&self) -> Vec<(String, &ChannelRef, Quantity)> {
+        let all = [
+            ("time", &self.time, Quantity::Time),
+            ("vertical", &self.vertical, Quantity::Length),
+            ("lateral", &self.lateral, Quantity::Length),
+            ("torsion", &self.torsion, Quantity::Angle),
+            ("wind_speed", &self.wind_speed, Quantity::Speed),
+            ("air_density", &self.air_density, Quantity::Density),
+            ("temperature", &self.temperature, Quantity::Temperature),
+            ("pressure", &self.pressure, Quantity::Pressure),
+        ];
+        let stated = all.into_iter();
+        stated
+            .filter_map(|(key, c, quantity)| {
+                Some((format!("channels.{key}"), c.as_ref()?, quantity))
+            })
+            .collect()
+    }
+
+    /// The key of a channel of a cell.
+    pub(super) fn cell_key(&self, cell: &str, channel: &str) -> String {
+        if self.section.is_some() {
+            return SectionForces::key(channel);
+        }
+        format!("channels.cells.{cell}.{channel}")
+    }
+
+    /// Checks units and names without any file.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with the key: a unit that does not fit, a cell that the rig does not have or that has no map,
+    /// a channel that a cell does not have or that has no map.
+    pub(crate) fn validate(&self, rig: &Rig) -> Result<()> {
+        for (key, channel, quantity) in self.single() {
+            channel.validate(&key, quantity)?;
+        }
+        if self.section.as_ref().is_some_and(|s| s.dofs().is_empty()) {
+            let expected = "at least one of lift, drag, moment";
+            return Err(Error::input("channels.section", expected, "none"));
+        }
+        self.each_once()?;
+        let names: Vec<&str> = rig.cells.iter().map(|c| c.name.as_str()).collect();
+        if let Some(unknown) = self.cells.keys().find(|n| !names.contains(&n.as_str())) {
+            let expected = format!("one of the cells of the rig: {}", names.join(", "));
+            return Err(Error::input(
+                "channels.cells",
+                expected,
+                format!("`{unknown}`"),
+            ));
+        }
+        names.iter().try_for_each(|cell| self.validate_cell(cell))
+    }
+
+    /// Refuses a channel of the files that is said to be two things.
+    fn each_once(&self) -> Result<()> {
+        let single = self.single().into_iter();
+        let single = single.map(|(key, channel, _)| (key, channel.name.as_str()));
+        let of_cells = self.cells.iter().flat_map(|(cell, channels)| {
+            channels
+                .iter()
+                .filter_map(move |(key, channel)| match channel {
+                    CellChannel::Measured(c) => Some((self.cell_key(cell, key), c.name.as_str())),
+                    CellChannel::NotMeasured(_) => None,
+                })
+        });
+        let mut used = BTreeMap::new();
+        for (key, name) in single.chain(of_cells) {
+            if let Some(other) = used.insert(name, key.clone()) {
+                return Err(Error::input(
+                    key,
+                    "a channel of its own",
+                    format!("`{name}`, which is `{other}` too"),
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    fn validate_cell(&self, cell: &str) -> Result<()> {
+        let place = format!("channels.cells.{cell}");
+        let Some(map) = self.cells.get(cell) else {
+            return Err(Error::input(
+                "channels.cells",
+                format!("a table `{cell}`"),
+                "none",
+            ));
+        };
+        let all = || {
+            format!(
+                "{} (`\"none\"` for one not measured)",
+                CELL_CHANNELS.join(", ")
+            )
+        };
+        if let Some(unknown) = map.keys().find(|k| !CELL_CHANNELS.contains(&k.as_str())) {
+            return Err(Error::input(
+                format!("{place}.{unknown}"),
+                all(),
+                format!("`{unknown}`"),
+            ));
+        }
+        for key in CELL_CHANNELS {
+            match map.get(key) {
+                None => return Err(Error::input(&place, all(), format!("no `{key}`"))),
+                Some(CellChannel::NotMeasured(_)) => {}
+                Some(CellChannel::Measured(channel)) => {
+                    channel.validate(&self.cell_key(cell, key), cell_quantity(key))?;
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// What a channel of a cell measures.
+pub(super) fn cell_quantity(key: &str) -> Quantity {
+    if key.starts_with('f') {
+        Quantity::Force
+    } else {
+        Quantity::Moment
+    }
+}
+
+/// The time channel as a sampling frequency, Hz.
+pub(super) fn sampling_of(place: &str, time_s: &[f64]) -> Result<f64> {
+    let n = time_s.len();
+    if n < 2 {
+        return Err(Error::input(place, "at least two samples", n.to_string()));
+    }
+    let step = (time_s[n - 1] - time_s[0]) / (n - 1) as f64;
+    // stamps are often rounded: a sample may stand off its place by a quarter of a step
+    let uneven = (1..n).find(|i| {
+        let off = (time_s[*i] - time_s[i - 1]) / step - 1.0;
+        off.is_nan() || off.abs() > 0.25
+    });
+    match uneven {
+        None if step > 0.0 && step.is_finite() => Ok(1.0 / step),
+        uneven => {
+            let i = uneven.unwrap_or(1);
+            Err(Error::input(
+                format!("{place}, sample {i}"),
+                format!("{step:.6} s after the sample before, as on average"),
+                format!("{:.6} s", time_s[i] - time_s[i - 1]),
+            ))
+        }
+    }
+}
+
+/// Length of a channel, for messages about unequal ones.
+pub(super) fn described(channel: &Channel) -> String {
+    format!("{} in `{}`", channel.samples.len(), channel.name)
+}

@@ -1,0 +1,355 @@
+//! The campaign file itself.
+
+use super::air::Air;
+use super::channel::ChannelRef;
+use super::channel_map::ChannelMap;
+use super::ntnu;
+use super::section_forces::{self, SectionForces};
+use crate::error::{Error, Result, at_most, of_schema, positive};
+use crate::files::toml_lines;
+use crate::section::Dof;
+use crate::wind_tunnel::Rig;
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+
+/// Version of the campaign file.
+pub(crate) const CAMPAIGN_SCHEMA: u32 = 1;
+
+/// Bounds that no campaign reaches: a typing error must not become hours or the whole memory.
+const SAMPLING_HZ_AT_MOST: f64 = 1e6;
+const RUNS_AT_MOST: f64 = 10_000.0;
+const CELLS_AT_MOST: f64 = 64.0;
+
+/// Contents of a campaign file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Campaign {
+    /// [`CAMPAIGN_SCHEMA`].
+    pub schema: u32,
+    /// What was tested.
+    pub section: SectionBlock,
+    /// The air of all runs that state nothing else.
+    #[serde(default, skip_serializing_if = "Air::is_empty")]
+    pub air: Air,
+    /// What all recordings have in common.
+    #[serde(default)]
+    pub recording: RecordingBlock,
+    /// The rig; left out where `channels.section` has the forces on the whole section.
+    pub rig: Option<Rig>,
+    /// Which channel is what.
+    #[serde(default)]
+    pub channels: ChannelMap,
+    /// The runs.
+    #[serde(rename = "run", default)]
+    pub runs: Vec<RunBlock>,
+    /// Folder of the file, against which paths in it are read.
+    #[serde(skip)]
+    pub directory: PathBuf,
+}
+
+/// What was tested.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SectionBlock {
+    /// Name of the section.
+    pub name: String,
+    /// Where the data come from.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub source: String,
+    /// Licence of the data.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub licence: String,
+    /// Width B, m, where there is no rig that states it.
+    pub width_m: Option<f64>,
+    /// Length along the span, m, that the forces are those of, where there is no rig; left out, 1 m.
+    pub length_m: Option<f64>,
+}
+
+/// What all recordings have in common.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RecordingBlock {
+    /// Sampling frequency, Hz; may be left out where the files state it or have a time channel.
+    pub sampling_hz: Option<f64>,
+    /// A known layout of the files; left out, that of `channels`.
+    pub layout: Option<RecordingLayout>,
+}
+
+/// Layouts of files that need no channel map.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RecordingLayout {
+    /// HDF5 of NTNU's tools, one group per run; entries of `channels` replace those of the layout.
+    Ntnu,
+}
+
+/// A recording: a file, or one group of it.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum FileRef {
+    /// A whole file.
+    File(PathBuf),
+    /// A group (HDF5, TDMS) or struct (MATLAB) of a file.
+    Group {
+        /// The file.
+        file: PathBuf,
+        /// The group.
+        group: String,
+    },
+}
+
+/// One motion at one wind speed.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RunBlock {
+    /// Name, unlike that of any other run.
+    pub name: String,
+    /// What moves: one or several of vertical, lateral, torsion.
+    pub motion: Vec<Dof>,
+    /// Recording in wind.
+    pub in_wind: FileRef,
+    /// Recording of the same motion in still air; not needed for `channels.section`, the forces of the wind alone.
+    pub still_air: Option<FileRef>,
+    /// Mean wind speed, m/s; left out, the mean of the channel `wind_speed`.
+    pub mean_speed_m_s: Option<f64>,
+    /// The air of this run where it differs from that of the campaign.
+    #[serde(default, skip_serializing_if = "Air::is_empty")]
+    pub air: Air,
+}
+
+impl FileRef {
+    /// The file.
+    pub(crate) fn file(&self) -> &Path {
+        match self {
+            Self::File(file) | Self::Group { file, .. } => file,
+        }
+    }
+
+    /// The group, if it is not the whole file.
+    pub(crate) fn group(&self) -> Option<&str> {
+        match self {
+            Self::File(_) => None,
+            Self::Group { group, .. } => Some(group),
+        }
+    }
+}
+
+impl std::fmt::Display for FileRef {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}", self.file().display())?;
+        self.group().map_or(Ok(()), |group| write!(f, ", {group}"))
+    }
+}
+
+impl Campaign {
+    /// Reads and checks a campaign file; the recordings are not opened.
+    ///
+    /// # Errors
+    /// [`Error::Io`] when it cannot be read; [`Error::Input`] with file and line for everything that is wrong in it.
+    pub fn read(path: impl AsRef<Path>) -> Result<Self> {
+        let path = path.as_ref();
+        toml_lines::read(path, Self::from_toml)
+    }
+
+    /// Reads and checks the text of a campaign file; paths in it are read against `directory`.
+    pub(crate) fn from_toml(text: &str, directory: PathBuf) -> Result<Self> {
+        toml_lines::parse("a campaign file", text, |campaign: &mut Self| {
+            campaign.directory = directory;
+            campaign.validate()
+        })
+    }
+
+    /// The channel map, that of a layout filled in.
+    pub(crate) fn channel_map(&self) -> ChannelMap {
+        let own = &self.channels;
+        if let Some(section) = &own.section {
+            let mut map = own.clone();
+            let cell = (section_forces::CELL.to_owned(), section.channels());
+            map.cells.extend([cell]);
+            return map;
+        }
+        let Some(RecordingLayout::Ntnu) = self.recording.layout else {
+            return own.clone();
+        };
+        let Some(rig) = &self.rig else {
+            return own.clone();
+        };
+        let preset = ntnu::channel_map(rig);
+        let first = |own: &Option<ChannelRef>, preset: Option<ChannelRef>| own.clone().or(preset);
+        let mut cells = preset.cells;
+        cells.extend(own.cells.clone());
+        ChannelMap {
+            time: first(&own.time, preset.time),
+            vertical: first(&own.vertical, preset.vertical),
+            lateral: first(&own.lateral, preset.lateral),
+            torsion: first(&own.torsion, preset.torsion),
+            wind_speed: first(&own.wind_speed, preset.wind_speed),
+            air_density: own.air_density.clone().or_else(|| self.density_of_layout()),
+            temperature: own.temperature.clone(),
+            pressure: own.pressure.clone(),
+            section: None,
+            cells,
+        }
+    }
+
+    /// The rig of the file, or what stands for it where the forces are those on the whole section: one cell in global axes
+    /// at the centre of rotation.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for neither or both of `rig` and `channels.section`, and for a width or length that is not positive.
+    pub(crate) fn rig(&self) -> Result<Rig> {
+        match (&self.rig, &self.channels.section) {
+            (Some(rig), None) => {
+                rig.validate()?;
+                match (self.section.width_m, self.section.length_m) {
+                    (None, None) => Ok(rig.clone()),
+                    _ => Err(Error::input(
+                        "section",
+                        "width and length of the model in `rig` alone",
+                        "`width_m` or `length_m` besides",
+                    )),
+                }
+            }
+            (None, Some(_)) => {
+                let width = self.section.width_m.ok_or_else(|| {
+                    Error::input("section.width_m", "the width B of the section, m", "none")
+                })?;
+                Ok(Rig {
+                    model_length_m: positive(
+                        "section.length_m",
+                        self.section.length_m.unwrap_or(1.0),
+                    )?,
+                    model_width_m: positive("section.width_m", width)?,
+                    model_mass_kg: None,
+                    model_inertia_kg_m2: None,
+                    cells: vec![SectionForces::cell()],
+                })
+            }
+            (rig, _) => Err(Error::input(
+                "rig",
+                "either load cells in `rig`, or the forces on the whole section in `channels.section`",
+                if rig.is_some() { "both" } else { "neither" },
+            )),
+        }
+    }
+
+    /// The density in the files of the layout, where the campaign file says nothing of the air.
+    fn density_of_layout(&self) -> Option<ChannelRef> {
+        let channels = &self.channels;
+        let is_stated =
+            !self.air.is_empty() || channels.temperature.is_some() || channels.pressure.is_some();
+        (!is_stated).then(|| ChannelRef::new("air_density", "kg/m3"))
+    }
+
+    fn validate(&self) -> Result<()> {
+        of_schema(CAMPAIGN_SCHEMA, self.schema)?;
+        if self.section.name.trim().is_empty() {
+            return Err(Error::input("section.name", "a name", "none"));
+        }
+        let rig = self.rig()?;
+        self.validate_cells(&rig)?;
+        if let Some(hz) = self.recording.sampling_hz {
+            positive("recording.sampling_hz", hz)?;
+            at_most("recording.sampling_hz", hz, SAMPLING_HZ_AT_MOST)?;
+        }
+        at_most("run", self.runs.len() as f64, RUNS_AT_MOST)?;
+        let map = self.channel_map();
+        map.validate(&rig)?;
+        if self.runs.is_empty() {
+            return Err(Error::input("run", "at least one [[run]]", "none"));
+        }
+        for (i, run) in self.runs.iter().enumerate() {
+            let mut before = self.runs[..i].iter();
+            if before.any(|r| r.name == run.name) {
+                return Err(second_time(&format!("run[{i}].name"), "run", &run.name));
+            }
+            run.validate(&format!("run[{i}]"), &map, self.air)?;
+        }
+        Ok(())
+    }
+
+    fn validate_cells(&self, rig: &Rig) -> Result<()> {
+        let cells = &rig.cells;
+        at_most("rig.cells", cells.len() as f64, CELLS_AT_MOST)?;
+        for (i, cell) in cells.iter().enumerate() {
+            if cells[..i].iter().any(|c| c.name == cell.name) {
+                let key = format!("rig.cells[{i}].name");
+                return Err(second_time(&key, "cell", &cell.name));
+            }
+        }
+        if self.recording.layout.is_some() && cells.len() > ntnu::CELLS {
+            let expected = format!("at most {} cells in this layout", ntnu::CELLS);
+            return Err(Error::input("rig.cells", expected, cells.len().to_string()));
+        }
+        Ok(())
+    }
+}
+
+fn second_time(key: &str, of: &str, name: &str) -> Error {
+    let expected = format!("a name of its own for every {of}");
+    Error::input(key, expected, format!("`{name}` a second time"))
+}
+
+impl RunBlock {
+    /// What the map lacks for a motion.
+    fn validate_motion(&self, dof: Dof, map: &ChannelMap) -> std::result::Result<(), String> {
+        let section = map.section.as_ref();
+        if section.is_some_and(|s| !s.dofs().contains(&dof)) {
+            let force = SectionForces::name(dof);
+            return Err(format!("its force too: `channels.section.{force}`"));
+        }
+        if map.motion(dof).is_none() {
+            let name = dof.name();
+            return Err(format!("a motion with a channel: `channels.{name}`"));
+        }
+        Ok(())
+    }
+
+    fn validate(&self, place: &str, map: &ChannelMap, common: Air) -> Result<()> {
+        let key = |name: &str| format!("{place}.{name}");
+        let of_run = format!("(run `{}`)", self.name);
+        if self.name.trim().is_empty() {
+            return Err(Error::input(key("name"), "a name", "none"));
+        }
+        if self.still_air.is_none() && map.section.is_none() {
+            return Err(Error::input(
+                key("still_air"),
+                format!("the recording of the same motion in still air {of_run}"),
+                "none",
+            ));
+        }
+        if self.motion.is_empty() {
+            let expected = format!("what moves {of_run}: vertical, lateral, torsion");
+            return Err(Error::input(key("motion"), expected, "nothing"));
+        }
+        for dof in &self.motion {
+            self.validate_motion(*dof, map).map_err(|expected| {
+                let expected = format!("{expected} {of_run}");
+                Error::input(key("motion"), expected, "none")
+            })?;
+        }
+        match self.mean_speed_m_s {
+            Some(speed) => {
+                positive(key("mean_speed_m_s"), speed)?;
+            }
+            None if map.wind_speed.is_none() => {
+                let expected =
+                    format!("a mean speed or the channel `channels.wind_speed` {of_run}");
+                return Err(Error::input(key("mean_speed_m_s"), expected, "neither"));
+            }
+            None => {}
+        }
+        // what comes from the files is checked when they are read
+        let by_file =
+            map.air_density.is_some() || map.temperature.is_some() || map.pressure.is_some();
+        if by_file {
+            return Ok(());
+        }
+        let where_stated = if self.air.is_empty() {
+            "air".to_owned()
+        } else {
+            key("air")
+        };
+        Air::over(self.air, common).density(&where_stated).map(drop)
+    }
+}

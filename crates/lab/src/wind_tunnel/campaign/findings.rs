@@ -1,0 +1,282 @@
+//! What is odd in a recording but does not stop reading it: clipped or silent channels, speeds and motions that do not fit
+//! what is stated, units that were probably not meant; and where a channel is no number.
+
+use super::file::Campaign;
+use crate::error::{Error, Result};
+use crate::plausibility::{
+    DECK_WIDTH, MODEL_LENGTH, MODEL_WIDTH, SAMPLING, WIND_SPEED, beyond, ratio_hint,
+};
+use crate::section::Dof;
+use crate::signal::{clipped_stretches, extremes, mean};
+use crate::wind_tunnel::{RawRecording, RawRun};
+use serde::Serialize;
+use std::fmt;
+
+/// A motion that should not be there may have this part of the one that should, both dimensionless.
+const OTHER_MOTION_AT_MOST: f64 = 0.05;
+/// Stated and measured mean speed may differ by this part.
+const SPEED_OFF_AT_MOST: f64 = 0.05;
+
+/// Something that a user should look at.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Finding {
+    /// Name of the run; empty for the campaign file.
+    pub run: String,
+    /// Recording: `in wind` or `still air`; empty for the run as a whole.
+    pub recording: String,
+    /// Channel as the file names it, if one is meant.
+    pub channel: Option<String>,
+    /// First sample, from 0.
+    pub sample: Option<usize>,
+    /// Number of samples from there.
+    pub samples: Option<usize>,
+    /// What was found.
+    pub what: String,
+}
+
+impl fmt::Display for Finding {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.run.is_empty() {
+            return write!(f, "{}", self.what);
+        }
+        write!(f, "run `{}`", self.run)?;
+        if !self.recording.is_empty() {
+            write!(f, ", {}", self.recording)?;
+        }
+        if let Some(channel) = &self.channel {
+            write!(f, ", `{channel}`")?;
+        }
+        if let Some(sample) = self.sample {
+            write!(f, ", sample {sample}")?;
+        }
+        write!(f, ": {}", self.what)
+    }
+}
+
+impl Finding {
+    /// About a run as a whole.
+    pub(super) fn of_run(run: &str, what: String) -> Self {
+        Self {
+            run: run.to_owned(),
+            recording: String::new(),
+            channel: None,
+            sample: None,
+            samples: None,
+            what,
+        }
+    }
+}
+
+/// First stretch of samples that are no numbers: where it begins and how long it is.
+pub(super) fn first_gap(samples: &[f64]) -> Option<(usize, usize)> {
+    let first = samples.iter().position(|x| !x.is_finite())?;
+    let length = samples[first..]
+        .iter()
+        .take_while(|x| !x.is_finite())
+        .count();
+    Some((first, length))
+}
+
+/// What is odd about one channel: clipped at its highest or lowest value, or not moving at all where it should.
+pub(super) fn channel_findings(
+    (run, recording): (&str, &str),
+    name: &str,
+    samples: &[f64],
+    must_change: bool,
+) -> Vec<Finding> {
+    let finding = |sample, samples, what| Finding {
+        run: run.to_owned(),
+        recording: recording.to_owned(),
+        channel: Some(name.to_owned()),
+        sample,
+        samples,
+        what,
+    };
+    let (low, high) = extremes(samples.iter().copied());
+    if low == high {
+        let what = format!("is {low} all the time");
+        return if must_change {
+            vec![finding(None, None, what)]
+        } else {
+            Vec::new()
+        };
+    }
+    let stretches = clipped_stretches(samples);
+    let Some((first, longest)) = stretches.first().copied() else {
+        return Vec::new();
+    };
+    let total: usize = stretches.iter().map(|s| s.1).sum();
+    let limit = samples[first];
+    let word = if limit == high { "highest" } else { "lowest" };
+    let what = format!(
+        "stays at its {word} value {limit:.6} for {longest} samples (clipped? {total} such samples in all)"
+    );
+    vec![finding(Some(first), Some(longest), what)]
+}
+
+/// What is odd about a run: lengths, speeds, motions.
+///
+/// # Errors
+/// [`Error::Input`] when another motion than those stated moves most: then motion channels are exchanged, or the run is.
+pub(super) fn run_findings(run: &RawRun, motion: &[Dof], width_m: f64) -> Result<Vec<Finding>> {
+    let mut found = Vec::new();
+    let mut say = |what: String| found.push(Finding::of_run(&run.name, what));
+    let measured = &run.in_wind.wind_speed_m_s;
+    if let Some(still) = &run.still_air {
+        let (in_wind, still_air) = (run.in_wind.len(), still.len());
+        if in_wind != still_air {
+            say(format!(
+                "{in_wind} samples in wind, {still_air} in still air; only the first {} have both",
+                in_wind.min(still_air)
+            ));
+        }
+    }
+    if !measured.is_empty() && (mean(measured) / run.mean_speed_m_s - 1.0).abs() > SPEED_OFF_AT_MOST
+    {
+        say(format!(
+            "the mean speed is {} m/s, its channel says {:.3} m/s{}",
+            run.mean_speed_m_s,
+            mean(measured),
+            ratio_hint(run.mean_speed_m_s / mean(measured))
+        ));
+    }
+    if let Some(still) = &run.still_air
+        && !still.wind_speed_m_s.is_empty()
+        && mean(&still.wind_speed_m_s) > SPEED_OFF_AT_MOST * run.mean_speed_m_s
+    {
+        say(format!(
+            "the still-air recording has a wind of {:.3} m/s",
+            mean(&still.wind_speed_m_s)
+        ));
+    }
+    let still = run.still_air.iter().map(|r| ("still air", r));
+    for (name, recording) in std::iter::once(("in wind", &run.in_wind)).chain(still) {
+        let spread = |d: Dof| deviation(&recording.motion[d as usize]) * d.motion_scale(width_m);
+        let stated = motion.iter().map(|d| spread(*d)).fold(0.0, f64::max);
+        for dof in Dof::THREE {
+            let is_stated = motion.contains(&dof);
+            if !is_stated && spread(dof) > stated && spread(dof) > 0.0 {
+                return Err(exchanged(
+                    &run.name,
+                    name,
+                    motion,
+                    dof,
+                    spread(dof) / stated,
+                ));
+            } else if is_stated && spread(dof) == 0.0 {
+                say(format!("{name}: no {} motion", dof.name()));
+            } else if !is_stated && spread(dof) > OTHER_MOTION_AT_MOST * stated {
+                let part = 100.0 * spread(dof) / stated;
+                say(format!(
+                    "{name}: {} motion of {part:.0} % of the stated one, both over the width",
+                    dof.name()
+                ));
+            }
+        }
+        let of_motion = motion_hints((&run.name, name), recording, motion, width_m);
+        of_motion.into_iter().for_each(|f| say(f.what));
+    }
+    Ok(found)
+}
+
+fn exchanged(run: &str, recording: &str, stated: &[Dof], found: Dof, ratio: f64) -> Error {
+    let stated: Vec<&str> = stated.iter().map(|d| d.name()).collect();
+    let times = if ratio.is_finite() {
+        format!("{ratio:.1} times that, both over the width")
+    } else {
+        "alone".to_owned()
+    };
+    Error::input(
+        format!("run `{run}`, {recording}"),
+        format!("{} motion, as `motion` states", stated.join(", ")),
+        format!(
+            "a {} motion of {times}: are the motion channels exchanged, or their units wrong?",
+            found.name()
+        ),
+    )
+}
+
+/// Standard deviation; 0 for a channel that is not there.
+fn deviation(samples: &[f64]) -> f64 {
+    let centre = mean(samples);
+    let squares = samples.iter().map(|x| (x - centre).powi(2)).sum::<f64>();
+    (squares / samples.len().max(1) as f64).sqrt()
+}
+
+/// Usual amplitudes of a forced motion: displacements over the width, rotations in rad.
+const AMPLITUDES: [(f64, f64); 2] = [(1e-3, 0.5), (5e-4, 0.6)];
+
+/// Hints about the numbers of the campaign file.
+pub(super) fn file_hints(campaign: &Campaign) -> Vec<Finding> {
+    let mut said = Vec::new();
+    match &campaign.rig {
+        Some(rig) => {
+            said.push(beyond("rig.model_width_m", rig.model_width_m, &MODEL_WIDTH));
+            said.push(beyond(
+                "rig.model_length_m",
+                rig.model_length_m,
+                &MODEL_LENGTH,
+            ));
+            for (i, cell) in rig.cells.iter().enumerate() {
+                let farthest = cell.position_m.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+                let key = format!("rig.cells[{i}].position_m");
+                said.push(beyond(&key, farthest, &MODEL_LENGTH).filter(|_| farthest > 1.0));
+            }
+        }
+        None => said.extend(
+            campaign
+                .section
+                .width_m
+                .map(|b| beyond("section.width_m", b, &DECK_WIDTH)),
+        ),
+    }
+    let sampling = campaign.recording.sampling_hz;
+    said.extend(sampling.map(|hz| beyond("recording.sampling_hz", hz, &SAMPLING)));
+    for (i, run) in campaign.runs.iter().enumerate() {
+        let key = format!("run[{i}].mean_speed_m_s");
+        said.extend(run.mean_speed_m_s.map(|v| beyond(&key, v, &WIND_SPEED)));
+    }
+    said.into_iter()
+        .flatten()
+        .map(|odd| Finding::of_run("", odd.to_string()))
+        .collect()
+}
+
+/// Hints about the motions of a recording, of which `stated` are meant to move.
+fn motion_hints(
+    (run, name): (&str, &str),
+    recording: &RawRecording,
+    stated: &[Dof],
+    width_m: f64,
+) -> Vec<Finding> {
+    let mut found = Vec::new();
+    for (dof, motion) in Dof::THREE.into_iter().zip(&recording.motion) {
+        let (low, high) = extremes(motion.iter().copied());
+        let amplitude = 0.5 * (high - low);
+        let size = amplitude * dof.motion_scale(width_m);
+        let (unit, large, small, (least, most)) = match dof {
+            Dof::Torsion => (
+                "rad",
+                "degrees for radians",
+                "radians for degrees",
+                AMPLITUDES[1],
+            ),
+            _ => (
+                "m",
+                "millimetres for metres",
+                "metres for millimetres",
+                AMPLITUDES[0],
+            ),
+        };
+        let is_small = size > 0.0 && size < least && stated.contains(&dof);
+        if size > most || is_small {
+            let units = if is_small { small } else { large };
+            let what = format!(
+                "{name}: {} motion of {amplitude:.3e} {unit} in amplitude on a model of {width_m} m: {units}?",
+                dof.name()
+            );
+            found.push(Finding::of_run(run, what));
+        }
+    }
+    found
+}

@@ -1,0 +1,210 @@
+//! Reading the recordings that a campaign file names.
+
+use super::air::Air;
+use super::channel_map::ChannelMap;
+use super::file::{Campaign, RunBlock};
+use super::findings::{Finding, file_hints, run_findings};
+use super::recording::{LoadedRecording, SAME_RATE};
+use super::section_forces::SectionForces;
+use crate::error::{Error, Result, all_or_errors, positive};
+use crate::section::Dof;
+use crate::signal::mean;
+use crate::wind_tunnel::{RawCampaign, RawRecording, RawRun, Rig};
+use rayon::prelude::*;
+use serde::Serialize;
+
+/// A campaign with all its recordings, and what is odd about them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CampaignReading {
+    /// The runs.
+    pub raw: RawCampaign,
+    /// What each run is, in the order of the runs.
+    pub runs: Vec<RunSummary>,
+    /// What did not stop reading.
+    pub findings: Vec<Finding>,
+}
+
+/// What a run is.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RunSummary {
+    /// Name.
+    pub name: String,
+    /// What moves.
+    pub motion: Vec<Dof>,
+    /// Mean wind speed, m/s.
+    pub mean_speed_m_s: f64,
+    /// Air density, kg/m³.
+    pub air_density_kg_m3: f64,
+    /// Recording in wind.
+    pub in_wind: RecordingSummary,
+    /// Recording in still air, if there is one.
+    pub still_air: Option<RecordingSummary>,
+}
+
+/// What a recording is.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RecordingSummary {
+    /// File and group.
+    pub source: String,
+    /// Number of samples.
+    pub samples: usize,
+    /// Sampling frequency, Hz.
+    pub sampling_hz: f64,
+    /// Channels that were taken, as the file names them.
+    pub channels: Vec<String>,
+}
+
+/// A campaign with what is odd about it.
+#[derive(Debug, Clone)]
+pub struct LoadedCampaign {
+    /// All recordings.
+    pub campaign: RawCampaign,
+    /// What is odd about them, in words.
+    pub warnings: Vec<String>,
+}
+
+/// All recordings that a campaign file names.
+///
+/// # Errors
+/// [`Error::Io`]; [`Error::Input`] naming file, run, recording, channel and sample.
+pub fn read_campaign(path: impl AsRef<std::path::Path>) -> Result<LoadedCampaign> {
+    let reading = Campaign::read(path)?.load()?;
+    let findings = reading.findings.iter().map(ToString::to_string);
+    Ok(LoadedCampaign {
+        campaign: reading.raw,
+        warnings: findings.collect(),
+    })
+}
+
+impl Campaign {
+    /// Reads all recordings.
+    ///
+    /// # Errors
+    /// [`Error::Io`]; [`Error::Input`] naming run, recording, channel and sample: a channel that the file does not
+    /// hold (with those that it does), channels of unequal length or rate, samples that are no numbers, a unit that
+    /// does not fit, a mean speed that is not positive, air of unknown density. The errors of all runs, in their order.
+    pub fn load(&self) -> Result<CampaignReading> {
+        let map = self.channel_map();
+        let rig = self.rig()?;
+        let read = self
+            .runs
+            .par_iter()
+            .map(|run| {
+                let path = self.directory.join(run.in_wind.file());
+                self.load_run(&rig, &map, run).map_err(|e| e.in_file(path))
+            })
+            .collect();
+        let read = all_or_errors(read)?;
+        let mut reading = CampaignReading {
+            raw: RawCampaign {
+                section: self.section.name.clone(),
+                source: self.section.source.clone(),
+                licence: self.section.licence.clone(),
+                forces: map.section.as_ref().map(SectionForces::dofs),
+                rig,
+                runs: Vec::new(),
+            },
+            runs: Vec::new(),
+            findings: file_hints(self),
+        };
+        for (run, summary, findings) in read {
+            reading.raw.runs.push(run);
+            reading.runs.push(summary);
+            reading.findings.extend(findings);
+        }
+        Ok(reading)
+    }
+
+    fn load_run(
+        &self,
+        rig: &Rig,
+        map: &ChannelMap,
+        run: &RunBlock,
+    ) -> Result<(RawRun, RunSummary, Vec<Finding>)> {
+        let place = format!("run `{}`", run.name);
+        let wind = LoadedRecording::new((self, rig), map, run, &run.in_wind, "in wind")?;
+        let still = match &run.still_air {
+            Some(file) => Some(LoadedRecording::new(
+                (self, rig),
+                map,
+                run,
+                file,
+                "still air",
+            )?),
+            None => None,
+        };
+        let wind_hz = wind.recording.sampling_hz;
+        let still_hz = still.as_ref().map_or(wind_hz, |s| s.recording.sampling_hz);
+        if (wind_hz / still_hz - 1.0).abs() > SAME_RATE {
+            return Err(Error::input(
+                place,
+                "one sampling frequency in wind and in still air",
+                format!("{wind_hz} Hz and {still_hz} Hz"),
+            ));
+        }
+        let mean_speed_m_s = mean_speed(run, &wind.recording)?;
+        let air_density_kg_m3 = self.density(map, run, &wind)?;
+        let summary = RunSummary {
+            name: run.name.clone(),
+            motion: run.motion.clone(),
+            mean_speed_m_s,
+            air_density_kg_m3,
+            in_wind: summary(&wind.recording, wind.channels),
+            still_air: still
+                .as_ref()
+                .map(|s| summary(&s.recording, s.channels.clone())),
+        };
+        let mut read = wind.findings;
+        let still_air = still.map(|s| {
+            read.extend(s.findings);
+            s.recording
+        });
+        let raw = RawRun {
+            name: run.name.clone(),
+            in_wind: wind.recording,
+            still_air,
+            mean_speed_m_s,
+            air_density_kg_m3,
+        };
+        let mut findings = run_findings(&raw, &run.motion, rig.model_width_m)?;
+        findings.extend(read);
+        Ok((raw, summary, findings))
+    }
+
+    /// The air: what the run states, else what its file in wind holds, else what holds for all.
+    fn density(&self, map: &ChannelMap, run: &RunBlock, wind: &LoadedRecording) -> Result<f64> {
+        let by_file = Air {
+            density_kg_m3: wind.air[0],
+            temperature_c: wind.air[1],
+            pressure_pa: wind.air[2],
+            relative_humidity: None,
+        };
+        let common = Air::over(by_file, self.air);
+        let has_map = map.air_density.is_some() || map.temperature.is_some();
+        let place = if run.air.is_empty() && !has_map {
+            "air".to_owned()
+        } else {
+            format!("air of run `{}`", run.name)
+        };
+        Air::over(run.air, common).density(&place)
+    }
+}
+
+fn summary(recording: &RawRecording, channels: Vec<String>) -> RecordingSummary {
+    RecordingSummary {
+        source: recording.source.clone(),
+        samples: recording.len(),
+        sampling_hz: recording.sampling_hz,
+        channels,
+    }
+}
+
+fn mean_speed(run: &RunBlock, wind: &RawRecording) -> Result<f64> {
+    match run.mean_speed_m_s {
+        Some(speed) => Ok(speed),
+        None => {
+            let place = format!("run `{}`, mean of the wind speed", run.name);
+            positive(&place, mean(&wind.wind_speed_m_s))
+        }
+    }
+}

@@ -1,0 +1,93 @@
+//! Forces on the whole section in place of load cells, as a computation has them.
+
+use super::channel::{CellChannel, ChannelRef, NotMeasured};
+use crate::section::Dof;
+use crate::wind_tunnel::{CELL_CHANNELS, LoadCell};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Name of the cell that stands for them.
+pub(super) const CELL: &str = "section";
+
+/// Forces of the wind on the section, without inertia, about the centre of rotation; at least one.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SectionForces {
+    /// Lift, positive up.
+    pub lift: Option<ChannelRef>,
+    /// Drag, positive downwind.
+    pub drag: Option<ChannelRef>,
+    /// Pitching moment, positive nose-up.
+    pub moment: Option<ChannelRef>,
+}
+
+impl SectionForces {
+    /// The cell that measures them: global axes, at the centre of rotation.
+    pub(super) fn cell() -> LoadCell {
+        LoadCell {
+            name: CELL.to_owned(),
+            axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+            position_m: [0.0; 3],
+            turns_with_model: false,
+        }
+    }
+
+    /// The force of a degree of freedom, by its key.
+    pub(super) fn name(dof: Dof) -> &'static str {
+        match dof {
+            Dof::Vertical => "lift",
+            Dof::Lateral => "drag",
+            Dof::Torsion => "moment",
+        }
+    }
+
+    fn channel(&self, dof: Dof) -> Option<&ChannelRef> {
+        match dof {
+            Dof::Vertical => self.lift.as_ref(),
+            Dof::Lateral => self.drag.as_ref(),
+            Dof::Torsion => self.moment.as_ref(),
+        }
+    }
+
+    /// Degrees of freedom whose force there is.
+    pub(crate) fn dofs(&self) -> Vec<Dof> {
+        let has = |d: &Dof| self.channel(*d).is_some();
+        Dof::THREE.into_iter().filter(has).collect()
+    }
+
+    /// The channels of that cell; the nose-up moment is one about −z.
+    pub(super) fn channels(&self) -> BTreeMap<String, CellChannel> {
+        let of = |dof: Dof, sign: f64| {
+            self.channel(dof).map(|c| ChannelRef {
+                scale: sign * c.scale,
+                ..c.clone()
+            })
+        };
+        let measured = |key: &str| match key {
+            "fx" => of(Dof::Lateral, 1.0),
+            "fy" => of(Dof::Vertical, 1.0),
+            "mz" => of(Dof::Torsion, -1.0),
+            _ => None,
+        };
+        CELL_CHANNELS
+            .iter()
+            .map(|key| {
+                let channel = measured(key).map_or(
+                    CellChannel::NotMeasured(NotMeasured::None),
+                    CellChannel::Measured,
+                );
+                ((*key).to_owned(), channel)
+            })
+            .collect()
+    }
+
+    /// The key of the campaign file behind a channel of that cell.
+    pub(super) fn key(channel: &str) -> String {
+        let name = match channel {
+            "fx" => "drag",
+            "fy" => "lift",
+            _ => "moment",
+        };
+        format!("channels.section.{name}")
+    }
+}

@@ -1,0 +1,218 @@
+//! Writing a virtual campaign to files that [`Campaign::read`] reads back.
+
+use super::air::Air;
+use super::channel::{CellChannel, ChannelRef};
+use super::channel_map::{ChannelMap, cell_quantity};
+use super::file::{
+    CAMPAIGN_SCHEMA, Campaign, FileRef, RecordingBlock, RecordingLayout, RunBlock, SectionBlock,
+};
+use super::ntnu;
+use super::quantity::Quantity;
+use crate::error::{Error, Result};
+use crate::wind_tunnel::record_file::write_rows;
+use crate::wind_tunnel::virtual_campaign::VirtualCampaign;
+use crate::wind_tunnel::{CELL_CHANNELS, RawRecording, RawRun, Rig, write_record};
+use serde::{Deserialize, Serialize};
+use std::fs::File;
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+/// How recordings are written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum FileFormat {
+    /// One CSV file per recording, channels as the cells have them: reads back bit for bit.
+    Csv,
+    /// One HDF5 file in the layout of NTNU's tools, forces in fixed axes.
+    Ntnu,
+}
+
+/// Columns of the truth table.
+const TRUTH_COLUMNS: &str = "run,motion,force,frequency_hz,k,g_real,g_imaginary";
+
+/// Writes `campaign.toml`, the recordings, and the truth: `truth.csv` with `G` at the test points, `truth/RUN.csv`
+/// with the clean records, `disturbances.json`. `place` says at which path to write each file, given its path below
+/// the folder of the campaign.
+pub fn write_virtual_campaign(
+    made: &VirtualCampaign,
+    format: FileFormat,
+    place: &mut dyn FnMut(&Path) -> Result<PathBuf>,
+) -> Result<()> {
+    let campaign = campaign_file(made, format);
+    let text = toml::to_string(&campaign).map_err(|e| Error::Numerical(e.to_string()))?;
+    write_text(&place(Path::new("campaign.toml"))?, &text)?;
+    match format {
+        FileFormat::Csv => {
+            for (run, block) in made.raw.runs.iter().zip(&campaign.runs) {
+                let still = block.still_air.iter().zip(&run.still_air);
+                for (file, recording) in
+                    std::iter::once((&block.in_wind, &run.in_wind)).chain(still)
+                {
+                    write_csv(recording, &made.raw.rig, &place(file.file())?)?;
+                }
+            }
+        }
+        FileFormat::Ntnu => {
+            let path = place(Path::new(NTNU_FILE))?;
+            ntnu::build(made)
+                .write(&path)
+                .map_err(|e| Error::io(&path, std::io::Error::other(e.to_string())))?;
+        }
+    }
+    write_truth(made, place)
+}
+
+/// File of all runs in the layout of NTNU.
+const NTNU_FILE: &str = "runs.h5";
+
+fn write_text(path: &Path, text: &str) -> Result<()> {
+    std::fs::write(path, text).map_err(|e| Error::io(path, e))
+}
+
+fn write_truth(
+    made: &VirtualCampaign,
+    place: &mut dyn FnMut(&Path) -> Result<PathBuf>,
+) -> Result<()> {
+    let mut table = format!("{TRUTH_COLUMNS}\n");
+    for p in &made.truth.points {
+        let line = format!(
+            "{},{},{},{},{},{},{}\n",
+            p.run,
+            p.motion.name(),
+            p.force.name(),
+            p.frequency_hz,
+            p.k,
+            p.real,
+            p.imaginary
+        );
+        table.push_str(&line);
+    }
+    write_text(&place(Path::new("truth.csv"))?, &table)?;
+    let applied = serde_json::to_string_pretty(&made.truth.disturbances)
+        .map_err(|e| Error::Numerical(e.to_string()))?;
+    write_text(&place(Path::new("disturbances.json"))?, &applied)?;
+    for record in &made.truth.records {
+        let path = place(&Path::new("truth").join(format!("{}.csv", record.header.name)))?;
+        let file = File::create(&path).map_err(|e| Error::io(&path, e))?;
+        write_record(record, &mut BufWriter::new(file))?;
+    }
+    Ok(())
+}
+
+/// The campaign file of a virtual campaign.
+fn campaign_file(made: &VirtualCampaign, format: FileFormat) -> Campaign {
+    let raw = &made.raw;
+    let first = raw.runs.first();
+    let density = first.map(|r| r.air_density_kg_m3);
+    let run = |(run, truth): (&RawRun, &crate::wind_tunnel::Record)| {
+        let n = truth.header.dofs.len();
+        let moves = |j: &usize| truth.motion[*j].iter().any(|x| *x != 0.0);
+        let file = |what: &str| match format {
+            FileFormat::Csv => {
+                FileRef::File(PathBuf::from(format!("runs/{}-{what}.csv", run.name)))
+            }
+            FileFormat::Ntnu => FileRef::Group {
+                file: PathBuf::from(NTNU_FILE),
+                group: format!("{}-{what}", run.name),
+            },
+        };
+        RunBlock {
+            name: run.name.clone(),
+            motion: (0..n).filter(moves).map(|j| truth.header.dofs[j]).collect(),
+            in_wind: file("wind"),
+            still_air: Some(file("still")),
+            mean_speed_m_s: Some(run.mean_speed_m_s),
+            air: Air::default(),
+        }
+    };
+    Campaign {
+        schema: CAMPAIGN_SCHEMA,
+        section: SectionBlock {
+            name: raw.section.clone(),
+            source: raw.source.clone(),
+            licence: raw.licence.clone(),
+            width_m: None,
+            length_m: None,
+        },
+        air: match format {
+            FileFormat::Csv => Air {
+                density_kg_m3: density,
+                ..Air::default()
+            },
+            // in the file
+            FileFormat::Ntnu => Air::default(),
+        },
+        recording: RecordingBlock {
+            sampling_hz: first.map(|r| r.in_wind.sampling_hz),
+            layout: (format == FileFormat::Ntnu).then_some(RecordingLayout::Ntnu),
+        },
+        rig: match format {
+            FileFormat::Csv => Some(raw.rig.clone()),
+            FileFormat::Ntnu => Some(ntnu::rig(&raw.rig)),
+        },
+        channels: match format {
+            FileFormat::Csv => csv_map(&raw.rig),
+            FileFormat::Ntnu => ChannelMap::default(),
+        },
+        runs: raw.runs.iter().zip(&made.truth.records).map(run).collect(),
+        directory: PathBuf::new(),
+    }
+}
+
+/// Name and unit of the columns of a CSV file, without the time.
+fn csv_columns(rig: &Rig) -> Vec<(String, &'static str)> {
+    let motion = [("vertical", "m"), ("lateral", "m"), ("torsion", "rad")];
+    let own = motion.into_iter().chain([("wind_speed", "m/s")]);
+    let mut columns: Vec<(String, &str)> = own.map(|(n, u)| (n.to_owned(), u)).collect();
+    for cell in &rig.cells {
+        for key in CELL_CHANNELS {
+            let unit = if cell_quantity(key) == Quantity::Force {
+                "N"
+            } else {
+                "Nm"
+            };
+            columns.push((format!("{}.{key}", cell.name), unit));
+        }
+    }
+    columns
+}
+
+fn csv_map(rig: &Rig) -> ChannelMap {
+    let columns = csv_columns(rig);
+    let one = |i: usize| ChannelRef::new(columns[i].0.clone(), columns[i].1);
+    let cells = rig.cells.iter().enumerate().map(|(c, cell)| {
+        let channels = CELL_CHANNELS
+            .iter()
+            .enumerate()
+            .map(|(k, key)| ((*key).to_owned(), CellChannel::Measured(one(4 + 6 * c + k))));
+        (cell.name.clone(), channels.collect())
+    });
+    ChannelMap {
+        time: Some(ChannelRef::new("time", "s")),
+        vertical: Some(one(0)),
+        lateral: Some(one(1)),
+        torsion: Some(one(2)),
+        wind_speed: Some(one(3)),
+        cells: cells.collect(),
+        ..ChannelMap::default()
+    }
+}
+
+fn write_csv(recording: &RawRecording, rig: &Rig, path: &Path) -> Result<()> {
+    let io = |e| Error::io(path, e);
+    let mut out = BufWriter::new(File::create(path).map_err(io)?);
+    let names: Vec<String> = csv_columns(rig)
+        .into_iter()
+        .map(|(name, unit)| format!("{name} [{unit}]"))
+        .collect();
+    writeln!(out, "# sampling_hz: {}", recording.sampling_hz).map_err(io)?;
+    writeln!(out, "time [s],{}", names.join(",")).map_err(io)?;
+    let motion = recording.motion.iter();
+    let channels: Vec<&[f64]> = motion
+        .chain([&recording.wind_speed_m_s])
+        .chain(recording.cells.iter().flatten())
+        .map(Vec::as_slice)
+        .collect();
+    write_rows(&mut out, recording.sampling_hz, 0, &channels).map_err(io)?;
+    out.flush().map_err(io)
+}

@@ -1,0 +1,280 @@
+//! Records in CSV files, written and read.
+//!
+//! The format is that of [`super::record_format`].
+//!
+//! Forces are self-excited ones per unit length, N/m and N·m/m. Reading streams the file in blocks of bounded size.
+
+use super::record_format::{RecordColumns, read_head, text, write_head};
+use super::records::{Record, RecordBlock, RecordHeader, RecordSource};
+use crate::error::{Error, Place, Result, counted};
+use std::fmt::Write as _;
+use std::fs::File;
+use std::io::{BufRead, BufReader, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+/// Fewest samples that a record may have.
+pub(crate) const SAMPLES_AT_LEAST: usize = 64;
+
+/// Samples per block.
+const BLOCK_SAMPLES: usize = 4096;
+
+/// A sample may stand off its place by this fraction of the sampling step: time stamps are often rounded.
+const JITTER: f64 = 0.25;
+
+/// The mean sampling frequency may differ from the stated one by this fraction.
+const DRIFT: f64 = 1e-3;
+
+/// A record in a CSV file, read block by block whenever asked.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RecordFile {
+    path: PathBuf,
+    header: RecordHeader,
+    columns: RecordColumns,
+}
+
+impl RecordFile {
+    /// Opens a record and reads its header; the samples are checked whenever they are read.
+    ///
+    /// # Errors
+    /// [`Error::Io`]; [`Error::Input`] with file and line for a header line or column that is missing, unknown or
+    /// wrong.
+    pub fn open(path: impl AsRef<Path>) -> Result<Self> {
+        let path = path.as_ref().to_path_buf();
+        let file = File::open(&path).map_err(|e| Error::io(&path, e))?;
+        let read = || -> Result<Self> {
+            let (header, columns) = read_head(&path, &mut BufReader::new(file))?;
+            Ok(Self {
+                path: path.clone(),
+                header,
+                columns,
+            })
+        };
+        read().map_err(|e| e.in_file(&path))
+    }
+}
+
+impl RecordSource for RecordFile {
+    fn header(&self) -> &RecordHeader {
+        &self.header
+    }
+
+    /// # Errors
+    /// [`Error::Io`]; [`Error::Input`] with file and line: text or NaN in place of a number, a row with more or fewer
+    /// columns, a gap in time or an uneven step, another sampling frequency than stated, fewer than
+    /// [`SAMPLES_AT_LEAST`] samples.
+    fn for_each_block(&self, f: &mut dyn FnMut(RecordBlock<'_>) -> Result<()>) -> Result<()> {
+        let io = |e| Error::io(&self.path, e);
+        let mut file = File::open(&self.path).map_err(io)?;
+        file.seek(SeekFrom::Start(self.columns.start)).map_err(io)?;
+        let mut reader = BufReader::with_capacity(1 << 16, file);
+        let mut rows = Rows::new(&self.header, &self.columns);
+        let mut line = Vec::new();
+        loop {
+            line.clear();
+            if reader.read_until(b'\n', &mut line).map_err(io)? == 0 {
+                break;
+            }
+            rows.push(&line).map_err(|e| e.in_file(&self.path))?;
+            if rows.is_full() {
+                rows.pass_on(f)?;
+            }
+        }
+        rows.check_length().map_err(|e| e.in_file(&self.path))?;
+        rows.pass_on(f)
+    }
+}
+
+/// Reads a whole record into memory.
+///
+/// # Errors
+/// [`Error::Io`]; [`Error::Input`] with file and line for everything that is wrong in it.
+pub fn read_record(path: impl AsRef<Path>) -> Result<Record> {
+    Record::whole(&RecordFile::open(path)?)
+}
+
+/// Writes a record; [`read_record`] gives the same numbers back, bit for bit.
+///
+/// # Errors
+/// [`Error::Input`] naming a record that cannot be read; [`Error::Io`] naming the record when `out` fails.
+pub fn write_record(record: &dyn RecordSource, out: &mut dyn Write) -> Result<()> {
+    let header = record.header();
+    let io = |e| Error::io(&header.name, e);
+    write_head(header, out).map_err(io)?;
+    let mut first = 0;
+    record.for_each_block(&mut |block| {
+        let channels: Vec<&[f64]> = block
+            .motion
+            .iter()
+            .chain(block.force)
+            .map(Vec::as_slice)
+            .collect();
+        write_rows(out, header.sampling_hz, first, &channels).map_err(io)?;
+        first += channels.first().map_or(0, |c| c.len());
+        Ok(())
+    })?;
+    out.flush().map_err(io)
+}
+
+/// Writes channels as rows that begin with the time; `first` is the number of the first sample.
+pub(super) fn write_rows(
+    out: &mut dyn Write,
+    sampling_hz: f64,
+    first: usize,
+    channels: &[&[f64]],
+) -> std::io::Result<()> {
+    let mut line = String::new();
+    for i in 0..channels.first().map_or(0, |c| c.len()) {
+        line.clear();
+        // From the count, so that no rounding accumulates.
+        push_number(&mut line, (first + i) as f64 / sampling_hz);
+        for channel in channels {
+            line.push(',');
+            push_number(&mut line, channel[i]);
+        }
+        line.push('\n');
+        out.write_all(line.as_bytes())?;
+    }
+    Ok(())
+}
+
+/// The shortest text that reads back as the same double.
+fn push_number(text: &mut String, x: f64) {
+    let plain = x == 0.0 || (1e-3..1e6).contains(&x.abs());
+    // Writing to a string cannot fail.
+    let _ = if plain {
+        write!(text, "{x}")
+    } else {
+        write!(text, "{x:e}")
+    };
+}
+
+/// Rows being collected into a block.
+struct Rows<'a> {
+    header: &'a RecordHeader,
+    columns: &'a RecordColumns,
+    line: usize,
+    motion: Vec<Vec<f64>>,
+    force: Vec<Vec<f64>>,
+    read: usize,
+    first_time: f64,
+    last_time: f64,
+}
+
+impl<'a> Rows<'a> {
+    fn new(header: &'a RecordHeader, columns: &'a RecordColumns) -> Self {
+        let block = || vec![Vec::with_capacity(BLOCK_SAMPLES); header.dofs.len()];
+        Self {
+            header,
+            columns,
+            line: columns.names_line,
+            motion: block(),
+            force: block(),
+            read: 0,
+            first_time: 0.0,
+            last_time: 0.0,
+        }
+    }
+
+    fn is_full(&self) -> bool {
+        self.motion[0].len() == BLOCK_SAMPLES
+    }
+
+    fn pass_on(&mut self, f: &mut dyn FnMut(RecordBlock<'_>) -> Result<()>) -> Result<()> {
+        if self.motion[0].is_empty() {
+            return Ok(());
+        }
+        f(RecordBlock {
+            motion: &self.motion,
+            force: &self.force,
+        })?;
+        self.motion
+            .iter_mut()
+            .chain(&mut self.force)
+            .for_each(Vec::clear);
+        Ok(())
+    }
+
+    /// Takes one line of the file; blank lines count for nothing.
+    fn push(&mut self, line: &[u8]) -> Result<()> {
+        self.line += 1;
+        let line =
+            text(line).map_err(|found| Error::input(Place::line(self.line), "numbers", found))?;
+        if line.trim().is_empty() {
+            return Ok(());
+        }
+        let mut cells = line.split(',');
+        for (column, channel) in self.columns.channels.iter().enumerate() {
+            let cell = cells.next().ok_or_else(|| self.unequal(line))?.trim();
+            let value = cell.parse::<f64>().ok().filter(|x| x.is_finite());
+            let value = value.ok_or_else(|| {
+                let place = Place::line(self.line).column(&self.columns.names[column]);
+                Error::input(place, "a finite number", format!("`{cell}`"))
+            })?;
+            let n = self.motion.len();
+            match channel {
+                None => self.check_time(value)?,
+                Some(i) if *i < n => self.motion[*i].push(value),
+                Some(i) => self.force[*i - n].push(value),
+            }
+        }
+        if cells.next().is_some() {
+            return Err(self.unequal(line));
+        }
+        self.read += 1;
+        Ok(())
+    }
+
+    fn unequal(&self, line: &str) -> Error {
+        Error::input(
+            Place::line(self.line),
+            counted(self.columns.channels.len(), "column"),
+            line.split(',').count().to_string(),
+        )
+    }
+
+    fn check_time(&mut self, time_s: f64) -> Result<()> {
+        if self.read == 0 {
+            self.first_time = time_s;
+        } else {
+            let step = time_s - self.last_time;
+            if (step * self.header.sampling_hz - 1.0).abs() > JITTER {
+                let sampling = self.header.sampling_hz;
+                return Err(Error::input(
+                    Place::line(self.line).column("time_s"),
+                    format!(
+                        "{} s after the sample before ({sampling} Hz)",
+                        1.0 / sampling
+                    ),
+                    format!("{step:.6} s"),
+                ));
+            }
+        }
+        self.last_time = time_s;
+        Ok(())
+    }
+
+    /// What can only be known at the end.
+    fn check_length(&self) -> Result<()> {
+        if self.read < SAMPLES_AT_LEAST {
+            let expected = format!("at least {SAMPLES_AT_LEAST} samples");
+            return Err(Error::input(
+                "end of the file",
+                expected,
+                self.read.to_string(),
+            ));
+        }
+        let mean = (self.read - 1) as f64 / (self.last_time - self.first_time);
+        if (mean / self.header.sampling_hz - 1.0).abs() > DRIFT {
+            let expected = format!("samples at {} Hz as in the header", self.header.sampling_hz);
+            return Err(Error::input(
+                "column time_s",
+                expected,
+                format!("{mean:.4} Hz"),
+            ));
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests;

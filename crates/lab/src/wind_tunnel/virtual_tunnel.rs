@@ -1,0 +1,360 @@
+//! A virtual wind tunnel: forced-vibration records as in Table 3.2 of the thesis.
+//!
+//! A run is one motion (heave, sway or rotation) at one speed: rest, then every frequency in turn with smooth
+//! ramps from and to rest. The forces come either
+//!
+//! - from a table of derivatives exactly at its test points: in each segment equation (1.14) with the numbers of
+//!   that point, `q = Re(G) r + Im(G) r'/K`, with the actual ramped motion and its analytic rate; or
+//! - from any transfer matrix `G(K)`: the exact linear response to the whole ramped motion, by Fourier transform
+//!   of the motion padded with zeros.
+//!
+//! Broadband motions ([`TrainingMotion`]) need `G` at every frequency: a table then has to be interpolated, which the plan
+//! must ask for.
+//!
+//! A table has a slightly different mean speed at each point, a record has one: that of the speed group. The
+//! frequency of the segment is therefore `f = K V/(2πB)` with the point's own `K` and the record's `V`, within a
+//! per cent of the frequency that was driven, and the dimensionless force is exactly `G` at the point's own `K`.
+
+use super::motion::{Timing, TrainingMotion, UnitMotion};
+use super::records::{Record, RecordHeader};
+use super::virtual_forces::{TestPoints, unit_response};
+use crate::aerodynamics::Transfer;
+use crate::aerodynamics::derivatives::DerivativeTable;
+use crate::error::{Result, positive};
+use crate::files::derivatives::TABLE_3_2_FREQUENCIES_HZ;
+use crate::section::Dof;
+use crate::signal::random_stream;
+use rand_distr::{Distribution, StandardNormal};
+use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
+
+/// A series of forced-vibration tests; the default is Table 3.2 of the thesis.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct TunnelPlan {
+    /// How the section is moved.
+    pub motion: TrainingMotion,
+    /// Whether records of broadband motions may be made from a table, its derivatives taken as linear in `V̂` between the
+    /// test points of a speed and as constant beyond them.
+    pub interpolate_table: bool,
+    /// Frequencies of motion in test order, Hz. Records from a table take the frequencies of its points instead.
+    pub frequencies_hz: Vec<f64>,
+    /// Mean wind speeds, m/s. Records from a table take its speeds instead.
+    pub speeds_m_s: Vec<f64>,
+    /// Amplitude of heave, m.
+    pub vertical_amplitude_m: f64,
+    /// Amplitude of sway, m.
+    pub lateral_amplitude_m: f64,
+    /// Amplitude of rotation, degrees.
+    pub torsion_amplitude_deg: f64,
+    /// Sampling frequency, Hz.
+    pub sampling_hz: f64,
+    /// Rest before the first frequency, s.
+    pub still_s: f64,
+    /// Time at each frequency, ramps included, s.
+    pub segment_s: f64,
+    /// Ramp at either end of a segment, s.
+    pub ramp_s: f64,
+    /// Air density, kg/m³.
+    pub air_density_kg_m3: f64,
+    /// Standard deviation of the noise added to each force, as a fraction of the RMS of that force over the record; 0 for
+    /// none.
+    pub noise_fraction: f64,
+    /// Correlation time of the noise, s: its correlation falls as `e^(−|t|/τ)`; 0 for white noise.
+    pub noise_correlation_s: f64,
+    /// Seed of the noise and of broadband motions.
+    pub seed: u64,
+}
+
+impl Default for TunnelPlan {
+    fn default() -> Self {
+        Self {
+            motion: TrainingMotion::Harmonic,
+            interpolate_table: false,
+            frequencies_hz: TABLE_3_2_FREQUENCIES_HZ.to_vec(),
+            speeds_m_s: vec![8.17, 4.0],
+            vertical_amplitude_m: 0.010,
+            lateral_amplitude_m: 0.020,
+            torsion_amplitude_deg: 1.0,
+            sampling_hz: 200.0,
+            still_s: 8.0,
+            segment_s: 26.0,
+            ramp_s: 4.0,
+            air_density_kg_m3: 1.19,
+            noise_fraction: 0.0,
+            noise_correlation_s: 0.0,
+            seed: 1,
+        }
+    }
+}
+
+impl TunnelPlan {
+    /// One record per motion and speed group of `table`, forces from its derivatives at its own test points.
+    ///
+    /// # Errors
+    /// [`crate::Error::Input`] for an impossible plan, or a table that lacks a derivative of `dofs`. Where derivatives of one motion
+    /// were tested at different points, those of the first are taken and the others interpolated; the record says so.
+    pub fn records_from_table(&self, table: &DerivativeTable, dofs: &[Dof]) -> Result<Vec<Record>> {
+        let records = self.clean_from_table(table, dofs, 0.0)?;
+        Ok(self.with_noise(records))
+    }
+
+    /// The same without noise, motion and forces `delay_s` late.
+    pub(super) fn clean_from_table(
+        &self,
+        table: &DerivativeTable,
+        dofs: &[Dof],
+        delay_s: f64,
+    ) -> Result<Vec<Record>> {
+        self.validate()?;
+        table.require(dofs)?;
+        let speeds = self.speeds_of(table);
+        let mut records = Vec::new();
+        for (i, speed) in speeds.iter().enumerate() {
+            let group = table.at_speed_group(i)?;
+            if self.motion != TrainingMotion::Harmonic {
+                records.extend(self.interpolated_records(&group, dofs, *speed, delay_s)?);
+                continue;
+            }
+            for motion in dofs {
+                let points = TestPoints::new(&group, dofs, *motion)?;
+                records
+                    .push(self.record_at_points(&group, &points, dofs, *motion, *speed, delay_s)?);
+            }
+        }
+        Ok(records)
+    }
+
+    /// One record per motion and speed of the plan, forces from the transfer matrix of `model` for a deck of `width_m`.
+    ///
+    /// # Errors
+    /// [`crate::Error::Input`] for an impossible plan or width, and a model that says nothing at a `K` from zero to
+    /// that of half the sampling frequency.
+    pub fn records_from_model(
+        &self,
+        model: &dyn Transfer,
+        name: &str,
+        width_m: f64,
+    ) -> Result<Vec<Record>> {
+        let records = self.clean_from_model(model, name, width_m, 0.0)?;
+        Ok(self.with_noise(records))
+    }
+
+    /// The same without noise, motion and forces `delay_s` late.
+    pub(super) fn clean_from_model(
+        &self,
+        model: &dyn Transfer,
+        name: &str,
+        width_m: f64,
+        delay_s: f64,
+    ) -> Result<Vec<Record>> {
+        self.validate()?;
+        positive("width_m", width_m)?;
+        let mut records = Vec::new();
+        for speed in &self.speeds_m_s {
+            records.extend(self.records_at_speed(model, name, width_m, *speed, delay_s)?);
+        }
+        Ok(records)
+    }
+
+    /// One record per motion at one speed, without noise.
+    pub(super) fn records_at_speed(
+        &self,
+        model: &dyn Transfer,
+        name: &str,
+        width_m: f64,
+        speed_m_s: f64,
+        delay_s: f64,
+    ) -> Result<Vec<Record>> {
+        let unit = self.unit_motion(&self.frequencies_hz, delay_s);
+        let response = unit_response(model, &unit, self.sampling_hz, width_m / speed_m_s)?;
+        let dofs = model.dofs();
+        let record = |(j, motion): (usize, &Dof)| {
+            let header = RecordHeader {
+                source: format!("virtual tunnel: linear response of {name}"),
+                licence: String::new(),
+                ..self.header(name, dofs, *motion, width_m, speed_m_s, &unit)
+            };
+            self.record(header, *motion, &unit, |i, k| response[i][j][k])
+        };
+        Ok(dofs.iter().enumerate().map(record).collect())
+    }
+
+    /// Mean speeds of the records of a table, m/s. For a table without speeds the first of the plan is taken: its
+    /// dimensionless forces are the same at every speed.
+    fn speeds_of(&self, table: &DerivativeTable) -> Vec<f64> {
+        let speeds = table.speed_groups();
+        if speeds.is_empty() {
+            self.speeds_m_s.first().copied().into_iter().collect()
+        } else {
+            speeds
+        }
+    }
+
+    /// What records of `table` take for granted; `None` when it says all that they need.
+    pub fn assumption(&self, table: &DerivativeTable) -> Option<String> {
+        table.speed_groups().is_empty().then(|| {
+            let speed = self.speeds_m_s.first().copied().unwrap_or(f64::NAN);
+            format!(
+                "the table states no mean wind speeds: records of the virtual tunnel take {speed} m/s \
+                 (tunnel.speeds_m_s) and the width {} m",
+                table.width_m
+            )
+        })
+    }
+
+    pub(super) fn timing(&self, delay_s: f64) -> Timing {
+        Timing {
+            delay_s,
+            still_s: self.still_s,
+            segment_s: self.segment_s,
+            ramp_s: self.ramp_s,
+            sampling_hz: self.sampling_hz,
+        }
+    }
+
+    /// Amplitude of a motion: m, rad.
+    pub(super) fn amplitude(&self, motion: Dof) -> f64 {
+        match motion {
+            Dof::Vertical => self.vertical_amplitude_m,
+            Dof::Lateral => self.lateral_amplitude_m,
+            Dof::Torsion => self.torsion_amplitude_deg.to_radians(),
+        }
+    }
+
+    fn header(
+        &self,
+        name: &str,
+        dofs: &[Dof],
+        motion: Dof,
+        width_m: f64,
+        speed_m_s: f64,
+        unit: &UnitMotion,
+    ) -> RecordHeader {
+        RecordHeader {
+            name: format!("{name}-{}-{speed_m_s:.2}", motion.name()),
+            dofs: dofs.to_vec(),
+            width_m,
+            air_density_kg_m3: self.air_density_kg_m3,
+            mean_speed_m_s: speed_m_s,
+            sampling_hz: self.sampling_hz,
+            segments: unit.segments.clone(),
+            source: String::new(),
+            licence: String::new(),
+        }
+    }
+
+    /// The record of one motion, given the dimensionless force `unit_force(row, sample)` due to a dimensionless
+    /// motion that is `unit`.
+    fn record(
+        &self,
+        header: RecordHeader,
+        motion: Dof,
+        unit: &UnitMotion,
+        unit_force: impl Fn(usize, usize) -> f64,
+    ) -> Record {
+        let amplitude = self.amplitude(motion);
+        let still = vec![0.0; unit.displacement.len()];
+        let moving = || unit.displacement.iter().map(|x| amplitude * x).collect();
+        let channel = |d: &Dof| {
+            if *d == motion {
+                moving()
+            } else {
+                still.clone()
+            }
+        };
+        let pressure = 0.5 * header.air_density_kg_m3 * header.mean_speed_m_s.powi(2);
+        let dimensionless = amplitude * motion.motion_scale(header.width_m);
+        let force = |(i, d): (usize, &Dof)| {
+            let factor = pressure * d.force_scale(header.width_m) * dimensionless;
+            (0..still.len())
+                .map(|k| factor * unit_force(i, k))
+                .collect()
+        };
+        Record {
+            motion: header.dofs.iter().map(channel).collect(),
+            force: header.dofs.iter().enumerate().map(force).collect(),
+            header,
+        }
+    }
+
+    fn record_at_points(
+        &self,
+        group: &DerivativeTable,
+        points: &TestPoints,
+        dofs: &[Dof],
+        motion: Dof,
+        speed_m_s: f64,
+        delay_s: f64,
+    ) -> Result<Record> {
+        let frequencies: Vec<f64> = points
+            .k
+            .iter()
+            .map(|k| k.circular(group.width_m, speed_m_s) / TAU)
+            .collect();
+        self.check_sampling(&frequencies)?;
+        let unit = self.unit_motion(&frequencies, delay_s);
+        let header = RecordHeader {
+            source: format!(
+                "virtual tunnel: derivatives of {} at {} ({}){}",
+                group.name,
+                if points.interpolated {
+                    "the test points of the first, the others interpolated"
+                } else {
+                    "their test points"
+                },
+                group.header.source,
+                self.assumption(group)
+                    .map_or_else(String::new, |a| format!("; {a}"))
+            ),
+            licence: group.header.licence.clone(),
+            ..self.header(&group.name, dofs, motion, group.width_m, speed_m_s, &unit)
+        };
+        let force = |row: usize, sample: usize| {
+            unit.segment_of[sample].map_or(0.0, |segment| {
+                let g = points.g[row][segment];
+                let in_quadrature = unit.velocity[sample] / (TAU * frequencies[segment]);
+                g.re * unit.displacement[sample] + g.im * in_quadrature
+            })
+        };
+        Ok(self.record(header, motion, &unit, force))
+    }
+
+    /// White noise on every record.
+    fn with_noise(&self, mut records: Vec<Record>) -> Vec<Record> {
+        for (index, record) in records.iter_mut().enumerate() {
+            self.add_noise(record, index);
+        }
+        records
+    }
+
+    /// Noise on every force of record number `index`; each record draws from a stream of its own.
+    pub fn add_noise(&self, record: &mut Record, index: usize) {
+        if self.noise_fraction == 0.0 {
+            return;
+        }
+        let mut random = random_stream(self.seed, index as u64);
+        // e[k] = a e[k−1] + √(1 − a²) n[k], the samples of noise with an exponential correlation
+        let memory = if self.noise_correlation_s > 0.0 {
+            (-1.0 / (self.sampling_hz * self.noise_correlation_s)).exp()
+        } else {
+            0.0
+        };
+        let fresh = (1.0 - memory * memory).sqrt();
+        for force in &mut record.force {
+            let mean_square = force.iter().map(|f| f * f).sum::<f64>() / force.len() as f64;
+            let deviation = self.noise_fraction * mean_square.sqrt();
+            let mut noise: f64 = StandardNormal.sample(&mut random);
+            for (k, f) in force.iter_mut().enumerate() {
+                if k > 0 {
+                    let normal: f64 = StandardNormal.sample(&mut random);
+                    noise = memory * noise + fresh * normal;
+                }
+                *f += deviation * noise;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;
