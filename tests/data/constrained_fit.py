@@ -1,5 +1,5 @@
 """Constrained fit of rational functions to the flat plate, independently of the program: reference figures for
-src/identification/frequency/constrained_tests.rs.
+crates/fit/src/identification/frequency/constrained_tests.rs.
 
     python3 constrained_fit.py        (needs numpy and scipy)
 

@@ -67,7 +67,7 @@ impl Model {
     /// Number of states of the realisation at most, without making it.
     fn states_at_most(&self) -> usize {
         match self {
-            Self::Laguerre(m) => m.terms.iter().map(|t| t.poles.len()).sum(),
+            Self::Laguerre(m) => m.terms.iter().map(|t| t.poles.count()).sum(),
             Self::DiscreteLaguerre(m) => m.terms.iter().map(|t| t.coefficients.ncols()).sum(),
             Self::Rational(m) => {
                 let lags = match &m.lags {

@@ -81,7 +81,7 @@ pub(crate) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
             "  {}: {:.2} m/s, {} samples at {} Hz in wind and in still air",
             run.name,
             run.mean_speed_m_s,
-            run.in_wind.len(),
+            run.in_wind.sample_count(),
             run.in_wind.sampling_hz
         );
     }

@@ -143,7 +143,7 @@ impl RawRecording {
     }
 
     /// Number of samples.
-    pub fn len(&self) -> usize {
+    pub fn sample_count(&self) -> usize {
         self.cells.first().map_or(0, |c| c[0].len())
     }
 }

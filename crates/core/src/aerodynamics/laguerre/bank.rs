@@ -55,8 +55,7 @@ impl FilterBank {
     }
 
     /// Number of filters `L`.
-    #[allow(clippy::len_without_is_empty)] // a bank has filters
-    pub fn len(&self) -> usize {
+    pub fn count(&self) -> usize {
         self.poles.len()
     }
 
@@ -76,7 +75,7 @@ impl FilterBank {
     /// `x' = A x + b v` whose states are the filter outputs: `x_0' = −p_0 x_0 + √(2p_0) v` and
     /// `√(2p_{l−1}) (x_l' + p_l x_l) = √(2p_l) (x_{l−1}' − p_{l−1} x_{l−1})`.
     pub fn matrices(&self) -> (DMatrix<f64>, DVector<f64>) {
-        let n = self.len();
+        let n = self.count();
         let mut a = DMatrix::zeros(n, n);
         let mut b = DVector::zeros(n);
         for l in 0..n {
@@ -141,7 +140,7 @@ mod tests {
             let (a, b) = bank.matrices();
             for k in [0.05, 0.4, 2.0] {
                 let p = Complex::new(0.0, k);
-                let n = bank.len();
+                let n = bank.count();
                 let states = (DMatrix::identity(n, n) * p - complex(&a))
                     .lu()
                     .solve(&b.map(|x| Complex::new(x, 0.0)))

@@ -69,14 +69,14 @@ impl LaguerreModel {
             // the poles of a file have not passed through the constructor yet
             FilterBank::new(term.poles.poles().to_vec())?;
             if term.input >= n
-                || term.coefficients.shape() != (n, term.poles.len())
+                || term.coefficients.shape() != (n, term.poles.count())
                 || !finite(&term.coefficients)
             {
                 return Err(Error::input(
                     format!("Laguerre model: terms[{i}]"),
                     format!(
                         "an input below {n} and finite {n}x{} coefficients",
-                        term.poles.len()
+                        term.poles.count()
                     ),
                     format!(
                         "input {}, {}x{} coefficients, or one that is not finite",

@@ -60,7 +60,7 @@ impl FilterBank {
         )?
         .phi;
         let slowest = self.poles().iter().copied().fold(f64::INFINITY, f64::min);
-        let spread = 2.0 * self.len() as f64 / (slowest * delta_s);
+        let spread = 2.0 * self.count() as f64 / (slowest * delta_s);
         Ok(last_above(&phi, b * delta_s.sqrt(), spread))
     }
 }

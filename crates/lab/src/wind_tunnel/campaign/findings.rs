@@ -123,7 +123,7 @@ pub(super) fn run_findings(run: &RawRun, motion: &[Dof], width_m: f64) -> Result
     let mut say = |what: String| found.push(Finding::of_run(&run.name, what));
     let measured = &run.in_wind.wind_speed_m_s;
     if let Some(still) = &run.still_air {
-        let (in_wind, still_air) = (run.in_wind.len(), still.len());
+        let (in_wind, still_air) = (run.in_wind.sample_count(), still.sample_count());
         if in_wind != still_air {
             say(format!(
                 "{in_wind} samples in wind, {still_air} in still air; only the first {} have both",

@@ -193,7 +193,7 @@ impl Campaign {
 fn summary(recording: &RawRecording, channels: Vec<String>) -> RecordingSummary {
     RecordingSummary {
         source: recording.source.clone(),
-        samples: recording.len(),
+        samples: recording.sample_count(),
         sampling_hz: recording.sampling_hz,
         channels,
     }

@@ -79,7 +79,7 @@ pub(super) fn build(made: &VirtualCampaign) -> FileBuilder {
             .collect();
         let still = run.still_air.iter().map(|r| ("still", r));
         for (what, recording) in std::iter::once(("wind", &run.in_wind)).chain(still) {
-            let n = recording.len() as u64;
+            let n = recording.sample_count() as u64;
             let text = |words: &str| AttrValue::VarLenString(words.to_owned());
             let units = |names: &[&str]| {
                 AttrValue::VarLenStringArray(names.iter().map(|u| (*u).to_owned()).collect())
@@ -142,7 +142,7 @@ fn eccentricity(rig: &Rig) -> Vec<f64> {
 /// Rows of lateral, vertical, torsion.
 fn motion(recording: &RawRecording) -> Vec<f64> {
     let [vertical, lateral, torsion] = &recording.motion;
-    (0..recording.len())
+    (0..recording.sample_count())
         .flat_map(|i| [lateral[i], vertical[i], torsion[i]])
         .collect()
 }
@@ -159,8 +159,8 @@ enum About {
 /// Rows of the six channels of each cell in fixed axes.
 fn forces(recording: &RawRecording, rig: &Rig, about: About) -> Vec<f64> {
     let to_lab = Matrix3::from_fn(|i, j| AXES[j][i]);
-    let mut rows = Vec::with_capacity(recording.len() * 6 * CELLS);
-    for i in 0..recording.len() {
+    let mut rows = Vec::with_capacity(recording.sample_count() * 6 * CELLS);
+    for i in 0..recording.sample_count() {
         let theta = recording.motion[Dof::Torsion as usize]
             .get(i)
             .copied()

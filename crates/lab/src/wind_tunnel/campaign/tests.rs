@@ -110,7 +110,7 @@ fn channels_are_taken_in_si_units_with_their_sign() {
     assert_eq!(reading.findings, []);
     let run = &reading.raw.runs[0];
     let wind = &run.in_wind;
-    assert_eq!((wind.len(), wind.sampling_hz), (200, 100.0));
+    assert_eq!((wind.sample_count(), wind.sampling_hz), (200, 100.0));
     assert!(wind.motion[1..].iter().all(Vec::is_empty));
     for i in 0..200 {
         let [y, d, l, m, v] = sample(i);
@@ -181,7 +181,7 @@ still_air = { file = "ntnu.h5", group = "still_air" }
         let j = j as f64;
         j + (j + 1.0) * (PI * (j + 1.0) * i as f64 / 200.0).sin()
     };
-    for i in 0..run.in_wind.len() {
+    for i in 0..run.in_wind.sample_count() {
         assert!((run.in_wind.motion[0][i] - 0.01 * channel(0, i)).abs() < 1e-16);
         // six channels a cell, the second cell from the seventh; rounding of up to 35
         assert!((run.in_wind.cells[1][4][i] - 1.5 * channel(10, i)).abs() < 1e-12);

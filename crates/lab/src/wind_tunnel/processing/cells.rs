@@ -66,7 +66,8 @@ pub(crate) fn to_global(
     rotation_rad: &[f64],
 ) -> Vec<GlobalCell> {
     let turn = |(cell, channels): (&LoadCell, &[Vec<f64>; 6])| {
-        let mut global: GlobalCell = std::array::from_fn(|_| Vec::with_capacity(recording.len()));
+        let mut global: GlobalCell =
+            std::array::from_fn(|_| Vec::with_capacity(recording.sample_count()));
         let samples = channels.iter().map(Vec::len).min().unwrap_or(0);
         let local =
             |k: usize, triple: usize| nalgebra::Vector3::from_fn(|i, _| channels[triple + i][k]);

@@ -54,11 +54,11 @@ pub(crate) fn check_run(run: &RawRun, rig: &Rig) -> Result<Findings> {
         check_recording(&place("still air"), still, rig)?;
         check_pair(&run.name, wind, still)?;
         findings.clipped_still_air = clipped(&place("still air"), still, rig)?;
-        if wind.len() != still.len() {
+        if wind.sample_count() != still.sample_count() {
             findings.warnings.push(format!(
                 "{} samples in wind, {} in still air: only the part that both cover is used",
-                wind.len(),
-                still.len()
+                wind.sample_count(),
+                still.sample_count()
             ));
         }
     }
@@ -136,7 +136,7 @@ fn check_recording(place: &str, recording: &RawRecording, rig: &Rig) -> Result<(
     if recording.motion.iter().all(Vec::is_empty) {
         return Err(Error::input(place, "a motion channel", "none"));
     }
-    let count = recording.len();
+    let count = recording.sample_count();
     if count < SAMPLES_AT_LEAST {
         let expected = format!("at least {SAMPLES_AT_LEAST} samples");
         return Err(Error::input(place, expected, count.to_string()));

@@ -36,7 +36,7 @@ pub(crate) fn still_air_inertia(
     let motion = &still.motion[super::index(dof)];
     let rates = still.sampling_hz;
     // a lag of the axes behind the model would be of second order here
-    let at_rest = vec![0.0; still.len()];
+    let at_rest = vec![0.0; still.sample_count()];
     let cells = super::cells::to_global(still, rig, &at_rest);
     let total = sum_about_centre(&cells, rig, &at_rest);
     let of = |force: &[f64]| Ok(solve(dof, &ratios(motion, force, rates, segments)?));

@@ -106,8 +106,8 @@ impl<'a> RunInProgress<'a> {
             run: run.name.clone(),
             dof: prepared.dof,
             sampling_hz: start.wind.sampling_hz,
-            samples: run.in_wind.len(),
-            cut: [covered.start, run.in_wind.len() - covered.end],
+            samples: run.in_wind.sample_count(),
+            cut: [covered.start, run.in_wind.sample_count() - covered.end],
             clipped: clipped.into_iter().flatten().cloned().collect(),
             segments: prepared.covered_segments(&covered)?,
             still_air: prepared.still_air.clone(),
@@ -302,7 +302,7 @@ fn without_lag(recording: &RawRecording, lag_s: f64) -> RawRecording {
 fn rotation(recording: &RawRecording) -> Vec<f64> {
     let x = &recording.motion[index(Dof::Torsion)];
     if x.is_empty() {
-        vec![0.0; recording.len()]
+        vec![0.0; recording.sample_count()]
     } else {
         x.clone()
     }
@@ -310,7 +310,7 @@ fn rotation(recording: &RawRecording) -> Vec<f64> {
 
 /// Motion and force on the whole model, and the means of the cells.
 fn on_the_model(recording: &RawRecording, rig: &Rig) -> (SectionSignals, Vec<cells::CellShare>) {
-    let count = recording.len();
+    let count = recording.sample_count();
     let motion: [Vec<f64>; 3] = std::array::from_fn(|d| {
         let x = &recording.motion[d];
         if x.is_empty() {

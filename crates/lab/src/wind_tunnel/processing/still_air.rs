@@ -67,11 +67,11 @@ pub(crate) fn align(
         let expected = "the motion of the recording in wind";
         Error::input(place(), expected, "one that is nowhere like it")
     })?;
-    let count = in_wind.len();
+    let count = in_wind.sample_count();
     let moved_still = still_air.map(|x| moved(x, found.samples, count));
     // an offset of rounding costs no sample
     let first = (-found.samples - ROUNDING).ceil().max(0.0) as usize;
-    let end = (still_air.len() as f64 - found.samples + ROUNDING)
+    let end = (still_air.sample_count() as f64 - found.samples + ROUNDING)
         .floor()
         .max(0.0) as usize;
     let covered = first.min(count)..end.min(count);

@@ -180,7 +180,7 @@ fn recordings_of_unequal_length() {
             .for_each(|x| x.truncate(count));
         still.wind_speed_m_s.truncate(count);
     };
-    let whole = made.raw.runs[0].in_wind.len();
+    let whole = made.raw.runs[0].in_wind.sample_count();
     cut(&mut made.raw, whole - 100);
     let processed = done(&made.raw, &ProcessingOptions::default());
     // 100 samples, and perhaps one more that a shift by part of a sample leaves without a neighbour

@@ -27,9 +27,9 @@ fn on_jones(plan: &VirtualCampaignPlan) -> VirtualCampaign {
 /// Drag, lift and nose-up moment about the centre of rotation, one per sample: turned by the sine and cosine of the
 /// rotation, moved by the lever arms in the plane, written out without matrices.
 fn section_forces(rig: &Rig, recording: &RawRecording) -> [Vec<f64>; 3] {
-    let mut sums = [(); 3].map(|()| vec![0.0; recording.len()]);
+    let mut sums = [(); 3].map(|()| vec![0.0; recording.sample_count()]);
     for (cell, channels) in rig.cells.iter().zip(&recording.cells) {
-        for i in 0..recording.len() {
+        for i in 0..recording.sample_count() {
             let local: Vec<f64> = channels.iter().map(|c| c[i]).collect();
             let angle = if cell.turns_with_model {
                 recording.motion[2].get(i).copied().unwrap_or(0.0)
@@ -75,7 +75,7 @@ fn in_wind_minus_still_air_is_static_and_self_excited_force() {
             let still = section_forces(&made.raw.rig, run.still_air.as_ref().unwrap());
             for (c, row) in [1, 0, 2].into_iter().enumerate() {
                 assert!(applied.static_wind[c].abs() > 0.1);
-                for i in 0..run.in_wind.len() {
+                for i in 0..run.in_wind.sample_count() {
                     let expected = length * truth.force[row][i] + applied.static_wind[c];
                     let found = wind[c][i] - still[c][i];
                     // rounding of forces of about 60 N

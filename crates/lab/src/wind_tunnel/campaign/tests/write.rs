@@ -84,7 +84,7 @@ fn the_layout_of_ntnu_reads_back_the_same_forces() {
                 (&a.motion, &a.wind_speed_m_s),
                 (&b.motion, &b.wind_speed_m_s)
             );
-            for i in (0..a.len()).step_by(7) {
+            for i in (0..a.sample_count()).step_by(7) {
                 let (f, m) = sum(&raw.rig, a, i);
                 let (f0, m0) = sum(&made.raw.rig, b, i);
                 // rounding of forces of 60 N on an arm of 1.4 m
