@@ -1,10 +1,8 @@
 //! Builds the FMU runtime, the shared library that every exported FMU holds, and hands it to `src/fmu/package`.
 //!
-//! With the feature `cli` this script calls cargo once more on the same package without any
-//! feature, in the profile `fmu` and a target directory of its own, and copies the library to `OUT_DIR`, from where
-//! it is embedded: an installed `aerodeck` exports FMUs without source tree or Rust toolchain. Ready-made runtimes, also
-//! for other platforms, can be embedded instead. Without that feature, and so in the nested call itself, there is nothing
-//! to do.
+//! This script calls cargo once more, on the crate of the unit, in the profile `fmu` and a target directory of its own, and copies
+//! the library to `OUT_DIR`, from where it is embedded: an installed `aerodeck` exports FMUs without source tree or Rust toolchain.
+//! Ready-made runtimes, also for other platforms, can be embedded instead.
 
 use std::env;
 use std::fs;
@@ -21,9 +19,6 @@ const LIBRARY: &str = "aerodeck_section";
 fn main() -> ExitCode {
     println!("cargo::rerun-if-changed=build.rs");
     println!("cargo::rerun-if-env-changed={READY_MADE}");
-    if env::var_os("CARGO_FEATURE_CLI").is_none() {
-        return ExitCode::SUCCESS;
-    }
     match embed_runtimes() {
         Ok(()) => ExitCode::SUCCESS,
         Err(message) => {
@@ -116,9 +111,7 @@ fn platform() -> Result<&'static str, String> {
         ("windows", "x86") => Ok("win32"),
         ("macos", "x86_64") => Ok("darwin64"),
         ("macos", "aarch64") => Ok("aarch64-darwin"),
-        _ => Err(format!(
-            "FMI names no platform for {system} on {processor}: build without the feature `cli`"
-        )),
+        _ => Err(format!("FMI names no platform for {system} on {processor}")),
     }
 }
 
@@ -143,7 +136,7 @@ fn build_runtime(source: &Path, out: &Path) -> Result<PathBuf, String> {
             .map_err(|e| format!("cargo cannot be started to build the FMU runtime: {e}"))?;
         if output.status.success() {
             let prefix = if extension() == "dll" { "" } else { "lib" };
-            let library = format!("{prefix}aerodeck.{}", extension());
+            let library = format!("{prefix}aerodeck_unit.{}", extension());
             return Ok(target_dir.join(triple).join("fmu").join(library));
         }
         said = String::from_utf8_lossy(&output.stderr).into_owned();
@@ -152,7 +145,7 @@ fn build_runtime(source: &Path, out: &Path) -> Result<PathBuf, String> {
         }
     }
     Err(format!(
-        "the FMU runtime (this package without features, profile `fmu`, target {triple}) could not be built in {}; \
+        "the FMU runtime (crates/unit, profile `fmu`, target {triple}) could not be built in {}; \
          cargo said:\n{said}",
         target_dir.display()
     ))
@@ -171,8 +164,9 @@ fn runtime_target_dir(out: &Path) -> PathBuf {
 fn nested_cargo(source: &Path, target_dir: &Path, triple: &str) -> Result<Command, String> {
     let mut cargo = Command::new(variable("CARGO")?);
     cargo
-        .args(["rustc", "--lib", "--crate-type", "cdylib"])
-        .args(["--no-default-features", "--profile", "fmu"])
+        .args(["rustc", "--package", "aerodeck-unit", "--lib"])
+        .args(["--crate-type", "cdylib", "--features", "runtime"])
+        .args(["--profile", "fmu"])
         .args(["--target", triple])
         .arg("--manifest-path")
         .arg(source.join("Cargo.toml"))

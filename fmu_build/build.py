@@ -30,11 +30,11 @@ OLD_GLIBC = "2.17"
 TOOLS = ["ziglang==0.17.1", "cargo-zigbuild==0.24.0", "lief==1.0.0"]
 # Rust target: file that cargo makes, ending, folders below binaries/
 TARGETS = {
-    "x86_64-unknown-linux-gnu": ("libaerodeck.so", "so", ["linux64"]),
-    "aarch64-unknown-linux-gnu": ("libaerodeck.so", "so", ["aarch64-linux"]),
-    "x86_64-pc-windows-gnu": ("aerodeck.dll", "dll", ["win64"]),
-    "x86_64-apple-darwin": ("libaerodeck.dylib", "dylib", ["darwin64"]),
-    "aarch64-apple-darwin": ("libaerodeck.dylib", "dylib", ["aarch64-darwin"]),
+    "x86_64-unknown-linux-gnu": ("libaerodeck_unit.so", "so", ["linux64"]),
+    "aarch64-unknown-linux-gnu": ("libaerodeck_unit.so", "so", ["aarch64-linux"]),
+    "x86_64-pc-windows-gnu": ("aerodeck_unit.dll", "dll", ["win64"]),
+    "x86_64-apple-darwin": ("libaerodeck_unit.dylib", "dylib", ["darwin64"]),
+    "aarch64-apple-darwin": ("libaerodeck_unit.dylib", "dylib", ["aarch64-darwin"]),
 }
 LIVE = "wasm32-unknown-unknown"  # no platform of FMI: the module that answers the sliders of reports
 # linkers that export less than zig's, where they are there
@@ -98,19 +98,19 @@ def build(target, zig):
     environment = dict(os.environ, CARGO_ENCODED_RUSTFLAGS=flags(target))
     if shutil.which(linker):
         environment[f"CARGO_TARGET_{target.upper().replace('-', '_')}_LINKER"] = linker
-    run(*tool, "--locked", "--lib", "--crate-type", "cdylib", "--no-default-features", "--profile", "fmu",
-        "--target", wanted, "--target-dir", target_dir, env=environment)  # fmt: skip
+    run(*tool, "--locked", "--package", "aerodeck-unit", "--lib", "--crate-type", "cdylib", "--features", "runtime",
+        "--profile", "fmu", "--target", wanted, "--target-dir", target_dir, env=environment)  # fmt: skip
     return target_dir / target / "fmu" / file
 
 
 def build_live(out):
     """The module for the sliders of reports, beside the runtimes."""
     target_dir = ROOT / "target" / "fmu-release"
-    run("cargo", "rustc", "--locked", "--lib", "--crate-type", "cdylib", "--no-default-features", "--profile", "live",
-        "--target", LIVE, "--target-dir", target_dir, env=dict(os.environ, CARGO_ENCODED_RUSTFLAGS=flags(LIVE)))  # fmt: skip
+    run("cargo", "rustc", "--locked", "--package", "aerodeck-live", "--lib", "--crate-type", "cdylib",
+        "--profile", "live", "--target", LIVE, "--target-dir", target_dir, env=dict(os.environ, CARGO_ENCODED_RUSTFLAGS=flags(LIVE)))  # fmt: skip
     file = out / "wasm32" / f"{NAME}.wasm"
     file.parent.mkdir(parents=True, exist_ok=True)
-    shutil.copyfile(target_dir / LIVE / "live" / "aerodeck.wasm", file)
+    shutil.copyfile(target_dir / LIVE / "live" / "aerodeck_live.wasm", file)
     print(f"{file}: {file.stat().st_size} bytes")
 
 

@@ -28,7 +28,7 @@ BESIDE = {
 
 def functions():
     """Names of the C interface, from its sources."""
-    sources = (ROOT / "src" / "fmu" / "fmi2").glob("exports_*.rs")
+    sources = (ROOT / "crates" / "unit" / "src" / "fmi2").glob("exports_*.rs")
     text = "".join(source.read_text(encoding="utf-8") for source in sources)
     # some are made by a macro, which is given their names
     return set(re.findall(r"\bfmi2[A-Z]\w+(?=\()", re.sub(r"//.*", "", text)))

@@ -49,7 +49,7 @@
 //! whole chain, `report` draws it, [`live`] answers its sliders and `cli` is the program.
 #![deny(unsafe_code, missing_docs)]
 // what is public can be reached from outside
-#![cfg_attr(feature = "cli", deny(unreachable_pub))]
+#![deny(unreachable_pub)]
 // the process is the caller's: no abrupt end, and no word on its terminal
 #![cfg_attr(
     not(test),
@@ -65,33 +65,22 @@
         clippy::dbg_macro
     )
 )]
-// the runtime of the FMU reaches only a part of the rooms it is built of
-#![cfg_attr(not(feature = "cli"), allow(dead_code, unused_imports))]
 
-#[cfg(feature = "cli")]
 pub mod buffeting;
-#[cfg(feature = "cli")]
 #[allow(clippy::print_stdout, clippy::print_stderr)]
 pub mod cli;
-// the module of a report has no use for it
-#[cfg(not(target_arch = "wasm32"))]
 pub mod fmu;
-pub mod live;
 pub mod prelude;
-#[cfg(feature = "cli")]
 pub mod reference;
-#[cfg(feature = "cli")]
 pub mod report;
-#[cfg(feature = "cli")]
 pub mod study;
 
-#[cfg(all(test, feature = "cli"))]
+#[cfg(test)]
 mod tests;
 
-#[cfg(feature = "cli")]
 pub use aerodeck_fit::{comparison, identification, selection, uncertainty};
-#[cfg(feature = "cli")]
 pub use aerodeck_lab::{files, signal, wind_tunnel};
+pub use aerodeck_live as live;
 
 pub use aerodeck_core::{
     Error, Result, aerodynamics, aeroelastic, bridge, error, flutter, plausibility, response,
@@ -99,6 +88,6 @@ pub use aerodeck_core::{
 };
 
 /// The program in the README is compiled and run with the tests.
-#[cfg(all(doctest, feature = "cli"))]
+#[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

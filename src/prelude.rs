@@ -13,7 +13,6 @@ pub use crate::state_space::{Continuous, Damping, Discrete, StateSpace};
 pub use crate::trained_model::{Model, TrainedModel};
 pub use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 
-#[cfg(feature = "cli")]
 pub use crate::{
     files::derivatives::{named_table, read_table},
     fmu::package::{GrowthPolicy, write_fmu},

@@ -1,6 +1,4 @@
 //! Comparison metrics against independently computed numbers (`tests/data/comparison_golden.json`).
-#![cfg(feature = "cli")]
-
 use aerodeck::comparison::{
     PhaseParameters, SignalPair, WarpingParameters, WaveletParameters, magnitude, magnitude_warped,
     peak, phase, rms, wavelet, wavelet_normalised,

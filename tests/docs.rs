@@ -1,7 +1,5 @@
 //! Keeps the documentation true: every key of every file format has its line, every link leads somewhere, every page is in the
 //! table of contents, every formula can be shown, and the tutorial runs.
-#![cfg(feature = "cli")]
-
 #[path = "../examples/book_formulas.rs"]
 mod book_formulas;
 #[path = "common/command.rs"]

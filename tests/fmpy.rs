@@ -2,8 +2,6 @@
 //!
 //! Writes one FMU per model and `expected.json` (what the same models give in process) to a folder below the target
 //! directory, then runs `tests/fmpy` with pytest in an environment of its own; see `common/python.rs`.
-#![cfg(feature = "cli")]
-
 #[path = "common/bridge_fmu.rs"]
 mod bridge_fmu;
 #[allow(dead_code)] // the FMUs need one bridge

@@ -1,8 +1,6 @@
 //! Builds the wheel of the Python package into the target directory, installs it there and runs its tests.
 //!
 //! The wheel is built by the same cargo in the same target directory, so that it costs one link beside a build of the tests.
-#![cfg(feature = "cli")]
-
 #[path = "common/python.rs"]
 mod python;
 

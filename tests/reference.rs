@@ -1,6 +1,4 @@
 //! Every reference case is met, and the table in the README says so.
-#![cfg(feature = "cli")]
-
 use aerodeck::reference::{CaseResult, run_all, validation_table};
 use std::path::Path;
 use std::sync::OnceLock;

@@ -1,7 +1,5 @@
 //! Force models and tables of derivatives through the whole chain.
 
-#![cfg(feature = "cli")]
-
 #[path = "../common/command.rs"]
 mod command;
 #[path = "../common/three_dof.rs"]

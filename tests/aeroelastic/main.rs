@@ -1,7 +1,5 @@
 //! A deck on its springs: cases of decks and sections, and sections described in two ways.
 
-#![cfg(feature = "cli")]
-
 #[path = "../common/matrix.rs"]
 mod matrix;
 

@@ -1,6 +1,6 @@
 //! No circles between the files of a room: who reads a file need not know those that use it.
 
-use crate::rules::module_of;
+use crate::rules::{mentions, module_of};
 use crate::source::{Mention, Source};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -14,11 +14,8 @@ struct Tree<'a> {
 
 /// Groups of files each of which needs all others, in order.
 pub fn circles<'a>(files: impl Iterator<Item = (&'a str, &'a Source)>) -> Vec<String> {
-    let entry = |(path, source): (&'a str, &'a Source)| {
-        let module = module_of(path);
-        let mentions = source.mentions(&module);
-        (module, (path, mentions))
-    };
+    let entry =
+        |(path, source): (&'a str, &'a Source)| (module_of(path), (path, mentions(path, source)));
     let tree = Tree {
         files: files.map(entry).collect(),
     };

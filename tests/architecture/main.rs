@@ -15,7 +15,14 @@ use std::path::{Path, PathBuf};
 const LONG_FILES: &[(&str, &str)] = &[];
 
 /// Where the rooms are: in the root package and in the crates that it is built on.
-const SOURCES: &[&str] = &["src", "crates/core/src", "crates/lab/src", "crates/fit/src"];
+const SOURCES: &[&str] = &[
+    "src",
+    "crates/core/src",
+    "crates/fit/src",
+    "crates/lab/src",
+    "crates/live/src",
+    "crates/unit/src",
+];
 
 /// Rust files below `directory` as (path relative to the package with `/`, text), in order.
 fn rust_files(directory: &str) -> Vec<(String, String)> {

@@ -1,6 +1,6 @@
 //! The rules of the house: who may import whom, how long a file may be.
 
-use crate::source::Source;
+use crate::source::{Mention, Source};
 
 /// One module and what it may import besides itself and `error`.
 pub struct Row {
@@ -137,7 +137,32 @@ pub fn module_of(path: &str) -> Vec<String> {
     if inner == "lib" {
         return Vec::new();
     }
-    inner.split('/').map(str::to_owned).collect()
+    let room = room_of_crate(path).into_iter();
+    room.chain(inner.split('/')).map(str::to_owned).collect()
+}
+
+/// The room that a whole crate is; none where a crate has several.
+fn room_of_crate(path: &str) -> Option<&'static str> {
+    let crates = [("crates/unit/", "fmu"), ("crates/live/", "live")];
+    let found = crates.iter().find(|(start, _)| path.starts_with(start));
+    found.map(|(_, room)| *room)
+}
+
+/// What a file mentions, by the paths that the root package has for it. In a crate that is one room, `crate::a` is a part of that
+/// room, unless it is the name of another.
+pub fn mentions(path: &str, source: &Source) -> Vec<Mention> {
+    let mut found = source.mentions(&module_of(path));
+    let Some(room) = room_of_crate(path) else {
+        return found;
+    };
+    for mention in &mut found {
+        let is_room = |name: &String| ARROWS.iter().any(|row| row.module == name);
+        let first = mention.path.first();
+        if first.is_some_and(|name| !name.starts_with(char::is_uppercase) && !is_room(name)) {
+            mention.path.insert(0, room.to_owned());
+        }
+    }
+    found
 }
 
 /// All breaches in one file of `src` that is not test code. `path` is relative to the package, with `/`.
@@ -152,8 +177,7 @@ pub fn breaches(path: &str, source: &Source) -> Vec<String> {
             "{path}: no row for this module in tests/architecture/rules.rs"
         )];
     };
-    source
-        .mentions(&module)
+    mentions(path, source)
         .into_iter()
         .filter_map(|mention| {
             let reason = refusal(own, &mention.path)?;

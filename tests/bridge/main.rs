@@ -1,7 +1,5 @@
 //! Whole bridges: figures, files, gusts, buffeting, and the same bridge described in two ways.
 
-#![cfg(feature = "cli")]
-
 #[path = "../common/bridges.rs"]
 mod bridges;
 #[path = "../common/matlab.rs"]

@@ -1,7 +1,5 @@
 //! The commands: what they print and write, and what they refuse.
 
-#![cfg(feature = "cli")]
-
 #[path = "../common/bridges.rs"]
 #[allow(dead_code)] // each room needs a part of it
 mod bridges;

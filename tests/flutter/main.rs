@@ -1,7 +1,5 @@
 //! Onsets: every route, every answer, and two looks at the same growth.
 
-#![cfg(feature = "cli")]
-
 #[path = "../common/command.rs"]
 #[allow(dead_code)] // each room needs a part of it
 mod command;

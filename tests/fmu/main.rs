@@ -1,7 +1,5 @@
 //! Exported units: their description, what they calculate and answer, and our own importer of any FMU.
 
-#![cfg(feature = "cli")]
-
 #[path = "../common/bridges.rs"]
 #[allow(dead_code)] // each room needs a part of it
 mod bridges;

@@ -1,7 +1,5 @@
 //! Fits under constraints.
 
-#![cfg(feature = "cli")]
-
 #[path = "../common/fits.rs"]
 mod fits;
 #[path = "../common/matrix.rs"]

@@ -72,7 +72,8 @@ fn module() -> Option<PathBuf> {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("live-module");
     let output = Command::new(env!("CARGO"))
         .current_dir(env!("CARGO_MANIFEST_DIR"))
-        .args(["build", "--lib", "--no-default-features"])
+        .args(["rustc", "--package", "aerodeck-live", "--lib"])
+        .args(["--crate-type", "cdylib"])
         .args(["--profile", "live", "--target", TARGET])
         .arg("--target-dir")
         .arg(&folder)
@@ -81,7 +82,7 @@ fn module() -> Option<PathBuf> {
         .unwrap();
     let said = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{said}");
-    Some(folder.join(TARGET).join("live/aerodeck.wasm"))
+    Some(folder.join(TARGET).join("live/aerodeck_live.wasm"))
 }
 
 /// The page without what the sliders add.

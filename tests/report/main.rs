@@ -1,7 +1,5 @@
 //! Figures and the page of a study.
 
-#![cfg(feature = "cli")]
-
 #[path = "../common/browser.rs"]
 #[allow(dead_code)] // each room needs a part of it
 mod browser;

@@ -1,0 +1,197 @@
+//! What makes an exported unit a whole bridge: its modes, its strips, the nodes that an importer sees.
+
+use super::bridge_gusts::BridgeGusts;
+use super::onset_bounds::OnsetBounds;
+use super::onset_start::OnsetStart;
+use crate::aeroelastic::CoupledSection;
+use crate::bridge::{Bridge, BridgeMode, GustChannels, Node, StripGroup};
+use crate::error::{Error, Result, positive};
+use crate::response::Stepper;
+use crate::trained_model::Model;
+use crate::units::ReducedFrequencyRange;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// The file of the bridge in `resources/`; an archive without it holds a section.
+pub const BRIDGE_FILE: &str = "bridge.json";
+/// Modes at most: the step matrix of more would not fit into a gigabyte.
+const MAX_MODES: usize = 500;
+/// Nodes at most.
+const MAX_NODES: usize = 20_000;
+
+/// Nodes of one section in one wind.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GroupOptions {
+    /// Name of the section.
+    pub name: String,
+    /// Width `B`, m.
+    pub width_m: f64,
+    /// Wind speed there over the input `wind_speed`.
+    pub wind_factor: f64,
+    /// Places of the nodes.
+    pub nodes: Vec<usize>,
+    /// Place of its force model in [`BridgeOptions::forces`].
+    pub forces: usize,
+}
+
+/// A bridge as it is exported.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BridgeOptions {
+    /// Name.
+    pub name: String,
+    /// Air density, kg/m³.
+    pub air_density_kg_m3: f64,
+    /// Nodes along the girder.
+    pub nodes: Vec<Node>,
+    /// Modes.
+    pub modes: Vec<BridgeMode>,
+    /// Groups of nodes.
+    pub groups: Vec<GroupOptions>,
+    /// Force models of the groups.
+    pub forces: Vec<Model>,
+    /// Places of the nodes with inputs and outputs.
+    pub named: Vec<usize>,
+    /// Reduced frequencies, of the bridge, in which the force models were tested.
+    pub tested_range: Option<ReducedFrequencyRange>,
+    /// Modal coordinates at release, one per mode.
+    pub initial: Vec<f64>,
+    /// Gusts as inputs of strips; none without.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gusts: Option<BridgeGusts>,
+    /// 95 % interval of the onset, where it is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub onset_interval: Option<OnsetBounds>,
+    /// The onset of the bridge as it is exported, from which a unit goes on.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub onset: Option<OnsetStart>,
+}
+
+impl BridgeOptions {
+    /// The bridge.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for numbers that make no bridge.
+    pub fn bridge(&self) -> Result<Bridge> {
+        let group = |g: &GroupOptions| {
+            let model = self.forces.get(g.forces).ok_or_else(|| {
+                let expected = format!("a force model below {}", self.forces.len());
+                Error::input(format!("group {}", g.name), expected, g.forces.to_string())
+            })?;
+            Ok(StripGroup {
+                name: g.name.clone(),
+                width_m: g.width_m,
+                wind_factor: g.wind_factor,
+                nodes: g.nodes.clone(),
+                forces: Arc::new(model.clone()),
+            })
+        };
+        let groups = self.groups.iter().map(group).collect::<Result<_>>()?;
+        let (nodes, modes) = (self.nodes.clone(), self.modes.clone());
+        Bridge::new(
+            self.name.clone(),
+            self.air_density_kg_m3,
+            nodes,
+            modes,
+            groups,
+        )
+    }
+
+    /// The stepper of a bridge with these gusts, and what the gusts of the strips do to its modes.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for forces that cannot be stepped and for strips that are none.
+    pub(super) fn stepper(&self, bridge: &Bridge) -> Result<(Stepper, Option<GustChannels>)> {
+        let coupled = CoupledSection::new(bridge.structure(), bridge.forces().realize()?)?;
+        let Some(gusts) = &self.gusts else {
+            return Ok((Stepper::new(coupled), None));
+        };
+        let channels = GustChannels::new(bridge, &gusts.coefficients, &gusts.strips)?;
+        let stepper = Stepper::in_modal_gusts(coupled, &channels.passing, gusts.admittance);
+        Ok((stepper, Some(channels)))
+    }
+
+    /// Name of a node in the names of variables: its own where that is a number, else its place from 1 on.
+    pub fn node_name(&self, named: usize) -> String {
+        let place = self.named[named];
+        let name = &self.nodes[place].name;
+        if name.parse::<u32>().is_ok() {
+            name.clone()
+        } else {
+            (place + 1).to_string()
+        }
+    }
+
+    /// Checks what does not need the matrices.
+    fn validate(&self) -> Result<()> {
+        for (what, count, most) in [
+            ("modes", self.modes.len(), MAX_MODES),
+            ("nodes", self.nodes.len(), MAX_NODES),
+        ] {
+            if count == 0 || count > most {
+                return Err(Error::input(
+                    what,
+                    format!("1 to {most}"),
+                    count.to_string(),
+                ));
+            }
+        }
+        positive("air_density_kg_m3", self.air_density_kg_m3)?;
+        let mut names: Vec<String> = Vec::with_capacity(self.named.len());
+        for (i, place) in self.named.iter().enumerate() {
+            if *place >= self.nodes.len() {
+                let expected = format!("a node below {}", self.nodes.len());
+                return Err(Error::input(
+                    format!("named[{i}]"),
+                    expected,
+                    place.to_string(),
+                ));
+            }
+            names.push(self.node_name(i));
+            if names[..i].contains(&names[i]) {
+                return Err(Error::input(
+                    format!("named[{i}]"),
+                    "each node once",
+                    format!("node {}", names[i]),
+                ));
+            }
+        }
+        if self.initial.len() != self.modes.len() || !self.initial.iter().all(|x| x.is_finite()) {
+            let expected = format!("{} finite modal coordinates", self.modes.len());
+            return Err(Error::input(
+                "initial",
+                expected,
+                format!("{:?}", self.initial),
+            ));
+        }
+        if let Some(interval) = &self.onset_interval {
+            interval.check().map_err(|e| e.at("onset_interval"))?;
+        }
+        if let Some(onset) = &self.onset {
+            onset.check().map_err(|e| e.at("onset"))?;
+        }
+        let bridge = self.bridge()?;
+        self.gusts.iter().try_for_each(|g| g.validate(&bridge))
+    }
+
+    /// Reads and checks the options.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for text that is not such a file, and for numbers that make no bridge.
+    pub fn from_json(text: &str) -> Result<Self> {
+        let options: Self = serde_json::from_str(text)
+            .map_err(|e| Error::json("a bridge as `aerodeck fmu export --bridge` writes it", &e))?;
+        options.validate()?;
+        Ok(options)
+    }
+
+    /// The options as JSON.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for numbers that make no bridge.
+    pub fn to_json(&self) -> Result<String> {
+        self.validate()?;
+        serde_json::to_string(self).map_err(|e| Error::Numerical(e.to_string()))
+    }
+}

@@ -1,0 +1,244 @@
+//! Inquiry, creation, logging and the course of a run.
+// the contract of all functions is that of the parent module
+#![allow(non_snake_case, clippy::missing_safety_doc)]
+
+use super::guard::{Component, array, guarded, install_panic_hook, panic_text, shielded};
+use super::logger::{Category, Logger};
+use super::types::{
+    fmi2Boolean, fmi2CallbackFunctions, fmi2CoSimulation, fmi2Component, fmi2ModelExchange,
+    fmi2Real, fmi2Status, fmi2String, fmi2Type,
+};
+use crate::instance::Instance;
+use crate::lifecycle::Call;
+use crate::refusal::{CallResult, Refusal};
+use crate::resources::Resources;
+use std::ffi::{CStr, c_char};
+
+/// Platform of the C types.
+#[unsafe(no_mangle)]
+pub extern "C" fn fmi2GetTypesPlatform() -> *const c_char {
+    c"default".as_ptr()
+}
+
+/// Version of the standard.
+#[unsafe(no_mangle)]
+pub extern "C" fn fmi2GetVersion() -> *const c_char {
+    c"2.0".as_ptr()
+}
+
+/// Makes an instance from the model in the resources; NULL with a logged reason when anything is wrong. There is no
+/// default model.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2Instantiate(
+    instanceName: fmi2String,
+    fmuType: fmi2Type,
+    fmuGUID: fmi2String,
+    fmuResourceLocation: fmi2String,
+    functions: *const fmi2CallbackFunctions,
+    _visible: fmi2Boolean,
+    loggingOn: fmi2Boolean,
+) -> fmi2Component {
+    install_panic_hook();
+    // SAFETY: NULL or valid by the contract of the interface; everything needed later is copied
+    let (functions, name, guid, location) = unsafe {
+        (
+            functions.as_ref(),
+            text(instanceName),
+            text(fmuGUID),
+            text(fmuResourceLocation),
+        )
+    };
+    let logger = functions.and_then(|f| Logger::new(f, name.unwrap_or_default(), loggingOn != 0));
+    let Some(logger) = logger else {
+        return std::ptr::null_mut(); // without a logger there is no one to tell
+    };
+    let refuse = |why: &str| {
+        let message = format!("fmi2Instantiate: {why}");
+        logger.log(fmi2Status::fmi2Error, Category::Error, &message);
+        std::ptr::null_mut()
+    };
+    match shielded(|| instantiate(name, fmuType, guid, location)) {
+        Ok(Ok(instance)) => {
+            logger.log(
+                fmi2Status::fmi2OK,
+                Category::Events,
+                "fmi2Instantiate: instantiated",
+            );
+            Box::into_raw(Box::new(Component::new(instance, logger))).cast()
+        }
+        Ok(Err(refusal)) => refuse(&refusal.message),
+        Err(panic) => refuse(&format!("internal error ({})", panic_text(&*panic))),
+    }
+}
+
+pub(crate) fn instantiate(
+    name: Option<&CStr>,
+    kind: fmi2Type,
+    guid: Option<&CStr>,
+    location: Option<&CStr>,
+) -> CallResult<Instance> {
+    let wrong = |place: &str, expected: &str, found: String| {
+        Refusal::from(crate::Error::input(place, expected, found))
+    };
+    if name.is_none_or(|n| n.to_string_lossy().trim().is_empty()) {
+        let found = name.map_or("NULL", |_| "a blank one");
+        return Err(wrong("instance name", "a name", found.into()));
+    }
+    if ![fmi2CoSimulation, fmi2ModelExchange].contains(&kind) {
+        return Err(wrong(
+            "type of the unit",
+            "model exchange (0) or co-simulation (1)",
+            kind.to_string(),
+        ));
+    }
+    let utf8 = |place: &str, text: Option<&CStr>| {
+        text.and_then(|t| t.to_str().ok())
+            .map(str::to_owned)
+            .ok_or_else(|| {
+                wrong(
+                    place,
+                    "a UTF-8 text",
+                    text.map_or("NULL".into(), |t| t.to_string_lossy().into_owned()),
+                )
+            })
+    };
+    let guid = utf8("GUID", guid)?;
+    // NULL as an empty text: the archive is looked for around the library itself
+    let location = location.map_or(Ok(String::new()), |_| utf8("resource location", location))?;
+    let resources = Resources::read(&location)?;
+    let own = resources.guid.to_string();
+    if guid != own {
+        let expected = format!("{own} (from variables and resources/model.json)");
+        return Err(wrong("GUID", &expected, format!("`{guid}`")));
+    }
+    let instance = Instance::new(resources)?;
+    if kind == fmi2ModelExchange {
+        return instance.for_model_exchange();
+    }
+    Ok(instance)
+}
+
+/// # Safety
+/// NULL, or a text ended by a zero byte that lives for the call.
+pub(crate) unsafe fn text<'a>(pointer: fmi2String) -> Option<&'a CStr> {
+    // SAFETY: by the contract of this function
+    (!pointer.is_null()).then(|| unsafe { CStr::from_ptr(pointer) })
+}
+
+/// Frees an instance; NULL is ignored.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2FreeInstance(c: fmi2Component) {
+    if c.is_null() {
+        return;
+    }
+    // SAFETY: not NULL, and by the contract of the interface made by fmi2Instantiate and not freed before
+    let component = unsafe { Box::from_raw(c.cast::<Component>()) };
+    // a panic while freeing leaves nothing to poison
+    drop(shielded(|| drop(component)));
+}
+
+/// Switches log categories on or off; no categories means all.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2SetDebugLogging(
+    c: fmi2Component,
+    loggingOn: fmi2Boolean,
+    nCategories: usize,
+    categories: *const fmi2String,
+) -> fmi2Status {
+    let body = |component: &mut Component| {
+        // SAFETY: arrays and texts are valid by the contract of the interface
+        let names = unsafe { array(categories, nCategories, "categories") }?;
+        let mut selected = Vec::with_capacity(names.len());
+        for name in names {
+            // SAFETY: as above
+            let name = unsafe { text(*name) };
+            let category = name.and_then(Category::named).ok_or_else(|| {
+                let name = name.map_or("NULL".to_owned(), |n| format!("`{}`", n.to_string_lossy()));
+                Refusal::call(format!(
+                    "log category: expected one of the description, found {name}"
+                ))
+            })?;
+            selected.push(category);
+        }
+        component.logger.select(loggingOn != 0, &selected);
+        Ok(())
+    };
+    // SAFETY: by the contract of the interface
+    unsafe { guarded(c, Call::SetDebugLogging, body) }
+}
+
+/// Sets start and stop time of the run, s. The tolerance is not needed: steps are exact.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2SetupExperiment(
+    c: fmi2Component,
+    _toleranceDefined: fmi2Boolean,
+    _tolerance: fmi2Real,
+    startTime: fmi2Real,
+    stopTimeDefined: fmi2Boolean,
+    stopTime: fmi2Real,
+) -> fmi2Status {
+    let stop = (stopTimeDefined != 0).then_some(stopTime);
+    // SAFETY: by the contract of the interface
+    unsafe {
+        guarded(c, Call::SetupExperiment, |component| {
+            component.instance.set_up_experiment(startTime, stop)
+        })
+    }
+}
+
+/// Begins the initialisation.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2EnterInitializationMode(c: fmi2Component) -> fmi2Status {
+    // SAFETY: by the contract of the interface
+    unsafe {
+        guarded(c, Call::EnterInitializationMode, |component| {
+            component.instance.enter_initialization();
+            Ok(())
+        })
+    }
+}
+
+/// Releases the section.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2ExitInitializationMode(c: fmi2Component) -> fmi2Status {
+    // SAFETY: by the contract of the interface
+    unsafe {
+        guarded(c, Call::ExitInitializationMode, |component| {
+            component.instance.exit_initialization()?;
+            let message = format!("released at {} s", component.instance.time_s());
+            component
+                .logger
+                .log(fmi2Status::fmi2OK, Category::Events, &message);
+            Ok(())
+        })
+    }
+}
+
+/// Ends the run.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2Terminate(c: fmi2Component) -> fmi2Status {
+    // SAFETY: by the contract of the interface
+    unsafe {
+        guarded(c, Call::Terminate, |component| {
+            component.instance.terminate();
+            Ok(())
+        })
+    }
+}
+
+/// Restores every default, as after instantiation; logging stays as it is.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2Reset(c: fmi2Component) -> fmi2Status {
+    // SAFETY: by the contract of the interface
+    unsafe {
+        guarded(c, Call::Reset, |component| {
+            component.instance.reset();
+            component.logger.log(
+                fmi2Status::fmi2OK,
+                Category::Events,
+                "every default restored",
+            );
+            Ok(())
+        })
+    }
+}

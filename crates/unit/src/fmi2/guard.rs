@@ -1,0 +1,295 @@
+//! The one boundary between C and Rust: every call on an instance goes through [`guarded`].
+//!
+//! A panic never crosses it. It poisons its instance, which from then on answers `fmi2Error` to everything; others live
+//! on. Pointers of the importer are turned into references here and nowhere else.
+
+use super::logger::{Category, Logger, c_text};
+use super::types::{fmi2Component, fmi2Status};
+use crate::groups::Groups;
+use crate::instance::Instance;
+use crate::lifecycle::Call;
+use crate::refusal::{CallResult, Refusal, Severity};
+use crate::variables::Value;
+use std::any::Any;
+use std::ffi::CString;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+/// What a component handle points to.
+#[derive(Debug)]
+pub(crate) struct Component {
+    pub instance: Instance,
+    pub logger: Logger,
+    /// Variables by the value references of FMI 3.0.
+    pub groups: Groups,
+    /// Texts of the variables, by value reference; those of other types are empty.
+    pub texts: Vec<CString>,
+    poisoned: bool,
+}
+
+impl Component {
+    pub(crate) fn new(instance: Instance, logger: Logger) -> Self {
+        let variables = instance.table().variables().iter();
+        let texts = variables.map(|v| match &v.value {
+            Value::String(text) => c_text(text),
+            _ => CString::default(),
+        });
+        Self {
+            texts: texts.collect(),
+            groups: Groups::default(),
+            instance,
+            logger,
+            poisoned: false,
+        }
+    }
+
+    /// Writes a refusal to the log and takes its consequence.
+    #[cold]
+    fn refuse(&mut self, function: &str, refusal: &Refusal) -> fmi2Status {
+        self.instance.note(refusal);
+        let (status, category) = match refusal.severity {
+            Severity::Discard => (fmi2Status::fmi2Discard, Category::Discard),
+            Severity::Call | Severity::Error => (fmi2Status::fmi2Error, Category::Error),
+        };
+        let message = format!("{}{function}: {refusal}", self.logger.prefix());
+        self.logger.log(status, category, &message);
+        status
+    }
+
+    #[cold]
+    fn poison(&mut self, function: &str, panic: &(dyn Any + Send)) -> fmi2Status {
+        self.poisoned = true;
+        let message = format!(
+            "{}{function}: internal error ({}); this instance cannot be used any more",
+            self.logger.prefix(),
+            panic_text(panic)
+        );
+        let status = fmi2Status::fmi2Error;
+        self.logger.log(status, Category::Fatal, &message);
+        status
+    }
+
+    #[cold]
+    fn report_notices(&mut self) {
+        for notice in self.instance.take_notices() {
+            self.logger
+                .log(fmi2Status::fmi2Warning, Category::Warning, &notice);
+        }
+    }
+}
+
+/// What a panic says.
+pub(crate) fn panic_text(panic: &(dyn Any + Send)) -> &str {
+    let text = panic.downcast_ref::<&str>().copied();
+    text.or_else(|| panic.downcast_ref::<String>().map(String::as_str))
+        .unwrap_or("without a message")
+}
+
+/// A call, and the function of the interface that makes it, as messages name it.
+pub(crate) struct Named<'a> {
+    call: Call,
+    function: &'a str,
+}
+
+impl From<Call> for Named<'_> {
+    #[inline]
+    fn from(call: Call) -> Self {
+        let function = call.name();
+        Self { call, function }
+    }
+}
+
+impl<'a> From<(Call, &'a str)> for Named<'a> {
+    #[inline]
+    fn from((call, function): (Call, &'a str)) -> Self {
+        Self { call, function }
+    }
+}
+
+/// Carries out `body` on the instance behind `handle`, if `call` is legal there. A function whose name in the interface
+/// is another than that of the call gives both.
+///
+/// # Safety
+/// `handle` is NULL or was returned by `fmi2Instantiate`, has not been freed, and is not in use by another thread.
+#[inline]
+pub(crate) unsafe fn guarded<'a>(
+    handle: fmi2Component,
+    call: impl Into<Named<'a>>,
+    body: impl FnOnce(&mut Component) -> CallResult<()>,
+) -> fmi2Status {
+    let Named { call, function } = call.into();
+    // SAFETY: by the contract of this function
+    let Some(component) = (unsafe { handle.cast::<Component>().as_mut() }) else {
+        return fmi2Status::fmi2Error;
+    };
+    if component.poisoned {
+        return poisoned(component, function);
+    }
+    let outcome = shielded(|| {
+        component.instance.admit(call)?;
+        body(component)
+    });
+    match outcome {
+        Ok(Ok(())) => {
+            if component.instance.has_notices() {
+                component.report_notices();
+            }
+            fmi2Status::fmi2OK
+        }
+        Ok(Err(refusal)) => component.refuse(function, &refusal),
+        Err(panic) => component.poison(function, &*panic),
+    }
+}
+
+#[cold]
+fn poisoned(component: &Component, function: &str) -> fmi2Status {
+    let message = format!(
+        "{}{function}: an earlier internal error has made this instance unusable; free it",
+        component.logger.prefix()
+    );
+    let status = fmi2Status::fmi2Error;
+    component.logger.log(status, Category::Fatal, &message);
+    status
+}
+
+/// Answers a function that is not offered: an error with a reason, the run is not touched.
+///
+/// # Safety
+/// As [`guarded`].
+pub(crate) unsafe fn not_offered(handle: fmi2Component, function: &str, why: &str) -> fmi2Status {
+    // SAFETY: by the contract of this function
+    if let Some(component) = unsafe { handle.cast::<Component>().as_ref() } {
+        let message = format!("{}{function}: {why}", component.logger.prefix());
+        component
+            .logger
+            .log(fmi2Status::fmi2Error, Category::Error, &message);
+    }
+    fmi2Status::fmi2Error
+}
+
+/// Silence about panics inside [`shielded`], where the library shares its process with Rust code that may panic on its
+/// own account (tests, the program). The runtime in an FMU has a panic hook to itself and needs no bookkeeping.
+#[cfg(not(feature = "runtime"))]
+mod silence {
+    use std::cell::Cell;
+    use std::panic::PanicHookInfo;
+    use std::sync::OnceLock;
+
+    thread_local! {
+        // a plain cell: a thread-local value with a destructor would keep the library loaded for ever
+        static SHIELDED: Cell<bool> = const { Cell::new(false) };
+    }
+
+    type PanicHook = Box<dyn Fn(&PanicHookInfo<'_>) + Send + Sync>;
+
+    /// The panic hook that was there before ours.
+    static PREVIOUS_HOOK: OnceLock<PanicHook> = OnceLock::new();
+
+    pub(super) fn install() {
+        let _ = PREVIOUS_HOOK.set(std::panic::take_hook());
+        std::panic::set_hook(Box::new(|info| {
+            if let (false, Some(previous)) = (SHIELDED.get(), PREVIOUS_HOOK.get()) {
+                previous(info);
+            }
+        }));
+    }
+
+    pub(super) fn enter() -> bool {
+        SHIELDED.replace(true)
+    }
+
+    pub(super) fn leave(outer: bool) {
+        SHIELDED.set(outer);
+    }
+}
+
+#[cfg(feature = "runtime")]
+mod silence {
+    pub fn install() {
+        std::panic::set_hook(Box::new(|_| ()));
+    }
+
+    pub fn enter() -> bool {
+        false
+    }
+
+    pub fn leave(_: bool) {}
+}
+
+/// Keeps panics inside [`shielded`] silent: they are reported through the importer's logger, and collecting a backtrace
+/// would cost tens of megabytes. The hook owns nothing, so that nothing leaks when the library is unloaded.
+pub(crate) fn install_panic_hook() {
+    static INSTALLED: std::sync::Once = std::sync::Once::new();
+    INSTALLED.call_once(silence::install);
+}
+
+/// Runs `body`; a panic in it is returned, not passed on.
+pub(crate) fn shielded<T>(body: impl FnOnce() -> T) -> Result<T, Box<dyn Any + Send>> {
+    let outer = silence::enter();
+    let outcome = catch_unwind(AssertUnwindSafe(body));
+    silence::leave(outer);
+    outcome
+}
+
+/// An array of the importer; no elements may come with NULL.
+///
+/// # Safety
+/// `pointer` is NULL or points to `count` values that nobody changes while the result is in use.
+pub(crate) unsafe fn array<'a, T>(
+    pointer: *const T,
+    count: usize,
+    name: &str,
+) -> CallResult<&'a [T]> {
+    if count == 0 {
+        return Ok(&[]);
+    }
+    check_array(pointer, count, name)?;
+    // SAFETY: not NULL, not longer than an object can be, and otherwise by the contract of this function
+    Ok(unsafe { std::slice::from_raw_parts(pointer, count) })
+}
+
+/// An array of the importer to be filled.
+///
+/// # Safety
+/// `pointer` is NULL or points to room for `count` values that nobody else uses while the result is in use.
+pub(crate) unsafe fn array_mut<'a, T>(
+    pointer: *mut T,
+    count: usize,
+    name: &str,
+) -> CallResult<&'a mut [T]> {
+    if count == 0 {
+        return Ok(&mut []);
+    }
+    check_array(pointer, count, name)?;
+    // SAFETY: not NULL, not longer than an object can be, and otherwise by the contract of this function
+    Ok(unsafe { std::slice::from_raw_parts_mut(pointer, count) })
+}
+
+fn check_array<T>(pointer: *const T, count: usize, name: &str) -> CallResult<()> {
+    if pointer.is_null() {
+        return Err(no_array(count, name));
+    }
+    if count > isize::MAX as usize / size_of::<T>().max(1) {
+        return Err(array_too_long(count, name));
+    }
+    Ok(())
+}
+
+#[cold]
+fn no_array(count: usize, name: &str) -> Refusal {
+    Refusal::error(format!("{name}: expected {count} elements, found NULL"))
+}
+
+#[cold]
+fn array_too_long(count: usize, name: &str) -> Refusal {
+    Refusal::error(format!("{name}: {count} elements do not fit into memory"))
+}
+
+/// One place of the importer to be filled.
+///
+/// # Safety
+/// `pointer` is NULL or points to a value that nobody else uses while the result is in use.
+pub(crate) unsafe fn place<'a, T>(pointer: *mut T, name: &str) -> CallResult<&'a mut T> {
+    // SAFETY: by the contract of this function
+    unsafe { pointer.as_mut() }
+        .ok_or_else(|| Refusal::error(format!("{name}: expected a pointer, found NULL")))
+}

@@ -1,0 +1,146 @@
+//! Messages to the importer.
+//!
+//! In FMI 2.0 the message is a `printf` format, and `#r3#` in it stands for a variable: both signs are doubled, and no arguments
+//! are ever passed. Refusals are written even where logging is switched off: their reason must not be lost.
+
+use super::types::{fmi2CallbackFunctions, fmi2CallbackLogger, fmi2Status};
+use std::ffi::{CStr, CString, c_char, c_void};
+
+/// Category of a message: place in [`crate::log_categories::LOG_CATEGORIES`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Category {
+    Events,
+    Warning,
+    Discard,
+    Error,
+    Fatal,
+    All,
+}
+
+impl Category {
+    const EVERY: [Category; 6] = [
+        Self::Events,
+        Self::Warning,
+        Self::Discard,
+        Self::Error,
+        Self::Fatal,
+        Self::All,
+    ];
+
+    fn name(self) -> &'static CStr {
+        match self {
+            Self::Events => c"logEvents",
+            Self::Warning => c"logStatusWarning",
+            Self::Discard => c"logStatusDiscard",
+            Self::Error => c"logStatusError",
+            Self::Fatal => c"logStatusFatal",
+            Self::All => c"logAll",
+        }
+    }
+
+    /// The category of this name.
+    pub(crate) fn named(name: &CStr) -> Option<Self> {
+        Self::EVERY.into_iter().find(|c| c.name() == name)
+    }
+
+    /// Refusals are always written.
+    fn is_refusal(self) -> bool {
+        matches!(self, Self::Discard | Self::Error | Self::Fatal)
+    }
+}
+
+/// Writes a message in FMI 3.0: environment, status, category, message.
+pub(crate) type PlainLogger =
+    unsafe extern "C" fn(*mut c_void, fmi2Status, *const c_char, *const c_char);
+
+/// The importer's function.
+#[derive(Debug, Clone, Copy)]
+enum Callback {
+    Printf(fmi2CallbackLogger),
+    Plain(PlainLogger),
+}
+
+/// The importer's logger with our own copies of everything it is called with.
+#[derive(Debug)]
+pub(crate) struct Logger {
+    callback: Callback,
+    environment: *mut c_void,
+    instance_name: CString,
+    wanted: Vec<Category>,
+}
+
+impl Logger {
+    /// `None` when the importer has no logger.
+    pub(crate) fn new(
+        functions: &fmi2CallbackFunctions,
+        instance_name: &CStr,
+        logging_on: bool,
+    ) -> Option<Self> {
+        let mut logger = Self {
+            callback: Callback::Printf(functions.logger?),
+            environment: functions.componentEnvironment,
+            instance_name: instance_name.to_owned(),
+            wanted: Vec::new(),
+        };
+        logger.select(logging_on, &[]);
+        Some(logger)
+    }
+
+    /// The logger of an importer of FMI 3.0.
+    pub(crate) fn plain(callback: PlainLogger, environment: *mut c_void, logging_on: bool) -> Self {
+        let mut logger = Self {
+            callback: Callback::Plain(callback),
+            environment,
+            instance_name: CString::default(),
+            wanted: Vec::new(),
+        };
+        logger.select(logging_on, &[]);
+        logger
+    }
+
+    /// What the functions of the interface begin with.
+    pub(crate) fn prefix(&self) -> &'static str {
+        match self.callback {
+            Callback::Printf(_) => "fmi2",
+            Callback::Plain(_) => "fmi3",
+        }
+    }
+
+    /// Switches categories on; none named means all.
+    pub(crate) fn select(&mut self, on: bool, categories: &[Category]) {
+        self.wanted = match (on, categories) {
+            (false, _) => Vec::new(),
+            (true, []) => vec![Category::All],
+            (true, some) => some.to_vec(),
+        };
+    }
+
+    /// Writes a message.
+    pub(crate) fn log(&self, status: fmi2Status, category: Category, message: &str) {
+        let wanted = |c: &Category| *c == category || *c == Category::All;
+        if !category.is_refusal() && !self.wanted.iter().any(wanted) {
+            return;
+        }
+        let category = category.name().as_ptr();
+        // SAFETY: the importer guarantees callback and environment for the life of the instance; the texts are ours and
+        // end with a zero byte. The format holds no conversion, so no argument is read.
+        unsafe {
+            match self.callback {
+                Callback::Printf(logger) => {
+                    let message = c_text(&message.replace('%', "%%").replace('#', "##"));
+                    let name = self.instance_name.as_ptr();
+                    logger(self.environment, name, status, category, message.as_ptr());
+                }
+                Callback::Plain(logger) => {
+                    let message = c_text(message);
+                    logger(self.environment, status, category, message.as_ptr());
+                }
+            }
+        }
+    }
+}
+
+/// A text for C; a zero byte inside becomes a space.
+pub(crate) fn c_text(text: &str) -> CString {
+    CString::new(text.replace('\0', " ")).unwrap_or_default()
+}

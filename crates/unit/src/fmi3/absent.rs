@@ -1,0 +1,50 @@
+//! Functions for what there is not: clocks, structural parameters, event mode of co-simulation, dependencies at run time.
+// the contract of all functions is that of the parent module
+#![allow(non_snake_case, clippy::missing_safety_doc)]
+
+use crate::fmi2::guard::not_offered;
+use crate::fmi2::types::{fmi2Component, fmi2Status, fmi2ValueReference};
+
+const NO_CLOCKS: &str = "there are no clocks";
+const NO_STRUCTURE: &str = "there are no structural parameters";
+
+macro_rules! absent {
+    ($($name:ident, $short:literal, $why:expr, ($($argument:ident: $type:ty),*);)*) => {$(
+        /// Not offered.
+        #[unsafe(no_mangle)]
+        pub unsafe extern "C" fn $name(c: fmi2Component $(, $argument: $type)*) -> fmi2Status {
+            $(let _ = $argument;)*
+            // SAFETY: by the contract of the interface
+            unsafe { not_offered(c, $short, $why) }
+        }
+    )*};
+}
+
+type References = *const fmi2ValueReference;
+
+absent! {
+    fmi3EnterConfigurationMode, "EnterConfigurationMode", NO_STRUCTURE, ();
+    fmi3ExitConfigurationMode, "ExitConfigurationMode", NO_STRUCTURE, ();
+    fmi3EnterStepMode, "EnterStepMode", "co-simulation has no event mode here", ();
+    fmi3EvaluateDiscreteStates, "EvaluateDiscreteStates", "there are no discrete states", ();
+    fmi3ActivateModelPartition, "ActivateModelPartition", "scheduled execution is not offered",
+        (clock: fmi2ValueReference, time: f64);
+    fmi3GetNumberOfVariableDependencies, "GetNumberOfVariableDependencies",
+        "dependencies are those of the description", (vr: fmi2ValueReference, count: *mut usize);
+    fmi3GetVariableDependencies, "GetVariableDependencies", "dependencies are those of the description",
+        (dependent: fmi2ValueReference, elements: *mut usize, independents: *mut fmi2ValueReference,
+         independent_elements: *mut usize, kinds: *mut i32, count: usize);
+    fmi3GetIntervalDecimal, "GetIntervalDecimal", NO_CLOCKS,
+        (vr: References, nvr: usize, intervals: *mut f64, qualifiers: *mut i32);
+    fmi3GetIntervalFraction, "GetIntervalFraction", NO_CLOCKS,
+        (vr: References, nvr: usize, counters: *mut u64, resolutions: *mut u64, qualifiers: *mut i32);
+    fmi3GetShiftDecimal, "GetShiftDecimal", NO_CLOCKS, (vr: References, nvr: usize, shifts: *mut f64);
+    fmi3GetShiftFraction, "GetShiftFraction", NO_CLOCKS,
+        (vr: References, nvr: usize, counters: *mut u64, resolutions: *mut u64);
+    fmi3SetIntervalDecimal, "SetIntervalDecimal", NO_CLOCKS, (vr: References, nvr: usize, intervals: *const f64);
+    fmi3SetIntervalFraction, "SetIntervalFraction", NO_CLOCKS,
+        (vr: References, nvr: usize, counters: *const u64, resolutions: *const u64);
+    fmi3SetShiftDecimal, "SetShiftDecimal", NO_CLOCKS, (vr: References, nvr: usize, shifts: *const f64);
+    fmi3SetShiftFraction, "SetShiftFraction", NO_CLOCKS,
+        (vr: References, nvr: usize, counters: *const u64, resolutions: *const u64);
+}

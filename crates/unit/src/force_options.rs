@@ -1,0 +1,148 @@
+//! What makes an exported unit one of forces alone: its strips, and where their forces act.
+
+use crate::error::{Error, Result, non_negative, positive};
+use serde::{Deserialize, Serialize};
+
+/// The file of the options in `resources/`; an archive without it holds a coupled section.
+pub const FORCE_FILE: &str = "force.json";
+/// Strips at most: a bridge of ten kilometres in strips of a metre.
+pub const MAX_STRIPS: usize = 10_000;
+/// Communication steps from the motion that the unit was given last to the middle of the step over which an explicit
+/// (Jacobi) importer holds the force: one until the force is read, half of the step for which it is held.
+pub(crate) const EXPLICIT_PREDICTION: f64 = 1.5;
+/// Largest prediction, in communication steps.
+pub(crate) const MAX_PREDICTION: f64 = 3.0;
+
+/// A strip of deck.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StripOptions {
+    /// Width `B`, m.
+    pub width_m: f64,
+    /// Length of span, m.
+    pub length_m: f64,
+    /// Wind speed at the strip over the input `wind_speed`.
+    pub wind_factor: f64,
+}
+
+/// The options of a unit of forces.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ForceOptions {
+    /// The strips, one at least.
+    pub strips: Vec<StripOptions>,
+    /// Whether variables are named by strip (`strip[1].heave`); a single strip may go without (`heave`).
+    pub named_strips: bool,
+    /// Start value of `prediction`, communication steps.
+    pub prediction_steps: f64,
+}
+
+impl ForceOptions {
+    /// One strip of a metre for an explicit importer.
+    pub fn single(width_m: f64) -> Self {
+        Self {
+            strips: vec![StripOptions {
+                width_m,
+                length_m: 1.0,
+                wind_factor: 1.0,
+            }],
+            named_strips: false,
+            prediction_steps: EXPLICIT_PREDICTION,
+        }
+    }
+
+    /// Checks the options.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for no strip or too many, several without names, a width or length that is not positive, a
+    /// negative wind factor, a prediction outside 0 to 3.
+    pub fn validate(&self) -> Result<()> {
+        let count = self.strips.len();
+        if count == 0 || count > MAX_STRIPS {
+            let expected = format!("1 to {MAX_STRIPS}");
+            return Err(Error::input("strips", expected, count.to_string()));
+        }
+        if count > 1 && !self.named_strips {
+            let found = format!("{count} without");
+            return Err(Error::input("strips", "names for more than one", found));
+        }
+        for (i, strip) in self.strips.iter().enumerate() {
+            let place = |key: &str| format!("strip {}: {key}", i + 1);
+            positive(place("width"), strip.width_m)?;
+            positive(place("length"), strip.length_m)?;
+            non_negative(place("wind factor"), strip.wind_factor)?;
+        }
+        let prediction = self.prediction_steps;
+        if !(0.0..=MAX_PREDICTION).contains(&prediction) {
+            let expected = format!("0 to {MAX_PREDICTION} communication steps");
+            return Err(Error::input("prediction", expected, prediction.to_string()));
+        }
+        Ok(())
+    }
+
+    /// Reads and checks the options.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for text that is not such a file, and for strips or a prediction that cannot be.
+    pub fn from_json(text: &str) -> Result<Self> {
+        let options: Self = serde_json::from_str(text)
+            .map_err(|e| Error::json("options of a unit of forces", &e))?;
+        options.validate()?;
+        Ok(options)
+    }
+
+    /// The options as JSON.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for strips or a prediction that cannot be.
+    pub fn to_json(&self) -> Result<String> {
+        self.validate()?;
+        serde_json::to_string_pretty(self).map_err(|e| Error::Numerical(e.to_string()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn wrong_options_are_named() {
+        let with = |change: fn(&mut ForceOptions)| {
+            let mut options = ForceOptions::single(31.0);
+            change(&mut options);
+            options.validate().map_err(|e| e.to_string())
+        };
+        assert_eq!(with(|_| ()), Ok(()));
+        type Change = fn(&mut ForceOptions);
+        let refused: [(Change, &str); 6] = [
+            (|o| o.strips.clear(), "strips: expected 1 to 10000, found 0"),
+            (
+                |o| o.strips.push(o.strips[0].clone()),
+                "strips: expected names for more than one",
+            ),
+            (|o| o.strips[0].width_m = 0.0, "strip 1: width: expected"),
+            (|o| o.strips[0].length_m = -1.0, "strip 1: length: expected"),
+            (
+                |o| o.strips[0].wind_factor = f64::NAN,
+                "strip 1: wind factor",
+            ),
+            (
+                |o| o.prediction_steps = 3.1,
+                "prediction: expected 0 to 3 communication steps, found 3.1",
+            ),
+        ];
+        for (change, message) in refused {
+            let found = with(change).unwrap_err();
+            assert!(found.starts_with(message), "{found}");
+        }
+    }
+
+    #[test]
+    fn options_survive_their_file() {
+        let options = ForceOptions::single(0.5);
+        let text = options.to_json().unwrap();
+        assert_eq!(ForceOptions::from_json(&text).unwrap(), options);
+        let message = ForceOptions::from_json("{\"strips\": 3}").unwrap_err();
+        assert!(message.to_string().starts_with("line 1, column"));
+    }
+}

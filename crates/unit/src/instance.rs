@@ -1,0 +1,233 @@
+//! An exported unit in motion: what the shells of every FMI version drive, in steps of its own (co-simulation) or with the
+//! importer integrating (model exchange).
+//!
+//! Time is the importer's communication point plus its step, never a sum of steps. Inputs hold at the start of a step
+//! and run on with the rates that were set for them (zero unless set); at its end they stand where those rates have
+//! taken them. Outputs are computed once per step when first asked for.
+
+mod access;
+mod bridge_built;
+mod bridge_derivatives;
+mod bridge_followed;
+mod bridge_places;
+mod bridge_search;
+mod bridge_unit;
+mod damping;
+pub(crate) mod derivatives;
+mod force_ahead;
+mod force_derivatives;
+mod force_exchange;
+mod force_unit;
+mod integration;
+mod layout;
+mod memory;
+mod saving;
+mod section;
+mod section_derivatives;
+mod section_places;
+mod section_trust;
+mod section_unit;
+mod sensitivity;
+mod serialized;
+mod stepping;
+#[cfg(test)]
+mod tests;
+mod trust;
+mod unit;
+mod values;
+
+pub use layout::DataType;
+pub use saving::Snapshot;
+
+use super::lifecycle::{Call, Interface, State};
+use super::refusal::{CallResult, Refusal, Severity};
+use super::resources::Resources;
+use super::variables::VariableTable;
+use crate::error::Result;
+use bridge_unit::BridgeUnit;
+use force_unit::ForceUnit;
+use layout::VariablePlaces;
+use memory::{Experiment, Memory};
+use section_unit::SectionUnit;
+use unit::Unit;
+
+/// One instance; instances share nothing.
+#[derive(Debug)]
+pub struct Instance {
+    resources: Resources,
+    interface: Interface,
+    layout: VariablePlaces,
+    unit: Box<dyn Unit>,
+    memory: Memory,
+    /// The memory at the beginning.
+    fresh: Memory,
+    outputs_current: bool,
+    /// Rates of the states at hand.
+    rates: Vec<f64>,
+    notices: Vec<String>,
+}
+
+impl Instance {
+    /// A new instance with every variable at its start value.
+    ///
+    /// # Errors
+    /// [`crate::Error::Input`] for a model without a realisation, or whose section cannot be coupled with it.
+    pub fn new(resources: Resources) -> Result<Self> {
+        let mut unit: Box<dyn Unit> = match (&resources.bridge, &resources.force) {
+            (Some(options), _) => Box::new(BridgeUnit::new(&resources, options)?),
+            (None, Some(options)) => Box::new(ForceUnit::new(&resources, options)?),
+            (None, None) => Box::new(SectionUnit::new(&resources)?),
+        };
+        let layout = VariablePlaces::new(&resources.table, |place| unit.held_output(place))?;
+        let fresh = Memory::new(&resources.table, unit.inputs().len(), unit.at_rest());
+        let mut memory = fresh.clone();
+        // a section that cannot be coupled is no model to run: say so now
+        unit.prepared(&resources, &mut memory)?;
+        let mut instance = Self {
+            memory: fresh.clone(),
+            fresh,
+            unit,
+            interface: Interface::CoSimulation,
+            outputs_current: false,
+            rates: Vec::new(),
+            notices: Vec::new(),
+            layout,
+            resources,
+        };
+        instance.watch();
+        Ok(instance)
+    }
+
+    /// Where the instance stands.
+    pub fn state(&self) -> State {
+        self.memory.state
+    }
+
+    /// Its variables.
+    pub fn table(&self) -> &VariableTable {
+        &self.resources.table
+    }
+
+    /// Point of time reached, s.
+    pub fn time_s(&self) -> f64 {
+        self.memory.time
+    }
+
+    /// Remarks that have come up since they were last asked for.
+    pub fn take_notices(&mut self) -> Vec<String> {
+        std::mem::take(&mut self.notices)
+    }
+
+    /// Whether there are remarks.
+    pub(crate) fn has_notices(&self) -> bool {
+        !self.notices.is_empty()
+    }
+
+    /// Whether `call` is legal now.
+    ///
+    /// # Errors
+    /// A [`Refusal`] naming call and state.
+    pub(crate) fn admit(&self, call: Call) -> CallResult<()> {
+        let foreign = call.is_model_exchange() && self.interface != Interface::ModelExchange;
+        if call.legal_in().contains(self.memory.state) && !foreign {
+            Ok(())
+        } else if foreign {
+            Err(not_here(call))
+        } else {
+            Err(not_now(call, self.memory.state))
+        }
+    }
+
+    /// Takes note that a call was refused: an error ends the run.
+    pub fn note(&mut self, refusal: &Refusal) {
+        if refusal.severity == Severity::Error {
+            self.memory.state = State::Error;
+        }
+    }
+
+    /// Sets the times of the run, s.
+    ///
+    /// # Errors
+    /// Times that are not finite, or a stop before the start.
+    pub fn set_up_experiment(&mut self, start: f64, stop: Option<f64>) -> CallResult<()> {
+        if !start.is_finite() || stop.is_some_and(|stop| !stop.is_finite() || stop < start) {
+            let stop = stop.map_or_else(|| "none".into(), |s| s.to_string());
+            return Err(Refusal::error(format!(
+                "expected a finite start time and a stop time not before it, found start {start}, stop {stop}"
+            )));
+        }
+        self.memory.experiment = Some(Experiment { start, stop });
+        self.memory.time = start;
+        Ok(())
+    }
+
+    /// Begins the initialisation. An experiment that was not set up starts at the start time of the description, zero,
+    /// with a warning.
+    pub fn enter_initialization(&mut self) {
+        if self.memory.experiment.is_none() {
+            self.memory.experiment = Some(Experiment {
+                start: 0.0,
+                stop: None,
+            });
+            self.memory.time = 0.0;
+            self.notices.push(
+                "the experiment has not been set up: the run starts at 0 s and has no end".into(),
+            );
+        }
+        self.memory.state = State::Initialization;
+        self.unit.begin_initialization();
+        self.outputs_current = false;
+    }
+
+    /// Ends the initialisation: the section is released.
+    ///
+    /// # Errors
+    /// When parameters and initial values give no section that can move.
+    pub fn exit_initialization(&mut self) -> CallResult<()> {
+        self.unit.prepared(&self.resources, &mut self.memory)?;
+        // whatever is read between steps is read without a further look
+        if !self.memory.system.all().iter().all(|x| x.is_finite()) {
+            return Err(sensitivity::overgrown());
+        }
+        self.watch();
+        self.memory.state = match self.interface {
+            Interface::CoSimulation => State::StepComplete,
+            Interface::ModelExchange => State::EventMode,
+        };
+        Ok(())
+    }
+
+    /// Ends the run.
+    pub fn terminate(&mut self) {
+        self.memory.state = State::Terminated;
+    }
+
+    /// Restores every default.
+    pub fn reset(&mut self) {
+        let fresh = self.fresh.clone();
+        self.replace_memory(fresh);
+    }
+
+    fn watch(&mut self) {
+        self.unit
+            .watch(&self.resources, &self.memory, &mut self.notices);
+    }
+}
+
+#[cold]
+fn not_here(call: Call) -> Refusal {
+    Refusal::call(format!(
+        "{} belongs to model exchange, and this instance was made for co-simulation",
+        call.name()
+    ))
+}
+
+#[cold]
+fn not_now(call: Call, state: State) -> Refusal {
+    Refusal::error(format!(
+        "{} is not legal in the state `{}`, only {}",
+        call.name(),
+        state.name(),
+        call.legal_in().names()
+    ))
+}

@@ -1,0 +1,107 @@
+//! Whether a variable may be read or set now, and what is said where it may not.
+
+use super::Instance;
+use super::layout::{Access, DataType};
+use crate::lifecycle::{State, StateSet};
+use crate::refusal::{CallResult, Refusal};
+use crate::variables::{Causality, Variability, Variable, VariableTable};
+
+impl Instance {
+    /// Access to `reference`, known by the table to be of this type.
+    pub(super) fn typed(&self, reference: u32, wanted: DataType) -> CallResult<(usize, Access)> {
+        let place = reference as usize;
+        match self.layout.access.get(place) {
+            Some(access) if access.data_type == wanted => Ok((place, *access)),
+            _ => Err(wrong_reference(place, wanted, self.table())),
+        }
+    }
+
+    /// Access to a variable that may be read now.
+    pub(super) fn readable(&self, reference: u32, wanted: DataType) -> CallResult<(usize, Access)> {
+        let (place, access) = self.typed(reference, wanted)?;
+        self.check_state(place, ("read", access.gettable))?;
+        Ok((place, access))
+    }
+
+    /// Access to a variable that may be set now.
+    pub(super) fn writable(&self, reference: u32, wanted: DataType) -> CallResult<(usize, Access)> {
+        let (place, access) = self.typed(reference, wanted)?;
+        self.check_state(place, ("set", access.settable))?;
+        Ok((place, access))
+    }
+
+    fn check_state(&self, place: usize, (verb, allowed): (&str, StateSet)) -> CallResult<()> {
+        let state = self.memory.state;
+        if allowed.contains(state) {
+            return Ok(());
+        }
+        let variable = &self.table().variables()[place];
+        Err(not_in_state(variable, (verb, allowed), state))
+    }
+
+    /// Whether `value` may be stored at `place`: finite, and within the limits of the variable.
+    pub(super) fn check_value(&self, place: usize, access: Access, value: f64) -> CallResult<()> {
+        if value.is_finite() && value >= access.min && value <= access.max {
+            return Ok(());
+        }
+        Err(wrong_value(&self.table().variables()[place], value))
+    }
+
+    /// Whether `value` may stand at `place` in a state read from a file.
+    pub(super) fn check_stored(&self, place: usize, value: f64) -> CallResult<()> {
+        self.check_value(place, self.layout.access[place], value)
+            .map_err(|refusal| Refusal::call(format!("serialised state: {}", refusal.message)))
+    }
+}
+
+#[cold]
+fn wrong_reference(place: usize, wanted: DataType, table: &VariableTable) -> Refusal {
+    Refusal::error(match table.variables().get(place) {
+        Some(v) => format!(
+            "value reference {place}: `{}` is of type {}, not {wanted:?}",
+            v.name,
+            v.value.type_name()
+        ),
+        None => format!(
+            "value reference {place}: there is no such variable, the last one is {}",
+            table.variables().len() - 1
+        ),
+    })
+}
+
+#[cold]
+fn not_in_state(v: &Variable, (verb, allowed): (&str, StateSet), state: State) -> Refusal {
+    let what = match v.causality {
+        Causality::Input => "an input",
+        Causality::Output => "an output",
+        Causality::Parameter => "a parameter",
+        Causality::CalculatedParameter => "a calculated parameter",
+        Causality::Local if v.variability == Variability::Constant => "a constant",
+        Causality::Local => "a state or its rate",
+        Causality::Independent => "the time",
+    };
+    Refusal::error(format!(
+        "`{}` ({what}, {:?}) cannot be {verb} in the state `{}`, only {}",
+        v.name,
+        v.variability,
+        state.name(),
+        allowed.names()
+    ))
+}
+
+#[cold]
+fn wrong_value(v: &Variable, value: f64) -> Refusal {
+    if !value.is_finite() {
+        return Refusal::error(format!(
+            "`{}`: expected a finite number, found {value}",
+            v.name
+        ));
+    }
+    let limit = |x: Option<f64>| x.map_or_else(|| "none".into(), |x| x.to_string());
+    Refusal::discard(format!(
+        "`{}` = {value} lies outside its limits (minimum {}, maximum {})",
+        v.name,
+        limit(v.min),
+        limit(v.max)
+    ))
+}

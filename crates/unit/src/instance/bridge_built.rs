@@ -1,0 +1,159 @@
+//! What follows from the parameters of an exported bridge: its coupled modes, and what gusts do to them.
+
+use super::damping::PresentDamping;
+use crate::bridge::{Bridge, GustChannels};
+use crate::bridge_gusts::GustRecord;
+use crate::bridge_options::BridgeOptions;
+use crate::error::{Error, Result};
+use crate::resources::Resources;
+use crate::response::{Inputs, SectionState, Stepper};
+use crate::variables::{ModeParameter, Role, SectionParameter};
+
+/// Pieces of a field of turbulence at most in one step.
+const MAX_PIECES: f64 = 1e4;
+/// Part of a step that is not worth a piece of its own.
+const LAST_PIECE: f64 = 1e-9;
+
+/// See the module.
+#[derive(Debug)]
+pub(super) struct Built {
+    pub bridge: Bridge,
+    pub stepper: Stepper,
+    gusts: Option<GustChannels>,
+    turbulence: Option<GustRecord>,
+    damping: PresentDamping,
+    /// State before the step at hand, and inputs within it.
+    before: SectionState,
+    now: Inputs,
+}
+
+impl Built {
+    /// The bridge of an export with the parameters in `values`.
+    pub(super) fn new(
+        resources: &Resources,
+        options: &BridgeOptions,
+        values: &[f64],
+    ) -> Result<Self> {
+        let mut bridge = options.bridge()?;
+        for (variable, value) in resources.table.variables().iter().zip(values) {
+            match variable.role {
+                Role::Section(SectionParameter::AirDensity) => bridge.air_density_kg_m3 = *value,
+                Role::ModeParameter(m, which) => match which {
+                    ModeParameter::Frequency => bridge.modes[m].frequency_hz = *value,
+                    ModeParameter::DampingRatio => bridge.modes[m].damping_ratio = *value,
+                },
+                _ => {}
+            }
+        }
+        let (stepper, gusts) = options.stepper(&bridge)?;
+        let turbulence = match (&resources.turbulence, &options.gusts) {
+            (Some(field), Some(gusts)) => Some(field.channels(&bridge, gusts)?),
+            _ => None,
+        };
+        Ok(Self {
+            bridge,
+            stepper,
+            gusts,
+            turbulence,
+            damping: PresentDamping::default(),
+            before: SectionState::default(),
+            now: Inputs::steady(0.0, 0),
+        })
+    }
+
+    /// Smallest damping ratio of all modes at a wind speed, m/s.
+    pub(super) fn damping_at(&mut self, wind: f64) -> Result<f64> {
+        self.damping.at(&mut self.stepper, wind)
+    }
+
+    /// Nothing moves.
+    pub(super) fn at_rest(&self) -> SectionState {
+        SectionState {
+            values: vec![0.0; self.stepper.section().states()],
+            gusts: vec![0.0; self.stepper.gust_states()],
+            ..SectionState::default()
+        }
+    }
+
+    /// Loads gusts of the strips and their rates.
+    pub(super) fn set_gusts(
+        &self,
+        inputs: &mut Inputs,
+        gusts: impl Iterator<Item = f64>,
+        rates: impl Iterator<Item = f64>,
+    ) {
+        let Some(channels) = &self.gusts else {
+            return;
+        };
+        let count = channels.passing.len() * self.bridge.modes.len();
+        for list in [&mut inputs.gust_m_s, &mut inputs.gust_rate_m_s2] {
+            list.clear();
+            list.resize(count, 0.0);
+        }
+        channels.add(gusts, &mut inputs.gust_m_s);
+        channels.add(rates, &mut inputs.gust_rate_m_s2);
+    }
+
+    /// Adds the turbulence of the archive at a time.
+    pub(super) fn add_turbulence(&self, inputs: &mut Inputs, time: f64, factor: f64) {
+        if let Some(record) = &self.turbulence {
+            let (gust, rate) = (&mut inputs.gust_m_s, &mut inputs.gust_rate_m_s2);
+            record.add(time, factor, gust, rate);
+        }
+    }
+
+    /// A step from `time` with the inputs that hold there, turbulence apart, cut where that has its samples. On an error the
+    /// state is as it was.
+    pub(super) fn advance(
+        &mut self,
+        state: &mut SectionState,
+        inputs: &Inputs,
+        (time, step): (f64, f64),
+        factor: f64,
+    ) -> Result<()> {
+        let Some(record) = self.turbulence.as_ref().filter(|_| factor != 0.0) else {
+            return self.stepper.advance(state, inputs, step);
+        };
+        let pieces = record.pieces(step);
+        if pieces.is_nan() || pieces > MAX_PIECES {
+            return Err(Error::input(
+                "step size",
+                format!("at most {MAX_PIECES} samples of the turbulence in a step"),
+                format!("{step} s"),
+            ));
+        }
+        self.before.set_to(state);
+        let mut done = 0.0;
+        while done < step {
+            let to_next = record.to_next(time + done);
+            // a rest that rounding leaves is no piece
+            let last = done + to_next >= step * (1.0 - LAST_PIECE);
+            let piece = if last { step - done } else { to_next };
+            let now = &mut self.now;
+            now.set_to(inputs);
+            run_on(now, done);
+            let (gust, rate) = (&mut now.gust_m_s, &mut now.gust_rate_m_s2);
+            record.add(time + done, factor, gust, rate);
+            if let Err(why) = self.stepper.advance(state, now, piece) {
+                state.set_to(&self.before);
+                return Err(why);
+            }
+            done = if last { step } else { done + piece };
+        }
+        Ok(())
+    }
+}
+
+/// Inputs some time later.
+fn run_on(inputs: &mut Inputs, time: f64) {
+    inputs.wind_speed_m_s += time * inputs.wind_speed_rate_m_s2;
+    let lists = [
+        (&mut inputs.force, &inputs.force_rate),
+        (&mut inputs.gust_m_s, &inputs.gust_rate_m_s2),
+    ];
+    for (values, rates) in lists {
+        for (value, rate) in values.iter_mut().zip(rates) {
+            *value += time * rate;
+        }
+    }
+}

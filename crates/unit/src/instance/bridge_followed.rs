@@ -1,0 +1,87 @@
+//! The onset of a bridge whose parameters have changed, followed from that of a search: hundreds of eigenvalue problems less.
+//!
+//! What is followed is one motion, and another may have become critical before it. So an onset counts only where all eigenvalues say the
+//! same: nothing grows just below it, and below that no mode has lost much of the damping that it had below the onset of the
+//! search. Everything else is searched for.
+
+use super::bridge_built::Built;
+use crate::bridge::Bridge;
+use crate::error::Result;
+use crate::flutter::{CriticalPoint, FoundOnset, NearbyOnset, Onset, OnsetMethod};
+use crate::onset_start::{COMPARED_AT, OnsetStart};
+use crate::units::ReducedFrequency;
+
+/// Change of a parameter, as a part of it, beyond which an onset is searched for.
+const NEAR: f64 = 0.3;
+/// Part of the damping that has to be left.
+const LEFT: f64 = 0.5;
+/// Speed below the onset, as a part of it, at which nothing may grow: far more than the onset is uncertain by, far less than
+/// another mode needs to lose its damping.
+const JUST_BELOW: f64 = 1.0 - 1e-5;
+
+/// An onset that was searched for.
+#[derive(Debug, Clone)]
+pub(super) struct SearchedOnset {
+    motion: NearbyOnset,
+    damping_below: [f64; 2],
+    /// Of the bridge that was searched.
+    parameters: Vec<f64>,
+}
+
+impl SearchedOnset {
+    /// That of a search; `None` where there is more to say of it than a speed.
+    pub(super) fn of(built: &Built, onset: &Onset) -> Option<Self> {
+        let plain = onset.warnings.is_empty() && onset.spurious_speeds_m_s.is_empty();
+        let at = &onset.at;
+        let section = built.stepper.section();
+        let start = OnsetStart::at(at.speed_m_s, at.frequency_hz, section).ok();
+        start
+            .filter(|_| plain)
+            .and_then(|start| Self::from(built, &start).ok())
+    }
+
+    /// That which came with the archive, for the bridge as it was exported.
+    pub(super) fn from(built: &Built, start: &OnsetStart) -> Result<Self> {
+        let bridge = &built.bridge;
+        let (speed, hertz) = (start.speed_m_s, start.frequency_hz);
+        let k = ReducedFrequency::from_hertz(hertz, bridge.width_m(), speed);
+        let at = CriticalPoint::new("bridge", OnsetMethod::Eigenvalues, speed, hertz, k);
+        Ok(Self {
+            motion: NearbyOnset::of(bridge, &at)?,
+            damping_below: start.damping_below,
+            parameters: parameters(bridge),
+        })
+    }
+
+    /// The onset of a bridge up to `limit`, m/s; `None` where it has to be searched for.
+    pub(super) fn followed(&self, built: &mut Built, limit: f64) -> Option<FoundOnset> {
+        let now = parameters(&built.bridge);
+        let near = |(now, then): (&f64, &f64)| (now - then).abs() <= NEAR * then.abs();
+        if now.len() != self.parameters.len() || !now.iter().zip(&self.parameters).all(near) {
+            return None;
+        }
+        let next = self.motion.follow(built.stepper.section())?;
+        let found = next.found();
+        let within = found.speed_m_s > 0.0 && found.speed_m_s <= limit;
+        if !within || !next.resembles(&self.motion) {
+            return None;
+        }
+        let mut damping = |part: f64| built.damping_at(part * found.speed_m_s).ok();
+        let positive = self.damping_below.iter().all(|before| *before > 0.0);
+        let mut left =
+            |(part, before): (&f64, &f64)| damping(*part).is_some_and(|d| d > LEFT * before);
+        let stable = positive
+            && COMPARED_AT.iter().zip(&self.damping_below).all(&mut left)
+            && damping(JUST_BELOW).is_some_and(|d| d > 0.0);
+        stable.then_some(found)
+    }
+}
+
+/// What may be tuned.
+fn parameters(bridge: &Bridge) -> Vec<f64> {
+    let modes = bridge.modes.iter();
+    let modes = modes.flat_map(|m| [m.frequency_hz, m.damping_ratio]);
+    std::iter::once(bridge.air_density_kg_m3)
+        .chain(modes)
+        .collect()
+}

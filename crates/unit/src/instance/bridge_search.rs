@@ -1,0 +1,74 @@
+//! Onset and divergence of an exported bridge.
+
+use super::bridge_built::Built;
+use super::bridge_followed::SearchedOnset;
+use super::section::OnsetCard;
+use crate::aerodynamics::Transfer;
+use crate::error::Result;
+use crate::flutter::{FlutterSearch, FoundOnset, OnsetSearch, divergence_speed, find_onset};
+use crate::units::{ReducedFrequency, ReducedFrequencyRange, ReducedVelocity};
+use crate::variables::Calculated;
+
+/// Speeds of the search for the onset; more than for a section would take seconds.
+const SPEEDS: usize = 60;
+
+impl OnsetCard {
+    /// With the divergence of a bridge and nothing else.
+    fn with_divergence(built: &Built, limit: f64) -> Self {
+        let mut card = Self::nothing_found(limit, Vec::new());
+        match divergence_of(built) {
+            Ok(speed) => card.set_divergence(speed, limit),
+            Err(why) => card.unknown_part(Calculated::DivergenceSpeed, &why),
+        }
+        card
+    }
+
+    /// With an onset up to `limit`, m/s, that was followed from one nearby.
+    pub(super) fn of_followed(
+        built: &Built,
+        tested: Option<ReducedFrequencyRange>,
+        (limit, onset): (f64, FoundOnset),
+    ) -> Self {
+        let mut card = Self::with_divergence(built, limit);
+        let (speed, hertz) = (onset.speed_m_s, onset.frequency_hz);
+        let k = ReducedFrequency::from_hertz(hertz, built.bridge.width_m(), speed);
+        let inside = tested.is_some_and(|range| range.contains(k));
+        card.set_onset(speed, hertz, ReducedVelocity::from(k), inside);
+        card.set_flag(Calculated::StableBelowOnset, true);
+        card
+    }
+
+    /// Searches a bridge up to `limit`, m/s, as [`OnsetCard::search`] a section. The tested range is that of the girder at the
+    /// frequency of flutter. Beside it the onset from which others may be followed.
+    pub(super) fn of_bridge(
+        built: &Built,
+        tested: Option<ReducedFrequencyRange>,
+        limit: f64,
+    ) -> (Self, Option<SearchedOnset>) {
+        let mut card = Self::with_divergence(built, limit);
+        let mut searched = None;
+        let search = OnsetSearch {
+            speed_max_m_s: limit,
+            speeds: SPEEDS,
+        };
+        match find_onset("bridge", built.stepper.section(), &search, None) {
+            Ok(found) => {
+                let stable = !matches!(found, FlutterSearch::UnstableAtOrBelow(_));
+                let k = found.onset().map(|o| o.at.reduced_frequency);
+                let inside = k.zip(tested).is_some_and(|(k, range)| range.contains(k));
+                searched = found.onset().and_then(|o| SearchedOnset::of(built, o));
+                card.take(found, limit);
+                card.set_flag(Calculated::OnsetInTestedRange, inside);
+                card.set_flag(Calculated::StableBelowOnset, stable);
+            }
+            Err(why) => card.unknown_part(Calculated::OnsetSpeed, &why),
+        }
+        (card, searched)
+    }
+}
+
+fn divergence_of(built: &Built) -> Result<Option<f64>> {
+    let still = ReducedFrequency::from_full_width(0.0);
+    let forces = built.bridge.forces().transfer(still)?;
+    divergence_speed(built.stepper.section().structure(), &forces)
+}

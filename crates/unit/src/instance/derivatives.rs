@@ -1,0 +1,140 @@
+//! Derivatives: of outputs in time, and of unknowns with respect to inputs, initial values and parameters.
+
+use super::Instance;
+use super::layout::{DataType, Source};
+use super::values::check_order;
+use crate::lifecycle::State;
+use crate::refusal::{CallResult, Refusal};
+use crate::variables::{Causality, Role};
+
+/// Refuses directions that are none.
+pub(crate) fn check_seed(seed: &[f64]) -> CallResult<()> {
+    match seed.iter().find(|s| !s.is_finite()) {
+        None => Ok(()),
+        Some(found) => Err(Refusal::error(format!(
+            "seed: expected finite numbers, found {found}"
+        ))),
+    }
+}
+
+/// Refuses derivatives that no number holds.
+pub(crate) fn check_derivatives(found: &[f64]) -> CallResult<()> {
+    if found.iter().all(|x| x.is_finite()) {
+        return Ok(());
+    }
+    Err(Refusal::discard("derivative: overflow"))
+}
+
+impl Instance {
+    /// First time derivatives of outputs, per second, with the current input rates.
+    ///
+    /// # Errors
+    /// A reference that is no output, or another order than one.
+    pub(crate) fn output_rates(
+        &mut self,
+        references: &[u32],
+        orders: &[i32],
+        rates: &mut [f64],
+    ) -> CallResult<()> {
+        for (reference, order) in references.iter().zip(orders) {
+            self.response_of(*reference)?;
+            check_order(*order)?;
+        }
+        if references.is_empty() {
+            return Ok(());
+        }
+        let outputs = references
+            .iter()
+            .map(|r| self.response_of(*r))
+            .collect::<CallResult<Vec<_>>>()?;
+        let (resources, memory) = (&self.resources, &mut self.memory);
+        let unit = self.unit.prepared(resources, memory)?;
+        let found = unit.output_rates(memory, &outputs)?;
+        rates.copy_from_slice(&found);
+        Ok(())
+    }
+
+    /// `Σ (∂unknown/∂known) seed`: outputs and rates of states with respect to inputs and states; while initialising outputs,
+    /// states, their rates and calculated parameters with respect to inputs, initial values (exact) and section properties
+    /// (central differences).
+    ///
+    /// # Errors
+    /// References that are no such unknowns or knowns in the current state; a derivative that does not exist.
+    pub fn directional_derivative(
+        &mut self,
+        unknowns: &[u32],
+        knowns: &[u32],
+        seeds: &[f64],
+        results: &mut [f64],
+    ) -> CallResult<()> {
+        let unknowns = unknowns
+            .iter()
+            .map(|r| self.unknown(*r))
+            .collect::<CallResult<Vec<_>>>()?;
+        let knowns = knowns
+            .iter()
+            .map(|r| self.known(*r))
+            .collect::<CallResult<Vec<_>>>()?;
+        check_seed(seeds)?;
+        let (resources, memory) = (&self.resources, &mut self.memory);
+        let unit = self.unit.prepared(resources, memory)?;
+        let mut sums = vec![0.0; unknowns.len()];
+        for (known, seed) in knowns.into_iter().zip(seeds) {
+            let column = unit.derivatives(resources, memory, known, &unknowns)?;
+            for (sum, derivative) in sums.iter_mut().zip(column) {
+                *sum += seed * derivative;
+            }
+        }
+        check_derivatives(&sums)?;
+        results.copy_from_slice(&sums);
+        Ok(())
+    }
+
+    fn response_of(&self, reference: u32) -> CallResult<Role> {
+        let (place, access) = self.typed(reference, DataType::Real)?;
+        let variable = &self.table().variables()[place];
+        let computed = matches!(access.source, Source::Response | Source::Status);
+        if computed && variable.causality == Causality::Output {
+            Ok(variable.role)
+        } else {
+            Err(Refusal::error(format!("`{}` is no output", variable.name)))
+        }
+    }
+
+    fn unknown(&self, reference: u32) -> CallResult<Role> {
+        let (place, access) = self.typed(reference, DataType::Real)?;
+        let variable = &self.table().variables()[place];
+        match access.source {
+            Source::Response | Source::Status | Source::State | Source::Rate => Ok(variable.role),
+            Source::Calculated if self.memory.state == State::Initialization => Ok(variable.role),
+            _ => Err(self.refused(place, "unknown")),
+        }
+    }
+
+    /// Place of a known.
+    fn known(&self, reference: u32) -> CallResult<usize> {
+        let (place, access) = self.typed(reference, DataType::Real)?;
+        let initializing = self.memory.state == State::Initialization;
+        match access.source {
+            Source::Input => Ok(place),
+            Source::Section | Source::Release | Source::Limit if initializing => Ok(place),
+            Source::Response | Source::State if !initializing && self.is_seen_state(place) => {
+                Ok(place)
+            }
+            _ => Err(self.refused(place, "known")),
+        }
+    }
+
+    /// Whether it is a state that the description lists.
+    fn is_seen_state(&self, place: usize) -> bool {
+        self.offers_model_exchange() && self.table().variables()[place].is_state()
+    }
+
+    fn refused(&self, place: usize, what: &str) -> Refusal {
+        Refusal::error(format!(
+            "directional derivative: `{}` is no {what} in the state `{}`",
+            self.table().variables()[place].name,
+            self.memory.state.name()
+        ))
+    }
+}

@@ -1,0 +1,107 @@
+//! Derivatives of forces alone: they are linear in motion, states and gusts; wind and parameters are differenced.
+
+use super::force_unit::{ForceUnit, SET};
+use super::memory::Memory;
+use super::sensitivity::central_difference;
+use super::unit::Differentiable;
+use crate::error::Result;
+use crate::lifecycle::State;
+use crate::refusal::CallResult;
+use crate::resources::Resources;
+use crate::variables::Role;
+
+/// Relative step of the differences with respect to wind and parameters.
+const RELATIVE_STEP: f64 = 1e-5;
+
+impl Differentiable for ForceUnit {
+    fn output_rates(&mut self, memory: &mut Memory, outputs: &[Role]) -> CallResult<Vec<f64>> {
+        self.ahead(memory, self.renewed(memory))?;
+        let rate = |role: &Role| self.entry(memory, &self.work.forces, *role).rate;
+        Ok(outputs.iter().map(rate).collect())
+    }
+
+    fn derivatives(
+        &mut self,
+        resources: &Resources,
+        memory: &mut Memory,
+        known: usize,
+        unknowns: &[Role],
+    ) -> CallResult<Vec<f64>> {
+        let role = resources.table.variables()[known].role;
+        let (index, state) = (self.input_at[known], self.entry_of(role));
+        if index > 0 || state.is_some() {
+            let mut unit = self.in_still_flow(memory);
+            match state {
+                Some(entry) => unit.system.set_number(entry, 1.0),
+                None => self.set_unit(&mut unit, index),
+            }
+            // a state stands apart from the motion, which otherwise counts as that of the present
+            let renewed = state.is_none() || self.renewed(memory);
+            return Ok(self.unknowns(&mut unit, renewed, unknowns)?);
+        }
+        let value = memory.values[known].abs();
+        let step = match role {
+            // forces are linear in gusts
+            Role::Gust(..) => 1.0,
+            // of an instant they are of second degree in the wind: a difference of any step is exact
+            Role::WindSpeed if self.integrated && value > 0.0 => 0.5 * value,
+            _ => RELATIVE_STEP * value.max(RELATIVE_STEP),
+        };
+        let renewed = self.renewed(memory);
+        central_difference(resources, memory, (known, step), |other| {
+            Ok(self.unknowns(&mut other.clone(), renewed, unknowns)?)
+        })
+    }
+}
+
+impl ForceUnit {
+    /// The unknowns for a memory.
+    fn unknowns(
+        &mut self,
+        memory: &mut Memory,
+        renewed: bool,
+        unknowns: &[Role],
+    ) -> Result<Vec<f64>> {
+        if memory.state == State::Initialization {
+            self.settle(memory)?;
+        }
+        let wants = |wanted: fn(&Role) -> bool| unknowns.iter().any(wanted);
+        if wants(|role| matches!(role, Role::Force(..))) {
+            self.present(memory, renewed)?;
+        }
+        let mut rates = vec![0.0; self.entries.len()];
+        if wants(|role| matches!(role, Role::FilterRate(_))) {
+            self.rates_now(memory, &mut rates);
+        }
+        let value = |role: &Role| match role {
+            Role::Force(..) => self.entry(memory, &self.work.forces, *role).force,
+            Role::FilterRate(i) => rates.get(*i).copied().unwrap_or(0.0),
+            other => {
+                let entry = self.entry_of(*other);
+                entry.map_or(0.0, |entry| memory.system.number(entry))
+            }
+        };
+        Ok(unknowns.iter().map(value).collect())
+    }
+
+    /// Nothing moves, no gust blows, no force acts, and none has.
+    fn in_still_flow(&self, memory: &Memory) -> Memory {
+        let mut still = memory.clone();
+        for place in &self.inputs[1..] {
+            still.values[*place] = 0.0;
+        }
+        still.system.gusts.fill(0.0);
+        still.input_rates.fill(0.0);
+        let first = self.first();
+        self.forces.forget(&mut still.system.values[first..]);
+        still
+    }
+
+    /// One number of the motion is one.
+    fn set_unit(&self, still: &mut Memory, index: usize) {
+        still.values[self.inputs[index]] = 1.0;
+        if (index - 1) % 3 == 1 {
+            still.system.values[index] = SET;
+        }
+    }
+}

@@ -1,0 +1,197 @@
+//! Forces alone beside an importer that integrates the filters: the forces of the instant, from the motion that is set.
+//!
+//! Nothing is predicted and nothing derived from earlier motion, so that the rates of the motion have to be set. A displacement
+//! that moves while its rate has never been set is a motion that was not connected: it ends the run.
+
+use super::force_unit::{ForceUnit, ForceWork, NOT_SET, SET, check_forces};
+use super::memory::Memory;
+use crate::error::{Error, Result};
+use crate::lifecycle::State;
+use crate::refusal::{CallResult, Refusal};
+use crate::response::ForceAhead;
+use crate::section::Dof;
+use crate::variables::{Role, VariableTable};
+
+/// A displacement that has changed between events.
+const MOVES: f64 = 3.0;
+
+impl ForceUnit {
+    /// Takes note of motion that has been set while the importer integrates.
+    pub(super) fn note_motion(&self, memory: &mut Memory, index: usize, changed: bool) {
+        let moves = memory.state == State::ContinuousTimeMode && changed;
+        let flag = &mut memory.system.values[index];
+        let displacement = (index - 1).is_multiple_of(3);
+        if displacement && (moves || *flag == MOVES) {
+            *flag = MOVES;
+        } else {
+            *flag = SET;
+        }
+    }
+
+    /// Displacement, rate and acceleration of each coordinate of strip `s` as they count now.
+    fn motion_now(&self, memory: &Memory, s: usize) -> [[f64; 3]; Dof::THREE.len()] {
+        let stated = memory.values[self.derivatives];
+        let counts = |order: usize| stated < 0.0 || order as f64 <= stated;
+        let number = |i: usize, order: usize| {
+            let value = memory.values[self.inputs[1 + 3 * i + order]];
+            if counts(order) { value } else { 0.0 }
+        };
+        let n = self.forces.dofs().len();
+        let mut motion = [[0.0; 3]; Dof::THREE.len()];
+        for (i, motion) in (s * n..(s + 1) * n).zip(&mut motion) {
+            *motion = [0, 1, 2].map(|order| number(i, order));
+        }
+        motion
+    }
+
+    /// Numbers of the gusts at strip `s`, of which the first two are those that blow now.
+    fn gusts_now<'a>(
+        &self,
+        memory: &Memory,
+        s: usize,
+        strip: &'a mut Vec<f64>,
+    ) -> Option<&'a [f64]> {
+        let (strips, places) = self.gusts.as_ref()?;
+        let of = strips.per_strip();
+        strip.clear();
+        strip.extend_from_slice(&memory.system.gusts[s * of..(s + 1) * of]);
+        for (gust, place) in strip.iter_mut().zip(places[s]) {
+            *gust = memory.values[place];
+        }
+        Some(strip)
+    }
+
+    /// Finds the forces of the instant, of all strips.
+    pub(super) fn at_instant(&mut self, memory: &Memory, work: &mut ForceWork) -> Result<()> {
+        let density = self.air_density(&memory.values);
+        let n = self.forces.dofs().len();
+        let wind = memory.values[self.inputs[0]];
+        work.forces.clear();
+        work.forces
+            .resize(self.coordinates(), ForceAhead::default());
+        for (s, forces) in work.forces.chunks_mut(n).enumerate() {
+            let flow = self.flow(&memory.values, s);
+            let air = (wind * flow.wind_factor, flow.width_m, density);
+            let state = &memory.system.values[self.first()..];
+            let filters = &state[self.forces.filters(s)];
+            let motion = self.motion_now(memory, s);
+            self.forces.at_instant(filters, &motion[..n], air, forces);
+            let strip = self.gusts_now(memory, s, &mut work.strip);
+            if let (Some((gusts, _)), Some(strip)) = (&self.gusts, strip) {
+                gusts.add_ahead(strip, [0.0; 2], 0.0, air, forces);
+            }
+        }
+        check_forces(&work.forces)
+    }
+
+    /// Writes the rates of filters and lagging gusts, per second, in the order of [`Role::Filter`].
+    pub(super) fn rates_now(&mut self, memory: &Memory, rates: &mut [f64]) {
+        let strips = self.strips();
+        let mut work = std::mem::take(&mut self.work);
+        for s in 0..strips {
+            self.rates_of(memory, s, &mut work);
+            for (slot, rate) in rates[s..].iter_mut().step_by(strips).zip(&work.rates) {
+                *slot = *rate;
+            }
+        }
+        self.work = work;
+    }
+
+    /// Finds those of strip `s`.
+    pub(super) fn rates_of(&self, memory: &Memory, s: usize, work: &mut ForceWork) {
+        let flow = self.flow(&memory.values, s);
+        let wind = memory.values[self.inputs[0]] * flow.wind_factor;
+        let displacement = self.motion_now(memory, s).map(|m| m[0]);
+        let state = &memory.system.values[self.first()..];
+        let filters = &state[self.forces.filters(s)];
+        work.rates.clear();
+        work.rates.resize(filters.len(), 0.0);
+        let air = (wind, flow.width_m);
+        self.forces
+            .filter_rates(filters, &displacement, air, &mut work.rates);
+        let strip = self.gusts_now(memory, s, &mut work.strip);
+        if let (Some((gusts, _)), Some(strip)) = (&self.gusts, strip) {
+            work.rates.extend(gusts.rates(strip, wind / flow.width_m));
+        }
+    }
+
+    /// The flow settles around the deck where it is held, in the gusts that blow.
+    pub(super) fn settle(&self, memory: &mut Memory) -> Result<()> {
+        let settling = self.forces.settling()?;
+        let n = self.forces.dofs().len();
+        for s in 0..self.strips() {
+            let flow = self.flow(&memory.values, s);
+            let at = |i: usize| memory.values[self.inputs[1 + 3 * i]];
+            let displacement: Vec<f64> = (s * n..(s + 1) * n).map(at).collect();
+            let first = self.first();
+            let filters = &mut memory.system.values[first..][self.forces.filters(s)];
+            self.forces
+                .settle_at(&settling, &displacement, flow.width_m, filters);
+            if let Some((gusts, places)) = &self.gusts {
+                let of = gusts.per_strip();
+                let strip = &mut memory.system.gusts[s * of..(s + 1) * of];
+                gusts.take(strip, places[s].map(|place| memory.values[place]), None);
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether the motion that is said to be set is enough.
+    pub(super) fn check_stated(&self, memory: &Memory) -> Result<()> {
+        let rates = (0..self.forces.dofs().len()).any(|dof| self.forces.feels(dof)[0]);
+        if memory.values[self.derivatives] == 0.0 && rates {
+            return Err(Error::input(
+                "motion_derivatives",
+                "-1, 1 or 2 in model exchange, where the forces of an instant need the rates of the motion",
+                "0",
+            ));
+        }
+        Ok(())
+    }
+
+    /// Looks whether what moves has its rate, once the importer has taken a step.
+    pub(super) fn check_moving(
+        &mut self,
+        table: &VariableTable,
+        memory: &Memory,
+        notices: &mut Vec<String>,
+    ) -> CallResult<()> {
+        if memory.values[self.derivatives] >= 0.0 {
+            return Ok(());
+        }
+        let n = self.forces.dofs().len();
+        let flags = &memory.system.values[1..self.first()];
+        let name = |index: usize| &table.variables()[self.inputs[1 + index]].name;
+        for (i, flags) in flags.chunks(3).enumerate() {
+            let [rate, acceleration] = self.forces.feels(i % n);
+            if flags[0] != MOVES {
+                continue;
+            }
+            if rate && flags[1] == NOT_SET {
+                return Err(Refusal::error(format!(
+                    "`{}` moves, but `{}` has never been set: in model exchange the forces of an instant need the rates of \
+                     the motion (set motion_derivatives to 1 where they really are zero)",
+                    name(3 * i),
+                    name(3 * i + 1)
+                )));
+            }
+            if acceleration && flags[2] == NOT_SET && !self.warned_of_mass {
+                self.warned_of_mass = true;
+                notices.push(format!(
+                    "`{}` has not been set: the forces hold no added mass of the air (set motion_derivatives to 1 where that \
+                     is meant)",
+                    name(3 * i + 2)
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    /// Entry of the system's state that a filter or lagging gust is.
+    pub(super) fn entry_of(&self, role: Role) -> Option<usize> {
+        match role {
+            Role::Filter(i) => self.entries.get(i).copied(),
+            _ => None,
+        }
+    }
+}

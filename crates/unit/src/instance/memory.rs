@@ -1,0 +1,53 @@
+//! Everything that changes in an instance.
+
+use crate::lifecycle::State;
+use crate::response::SectionState;
+use crate::variables::{Value, VariableTable};
+
+/// Times of a run, s.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Experiment {
+    pub start: f64,
+    pub stop: Option<f64>,
+}
+
+/// A snapshot is a clone of this, a reset the clone of the first one.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Memory {
+    pub state: State,
+    /// Set by the set-up of the experiment.
+    pub experiment: Option<Experiment>,
+    /// Point of time of `system`, s.
+    pub time: f64,
+    /// One number per variable, as in [`starts`].
+    pub values: Vec<f64>,
+    /// Rates of the inputs: wind speed, then the others.
+    pub input_rates: Vec<f64>,
+    /// State of what is simulated.
+    pub system: SectionState,
+}
+
+impl Memory {
+    /// The start values of the table, with so many inputs and what is simulated in the state `system`.
+    pub(super) fn new(table: &VariableTable, inputs: usize, system: SectionState) -> Self {
+        Self {
+            state: State::Instantiated,
+            experiment: None,
+            time: 0.0,
+            values: starts(table),
+            input_rates: vec![0.0; inputs],
+            system,
+        }
+    }
+}
+
+/// Start value of each variable; truth values are 0 and 1, texts 0.
+pub(super) fn starts(table: &VariableTable) -> Vec<f64> {
+    let start = |value: &Value| match value {
+        Value::Real(start) => start.unwrap_or(0.0),
+        Value::Integer(start) => f64::from(start.unwrap_or(0)),
+        Value::Boolean(start) => f64::from(u8::from(start.unwrap_or(false))),
+        Value::String(_) => 0.0,
+    };
+    table.variables().iter().map(|v| start(&v.value)).collect()
+}

@@ -1,0 +1,110 @@
+//! Snapshots of an instance: plain clones of its memory, and the same as bytes.
+
+use super::layout::Source;
+use super::memory::Memory;
+use super::{Instance, serialized};
+use crate::refusal::{CallResult, Refusal};
+use uuid::Uuid;
+
+/// A saved state of an instance.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Snapshot {
+    guid: Uuid,
+    memory: Memory,
+}
+
+impl Instance {
+    /// A copy of everything that changes.
+    pub fn snapshot(&self) -> Snapshot {
+        Snapshot {
+            guid: self.resources.guid,
+            memory: self.memory.clone(),
+        }
+    }
+
+    /// Copies everything that changes into an existing snapshot.
+    pub(crate) fn snapshot_into(&self, snapshot: &mut Snapshot) {
+        snapshot.guid = self.resources.guid;
+        snapshot.memory.clone_from(&self.memory);
+    }
+
+    /// Goes back to a snapshot.
+    ///
+    /// # Errors
+    /// A snapshot of another model.
+    pub fn restore(&mut self, snapshot: &Snapshot) -> CallResult<()> {
+        self.check_owner(snapshot)?;
+        self.replace_memory(snapshot.memory.clone());
+        Ok(())
+    }
+
+    pub(super) fn check_owner(&self, snapshot: &Snapshot) -> CallResult<()> {
+        let own = self.resources.guid;
+        if snapshot.guid != own {
+            return Err(Refusal::error(format!(
+                "saved state: expected one of the model {own}, found one of {}",
+                snapshot.guid
+            )));
+        }
+        let of = snapshot.memory.state.interface();
+        match of.filter(|of| *of != self.interface) {
+            None => Ok(()),
+            Some(of) => Err(Refusal::error(format!(
+                "saved state: expected one of {}, found one of {}",
+                self.interface.name(),
+                of.name()
+            ))),
+        }
+    }
+
+    /// Whatever the parameters of both memories share stays computed.
+    pub(super) fn replace_memory(&mut self, mut memory: Memory) {
+        let (layout, old) = (&self.layout, &self.memory);
+        let same = |source: Source| {
+            let places = (0..old.values.len()).filter(|place| layout.source(*place) == source);
+            let bits = |values: &[f64], place: usize| values[place].to_bits();
+            places
+                .into_iter()
+                .all(|p| bits(&old.values, p) == bits(&memory.values, p))
+        };
+        let (section, limit) = (same(Source::Section), same(Source::Limit));
+        let same = |source: Source| match source {
+            Source::Section => section,
+            _ => limit,
+        };
+        self.unit.replace(&mut memory, old, &same);
+        self.memory = memory;
+        self.outputs_current = false;
+    }
+
+    /// Length in bytes of a serialised state.
+    pub(crate) fn serialized_length(&self) -> usize {
+        serialized::length(&self.memory)
+    }
+
+    /// A snapshot as bytes.
+    ///
+    /// # Errors
+    /// A snapshot of another model.
+    pub fn serialize(&self, snapshot: &Snapshot) -> CallResult<Vec<u8>> {
+        self.check_owner(snapshot)?;
+        Ok(serialized::write(&snapshot.memory, &snapshot.guid))
+    }
+
+    /// A snapshot from bytes.
+    ///
+    /// # Errors
+    /// Bytes that are no state of this export, or hold a value outside the limits of its variable.
+    pub fn deserialize(&self, bytes: &[u8]) -> CallResult<Snapshot> {
+        let guid = self.resources.guid;
+        let mut memory = serialized::read(bytes, &guid, &self.fresh)
+            .map_err(|e| Refusal::call(e.to_string()))?;
+        for (place, value) in memory.values.iter_mut().enumerate() {
+            if self.layout.source(place) == Source::Constant {
+                *value = self.fresh.values[place];
+            }
+            self.check_stored(place, *value)?;
+        }
+        Ok(Snapshot { guid, memory })
+    }
+}

@@ -1,0 +1,342 @@
+//! The section that the current parameters describe, and what follows from it alone: onset and divergence.
+
+use crate::aerodynamics::{Realization, Transfer};
+use crate::aeroelastic::CoupledSection;
+use crate::error::{Error, Result};
+use crate::flutter::{
+    FlutterSearch, LinearForces, OnsetSearch, OnsetSweep, SweepOutcome, SweptOnset, UnwantedGrowth,
+    at_samples, divergence_speed, find_onset, stands_at_samples, unwanted_growth,
+};
+use crate::section::{Dof, SectionModel, Structure};
+use crate::trained_model::{Model, TrainedModel};
+use crate::units::{ReducedFrequency, ReducedVelocity};
+use crate::variables::{Calculated, Role, SectionParameter, VariableTable};
+
+/// The section of the model with the parameters in `values` (one number per variable of `table`).
+///
+/// A support whose three numbers are the start values stays as the model states it, so that an unchanged section is
+/// the model's own to the last bit even where that states a stiffness.
+fn section_model(model: &TrainedModel, table: &VariableTable, values: &[f64]) -> SectionModel {
+    let mut section = model.section.clone();
+    let value = |p: SectionParameter| {
+        let start = p.value_in(&model.section);
+        table.find(Role::Section(p)).map_or(start, |i| values[i])
+    };
+    section.width_m = value(SectionParameter::Width);
+    section.air_density_kg_m3 = value(SectionParameter::AirDensity);
+    // the variables are there where the model states them
+    if section.axis_offset_m.is_some() {
+        section.axis_offset_m = Some(value(SectionParameter::AxisOffset));
+    }
+    if section.mass_offset_m.is_some() {
+        section.mass_offset_m = Some(value(SectionParameter::MassOffset));
+    }
+    for dof in model.section.dofs() {
+        let parameters = [
+            SectionParameter::Inertia(dof),
+            SectionParameter::Frequency(dof),
+            SectionParameter::DampingRatio(dof),
+        ];
+        let start = parameters.map(|p| p.value_in(&model.section));
+        let now = parameters.map(value);
+        if start.map(f64::to_bits) != now.map(f64::to_bits) {
+            set_support(&mut section, dof, now);
+        }
+    }
+    section
+}
+
+fn set_support(section: &mut SectionModel, dof: Dof, [inertia, frequency, damping]: [f64; 3]) {
+    // no frequency is no spring: that cannot be said as a frequency
+    let (frequency_hz, stiffness) = if frequency > 0.0 {
+        (Some(frequency), None)
+    } else {
+        (None, Some(0.0))
+    };
+    let translation = match dof {
+        Dof::Torsion => {
+            let s = &mut section.torsion;
+            (s.inertia_kg_m2_m, s.damping_ratio) = (inertia, damping);
+            (s.frequency_hz, s.stiffness_n) = (frequency_hz, stiffness);
+            return;
+        }
+        Dof::Vertical => Some(&mut section.vertical),
+        Dof::Lateral => section.lateral.as_mut(),
+    };
+    if let Some(s) = translation {
+        (s.mass_kg_m, s.damping_ratio) = (inertia, damping);
+        (s.frequency_hz, s.stiffness_n_m2) = (frequency_hz, stiffness);
+    }
+}
+
+/// The coupled section of the parameters in `values`.
+pub(super) fn coupled_section(
+    model: &TrainedModel,
+    table: &VariableTable,
+    aerodynamics: &Realization,
+    values: &[f64],
+) -> Result<CoupledSection> {
+    let structure = section_model(model, table, values).structure()?;
+    CoupledSection::new(structure, aerodynamics.clone())
+}
+
+/// The onset up to `limit` m/s where it is plain: inside the tested range, with nothing that grows below it. A sweep
+/// sees every crossing in some ten microseconds; whatever else it sees is for the search of all eigenvalues to judge.
+pub(super) fn plain_onset(
+    model: &TrainedModel,
+    table: &VariableTable,
+    aerodynamics: &Realization,
+    (values, limit): (&[f64], f64),
+) -> Option<SweptOnset> {
+    let (structure, onset) = plain_without_samples(model, table, (values, limit))?;
+    if !matches!(model.model, Model::DiscreteLaguerre(_)) {
+        return Some(onset);
+    }
+    let sampled = CoupledSection::new(structure, aerodynamics.clone()).ok()?;
+    let onset = at_samples(&sampled, onset).ok()??;
+    (onset.speed_m_s <= limit).then_some(onset)
+}
+
+/// A speed up to which nothing grows because the onset there is plain, and stands where the force is sampled.
+pub(super) fn plainly_stable_to(
+    model: &TrainedModel,
+    table: &VariableTable,
+    aerodynamics: &Realization,
+    (values, limit): (&[f64], f64),
+) -> Option<f64> {
+    let (structure, onset) = plain_without_samples(model, table, (values, limit))?;
+    if matches!(model.model, Model::DiscreteLaguerre(_)) {
+        let sampled = CoupledSection::new(structure, aerodynamics.clone()).ok()?;
+        if !stands_at_samples(&sampled, onset).ok()? {
+            return None;
+        }
+    }
+    Some(onset.speed_m_s)
+}
+
+/// The structure, and its plain onset under forces that are not sampled.
+fn plain_without_samples(
+    model: &TrainedModel,
+    table: &VariableTable,
+    (values, limit): (&[f64], f64),
+) -> Option<(Structure, SweptOnset)> {
+    let tested = Some(model.tested_range);
+    let forces = match &model.model {
+        Model::Laguerre(m) => LinearForces::of_laguerre(m, tested),
+        Model::Rational(m) => LinearForces::of_rational(m, tested),
+        Model::MinimumState(m) => LinearForces::of_rational(&m.to_roger(), tested),
+        Model::DiscreteLaguerre(m) => LinearForces::of_discrete_laguerre(m, tested),
+    };
+    let section = section_model(model, table, values);
+    let structure = section.structure().ok()?;
+    let sweep = OnsetSweep::new(forces, &structure, limit).ok()?;
+    match sweep.onset(&section, sweep.forces().coefficients()) {
+        Ok(SweepOutcome::Onset(o)) if o.in_tested_range && o.spurious == 0 => Some((structure, o)),
+        _ => None,
+    }
+}
+
+/// States at most whose eigenvalues are searched, for about a second: the time grows with their third power.
+const SEARCHED_STATES: usize = 100;
+
+/// Refuses a search of all eigenvalues that would seem to hang.
+fn check_searchable(section: &CoupledSection) -> Result<()> {
+    match section.states() {
+        states if states > SEARCHED_STATES => Err(Error::input(
+            "search of all eigenvalues",
+            format!("at most {SEARCHED_STATES} states"),
+            states.to_string(),
+        )),
+        _ => Ok(()),
+    }
+}
+
+/// Onset and divergence of a section.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct OnsetCard {
+    /// The calculated parameters in their order; truth values are 0 and 1.
+    values: [f64; Calculated::COUNT],
+    /// What a reader must know before using the numbers.
+    pub warnings: Vec<String>,
+}
+
+impl OnsetCard {
+    /// Searches up to `limit` m/s. What is not found is the limit itself, with frequency and reduced velocity zero. What cannot be
+    /// searched for is zero, with a warning: parameters that are legal must not make a getter fail, and no speed that is not
+    /// known may read as a safe one, in a log or without.
+    pub(super) fn search(
+        model: &TrainedModel,
+        section: &CoupledSection,
+        limit: f64,
+        plain: Option<SweptOnset>,
+    ) -> Self {
+        let mut card = Self::nothing_found(limit, Vec::new());
+        match divergence_of(model, section) {
+            Ok(speed) => card.set_divergence(speed, limit),
+            Err(why) => card.unknown_part(Calculated::DivergenceSpeed, &why),
+        }
+        if let Some(onset) = plain {
+            let width = section.structure().width_m;
+            let velocity = ReducedVelocity::from(ReducedFrequency::from_circular(
+                std::f64::consts::TAU * onset.frequency_hz,
+                width,
+                onset.speed_m_s,
+            ));
+            card.set_onset(onset.speed_m_s, onset.frequency_hz, velocity, true);
+            card.set(Calculated::StableBelowOnset, 1.0);
+            return card;
+        }
+        match onset_of(model, section, limit) {
+            Ok(found) => card.take(found, limit),
+            Err(why) => card.unknown_part(Calculated::OnsetSpeed, &why),
+        }
+        // what cannot be judged is not called stable
+        let stable = growth_of(model, section, limit).is_ok_and(|growth| growth.is_none());
+        card.set_flag(Calculated::StableBelowOnset, stable);
+        card
+    }
+
+    /// The card of parameters that give no section at all.
+    pub(super) fn unknown(why: &Error) -> Self {
+        let why = format!("flutter onset and divergence are not known for these parameters: {why}");
+        Self {
+            values: [0.0; Calculated::COUNT],
+            warnings: vec![why],
+        }
+    }
+
+    pub(super) fn nothing_found(limit: f64, warnings: Vec<String>) -> Self {
+        let mut card = Self {
+            values: [0.0; Calculated::COUNT],
+            warnings,
+        };
+        card.set(Calculated::OnsetSpeed, limit);
+        card.set(Calculated::DivergenceSpeed, limit);
+        card
+    }
+
+    /// Enters the answer of a search up to `limit` m/s. Growth from the lowest speed on is an onset at that speed or lower; what
+    /// was judged up to a lower speed is stable up to there.
+    pub(super) fn take(&mut self, found: FlutterSearch, limit: f64) {
+        let (at, tested, warnings) = match found {
+            FlutterSearch::Onset(o) => (
+                (o.at.speed_m_s, o.at.frequency_hz, o.at.reduced_velocity),
+                o.in_tested_range,
+                o.warnings,
+            ),
+            FlutterSearch::UnstableAtOrBelow(start) => {
+                let (speed, why) = (start.at.speed_m_s, start.explain());
+                self.warnings
+                    .push(format!("the onset lies at {speed:.3} m/s or lower: {why}"));
+                (
+                    (speed, start.at.frequency_hz, start.at.reduced_velocity),
+                    start.in_tested_range,
+                    start.warnings,
+                )
+            }
+            FlutterSearch::StableUpTo(range) => {
+                let judged = range.from_m_s <= range.to_m_s;
+                let to = if judged { range.to_m_s.min(limit) } else { 0.0 };
+                self.set(Calculated::OnsetSpeed, to);
+                if to < limit {
+                    self.warnings.push(format!(
+                        "the onset is not known beyond {to} m/s: {}",
+                        range.explain()
+                    ));
+                }
+                return;
+            }
+        };
+        self.set_onset(at.0, at.1, at.2, tested == Some(true));
+        self.warnings.extend(warnings);
+    }
+
+    pub(super) fn set_onset(
+        &mut self,
+        speed: f64,
+        frequency: f64,
+        velocity: ReducedVelocity,
+        tested: bool,
+    ) {
+        self.set(Calculated::OnsetSpeed, speed);
+        self.set(Calculated::OnsetFrequency, frequency);
+        self.set(Calculated::OnsetReducedVelocity, velocity.v_star());
+        self.set(Calculated::OnsetFound, 1.0);
+        self.set_flag(Calculated::OnsetInTestedRange, tested);
+    }
+
+    /// Enters a speed of divergence below the limit.
+    pub(super) fn set_divergence(&mut self, speed: Option<f64>, limit: f64) {
+        if let Some(speed) = speed.filter(|v| *v <= limit) {
+            self.set(Calculated::DivergenceSpeed, speed);
+            self.set(Calculated::DivergenceFound, 1.0);
+        }
+    }
+
+    /// A speed that could not be searched for is zero.
+    pub(super) fn unknown_part(&mut self, speed: Calculated, why: &Error) {
+        self.set(speed, 0.0);
+        let what = match speed {
+            Calculated::DivergenceSpeed => "divergence",
+            _ => "flutter onset",
+        };
+        let warning = format!("{what} is not known for these parameters: {why}");
+        self.warnings.push(warning);
+    }
+
+    pub(super) fn set_flag(&mut self, which: Calculated, holds: bool) {
+        self.set(which, f64::from(u8::from(holds)));
+    }
+
+    fn set(&mut self, which: Calculated, value: f64) {
+        self.values[which as usize] = value;
+    }
+
+    /// One of its numbers.
+    pub(super) fn value(&self, which: Calculated) -> f64 {
+        self.values[which as usize]
+    }
+}
+
+/// Growth below the onset, up to `limit` m/s.
+pub(super) fn growth_of(
+    model: &TrainedModel,
+    section: &CoupledSection,
+    limit: f64,
+) -> Result<UnwantedGrowth> {
+    check_searchable(section)?;
+    let search = OnsetSearch {
+        speed_max_m_s: limit,
+        ..OnsetSearch::default()
+    };
+    unwanted_growth(section, &search, Some(model.tested_range))
+}
+
+fn onset_of(model: &TrainedModel, section: &CoupledSection, limit: f64) -> Result<FlutterSearch> {
+    check_searchable(section)?;
+    let search = OnsetSearch {
+        speed_max_m_s: limit,
+        ..OnsetSearch::default()
+    };
+    let tested = Some(model.tested_range);
+    let name = model.model.kind();
+    let found = find_onset(name, section, &search, tested)?;
+    let FlutterSearch::UnstableAtOrBelow(start) = &found else {
+        return Ok(found);
+    };
+    // what is simulated grows from where the model itself says, tested or not
+    let mut own = find_onset(name, section, &search, None)?;
+    if let FlutterSearch::Onset(onset) = &mut own {
+        onset.in_tested_range = Some(false);
+        onset.warnings.push(format!(
+            "the onset of this model lies outside the tested range: {}",
+            start.explain()
+        ));
+    }
+    Ok(own)
+}
+
+fn divergence_of(model: &TrainedModel, section: &CoupledSection) -> Result<Option<f64>> {
+    let still = ReducedFrequency::from_full_width(0.0);
+    divergence_speed(section.structure(), &model.model.transfer(still)?)
+}

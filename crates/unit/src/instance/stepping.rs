@@ -1,0 +1,119 @@
+//! Communication steps.
+
+use super::Instance;
+use super::memory::Experiment;
+use crate::lifecycle::State;
+use crate::refusal::{CallResult, Refusal};
+use crate::response::wind_at_rest;
+
+/// How far an importer's clock may have drifted from ours, relative to the time: sums of some 10⁶ steps.
+const CLOCK_TOLERANCE: f64 = 1e-9;
+/// The same relative to the step, for times near zero.
+const CLOCK_TOLERANCE_OF_STEP: f64 = 1e-6;
+
+impl Instance {
+    /// One communication step of `step` seconds from the point of time `point`.
+    ///
+    /// # Errors
+    /// An error for a step that is not positive, a point that is not ours, or an end behind the stop time; a discard,
+    /// with everything as it was, when the step cannot be computed.
+    #[inline]
+    pub fn do_step(&mut self, point: f64, step: f64) -> CallResult<()> {
+        // most steps need no more
+        if self.is_plainly_here(point, step)
+            && let Some(news) = self.unit.repeat(&mut self.memory, step)
+        {
+            self.outputs_current = false;
+            self.memory.time = point + step;
+            if news {
+                self.watch();
+            }
+            return Ok(());
+        }
+        self.do_step_anew(point, step)
+    }
+
+    #[inline(never)]
+    fn do_step_anew(&mut self, point: f64, step: f64) -> CallResult<()> {
+        self.check_step(point, step)?;
+        let (resources, memory) = (&self.resources, &mut self.memory);
+        let prepared = self.unit.prepared(resources, memory);
+        let advanced = prepared
+            .map_err(Refusal::from)
+            .and_then(|unit| unit.advance(resources, memory, step));
+        self.outputs_current = advanced.map_err(|refusal| {
+            self.memory.state = State::StepFailed;
+            Refusal::discard(refusal.message)
+        })?;
+        // after the step: one that is refused is refused at once
+        self.watch();
+        self.run_inputs_on(step);
+        self.memory.time = point + step;
+        Ok(())
+    }
+
+    /// Whether the check of a step that is positive and finite need look no closer.
+    #[inline]
+    fn is_plainly_here(&self, point: f64, step: f64) -> bool {
+        let stop = self.memory.experiment.and_then(|e| e.stop);
+        (point - self.memory.time).abs() <= CLOCK_TOLERANCE_OF_STEP * step
+            && stop.is_none_or(|stop| point + step <= stop)
+    }
+
+    fn check_step(&self, point: f64, step: f64) -> CallResult<()> {
+        let time = self.memory.time;
+        if !(step.is_finite() && step > 0.0) {
+            return Err(no_step(step));
+        }
+        let tolerance =
+            CLOCK_TOLERANCE * time.abs().max(point.abs()) + CLOCK_TOLERANCE_OF_STEP * step;
+        let drift = (point - time).abs();
+        if drift.is_nan() || drift > tolerance {
+            return Err(elsewhere(point, time));
+        }
+        match self.memory.experiment {
+            Some(Experiment {
+                stop: Some(stop), ..
+            }) if point + step > stop + tolerance + CLOCK_TOLERANCE * stop.abs() => {
+                Err(too_late(point + step, stop))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn run_inputs_on(&mut self, step: f64) {
+        if self.memory.input_rates.iter().all(|rate| *rate == 0.0) {
+            return;
+        }
+        let values = &mut self.memory.values;
+        let inputs = self.unit.inputs();
+        let before = values[inputs[0]];
+        for (place, rate) in inputs.iter().zip(&self.memory.input_rates) {
+            if *rate != 0.0 {
+                values[*place] += rate * step;
+            }
+        }
+        values[inputs[0]] = wind_at_rest(values[inputs[0]], before);
+    }
+}
+
+#[cold]
+fn no_step(step: f64) -> Refusal {
+    Refusal::error(format!(
+        "communication step: expected a positive number, found {step}"
+    ))
+}
+
+#[cold]
+fn elsewhere(point: f64, time: f64) -> Refusal {
+    Refusal::error(format!(
+        "communication point: expected {time} s, where the last step ended, found {point}"
+    ))
+}
+
+#[cold]
+fn too_late(end: f64, stop: f64) -> Refusal {
+    Refusal::error(format!(
+        "communication step: expected an end not after the stop time {stop} s, found {end}"
+    ))
+}

@@ -1,0 +1,115 @@
+//! The onset of a bridge is followed where that is safe, and searched for where it is not.
+
+use super::{Kind, place, resources, start};
+use crate::instance::Instance;
+use crate::instance::bridge_built::Built;
+use crate::instance::bridge_followed::SearchedOnset;
+use crate::instance::memory::starts;
+use crate::instance::section::OnsetCard;
+use crate::onset_start::OnsetStart;
+use crate::resources::Resources;
+use crate::variables::Calculated;
+
+const LIMIT: f64 = 100.0;
+
+fn built(resources: &Resources, changed: &[(&str, f64)]) -> Built {
+    let mut values = starts(&resources.table);
+    for (name, value) in changed {
+        values[resources.table.find_name(name).unwrap()] = *value;
+    }
+    Built::new(resources, resources.bridge.as_ref().unwrap(), &values).unwrap()
+}
+
+fn searched(built: &Built) -> (OnsetCard, SearchedOnset) {
+    let (card, searched) = OnsetCard::of_bridge(built, None, LIMIT);
+    (card, searched.unwrap())
+}
+
+/// By two ways: the motion followed, and the search of all eigenvalues.
+#[test]
+fn what_is_followed_is_what_a_search_finds() {
+    let resources = resources(Kind::Bridge);
+    let (_, known) = searched(&built(&resources, &[]));
+    for changed in [
+        &[("air_density", 1.5)][..],
+        &[("air_density", 0.9)],
+        &[("mode[2].frequency", 4.4)],
+        &[
+            ("mode[1].frequency", 2.3),
+            ("mode[1].damping_ratio", 0.0038),
+        ],
+    ] {
+        let mut now = built(&resources, changed);
+        let found = known.followed(&mut now, LIMIT).unwrap();
+        let (card, _) = searched(&now);
+        for (found, which) in [
+            (found.speed_m_s, Calculated::OnsetSpeed),
+            (found.frequency_hz, Calculated::OnsetFrequency),
+        ] {
+            let expected = card.value(which);
+            assert!(
+                (found / expected - 1.0).abs() < 1e-8,
+                "{changed:?}: {found}, {expected}"
+            );
+        }
+    }
+}
+
+/// Far parameters, a limit below, and a mode that has lost its damping: nothing is answered without a search.
+#[test]
+fn what_cannot_be_trusted_is_not_followed() {
+    let resources = resources(Kind::Bridge);
+    let mut default = built(&resources, &[]);
+    let (card, known) = searched(&default);
+    let onset = card.value(Calculated::OnsetSpeed);
+    assert!(known.followed(&mut default, 0.99 * onset).is_none());
+    let mut far = built(&resources, &[("air_density", 1.7)]);
+    assert!(known.followed(&mut far, LIMIT).is_none());
+    // a search that had seen three times the damping below the onset
+    let start = OnsetStart::at(
+        onset,
+        card.value(Calculated::OnsetFrequency),
+        default.stepper.section(),
+    );
+    let mut start = start.unwrap();
+    assert!(
+        SearchedOnset::from(&default, &start)
+            .unwrap()
+            .followed(&mut default, LIMIT)
+            .is_some()
+    );
+    start.damping_below[0] *= 3.0;
+    assert!(
+        SearchedOnset::from(&default, &start)
+            .unwrap()
+            .followed(&mut default, LIMIT)
+            .is_none()
+    );
+}
+
+/// A start that comes with the archive gives the onset that a unit without one finds.
+#[test]
+fn a_start_in_the_archive_gives_the_same_onset() {
+    let plain = resources(Kind::Bridge);
+    let default = built(&plain, &[]);
+    let (card, _) = searched(&default);
+    let onset = card.value(Calculated::OnsetSpeed);
+    let mut given = resources(Kind::Bridge);
+    // a little off: the unit settles by itself
+    let hertz = card.value(Calculated::OnsetFrequency);
+    let start = OnsetStart::at(onset, hertz, default.stepper.section()).unwrap();
+    given.bridge.as_mut().unwrap().onset = Some(start);
+    let mut unit = Instance::new(given).unwrap();
+    start_and_read(&mut unit, onset);
+}
+
+fn start_and_read(unit: &mut Instance, expected: f64) {
+    start(unit);
+    let speed = place(unit, "onset_speed");
+    let mut found = [f64::NAN];
+    unit.reals(&[speed], &mut found).unwrap();
+    assert!(
+        (found[0] / expected - 1.0).abs() < 1e-8,
+        "{found:?}, {expected}"
+    );
+}

@@ -1,0 +1,39 @@
+//! What is not known reads as nothing that is safe.
+
+use super::{Kind, instance, place};
+use crate::instance::Instance;
+
+fn read<const N: usize>(unit: &mut Instance, names: [&str; N]) -> [f64; N] {
+    let references = names.map(|name| place(unit, name));
+    let mut values = [f64::NAN; N];
+    unit.reals(&references, &mut values).unwrap();
+    values
+}
+
+fn flag(unit: &mut Instance, name: &str) -> bool {
+    let reference = place(unit, name);
+    unit.boolean(reference).unwrap()
+}
+
+/// Where a search finds nothing its limit is what was judged.
+#[test]
+fn an_onset_that_is_not_there_is_the_limit() {
+    let mut unit = instance(Kind::Section("rational"), false).unwrap();
+    unit.enter_initialization();
+    let limit = place(&unit, "onset_search_limit");
+    unit.set_reals(&[limit], &[2.0]).unwrap();
+    let speeds = read(&mut unit, ["onset_speed", "divergence_speed"]);
+    assert_eq!(speeds, [2.0, 2.0]);
+    assert!(!flag(&mut unit, "onset_found") && flag(&mut unit, "stable_below_onset"));
+}
+
+/// Filters of a bridge are those of all its modes: as many as continuous states beyond coordinates and rates.
+#[test]
+fn a_bridge_counts_its_filters() {
+    let mut unit = instance(Kind::Bridge, false).unwrap();
+    let filters = place(&unit, "filters");
+    let count = unit.integer(filters).unwrap();
+    let states = unit.state_count();
+    assert_eq!(count as usize, states - 4);
+    assert_eq!(count, 4);
+}

@@ -1,0 +1,156 @@
+//! What an exported unit simulates, behind its variables and its life cycle.
+
+use super::layout::Source;
+use super::memory::Memory;
+use crate::error::{Error, Result};
+use crate::refusal::CallResult;
+use crate::resources::Resources;
+use crate::response::SectionState;
+use crate::variables::{Role, VariableTable};
+use std::fmt::Debug;
+
+/// The system behind an instance. Everything that changes in time stands in the [`Memory`]; a unit holds what follows
+/// from it and is made anew when it has changed.
+pub(super) trait Unit: Debug + Send {
+    /// Places of the inputs, in the order of their rates; the wind speed comes first.
+    fn inputs(&self) -> &[usize];
+
+    /// The state of a new instance.
+    fn at_rest(&self) -> SectionState;
+
+    /// A stored value of this kind has changed.
+    fn changed(&mut self, source: Source);
+
+    /// An input has been set, whether it changed or not; returns whether outputs change with it.
+    fn input_set(&mut self, _memory: &mut Memory, _place: usize, _changed: bool) -> bool {
+        false
+    }
+
+    /// The importer will integrate it.
+    fn will_be_integrated(&mut self) {}
+
+    /// The importer has taken a step of its integration.
+    ///
+    /// # Errors
+    /// A step that the inputs do not allow.
+    fn step_taken(
+        &mut self,
+        _table: &VariableTable,
+        _memory: &Memory,
+        _notices: &mut Vec<String>,
+    ) -> CallResult<()> {
+        Ok(())
+    }
+
+    /// The rate of the input with this index has been set.
+    fn input_rate_set(&mut self, _memory: &mut Memory, _index: usize) {}
+
+    /// The initialisation begins.
+    fn begin_initialization(&mut self) {}
+
+    /// Another memory takes the place of `old`: whatever both share stays computed.
+    fn replace(&mut self, new: &mut Memory, old: &Memory, same: &dyn Fn(Source) -> bool);
+
+    /// What follows from the parameters and, while initialising, the state, made anew where they have changed: the only way
+    /// to anything that is computed from them.
+    ///
+    /// # Errors
+    /// When the values give nothing that can be simulated.
+    fn prepared(
+        &mut self,
+        resources: &Resources,
+        memory: &mut Memory,
+    ) -> Result<&mut dyn Differentiable>;
+
+    /// Writes into the memory that what is calculated cannot be, because the parameters give nothing that can be simulated.
+    fn cannot_calculate(&mut self, _memory: &mut Memory, _why: &Error, _notices: &mut Vec<String>) {
+    }
+
+    /// Says what a user must know of the parameters and of the present state, each thing once.
+    fn watch(&mut self, _resources: &Resources, _memory: &Memory, _notices: &mut Vec<String>) {}
+
+    /// The last step once more, where nothing has been set since and no input runs on: most steps, without the work that
+    /// the others need. Returns whether there may be something to say of it; `None`, with everything as it was, where
+    /// the step has to be taken by [`Prepared::advance`].
+    fn repeat(&mut self, _memory: &mut Memory, _step: f64) -> Option<bool> {
+        None
+    }
+
+    /// Entry of the state of what is simulated that the output at `place` is, if it is one.
+    fn held_output(&self, _place: usize) -> Option<usize> {
+        None
+    }
+}
+
+/// What a unit computes, with what follows from the parameters as they are.
+pub(super) trait Prepared: Unit {
+    /// One step of `step` seconds from the time of the memory; returns whether the outputs after it are in the memory.
+    /// On an error everything is as it was.
+    ///
+    /// # Errors
+    /// When the step cannot be computed.
+    fn advance(
+        &mut self,
+        resources: &Resources,
+        memory: &mut Memory,
+        step: f64,
+    ) -> CallResult<bool>;
+
+    /// Writes the rates of the state, per second, where an importer may integrate it.
+    ///
+    /// # Errors
+    /// When they cannot be computed.
+    fn state_rates(&mut self, memory: &Memory, rates: &mut [f64]) -> CallResult<()>;
+
+    /// Rate of one state that is nothing else, by its index in [`Role::Filter`], where that needs less than all.
+    fn filter_rate(&mut self, _memory: &Memory, _i: usize) -> Option<f64> {
+        None
+    }
+
+    /// Writes all outputs into the memory.
+    ///
+    /// # Errors
+    /// When they cannot be computed.
+    fn outputs(&mut self, resources: &Resources, memory: &mut Memory) -> CallResult<()>;
+
+    /// Writes what is calculated from the parameters into the memory.
+    fn calculate(
+        &mut self,
+        _resources: &Resources,
+        _memory: &mut Memory,
+        _notices: &mut Vec<String>,
+    ) {
+    }
+
+    /// What is known of the present moment; a number that cannot be found is zero, with a notice.
+    fn status(
+        &mut self,
+        _resources: &Resources,
+        _memory: &mut Memory,
+        _role: Role,
+        _notices: &mut Vec<String>,
+    ) -> f64 {
+        0.0
+    }
+}
+
+/// What is known of how a unit changes, in time and with its inputs, states and parameters.
+pub(super) trait Differentiable: Prepared {
+    /// First time derivatives of these outputs, per second.
+    ///
+    /// # Errors
+    /// When they cannot be computed.
+    fn output_rates(&mut self, memory: &mut Memory, outputs: &[Role]) -> CallResult<Vec<f64>>;
+
+    /// Derivatives of these unknowns with respect to the value at `known`.
+    ///
+    /// # Errors
+    /// When they do not exist.
+    fn derivatives(
+        &mut self,
+        resources: &Resources,
+        memory: &mut Memory,
+        known: usize,
+        unknowns: &[Role],
+    ) -> CallResult<Vec<f64>>;
+}

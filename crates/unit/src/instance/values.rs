@@ -1,0 +1,202 @@
+//! Reading and setting variables, by value reference; what is computed is computed when first asked for.
+
+use super::Instance;
+use super::layout::{DataType, Source};
+use super::memory::Memory;
+use super::sensitivity::overgrown;
+use crate::lifecycle::State;
+use crate::refusal::{CallResult, Refusal};
+
+impl Instance {
+    /// Values of real variables.
+    ///
+    /// # Errors
+    /// A reference that is none, of another type, or not readable now; a value that cannot be computed.
+    #[inline(always)]
+    pub fn reals(&mut self, references: &[u32], values: &mut [f64]) -> CallResult<()> {
+        let read = self.read_at_hand(references, values);
+        if read == references.len() {
+            return Ok(());
+        }
+        self.read_rest(&references[read..], &mut values[read..])
+    }
+
+    /// Reads real variables up to the first that needs work; returns how many.
+    #[inline]
+    fn read_at_hand(&self, references: &[u32], values: &mut [f64]) -> usize {
+        // ahead of its release a section is not yet where its initial values put it
+        if self.memory.state != State::StepComplete {
+            return 0;
+        }
+        let (memory, current) = (&self.memory, self.outputs_current);
+        let mut read = 0;
+        for (reference, value) in references.iter().zip(values) {
+            let Some(at_hand) = self.layout.at_hand(*reference, memory, current) else {
+                break;
+            };
+            *value = at_hand;
+            read += 1;
+        }
+        read
+    }
+
+    /// Reads one that needs work, after which others may need none.
+    #[inline(never)]
+    fn read_rest(&mut self, mut references: &[u32], mut values: &mut [f64]) -> CallResult<()> {
+        while let ([reference, others @ ..], [value, rest @ ..]) = (references, values) {
+            *value = self.number(*reference, DataType::Real)?;
+            let read = self.read_at_hand(others, rest);
+            (references, values) = (&others[read..], &mut rest[read..]);
+        }
+        Ok(())
+    }
+
+    /// Value of an integer variable.
+    pub(crate) fn integer(&mut self, reference: u32) -> CallResult<i32> {
+        Ok(self.number(reference, DataType::Integer)? as i32)
+    }
+
+    /// Value of a truth variable.
+    pub fn boolean(&mut self, reference: u32) -> CallResult<bool> {
+        Ok(self.number(reference, DataType::Boolean)? != 0.0)
+    }
+
+    /// Place in the table of a text that may be read now.
+    pub(crate) fn text_place(&self, reference: u32) -> CallResult<usize> {
+        Ok(self.readable(reference, DataType::String)?.0)
+    }
+
+    pub(super) fn number(&mut self, reference: u32, wanted: DataType) -> CallResult<f64> {
+        let (place, access) = self.readable(reference, wanted)?;
+        let (resources, memory) = (&self.resources, &mut self.memory);
+        match access.source {
+            Source::Response if !self.outputs_current => {
+                let unit = self.unit.prepared(resources, memory)?;
+                // what is part of the state needs no output equation
+                if let Some(entry) = self.layout.held(place) {
+                    return state_number(memory, entry);
+                }
+                unit.outputs(resources, memory)?;
+                self.outputs_current = true;
+            }
+            Source::Status => {
+                let role = resources.table.variables()[place].role;
+                let unit = self.unit.prepared(resources, memory)?;
+                return Ok(unit.status(resources, memory, role, &mut self.notices));
+            }
+            Source::State => {
+                self.unit.prepared(resources, memory)?;
+                let entry = self.layout.held(place);
+                return entry.map_or(Ok(0.0), |entry| state_number(memory, entry));
+            }
+            Source::Rate => return self.rate_at(place),
+            Source::Calculated => match self.unit.prepared(resources, memory) {
+                Ok(unit) => unit.calculate(resources, memory, &mut self.notices),
+                Err(why) => self.unit.cannot_calculate(memory, &why, &mut self.notices),
+            },
+            _ => {}
+        }
+        Ok(self.memory.values[place])
+    }
+
+    /// Sets real variables: all of them or, when one is refused, none.
+    ///
+    /// # Errors
+    /// An error for a reference that is none, of another type or not settable now, and for a value that is not finite;
+    /// a discard for a value outside the limits of its variable.
+    pub fn set_reals(&mut self, references: &[u32], values: &[f64]) -> CallResult<()> {
+        for (reference, value) in references.iter().zip(values) {
+            let (place, access) = self.writable(*reference, DataType::Real)?;
+            self.check_value(place, access, self.layout.settled(place, *value))?;
+        }
+        for (reference, value) in references.iter().zip(values) {
+            let place = *reference as usize;
+            let changed = self.store(place, self.layout.settled(place, *value));
+            let input = self.layout.source(place) == Source::Input;
+            if input && self.unit.input_set(&mut self.memory, place, changed) {
+                self.outputs_current = false;
+            }
+        }
+        Ok(())
+    }
+
+    /// Refuses to set variables of a type that has none to set.
+    ///
+    /// # Errors
+    /// For every reference.
+    pub(crate) fn refuse_to_set(&self, references: &[u32], of_type: DataType) -> CallResult<()> {
+        for reference in references {
+            self.writable(*reference, of_type)?;
+        }
+        Ok(())
+    }
+
+    /// Returns whether the value has changed.
+    fn store(&mut self, place: usize, value: f64) -> bool {
+        if self.memory.values[place].to_bits() == value.to_bits() {
+            return false;
+        }
+        self.memory.values[place] = value;
+        self.outputs_current = false;
+        self.unit.changed(self.layout.source(place));
+        true
+    }
+
+    /// Sets first rates of inputs, per second: all of them or none.
+    ///
+    /// # Errors
+    /// A reference that is no input, another order than one, a rate that is not finite.
+    pub fn set_input_rates(
+        &mut self,
+        references: &[u32],
+        orders: &[i32],
+        rates: &[f64],
+    ) -> CallResult<()> {
+        for ((reference, order), rate) in references.iter().zip(orders).zip(rates) {
+            self.input_index(*reference)?;
+            check_order(*order)?;
+            if !rate.is_finite() {
+                return Err(Refusal::error(format!(
+                    "rate of value reference {reference}: expected a finite number, found {rate}"
+                )));
+            }
+        }
+        for (reference, rate) in references.iter().zip(rates) {
+            let index = self.input_index(*reference)?;
+            self.memory.input_rates[index] = *rate;
+            self.unit.input_rate_set(&mut self.memory, index);
+        }
+        Ok(())
+    }
+
+    /// Place among the inputs.
+    pub(super) fn input_index(&self, reference: u32) -> CallResult<usize> {
+        let (place, _) = self.typed(reference, DataType::Real)?;
+        let mut inputs = self.unit.inputs().iter();
+        inputs.position(|input| *input == place).ok_or_else(|| {
+            let name = &self.table().variables()[place].name;
+            Refusal::error(format!("`{name}` is no input"))
+        })
+    }
+}
+
+/// A number of the state, which may have overflowed at the release or in the hands of an importer that integrates.
+fn state_number(memory: &Memory, entry: usize) -> CallResult<f64> {
+    let number = memory.system.number(entry);
+    if number.is_finite() {
+        Ok(number)
+    } else {
+        Err(overgrown())
+    }
+}
+
+/// Rates are known to the first order.
+pub(super) fn check_order(order: i32) -> CallResult<()> {
+    if order == 1 {
+        Ok(())
+    } else {
+        Err(Refusal::call(format!(
+            "order of the derivative: expected 1, found {order}"
+        )))
+    }
+}

@@ -1,0 +1,49 @@
+//! The coupled section, its forces alone, or a whole bridge as a co-simulation slave: what an FMU holds. Variables ([`variables`]),
+//! version-neutral life cycle ([`instance`], [`lifecycle`]), what is read at instantiation ([`resources`]), and the C interfaces of
+//! FMI 2.0 and 3.0 ([`fmi2`], [`fmi3`]).
+//!
+//! With the feature `runtime` this crate is the shared library of an FMU.
+// what is public can be reached from outside
+#![deny(unsafe_code, missing_docs, unreachable_pub)]
+// the process is the caller's: no abrupt end, and no word on its terminal
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::unwrap_used,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::todo,
+        clippy::unimplemented,
+        clippy::unreachable,
+        clippy::print_stdout,
+        clippy::print_stderr,
+        clippy::dbg_macro
+    )
+)]
+
+use aerodeck_core::{
+    aerodynamics, aeroelastic, bridge, error, flutter, response, section, state_space,
+    trained_model, units,
+};
+use error::Error;
+
+pub mod bridge_gusts;
+pub mod bridge_options;
+#[allow(unsafe_code)]
+pub mod fmi2;
+#[allow(unsafe_code)]
+pub mod fmi3;
+pub mod force_options;
+pub mod groups;
+pub mod identity;
+pub mod instance;
+pub mod lifecycle;
+pub mod location;
+pub mod log_categories;
+pub mod onset_bounds;
+pub mod onset_start;
+pub mod refusal;
+pub mod resources;
+pub mod si;
+pub mod standard;
+pub mod variables;

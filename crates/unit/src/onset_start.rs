@@ -1,0 +1,49 @@
+//! An onset that has been searched for, as a start for those of parameters nearby.
+
+use crate::aeroelastic::CoupledSection;
+use crate::error::{Result, finite, positive};
+use crate::flutter::Onset;
+use crate::flutter::smallest_damping;
+use serde::{Deserialize, Serialize};
+
+/// Speeds below the onset, as parts of it, at which the damping of all modes is compared with that of the search.
+pub(super) const COMPARED_AT: [f64; 2] = [0.6, 0.85];
+
+/// See the module.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct OnsetStart {
+    /// Wind speed, m/s.
+    pub speed_m_s: f64,
+    /// Frequency of the motion there, Hz.
+    pub frequency_hz: f64,
+    /// Smallest damping ratio of all modes at 0.6 and 0.85 of the speed.
+    pub damping_below: [f64; 2],
+}
+
+impl OnsetStart {
+    /// That of an onset of `section` of which there is nothing more to say; `None` where there is: it has to be searched for each
+    /// time.
+    pub fn of(onset: &Onset, section: &CoupledSection) -> Option<Self> {
+        let plain = onset.warnings.is_empty() && onset.spurious_speeds_m_s.is_empty();
+        let (speed, hertz) = (onset.at.speed_m_s, onset.at.frequency_hz);
+        Self::at(speed, hertz, section).ok().filter(|_| plain)
+    }
+
+    /// The start at a speed, m/s, and a frequency, Hz.
+    pub(super) fn at(speed_m_s: f64, frequency_hz: f64, section: &CoupledSection) -> Result<Self> {
+        let below = |part: f64| smallest_damping(section, part * speed_m_s);
+        Ok(Self {
+            speed_m_s,
+            frequency_hz,
+            damping_below: [below(COMPARED_AT[0])?, below(COMPARED_AT[1])?],
+        })
+    }
+
+    pub(super) fn check(&self) -> Result<()> {
+        positive("speed_m_s", self.speed_m_s)?;
+        positive("frequency_hz", self.frequency_hz)?;
+        let mut damping = self.damping_below.into_iter();
+        damping.try_for_each(|d| finite("damping_below", d).map(drop))
+    }
+}

@@ -1,0 +1,210 @@
+//! What is in the folder `resources/` of an unpacked archive.
+
+use super::bridge_gusts::{TURBULENCE_FILE, TurbulenceOptions};
+use super::bridge_options::{BRIDGE_FILE, BridgeOptions};
+use super::force_options::{FORCE_FILE, ForceOptions};
+use super::identity;
+use super::location::{MODEL_FILE, beside, folder_of, own_binary, raw_folder, refused};
+use super::onset_bounds::{BOUNDS_FILE, OnsetBounds};
+use super::variables::VariableTable;
+use crate::aerodynamics::{GustForce, Transfer};
+use crate::error::{Error, Result};
+use crate::trained_model::{Model, TrainedModel};
+use std::path::Path;
+use uuid::Uuid;
+
+/// The file of the gust forces in `resources/`; an archive without it takes no gusts.
+pub const GUST_FILE: &str = "gusts.json";
+/// Shortest step of a sampled model, in widths that the wind passes: a thousandth of the finest of wind tunnels.
+const SHORTEST_SAMPLE: f64 = 1e-6;
+
+/// Files beside the model that say what is exported of it, as bytes.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct OptionFiles<'a> {
+    /// What makes it a unit of forces alone, see [`ForceOptions`].
+    pub force: Option<&'a [u8]>,
+    /// Forces of gusts, see [`GustForce`].
+    pub gusts: Option<&'a [u8]>,
+    /// Interval of the onset, see [`OnsetBounds`].
+    pub bounds: Option<&'a [u8]>,
+}
+
+/// What is read once, at instantiation.
+#[derive(Debug)]
+pub struct Resources {
+    /// The trained model.
+    pub model: TrainedModel,
+    /// What makes it a unit of forces alone; `None` for the coupled section.
+    pub force: Option<ForceOptions>,
+    /// Forces of gusts; `None` where it takes no gusts.
+    pub gusts: Option<GustForce>,
+    /// What makes it a whole bridge; `None` for a section.
+    pub bridge: Option<BridgeOptions>,
+    /// Turbulence that blows on the bridge; `None` for calm air but what the inputs bring.
+    pub turbulence: Option<TurbulenceOptions>,
+    /// Its variables.
+    pub table: VariableTable,
+    /// Identity of table and model file.
+    pub guid: Uuid,
+}
+
+impl Resources {
+    /// Reads `model.json` from the folder that `location` names (see `folder_of`); where it is not there, from the
+    /// folder whose name is the location as it stands, since some importers write paths without coding them. An empty
+    /// location means the archive in which this library lies.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a location that is none and for a file that is no trained model, [`Error::Io`] for a file
+    /// that cannot be read; both name the file.
+    pub fn read(location: &str) -> Result<Self> {
+        let folder = if location.is_empty() {
+            own_binary()
+                .and_then(|binary| beside(&binary))
+                .ok_or_else(|| refused(location))?
+        } else {
+            folder_of(location)?
+        };
+        let coded = folder.join(MODEL_FILE);
+        let raw = raw_folder(location).map(|folder| folder.join(MODEL_FILE));
+        let file = match raw {
+            Some(raw) if !coded.exists() && raw.exists() => raw,
+            _ => coded,
+        };
+        let read = |file: &Path| std::fs::read(file).map_err(|e| Error::io(file, e));
+        let optional = |name: &str| -> Result<Option<Vec<u8>>> {
+            let option = file.with_file_name(name);
+            option.exists().then(|| read(&option)).transpose()
+        };
+        let (force, gusts) = (optional(FORCE_FILE)?, optional(GUST_FILE)?);
+        let bounds = optional(BOUNDS_FILE)?;
+        if let Some(bridge) = optional(BRIDGE_FILE)? {
+            let place = file.with_file_name(BRIDGE_FILE);
+            let turbulence = optional(TURBULENCE_FILE)?;
+            return Self::of_bridge(&read(&file)?, &bridge, turbulence.as_deref())
+                .map_err(|e| e.in_file(&place));
+        }
+        let options = OptionFiles {
+            force: force.as_deref(),
+            gusts: gusts.as_deref(),
+            bounds: bounds.as_deref(),
+        };
+        Self::from_bytes(&read(&file)?, options).map_err(|e| e.in_file(&file))
+    }
+
+    /// The same from the bytes of the model's file and of those beside it.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for bytes that are no trained model, or no options that fit it.
+    pub fn from_bytes(bytes: &[u8], options: OptionFiles<'_>) -> Result<Self> {
+        let model = TrainedModel::from_json(text(bytes)?)?;
+        check_sampling(&model)?;
+        let force = options
+            .force
+            .map(|options| ForceOptions::from_json(text(options)?).map_err(|e| e.at(FORCE_FILE)))
+            .transpose()?;
+        let gusts = options
+            .gusts
+            .map(|gusts| gust_force(text(gusts)?, &model).map_err(|e| e.at(GUST_FILE)))
+            .transpose()?;
+        let bounds = options
+            .bounds
+            .map(|bounds| OnsetBounds::from_json(text(bounds)?).map_err(|e| e.at(BOUNDS_FILE)))
+            .transpose()?;
+        let table = VariableTable::new(&model, force.as_ref(), gusts.as_ref(), bounds)?;
+        let of_options = [options.force, options.gusts, options.bounds];
+        let files = std::iter::once(bytes);
+        let files: Vec<&[u8]> = files.chain(of_options.into_iter().flatten()).collect();
+        let guid = identity::guid(&table, &files);
+        Ok(Self {
+            model,
+            force,
+            gusts,
+            bridge: None,
+            turbulence: None,
+            table,
+            guid,
+        })
+    }
+
+    /// A whole bridge from the bytes of the file of the model of its girder, of the bridge's own, and of its turbulence.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for bytes that are no trained model, or no bridge.
+    pub fn of_bridge(bytes: &[u8], bridge: &[u8], turbulence: Option<&[u8]>) -> Result<Self> {
+        let model = TrainedModel::from_json(text(bytes)?)?;
+        let options = BridgeOptions::from_json(text(bridge)?)?;
+        let field = |json| {
+            let (nodes, gusts) = (options.nodes.len(), options.gusts.as_ref());
+            TurbulenceOptions::from_json(text(json)?, nodes, gusts)
+                .map_err(|e| e.at(TURBULENCE_FILE))
+        };
+        let field = turbulence.map(field).transpose()?;
+        let table = VariableTable::of_bridge(&model, &options, field.is_some())?;
+        let files: Vec<&[u8]> = [bytes, bridge].into_iter().chain(turbulence).collect();
+        let guid = identity::guid(&table, &files);
+        Ok(Self {
+            model,
+            force: None,
+            gusts: None,
+            bridge: Some(options),
+            turbulence: field,
+            table,
+            guid,
+        })
+    }
+}
+
+/// A model that samples the motion so often is none that can be stepped: its step is cut into more samples than a step may
+/// have, and its eigenvalues are rounding.
+fn check_sampling(model: &TrainedModel) -> Result<()> {
+    match &model.model {
+        Model::DiscreteLaguerre(m) if m.delta_s < SHORTEST_SAMPLE => Err(Error::input(
+            "model: delta_s",
+            format!("at least {SHORTEST_SAMPLE} widths from sample to sample in an FMU"),
+            m.delta_s.to_string(),
+        )),
+        _ => Ok(()),
+    }
+}
+
+fn gust_force(text: &str, model: &TrainedModel) -> Result<GustForce> {
+    let force: GustForce =
+        serde_json::from_str(text).map_err(|e| Error::json("forces of gusts", &e))?;
+    force.validate(model.model.dofs())?;
+    Ok(force)
+}
+
+fn text(bytes: &[u8]) -> Result<&str> {
+    std::str::from_utf8(bytes).map_err(|e| {
+        Error::input(
+            format!("byte {}", e.valid_up_to()),
+            "UTF-8 text",
+            "other bytes",
+        )
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::location::location_of;
+
+    /// `%20` may be coded, or part of the folder's name.
+    #[test]
+    fn uncoded_locations_are_tried_second() {
+        let folder = tempfile::tempdir().unwrap();
+        let place = folder.path().join("a%20b");
+        std::fs::create_dir(&place).unwrap();
+        let model = format!(
+            "{}/tests/data/models/rational.json",
+            env!("CARGO_MANIFEST_DIR")
+        );
+        std::fs::copy(&model, place.join(MODEL_FILE)).unwrap();
+        let coded = location_of(&place).unwrap();
+        let raw = format!("file://{}", place.display());
+        assert_ne!(coded, raw);
+        for location in [coded, raw] {
+            assert!(Resources::read(&location).is_ok(), "{location}");
+        }
+    }
+}

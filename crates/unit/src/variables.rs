@@ -1,0 +1,149 @@
+//! The one variable table of an exported unit.
+//!
+//! Value references, getters and setters, `modelDescription.xml`, the digest that ties binary and archive together and
+//! the documentation page are all made from it. The value reference of a variable is its place in the table, over all
+//! types.
+
+mod bridge;
+mod bridge_states;
+mod dependencies;
+mod dof_names;
+mod force;
+mod listing;
+mod parameters;
+mod real;
+mod section;
+#[cfg(test)]
+mod tests;
+mod variable;
+
+pub use super::standard::{Causality, Initial, Variability};
+pub use listing::{ListedVariables, Listing};
+pub use parameters::{ModeParameter, SectionParameter};
+pub use variable::{
+    Calculated, ForceOutput, Gust, InitialDependency, ModeOutput, Response, Role, Status,
+    StripParameter, Value, Variable,
+};
+
+use super::bridge_options::BridgeOptions;
+use super::force_options::ForceOptions;
+use super::onset_bounds::OnsetBounds;
+use crate::aerodynamics::GustForce;
+use crate::error::{Error, Result};
+use crate::section::Dof;
+use crate::trained_model::TrainedModel;
+use variable::find;
+
+/// The variables of an exported section; see the module.
+#[derive(Debug, Clone, PartialEq)]
+pub struct VariableTable {
+    variables: Vec<Variable>,
+}
+
+impl VariableTable {
+    /// The table of a trained model: of its coupled section or, with options, of its forces alone; with gusts where their
+    /// forces are known, with the interval of the onset where that is known (of a section alone).
+    ///
+    /// # Errors
+    /// [`Error::Input`] when a start value is not finite or outside the limits of its variable.
+    pub fn new(
+        model: &TrainedModel,
+        force: Option<&ForceOptions>,
+        gusts: Option<&GustForce>,
+        bounds: Option<OnsetBounds>,
+    ) -> Result<Self> {
+        let variables = match force {
+            None => {
+                let mut variables = section::variables(model, gusts, bounds)?;
+                dependencies::fill(&mut variables, model, gusts);
+                variables
+            }
+            Some(options) => force::variables(model, options, gusts)?,
+        };
+        Self::checked(variables)
+    }
+
+    /// The table of a whole bridge, with or without turbulence of its own.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when a start value is not finite or outside the limits of its variable.
+    pub fn of_bridge(
+        model: &TrainedModel,
+        options: &BridgeOptions,
+        turbulence: bool,
+    ) -> Result<Self> {
+        Self::checked(bridge::variables(model, options, turbulence)?)
+    }
+
+    fn checked(variables: Vec<Variable>) -> Result<Self> {
+        variables.iter().try_for_each(check_start)?;
+        Ok(Self { variables })
+    }
+
+    /// The variables; the place of each is its value reference.
+    pub fn variables(&self) -> &[Variable] {
+        &self.variables
+    }
+
+    /// Place of the variable with this role.
+    pub fn find(&self, role: Role) -> Option<usize> {
+        find(&self.variables, role)
+    }
+
+    /// Place of the variable with this name.
+    pub fn find_name(&self, name: &str) -> Option<usize> {
+        self.variables.iter().position(|v| v.name == name)
+    }
+
+    /// Rates of the continuous states in the order of the states; none where an importer cannot integrate them.
+    pub fn state_rates(&self) -> Vec<usize> {
+        state_rates(&self.variables)
+    }
+
+    /// Degrees of freedom in the order of every matrix.
+    pub fn dofs(&self) -> Vec<Dof> {
+        self.variables
+            .iter()
+            .filter_map(|v| match v.role {
+                Role::ExternalForce(dof) => Some(dof),
+                _ => None,
+            })
+            .collect()
+    }
+}
+
+/// Displacements come first, then rates, then filters.
+fn state_rates(variables: &[Variable]) -> Vec<usize> {
+    let rank = |place: &usize| match variables[*place].role {
+        Role::Response(Response::Rate, _) => 0,
+        Role::Response(..) => 1,
+        _ => 2,
+    };
+    let mut rates: Vec<usize> = (0..variables.len())
+        .filter(|i| variables[*i].derivative_of.is_some())
+        .collect();
+    rates.sort_by_key(rank);
+    rates
+}
+
+/// No checker looks whether a start value lies between minimum and maximum, so it is done here.
+fn check_start(variable: &Variable) -> Result<()> {
+    let Value::Real(Some(start)) = variable.value else {
+        return Ok(());
+    };
+    let above = variable.min.is_none_or(|min| start >= min);
+    let below = variable.max.is_none_or(|max| start <= max);
+    if start.is_finite() && above && below {
+        return Ok(());
+    }
+    let limit = |value: Option<f64>| value.map_or_else(|| "none".into(), |v| v.to_string());
+    Err(Error::input(
+        format!("start value of {}", variable.name),
+        format!(
+            "a finite number (minimum {}, maximum {})",
+            limit(variable.min),
+            limit(variable.max)
+        ),
+        start.to_string(),
+    ))
+}

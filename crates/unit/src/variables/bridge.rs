@@ -1,0 +1,231 @@
+//! The variables of a whole bridge, in the order of the table.
+
+use super::dof_names::names_of;
+use super::real::{FIXED, INPUT, OUTPUT, SMALLEST, TUNABLE, constants, real};
+use super::section::{
+    air_density, calculated_parameters, capitalized, gust_inputs, onset_bounds, search_limit,
+    status, wind_speed,
+};
+use super::{ModeOutput, ModeParameter, Response, Role, SectionParameter, Status, Variable};
+use super::{bridge_states, dependencies};
+use crate::bridge_options::BridgeOptions;
+use crate::error::Result;
+use crate::section::Dof;
+use crate::si;
+use crate::trained_model::TrainedModel;
+
+/// All variables with their dependencies.
+pub(super) fn variables(
+    model: &TrainedModel,
+    options: &BridgeOptions,
+    turbulence: bool,
+) -> Result<Vec<Variable>> {
+    let (stepper, _) = options.stepper(&options.bridge()?)?;
+    let mut table = vec![wind_speed(model)];
+    let named = 0..options.named.len();
+    table.extend(
+        named
+            .clone()
+            .flat_map(|n| Dof::THREE.map(|dof| force(options, n, dof))),
+    );
+    table.extend(options.gusts.iter().flat_map(|g| gusts(options, &g.strips)));
+    table.extend(named.flat_map(|n| motions(options, n)));
+    table.extend((0..options.modes.len()).flat_map(|m| mode(options, m)));
+    table.extend(parameters(options, turbulence));
+    table.push(search_limit(model));
+    table.extend((0..options.modes.len()).map(|m| initial(options, m)));
+    table.extend(calculated_parameters());
+    let filters = stepper.section().aerodynamics().states();
+    table.extend(constants(model, filters)?);
+    let interval = options.onset_interval.into_iter();
+    table.extend(interval.flat_map(|b| onset_bounds(b, "bridge")));
+    table.extend(status());
+    fill_dependencies(&mut table);
+    bridge_states::add(&mut table, options, &stepper)?;
+    Ok(table)
+}
+
+/// The gusts of every strip.
+fn gusts<'a>(
+    options: &'a BridgeOptions,
+    strips: &'a [Vec<usize>],
+) -> impl Iterator<Item = Variable> + 'a {
+    strips.iter().enumerate().flat_map(|(s, nodes)| {
+        let ends = [nodes.first(), nodes.last()].map(|n| n.map(|n| &options.nodes[*n].name));
+        let place = match ends {
+            [Some(a), Some(b)] if a != b => format!(", at the nodes {a} to {b}"),
+            [Some(a), _] => format!(", at node {a}"),
+            _ => String::new(),
+        };
+        gust_inputs(s, |of| format!("strip[{}].{of}", s + 1)).map(|mut v| {
+            v.description.push_str(&place);
+            v
+        })
+    })
+}
+
+/// What may change while it runs.
+fn parameters(options: &BridgeOptions, turbulence: bool) -> Vec<Variable> {
+    let density = air_density().start(options.air_density_kg_m3);
+    let factor = real(
+        "turbulence_factor",
+        Role::TurbulenceFactor,
+        TUNABLE,
+        "Factor on the turbulence in the archive, which begins at the time zero and repeats itself",
+    )
+    .start(1.0);
+    let modes = options.modes.iter().enumerate().flat_map(|(m, mode)| {
+        let parameter = |of, which, text: &str| {
+            let name = format!("mode[{}].{of}", mode.number);
+            real(name, Role::ModeParameter(m, which), TUNABLE, text)
+        };
+        [
+            parameter(
+                "frequency",
+                ModeParameter::Frequency,
+                "Natural frequency without wind",
+            )
+            .quantity("Frequency", Some(&si::HERTZ))
+            .min(SMALLEST)
+            .start(mode.frequency_hz),
+            parameter(
+                "damping_ratio",
+                ModeParameter::DampingRatio,
+                "Structural damping as a ratio to critical",
+            )
+            .quantity("DampingRatio", None)
+            .min(0.0)
+            .start(mode.damping_ratio),
+        ]
+    });
+    std::iter::once(density)
+        .chain(turbulence.then_some(factor))
+        .chain(modes)
+        .collect()
+}
+
+/// Where a node is, in words.
+fn place(options: &BridgeOptions, named: usize) -> String {
+    let node = &options.nodes[options.named[named]];
+    format!("at node {}, {} m along the girder", node.name, node.along_m)
+}
+
+fn force(options: &BridgeOptions, named: usize, dof: Dof) -> Variable {
+    let (unit, quantity, what) = match dof {
+        Dof::Vertical => (&si::NEWTON, "Force", "vertical force, positive up"),
+        Dof::Lateral => (&si::NEWTON, "Force", "lateral force, positive downwind"),
+        Dof::Torsion => (&si::NEWTON_METRE, "Torque", "moment, positive nose-up"),
+    };
+    let name = format!(
+        "node[{}].{}",
+        options.node_name(named),
+        names_of(dof).external
+    );
+    let text = format!("External {what}, {}", place(options, named));
+    real(name, Role::NodeForce(named, dof), INPUT, text)
+        .start(0.0)
+        .quantity(quantity, Some(unit))
+}
+
+fn motions(options: &BridgeOptions, named: usize) -> impl Iterator<Item = Variable> + '_ {
+    let each = Dof::THREE
+        .into_iter()
+        .flat_map(|dof| Response::MOTION.map(|response| (dof, response)));
+    each.map(move |(dof, response)| {
+        let (w, i) = (names_of(dof), response as usize);
+        let what = match response {
+            Response::Displacement => capitalized(w.motion),
+            Response::Rate => format!("Rate of the {}", w.motion),
+            _ => format!("Second rate of the {}", w.motion),
+        };
+        let name = format!("node[{}].{}", options.node_name(named), w.responses[i]);
+        let text = format!("{what}, {}", place(options, named));
+        real(name, Role::NodeMotion(named, response, dof), OUTPUT, text)
+            .quantity(w.quantities[i], Some(w.units[i]))
+            .shown_if(dof == Dof::Torsion)
+    })
+}
+
+fn mode(options: &BridgeOptions, m: usize) -> [Variable; 3] {
+    let of = &options.modes[m];
+    let number = of.number;
+    let output = |name: &str, which, text: String| {
+        real(
+            format!("mode[{number}].{name}"),
+            Role::Mode(m, which),
+            OUTPUT,
+            text,
+        )
+    };
+    let coordinate = format!(
+        "Coordinate of mode {number} ({} Hz, generalised mass {} kg)",
+        of.frequency_hz, of.generalised_mass
+    );
+    [
+        output("coordinate", ModeOutput::Coordinate, coordinate),
+        output(
+            "rate",
+            ModeOutput::Rate,
+            format!("Rate of the coordinate of mode {number}, per second"),
+        ),
+        output(
+            "force",
+            ModeOutput::Force,
+            format!(
+                "Self-excited generalised force on mode {number}: work per unit of its coordinate, added mass included"
+            ),
+        ),
+    ]
+}
+
+fn initial(options: &BridgeOptions, m: usize) -> Variable {
+    let number = options.modes[m].number;
+    let name = format!("mode[{number}].initial_coordinate");
+    let text = format!("At release: coordinate of mode {number}");
+    real(name, Role::InitialMode(m), FIXED, text).start(options.initial[m])
+}
+
+/// Displacements and rates follow the state; accelerations and forces follow wind, external forces and gusts at once.
+fn fill_dependencies(table: &mut [Variable]) {
+    let places = |wanted: &dyn Fn(Role) -> bool| -> Vec<usize> {
+        (0..table.len())
+            .filter(|i| wanted(table[*i].role))
+            .collect()
+    };
+    let inputs = places(&|r| matches!(r, Role::WindSpeed | Role::NodeForce(..) | Role::Gust(..)));
+    let wind = places(&|r| r == Role::WindSpeed);
+    let release = places(&|r| matches!(r, Role::InitialMode(_)));
+    let structure = |r| {
+        let density = Role::Section(SectionParameter::AirDensity);
+        matches!(r, Role::ModeParameter(..)) || r == density
+    };
+    let searched = places(&|r| structure(r) || r == Role::OnsetSearchLimit);
+    let all = places(&|r| {
+        structure(r)
+            || matches!(
+                r,
+                Role::WindSpeed
+                    | Role::NodeForce(..)
+                    | Role::Gust(..)
+                    | Role::InitialMode(_)
+                    | Role::TurbulenceFactor
+            )
+    });
+    let with_wind = [wind.clone(), searched.clone()].concat();
+    let dependent = |on: &[usize]| dependencies::dependent(on.iter().copied());
+    for variable in table.iter_mut() {
+        (variable.direct_inputs, variable.initial_dependencies) = match variable.role {
+            Role::NodeMotion(_, Response::Acceleration, _) | Role::Mode(_, ModeOutput::Force) => {
+                (inputs.clone(), dependent(&all))
+            }
+            Role::NodeMotion(..)
+            | Role::Mode(..)
+            | Role::Status(Status::AmplitudeInLinearRange) => (Vec::new(), dependent(&release)),
+            Role::Calculated(_) | Role::Status(Status::FlutterSpeed) => {
+                (Vec::new(), dependent(&searched))
+            }
+            Role::Status(_) => (wind.clone(), dependent(&with_wind)),
+            _ => continue,
+        };
+    }
+}

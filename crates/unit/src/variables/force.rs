@@ -1,0 +1,274 @@
+//! The variables of a unit of forces, in the order of the table.
+
+use super::dof_names::names_of;
+use super::real::{FIXED, INPUT, OUTPUT, SMALLEST, TUNABLE, constants, force_scale, nominal, real};
+use super::section::{air_density, capitalized, filter, gust_filter, gust_inputs, wind_speed};
+use super::{ForceOutput, InitialDependency, Response, Role, StripParameter, Variable};
+use crate::aerodynamics::{GustForce, Realizable, Realization};
+use crate::error::Result;
+use crate::force_options::{ForceOptions, MAX_PREDICTION};
+use crate::section::Dof;
+use crate::si::{self, Unit};
+use crate::trained_model::TrainedModel;
+
+/// All variables with their dependencies.
+pub(super) fn variables(
+    model: &TrainedModel,
+    options: &ForceOptions,
+    gusts: Option<&GustForce>,
+) -> Result<Vec<Variable>> {
+    let dofs = model.section.dofs();
+    let mut table = vec![wind_speed(model)];
+    for (s, _) in options.strips.iter().enumerate() {
+        table.extend(motion(model, &dofs, s, options));
+        table.extend(
+            gusts
+                .iter()
+                .flat_map(|_| gust_inputs(s, |of| name(options, s, of))),
+        );
+    }
+    for (s, _) in options.strips.iter().enumerate() {
+        table.extend(forces(model, &dofs, s, options));
+    }
+    table.push(air_density().start(model.section.air_density_kg_m3));
+    for s in 0..options.strips.len() {
+        table.extend(strip(s, options));
+    }
+    table.extend(coupling(options));
+    table.extend(constants(model, model.model.realize().states())?);
+    if let Realization::Continuous(c) = model.model.realize() {
+        let lags = gusts.map_or(0, GustForce::states);
+        add_states(&mut table, options, (c.a.nrows(), lags));
+    }
+    fill_dependencies(&mut table, options.strips.len());
+    Ok(table)
+}
+
+/// Filters and lagging gusts with their rates, for importers that integrate: each of all strips before the next, as arrays
+/// stand.
+fn add_states(table: &mut Vec<Variable>, options: &ForceOptions, (filters, lags): (usize, usize)) {
+    let strips = options.strips.len();
+    for k in 0..filters + lags {
+        for s in 0..strips {
+            let (i, lag) = (k * strips + s, (k + 1).checked_sub(filters + 1));
+            let pair = match lag {
+                None => filter(i, &name(options, s, &format!("filter[{}]", k + 1))),
+                Some(j) => gust_filter(i, &name(options, s, &format!("gust_filter[{}]", j + 1))),
+            };
+            let state = table.len();
+            table.extend(pair);
+            table[state + 1].derivative_of = Some(state);
+        }
+    }
+}
+
+/// Name of a variable of a strip.
+fn name(options: &ForceOptions, s: usize, of: &str) -> String {
+    if options.named_strips {
+        format!("strip[{}].{of}", s + 1)
+    } else {
+        of.to_owned()
+    }
+}
+
+fn motion<'a>(
+    model: &'a TrainedModel,
+    dofs: &'a [Dof],
+    s: usize,
+    options: &'a ForceOptions,
+) -> impl Iterator<Item = Variable> + 'a {
+    let each = dofs
+        .iter()
+        .flat_map(|&dof| Response::MOTION.map(|response| (dof, response)));
+    each.map(move |(dof, response)| {
+        let (w, i) = (names_of(dof), response as usize);
+        let text = match response {
+            Response::Displacement => {
+                format!(
+                    "{} of the deck, at the reference point of the forces",
+                    capitalized(w.motion)
+                )
+            }
+            Response::Rate => format!(
+                "Rate of the {}; need not be connected in co-simulation",
+                w.motion
+            ),
+            _ => format!(
+                "Second rate of the {}; need not be connected in co-simulation",
+                w.motion
+            ),
+        };
+        let role = Role::Motion(s, response, dof);
+        real(name(options, s, w.responses[i]), role, INPUT, text)
+            .start(0.0)
+            .quantity(w.quantities[i], Some(w.units[i]))
+            .shown_if(dof == Dof::Torsion)
+            .nominal(nominal(model, dof, response))
+    })
+}
+
+fn forces<'a>(
+    model: &'a TrainedModel,
+    dofs: &'a [Dof],
+    s: usize,
+    options: &'a ForceOptions,
+) -> impl Iterator<Item = Variable> + 'a {
+    dofs.iter().flat_map(move |&dof| {
+        let w = names_of(dof);
+        let (total_unit, total_quantity): (&'static Unit, _) = match dof {
+            Dof::Torsion => (&si::NEWTON_METRE, "Torque"),
+            _ => (&si::NEWTON, "Force"),
+        };
+        let of = w.responses[3];
+        let ahead = "at the instant at which it acts (see prediction)";
+        let per_length = format!("Self-excited {}, {ahead}", w.force);
+        let total = format!("Self-excited {of} on the length of the strip, {ahead}");
+        let output = |of: String, kind, text| {
+            let role = Role::Force(s, kind, dof);
+            real(name(options, s, &of), role, OUTPUT, text)
+        };
+        [
+            output(of.to_owned(), ForceOutput::PerLength, per_length)
+                .quantity(w.force_quantity, Some(w.units[3]))
+                .nominal(force_scale(model, dof)),
+            output(format!("total_{of}"), ForceOutput::Total, total)
+                .quantity(total_quantity, Some(total_unit)),
+        ]
+    })
+}
+
+fn strip(s: usize, options: &ForceOptions) -> [Variable; 3] {
+    let of = &options.strips[s];
+    let parameter = |of, which, text: &str| {
+        let role = Role::Strip(s, which);
+        real(name(options, s, of), role, TUNABLE, text)
+    };
+    let metre: Option<&Unit> = Some(&si::METRE);
+    [
+        parameter("width", StripParameter::Width, "Full deck width B")
+            .quantity("Length", metre)
+            .min(SMALLEST)
+            .start(of.width_m),
+        parameter(
+            "length",
+            StripParameter::Length,
+            "Length of span of the strip",
+        )
+        .quantity("Length", metre)
+        .min(SMALLEST)
+        .start(of.length_m),
+        parameter(
+            "wind_factor",
+            StripParameter::WindFactor,
+            "Wind speed at the strip over wind_speed",
+        )
+        .min(0.0)
+        .start(of.wind_factor),
+    ]
+}
+
+/// What has to be known of the importer.
+fn coupling(options: &ForceOptions) -> [Variable; 2] {
+    [
+        real(
+            "prediction",
+            Role::Prediction,
+            TUNABLE,
+            "The forces put out are those of this many communication steps after the motion that was set for the last \
+             step: 1.5 for an explicit importer that holds them over its next step (the default), 1 for one that \
+             extrapolates them from the end of the step, 0.5 for one that steps the structure first and sets the motion of \
+             the end of the step, 0 for iterations within a step; without effect in model exchange",
+        )
+        .min(0.0)
+        .max(MAX_PREDICTION)
+        .start(options.prediction_steps),
+        real(
+            "motion_derivatives",
+            Role::MotionDerivatives,
+            FIXED,
+            "Derivatives of the motion that are set: 0 none, 1 rates, 2 rates and accelerations, -1 those that have \
+             been set since the last step",
+        )
+        .min(-1.0)
+        .max(2.0)
+        .start(-1.0),
+    ]
+}
+
+/// What the forces and states of a strip depend on.
+#[derive(Clone, Default)]
+struct StripDependencies {
+    /// Inputs and parameters.
+    known: Vec<usize>,
+    filters: Vec<usize>,
+    lags: Vec<usize>,
+}
+
+/// Forces follow the wind and the motion of their strip, its states, and everything that is stated of it; a filter's rate
+/// the displacements and all filters, that of a lagging gust the gusts and itself.
+fn fill_dependencies(table: &mut [Variable], strips: usize) {
+    let (mut shared, mut of_strip) = (Vec::new(), vec![StripDependencies::default(); strips]);
+    for (place, variable) in table.iter().enumerate() {
+        match variable.role {
+            Role::WindSpeed | Role::Section(_) | Role::MotionDerivatives => shared.push(place),
+            Role::Motion(s, ..) | Role::Gust(s, _) | Role::Strip(s, _) => {
+                of_strip[s].known.push(place);
+            }
+            Role::Filter(i) if is_lag(variable) => of_strip[i % strips].lags.push(place),
+            Role::Filter(i) => of_strip[i % strips].filters.push(place),
+            _ => {}
+        }
+    }
+    let roles: Vec<Role> = table.iter().map(|v| v.role).collect();
+    for (place, variable) in table.iter_mut().enumerate() {
+        let (strip, states) = match variable.role {
+            Role::Force(s, ..) => (s, [&of_strip[s].filters[..], &of_strip[s].lags].concat()),
+            Role::Filter(i) => (i % strips, vec![place]),
+            // behind its state
+            Role::FilterRate(i) if is_lag(variable) => (i % strips, vec![place - 1]),
+            Role::FilterRate(i) => (i % strips, of_strip[i % strips].filters.clone()),
+            _ => continue,
+        };
+        let known = shared.iter().chain(&of_strip[strip].known).copied();
+        let mut known: Vec<usize> = known.filter(|on| follows(variable, roles[*on])).collect();
+        known.sort_unstable();
+        let input = |place: &usize| {
+            matches!(
+                roles[*place],
+                Role::WindSpeed | Role::Motion(..) | Role::Gust(..)
+            )
+        };
+        if !matches!(variable.role, Role::Filter(_)) {
+            variable.direct_inputs = known.iter().copied().filter(input).collect();
+        }
+        variable.direct_inputs.extend(states);
+        let dependency = |on| InitialDependency {
+            on,
+            constant: false,
+        };
+        variable.initial_dependencies = known.into_iter().map(dependency).collect();
+    }
+}
+
+/// Whether a state, or the state of a rate, is a lagging gust.
+fn is_lag(variable: &Variable) -> bool {
+    matches!(variable.quantity, Some("Velocity" | "Acceleration"))
+}
+
+/// Whether a force, a state or its rate depends on an input or parameter of its strip, or of all.
+fn follows(variable: &Variable, on: Role) -> bool {
+    let displacement = matches!(on, Role::Motion(_, Response::Displacement, _));
+    let width = matches!(on, Role::Strip(_, StripParameter::Width));
+    let wind = on == Role::WindSpeed || matches!(on, Role::Strip(_, StripParameter::WindFactor));
+    let gust = matches!(on, Role::Gust(..));
+    match variable.role {
+        Role::Force(_, ForceOutput::PerLength, _) => {
+            !matches!(on, Role::Strip(_, StripParameter::Length))
+        }
+        Role::Force(..) => true,
+        Role::Filter(_) if is_lag(variable) => gust,
+        Role::Filter(_) => displacement || width,
+        _ if is_lag(variable) => gust || width || wind,
+        _ => displacement || width || wind,
+    }
+}

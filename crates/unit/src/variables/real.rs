@@ -1,0 +1,160 @@
+//! Real variables, and the constants that every exported unit has.
+
+use super::parameters::SectionParameter;
+use super::{Causality, Initial, Response, Role, Value, Variability, Variable};
+use crate::error::{Error, Result};
+use crate::section::Dof;
+use crate::si::{self, Unit};
+use crate::standard::printable;
+use crate::trained_model::TrainedModel;
+use std::f64::consts::TAU;
+
+/// Smallest width, density and mass: positive, and small enough for any model deck.
+pub(super) const SMALLEST: f64 = 1e-6;
+
+/// A real variable without start, unit or limits.
+pub(super) fn real(
+    name: impl Into<String>,
+    role: Role,
+    (causality, variability): (Causality, Variability),
+    description: impl Into<String>,
+) -> Variable {
+    let initial = match causality {
+        Causality::Input => None,
+        Causality::Parameter => Some(Initial::Exact),
+        _ => Some(Initial::Calculated),
+    };
+    Variable {
+        name: name.into(),
+        description: description.into(),
+        role,
+        causality,
+        variability,
+        initial,
+        value: Value::Real(None),
+        unit: None,
+        display_unit: None,
+        quantity: None,
+        min: None,
+        max: None,
+        nominal: None,
+        derivative_of: None,
+        direct_inputs: Vec::new(),
+        initial_dependencies: Vec::new(),
+    }
+}
+
+impl Variable {
+    pub(super) fn start(mut self, value: f64) -> Self {
+        self.value = Value::Real(Some(value));
+        self
+    }
+
+    pub(super) fn quantity(mut self, quantity: &'static str, unit: Option<&'static Unit>) -> Self {
+        (self.quantity, self.unit) = (Some(quantity), unit);
+        self
+    }
+
+    /// Shown in the first display unit of its unit, if there is one.
+    pub(super) fn shown(mut self) -> Self {
+        let display = self.unit.and_then(|u| u.display.first());
+        self.display_unit = display.map(|d| d.name);
+        self
+    }
+
+    /// Degrees help, kilometres per hour of a vibrating deck do not.
+    pub(super) fn shown_if(self, wanted: bool) -> Self {
+        if wanted { self.shown() } else { self }
+    }
+
+    pub(super) fn min(mut self, min: f64) -> Self {
+        self.min = Some(min);
+        self
+    }
+
+    pub(super) fn max(mut self, max: f64) -> Self {
+        self.max = Some(max);
+        self
+    }
+
+    pub(super) fn nominal(mut self, size: f64) -> Self {
+        self.nominal = Some(size);
+        self
+    }
+}
+
+pub(super) const INPUT: (Causality, Variability) = (Causality::Input, Variability::Continuous);
+pub(super) const OUTPUT: (Causality, Variability) = (Causality::Output, Variability::Continuous);
+pub(super) const DISCRETE: (Causality, Variability) = (Causality::Output, Variability::Discrete);
+pub(super) const TUNABLE: (Causality, Variability) = (Causality::Parameter, Variability::Tunable);
+pub(super) const FIXED: (Causality, Variability) = (Causality::Parameter, Variability::Fixed);
+pub(super) const CALCULATED: (Causality, Variability) =
+    (Causality::CalculatedParameter, Variability::Tunable);
+pub(super) const LOCAL: (Causality, Variability) = (Causality::Local, Variability::Constant);
+/// A state or its rate.
+pub(super) const INNER: (Causality, Variability) = (Causality::Local, Variability::Continuous);
+pub(super) const SPEED: Option<&Unit> = Some(&si::METRE_PER_SECOND);
+
+/// `filters` is the number of the states of its forces.
+pub(super) fn constants(model: &TrainedModel, filters: usize) -> Result<Vec<Variable>> {
+    let constant = |name, value, text: &str| Variable {
+        initial: Some(Initial::Exact),
+        value,
+        ..real(name, Role::Constant, LOCAL, text)
+    };
+    // as the description can say it
+    let text = |text: &str| Value::String(printable(text));
+    let states = i32::try_from(filters)
+        .map_err(|_| Error::input("model", "fewer filter states", filters.to_string()))?;
+    let version = env!("CARGO_PKG_VERSION");
+    Ok(vec![
+        constant(
+            "filters",
+            Value::Integer(Some(states)),
+            "Number of filter states of the aerodynamic model",
+        ),
+        constant(
+            "model_kind",
+            text(model.model.kind()),
+            "Kind of the aerodynamic model",
+        ),
+        constant("model_name", text(&model.name), "Name of the trained model"),
+        constant(
+            "aerodeck_version",
+            text(version),
+            "Version of the program that made this unit",
+        ),
+    ])
+}
+
+/// Usual size: displacements of 2 % of the width and rotations of 1°, at the still-air frequency.
+pub(super) fn nominal(model: &TrainedModel, dof: Dof, response: Response) -> f64 {
+    let size = if dof == Dof::Torsion {
+        1f64.to_radians()
+    } else {
+        0.02 * model.section.width_m
+    };
+    let omega = TAU * SectionParameter::Frequency(dof).value_in(&model.section);
+    match response {
+        Response::Displacement => power_of_ten(size),
+        Response::Rate => power_of_ten(size * omega),
+        Response::Acceleration => power_of_ten(size * omega * omega),
+        Response::SelfExcitedForce => force_scale(model, dof),
+    }
+}
+
+/// Usual size of forces: inertia times the usual acceleration.
+pub(super) fn force_scale(model: &TrainedModel, dof: Dof) -> f64 {
+    let inertia = SectionParameter::Inertia(dof).value_in(&model.section);
+    power_of_ten(inertia * nominal(model, dof, Response::Acceleration))
+}
+
+/// The power of ten nearest to `x` on a logarithmic scale; one when `x` is no positive number.
+pub(super) fn power_of_ten(x: f64) -> f64 {
+    // through text, because 10f64.powi rounds
+    format!("1e{}", x.log10().round() as i32)
+        .parse()
+        .ok()
+        .filter(|p: &f64| x > 0.0 && p.is_normal())
+        .unwrap_or(1.0)
+}

@@ -1,0 +1,394 @@
+//! The variables of the coupled section, in the order of the table.
+
+use super::dof_names::{DofNames, motion, names_of};
+use super::parameters::SectionParameter;
+use super::real::{
+    CALCULATED, DISCRETE, FIXED, INNER, INPUT, LOCAL, OUTPUT, SMALLEST, SPEED, TUNABLE, constants,
+    force_scale, nominal, real,
+};
+use super::variable::find;
+use super::{Calculated, Gust, Initial, Response, Role, Status, Value, Variable};
+use crate::aerodynamics::{GustForce, Realizable, Realization};
+use crate::error::Result;
+use crate::onset_bounds::OnsetBounds;
+use crate::section::{Dof, SectionModel};
+use crate::si::{self, Unit};
+use crate::trained_model::{Model, TrainedModel};
+
+/// Usual size of filter states: dimensionless motion of some hundredths.
+const FILTER_SIZE: f64 = 0.01;
+/// Smallest inertia per length, kg·m²/m.
+const SMALLEST_INERTIA: f64 = 1e-9;
+
+/// All variables without their dependencies.
+pub(super) fn variables(
+    model: &TrainedModel,
+    gusts: Option<&GustForce>,
+    bounds: Option<OnsetBounds>,
+) -> Result<Vec<Variable>> {
+    let dofs = model.section.dofs();
+    let mut table = inputs(model, &dofs);
+    table.extend(
+        gusts
+            .iter()
+            .flat_map(|_| gust_inputs(0, |name| name.to_owned())),
+    );
+    table.extend(outputs(model, &dofs));
+    table.extend(
+        SectionParameter::all(&model.section)
+            .into_iter()
+            .map(|p| section_parameter(p, &model.section)),
+    );
+    table.extend(dofs.iter().flat_map(|&dof| initial_values(dof, model)));
+    table.push(search_limit(model));
+    table.extend(calculated_parameters());
+    table.extend(constants(model, model.model.realize().states())?);
+    table.extend(bounds.into_iter().flat_map(|b| onset_bounds(b, "section")));
+    table.extend(status());
+    if let Realization::Continuous(c) = model.model.realize() {
+        let (filters, lags) = (c.a.nrows(), gusts.map_or(0, GustForce::states));
+        table.extend((0..filters).flat_map(|i| filter(i, &format!("filter[{}]", i + 1))));
+        let lag = |i| gust_filter(filters + i, &format!("gust_filter[{}]", i + 1));
+        table.extend((0..lags).flat_map(lag));
+        name_rates(&mut table, &dofs);
+    }
+    Ok(table)
+}
+
+/// The interval that the data leave of the onset of a section or bridge.
+pub(super) fn onset_bounds(bounds: OnsetBounds, of: &str) -> [Variable; 2] {
+    let end = |name, end, value| {
+        let text = format!(
+            "{end} end of the 95 % interval of the flutter onset by the scatter of the data, for the {of} as exported"
+        );
+        Variable {
+            initial: Some(Initial::Exact),
+            ..real(name, Role::Constant, LOCAL, text)
+        }
+        .start(value)
+        .quantity("Velocity", SPEED)
+    };
+    [
+        end("onset_speed_low", "Lower", bounds.low_m_s),
+        end("onset_speed_high", "Upper", bounds.high_m_s),
+    ]
+}
+
+/// The gusts at a strip.
+pub(super) fn gust_inputs(strip: usize, name: impl Fn(&str) -> String) -> [Variable; 2] {
+    let gust = |of, text| {
+        let (plain, text) = text;
+        real(name(plain), Role::Gust(strip, of), INPUT, text)
+            .start(0.0)
+            .quantity("Velocity", SPEED)
+            .nominal(1.0)
+    };
+    [
+        gust(
+            Gust::Along,
+            ("gust_u", "Turbulence along the mean wind, on top of it"),
+        ),
+        gust(Gust::Vertical, ("gust_w", "Turbulence upwards")),
+    ]
+}
+
+/// A filter state and its rate: for importers that integrate, and for linear state spaces.
+pub(super) fn filter(i: usize, name: &str) -> [Variable; 2] {
+    let text = "Filter state of the aerodynamic model";
+    let [state, rate] = inner_state(i, name, text);
+    [
+        state.quantity("FilterState", None).nominal(FILTER_SIZE),
+        rate.quantity("FilterRate", Some(&si::PER_SECOND)),
+    ]
+}
+
+/// The same of a gust that acts through a lag.
+pub(super) fn gust_filter(i: usize, name: &str) -> [Variable; 2] {
+    let text = "Gust behind a lag of its admittance, in m/s";
+    let [state, rate] = inner_state(i, name, text);
+    [
+        state.quantity("Velocity", SPEED).nominal(1.0),
+        rate.quantity("Acceleration", Some(&si::METRE_PER_SECOND2)),
+    ]
+}
+
+fn inner_state(i: usize, name: &str, text: &str) -> [Variable; 2] {
+    [
+        real(name, Role::Filter(i), INNER, text),
+        real(
+            format!("der({name})"),
+            Role::FilterRate(i),
+            INNER,
+            "Rate of that state",
+        ),
+    ]
+}
+
+/// Enters which variable is the rate of which state.
+fn name_rates(table: &mut [Variable], dofs: &[Dof]) {
+    let of_motion = dofs.iter().flat_map(|&dof| {
+        [
+            Response::Displacement,
+            Response::Rate,
+            Response::Acceleration,
+        ]
+        .map(|r| Role::Response(r, dof))
+    });
+    let motion: Vec<Role> = of_motion.collect();
+    let filters = table.iter().filter_map(|v| match v.role {
+        Role::Filter(i) => Some([Role::Filter(i), Role::FilterRate(i)]),
+        _ => None,
+    });
+    let filters: Vec<_> = filters.collect();
+    let triples = motion.chunks_exact(3);
+    let pairs = triples.flat_map(|m| [[m[0], m[1]], [m[1], m[2]]]);
+    for [state, rate] in pairs.chain(filters) {
+        let place = find(table, state);
+        if let Some(rate) = find(table, rate) {
+            table[rate].derivative_of = place;
+        }
+    }
+}
+
+pub(super) fn wind_speed(model: &TrainedModel) -> Variable {
+    let text = "Mean wind speed V, normal to the span";
+    real("wind_speed", Role::WindSpeed, INPUT, text)
+        .start(model.experiment.wind_speed_m_s)
+        .quantity("Velocity", SPEED)
+        .min(0.0)
+        .nominal(10.0)
+}
+
+fn inputs(model: &TrainedModel, dofs: &[Dof]) -> Vec<Variable> {
+    let external = dofs.iter().map(|&dof| {
+        let w = names_of(dof);
+        let text = format!("External {}", w.force);
+        real(w.external, Role::ExternalForce(dof), INPUT, text)
+            .start(0.0)
+            .quantity(w.force_quantity, Some(w.units[3]))
+            .nominal(force_scale(model, dof))
+    });
+    std::iter::once(wind_speed(model)).chain(external).collect()
+}
+
+fn outputs(model: &TrainedModel, dofs: &[Dof]) -> Vec<Variable> {
+    let held = match &model.model {
+        Model::DiscreteLaguerre(m) => format!(
+            "; sampled and held over internal steps of delta_s*B/V, delta_s = {}",
+            m.delta_s
+        ),
+        _ => String::new(),
+    };
+    let describe = |response: Response, w: &DofNames| match response {
+        Response::Displacement => capitalized(w.motion),
+        Response::Rate => format!("Rate of the {}", w.motion),
+        Response::Acceleration => format!("Second rate of the {}", w.motion),
+        Response::SelfExcitedForce => {
+            format!("Self-excited {}, added mass included{held}", w.force)
+        }
+    };
+    dofs.iter()
+        .flat_map(|&dof| Response::ALL.map(|response| (dof, response)))
+        .map(|(dof, response)| {
+            let (w, i) = (names_of(dof), response as usize);
+            let quantity = w.quantities.get(i).copied().unwrap_or(w.force_quantity);
+            let role = Role::Response(response, dof);
+            real(w.responses[i], role, OUTPUT, describe(response, w))
+                .quantity(quantity, Some(w.units[i]))
+                .shown_if(dof == Dof::Torsion)
+                .nominal(nominal(model, dof, response))
+        })
+        .collect()
+}
+
+/// Density of the air, of a unit of any kind; without a start value.
+pub(super) fn air_density() -> Variable {
+    real(
+        "air_density",
+        Role::Section(SectionParameter::AirDensity),
+        TUNABLE,
+        "Air density rho",
+    )
+    .quantity("Density", Some(&si::KILOGRAM_PER_METRE3))
+    .min(SMALLEST)
+}
+
+fn section_parameter(parameter: SectionParameter, section: &SectionModel) -> Variable {
+    let variable = |name, text: &str| real(name, Role::Section(parameter), TUNABLE, text);
+    let of_support = |dof, i: usize, text: &str| {
+        let text = format!("{text}, {} motion", motion(dof));
+        real(
+            names_of(dof).support[i],
+            Role::Section(parameter),
+            TUNABLE,
+            text,
+        )
+        .min(0.0)
+    };
+    let metre: Option<&Unit> = Some(&si::METRE);
+    match parameter {
+        SectionParameter::AxisOffset => variable(
+            "axis_offset",
+            "Axis about which the section turns, to which heave, lift and moment belong: distance from the reference point of the aerodynamic forces, positive downwind",
+        )
+        .quantity("Length", metre),
+        SectionParameter::MassOffset => variable(
+            "mass_offset",
+            "Centre of mass: distance from the axis, positive downwind",
+        )
+        .quantity("Length", metre),
+        SectionParameter::Width => variable("width", "Full deck width B")
+            .quantity("Length", metre)
+            .min(SMALLEST),
+        SectionParameter::AirDensity => air_density(),
+        SectionParameter::Inertia(dof) => {
+            let (min, text) = match dof {
+                Dof::Vertical => (SMALLEST, "Mass per unit length of span, vertical motion"),
+                Dof::Lateral => (SMALLEST, "Mass per unit length of span, lateral motion"),
+                Dof::Torsion => (SMALLEST_INERTIA, "Mass moment of inertia per unit length of span"),
+            };
+            let w = names_of(dof);
+            variable(w.support[0], text)
+                .quantity(w.inertia_quantity, Some(w.inertia_unit))
+                .min(min)
+        }
+        SectionParameter::Frequency(dof) => of_support(dof, 1, "Natural frequency in still air")
+            .quantity("Frequency", Some(&si::HERTZ)),
+        SectionParameter::DampingRatio(dof) => {
+            of_support(dof, 2, "Structural damping as a ratio to critical")
+                .quantity("DampingRatio", None)
+        }
+    }
+    .start(parameter.value_in(section))
+}
+
+/// Displacement and rate at release.
+fn initial_values(dof: Dof, model: &TrainedModel) -> [Variable; 2] {
+    let w = names_of(dof);
+    let release = match dof {
+        Dof::Vertical => model.experiment.initial_vertical_m,
+        Dof::Lateral => 0.0,
+        Dof::Torsion => model.experiment.initial_rotation_rad,
+    };
+    let variable = |i: usize, start: f64, role: Role, what: &str| {
+        let text = format!("At release: {what}{}", w.motion);
+        real(w.initial[i], role, FIXED, text)
+            .start(start)
+            .quantity(w.quantities[i], Some(w.units[i]))
+            .shown_if(dof == Dof::Torsion)
+    };
+    [
+        variable(0, release, Role::InitialDisplacement(dof), ""),
+        variable(1, 0.0, Role::InitialRate(dof), "rate of the "),
+    ]
+}
+
+pub(super) fn search_limit(model: &TrainedModel) -> Variable {
+    let text = "Flutter onset and divergence are searched up to this wind speed";
+    real("onset_search_limit", Role::OnsetSearchLimit, FIXED, text)
+        .start(model.experiment.onset_search_limit_m_s)
+        .quantity("Velocity", SPEED)
+        .min(SMALLEST)
+}
+
+pub(super) fn calculated_parameters() -> Vec<Variable> {
+    use Calculated as C;
+    let parameter = |name, what, text: &str| real(name, Role::Calculated(what), CALCULATED, text);
+    let flag = |name, what, text: &str| Variable {
+        value: Value::Boolean(None),
+        ..parameter(name, what, text)
+    };
+    vec![
+        parameter(
+            "onset_speed",
+            C::OnsetSpeed,
+            "Wind speed of flutter onset for the current parameters; onset_search_limit when none was found, zero when it cannot be computed",
+        )
+        .quantity("Velocity", SPEED),
+        parameter(
+            "onset_frequency",
+            C::OnsetFrequency,
+            "Frequency at flutter onset; zero when none is known",
+        )
+        .quantity("Frequency", Some(&si::HERTZ))
+        .shown(),
+        parameter(
+            "onset_reduced_velocity",
+            C::OnsetReducedVelocity,
+            "Reduced velocity V/(f*B) at flutter onset; zero when none is known",
+        )
+        .quantity("ReducedVelocity", None),
+        parameter(
+            "divergence_speed",
+            C::DivergenceSpeed,
+            "Wind speed of static divergence for the current parameters; onset_search_limit when none was found, zero when it cannot be computed",
+        )
+        .quantity("Velocity", SPEED),
+        flag(
+            "onset_found",
+            C::OnsetFound,
+            "Whether a flutter onset was found up to onset_search_limit",
+        ),
+        flag(
+            "onset_in_tested_range",
+            C::OnsetInTestedRange,
+            "Whether the reduced frequency at onset lies in the tested range of the model",
+        ),
+        flag(
+            "divergence_found",
+            C::DivergenceFound,
+            "Whether divergence was found up to onset_search_limit",
+        ),
+        flag(
+            "stable_below_onset",
+            C::StableBelowOnset,
+            "Whether nothing grows below onset_speed: false where the model feeds energy into motions outside the tested range, or where that is not known",
+        ),
+    ]
+}
+
+/// What can be read while running in any importer, also in those that take outputs only.
+pub(super) fn status() -> Vec<Variable> {
+    let output = |name, what, text: &str| real(name, Role::Status(what), OUTPUT, text);
+    let flag = |name, what, text: &str| Variable {
+        value: Value::Boolean(None),
+        ..real(name, Role::Status(what), DISCRETE, text)
+    };
+    vec![
+        output(
+            "flutter_margin",
+            Status::FlutterMargin,
+            "onset_speed less wind_speed",
+        )
+        .quantity("Velocity", SPEED),
+        output(
+            "damping_now",
+            Status::DampingNow,
+            "Smallest damping ratio of the modes at the present wind speed; negative when one grows",
+        )
+        .quantity("DampingRatio", None),
+        flag(
+            "wind_in_tested_range",
+            Status::WindInTestedRange,
+            "Whether every motion, at its frequency in still air, lies in the tested range at the present wind speed",
+        ),
+        flag(
+            "amplitude_in_linear_range",
+            Status::AmplitudeInLinearRange,
+            "Whether the rotation is at most 10 degrees, where linear forces end",
+        ),
+        output(
+            "flutter_speed",
+            Status::FlutterSpeed,
+            "onset_speed once more, for tools that take outputs only",
+        )
+        .quantity("Velocity", SPEED),
+    ]
+}
+
+pub(super) fn capitalized(text: &str) -> String {
+    let mut letters = text.chars();
+    letters
+        .next()
+        .map_or_else(String::new, |c| c.to_uppercase().chain(letters).collect())
+}

@@ -1,0 +1,263 @@
+//! One variable of the table: what it stands for, its type, its limits and what it depends on.
+
+use super::parameters::{ModeParameter, SectionParameter};
+use crate::section::Dof;
+use crate::si::Unit;
+use crate::standard::{Causality, Initial, Variability};
+
+/// Type of a variable, with its start value where it has one.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Value {
+    /// A real number.
+    Real(Option<f64>),
+    /// An integer.
+    Integer(Option<i32>),
+    /// A truth value.
+    Boolean(Option<bool>),
+    /// A text.
+    String(String),
+}
+
+impl Value {
+    /// Name of the type.
+    pub fn type_name(&self) -> &'static str {
+        match self {
+            Self::Real(_) => "Real",
+            Self::Integer(_) => "Integer",
+            Self::Boolean(_) => "Boolean",
+            Self::String(_) => "String",
+        }
+    }
+}
+
+/// Motion and force of one degree of freedom.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Response {
+    /// Displacement or rotation.
+    Displacement,
+    /// Its first rate.
+    Rate,
+    /// Its second rate.
+    Acceleration,
+    /// Self-excited force or moment per unit length.
+    SelfExcitedForce,
+}
+
+impl Response {
+    /// Those of the motion.
+    pub const MOTION: [Response; 3] = [Self::Displacement, Self::Rate, Self::Acceleration];
+
+    /// All four, in the order of the outputs of a coupled system.
+    pub const ALL: [Response; 4] = [
+        Self::Displacement,
+        Self::Rate,
+        Self::Acceleration,
+        Self::SelfExcitedForce,
+    ];
+}
+
+/// What is computed from the parameters alone.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Calculated {
+    /// Wind speed of flutter onset.
+    OnsetSpeed,
+    /// Frequency there.
+    OnsetFrequency,
+    /// `V* = V/(fB)` there.
+    OnsetReducedVelocity,
+    /// Wind speed of static divergence.
+    DivergenceSpeed,
+    /// Whether an onset was found below the search limit.
+    OnsetFound,
+    /// Whether its reduced frequency lies in the tested range.
+    OnsetInTestedRange,
+    /// Whether divergence was found below the search limit.
+    DivergenceFound,
+    /// Whether nothing grows below the onset at reduced frequencies that were not tested.
+    StableBelowOnset,
+}
+
+impl Calculated {
+    /// How many there are.
+    pub const COUNT: usize = Self::StableBelowOnset as usize + 1;
+}
+
+/// What is known of the present moment: how far from flutter, and whether the answer can be trusted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Status {
+    /// Onset speed less the wind speed.
+    FlutterMargin,
+    /// Smallest damping ratio of the modes at the wind speed.
+    DampingNow,
+    /// Whether every motion, at its frequency in still air, lies in the tested range at the wind speed.
+    WindInTestedRange,
+    /// Whether the rotation is one of linear theory.
+    AmplitudeInLinearRange,
+    /// Onset speed, for tools that take outputs only.
+    FlutterSpeed,
+}
+
+/// The quantity behind a variable: what getters and setters dispatch on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Role {
+    /// Wind speed `V`.
+    WindSpeed,
+    /// External force on a degree of freedom.
+    ExternalForce(Dof),
+    /// Gust at a strip, counted from zero.
+    Gust(usize, Gust),
+    /// Motion or self-excited force of a degree of freedom.
+    Response(Response, Dof),
+    /// A property of the section.
+    Section(SectionParameter),
+    /// Displacement at release.
+    InitialDisplacement(Dof),
+    /// Rate at release.
+    InitialRate(Dof),
+    /// Upper end of the search for onset and divergence.
+    OnsetSearchLimit,
+    /// Computed from the parameters.
+    Calculated(Calculated),
+    /// Computed from parameters, wind and state.
+    Status(Status),
+    /// A state that is no motion, counted from zero: filters of the aerodynamic model, then gusts behind the lags of their
+    /// admittance.
+    Filter(usize),
+    /// Its rate.
+    FilterRate(usize),
+    /// Never changes.
+    Constant,
+    /// Motion of a degree of freedom of a strip, counted from zero.
+    Motion(usize, Response, Dof),
+    /// Self-excited force on a strip.
+    Force(usize, ForceOutput, Dof),
+    /// A property of a strip.
+    Strip(usize, StripParameter),
+    /// How far ahead of the motion the force is put out, in communication steps.
+    Prediction,
+    /// Which derivatives of the motion the importer sets.
+    MotionDerivatives,
+    /// External force on a node of a bridge, by its place among those named.
+    NodeForce(usize, Dof),
+    /// Motion of a node of a bridge.
+    NodeMotion(usize, Response, Dof),
+    /// A number of a mode of a bridge.
+    Mode(usize, ModeOutput),
+    /// Modal coordinate at release.
+    InitialMode(usize),
+    /// A property of a mode of a bridge.
+    ModeParameter(usize, ModeParameter),
+    /// Factor on the turbulence that a bridge has in its archive.
+    TurbulenceFactor,
+}
+
+/// A number of a mode.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ModeOutput {
+    /// Its coordinate.
+    Coordinate,
+    /// The rate of it.
+    Rate,
+    /// The self-excited force on it.
+    Force,
+}
+
+/// A force on a strip.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ForceOutput {
+    /// Per unit length of span.
+    PerLength,
+    /// On the whole strip.
+    Total,
+}
+
+/// A component of the gusts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Gust {
+    /// Along the mean wind.
+    Along,
+    /// Upwards.
+    Vertical,
+}
+
+impl Gust {
+    /// Both, in the order of the columns of coefficients.
+    pub(crate) const BOTH: [Gust; 2] = [Self::Along, Self::Vertical];
+}
+
+/// A property of a strip.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StripParameter {
+    /// Deck width `B`.
+    Width,
+    /// Length of span.
+    Length,
+    /// Wind speed at the strip over the input.
+    WindFactor,
+}
+
+/// One known that an unknown of the initialisation depends on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct InitialDependency {
+    /// Place of the known in the table.
+    pub on: usize,
+    /// The dependence is multiplication by a constant.
+    pub constant: bool,
+}
+
+/// One variable.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Variable {
+    /// Name, unique in the table.
+    pub name: String,
+    /// What it means, with sign and reference.
+    pub description: String,
+    /// What it stands for.
+    pub role: Role,
+    /// What it is to the importer.
+    pub causality: Causality,
+    /// When it changes.
+    pub variability: Variability,
+    /// How it is initialised; `None` for inputs.
+    pub initial: Option<Initial>,
+    /// Type and start value.
+    pub value: Value,
+    /// Unit of a dimensional number.
+    pub unit: Option<&'static Unit>,
+    /// Name of the unit it is best shown in, one of the display units of `unit`.
+    pub display_unit: Option<&'static str>,
+    /// Physical quantity in one word.
+    pub quantity: Option<&'static str>,
+    /// Smallest value that is accepted.
+    pub min: Option<f64>,
+    /// Largest value that is accepted.
+    pub max: Option<f64>,
+    /// Usual size.
+    pub nominal: Option<f64>,
+    /// The variable whose rate it is, by place in the table (rates of states only).
+    pub derivative_of: Option<usize>,
+    /// Inputs and states that act on it without delay, by place in the table (outputs and rates of states only).
+    pub direct_inputs: Vec<usize>,
+    /// What it depends on while initialising, by place in the table (unknowns only).
+    pub initial_dependencies: Vec<InitialDependency>,
+}
+
+impl Variable {
+    /// Whether it is one of the unknowns of the initialisation mode.
+    pub fn is_initial_unknown(&self) -> bool {
+        self.initial == Some(Initial::Calculated)
+    }
+
+    /// Whether it is found by integration.
+    pub(crate) fn is_state(&self) -> bool {
+        matches!(
+            self.role,
+            Role::Response(Response::Displacement | Response::Rate, _) | Role::Filter(_)
+        )
+    }
+}
+
+/// Place of the variable with this role.
+pub(super) fn find(variables: &[Variable], role: Role) -> Option<usize> {
+    variables.iter().position(|v| v.role == role)
+}
