@@ -204,15 +204,15 @@ mod silence {
 
 #[cfg(feature = "runtime")]
 mod silence {
-    pub fn install() {
+    pub(super) fn install() {
         std::panic::set_hook(Box::new(|_| ()));
     }
 
-    pub fn enter() -> bool {
+    pub(super) fn enter() -> bool {
         false
     }
 
-    pub fn leave(_: bool) {}
+    pub(super) fn leave(_: bool) {}
 }
 
 /// Keeps panics inside [`shielded`] silent: they are reported through the importer's logger, and collecting a backtrace
