@@ -196,7 +196,7 @@ mod tests {
         let place = folder.path().join("a%20b");
         std::fs::create_dir(&place).unwrap();
         let model = format!(
-            "{}/tests/data/models/rational.json",
+            "{}/../../tests/data/models/rational.json",
             env!("CARGO_MANIFEST_DIR")
         );
         std::fs::copy(&model, place.join(MODEL_FILE)).unwrap();

@@ -10,7 +10,7 @@ use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};
 
 /// Normal draws of the parameters of a fit, and the models that they make. Searched poles move the transfer function along its
-/// slope (see [`LinearModel`]), so that every draw is a model with the poles of the fit.
+/// slope (see `LinearModel`), so that every draw is a model with the poles of the fit.
 #[derive(Debug)]
 pub struct ModelDraws<'a> {
     estimate: &'a CoefficientUncertainty,

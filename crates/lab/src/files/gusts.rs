@@ -90,7 +90,7 @@ pub(crate) fn parse_gusts(text: &str) -> Result<GustSeries> {
     GustSeries::new(step, along, vertical)
 }
 
-/// Writes a series; [`parse_gusts`] gives the same gusts back, bit for bit.
+/// Writes a series; `parse_gusts` gives the same gusts back, bit for bit.
 pub fn write_gusts(
     name: &str,
     source: &str,

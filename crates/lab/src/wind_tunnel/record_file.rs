@@ -61,7 +61,7 @@ impl RecordSource for RecordFile {
     /// # Errors
     /// [`Error::Io`]; [`Error::Input`] with file and line: text or NaN in place of a number, a row with more or fewer
     /// columns, a gap in time or an uneven step, another sampling frequency than stated, fewer than
-    /// [`SAMPLES_AT_LEAST`] samples.
+    /// 64 samples.
     fn for_each_block(&self, f: &mut dyn FnMut(RecordBlock<'_>) -> Result<()>) -> Result<()> {
         let io = |e| Error::io(&self.path, e);
         let mut file = File::open(&self.path).map_err(io)?;

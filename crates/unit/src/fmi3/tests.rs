@@ -40,7 +40,7 @@ impl Unit {
     fn of(kind: &str, strips: Option<usize>, integrated: bool) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let file = format!(
-            "{}/tests/data/models/{kind}.json",
+            "{}/../../tests/data/models/{kind}.json",
             env!("CARGO_MANIFEST_DIR")
         );
         let model = std::fs::read(file).unwrap();

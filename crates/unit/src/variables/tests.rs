@@ -5,7 +5,7 @@ use crate::section::Translation;
 
 fn fixture(kind: &str) -> TrainedModel {
     let path = format!(
-        "{}/tests/data/models/{kind}.json",
+        "{}/../../tests/data/models/{kind}.json",
         env!("CARGO_MANIFEST_DIR")
     );
     TrainedModel::from_json(&std::fs::read_to_string(path).unwrap()).unwrap()

@@ -38,7 +38,7 @@ pub struct ForceMetrics {
 }
 
 impl ForceMetrics {
-    /// Names of the metrics as the thesis and the toolbox write them, in the order of [`ForceMetrics::values`].
+    /// Names of the metrics as the thesis and the toolbox write them, in the order of `ForceMetrics::values`.
     pub const NAMES: [&str; 7] = ["M_phi", "M_p", "M_rms", "M_muw", "M_mw", "M_w", "M_pdf"];
 
     /// The metrics without the lag.

@@ -105,10 +105,10 @@ pub(crate) fn parse_csv(text: &str) -> Result<DerivativeTable> {
     parse_csv_in(text, StatedConvention::default()).map(|read| read.table)
 }
 
-/// As [`parse_csv`], with what the caller states about the convention; the second value is the one the text is in.
+/// A table from text in our own format, with what the caller states about the convention; the second value is the one the text is in.
 ///
 /// # Errors
-/// As [`parse_csv`]; a stated convention that contradicts the text.
+/// As [`read_csv`]; a stated convention that contradicts the text.
 pub fn parse_csv_in(text: &str, stated: StatedConvention) -> Result<TableInConvention> {
     let options = ReadOptions {
         convention: stated,

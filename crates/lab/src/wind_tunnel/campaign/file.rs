@@ -24,7 +24,7 @@ const CELLS_AT_MOST: f64 = 64.0;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Campaign {
-    /// [`CAMPAIGN_SCHEMA`].
+    /// 1.
     pub schema: u32,
     /// What was tested.
     pub section: SectionBlock,
