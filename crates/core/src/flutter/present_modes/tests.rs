@@ -23,7 +23,7 @@ fn section(modes: usize) -> CoupledSection {
             shape[motion] = (PI * waves * along(node)).sin();
         }
         // a cable's frequencies rise with their waves, a girder's faster
-        let first_hz = [0.08, 0.04, 0.32][motion];
+        let first_hz = [0.08, 0.04, 0.28][motion];
         BridgeMode {
             number: number + 1,
             frequency_hz: first_hz * waves * (1.0 + 0.05 * waves),
