@@ -2,11 +2,10 @@
 
 pub mod description;
 pub mod description_fmi3;
-#[allow(unsafe_code)]
-pub mod importer;
 pub mod package;
-mod xml;
 
+pub use aerodeck_fmu_host as importer;
+use aerodeck_fmu_host::xml;
 pub use aerodeck_unit::{
     bridge_gusts, bridge_options, fmi2, fmi3, force_options, groups, identity, instance, lifecycle,
     location, log_categories, onset_bounds, onset_start, refusal, resources, si, standard,

@@ -19,6 +19,7 @@ const SOURCES: &[&str] = &[
     "src",
     "crates/core/src",
     "crates/fit/src",
+    "crates/fmu-host/src",
     "crates/lab/src",
     "crates/live/src",
     "crates/unit/src",

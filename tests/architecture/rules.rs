@@ -137,13 +137,17 @@ pub fn module_of(path: &str) -> Vec<String> {
     if inner == "lib" {
         return Vec::new();
     }
-    let room = room_of_crate(path).into_iter();
+    let room = room_of_crate(path).unwrap_or_default().iter().copied();
     room.chain(inner.split('/')).map(str::to_owned).collect()
 }
 
 /// The room that a whole crate is; none where a crate has several.
-fn room_of_crate(path: &str) -> Option<&'static str> {
-    let crates = [("crates/unit/", "fmu"), ("crates/live/", "live")];
+fn room_of_crate(path: &str) -> Option<&'static [&'static str]> {
+    let crates: [(&str, &[&str]); 3] = [
+        ("crates/fmu-host/", &["fmu", "importer"]),
+        ("crates/live/", &["live"]),
+        ("crates/unit/", &["fmu"]),
+    ];
     let found = crates.iter().find(|(start, _)| path.starts_with(start));
     found.map(|(_, room)| *room)
 }
@@ -156,11 +160,18 @@ pub fn mentions(path: &str, source: &Source) -> Vec<Mention> {
         return found;
     };
     for mention in &mut found {
-        let is_room = |name: &String| ARROWS.iter().any(|row| row.module == name);
-        let first = mention.path.first();
-        if first.is_some_and(|name| !name.starts_with(char::is_uppercase) && !is_room(name)) {
-            mention.path.insert(0, room.to_owned());
+        let Some(first) = mention.path.first() else {
+            continue;
+        };
+        let is_room = ARROWS.iter().any(|row| row.module == first);
+        if first.starts_with(char::is_uppercase) || is_room {
+            continue;
         }
+        // what the importer has of the unit
+        let of_the_unit = ["location", "standard"].contains(&first.as_str());
+        let room = if of_the_unit { &room[..1] } else { room };
+        let room = room.iter().map(|name| (*name).to_owned());
+        mention.path.splice(0..0, room);
     }
     found
 }

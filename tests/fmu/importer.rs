@@ -70,7 +70,10 @@ fn real_variables_alone_pass_every_check() {
 fn every_check_and_every_trial_passes() {
     let folder = tempfile::tempdir().unwrap();
     for kind in KINDS {
-        let report = Fmu::open(exported(folder.path(), kind)).unwrap().check();
+        let fmu = Fmu::open(exported(folder.path(), kind)).unwrap();
+        assert_eq!(fmu.platforms().len(), 1);
+        assert_eq!(fmu.check_without_running().findings, [], "{kind}");
+        let report = fmu.check();
         assert!(report.passed(), "{kind}: {report:#?}");
         assert_eq!(report.count(Severity::Warning), 0, "{:#?}", report.findings);
         // platform, run, replay, two instances, states, bytes, steps, derivatives of both sorts

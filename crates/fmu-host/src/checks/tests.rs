@@ -3,7 +3,7 @@
 use super::super::findings::Severity;
 use super::super::reading::read;
 use super::check;
-use crate::fmu::xml::Element;
+use crate::xml::Element;
 
 /// A description without a flaw: time, tunable parameter, inputs, state, output, calculated parameter, string.
 const GOOD: &str = r#"<?xml version="1.0" encoding="UTF-8"?>

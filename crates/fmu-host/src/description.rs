@@ -1,6 +1,6 @@
 //! What `modelDescription.xml` of an FMI 2.0 co-simulation FMU says, as plain values.
 
-pub use crate::fmu::standard::{Causality, Initial, Variability};
+pub use crate::standard::{Causality, Initial, Variability};
 use serde::Serialize;
 use std::collections::HashMap;
 
@@ -297,7 +297,7 @@ impl ModelDescription {
     }
 
     /// The declared types by name, the first of each: to look them up for many variables.
-    pub(crate) fn types_by_name(&self) -> HashMap<&str, &SimpleType> {
+    pub fn types_by_name(&self) -> HashMap<&str, &SimpleType> {
         let mut types = HashMap::new();
         for t in &self.types {
             types.entry(t.name.as_str()).or_insert(t);

@@ -14,7 +14,7 @@ const MAX_ATTRIBUTES: usize = 200;
 
 /// One element: text between children is dropped, since a model description holds none.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Element {
+pub struct Element {
     /// Name, with its prefix if it has one.
     pub name: String,
     /// Line of the opening tag, counted from 1; 0 for an element to be written.
@@ -27,7 +27,7 @@ pub(super) struct Element {
 
 impl Element {
     /// An element to be written.
-    pub(super) fn new(name: &str) -> Self {
+    pub fn new(name: &str) -> Self {
         Self {
             name: name.to_owned(),
             line: 0,
@@ -37,13 +37,13 @@ impl Element {
     }
 
     /// The same with one more attribute.
-    pub(super) fn with(mut self, name: &str, value: impl ToString) -> Self {
+    pub fn with(mut self, name: &str, value: impl ToString) -> Self {
         self.attributes.push((name.to_owned(), value.to_string()));
         self
     }
 
     /// The same with one more attribute if there is a value.
-    pub(super) fn with_any(self, name: &str, value: Option<impl ToString>) -> Self {
+    pub fn with_any(self, name: &str, value: Option<impl ToString>) -> Self {
         match value {
             Some(value) => self.with(name, value),
             None => self,
@@ -51,13 +51,13 @@ impl Element {
     }
 
     /// The same with more children.
-    pub(super) fn containing(mut self, children: impl IntoIterator<Item = Element>) -> Self {
+    pub fn containing(mut self, children: impl IntoIterator<Item = Element>) -> Self {
         self.children.extend(children);
         self
     }
 
     /// The document: an element per line, two spaces per level.
-    pub(super) fn document(&self) -> String {
+    pub fn document(&self) -> String {
         let mut text = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
         self.write(&mut text, 0);
         text
@@ -86,7 +86,7 @@ impl Element {
     ///
     /// # Errors
     /// [`Error::Input`] with the line where the text stops being XML.
-    pub(super) fn parse(text: &str) -> Result<Self> {
+    pub fn parse(text: &str) -> Result<Self> {
         let mut strange = text.char_indices().filter(|(_, c)| !is_printable(*c));
         if let Some((at, c)) = strange.next() {
             let line = 1 + text[..at].matches('\n').count();
@@ -127,7 +127,7 @@ impl Element {
     }
 
     /// Value of an attribute, if it is there.
-    pub(super) fn attribute(&self, name: &str) -> Option<&str> {
+    pub fn attribute(&self, name: &str) -> Option<&str> {
         self.attributes
             .iter()
             .find(|(n, _)| n == name)
@@ -135,12 +135,12 @@ impl Element {
     }
 
     /// The first child of that name.
-    pub(super) fn child(&self, name: &str) -> Option<&Element> {
+    pub fn child(&self, name: &str) -> Option<&Element> {
         self.children.iter().find(|c| c.name == name)
     }
 
     /// All children of that name.
-    pub(super) fn children_named<'a>(&'a self, name: &'a str) -> impl Iterator<Item = &'a Element> {
+    pub fn children_named<'a>(&'a self, name: &'a str) -> impl Iterator<Item = &'a Element> {
         self.children.iter().filter(move |c| c.name == name)
     }
 }

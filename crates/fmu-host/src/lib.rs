@@ -5,6 +5,26 @@
 //! call by call; [`simulate`] gives a table.
 //!
 //! The code of an FMU runs in this process: one that crashes takes it along.
+// what is public can be reached from outside
+#![deny(missing_docs, unreachable_pub)]
+// the process is the caller's: no abrupt end, and no word on its terminal
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::unwrap_used,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::todo,
+        clippy::unimplemented,
+        clippy::unreachable,
+        clippy::print_stdout,
+        clippy::print_stderr,
+        clippy::dbg_macro
+    )
+)]
+
+use aerodeck_core::{error, flutter, state_space};
+use aerodeck_unit::{location, standard};
 
 mod archive;
 mod checks;
@@ -19,13 +39,14 @@ mod simulation;
 mod slave;
 mod status;
 mod trials;
+pub mod xml;
 
 pub use description::{
     Causality, CoSimulation, DefaultExperiment, DisplayUnit, Initial, Kind, ModelDescription,
     ScalarVariable, SimpleType, TypeAttributes, Unit, Unknown, Value, Variability,
 };
 pub use findings::{CheckReport, Finding, Severity, Trial};
-pub(crate) use growth::growth_by_stepping;
+pub use growth::growth_by_stepping;
 pub use growth::{
     Growth, GrowthPoint, SteppedOnset, SteppedSearch, SteppingSearch, onset_by_stepping,
 };
@@ -35,8 +56,8 @@ pub use slave::{FmuState, Slave};
 pub use status::Status;
 
 use crate::error::{Error, Result};
-use crate::fmu::location::location_of;
-use crate::fmu::xml::Element;
+use crate::location::location_of;
+use crate::xml::Element;
 use description::FILE;
 use findings::Findings;
 use library::Binary;

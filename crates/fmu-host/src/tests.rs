@@ -130,34 +130,6 @@ fn descriptions_in_latin_1_are_read() {
     assert_eq!(fmu.model_description().model_name, "Brücke");
 }
 
-#[test]
-fn a_package_of_our_own_has_no_static_finding() {
-    for kind in ["rational", "continuous_laguerre", "discrete_laguerre"] {
-        let json = Path::new(env!("CARGO_MANIFEST_DIR"))
-            .join("tests/data/models")
-            .join(format!("{kind}.json"));
-        let model =
-            crate::trained_model::TrainedModel::from_json(&std::fs::read_to_string(json).unwrap())
-                .unwrap();
-        let runtimes = [crate::fmu::package::Runtime::embedded().unwrap()];
-        let bytes = crate::fmu::package::package(
-            &model,
-            &runtimes,
-            crate::fmu::package::GrowthPolicy::Refuse,
-        )
-        .unwrap();
-        let mut file = tempfile::NamedTempFile::new().unwrap();
-        file.write_all(&bytes).unwrap();
-        let fmu = Fmu::open(file.path()).unwrap();
-        let mut findings = fmu.findings.clone();
-        findings.0.extend(checks::check(&fmu.description).0);
-        fmu.check_files(&mut findings);
-        assert_eq!(findings.0, [], "{kind}");
-        assert_eq!(fmu.platforms().len(), 1);
-        assert!(fmu.binary().unwrap().is_file());
-    }
-}
-
 /// A description with a control character is no XML, whatever a lenient reader makes of it.
 #[test]
 fn control_characters_are_found() {

@@ -2,8 +2,8 @@
 
 use super::Slave;
 use crate::error::{Error, Result};
-use crate::fmu::importer::library::{Int, Text};
-use crate::fmu::importer::log::text;
+use crate::library::{Int, Text};
+use crate::log::text;
 use std::ffi::CString;
 
 // SAFETY of every call below: the component lives, and the slices have the length that is passed

@@ -5,8 +5,8 @@ use super::description::{
     ScalarVariable, SimpleType, TypeAttributes, Unit, Unknown, Value, Variability,
 };
 use super::findings::Findings;
-use crate::fmu::standard::FmiTerm;
-use crate::fmu::xml::Element;
+use crate::standard::FmiTerm;
+use crate::xml::Element;
 use std::str::FromStr;
 
 /// Children of the root in the order of the schema.

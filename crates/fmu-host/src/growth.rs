@@ -101,7 +101,7 @@ pub fn onset_by_stepping(fmu: &Fmu, search: &SteppingSearch) -> Result<SteppedSe
 /// # Errors
 /// [`Error::Input`] for a search that makes no sense or an FMU without these variables; [`Error::Numerical`] when the FMU
 /// refuses a call.
-pub(crate) fn growth_by_stepping(
+pub fn growth_by_stepping(
     fmu: &Fmu,
     speed_m_s: f64,
     communication_step_s: f64,

@@ -2,7 +2,7 @@
 
 use super::{FmuComponent, Slave};
 use crate::error::{Error, Result};
-use crate::fmu::importer::library::StatePointer;
+use crate::library::StatePointer;
 use std::rc::Rc;
 
 /// A saved state of an instance.
