@@ -3,6 +3,7 @@
 //! compiler.
 
 mod circles;
+mod figures;
 mod rules;
 mod source;
 

@@ -239,6 +239,11 @@ fn attributes(item: &Item) -> &[Attribute] {
     }
 }
 
+/// Whether an item is there for tests alone.
+pub fn is_for_tests(item: &Item) -> bool {
+    are_for_tests(attributes(item))
+}
+
 /// Whether `cfg(test)` is among them; `all(test, …)` counts, `not(test)` does not.
 fn are_for_tests(attributes: &[Attribute]) -> bool {
     let is_for_tests = |attribute: &Attribute| match &attribute.meta {
