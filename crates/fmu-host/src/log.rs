@@ -72,6 +72,7 @@ unsafe extern "C" fn collect(
             status: Status::from_code(status),
             // SAFETY: C strings or null, as the standard has it
             category: unsafe { text(category) },
+            // SAFETY: a C string, or null, that lives through the call
             text: plain(&unsafe { text(message) }),
         });
     }

@@ -177,6 +177,7 @@ impl Slave {
 
     /// `fmi2EnterInitializationMode`.
     pub fn enter_initialization(&mut self) -> Result<()> {
+        // SAFETY: the component lives; plain values
         self.good("fmi2EnterInitializationMode", |f, c| unsafe {
             (f.enter_initialization_mode)(c)
         })
@@ -184,6 +185,7 @@ impl Slave {
 
     /// `fmi2ExitInitializationMode`.
     pub fn exit_initialization(&mut self) -> Result<()> {
+        // SAFETY: the component lives; plain values
         self.good("fmi2ExitInitializationMode", |f, c| unsafe {
             (f.exit_initialization_mode)(c)
         })
@@ -204,16 +206,19 @@ impl Slave {
 
     /// As [`Slave::do_step`], whatever the answer.
     pub(crate) fn try_step(&mut self, time_s: f64, step_s: f64) -> Status {
+        // SAFETY: the component lives; plain values
         self.status(|f, c| unsafe { (f.do_step)(c, time_s, step_s, 1) })
     }
 
     /// `fmi2Terminate`.
     pub fn terminate(&mut self) -> Result<()> {
+        // SAFETY: the component lives; plain values
         self.good("fmi2Terminate", |f, c| unsafe { (f.terminate)(c) })
     }
 
     /// `fmi2Reset`.
     pub fn reset(&mut self) -> Result<()> {
+        // SAFETY: the component lives; plain values
         self.good("fmi2Reset", |f, c| unsafe { (f.reset)(c) })
     }
 

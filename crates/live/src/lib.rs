@@ -14,7 +14,8 @@
         clippy::unreachable,
         clippy::print_stdout,
         clippy::print_stderr,
-        clippy::dbg_macro
+        clippy::dbg_macro,
+        clippy::undocumented_unsafe_blocks
     )
 )]
 

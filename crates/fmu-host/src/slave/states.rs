@@ -22,11 +22,11 @@ impl Drop for FmuState {
     }
 }
 
-// SAFETY of every call below: the component lives, and states are its own
 impl Slave {
     /// `fmi2GetFMUstate`.
     pub(crate) fn get_state(&self) -> Result<FmuState> {
         let mut pointer: StatePointer = std::ptr::null_mut();
+        // SAFETY: the component lives, and the state is its own
         self.good("fmi2GetFMUstate", |f, c| unsafe {
             (f.get_fmu_state)(c, &mut pointer)
         })?;
@@ -46,6 +46,7 @@ impl Slave {
     /// [`Error::Input`] for a state of another instance.
     pub(crate) fn set_state(&mut self, state: &FmuState) -> Result<()> {
         self.own(state)?;
+        // SAFETY: the component lives, and the state is its own
         self.good("fmi2SetFMUstate", |f, c| unsafe {
             (f.set_fmu_state)(c, state.pointer)
         })
@@ -70,10 +71,12 @@ impl Slave {
     pub(crate) fn serialize_state(&self, state: &FmuState) -> Result<Vec<u8>> {
         self.own(state)?;
         let mut size = 0;
+        // SAFETY: the component lives, and the state is its own
         self.good("fmi2SerializedFMUstateSize", |f, c| unsafe {
             (f.serialized_fmu_state_size)(c, state.pointer, &mut size)
         })?;
         let mut bytes = vec![0; size];
+        // SAFETY: the component lives, and the state is its own
         self.good("fmi2SerializeFMUstate", |f, c| unsafe {
             (f.serialize_fmu_state)(c, state.pointer, bytes.as_mut_ptr(), size)
         })?;
@@ -83,6 +86,7 @@ impl Slave {
     /// `fmi2DeSerializeFMUstate`: bytes of an instance of the same FMU as a state of this one.
     pub(crate) fn deserialize_state(&self, bytes: &[u8]) -> Result<FmuState> {
         let mut pointer: StatePointer = std::ptr::null_mut();
+        // SAFETY: the component lives, and the state is its own
         self.good("fmi2DeSerializeFMUstate", |f, c| unsafe {
             (f.de_serialize_fmu_state)(c, bytes.as_ptr(), bytes.len(), &mut pointer)
         })?;

@@ -6,7 +6,6 @@ use crate::library::{Int, Text};
 use crate::log::text;
 use std::ffi::CString;
 
-// SAFETY of every call below: the component lives, and the slices have the length that is passed
 impl Slave {
     /// `fmi2GetReal`.
     pub fn get_real(&self, references: &[u32]) -> Result<Vec<f64>> {
@@ -21,6 +20,7 @@ impl Slave {
     /// [`Error::Input`] when the lengths differ.
     pub fn read_real(&self, references: &[u32], values: &mut [f64]) -> Result<()> {
         same_length(references, values.len())?;
+        // SAFETY: the component lives, and the slices have the length that is passed
         self.good("fmi2GetReal", |f, c| unsafe {
             (f.get_real)(
                 c,
@@ -34,6 +34,7 @@ impl Slave {
     /// `fmi2GetInteger`.
     pub(crate) fn get_integer(&self, references: &[u32]) -> Result<Vec<i32>> {
         let mut values = vec![0; references.len()];
+        // SAFETY: the component lives, and the slices have the length that is passed
         self.good("fmi2GetInteger", |f, c| unsafe {
             (f.get_integer)(
                 c,
@@ -48,6 +49,7 @@ impl Slave {
     /// `fmi2GetBoolean`.
     pub(crate) fn get_boolean(&self, references: &[u32]) -> Result<Vec<bool>> {
         let mut values: Vec<Int> = vec![0; references.len()];
+        // SAFETY: the component lives, and the slices have the length that is passed
         self.good("fmi2GetBoolean", |f, c| unsafe {
             (f.get_boolean)(
                 c,
@@ -62,6 +64,7 @@ impl Slave {
     /// `fmi2GetString`.
     pub(crate) fn get_string(&self, references: &[u32]) -> Result<Vec<String>> {
         let mut values: Vec<Text> = vec![std::ptr::null(); references.len()];
+        // SAFETY: the component lives, and the slices have the length that is passed
         self.good("fmi2GetString", |f, c| unsafe {
             (f.get_string)(
                 c,
@@ -80,6 +83,7 @@ impl Slave {
     /// [`Error::Input`] when the lengths differ.
     pub fn set_real(&mut self, references: &[u32], values: &[f64]) -> Result<()> {
         same_length(references, values.len())?;
+        // SAFETY: the component lives, and the slices have the length that is passed
         self.good("fmi2SetReal", |f, c| unsafe {
             (f.set_real)(c, references.as_ptr(), references.len(), values.as_ptr())
         })
@@ -88,6 +92,7 @@ impl Slave {
     /// `fmi2SetInteger`.
     pub(crate) fn set_integer(&mut self, references: &[u32], values: &[i32]) -> Result<()> {
         same_length(references, values.len())?;
+        // SAFETY: the component lives, and the slices have the length that is passed
         self.good("fmi2SetInteger", |f, c| unsafe {
             (f.set_integer)(c, references.as_ptr(), references.len(), values.as_ptr())
         })
@@ -97,6 +102,7 @@ impl Slave {
     pub(crate) fn set_boolean(&mut self, references: &[u32], values: &[bool]) -> Result<()> {
         same_length(references, values.len())?;
         let values: Vec<Int> = values.iter().map(|v| Int::from(*v)).collect();
+        // SAFETY: the component lives, and the slices have the length that is passed
         self.good("fmi2SetBoolean", |f, c| unsafe {
             (f.set_boolean)(c, references.as_ptr(), references.len(), values.as_ptr())
         })
@@ -116,6 +122,7 @@ impl Slave {
             })
             .collect::<Result<_>>()?;
         let values: Vec<Text> = owned.iter().map(|v| v.as_ptr()).collect();
+        // SAFETY: the component lives, and the slices have the length that is passed
         self.good("fmi2SetString", |f, c| unsafe {
             (f.set_string)(c, references.as_ptr(), references.len(), values.as_ptr())
         })
@@ -130,6 +137,7 @@ impl Slave {
     ) -> Result<Vec<f64>> {
         same_length(knowns, seed.len())?;
         let mut values = vec![0.0; unknowns.len()];
+        // SAFETY: the component lives, and the slices have the length that is passed
         self.good("fmi2GetDirectionalDerivative", |f, c| unsafe {
             (f.get_directional_derivative)(
                 c,
@@ -153,6 +161,7 @@ impl Slave {
     ) -> Result<()> {
         same_length(references, orders.len())?;
         same_length(references, values.len())?;
+        // SAFETY: the component lives, and the slices have the length that is passed
         self.good("fmi2SetRealInputDerivatives", |f, c| unsafe {
             (f.set_real_input_derivatives)(
                 c,
@@ -172,6 +181,7 @@ impl Slave {
     ) -> Result<Vec<f64>> {
         same_length(references, orders.len())?;
         let mut values = vec![0.0; references.len()];
+        // SAFETY: the component lives, and the slices have the length that is passed
         self.good("fmi2GetRealOutputDerivatives", |f, c| unsafe {
             (f.get_real_output_derivatives)(
                 c,
