@@ -353,3 +353,59 @@ fn the_tutorial_runs() {
         "no answer in the report"
     );
 }
+
+/// Each row of the glossary names a file that holds its type.
+#[test]
+fn the_glossary_is_true() {
+    let text = page("docs/architecture.md");
+    let (_, glossary) = text.split_once("## Glossary").unwrap();
+    let glossary = glossary.split("\n## ").next().unwrap();
+    let rows: Vec<Vec<&str>> = glossary
+        .lines()
+        .filter(|line| line.starts_with("| ") && line.contains(".rs`"))
+        .map(|line| {
+            line.split('|')
+                .map(|cell| cell.trim().trim_matches('`'))
+                .collect()
+        })
+        .collect();
+    assert!(rows.len() > 20, "{glossary}");
+    for row in rows {
+        let (name, source) = (row[2], page(row[3]));
+        let is_there = ["struct", "enum", "trait"]
+            .iter()
+            .any(|kind| source.contains(&format!("pub {kind} {name}")));
+        assert!(is_there, "{name} is not in {}", row[3]);
+    }
+}
+
+/// Files of the source that pages name are there.
+#[test]
+fn sources_that_pages_name_are_there() {
+    let pages = ["docs", "docs/files"].map(|name| fs::read_dir(root().join(name)).unwrap());
+    let mut named = 0;
+    for path in pages
+        .into_iter()
+        .flatten()
+        .map(|entry| entry.unwrap().path())
+    {
+        if path.extension().is_none_or(|e| e != "md") {
+            continue;
+        }
+        let text = fs::read_to_string(&path).unwrap();
+        for quoted in text.split('`').skip(1).step_by(2) {
+            if !quoted.ends_with(".rs")
+                || !(quoted.starts_with("src/") || quoted.starts_with("crates/"))
+            {
+                continue;
+            }
+            named += 1;
+            assert!(
+                root().join(quoted).is_file(),
+                "{}: {quoted}",
+                path.display()
+            );
+        }
+    }
+    assert!(named > 20, "{named}");
+}
