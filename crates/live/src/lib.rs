@@ -78,7 +78,7 @@ struct ModeCurve {
 /// `search`, `words`, `modes` and `ended`, or one with `error` alone.
 ///
 /// ```
-/// let answer = aerodeck::live::answer("{}");
+/// let answer = aerodeck_live::answer("{}");
 /// assert!(answer.starts_with(r#"{"error":"#), "{answer}");
 /// ```
 pub fn answer(request: &str) -> String {
