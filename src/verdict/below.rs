@@ -16,25 +16,27 @@ pub(super) fn not_judged_below(first: &FlutterReading, from_m_s: f64) -> Doubt {
         return Doubt::new(Severity::Severe, kind, text).settled_by("tests at higher K");
     };
     let k = range.max.full_width();
-    let (severity, answers) = match tested.below {
+    let forces = &first.forces;
+    let (severity, answer) = match tested.below {
         FastMotion::Damped => (
             Severity::Minor,
-            "takes energy out of every motion above them, and no test, answers for it",
+            format!("there every motion loses energy by {forces}, which no test confirms"),
         ),
         FastMotion::DampedAtTheEnd => (
             Severity::Minor,
-            "takes energy out of every motion at its highest K, and no test, answers for it",
+            format!(
+                "at their highest K every motion loses energy by {forces}; beyond, no test confirms it"
+            ),
         ),
         FastMotion::Open => (
             Severity::Severe,
-            "may feed motion above them, and no test says whether it grows",
+            format!("there motion may gain energy by {forces}, and no test says whether it grows"),
         ),
     };
     let text = format!(
-        "Below {} the {} branch lies at K above the tests ({k:.2}): there {} {answers}",
+        "Below {} the {} branch lies at K above the tests ({k:.2}): {answer}",
         speed(from_m_s),
         tested.branch,
-        first.forces
     );
     Doubt::new(severity, kind, text).settled_by(format!("tests at K above {k:.2}"))
 }
