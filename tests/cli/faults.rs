@@ -86,6 +86,20 @@ fn a_closed_standard_output_is_said() {
     }
 }
 
+/// Results are text, which holds no name that is none.
+#[test]
+#[cfg(unix)]
+fn names_that_are_no_text_are_refused() {
+    use std::os::unix::ffi::OsStrExt as _;
+    let name = std::ffi::OsStr::from_bytes(b"a\xff.toml");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_aerodeck"));
+    let output = command.arg("study").arg(name).output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    let said = String::from_utf8(output.stderr).unwrap();
+    let expected = "error: arguments: expected names and paths in UTF-8, found a\u{fffd}.toml\n";
+    assert_eq!(said, expected);
+}
+
 /// The demo, as soon as it has begun to write aside.
 fn demo_at_work(folder: &Path) -> Child {
     let child = program(folder, &["demo", "--quiet"])
