@@ -12,3 +12,4 @@ mod files;
 mod gusts;
 mod identities;
 mod published;
+mod stated;
