@@ -22,11 +22,12 @@ use crate::identification::{FrequencyFit, FrequencyWeights};
 use serde::{Deserialize, Serialize};
 
 /// The files of `data/reference`.
-const FILES: [&str; 9] = [
+const FILES: [&str; 10] = [
     include_str!("../data/reference/flat-plate-fits.toml"),
     include_str!("../data/reference/fung-1955.toml"),
     include_str!("../data/reference/goland-1945.toml"),
     include_str!("../data/reference/iabse-1.1a.toml"),
+    include_str!("../data/reference/iabse-2a.toml"),
     include_str!("../data/reference/jones-1940.toml"),
     include_str!("../data/reference/kavrakov-2022.toml"),
     include_str!("../data/reference/ntnu-langenuen.toml"),
@@ -38,7 +39,7 @@ const FILES: [&str; 9] = [
 type Compute = fn() -> Result<Vec<f64>>;
 
 /// All cases by name, in the order in which they are shown.
-const COMPUTATIONS: [(&str, Compute); 34] = [
+const COMPUTATIONS: [(&str, Compute); 36] = [
     ("flat-plate-table-4.1", flat_plate::table_4_1),
     ("iabse-1.1a-onset", flat_plate::iabse_onset),
     ("iabse-1.1a-in-wind", flat_plate::iabse_in_wind),
@@ -89,6 +90,8 @@ const COMPUTATIONS: [(&str, Compute); 34] = [
     ("iabse-1.1a-buffeting-published", flat_plate::iabse_rms),
     ("goland-wing", bridges::goland),
     ("goland-wing-published", bridges::goland),
+    ("iabse-2a", bridges::iabse_2a),
+    ("iabse-2a-published", bridges::iabse_2a_against_lateral),
 ];
 
 /// Who says what a figure should be.

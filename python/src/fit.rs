@@ -8,6 +8,7 @@ use crate::records::Records;
 use crate::work::Work;
 use aerodeck::aerodynamics::derivatives::DerivativeTable;
 use aerodeck::identification::{Fitted, FrequencyFit, TimeFit, fit_records, fit_table};
+use aerodeck::plausibility::Finding;
 use aerodeck::section::Dof;
 use aerodeck::trained_model::Provenance;
 use aerodeck::uncertainty::{CoefficientUncertainty, record_uncertainty, table_uncertainty};
@@ -91,14 +92,26 @@ fn fit(
     if let Ok(table) = data.cast::<Derivatives>() {
         let dofs: &[Dof] = if lateral { &Dof::THREE } else { &Dof::TWO };
         let fit = from_python("options", options.as_any())?;
-        to_table(py, &table.get().0, dofs, &fit, &work)
+        let Derivatives(table, findings) = table.get();
+        let fitted = to_table(py, table, dofs, &fit, &work)?;
+        Ok(of_odd_data(fitted, findings))
     } else if let Ok(records) = data.cast::<Records>() {
         let fit = from_python("options", options.as_any())?;
-        to_records(py, records.get(), &fit, &work)
+        let records = records.get();
+        let fitted = to_records(py, records, &fit, &work)?;
+        Ok(of_odd_data(fitted, &records.1))
     } else {
         let found = data.get_type().name()?.to_string();
         Err(wrong("data", "Derivatives or Records", found))
     }
+}
+
+/// The model with what is odd about its data, which every answer by it and the file of the model hold.
+fn of_odd_data(mut model: Model, findings: &[Finding]) -> Model {
+    let odd = findings.iter().map(ToString::to_string);
+    model.provenance.notes.extend(odd);
+    model.findings = findings.to_vec();
+    model
 }
 
 fn to_table(
@@ -168,5 +181,6 @@ fn model(
         uncertainty: known.map_err(|e| e.to_string()),
         stored: None,
         name,
+        findings: Vec::new(),
     }
 }

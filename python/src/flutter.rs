@@ -11,7 +11,7 @@ use aerodeck::aeroelastic::CoupledSection;
 use aerodeck::flutter::{
     FlutterSearch, OnsetInterval, OnsetSearch, determinant_onset, find_onset, pk_onset,
 };
-use aerodeck::plausibility::of_section;
+use aerodeck::plausibility::{Finding, of_section};
 use aerodeck::section::SectionModel;
 use aerodeck::study::{FlutterBlock, SpeedRange};
 use aerodeck::units::{ReducedFrequency, ReducedFrequencyRange};
@@ -61,9 +61,9 @@ pub fn flutter(
     };
     let search = block.range(section).search();
     let structure = section.structure().map_err(raised)?;
-    let against = |mut evidence: Evidence| {
+    let against = |mut evidence: Evidence, of_data: &[Finding]| {
         evidence.required = required_speed_m_s.map(|speed_m_s| RequiredSpeed { speed_m_s });
-        evidence.implausible = of_section(section);
+        evidence.implausible = [&of_section(section)[..], of_data].concat();
         Verdict::of(&evidence)
     };
     if let Ok(model) = model.cast::<Model>() {
@@ -71,8 +71,7 @@ pub fn flutter(
         let model = model.get();
         let found = py.detach(|| of_model(section, model, &search, method))?;
         let evidence = py.detach(|| model_evidence(section, model, &search, found.clone()))?;
-        let onset = Onset::new(&found, method, &against(evidence))?;
-        return Ok(onset.doubted(&of_section(section)));
+        return Onset::new(&found, method, &against(evidence, &model.findings));
     }
     let exact = |range| FixedForces { range, search };
     let method = method.unwrap_or("determinant");
@@ -110,9 +109,8 @@ pub fn flutter(
     };
     let (found, evidence) = found?;
     let of_deck = model.cast::<Derivatives>().ok();
-    let of_deck = of_deck.iter().flat_map(|table| &table.get().1);
-    let onset = Onset::new(&found, method, &against(evidence))?;
-    Ok(onset.doubted(of_section(section).iter().chain(of_deck)))
+    let of_deck = of_deck.map_or(&[][..], |table| &table.get().1);
+    Onset::new(&found, method, &against(evidence, of_deck))
 }
 
 /// What is known of a section in the forces of a trained model.

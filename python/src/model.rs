@@ -5,6 +5,7 @@ use crate::error::{raised, wrong};
 use crate::section::Section;
 use aerodeck::aerodynamics::{Realizable, Transfer};
 use aerodeck::identification::FitReport;
+use aerodeck::plausibility::Finding;
 use aerodeck::section::SectionModel;
 use aerodeck::trained_model::{self, Experiment, Provenance, TrainedModel};
 use aerodeck::uncertainty::CoefficientUncertainty;
@@ -30,6 +31,8 @@ pub struct Model {
     /// Section and experiment of the file it was read from.
     pub stored: Option<(SectionModel, Experiment)>,
     pub name: String,
+    /// What is odd about the data it was fitted to.
+    pub findings: Vec<Finding>,
 }
 
 #[pymethods]
@@ -46,6 +49,7 @@ impl Model {
             uncertainty: Err("no covariance is saved with a model".to_owned()),
             stored: Some((trained.section, trained.experiment)),
             name: trained.name,
+            findings: Vec::new(),
         })
     }
 

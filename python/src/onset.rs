@@ -3,7 +3,6 @@
 use crate::convert::shown;
 use crate::error::raised;
 use aerodeck::flutter::{FlutterSearch, OnsetInterval};
-use aerodeck::plausibility::Finding;
 use aerodeck::verdict::{Outcome, Verdict};
 use pyo3::prelude::*;
 use serde::Serialize;
@@ -69,13 +68,6 @@ impl Onset {
     /// What was found, by `method`.
     pub fn new(search: &FlutterSearch, method: &str, verdict: &Verdict) -> PyResult<Self> {
         Self::with_card(search, method, verdict, search)
-    }
-
-    /// The same with what is odd about what it rests on.
-    pub fn doubted<'a>(mut self, findings: impl IntoIterator<Item = &'a Finding>) -> Self {
-        let odd = findings.into_iter().map(ToString::to_string);
-        self.warnings.extend(odd);
-        self
     }
 
     /// What was found, with a card that holds more.

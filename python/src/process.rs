@@ -92,7 +92,7 @@ pub fn process(
     Ok(Processing {
         estimates: to_python(py, &found.estimates)?.unbind(),
         report: to_python(py, &processed.report)?.unbind(),
-        records: Py::new(py, Records(processed.records))?,
+        records: Py::new(py, Records(processed.records, Vec::new()))?,
         derivatives: Py::new(py, Derivatives(table, Vec::new()))?,
         warnings,
     })

@@ -3,6 +3,7 @@
 use crate::convert::{dof_names, dofs, from_python, rows, to_python};
 use crate::derivatives::Derivatives;
 use crate::error::{raised, wrong};
+use aerodeck::plausibility::Finding;
 use aerodeck::section::Dof;
 use aerodeck::wind_tunnel::{
     Record, RecordHeader, RecordSource, Segment, TunnelPlan, read_record, write_record,
@@ -14,8 +15,10 @@ use pyo3::types::PyDict;
 use std::path::PathBuf;
 
 /// Motion and self-excited force of a section model in forced vibration, one or several runs.
+///
+/// Beside them stands what is odd about the table they were made from.
 #[pyclass(frozen, module = "aerodeck")]
-pub struct Records(pub Vec<Record>);
+pub struct Records(pub Vec<Record>, pub Vec<Finding>);
 
 #[pymethods]
 impl Records {
@@ -29,7 +32,8 @@ impl Records {
                 .map(read_record)
                 .collect::<aerodeck::Result<_>>()
         };
-        py.detach(read).map(Self).map_err(raised)
+        let records = py.detach(read).map_err(raised)?;
+        Ok(Self(records, Vec::new()))
     }
 
     /// One record from arrays.
@@ -75,7 +79,7 @@ impl Records {
             start_s,
             end_s,
         };
-        Ok(Self(vec![Record {
+        let record = Record {
             motion: columns(&motion),
             force: columns(&force),
             header: RecordHeader {
@@ -89,7 +93,8 @@ impl Records {
                 source: "arrays".to_owned(),
                 licence: "as of the data".to_owned(),
             },
-        }]))
+        };
+        Ok(Self(vec![record], Vec::new()))
     }
 
     /// Records of a virtual wind tunnel: what a forced-vibration rig would measure on a deck with these derivatives.
@@ -114,9 +119,9 @@ impl Records {
             None => TunnelPlan::default(),
         };
         let dofs: &[Dof] = if lateral { &Dof::THREE } else { &Dof::TWO };
-        let table = &derivatives.get().0;
+        let Derivatives(table, findings) = derivatives.get();
         py.detach(|| plan.records_from_table(table, dofs))
-            .map(Self)
+            .map(|records| Self(records, findings.clone()))
             .map_err(raised)
     }
 
@@ -171,7 +176,10 @@ impl Records {
     }
 
     fn __add__(&self, other: &Bound<'_, Self>) -> Self {
-        Self([self.0.clone(), other.get().0.clone()].concat())
+        let (other, mut findings) = (other.get(), self.1.clone());
+        let new = other.1.iter().filter(|f| !self.1.contains(f));
+        findings.extend(new.cloned());
+        Self([&self.0[..], &other.0].concat(), findings)
     }
 
     fn __repr__(&self) -> String {

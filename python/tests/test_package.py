@@ -195,8 +195,50 @@ def test_errors_say_file_place_expected_and_found(tmp_path, section, model):
         section.replace({"width_m": -1.0})
     with pytest.raises(aerodeck.InputError, match="scanlan"):
         aerodeck.Derivatives.deck("LN21-5200").to_numpy("nonsense")
-    with pytest.raises(aerodeck.InputError, match="options"):
-        aerodeck.fit_laguerre(aerodeck.Derivatives.deck("LN21-5200"), nonsense=1)
+    # a slip in a keyword names the keywords, and no place in a text that the user never wrote
+    with pytest.raises(aerodeck.InputError, match="options: .*unknown field `filtres`.*`weights`") as caught:
+        aerodeck.fit_laguerre(aerodeck.Derivatives.deck("LN21-5200"), filtres=1)
+    assert "line" not in str(caught.value) and "column" not in str(caught.value)
+
+
+def test_the_verdict_is_that_of_the_library(section, model, table):
+    def judged(required_speed_m_s):
+        onset = aerodeck.flutter(section, model, required_speed_m_s=required_speed_m_s)
+        assert onset.verdict["outcome"]["state"] == onset.outcome
+        return onset.outcome, onset.headline
+
+    outcome, headline = judged(30.0)
+    assert outcome == "met" and headline.startswith("✓ MET, required 30 m/s: flutter onset 36.9 m/s")
+    # the search reaches what is required
+    outcome, headline = judged(200.0)
+    assert outcome == "not_met" and headline.startswith("✗ NOT MET, required 200 m/s")
+    # without a requirement nothing is judged, and one is suggested
+    free = aerodeck.flutter(section, model)
+    assert free.outcome is None and 36 < free.verdict["suggested_m_s"] < 36.92
+    # a table has no interval
+    assert aerodeck.flutter(section, table, required_speed_m_s=30.0).outcome == "cannot_be_judged"
+
+
+def test_what_is_odd_is_warned_of_and_doubted(table, section, tmp_path):
+    """Numbers over V̂ labelled V*: 5.9 m/s for 36.9. Neither a fit nor records made from the table lose the doubt."""
+    written = tmp_path / "right.csv"
+    table.write(written)
+    wrong = tmp_path / "wrong.csv"
+    text = written.read_text(encoding="utf-8").replace("# argument: v_hat = V/(omega B)", "# argument: v_star = V/(f B)")
+    wrong.write_text(text.replace(",v_hat,", ",v_star,"), encoding="utf-8")
+    with pytest.warns(aerodeck.AerodeckWarning, match=r"read as Scanlan with 1/2, over v_hat"):
+        mislabelled = aerodeck.Derivatives.read(wrong)
+    records = aerodeck.Records.virtual_tunnel(mislabelled)
+    for data in (mislabelled, aerodeck.fit_laguerre(mislabelled), aerodeck.fit_rational(records + records)):
+        onset = aerodeck.flutter(section, data, required_speed_m_s=5.0)
+        assert onset.outcome == "cannot_be_judged", onset.headline
+        said = [w for w in onset.warnings if "read as Scanlan with 1/2, over v_hat" in w]
+        assert len(said) == 1, onset.warnings
+    with pytest.warns(aerodeck.AerodeckWarning, match="were width_m the semi-chord, B would be 0.5 m"):
+        halved = section.replace({"width_m": 0.25})
+    onset = aerodeck.flutter(halved, aerodeck.fit_laguerre(table), required_speed_m_s=30.0)
+    assert onset.outcome == "cannot_be_judged"
+    assert sum("semi-chord" in w for w in onset.warnings) == 1
 
 
 def test_what_a_callback_raises_is_raised(table):

@@ -28,7 +28,7 @@ fn shape(mode: usize, node: usize) -> [f64; 6] {
     }
 }
 
-fn tables(folder: &Path) {
+pub(super) fn tables(folder: &Path) {
     let mut nodes = "# a comment\nnode,x_m,y_m,z_m\n".to_owned();
     for (name, [x, y, z]) in NODES {
         nodes += &format!("{name},{x},{y},{z}\n");
@@ -113,7 +113,7 @@ fn wawi(folder: &Path) {
     fs::write(folder.join("element.json"), element.to_string()).unwrap();
 }
 
-fn text(format: &str, extra: &str) -> String {
+pub(super) fn text(format: &str, extra: &str) -> String {
     format!(
         "schema = 1\nname = \"small\"\nair_density_kg_m3 = 1.25\n\
          [modes]\nformat = \"{format}\"\npath = \".\"\naxes = {{ up = \"z\", downwind = \"-y\" }}\ndamping_ratio = 0.005\n\
@@ -121,7 +121,7 @@ fn text(format: &str, extra: &str) -> String {
     )
 }
 
-fn study(folder: &Path, text: &str) -> aerodeck::Result<BridgeStudy> {
+pub(super) fn study(folder: &Path, text: &str) -> aerodeck::Result<BridgeStudy> {
     let path = folder.join("bridge.toml");
     fs::write(&path, text).unwrap();
     BridgeStudy::new(BridgeFile::read(&path)?)

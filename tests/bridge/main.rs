@@ -11,3 +11,4 @@ mod gusts;
 mod identities;
 mod plausibility;
 mod published;
+mod stated;

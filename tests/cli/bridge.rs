@@ -2,7 +2,7 @@
 
 use crate::bridges::{TWO, langenuen_text};
 use crate::browser;
-use crate::command::{aerodeck, listing, refused, succeeds};
+use crate::command::{aerodeck, flowing, listing, refused, succeeds};
 use crate::report::fmu_page;
 use serde_json::Value;
 use std::fs;
@@ -241,15 +241,35 @@ fn an_exported_bridge_passes_the_check() {
     let text = succeeds(folder.path(), &export);
     assert!(text.contains("8 modes") && text.contains("1156"), "{text}");
     // the page says what the command does
-    let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
-    let verdict = text.strip_prefix("Langenuen LN21-5200: ").unwrap();
-    let verdict = verdict.split(" wrote ").next().unwrap();
-    assert!(verdict.starts_with("flutter onset 7"), "{text}");
+    let said = flowing(&text);
+    let (headline, _) = said.split_once(" wrote bridge.fmu").unwrap();
+    let verdict = headline.strip_prefix("Langenuen LN21-5200: ").unwrap();
+    assert!(verdict.starts_with("flutter onset 7"), "{headline}");
     let page = fmu_page(&folder.path().join("bridge.fmu"));
     assert!(page.contains(&format!("<p>{verdict}.</p>")), "{page}");
     assert!(page.contains("Static divergence at"), "{page}");
     let text = succeeds(folder.path(), &["fmu", "check", "bridge.fmu"]);
     assert!(text.ends_with("passed\n"), "{text}");
+    // real variables alone; the forces alone are those of strips of a section
+    let reals = [&export[..], &["--reals-only", "--out", "reals.fmu"]].concat();
+    succeeds(folder.path(), &reals);
+    let text = succeeds(folder.path(), &["fmu", "check", "reals.fmu"]);
+    assert!(text.ends_with("passed\n"), "{text}");
+    let mut archive =
+        zip::ZipArchive::new(fs::File::open(folder.path().join("reals.fmu")).unwrap()).unwrap();
+    let mut description = String::new();
+    let mut entry = archive.by_name("modelDescription.xml").unwrap();
+    std::io::Read::read_to_string(&mut entry, &mut description).unwrap();
+    for kind in ["<Boolean", "<Integer", "<String", "<Enumeration"] {
+        assert!(!description.contains(kind), "{kind}");
+    }
+    refused(
+        folder.path(),
+        &[&export[..], &["--kind", "force", "--out", "force.fmu"]].concat(),
+        &[
+            "--kind force: expected no --bridge with it: the forces of a bridge alone are those of strips",
+        ],
+    );
     refused(folder.path(), &export, &["expected no file there yet"]);
     refused(
         folder.path(),

@@ -1,6 +1,6 @@
 //! Tables of derivatives from the command line: shown, converted, stated in a study.
 
-use crate::command::{onset_of, refused, succeeds};
+use crate::command::{flowing, onset_of, refused, succeeds};
 use aerodeck::aerodynamics::derivatives::Derivative;
 use aerodeck::files::derivatives::embedded;
 use aerodeck::files::derivatives::read_csv;
@@ -197,4 +197,54 @@ fn a_study_states_the_notation_of_its_table() {
     refused(at, &["study", "c.toml", "--out", "c"], &["deck.convention"]);
     wrong("{ notation = \"milan\" }", "deck.csv");
     refused(at, &["study", "c.toml", "--out", "c"], &["c.toml", "milan"]);
+}
+
+/// A paper's table without the width of its model: the table says that 1 m is assumed, a study that states the deck's does not.
+#[test]
+fn a_stated_width_is_no_assumption() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    let deck = embedded::deck("LN21-5200").unwrap();
+    let columns = [
+        Derivative::H1,
+        Derivative::H2,
+        Derivative::H3,
+        Derivative::H4,
+        Derivative::A1,
+        Derivative::A2,
+        Derivative::A3,
+        Derivative::A4,
+    ];
+    let mut wide = "# notation: scanlan\n# argument: v_hat\n# axes: heave_up\nv_hat".to_owned();
+    columns.iter().for_each(|d| wide += &format!(",{d}"));
+    for d in columns {
+        for point in &deck.points(d)[..8] {
+            let cells = columns.map(|c| {
+                if c == d {
+                    point.value.to_string()
+                } else {
+                    String::new()
+                }
+            });
+            wide += &format!("\n{},{}", point.v_hat, cells.join(","));
+        }
+    }
+    fs::write(at.join("paper.csv"), wide + "\n").unwrap();
+    let assumed = "1 m is assumed";
+    let said = flowing(&succeeds(at, &["derivatives", "show", "paper.csv"]));
+    assert!(said.contains(assumed), "{said}");
+    succeeds(at, &["new", "--workbook", "paper.csv", "--out", "s.toml"]);
+    let said = flowing(&succeeds(
+        at,
+        &["study", "s.toml", "--out", "r", "--no-figures"],
+    ));
+    assert!(
+        said.contains("paper: flutter onset") || said.contains("paper.csv: flutter onset"),
+        "{said}"
+    );
+    let summary = fs::read_to_string(at.join("r/summary.json")).unwrap();
+    let page = fs::read_to_string(at.join("r/report.html")).unwrap();
+    for text in [said, summary, page] {
+        assert!(!text.contains(assumed), "{text}");
+    }
 }

@@ -56,6 +56,50 @@ fn a_full_disk_is_said() {
     }
 }
 
+/// What nobody can read is not computed: the answer of a verdict would be lost with the code of success.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_closed_standard_output_is_said() {
+    let closed = |arguments: &str, open: &str| {
+        let program = env!("CARGO_BIN_EXE_aerodeck");
+        let line = format!("'{program}' {arguments} {open}");
+        let output = Command::new("sh").args(["-c", &line]).output().unwrap();
+        let said = String::from_utf8(output.stderr).unwrap();
+        (output.status.code(), said)
+    };
+    for arguments in [
+        "derivatives notations",
+        "derivatives notations --json",
+        "--help",
+    ] {
+        let (code, said) = closed(arguments, ">&-");
+        assert_eq!(code, Some(1), "{said}");
+        assert!(
+            said.starts_with("error: standard output is closed"),
+            "{said}"
+        );
+        assert_eq!(closed(arguments, ">/dev/null"), (Some(0), String::new()));
+        assert_eq!(
+            closed(arguments, "<&- >/dev/null 2>&-"),
+            (Some(0), String::new())
+        );
+    }
+}
+
+/// Results are text, which holds no name that is none.
+#[test]
+#[cfg(unix)]
+fn names_that_are_no_text_are_refused() {
+    use std::os::unix::ffi::OsStrExt as _;
+    let name = std::ffi::OsStr::from_bytes(b"a\xff.toml");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_aerodeck"));
+    let output = command.arg("study").arg(name).output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    let said = String::from_utf8(output.stderr).unwrap();
+    let expected = "error: arguments: expected names and paths in UTF-8, found a\u{fffd}.toml\n";
+    assert_eq!(said, expected);
+}
+
 /// The demo, as soon as it has begun to write aside.
 fn demo_at_work(folder: &Path) -> Child {
     let child = program(folder, &["demo", "--quiet"])

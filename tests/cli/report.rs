@@ -42,6 +42,12 @@ fn the_report_of_the_demo_stands_alone() {
     ] {
         assert!(page.contains(word), "`{word}` is not in the report");
     }
+    // as many degrees of freedom as the width of the interval stands for
+    let freedom = page.split_once(" degrees of freedom)").unwrap().0;
+    let said: f64 = freedom.rsplit("; ").next().unwrap().parse().unwrap();
+    let interval = summary(&at.join("d"))["onsets"][0]["interval"].clone();
+    let known = interval["degrees_of_freedom"].as_f64().unwrap();
+    assert!((said - known).abs() <= 0.05, "{said} {known}");
     let answer = page.find("class=\"answer\"").unwrap();
     assert!(answer < page.find("What was asked").unwrap());
     fs::remove_file(at.join("d/report.html")).unwrap();
@@ -62,6 +68,13 @@ fn the_report_of_the_demo_stands_alone() {
         "forces.svg",
     ] {
         let svg = fs::read_to_string(at.join("d").join(figure)).unwrap();
+        // forces that were made from a table are not said to be measured
+        if figure == "forces.svg" {
+            assert!(
+                svg.contains("made from the deck") && !svg.contains("measured"),
+                "{svg}"
+            );
+        }
         // some renderers do not know it and hide the text under its halo
         assert!(!svg.contains("paint-order"), "{figure}");
     }

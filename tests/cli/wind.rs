@@ -1,6 +1,6 @@
 //! The commands on a wind file: what they print and write, and what they refuse.
 
-use crate::command::{flowing, listing, refused, succeeds};
+use crate::command::{aerodeck, flowing, listing, refused, succeeds};
 use serde_json::Value;
 use std::fs;
 use tempfile::TempDir;
@@ -41,6 +41,71 @@ fn quasi_steady_runs_the_example() {
     }
     let gusts = aerodeck::files::gusts::read_gusts(folder.path().join("aerodeck-out/gusts.csv"));
     assert!((gusts.unwrap().duration_s() - 300.0).abs() < 1e-9);
+}
+
+/// The criterion of a code stands in the wind file too; an onset of a theory without tests meets none, and may miss one.
+#[test]
+fn a_required_speed_of_a_wind_file_is_judged() {
+    let folder = TempDir::new().unwrap();
+    for (required, words) in [
+        (
+            10.0,
+            "? CANNOT BE JUDGED, required 10 m/s: flutter onset 59.0 m/s, interval not known",
+        ),
+        (
+            60.0,
+            "✗ NOT MET, required 60 m/s: flutter onset 59.0 m/s, interval not known",
+        ),
+        // the search reaches it
+        (
+            90.0,
+            "✗ NOT MET, required 90 m/s: flutter onset 59.0 m/s, interval not known",
+        ),
+    ] {
+        let stated = format!("[speeds]\nrequired_speed_m_s = {required:?}\n");
+        write(&folder, "[speeds]\n", &stated);
+        let arguments = ["quasi-steady", "wind.toml", "--no-figures"];
+        let (code, said, error) = aerodeck(folder.path(), &arguments);
+        assert_eq!(code, 3, "{error}");
+        let said = flowing(&said);
+        assert!(
+            said.starts_with(&format!("Synthetic box girder: {words}")),
+            "{said}"
+        );
+    }
+    write(&folder, "seed = 1", "seed = 1");
+    let said = flowing(&succeeds(
+        folder.path(),
+        &["quasi-steady", "wind.toml", "--no-figures"],
+    ));
+    assert!(said.contains("No required speed is stated"), "{said}");
+}
+
+/// A table is the answer of the frequency domain; the time domain says what it takes instead and how far off that is.
+#[test]
+fn buffeting_takes_a_table() {
+    let folder = TempDir::new().unwrap();
+    let lateral =
+        "lateral = { mass_kg_m = 22740.0, frequency_hz = 0.060, damping_ratio = 0.005 }\n";
+    write(&folder, lateral, "");
+    let file = folder.path().join("wind.toml");
+    let text = fs::read_to_string(&file).unwrap();
+    let text = text
+        .replace("\"quasi-steady\"", "\"LN21-5200\"")
+        .replace("speeds = 56", "speeds = 3")
+        .replace("speeds_m_s = [20.0, 35.0]", "speeds_m_s = [35.0]");
+    fs::write(&file, text).unwrap();
+    let said = flowing(&succeeds(
+        folder.path(),
+        &["buffeting", "wind.toml", "--no-figures"],
+    ));
+    for words in [
+        "self-excited forces: LN21-5200",
+        "it takes a model (continuous Laguerre, L = 5",
+        "whose RMS in the frequency domain differs from that of the table: y +",
+    ] {
+        assert!(said.contains(words), "{words}: {said}");
+    }
 }
 
 /// The gusts that a run leaves behind drive the same run again.

@@ -24,13 +24,9 @@ pub(super) fn card(onset: &Onset) -> Vec<(String, String)> {
             degrees_of_freedom,
             parts,
         } => format!(
-            "{low_m_s:.2} to {high_m_s:.2} m/s (standard error {standard_error_m_s:.2} m/s: {}; {degrees_of_freedom:.0} {} of freedom)",
+            // a tenth, since the width of the interval hangs on it where there are few
+            "{low_m_s:.2} to {high_m_s:.2} m/s (standard error {standard_error_m_s:.2} m/s: {}; {degrees_of_freedom:.1} degrees of freedom)",
             parts.explain(),
-            if degrees_of_freedom.round_ties_even() == 1.0 {
-                "degree"
-            } else {
-                "degrees"
-            }
         ),
         OnsetInterval::None { reason } | OnsetInterval::Undetermined { reason, .. } => {
             reason.clone()

@@ -45,6 +45,7 @@ pub fn read_field(path: &Path) -> Result<FieldTable> {
 /// Modes of bridges that come with the program.
 pub mod embedded {
     use super::{Modes, single_file};
+    use crate::aerodynamics::derivatives::DerivativeTable;
     use crate::error::{Error, Result};
 
     /// The Langenuen suspension bridge, MIT © 2022 juelpb.
@@ -53,19 +54,38 @@ pub mod embedded {
     /// Goland's cantilever wing, made for this program.
     const GOLAND: &str = include_str!("../../../../data/bridges/goland.csv");
 
+    /// The suspension bridge of IABSE step 2a, MIT © 2025 Knut Andreas Kvåle.
+    const IABSE_2A: &str = include_str!("../../../../data/bridges/iabse-2a.csv");
+
+    /// Name and file of each.
+    const BRIDGES: [(&str, &str); 3] = [
+        ("langenuen", LANGENUEN),
+        ("goland", GOLAND),
+        ("iabse-2a", IABSE_2A),
+    ];
+
+    /// Derivatives of the girder of IABSE step 2a, so dense that straight lines over `K` are those of the source over `V*`.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a file that is none.
+    pub fn iabse_2a_derivatives() -> Result<DerivativeTable> {
+        let text = include_str!("../../../../data/bridges/iabse-2a-derivatives.csv");
+        crate::files::derivatives::parse_csv(text)
+    }
+
     /// Modes of an embedded bridge by name.
     ///
     /// # Errors
     /// [`Error::Input`] for a name that is none.
     pub fn modes(name: &str) -> Result<Modes> {
-        for (known, text) in [("langenuen", LANGENUEN), ("goland", GOLAND)] {
+        for (known, text) in BRIDGES {
             if name.eq_ignore_ascii_case(known) {
                 return single_file::parse(text);
             }
         }
         Err(Error::input(
             "modes",
-            "the embedded bridges langenuen and goland",
+            "one of the embedded bridges langenuen, goland and iabse-2a",
             format!("`{name}`"),
         ))
     }
