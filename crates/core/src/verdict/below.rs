@@ -16,27 +16,19 @@ pub(super) fn not_judged_below(first: &FlutterReading, from_m_s: f64) -> Doubt {
         return Doubt::new(Severity::Severe, kind, text).settled_by("tests at higher K");
     };
     let k = range.max.full_width();
-    let forces = &first.forces;
-    let (severity, answer) = match tested.below {
-        FastMotion::Damped => (
-            Severity::Minor,
-            format!("there every motion loses energy by {forces}, which no test confirms"),
-        ),
+    let (severity, what) = match tested.below {
+        FastMotion::Damped => (Severity::Minor, "every motion loses energy at all higher K"),
         FastMotion::DampedAtTheEnd => (
             Severity::Minor,
-            format!(
-                "at their highest K every motion loses energy by {forces}; beyond, no test confirms it"
-            ),
+            "every motion loses energy at the highest K tested",
         ),
-        FastMotion::Open => (
-            Severity::Severe,
-            format!("there motion may gain energy by {forces}, and no test says whether it grows"),
-        ),
+        FastMotion::Open => (Severity::Severe, "a motion may gain energy there"),
     };
     let text = format!(
-        "Below {} the {} branch lies at K above the tests ({k:.2}): {answer}",
+        "Below {} the {} branch lies at K above {k:.2}, where nothing was tested; by {} {what}",
         speed(from_m_s),
         tested.branch,
+        first.forces
     );
     Doubt::new(severity, kind, text).settled_by(format!("tests at K above {k:.2}"))
 }
