@@ -2,6 +2,7 @@
 
 use super::figure::Figure;
 use super::font::FAMILIES;
+use super::scene::Px;
 use super::style::{BLACK, COLOURS};
 use crate::aerodynamics::derivatives::notation::Axes;
 use std::fmt::Write as _;
@@ -55,13 +56,19 @@ fn panel(svg: &mut String, axes: Axes) {
             1.0,
         ),
     };
-    text(svg, (20.0, 26.0), BLACK, "font-weight=\"bold\"", title);
-    text(svg, (20.0, 45.0), BLACK, "", who);
+    text(
+        svg,
+        Px::new(20.0, 26.0),
+        BLACK,
+        "font-weight=\"bold\"",
+        title,
+    );
+    text(svg, Px::new(20.0, 45.0), BLACK, "", who);
     let wind = COLOURS[0];
     for dy in [-30.0, 0.0, 30.0] {
-        arrow(svg, wind, (18.0, cy + dy), (72.0, cy + dy));
+        arrow(svg, wind, Px::new(18.0, cy + dy), Px::new(72.0, cy + dy));
     }
-    text(svg, (18.0, cy - 42.0), wind, "", "wind V");
+    text(svg, Px::new(18.0, cy - 42.0), wind, "", "wind V");
     deck(
         svg,
         0.0,
@@ -70,17 +77,17 @@ fn panel(svg: &mut String, axes: Axes) {
     let ghost = "fill=\"none\" stroke=\"#888\" stroke-width=\"1.1\" stroke-dasharray=\"5 4\"";
     deck(svg, NOSE_UP_DEG, ghost);
     let motion = COLOURS[1];
-    arrow(svg, motion, (cx, cy), (cx, cy + down * 98.0));
-    arrow(svg, motion, (cx, cy), (cx + 160.0, cy));
+    arrow(svg, motion, Px::new(cx, cy), Px::new(cx, cy + down * 98.0));
+    arrow(svg, motion, Px::new(cx, cy), Px::new(cx + 160.0, cy));
     rotation(svg, motion);
     let _ = writeln!(
         svg,
         "<circle cx=\"{cx}\" cy=\"{cy}\" r=\"3.5\" fill=\"#333\"/>"
     );
     let beside = if down > 0.0 { cy + 96.0 } else { cy - 90.0 };
-    text(svg, (cx + 10.0, beside), motion, "", heave);
-    text(svg, (cx + 118.0, cy - 12.0), motion, "", sway);
-    text(svg, (cx - 148.0, cy - 62.0), motion, "", turn);
+    text(svg, Px::new(cx + 10.0, beside), motion, "", heave);
+    text(svg, Px::new(cx + 118.0, cy - 12.0), motion, "", sway);
+    text(svg, Px::new(cx - 148.0, cy - 62.0), motion, "", turn);
     dimension(svg);
 }
 
@@ -113,36 +120,36 @@ fn rotation(svg: &mut String, colour: &str) {
     let (radius, half) = TURN;
     let at = |angle_deg: f64| {
         let a = angle_deg.to_radians();
-        (cx + radius * a.cos(), cy - radius * a.sin())
+        Px::new(cx + radius * a.cos(), cy - radius * a.sin())
     };
     let (start, end) = (at(180.0 + half), at(180.0 - half));
     let _ = writeln!(
         svg,
         "<path d=\"M{:.1} {:.1}A{radius} {radius} 0 0 1 {:.1} {:.1}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"2\"/>",
-        start.0, start.1, end.0, end.1
+        start.x, start.y, end.x, end.y
     );
     let tangent = (180.0 - half).to_radians();
-    head(svg, colour, end, (tangent.sin(), tangent.cos()));
+    head(svg, colour, end, Px::new(tangent.sin(), tangent.cos()));
 }
 
-fn arrow(svg: &mut String, colour: &str, from: (f64, f64), to: (f64, f64)) {
-    let (dx, dy) = (to.0 - from.0, to.1 - from.1);
+fn arrow(svg: &mut String, colour: &str, from: Px, to: Px) {
+    let (dx, dy) = (to.x - from.x, to.y - from.y);
     let length = dx.hypot(dy);
     let _ = writeln!(
         svg,
         "<path d=\"M{:.1} {:.1}L{:.1} {:.1}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"2\"/>",
-        from.0, from.1, to.0, to.1
+        from.x, from.y, to.x, to.y
     );
-    head(svg, colour, to, (dx / length, dy / length));
+    head(svg, colour, to, Px::new(dx / length, dy / length));
 }
 
-/// Arrow head with its tip a little beyond `at`, in the unit direction `(u, v)` of the page.
-fn head(svg: &mut String, colour: &str, at: (f64, f64), (u, v): (f64, f64)) {
+/// Arrow head with its tip a little beyond `at`, in the direction `unit` of the page.
+fn head(svg: &mut String, colour: &str, at: Px, unit: Px) {
     let point = |along: f64, aside: f64| {
         format!(
             "{:.1},{:.1}",
-            at.0 + along * u - aside * v,
-            at.1 + along * v + aside * u
+            at.x + along * unit.x - aside * unit.y,
+            at.y + along * unit.y + aside * unit.x
         )
     };
     let _ = writeln!(
@@ -171,15 +178,15 @@ fn dimension(svg: &mut String) {
             svg,
             "<path d=\"M{from} {level}H{right}\" stroke=\"#333\" stroke-width=\"1\"/>"
         );
-        text(svg, (right + 10.0, level + 4.0), "#333", "", words);
+        text(svg, Px::new(right + 10.0, level + 4.0), "#333", "", words);
     }
 }
 
-fn text(svg: &mut String, at: (f64, f64), colour: &str, style: &str, words: &str) {
+fn text(svg: &mut String, at: Px, colour: &str, style: &str, words: &str) {
     let _ = writeln!(
         svg,
         "<text x=\"{}\" y=\"{}\" fill=\"{colour}\" {style}>{words}</text>",
-        at.0, at.1
+        at.x, at.y
     );
 }
 
@@ -191,6 +198,5 @@ mod tests {
     #[test]
     fn the_page_shows_this_sketch() {
         assert_eq!(axes_sketch().svg(), include_str!("../../docs/axes.svg"));
-        assert!(axes_sketch().png(1.0).is_ok());
     }
 }

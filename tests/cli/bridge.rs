@@ -41,7 +41,7 @@ fn flutter_prints_its_card_and_writes_its_figures() {
     for name in [
         "bridge_flutter.svg",
         "bridge_curves.csv",
-        "flutter_motion.png",
+        "flutter_motion.svg",
         "flutter_motion.csv",
         "flutter_animation.csv",
         "report.html",

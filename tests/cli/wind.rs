@@ -30,7 +30,7 @@ fn quasi_steady_runs_the_example() {
     for name in [
         "wind.toml",
         "coefficients.svg",
-        "equilibrium.png",
+        "equilibrium.svg",
         "quasi_steady_modes.svg",
         "quasi_steady_run.csv",
         "gusts.csv",
@@ -156,7 +156,7 @@ fn buffeting_compares_both_domains() {
     }
     for name in [
         "buffeting.svg",
-        "buffeting_spectra_20.png",
+        "buffeting_spectra_20.svg",
         "buffeting.json",
     ] {
         assert!(listing(folder.path()).contains(&name.to_owned()), "{name}");

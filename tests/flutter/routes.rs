@@ -338,7 +338,7 @@ fn monte_carlo_from_a_trained_model() {
     near(result["nominal_m_s"].as_f64().unwrap(), 36.920, 0.02);
     near(result["mean_m_s"].as_f64().unwrap(), 37.0, 1.0);
     assert_eq!(result["samples"], 3000);
-    assert!(at.join("monte_carlo.png").exists() && at.join("monte_carlo.json").exists());
+    assert!(at.join("monte_carlo.svg").exists() && at.join("monte_carlo.json").exists());
     let text = succeeds(at, &["monte-carlo", "scatter.toml", "--seed", "4"]);
     assert!(
         text.contains("Design    onset below 35.000 m/s") && text.contains("seed 4"),

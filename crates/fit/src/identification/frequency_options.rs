@@ -5,7 +5,6 @@ use super::dissipative::Constraints;
 use super::form::Form;
 use super::form::PoleSearch;
 use super::own::{OwnFilters, validate_own};
-use super::report::FitReport;
 use crate::error::{Error, Result, non_negative};
 use crate::section::Dof;
 use serde::{Deserialize, Serialize};
@@ -112,14 +111,6 @@ impl FrequencyFit {
         Self {
             form: self.form.for_rows(rows, most),
             ..self.clone()
-        }
-    }
-
-    /// The form with the number of filters that a fit has chosen, where it was left open.
-    pub(crate) fn form_of(&self, report: &FitReport) -> Form {
-        match report.entries.first() {
-            Some(entry) if self.own.is_empty() => self.form.as_fitted(&entry.poles),
-            _ => self.form.clone(),
         }
     }
 

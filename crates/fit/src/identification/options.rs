@@ -5,7 +5,6 @@ use super::dissipative::{Constraints, FitRequirements};
 use super::form::{Form, PoleSearch};
 use super::frequency_options::{QuasiSteadyLimit, limits_by_entry, validate_limits};
 use super::own::{OwnFilters, StaticTerm, validate_own};
-use super::report::FitReport;
 use super::time::record::Records;
 use crate::error::{Result, non_negative, positive};
 use crate::section::Dof;
@@ -72,14 +71,6 @@ impl TimeFit {
         Self {
             form: self.form.for_rows(rows, most),
             ..self.clone()
-        }
-    }
-
-    /// The form with the number of filters that a fit has chosen, where it was left open.
-    pub(crate) fn form_of(&self, report: &FitReport) -> Form {
-        match report.entries.first() {
-            Some(entry) if self.own.is_empty() => self.form.as_fitted(&entry.poles),
-            _ => self.form.clone(),
         }
     }
 

@@ -2,7 +2,8 @@
 
 use super::dissipative::ConstraintReport;
 use super::entry_report::EntryReport;
-use super::form::PoleSearch;
+use super::form::{Form, PoleSearch};
+use super::own::OwnFilters;
 use crate::error::{Error, Result};
 use crate::section::Dof;
 use crate::trained_model::Model;
@@ -141,6 +142,15 @@ pub struct AlphaGuideline {
 }
 
 impl FitReport {
+    /// The form that was asked for, with the number of filters that the fit has chosen where it was left open and no force has
+    /// filters of its own.
+    pub(crate) fn form_fitted(&self, asked: &Form, own: &[OwnFilters]) -> Form {
+        match self.entries.first() {
+            Some(entry) if own.is_empty() => asked.as_fitted(&entry.poles),
+            _ => asked.clone(),
+        }
+    }
+
     /// Adds the notes that follow from the numbers: poles at their bounds, cancelling terms, bad conditioning.
     pub(crate) fn judge(&mut self, poles: &PoleSearch) {
         let mut notes = Vec::new();
