@@ -171,6 +171,62 @@ fn divergence_of_a_bridge_without_flutter_is_not_met() {
     assert_eq!(verdict["critical"]["governs"]["phenomenon"], "divergence");
 }
 
+/// The few tested nodes of a girder do not answer for the rest of it.
+#[test]
+fn a_girder_that_is_hardly_tested_is_not_met() {
+    let (code, verdict) = verdict_after(|text| {
+        let tested = "name = \"girder\"\nto = \"1011\"";
+        let rest = "[[section]]\nname = \"rest\"\nfrom = \"1016\"\nwidth_m = 31.0\nderivatives = \"flat plate\"\n\n";
+        text.replace("name = \"girder\"", tested).replace(
+            "[flutter]",
+            &format!("{rest}[flutter]\nrequired_speed_m_s = 60.0"),
+        )
+    });
+    assert_eq!((code, state(&verdict)), (Some(3), "cannot_be_judged"));
+    let untested = doubt(&verdict, "untested").unwrap();
+    let text = untested["text"].as_str().unwrap();
+    assert!(
+        text.starts_with("The forces of section rest (")
+            && text.ends_with(
+                "are those of Jones's rational functions of the flat plate, which no test of this deck confirms"
+            ),
+        "{text}"
+    );
+    assert_eq!(untested["severity"], "severe");
+}
+
+/// Static coefficients beside derivatives: where heave alone gallops by them, that governs.
+#[test]
+fn galloping_of_a_bridge_is_looked_at_beside_derivatives() {
+    let with_slope = |slope: &str| {
+        verdict_after(|text| {
+            let statics = format!("static = {{ drag = 0.02, lift_slope = {slope} }}\nmotions =");
+            text.replace("motions =", &statics)
+                .replace("[flutter]", "[flutter]\nrequired_speed_m_s = 60.0")
+        })
+    };
+    let (code, verdict) = with_slope("-8.0");
+    assert_eq!((code, state(&verdict)), (Some(3), "not_met"));
+    let governs = &verdict["critical"]["governs"];
+    assert_eq!(governs["phenomenon"], "galloping");
+    // Den Hartog: `2 ζ ω m = ½ ρ V B (−C_L′ − C_D)` at the slowest vertical mode, whose share in heave is not quite one
+    assert!(
+        (0.1..1.0).contains(&governs["best_m_s"].as_f64().unwrap()),
+        "{governs}"
+    );
+    let (code, verdict) = with_slope("4.5");
+    assert_eq!((code, state(&verdict)), (Some(0), "met"));
+}
+
+fn state(verdict: &Value) -> &str {
+    verdict["outcome"]["state"].as_str().unwrap()
+}
+
+fn doubt<'a>(verdict: &'a Value, kind: &str) -> Option<&'a Value> {
+    let doubts = verdict["doubts"].as_array().unwrap();
+    doubts.iter().find(|d| d["kind"] == kind)
+}
+
 /// Tables of 0° say nothing of a deck that the mean wind turns by degrees; those of an angle near all of its angles do.
 #[test]
 fn a_deck_turned_by_the_mean_wind_is_doubted() {
@@ -241,6 +297,24 @@ fn a_required_speed_of_a_bridge_is_judged() {
     let (code, verdict) = stated(95.0);
     assert_eq!((code, &verdict["outcome"]["state"]), (3, &"not_met".into()));
     assert_eq!(verdict["outcome"]["below"], "best_estimate");
+}
+
+/// A unit of a bridge that does not meet its requirement is packed, with that verdict in it and in the exit code.
+#[test]
+fn the_export_of_a_bridge_repeats_its_verdict() {
+    let folder = folder();
+    let at = folder.path();
+    let text = fs::read_to_string(at.join("bridge.toml")).unwrap();
+    let text = text.replace("[flutter]", "[flutter]\nrequired_speed_m_s = 95.0");
+    fs::write(at.join("bridge.toml"), text).unwrap();
+    let run = ["fmu", "export", "--bridge", "bridge.toml", "--out", "b.fmu"];
+    let (code, said, error) = aerodeck(at, &run);
+    assert_eq!(code, 3, "{said}{error}");
+    assert!(
+        flowing(&said).contains("✗ NOT MET, required 95 m/s: flutter onset"),
+        "{said}"
+    );
+    assert!(fmu_page(&at.join("b.fmu")).contains("NOT MET, required 95 m/s"));
 }
 
 #[test]

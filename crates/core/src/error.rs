@@ -37,6 +37,14 @@ impl fmt::Display for InputError {
 }
 
 /// Errors of the library.
+///
+/// ```
+/// # extern crate aerodeck_core as aerodeck;
+/// use aerodeck::Error;
+///
+/// let error = Error::input("section.width_m", "a positive number", "-1");
+/// assert_eq!(error.to_string(), "section.width_m: expected a positive number, found -1");
+/// ```
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// Wrong input: the caller can mend it.

@@ -21,6 +21,16 @@ pub const NEWEST_SCHEMA_VERSION: u32 = 2;
 const MAX_STATES: usize = 1000;
 
 /// The models that can be saved and exported.
+///
+/// ```
+/// # extern crate aerodeck_core as aerodeck;
+/// use aerodeck::aerodynamics::RationalModel;
+/// use aerodeck::trained_model::Model;
+///
+/// let model = Model::Rational(RationalModel::jones_flat_plate());
+/// assert_eq!(model.kind(), "rational functions");
+/// assert_eq!(model.schema_version(), 1);
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum Model {

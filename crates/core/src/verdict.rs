@@ -35,7 +35,7 @@ pub use critical::{Critical, CriticalSpeed, Phenomenon};
 pub use doubt::{Doubt, DoubtKind, Severity};
 pub use evidence::{
     Basis, DivergenceReading, Evidence, Failure, FlutterReading, GallopingReading, MeanRotation,
-    MovedOnset, RequiredSpeed,
+    MovedOnset, RequiredSpeed, UntestedPart,
 };
 pub use outcome::{Below, Outcome};
 pub use reach::Reach;

@@ -57,6 +57,22 @@ pub const LEAST_CHOSEN: usize = 3;
 pub const MOST_CHOSEN: usize = 5;
 
 /// Form of a continuous model.
+///
+/// ```
+/// # mod aerodeck { pub use aerodeck_core::*; pub use aerodeck_fit::*; pub use aerodeck_lab::*; }
+/// use aerodeck::files::derivatives::embedded;
+/// use aerodeck::identification::{Form, FrequencyFit, fit_table};
+/// use aerodeck::section::Dof;
+///
+/// let table = embedded::deck("LN21-5200")?;
+/// let fit = FrequencyFit {
+///     form: Form::Rational { lags: 2, added_mass: false },
+///     ..FrequencyFit::default()
+/// };
+/// let fitted = fit_table(&table.samples(&Dof::TWO), &Dof::TWO, &fit)?;
+/// assert_eq!(fitted.model.kind(), "rational functions");
+/// # Ok::<(), aerodeck::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum Form {

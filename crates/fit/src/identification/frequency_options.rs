@@ -78,6 +78,19 @@ pub enum FrequencyWeights {
 }
 
 /// Fit of a continuous model to a table or any other transfer matrix.
+///
+/// ```
+/// # mod aerodeck { pub use aerodeck_core::*; pub use aerodeck_fit::*; pub use aerodeck_lab::*; }
+/// use aerodeck::files::derivatives::embedded;
+/// use aerodeck::identification::{FrequencyFit, FrequencyWeights, fit_table};
+/// use aerodeck::section::Dof;
+///
+/// let table = embedded::deck("LN21-5200")?;
+/// let fit = FrequencyFit { weights: FrequencyWeights::Derivatives, ..FrequencyFit::default() };
+/// let fitted = fit_table(&table.samples(&Dof::TWO), &Dof::TWO, &fit)?;
+/// assert!(fitted.report.weights.contains("derivatives"), "{}", fitted.report.weights);
+/// # Ok::<(), aerodeck::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct FrequencyFit {

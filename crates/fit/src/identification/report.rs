@@ -16,6 +16,19 @@ pub(crate) const CANCELLATION_LIMIT: f64 = 30.0;
 pub(crate) const CONDITION_LIMIT: f64 = 1e8;
 
 /// A fitted model with the account of its fit.
+///
+/// ```
+/// # mod aerodeck { pub use aerodeck_core::*; pub use aerodeck_fit::*; pub use aerodeck_lab::*; }
+/// use aerodeck::files::derivatives::embedded;
+/// use aerodeck::identification::{Fitted, FrequencyFit, fit_table};
+/// use aerodeck::section::Dof;
+///
+/// let table = embedded::deck("LN21-5200")?;
+/// let Fitted { model, report } = fit_table(&table.samples(&Dof::TWO), &Dof::TWO, &FrequencyFit::default())?;
+/// assert_eq!(model.kind(), "continuous Laguerre");
+/// assert_eq!(report.entries.len(), 4);
+/// # Ok::<(), aerodeck::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Fitted {
     /// The model.
