@@ -50,7 +50,7 @@ struct Request {
 
 /// What is answered.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-struct Answer {
+struct FlutterAnswer {
     /// Where the section flutters, or up to where it does not.
     search: FlutterSearch,
     /// The same in words.
@@ -86,7 +86,7 @@ pub fn answer(request: &str) -> String {
     said.unwrap_or_else(|e| serde_json::json!({ "error": e.to_string() }).to_string())
 }
 
-fn answer_of(request: &str) -> Result<Answer> {
+fn answer_of(request: &str) -> Result<FlutterAnswer> {
     let request: Request = serde_json::from_str(request).map_err(json_error)?;
     let trained = TrainedModel::from_json(&request.model)?;
     let structure = request.section.structure()?;
@@ -100,7 +100,7 @@ fn answer_of(request: &str) -> Result<Answer> {
     let (low, high) = (request.speed_min_m_s, request.speed_max_m_s);
     let speeds = curve_speeds_m_s(low, high, request.speeds);
     let curves = trace_modes(&trained.name, &section, &speeds)?;
-    Ok(Answer {
+    Ok(FlutterAnswer {
         words: search.explain(),
         search,
         modes: modes(&curves),

@@ -30,7 +30,7 @@ use std::path::{Path, PathBuf};
 /// Example: aerodeck fmu export model.json --kind force --strips 40 --strip-length 25 --out force.fmu
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
-pub(crate) struct Args {
+pub(crate) struct FmuExportArgs {
     /// The trained model, or the bridge file with --bridge.
     model: PathBuf,
     /// Pack a whole bridge: the file is a bridge file (see docs/bridge.md).
@@ -40,8 +40,8 @@ pub(crate) struct Args {
     #[arg(long, value_delimiter = ',', requires = "bridge")]
     nodes: Vec<String>,
     /// What is packed: the section of the model with its forces, or its forces alone.
-    #[arg(long, value_enum, default_value_t = Kind::Section)]
-    kind: Kind,
+    #[arg(long, value_enum, default_value_t = ExportKind::Section)]
+    kind: ExportKind,
     /// Number of strips of a force FMU, with variables named strip[1].heave …; by default one strip with plain names.
     #[arg(long)]
     strips: Option<usize>,
@@ -98,7 +98,7 @@ pub(crate) struct Args {
 
 /// What is packed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-enum Kind {
+enum ExportKind {
     Section,
     Force,
 }
@@ -110,7 +110,7 @@ fn version(number: String) -> FmiVersion {
     }
 }
 
-impl Args {
+impl FmuExportArgs {
     fn label(&self) -> Result<Label> {
         let label = Label {
             name: self.name.clone(),
@@ -138,7 +138,7 @@ impl Args {
     /// The options of a force FMU.
     fn force(&self, model: &TrainedModel) -> Result<Option<ForceOptions>> {
         let mut options = ForceOptions::single(model.section.width_m);
-        if self.kind == Kind::Section {
+        if self.kind == ExportKind::Section {
             let given = [
                 ("--strips", self.strips.is_some()),
                 ("--strip-length", self.strip_length.is_some()),
@@ -165,7 +165,7 @@ impl Args {
     }
 }
 
-impl Args {
+impl FmuExportArgs {
     fn listing(&self) -> Listing {
         match self.reals_only {
             true => Listing::Reals,
@@ -179,7 +179,7 @@ impl Args {
                      model.json --kind force --strips N` packs";
         let strips = "--gust-strips and the `static` coefficients of the bridge file";
         let given = [
-            ("--kind force", self.kind == Kind::Force, alone),
+            ("--kind force", self.kind == ExportKind::Force, alone),
             ("--strips", self.strips.is_some(), alone),
             ("--strip-length", self.strip_length.is_some(), alone),
             ("--prediction", self.prediction.is_some(), alone),
@@ -247,14 +247,14 @@ fn saved_bounds(file: &Path, model: &TrainedModel) -> Result<Option<OnsetBounds>
 }
 
 /// Runs the command.
-pub(super) fn run(args: &Args, progress: &Progress) -> Result<Answer> {
+pub(super) fn run(args: &FmuExportArgs, progress: &Progress) -> Result<Answer> {
     if args.bridge {
         return args.whole_bridge(progress);
     }
     let model = stages::read_model(&args.model)?;
     let (default_name, bounds) = match args.kind {
-        Kind::Section => (stages::FMU_FILE, saved_bounds(&args.model, &model)?),
-        Kind::Force => ("deck_force.fmu", None),
+        ExportKind::Section => (stages::FMU_FILE, saved_bounds(&args.model, &model)?),
+        ExportKind::Force => ("deck_force.fmu", None),
     };
     let beside_the_model = || args.model.with_file_name(default_name);
     let path = args.out.clone().unwrap_or_else(beside_the_model);
