@@ -11,7 +11,7 @@ use super::quasi_pk::{pk_mode, pk_mode_at};
 use crate::aerodynamics::Transfer;
 use crate::error::{Error, Result};
 use crate::section::Structure;
-use crate::state_space::{eigenvalues, eigenvector, first_order, root};
+use crate::state_space::{ValueAt, eigenvalues, eigenvector, first_order, root};
 use crate::units::{ReducedFrequency, ReducedFrequencyRange};
 use nalgebra::{Complex, DVector};
 use std::f64::consts::TAU;
@@ -102,15 +102,13 @@ impl Iteration<'_> {
             let Some(before) = from.mode(mode.branch) else {
                 continue;
             };
-            let ends = (
-                beyond(self.k(from.speed, before)),
-                beyond(self.k(target, mode)),
-            );
-            let speed = root((from.speed, ends.0), (target, ends.1), |v| {
+            let end = |at: f64, mode: &Mode| ValueAt::new(at, beyond(self.k(at, mode)));
+            let last = end(target, mode);
+            let speed = root(end(from.speed, before), last, |v| {
                 let modes = self.advance(from, v)?;
                 Ok(modes
                     .mode(mode.branch)
-                    .map_or(ends.1, |m| beyond(self.k(v, m))))
+                    .map_or(last.value, |m| beyond(self.k(v, m))))
             })?;
             if first.is_none_or(|f| speed < f.0) {
                 first = Some((speed, mode.branch));

@@ -15,10 +15,16 @@ use std::f64::consts::TAU;
 
 /// Lowest speed of a scan from still air, as `V/(fB)` of the slowest mode: wind that no test and no site knows.
 const NEARLY_STILL: f64 = 0.01;
-/// Neighbouring speeds differ by at most this ratio, and at most this part of the highest speed.
-pub(super) const FINE: (f64, f64) = (1.05, 1.0 / 120.0);
+/// Spacing of a scan by itself.
+pub(super) const FINE: SpeedSpacing = SpeedSpacing {
+    ratio: 1.05,
+    part: 1.0 / 120.0,
+};
 /// The same where the structural modes are followed besides.
-pub(super) const COARSE: (f64, f64) = (1.12, 1.0 / 50.0);
+pub(super) const COARSE: SpeedSpacing = SpeedSpacing {
+    ratio: 1.12,
+    part: 1.0 / 50.0,
+};
 /// Branch of an eigenvalue that belongs to no structural mode.
 pub(super) const AERODYNAMIC: &str = "aerodynamic";
 /// Relative width to which the ends of a band are halved.
@@ -118,6 +124,13 @@ impl ScanPoint {
     }
 }
 
+/// Neighbouring speeds differ by at most this ratio, and at most this part of the highest speed.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct SpeedSpacing {
+    ratio: f64,
+    part: f64,
+}
+
 /// A section whose eigenvalues are looked at.
 pub(super) struct Scan<'a> {
     pub(super) model: &'a str,
@@ -171,7 +184,7 @@ impl<'a> Scan<'a> {
     }
 
     /// Speeds of a scan, m/s.
-    fn speeds(&self, from_m_s: f64, to_m_s: f64, (ratio, part): (f64, f64)) -> Result<Vec<f64>> {
+    fn speeds(&self, from_m_s: f64, to_m_s: f64, spacing: SpeedSpacing) -> Result<Vec<f64>> {
         non_negative("lowest wind speed", from_m_s)?;
         positive("highest wind speed", to_m_s)?;
         if from_m_s >= to_m_s {
@@ -185,7 +198,7 @@ impl<'a> Scan<'a> {
         let mut speed = from_m_s.max(self.lowest(to_m_s)?);
         while speed < to_m_s {
             all.push(speed);
-            speed = (ratio * speed).min(speed + to_m_s * part);
+            speed = (spacing.ratio * speed).min(speed + to_m_s * spacing.part);
         }
         all.push(to_m_s);
         Ok(all)
@@ -195,9 +208,9 @@ impl<'a> Scan<'a> {
         &self,
         from_m_s: f64,
         to_m_s: f64,
-        density: (f64, f64),
+        spacing: SpeedSpacing,
     ) -> Result<Vec<GrowthBand>> {
-        let grid = self.speeds(from_m_s, to_m_s, density)?;
+        let grid = self.speeds(from_m_s, to_m_s, spacing)?;
         let points = match critical_speeds(self.section) {
             Some(critical) => self.between(&critical, &grid)?,
             None => {
